@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Maps on disk as map_server writes them: a YAML file and a binary PGM beside it. Written whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap {
+
+/// Reads NAME.yaml and the image that it names. Cells are occupied above occupied_thresh, free below free_thresh, else unknown.
+/// Throws std::runtime_error: one line that names the file and the place (a rotated origin is refused).
+[[nodiscard]] OccupancyGrid read_grid(const std::filesystem::path& yaml_file);
+
+/// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a temporary
+/// file that is synced and renamed. Throws std::runtime_error naming the file.
+void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
+
+/// Replaces a file whole: the old one stays until the new one is complete on disk. Throws std::runtime_error.
+void replace_file(const std::filesystem::path& file, const std::string& content);
+
+}  // namespace deltamap

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// What flows through the house, in flow order: Odometry and Scan from the drivers, Estimate and TrackedScan from the
+// localizer, ScanSet S(k) from Δ-awareness, MapRevision M_k from the map update, DriveCommand from the pilot.
+// Plain data; each is stamped once, by its driver.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/grid_patch.hpp"
+#include "core/occupancy_grid.hpp"
+#include "core/pose2.hpp"
+#include "core/time.hpp"
+
+namespace deltamap {
+
+/// Where the robot's wheels say it is, and the state that its controller reports with it (one SIP, protocols.md A6).
+struct Odometry {
+  Timestamp time;                    ///< when the packet's first byte arrived, less the controller's latency
+  Pose2 odom_from_robot;             ///< integrated since the epoch's start
+  double speed_m_per_s = 0.0;        ///< forward, as reported
+  double turn_rate_rad_per_s = 0.0;  ///< counter-clockwise, from the wheel speeds
+  std::uint32_t epoch = 0;           ///< grows when the controller's pose jumped: never integrate across epochs
+  bool motors_enabled = false;
+  bool stop_button = false;
+  bool stalled = false;             ///< either motor
+  std::uint8_t front_bumpers = 0;   ///< a bit a segment
+  std::uint8_t rear_bumpers = 0;    ///< a bit a segment
+  double battery_v = 0.0;
+};
+
+/// What a beam brought back (protocols.md B4). Only a range frees cells or scores a pose by default.
+enum class BeamKind : std::uint8_t { kRange, kBeyondMaximum, kNotValid, kDazzled, kOther };
+
+struct Beam {
+  float range_m = 0.0F;  ///< from the laser; 0 where the kind is not kRange
+  float offset_s = 0.0F; ///< the beam's own time after Scan::time
+  BeamKind kind = BeamKind::kNotValid;
+};
+
+/// One sweep of the laser, counter-clockwise. Beam i points to first_bearing_rad + i · bearing_step_rad in the laser frame.
+struct Scan {
+  Timestamp time;             ///< of the first beam (protocols.md B7)
+  Timestamp received;         ///< arrival of the last byte: what latency is measured from
+  std::uint32_t number = 0;   ///< counts decoded scans from 0
+  double first_bearing_rad = 0.0;
+  double bearing_step_rad = 0.0;
+  double max_range_m = 0.0;   ///< longest range that the configuration lets pass; longer ones are kBeyondMaximum
+  Pose2 robot_from_laser;     ///< the mount
+  std::vector<Beam> beams;
+
+  [[nodiscard]] double bearing_rad(std::size_t beam) const {
+    return first_bearing_rad + static_cast<double>(beam) * bearing_step_rad;
+  }
+};
+
+/// The one stream that the localizer reads, in the order of arrival.
+using SensorMessage = std::variant<Odometry, Scan>;
+
+enum class LocalizerState : std::uint8_t {
+  kGlobal,    ///< pose unknown: particles over all free space
+  kTracking,  ///< one hypothesis, fitting: what the paper requires for Δ-mapping
+  kLost       ///< scans have stopped fitting and no change of the map explains it
+};
+
+/// What the localizer believes at one scan.
+struct Estimate {
+  Timestamp time;            ///< of the scan's first beam
+  Pose2 map_from_robot;      ///< mean of the best hypothesis
+  PoseCovariance covariance = PoseCovariance::Zero();  ///< of the best hypothesis
+  LocalizerState state = LocalizerState::kGlobal;
+  double n_eff = 0.0;        ///< effective sample size before resampling, Eq. 5; in [1, particles]
+  std::uint32_t particles = 0;
+  double w_avg = 0.0;        ///< exp of the mean log-likelihood of the used beams, averaged over the best hypothesis; (0, 1]
+  std::uint32_t revision = 0;                    ///< number k of the map that the pose was computed on
+  std::shared_ptr<const OccupancyGrid> map;      ///< that map, M_k
+};
+
+/// A beam with the robot's motion during the sweep taken out: both ends in the robot's frame at Scan::time.
+struct RayInRobot {
+  Eigen::Vector2f origin{0.0F, 0.0F};  ///< the laser when the beam was measured, m
+  Eigen::Vector2f end{0.0F, 0.0F};     ///< where it ended, m; equal to origin where the beam has no range
+};
+
+/// A scan with the pose it was taken from: what Δ-awareness and the pilot judge by.
+struct TrackedScan {
+  Scan scan;
+  std::vector<RayInRobot> rays;      ///< one for each beam
+  Estimate estimate;
+  Pose2 odom_from_robot;             ///< at Scan::time
+  std::uint32_t odometry_epoch = 0;
+  double speed_m_per_s = 0.0;        ///< measured around Scan::time
+  double turn_rate_rad_per_s = 0.0;  ///< measured around Scan::time
+};
+
+/// A cell that has proven to be persistently different from the map.
+struct CellVerdict {
+  Cell cell;
+  CellState state = CellState::kUnknown;  ///< what it should become
+};
+
+enum class MappingMethod : std::uint8_t { kPaper, kEvidence };
+
+/// S(k): the scans of one Δ-phase (paper §3.2), ready to become a revision.
+struct ScanSet {
+  std::uint32_t phase = 0;  ///< number of the Δ-phase, from 1
+  MappingMethod method = MappingMethod::kEvidence;
+  Timestamp began;
+  Timestamp ended;
+  std::vector<TrackedScan> scans;     ///< in order of time; all of one odometry epoch
+  std::vector<CellVerdict> verdicts;  ///< evidence: the cells to write, judged at the localizer's poses; paper: empty
+};
+
+/// M_k: the map after a Δ.
+struct MapRevision {
+  std::uint32_t number = 0;  ///< k; M_0 is 0
+  Timestamp time;            ///< end of the Δ-phase that it came from
+  std::shared_ptr<const OccupancyGrid> map;
+  std::vector<CellChange> changes;  ///< from M_{k-1}
+  FieldPatch field_patch;           ///< prepared for the localizer, so that applying it is a copy
+};
+
+/// What the pilot asks for; the io thread checks it and lets it expire.
+struct DriveCommand {
+  Timestamp time;                    ///< of the scan that it was decided on
+  double speed_m_per_s = 0.0;        ///< forward
+  double turn_rate_rad_per_s = 0.0;  ///< counter-clockwise
+};
+
+}  // namespace deltamap

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/channel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <thread>
+
+namespace deltamap {
+namespace {
+
+TEST(Channel, KeepsTheOrderAndMovesItsItems) {
+  Channel<std::unique_ptr<int>> channel{4};
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(channel.try_send(std::make_unique<int>(i)));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(**channel.try_receive(), i);
+  EXPECT_FALSE(channel.try_receive().has_value());
+}
+
+TEST(Channel, RefusesTheNewestItemWhenFullLeavesItAndCountsIt) {
+  Channel<std::unique_ptr<int>> channel{1};
+  EXPECT_TRUE(channel.try_send(std::make_unique<int>(1)));
+  auto second = std::make_unique<int>(2);
+  EXPECT_FALSE(channel.try_send(std::move(second)));
+  ASSERT_NE(second, nullptr);
+  EXPECT_EQ(channel.refused(), 1u);
+  EXPECT_EQ(**channel.try_receive(), 1);
+  EXPECT_TRUE(channel.try_send(std::move(second)));
+}
+
+TEST(Channel, GivesEverythingInOrderAcrossThreads) {
+  constexpr int kCount = 100'000;
+  Channel<std::unique_ptr<int>> channel{64};
+  std::jthread sender{[&] {
+    for (int i = 0; i < kCount; ++i) {
+      auto item = std::make_unique<int>(i);
+      while (!channel.try_send(std::move(item))) std::this_thread::yield();
+    }
+    channel.close();
+  }};
+  int expected = 0;
+  while (auto item = channel.receive()) ASSERT_EQ(**item, expected++);
+  EXPECT_EQ(expected, kCount);
+}
+
+TEST(Channel, MixesPollingAndSleepingWithoutLosingAWakeUp) {
+  constexpr int kCount = 20'000;
+  Channel<int> channel{8};
+  std::jthread sender{[&] {
+    for (int i = 0; i < kCount; ++i) {
+      int item = i;
+      while (!channel.try_send(std::move(item))) std::this_thread::yield();
+    }
+    channel.close();
+  }};
+  int expected = 0;
+  while (auto item = channel.receive()) {
+    ASSERT_EQ(*item, expected++);
+    while (auto more = channel.try_receive()) ASSERT_EQ(*more, expected++);
+  }
+  EXPECT_EQ(expected, kCount);
+}
+
+TEST(Channel, WakesTheReceiverOnAStopRequest) {
+  Channel<int> channel{1};
+  std::jthread receiver{[&](const std::stop_token& stop) { EXPECT_FALSE(channel.receive(stop).has_value()); }};
+  receiver.request_stop();
+}
+
+TEST(Channel, GivesWhatIsLeftAfterClosingThenNothing) {
+  Channel<int> channel{2};
+  EXPECT_TRUE(channel.try_send(7));
+  channel.close();
+  EXPECT_FALSE(channel.try_send(8));
+  EXPECT_EQ(channel.receive(), 7);
+  EXPECT_EQ(channel.receive(), std::nullopt);
+}
+
+TEST(Channel, DestroysWhatNobodyReceived) {
+  const auto item = std::make_shared<int>(1);
+  {
+    Channel<std::shared_ptr<int>> channel{2};
+    EXPECT_TRUE(channel.try_send(std::shared_ptr<int>{item}));
+    EXPECT_EQ(item.use_count(), 2);
+  }
+  EXPECT_EQ(item.use_count(), 1);
+}
+
+}  // namespace
+}  // namespace deltamap

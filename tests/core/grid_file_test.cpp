@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/grid_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/drawn_grid.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap {
+namespace {
+
+const std::string kKeys = "resolution: 0.1\norigin: [-1.5, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+std::string refusal(const std::filesystem::path& file) {
+  try {
+    (void)read_grid(file);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GridFile, ReadsWhatItWrote) {
+  const test::TemporaryFolder folder;
+  const OccupancyGrid grid = test::drawn_grid({"#. ", " .#"}, 0.05, {-17.0, -14.0});
+  write_grid(grid, folder.path() / "map.yaml");
+  EXPECT_EQ(read_grid(folder.path() / "map.yaml"), grid);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.yaml.part"));
+}
+
+TEST(GridFile, ReadsForeignShadesAndComments) {
+  const test::TemporaryFolder folder;
+  folder.write("m.pgm", std::string("P5\n# by another hand\n3 1\n# again\n100\n") + "\x00" + "\x64" + "\x32");
+  const std::string pixels{'\x00', '\x64', '\x32'};
+  folder.write("m.pgm", "P5\n# by another hand\n3 1\n100\n" + pixels);
+  const OccupancyGrid grid = read_grid(folder.write("m.yaml", "image: m.pgm\n" + kKeys));
+  EXPECT_EQ(grid[Cell(0, 0)], CellState::kOccupied);
+  EXPECT_EQ(grid[Cell(1, 0)], CellState::kFree);
+  EXPECT_EQ(grid[Cell(2, 0)], CellState::kUnknown);
+  EXPECT_EQ(grid.geometry().origin, Point2(-1.5, 2.0));
+}
+
+TEST(GridFile, NamesFileAndPlaceOfWhatItCannotRead) {
+  const test::TemporaryFolder folder;
+  EXPECT_NE(refusal(folder.path() / "none.yaml").find("none.yaml: No such file"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("empty.yaml", "")).find("empty.yaml: line 1"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("noise.yaml", "\x01{[")).find("noise.yaml: line 1"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("turned.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n")).find("rotated origin"),
+            std::string::npos);
+  folder.write("cut.pgm", "P5 100 100 255\nabc");
+  EXPECT_NE(refusal(folder.write("cut.yaml", "image: cut.pgm\n" + kKeys)).find("cut.pgm: byte 18: cut short"), std::string::npos);
+  folder.write("ascii.pgm", "P2 1 1 255\n0");
+  EXPECT_NE(refusal(folder.write("ascii.yaml", "image: ascii.pgm\n" + kKeys)).find("ascii.pgm: byte 0"), std::string::npos);
+}
+
+TEST(GridFile, LeavesNothingBehindWhereItCannotWrite) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(replace_file(folder.path() / "missing" / "file", "x"), std::runtime_error);
+  std::filesystem::create_directory(folder.path() / "taken");
+  EXPECT_THROW(replace_file(folder.path() / "taken", "x"), std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "taken.part"));
+}
+
+}  // namespace
+}  // namespace deltamap
