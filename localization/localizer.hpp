@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Front door of localization: Odometry, Scan and MapRevision in, an Estimate for each scan out. Single-threaded, takes no
+// lock, writes no log; the same messages and seed give the same estimates, bit for bit.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "core/messages.hpp"
+
+namespace deltamap::localization {
+
+struct LocalizerParams;
+
+/// Where the robot's frame lies in the map at the first scan, and how far to trust it.
+struct InitialPose {
+  Pose2 map_from_robot;
+  double position_deviation_m = 0.2;
+  double heading_deviation_rad = 0.17453292519943295;  // 10°
+};
+
+class Localizer {
+ public:
+  /// Without an initial pose the particles start all over the free space (global localization).
+  /// Throws std::runtime_error where the map has no free cell.
+  Localizer(const LocalizerParams& params, std::shared_ptr<const OccupancyGrid> map, std::optional<InitialPose> initial_pose,
+            std::uint64_t seed);
+  ~Localizer();
+  Localizer(Localizer&&) noexcept;
+  Localizer& operator=(Localizer&&) noexcept;
+
+  void observe(const Odometry& odometry);
+
+  /// One answer for every scan, whether the robot moved or not, lost or not.
+  [[nodiscard]] TrackedScan observe(Scan scan);
+
+  /// Takes M_k from the next scan on: copies the prepared patch where k follows the present number, else rebuilds.
+  void apply(const MapRevision& revision);
+
+  /// Starts again around a pose that a person gave.
+  void relocalize(const InitialPose& pose);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The bytes of the likelihood field around changed cells, computed aside (map thread) so that apply() only copies.
+[[nodiscard]] FieldPatch prepared_field_patch(const LocalizerParams& params, const OccupancyGrid& map,
+                                              std::span<const CellChange> changes);
+
+}  // namespace deltamap::localization

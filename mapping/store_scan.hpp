@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Front door 1 of mapping: TrackedScan in, S(k) out when a Δ-phase ends (paper §3.1–3.2). Two methods behind one door:
+// `paper` closes a phase when r_d falls below zero, `evidence` when a region has proven persistently different.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/messages.hpp"
+
+namespace deltamap::mapping {
+
+struct StoreScanParams;
+
+/// What Δ-awareness thought of the last scan, for telemetry and the paper's Figures 2 to 4.
+struct Awareness {
+  double w_fast = 0.0;  ///< Eq. 2
+  double w_slow = 0.0;  ///< Eq. 2
+  double r_d = 0.0;     ///< Eq. 3
+  bool in_phase = false;
+  std::uint32_t phase = 0;         ///< number of the present or last Δ-phase
+  std::uint32_t stored_scans = 0;  ///< in the present phase
+  std::uint32_t short_beams = 0;   ///< evidence: beams of this scan that ended before the map says
+  std::uint32_t through_beams = 0; ///< evidence: beams of this scan that went through what the map says
+};
+
+class StoreScan {
+ public:
+  StoreScan(const StoreScanParams& params, std::uint64_t seed);
+  ~StoreScan();
+  StoreScan(StoreScan&&) noexcept;
+  StoreScan& operator=(StoreScan&&) noexcept;
+
+  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update().
+  [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
+
+  [[nodiscard]] const Awareness& awareness() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace deltamap::mapping
