@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/run_tool.hpp"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "daemon/tool/subcommands.hpp"
+
+namespace deltamap::daemon::tool {
+
+int run_tool(int argc, const char* const* argv) {
+  CLI::App app{"deltamap: keeps a robot localized in a map that follows the world", "deltamap"};
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "deltamap: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace deltamap::daemon::tool

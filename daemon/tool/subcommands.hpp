@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of `deltamap`, one file each. A subcommand registers its options and, as CLI callback, does its job;
+// it throws std::runtime_error with one line that names file and place where it cannot.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace deltamap::daemon::tool {}  // namespace deltamap::daemon::tool
