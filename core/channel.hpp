@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins two threads: a bounded lock-free queue with one sender and one receiver. Items are moved in and out. The receiver
-// sleeps until something comes; the sender never waits: a full channel refuses the newest item and counts it.
+// Joins two threads: a bounded lock-free queue with one sender and one receiver. Items are moved in and out. The
+// receiver sleeps until something comes; the sender never waits: a full channel refuses the newest item and counts it.
 #pragma once
 
 #include <atomic>
@@ -57,7 +57,8 @@ class Channel {
     return item;
   }
 
-  /// Receiver only. Sleeps until there is an item; nothing once the channel is closed and empty, or a stop is requested.
+  /// Receiver only. Sleeps until there is an item; nothing once the channel is closed and empty, or a stop is
+  /// requested.
   [[nodiscard]] std::optional<T> receive(const std::stop_token& stop = {}) {
     const std::stop_callback wake{stop, [this] { filled_.release(); }};
     for (;;) {

@@ -74,7 +74,8 @@ MapKeys parse_keys(const std::filesystem::path& file) {
     }
   }
   if (!std::isfinite(values[0]) || !std::isfinite(values[1])) refuse(file, "'origin' must be finite");
-  if (values[2] != 0.0) refuse(file, "a rotated origin (yaw " + std::to_string(values[2]) + ") is not supported; turn the image");
+  if (values[2] != 0.0)
+    refuse(file, "a rotated origin (yaw " + std::to_string(values[2]) + ") is not supported; turn the image");
   keys.origin = {values[0], values[1]};
   if (map["negate"]) keys.negate = number(map, "negate", file) != 0.0;
   if (map["occupied_thresh"]) keys.occupied_threshold = number(map, "occupied_thresh", file);
@@ -137,9 +138,12 @@ std::array<CellState, 256> cell_states(int brightest, const MapKeys& keys) {
 
 char shade_of(CellState state) {
   switch (state) {
-    case CellState::kOccupied: return static_cast<char>(0);
-    case CellState::kFree: return static_cast<char>(254);
-    case CellState::kUnknown: break;
+    case CellState::kOccupied:
+      return static_cast<char>(0);
+    case CellState::kFree:
+      return static_cast<char>(254);
+    case CellState::kUnknown:
+      break;
   }
   return static_cast<char>(205);
 }
@@ -156,8 +160,8 @@ std::string pgm_of(const OccupancyGrid& grid) {
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
   std::ostringstream yaml;
   yaml.precision(17);
-  yaml << "image: " << image << "\nresolution: " << grid.resolution_m() << "\norigin: [" << grid.geometry().origin.x() << ", "
-       << grid.geometry().origin.y() << ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+  yaml << "image: " << image << "\nresolution: " << grid.resolution_m() << "\norigin: [" << grid.geometry().origin.x()
+       << ", " << grid.geometry().origin.y() << ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
   return yaml.str();
 }
 
@@ -180,7 +184,8 @@ OccupancyGrid read_grid(const std::filesystem::path& yaml_file) {
   OccupancyGrid grid{{width, height, keys.resolution_m, keys.origin}};
   const char* pixel = bytes.data() + header.end();
   for (int row = height - 1; row >= 0; --row) {
-    for (int column = 0; column < width; ++column) grid.set({column, row}, states[static_cast<unsigned char>(*pixel++)]);
+    for (int column = 0; column < width; ++column)
+      grid.set({column, row}, states[static_cast<unsigned char>(*pixel++)]);
   }
   return grid;
 }

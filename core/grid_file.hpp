@@ -9,12 +9,12 @@
 
 namespace deltamap {
 
-/// Reads NAME.yaml and the image that it names. Cells are occupied above occupied_thresh, free below free_thresh, else unknown.
-/// Throws std::runtime_error: one line that names the file and the place (a rotated origin is refused).
+/// Reads NAME.yaml and the image that it names. Cells are occupied above occupied_thresh, free below free_thresh, else
+/// unknown. Throws std::runtime_error: one line that names the file and the place (a rotated origin is refused).
 [[nodiscard]] OccupancyGrid read_grid(const std::filesystem::path& yaml_file);
 
-/// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a temporary
-/// file that is synced and renamed. Throws std::runtime_error naming the file.
+/// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a
+/// temporary file that is synced and renamed. Throws std::runtime_error naming the file.
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
 
 /// Replaces a file whole: the old one stays until the new one is complete on disk. Throws std::runtime_error.

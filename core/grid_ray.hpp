@@ -9,9 +9,9 @@
 
 namespace deltamap {
 
-/// Visits every cell that the segment touches, from the cell of `from` to the cell of `to`, both included; cells outside the
-/// grid are visited too (ask geometry.contains). `visit(Cell, double entered_m)` gets the distance from `from` at which
-/// the beam enters the cell, and answers whether to go on.
+/// Visits every cell that the segment touches, from the cell of `from` to the cell of `to`, both included; cells
+/// outside the grid are visited too (ask geometry.contains). `visit(Cell, double entered_m)` gets the distance from
+/// `from` at which the beam enters the cell, and answers whether to go on.
 template <typename Visit>
 void walk_ray(const GridGeometry& geometry, const Point2& from, const Point2& to, Visit&& visit) {
   constexpr double kNever = std::numeric_limits<double>::infinity();

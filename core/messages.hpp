@@ -26,9 +26,9 @@ struct Odometry {
   std::uint32_t epoch = 0;           ///< grows when the controller's pose jumped: never integrate across epochs
   bool motors_enabled = false;
   bool stop_button = false;
-  bool stalled = false;             ///< either motor
-  std::uint8_t front_bumpers = 0;   ///< a bit a segment
-  std::uint8_t rear_bumpers = 0;    ///< a bit a segment
+  bool stalled = false;            ///< either motor
+  std::uint8_t front_bumpers = 0;  ///< a bit a segment
+  std::uint8_t rear_bumpers = 0;   ///< a bit a segment
   double battery_v = 0.0;
 };
 
@@ -36,20 +36,21 @@ struct Odometry {
 enum class BeamKind : std::uint8_t { kRange, kBeyondMaximum, kNotValid, kDazzled, kOther };
 
 struct Beam {
-  float range_m = 0.0F;  ///< from the laser; 0 where the kind is not kRange
-  float offset_s = 0.0F; ///< the beam's own time after Scan::time
+  float range_m = 0.0F;   ///< from the laser; 0 where the kind is not kRange
+  float offset_s = 0.0F;  ///< the beam's own time after Scan::time
   BeamKind kind = BeamKind::kNotValid;
 };
 
-/// One sweep of the laser, counter-clockwise. Beam i points to first_bearing_rad + i · bearing_step_rad in the laser frame.
+/// One sweep of the laser, counter-clockwise. Beam i points to first_bearing_rad + i · bearing_step_rad in the laser
+/// frame.
 struct Scan {
-  Timestamp time;             ///< of the first beam (protocols.md B7)
-  Timestamp received;         ///< arrival of the last byte: what latency is measured from
-  std::uint32_t number = 0;   ///< counts decoded scans from 0
+  Timestamp time;            ///< of the first beam (protocols.md B7)
+  Timestamp received;        ///< arrival of the last byte: what latency is measured from
+  std::uint32_t number = 0;  ///< counts decoded scans from 0
   double first_bearing_rad = 0.0;
   double bearing_step_rad = 0.0;
-  double max_range_m = 0.0;   ///< longest range that the configuration lets pass; longer ones are kBeyondMaximum
-  Pose2 robot_from_laser;     ///< the mount
+  double max_range_m = 0.0;  ///< longest range that the configuration lets pass; longer ones are kBeyondMaximum
+  Pose2 robot_from_laser;    ///< the mount
   std::vector<Beam> beams;
 
   [[nodiscard]] double bearing_rad(std::size_t beam) const {
@@ -68,15 +69,15 @@ enum class LocalizerState : std::uint8_t {
 
 /// What the localizer believes at one scan.
 struct Estimate {
-  Timestamp time;            ///< of the scan's first beam
-  Pose2 map_from_robot;      ///< mean of the best hypothesis
+  Timestamp time;                                      ///< of the scan's first beam
+  Pose2 map_from_robot;                                ///< mean of the best hypothesis
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the best hypothesis
   LocalizerState state = LocalizerState::kGlobal;
-  double n_eff = 0.0;        ///< effective sample size before resampling, Eq. 5; in [1, particles]
+  double n_eff = 0.0;  ///< effective sample size before resampling, Eq. 5; in [1, particles]
   std::uint32_t particles = 0;
-  double w_avg = 0.0;        ///< exp of the mean log-likelihood of the used beams, averaged over the best hypothesis; (0, 1]
-  std::uint32_t revision = 0;                    ///< number k of the map that the pose was computed on
-  std::shared_ptr<const OccupancyGrid> map;      ///< that map, M_k
+  double w_avg = 0.0;  ///< exp of the mean log-likelihood of the used beams, averaged over the best hypothesis; (0, 1]
+  std::uint32_t revision = 0;                ///< number k of the map that the pose was computed on
+  std::shared_ptr<const OccupancyGrid> map;  ///< that map, M_k
 };
 
 /// A beam with the robot's motion during the sweep taken out: both ends in the robot's frame at Scan::time.
@@ -88,9 +89,9 @@ struct RayInRobot {
 /// A scan with the pose it was taken from: what Δ-awareness and the pilot judge by.
 struct TrackedScan {
   Scan scan;
-  std::vector<RayInRobot> rays;      ///< one for each beam
+  std::vector<RayInRobot> rays;  ///< one for each beam
   Estimate estimate;
-  Pose2 odom_from_robot;             ///< at Scan::time
+  Pose2 odom_from_robot;  ///< at Scan::time
   std::uint32_t odometry_epoch = 0;
   double speed_m_per_s = 0.0;        ///< measured around Scan::time
   double turn_rate_rad_per_s = 0.0;  ///< measured around Scan::time

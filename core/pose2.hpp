@@ -52,6 +52,8 @@ using PoseCovariance = Eigen::Matrix3d;
           wrapped_angle(from.theta + share * turn_between(from.theta, to.theta))};
 }
 
-[[nodiscard]] inline double distance_between(const Pose2& a, const Pose2& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+[[nodiscard]] inline double distance_between(const Pose2& a, const Pose2& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
 
 }  // namespace deltamap

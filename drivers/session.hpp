@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a device session asks of its port each time it is fed. Sessions know no port: they take bytes and time and answer
-// packets and requests, so that they can be replayed, fuzzed and simulated.
+// What a device session asks of its port each time it is fed. Sessions know no port: they take bytes and time and
+// answer packets and requests, so that they can be replayed, fuzzed and simulated.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,9 @@ struct PortRequest {
 
 struct SessionOutput {
   std::vector<PortRequest> requests;
-  std::vector<std::string> log;                ///< short lower-case lines worth telling the operator
-  std::optional<Timestamp> wake_at;            ///< call on_time() no later than this
-  std::optional<std::string> failed;           ///< the session is over; reconnect after a pause
+  std::vector<std::string> log;       ///< short lower-case lines worth telling the operator
+  std::optional<Timestamp> wake_at;   ///< call on_time() no later than this
+  std::optional<std::string> failed;  ///< the session is over; reconnect after a pause
 };
 
 }  // namespace deltamap::drivers

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Front door of localization: Odometry, Scan and MapRevision in, an Estimate for each scan out. Single-threaded, takes no
-// lock, writes no log; the same messages and seed give the same estimates, bit for bit.
+// Front door of localization: Odometry, Scan and MapRevision in, an Estimate for each scan out. Single-threaded, takes
+// no lock, writes no log; the same messages and seed give the same estimates, bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ class Localizer {
  public:
   /// Without an initial pose the particles start all over the free space (global localization).
   /// Throws std::runtime_error where the map has no free cell.
-  Localizer(const LocalizerParams& params, std::shared_ptr<const OccupancyGrid> map, std::optional<InitialPose> initial_pose,
-            std::uint64_t seed);
+  Localizer(const LocalizerParams& params, std::shared_ptr<const OccupancyGrid> map,
+            std::optional<InitialPose> initial_pose, std::uint64_t seed);
   ~Localizer();
   Localizer(Localizer&&) noexcept;
   Localizer& operator=(Localizer&&) noexcept;

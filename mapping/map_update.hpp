@@ -14,11 +14,11 @@ struct MapUpdateParams;
 
 enum class Refusal : std::uint8_t {
   kNone,
-  kTooFewScans,     ///< nothing to align
-  kNoAlignment,     ///< the scans do not agree with each other
-  kNoMerge,         ///< no rigid motion brings the local map onto the map
-  kLowAcceptance,   ///< Eq. 11 below its threshold
-  kImplausible,     ///< the merge contradicts the localizer's pose by more than its covariance allows (χ²)
+  kTooFewScans,    ///< nothing to align
+  kNoAlignment,    ///< the scans do not agree with each other
+  kNoMerge,        ///< no rigid motion brings the local map onto the map
+  kLowAcceptance,  ///< Eq. 11 below its threshold
+  kImplausible,    ///< the merge contradicts the localizer's pose by more than its covariance allows (χ²)
   kNothingChanged
 };
 [[nodiscard]] std::string_view name_of(Refusal refusal);

@@ -19,10 +19,10 @@ struct Awareness {
   double w_slow = 0.0;  ///< Eq. 2
   double r_d = 0.0;     ///< Eq. 3
   bool in_phase = false;
-  std::uint32_t phase = 0;         ///< number of the present or last Δ-phase
-  std::uint32_t stored_scans = 0;  ///< in the present phase
-  std::uint32_t short_beams = 0;   ///< evidence: beams of this scan that ended before the map says
-  std::uint32_t through_beams = 0; ///< evidence: beams of this scan that went through what the map says
+  std::uint32_t phase = 0;          ///< number of the present or last Δ-phase
+  std::uint32_t stored_scans = 0;   ///< in the present phase
+  std::uint32_t short_beams = 0;    ///< evidence: beams of this scan that ended before the map says
+  std::uint32_t through_beams = 0;  ///< evidence: beams of this scan that went through what the map says
 };
 
 class StoreScan {

@@ -9,7 +9,8 @@
 namespace deltamap {
 namespace {
 
-const std::string kKeys = "resolution: 0.1\norigin: [-1.5, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+const std::string kKeys =
+    "resolution: 0.1\norigin: [-1.5, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
 std::string refusal(const std::filesystem::path& file) {
   try {
@@ -45,12 +46,15 @@ TEST(GridFile, NamesFileAndPlaceOfWhatItCannotRead) {
   EXPECT_NE(refusal(folder.path() / "none.yaml").find("none.yaml: No such file"), std::string::npos);
   EXPECT_NE(refusal(folder.write("empty.yaml", "")).find("empty.yaml: line 1"), std::string::npos);
   EXPECT_NE(refusal(folder.write("noise.yaml", "\x01{[")).find("noise.yaml: line 1"), std::string::npos);
-  EXPECT_NE(refusal(folder.write("turned.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n")).find("rotated origin"),
+  EXPECT_NE(refusal(folder.write("turned.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n"))
+                .find("rotated origin"),
             std::string::npos);
   folder.write("cut.pgm", "P5 100 100 255\nabc");
-  EXPECT_NE(refusal(folder.write("cut.yaml", "image: cut.pgm\n" + kKeys)).find("cut.pgm: byte 18: cut short"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("cut.yaml", "image: cut.pgm\n" + kKeys)).find("cut.pgm: byte 18: cut short"),
+            std::string::npos);
   folder.write("ascii.pgm", "P2 1 1 255\n0");
-  EXPECT_NE(refusal(folder.write("ascii.yaml", "image: ascii.pgm\n" + kKeys)).find("ascii.pgm: byte 0"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("ascii.yaml", "image: ascii.pgm\n" + kKeys)).find("ascii.pgm: byte 0"),
+            std::string::npos);
 }
 
 TEST(GridFile, LeavesNothingBehindWhereItCannotWrite) {

@@ -9,7 +9,8 @@
 
 namespace deltamap::test {
 
-inline OccupancyGrid drawn_grid(const std::vector<std::string>& lines, double resolution_m = 1.0, Point2 origin = {0.0, 0.0}) {
+inline OccupancyGrid drawn_grid(const std::vector<std::string>& lines, double resolution_m = 1.0,
+                                Point2 origin = {0.0, 0.0}) {
   const auto height = static_cast<int>(lines.size());
   const auto width = static_cast<int>(lines.empty() ? 0 : lines.front().size());
   OccupancyGrid grid{{width, height, resolution_m, origin}};
