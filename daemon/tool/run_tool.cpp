@@ -12,6 +12,8 @@ namespace deltamap::daemon::tool {
 int run_tool(int argc, const char* const* argv) {
   CLI::App app{"deltamap: keeps a robot localized in a map that follows the world", "deltamap"};
   app.require_subcommand(1);
+  CLI::App& map = *app.add_subcommand("map", "make, compare, merge and look at maps")->require_subcommand(1);
+  add_map_picture(map);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -7,4 +7,9 @@ namespace CLI {
 class App;
 }
 
-namespace deltamap::daemon::tool {}  // namespace deltamap::daemon::tool
+namespace deltamap::daemon::tool {
+
+// under `deltamap map`
+void add_map_picture(CLI::App& map);
+
+}  // namespace deltamap::daemon::tool
