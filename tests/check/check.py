@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures every figure that the project promises and writes docs/results/check.md. Called by ./dev check.
+
+  check.py [--quick] [--only NAME]     --quick: one short demo, one seed; for trying the check itself"""
+import argparse, filecmp, json, lzma, os, pathlib, platform, shutil, subprocess, sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DATA = pathlib.Path(os.environ.get("DELTAMAP_DATA", ROOT.parent / "shared" / "data"))
+TOOLS = DATA.parent / "tools"
+BIN = ROOT / "build/release/bin"
+OUT = ROOT / "build/check"
+INTEL = ["--set", "laser.mount.x_m=0", "--initial-pose", "9.442,-3.389,-156.2"]
+
+
+class Table:
+    """Rows of the result: what was measured, the figure, the promise, whether it holds."""
+
+    def __init__(self):
+        self.rows = []
+
+    def add(self, on, name, figure, promise, holds):
+        self.rows.append((on, name, figure, promise, holds))
+        print("%-4s %-34s %-46s %-28s %s" % ("ok" if holds else "MISS", on, name, figure, promise), flush=True)
+
+    def markdown(self):
+        lines = ["| on | figure | measured | at least | |", "|---|---|---|---|---|"]
+        return "\n".join(lines + ["| %s | %s | %s | %s | %s |" % (*row[:4], "✓" if row[4] else "**missed**") for row in self.rows])
+
+
+def run(*command, **options):
+    done = subprocess.run([str(c) for c in command], cwd=ROOT, text=True, capture_output=True, **options)
+    if done.returncode:
+        raise SystemExit("%s\nfailed with %d:\n%s%s" % (" ".join(map(str, command)), done.returncode, done.stdout, done.stderr))
+    return done.stdout
+
+
+def score(script, *arguments):
+    return json.loads(run(sys.executable, TOOLS / script, *arguments))
+
+
+def unpacked(name):
+    """A data file without its .xz, in build/check/data."""
+    target = OUT / "data" / name
+    if not target.exists():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        packed = DATA / (str(name) + ".xz")
+        if packed.exists():
+            with lzma.open(packed) as source, open(target, "wb") as out:
+                shutil.copyfileobj(source, out)
+        else:
+            shutil.copy(DATA / name, target)
+    return target
+
+
+def map_file(name):
+    unpacked("maps/%s.pgm" % name)
+    return unpacked("maps/%s.yaml" % name)
+
+
+def recording(log):
+    target = OUT / (log + ".pcapng")
+    if not target.exists():
+        run(BIN / "deltamap", "import", "carmen", unpacked("logs/%s.log" % log), target)
+    return target
+
+
+def replay(log, start_map, name, *options):
+    folder = OUT / name
+    run(BIN / "deltamap", "replay", recording(log), "--map", start_map, "--config", ROOT / "config/pioneer.yaml", "--out", folder, *options)
+    return folder
+
+
+def same_bytes(one, other, names):
+    return [n for n in names if not filecmp.cmp(one / n, other / n, shallow=False)]
+
+
+def check_intel(table):
+    particles = ["--set", "localization.particles.min=500", "--set", "localization.particles.max=500", "--set", "localization.beams=0"]
+    folder = replay("intel", map_file("ref_intel"), "intel", *INTEL, *particles)
+    s = score("score_trajectory.py", folder / "trajectory.tum", DATA / "reference/intel.gt.txt.xz")
+    on = "intel on ref_intel, 500 particles"
+    table.add(on, "coverage", s["coverage"], "≥ 0.99", s["coverage"] >= 0.99)
+    table.add(on, "median error, m", s["median_m"], "≤ 0.06", s["median_m"] <= 0.06)
+    table.add(on, "95th percentile, m", s["p95_m"], "≤ 0.15", s["p95_m"] <= 0.15)
+    table.add(on, "lost", s["lost"], "≤ 0.01", s["lost"] <= 0.01)
+    report = json.loads((folder / "report.json").read_text())
+    table.add(on, "CPU a scan, everything, ms", round(report["cpu"]["per_scan_ms"], 3), "≤ 1.5", report["cpu"]["per_scan_ms"] <= 1.5)
+    peak = report["peak_resident_bytes"] / 2**20
+    table.add(on, "peak resident memory, MB", round(peak, 1), "≤ 32", peak <= 32)
+    again = replay("intel", map_file("ref_intel"), "intel-again", *INTEL, *particles)
+    differing = same_bytes(folder, again, ["trajectory.tum", "map.pgm", "map.yaml", "changes.jsonl"])
+    table.add("the same replay twice", "files that differ", ", ".join(differing) or "none", "none", not differing)
+
+
+def check_changed(table, seeds):
+    true_map = map_file("ref_intel")
+    for seed in seeds:
+        was = OUT / ("was-%d.yaml" % seed)
+        run(sys.executable, TOOLS / "make_changed_map.py", true_map, DATA / "reference/intel.gt.txt.xz", was, "--seed", seed)
+        folder = replay("intel", was, "changed-%d" % seed, *INTEL)
+        s = score("score_change.py", true_map, was, folder / "map.yaml", was.with_suffix(".changes.json"))
+        on = "intel, changed map, seed %d" % seed
+        for kind in ("removed", "added"):
+            found, of = map(int, s["found_" + kind].split("/"))
+            table.add(on, "%s things found" % kind, s["found_" + kind], "≥ 7/10", found >= 0.7 * of)
+        table.add(on, "skill", s["skill"], "≥ 0.5", s["skill"] >= 0.5)
+        table.add(on, "walls kept", s["kept"], "≥ 0.995", s["kept"] >= 0.995)
+        table.add(on, "ghosts, m²", s["ghost_m2"], "≤ 0.8", s["ghost_m2"] <= 0.8)
+
+
+def check_wean(table):
+    # The reference is the laser's pose; the robot's centre lies 0.25 m behind it.
+    folder = replay("wean3", map_file("wean5300"), "wean3", "--set", "laser.mount.x_m=0.25", "--initial-pose", "44.508,15.702,-91.93")
+    s = score("score_trajectory.py", folder / "trajectory.tum", DATA / "reference/wean3.gt.txt.xz", "--laser", "0.25")
+    on = "wean3 on wean5300"
+    table.add(on, "coverage", s["coverage"], "≥ 0.99", s["coverage"] >= 0.99)
+    table.add(on, "median error, m", s["median_m"], "≤ 0.15", s["median_m"] <= 0.15)
+    table.add(on, "lost", s["lost"], "≤ 0.01", s["lost"] <= 0.01)
+
+
+def check_demo(table, seeds, seconds):
+    for seed in seeds:
+        folder = OUT / ("demo-%d" % seed)
+        run("tests/system/demo.sh", "--for", seconds, "--seed", seed, "--out", folder, "--pin", "0")
+        s = json.loads((folder / "score.json").read_text())
+        on = "demo, %d s, seed %d, one CPU" % (seconds, seed)
+        table.add(on, "changes seen 10 s and found", "%d of %d" % (s["changes"]["found"], s["changes"]["eligible"]), "≥ 80 %",
+                  s["changes"]["found"] >= 0.8 * s["changes"]["eligible"])
+        table.add(on, "localization error, median, m", round(s["localization"]["median_m"], 4), "≤ 0.06", s["localization"]["median_m"] <= 0.06)
+        table.add(on, "localization error, worst, m", round(s["localization"]["max_m"], 3), "≤ 0.5", s["localization"]["max_m"] <= 0.5)
+        report = json.loads((folder / "run/report.json").read_text())
+        latency = report["latency_ms"]
+        table.add(on, "last byte → pose, 99 %, ms", round(latency["p99"], 2), "≤ 20", latency["p99"] <= 20)
+        again = OUT / ("demo-%d-replayed" % seed)
+        run(BIN / "deltamap", "replay", folder / "recording.pcapng", "--map", folder / "m0.yaml", "--config", "config/simulation.yaml",
+            "--out", again, "--seed", seed)
+        differing = same_bytes(folder / "run", again, ["trajectory.tum", "map.pgm", "changes.jsonl"])
+        table.add(on, "its recording replayed: files that differ", ", ".join(differing) or "none", "none", not differing)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", choices=["intel", "changed", "wean", "demo"])
+    arguments = parser.parse_args()
+    if not DATA.exists():
+        raise SystemExit("no real logs at %s: set DELTAMAP_DATA to check on them" % DATA)
+    shutil.rmtree(OUT, ignore_errors=True)
+    OUT.mkdir(parents=True)
+    table = Table()
+    checks = {"intel": lambda: check_intel(table), "changed": lambda: check_changed(table, [1] if arguments.quick else [1, 2]),
+              "wean": lambda: check_wean(table),
+              "demo": lambda: check_demo(table, [1] if arguments.quick else [1, 2, 3], 60 if arguments.quick else 300)}
+    for name, check in checks.items():
+        if arguments.only in (None, name):
+            check()
+    if not arguments.quick and not arguments.only:
+        revision = run("git", "describe", "--always", "--dirty").strip()
+        text = "# Figures promised and measured\n\nWritten by `./dev check` at %s on %s, %d processors.\n\n%s\n" % (
+            revision, platform.processor() or platform.machine(), os.cpu_count(), table.markdown())
+        (ROOT / "docs/results/check.md").write_text(text)
+    raise SystemExit(0 if all(row[4] for row in table.rows) else 1)
+
+
+main()

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A robot and its laser, simulated byte for byte on two pseudo-terminals, and the daemon that keeps its map true.
+# Called by ./dev demo; leaves everything in build/demo.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+seconds=120 seed=1 world=config/scenarios/demo.yaml out=build/demo bin=build/release/bin pin=()
+while (($#)); do
+  case $1 in
+    --for) seconds=$2; shift 2 ;;
+    --seed) seed=$2; shift 2 ;;
+    --world) world=$2; shift 2 ;;
+    --out) out=$2; shift 2 ;;
+    --pin) pin=(taskset -c "$2"); shift 2 ;;  # the daemon on one processor, as on the netbook
+    *) echo "usage: ./dev demo [--for SECONDS] [--seed N] [--world FILE] [--out DIR] [--pin CPU]" >&2; exit 2 ;;
+  esac
+done
+
+rm -rf "$out"
+mkdir -p "$out"
+"$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
+"$bin/deltamap" sim --world "$world" --links "$out" --seed "$seed" --truth "$out/truth.jsonl" 2>"$out/sim.log" &
+simulator=$!
+trap 'kill $simulator 2>/dev/null || true' EXIT
+for _ in $(seq 50); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
+
+echo "the robot drives for $seconds s in $world (seed $seed); watch: $out" >&2
+# `timeout` ends the daemon as systemd would: SIGTERM, and the map is saved.
+"${pin[@]}" timeout --foreground --preserve-status -s TERM "$seconds" "$bin/deltamapd" --config config/simulation.yaml \
+  --set robot.port="$out/robot" --set laser.port="$out/laser" --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" \
+  --set recording.file="$out/recording.pcapng" --set seed="$seed" --out "$out/run"
+kill "$simulator" && wait "$simulator" || true
+trap - EXIT
+
+"$bin/deltamap" score --truth "$out/truth.jsonl" --world "$world" --trajectory "$out/run/trajectory.tum" \
+  --start-map "$out/m0.yaml" --map "$out/run/map.yaml" --json >"$out/score.json"
+"$bin/deltamap" score --truth "$out/truth.jsonl" --world "$world" --trajectory "$out/run/trajectory.tum" \
+  --start-map "$out/m0.yaml" --map "$out/run/map.yaml"
+"$bin/deltamap" map picture "$out/m0.yaml" "$out/before.png"
+"$bin/deltamap" map picture "$out/run/map.yaml" "$out/after.png" --before "$out/m0.yaml"
+echo "pictures: $out/before.png and $out/after.png (red: newly occupied, green: newly free, blue: forgotten)"
