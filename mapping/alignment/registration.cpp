@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/alignment/registration.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::mapping::alignment {
+namespace {
+
+constexpr double kReachShrink = 0.8;  // per iteration, from the first reach to the last
+constexpr double kDamping = 1e-6;     // of the mean curvature: holds what nothing observes
+
+struct NormalEquations {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  // Σ w gᵀg, no unit deviation yet
+  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  std::size_t paired = 0;
+};
+
+NormalEquations normal_equations(std::span<const Point2> points, const NearestSurface& reference, const Pose2& pose,
+                                 double reach_m) {
+  NormalEquations sums;
+  const double c = std::cos(pose.theta);
+  const double s = std::sin(pose.theta);
+  for (const Point2& point : points) {
+    const Point2 arm{c * point.x() - s * point.y(), s * point.x() + c * point.y()};
+    const Point2 place{pose.x + arm.x(), pose.y + arm.y()};
+    const SurfacePoint* line = reference.nearest(place);
+    if (line == nullptr) continue;
+    const Point2 apart = place - line->position;
+    if (apart.squaredNorm() > reach_m * reach_m) continue;
+    const double distance_m = line->normal.dot(apart);
+    const Eigen::Vector3d gradient{line->normal.x(), line->normal.y(),
+                                   -line->normal.x() * arm.y() + line->normal.y() * arm.x()};
+    const double share = distance_m / reach_m;
+    const double weight =
+        (1.0 - share * share) * (1.0 - share * share);  // Tukey: nothing jumps at the border of the reach
+    sums.matrix.noalias() += weight * gradient * gradient.transpose();
+    sums.right_side.noalias() -= weight * distance_m * gradient;
+    sums.squares += distance_m * distance_m;
+    ++sums.paired;
+  }
+  return sums;
+}
+
+Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
+  return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
+}
+
+}  // namespace
+
+LineResidual line_residual(const Pose2& reference_from_moving, const Point2& point_in_moving,
+                           const SurfacePoint& line) {
+  const Point2 place = reference_from_moving * point_in_moving;
+  const Point2 arm = place - reference_from_moving.position();
+  return {line.normal.dot(place - line.position),
+          {line.normal.x(), line.normal.y(), -line.normal.x() * arm.y() + line.normal.y() * arm.x()}};
+}
+
+Registration registration(std::span<const Point2> points_in_moving, const NearestSurface& reference,
+                          const Pose2& initial, const PoseBelief& prior, const RegistrationParams& params) {
+  Registration result;
+  result.reference_from_moving = initial;
+  double reach_m = params.first_reach_m;
+  for (int i = 0; i < params.most_iterations; ++i) {
+    const NormalEquations sums = normal_equations(points_in_moving, reference, result.reference_from_moving, reach_m);
+    if (sums.paired < 3) return result;
+    const double mean_square = sums.squares / static_cast<double>(sums.paired);
+    const double variance = std::max(params.point_deviation_m * params.point_deviation_m, mean_square);
+    result.information = sums.matrix / variance;
+    result.deviation_m = std::sqrt(mean_square);
+    result.paired = sums.paired;
+
+    const Eigen::Vector3d from_prior = difference(result.reference_from_moving, prior.pose);
+    const Eigen::Matrix3d damping = kDamping * result.information.trace() * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d matrix = result.information + prior.information + damping;
+    const Eigen::Vector3d step = matrix.ldlt().solve(sums.right_side / variance + prior.information * from_prior);
+    Pose2& pose = result.reference_from_moving;
+    pose = {pose.x + step.x(), pose.y + step.y(), wrapped_angle(pose.theta + step.z())};
+    const bool at_last_reach = reach_m <= params.last_reach_m;
+    if (at_last_reach && step.cwiseAbs().maxCoeff() < params.settled_m) {
+      result.settled = true;
+      break;
+    }
+    reach_m = std::max(params.last_reach_m, reach_m * kReachShrink);
+  }
+  return result;
+}
+
+}  // namespace deltamap::mapping::alignment

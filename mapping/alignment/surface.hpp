@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces as points with normals, and the nearest of them to a place: what scans are matched against. Made from a
+// scan's ordered ray ends or from a map's contour (occupied cells beside a free one).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid_patch.hpp"
+#include "core/messages.hpp"
+#include "core/occupancy_grid.hpp"
+#include "core/pose2.hpp"
+
+namespace deltamap::mapping::alignment {
+
+struct SurfacePoint {
+  Point2 position;
+  Point2 normal;  ///< unit length, either side
+};
+
+/// Where the beams with a valid range of at most `longest_m` ended, in the robot's frame, in order of bearing.
+[[nodiscard]] std::vector<Point2> ray_ends(const TrackedScan& tracked, double longest_m);
+
+/// The ends that lie on a line with their neighbours in the sweep; the others are left out.
+[[nodiscard]] std::vector<SurfacePoint> surface_of(std::span<const Point2> ordered_ends);
+
+/// The contour of a map inside a box: centres of occupied cells that have a free neighbour and lie on a line with
+/// others.
+[[nodiscard]] std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& box);
+
+/// A table over the plane that answers the nearest surface point in constant time.
+class NearestSurface {
+ public:
+  /// Places farther than `reach_m` from every point have no answer; `table_cell_m` is how finely places are told apart.
+  NearestSurface(std::vector<SurfacePoint> points, double table_cell_m, double reach_m);
+
+  /// Null where there is none in reach. The answer is exact up to half a table cell.
+  [[nodiscard]] const SurfacePoint* nearest(const Point2& place) const {
+    const Cell cell = table_.cell_at(place);
+    if (!table_.contains(cell)) return nullptr;
+    const std::int32_t index = nearest_[table_.index_of(cell)];
+    return index < 0 ? nullptr : &points_[static_cast<std::size_t>(index)];
+  }
+  [[nodiscard]] const std::vector<SurfacePoint>& points() const { return points_; }
+
+ private:
+  std::vector<SurfacePoint> points_;
+  GridGeometry table_;
+  std::vector<std::int32_t> nearest_;  // index into points_, -1 = none in reach
+};
+
+}  // namespace deltamap::mapping::alignment
