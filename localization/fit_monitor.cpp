@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/fit_monitor.hpp"
+
+#include <cmath>
+
+namespace deltamap::localization {
+
+void FitMonitor::start(LocalizerState state) {
+  enter(state);
+  misfit_s_ = 0.0;
+  fit_s_ = 0.0;
+}
+
+void FitMonitor::enter(LocalizerState state) {
+  state_ = state;
+  in_state_s_ = 0.0;
+  driven_in_state_m_ = 0.0;
+  turned_in_state_rad_ = 0.0;
+}
+
+bool FitMonitor::converged(const Hypothesis& best) const {
+  const bool seen_enough =
+      driven_in_state_m_ >= params_.converged_after_m || turned_in_state_rad_ >= params_.converged_after_rad;
+  return seen_enough && best.weight >= params_.converged_share &&
+         best.covariance(0, 0) + best.covariance(1, 1) <= params_.converged_m * params_.converged_m &&
+         best.covariance(2, 2) <= params_.converged_rad * params_.converged_rad;
+}
+
+LocalizerState FitMonitor::observe(const Observation& scan, const Hypothesis& best) {
+  in_state_s_ += scan.passed_s;
+  driven_in_state_m_ += scan.driven_m;
+  turned_in_state_rad_ += std::abs(scan.turned_rad);
+  misfit_s_ = scan.fit < params_.lost_below ? misfit_s_ + scan.passed_s : 0.0;
+  fit_s_ = scan.fit > params_.found_above ? fit_s_ + scan.passed_s : 0.0;
+  switch (state_) {
+    case LocalizerState::kGlobal:
+      if (fit_s_ > 0.0 && fit_s_ >= params_.found_after_s && converged(best)) enter(LocalizerState::kTracking);
+      break;
+    case LocalizerState::kTracking:
+      if (misfit_s_ >= params_.lost_after_s) enter(LocalizerState::kLost);
+      break;
+    case LocalizerState::kLost:
+      if (fit_s_ > 0.0 && fit_s_ >= params_.found_after_s) {
+        enter(LocalizerState::kTracking);
+      } else if (in_state_s_ >= params_.search_after_s && driven_in_state_m_ >= params_.search_after_m) {
+        start(LocalizerState::kGlobal);
+      }
+      break;
+  }
+  return state_;
+}
+
+bool FitMonitor::search_failed() const {
+  return state_ == LocalizerState::kGlobal && misfit_s_ >= params_.lost_after_s &&
+         driven_in_state_m_ >= params_.search_after_m;
+}
+
+}  // namespace deltamap::localization

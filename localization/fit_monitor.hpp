@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judges whether the localizer knows where it is: global, tracking or lost. A changed map makes scans fit a little
+// worse for long, or much worse for a moment; only a long and strong misfit means lost, and only a lost robot that has
+// driven on searches the whole map again.
+#pragma once
+
+#include "core/messages.hpp"
+#include "localization/hypotheses.hpp"
+
+namespace deltamap::localization {
+
+/// A fit is exp(mean ln p(z)) of one scan at the estimated pose, in (0, 1].
+struct FitParams {
+  double lost_below = 0.12;      ///< fit that counts as misfit; 0..1
+  double found_above = 0.20;     ///< fit that counts as found again; lost_below..1
+  double lost_after_s = 10.0;    ///< unbroken misfit until lost, s; > 0
+  double found_after_s = 1.0;    ///< unbroken fit until tracking, s; >= 0
+  double search_after_s = 10.0;  ///< lost until the whole map is searched, s; >= 0
+  double search_after_m =
+      2.0;  ///< driven since lost until the whole map is searched, m; >= 0: someone may just stand in the way
+  double converged_share = 0.9;   ///< weight of the best hypothesis that ends global localization; 0.5..1
+  double converged_m = 0.3;       ///< deviation of position that ends global localization, m; > 0
+  double converged_rad = 0.1745;  ///< deviation of heading that ends global localization, rad; > 0 (10°)
+  double converged_after_m =
+      0.5;  ///< driven before global localization may end, m; >= 0: one view may look like another
+  double converged_after_rad = 1.0;  ///< or turned, rad; >= 0
+};
+
+class FitMonitor {
+ public:
+  explicit FitMonitor(const FitParams& params) : params_{params} {}
+
+  void start(LocalizerState state);
+
+  struct Observation {
+    double passed_s = 0.0;  ///< since the last scan
+    double driven_m = 0.0;  ///< since the last scan
+    double turned_rad = 0.0;
+    double fit = 0.0;
+  };
+  /// The state after this scan. kGlobal after kLost: the whole map is to be searched.
+  LocalizerState observe(const Observation& scan, const Hypothesis& best);
+
+  [[nodiscard]] LocalizerState state() const { return state_; }
+  /// True where a global localization has not come to fit: search anew.
+  [[nodiscard]] bool search_failed() const;
+
+ private:
+  [[nodiscard]] bool converged(const Hypothesis& best) const;
+  void enter(LocalizerState state);
+
+  FitParams params_;
+  LocalizerState state_ = LocalizerState::kGlobal;
+  double in_state_s_ = 0.0;
+  double driven_in_state_m_ = 0.0;
+  double turned_in_state_rad_ = 0.0;
+  double misfit_s_ = 0.0;  ///< unbroken
+  double fit_s_ = 0.0;     ///< unbroken
+};
+
+}  // namespace deltamap::localization

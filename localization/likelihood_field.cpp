@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/likelihood_field.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+
+namespace deltamap::localization {
+namespace {
+
+constexpr int kContourReach = 2;  // a cell's being contour depends on cells up to two away
+
+double hit_deviation_on(const GridGeometry& geometry, const LikelihoodFieldParams& params) {
+  return std::max(params.hit_deviation_m, 0.7 * geometry.resolution_m);
+}
+
+std::uint8_t steps_of_likelihood(double p) {
+  return static_cast<std::uint8_t>(std::clamp(std::lround(-std::log(p) / LikelihoodField::kStep), 0L, 255L));
+}
+
+/// Bytes by squared distance in cells; the last one holds for everything farther.
+struct StepTable {
+  int reach_cells = 0;
+  std::vector<std::uint8_t> steps;  // 0 .. reach², then the farthest
+  std::uint8_t unknown = 0;
+
+  [[nodiscard]] std::uint8_t at(int distance2) const {
+    return steps[static_cast<std::size_t>(std::min(distance2, static_cast<int>(steps.size()) - 1))];
+  }
+};
+
+StepTable step_table(const GridGeometry& geometry, const LikelihoodFieldParams& params) {
+  const double deviation_cells = hit_deviation_on(geometry, params) / geometry.resolution_m;
+  const auto likelihood = [&](double distance2) {
+    return (1.0 - params.random_share) * std::exp(-0.5 * distance2 / (deviation_cells * deviation_cells)) +
+           params.random_share;
+  };
+  const std::uint8_t farthest = steps_of_likelihood(params.random_share);
+  StepTable table;
+  int distance2 = 0;
+  for (; steps_of_likelihood(likelihood(distance2)) < farthest; ++distance2) {
+    table.steps.push_back(steps_of_likelihood(likelihood(distance2)));
+  }
+  table.reach_cells = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(distance2))));
+  table.steps.push_back(farthest);
+  table.unknown = std::min(farthest, steps_of_likelihood(params.unknown_likelihood));
+  return table;
+}
+
+bool has_free_side(const OccupancyGrid& map, Cell cell) {
+  return map.at({cell.column + 1, cell.row}) == CellState::kFree ||
+         map.at({cell.column - 1, cell.row}) == CellState::kFree ||
+         map.at({cell.column, cell.row + 1}) == CellState::kFree ||
+         map.at({cell.column, cell.row - 1}) == CellState::kFree;
+}
+
+/// The bytes of one window, in two passes: down each column the distance to the nearest contour, then along each row
+/// the least sum of squares. Exact, and blind to anything farther than the reach: that makes windows equal to the
+/// whole.
+class WindowBuilder {
+ public:
+  WindowBuilder(const OccupancyGrid& map, const CellBox& window, const StepTable& table)
+      : map_{map},
+        table_{table},
+        window_{window},
+        wide_{grown(window, table.reach_cells, map.geometry())},
+        column_distance_(static_cast<std::size_t>(wide_.width()) * static_cast<std::size_t>(window.height())) {}
+
+  [[nodiscard]] std::vector<std::uint8_t> bytes() {
+    for (int column = wide_.first.column; column < wide_.last.column; ++column) measure_column(column);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(static_cast<std::size_t>(window_.width()) * static_cast<std::size_t>(window_.height()));
+    for (int row = window_.first.row; row < window_.last.row; ++row) {
+      for (int column = window_.first.column; column < window_.last.column; ++column)
+        bytes.push_back(byte_of({column, row}));
+    }
+    return bytes;
+  }
+
+ private:
+  [[nodiscard]] int& column_distance(int column, int row) {
+    return column_distance_[static_cast<std::size_t>(row - window_.first.row) *
+                                static_cast<std::size_t>(wide_.width()) +
+                            static_cast<std::size_t>(column - wide_.first.column)];
+  }
+
+  void measure_column(int column) {
+    const int never = table_.reach_cells + 1;
+    int distance = never;
+    for (int row = wide_.first.row; row < window_.last.row; ++row) {
+      distance = is_contour(map_, {column, row}) ? 0 : std::min(distance + 1, never);
+      if (row >= window_.first.row) column_distance(column, row) = distance;
+    }
+    distance = never;
+    for (int row = wide_.last.row; row-- > window_.first.row;) {
+      const bool inside = row < window_.last.row;
+      const bool contour = inside ? column_distance(column, row) == 0 : is_contour(map_, {column, row});
+      distance = contour ? 0 : std::min(distance + 1, never);
+      if (inside) column_distance(column, row) = std::min(column_distance(column, row), distance);
+    }
+  }
+
+  [[nodiscard]] std::uint8_t byte_of(Cell cell) {
+    const int never = table_.reach_cells + 1;
+    const auto squared_at = [&](int column) {
+      if (column < wide_.first.column || column >= wide_.last.column) return never * never;
+      const int distance = column_distance(column, cell.row);
+      return distance * distance;
+    };
+    int best = squared_at(cell.column);
+    for (int aside = 1; aside <= table_.reach_cells && aside * aside < best; ++aside) {
+      best = std::min(
+          {best, aside * aside + squared_at(cell.column - aside), aside * aside + squared_at(cell.column + aside)});
+    }
+    const std::uint8_t steps = table_.at(best);
+    return map_[cell] == CellState::kUnknown ? std::min(steps, table_.unknown) : steps;
+  }
+
+  const OccupancyGrid& map_;
+  const StepTable& table_;
+  CellBox window_;
+  CellBox wide_;
+  std::vector<int> column_distance_;
+};
+
+/// Inverse of the likelihood: what distance a byte stands for.
+std::array<float, 256> distances_of_steps(const StepTable& table, double resolution_m) {
+  std::array<float, 256> distances{};
+  for (std::size_t steps = 0; steps < distances.size(); ++steps) {
+    const auto not_nearer = std::lower_bound(table.steps.begin(), table.steps.end(), static_cast<std::uint8_t>(steps));
+    const auto distance2 = static_cast<double>(std::min(not_nearer, table.steps.end() - 1) - table.steps.begin());
+    distances[steps] = static_cast<float>(std::sqrt(distance2) * resolution_m);
+  }
+  return distances;
+}
+
+}  // namespace
+
+bool is_contour(const OccupancyGrid& map, Cell cell) {
+  if (map.at(cell) != CellState::kOccupied) return false;
+  for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
+    for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
+      const CellState neighbour = map.at({column, row});
+      if (neighbour == CellState::kFree) return true;
+      if (neighbour == CellState::kUnknown && has_free_side(map, {column, row})) return true;
+    }
+  }
+  return false;
+}
+
+LikelihoodField::LikelihoodField(const OccupancyGrid& map, const LikelihoodFieldParams& params)
+    : geometry_{map.geometry()}, params_{params}, hit_deviation_m_{hit_deviation_on(map.geometry(), params)} {
+  const StepTable table = step_table(geometry_, params);
+  distance_of_steps_m_ = distances_of_steps(table, geometry_.resolution_m);
+  const Bordered size = bordered();
+  bytes_.assign(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), table.unknown);
+  const CellBox everything{{0, 0}, {geometry_.width, geometry_.height}};
+  if (!everything.empty()) apply({everything, WindowBuilder{map, everything, table}.bytes()});
+}
+
+std::uint8_t LikelihoodField::steps_at(Cell cell) const {
+  if (!geometry_.contains(cell)) return bytes_.front();
+  const std::size_t width = static_cast<std::size_t>(geometry_.width) + 2;
+  return bytes_[(static_cast<std::size_t>(cell.row) + 1) * width + static_cast<std::size_t>(cell.column) + 1];
+}
+
+void LikelihoodField::apply(const FieldPatch& patch) {
+  if (patch.box.empty()) return;
+  const auto patch_width = static_cast<std::size_t>(patch.box.width());
+  assert(patch.values.size() == patch_width * static_cast<std::size_t>(patch.box.height()) && "a value for each cell");
+  assert(geometry_.contains(patch.box.first) && patch.box.last.column <= geometry_.width &&
+         patch.box.last.row <= geometry_.height && "the patch must lie in the map");
+  const std::size_t width = static_cast<std::size_t>(geometry_.width) + 2;
+  const std::uint8_t* from = patch.values.data();
+  for (int row = patch.box.first.row; row < patch.box.last.row; ++row, from += patch_width) {
+    std::uint8_t* to = bytes_.data() + (static_cast<std::size_t>(row) + 1) * width +
+                       static_cast<std::size_t>(patch.box.first.column) + 1;
+    std::copy_n(from, patch_width, to);
+  }
+}
+
+FieldPatch field_patch(const OccupancyGrid& map, std::span<const CellChange> changes,
+                       const LikelihoodFieldParams& params) {
+  if (changes.empty()) return {};
+  const StepTable table = step_table(map.geometry(), params);
+  const CellBox window = grown(bounding_box(changes), table.reach_cells + kContourReach, map.geometry());
+  return {window, WindowBuilder{map, window, table}.bytes()};
+}
+
+}  // namespace deltamap::localization

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that can be set about localization. Each part's own parameters stand beside the part.
+#pragma once
+
+#include "localization/fit_monitor.hpp"
+#include "localization/global_search.hpp"
+#include "localization/hypotheses.hpp"
+#include "localization/likelihood_field.hpp"
+#include "localization/motion_model.hpp"
+#include "localization/odometry_buffer.hpp"
+#include "localization/particle_filter.hpp"
+#include "localization/pose_refinement.hpp"
+
+namespace deltamap::localization {
+
+/// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
+/// robot that stands still does not talk itself into certainty.
+struct UpdateParams {
+  double distance_m = 0.05;  ///< driven since the last update, m; >= 0
+  double turn_rad = 0.035;   ///< turned since the last update, rad; >= 0 (2°)
+  double time_s = 1.0;       ///< passed since the last update, s; > 0
+};
+
+struct LocalizerParams {
+  int beams = 0;  ///< beams of a scan that score, evenly chosen among the valid ones; 0 = all
+  ParticleFilterParams particles;
+  OdometryBufferParams odometry;
+  MotionModelParams motion;
+  LikelihoodFieldParams field;
+  HypothesisParams hypothesis;
+  RefinementParams refinement;
+  UpdateParams update;
+  GlobalSearchParams global;
+  FitParams fit;
+};
+
+}  // namespace deltamap::localization

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/motion_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace deltamap::localization {
+namespace {
+
+constexpr double kDirectionIsNoise_m = 0.010;
+
+double turned_rad(double rot_rad) { return std::min(std::abs(rot_rad), std::numbers::pi - std::abs(rot_rad)); }
+
+}  // namespace
+
+TurnDriveTurn turn_drive_turn(const Pose2& motion) {
+  const double trans_m = std::hypot(motion.x, motion.y);
+  if (trans_m < kDirectionIsNoise_m) return {0.0, motion.x, motion.theta};
+  const double rot1_rad = std::atan2(motion.y, motion.x);
+  return {rot1_rad, trans_m, wrapped_angle(motion.theta - rot1_rad)};
+}
+
+MotionNoise motion_noise(const TurnDriveTurn& motion, double unknown_s, const MotionModelParams& params) {
+  const double rot1_rad = turned_rad(motion.rot1_rad);
+  const bool on_the_spot = std::abs(motion.trans_m) < kDirectionIsNoise_m;
+  const double rot2_rad = on_the_spot ? std::abs(motion.rot2_rad) : turned_rad(motion.rot2_rad);
+  const double unknown_m = params.unknown_speed_m_per_s * unknown_s;
+  const double unknown_rad = params.unknown_turn_rate_rad_per_s * unknown_s;
+  const double along_m = std::hypot(params.position_floor_m, unknown_m);
+  return {
+      .rot1_rad = std::hypot(params.turn_per_turn * rot1_rad, params.turn_per_metre_rad * motion.trans_m),
+      .trans_m = std::hypot(params.metre_per_metre * motion.trans_m,
+                            params.metre_per_turn_m * std::hypot(rot1_rad, rot2_rad), along_m),
+      .sideways_m = along_m,
+      .rot2_rad = std::hypot(params.turn_per_turn * rot2_rad, params.turn_per_metre_rad * motion.trans_m,
+                             std::hypot(params.heading_floor_rad, unknown_rad)),
+  };
+}
+
+Pose2 sampled_motion(const Pose2& map_from_robot, const TurnDriveTurn& motion, const MotionNoise& noise,
+                     Random& random) {
+  const double rot1_rad = motion.rot1_rad + random.normal(noise.rot1_rad);
+  const double trans_m = motion.trans_m + random.normal(noise.trans_m);
+  const double sideways_m = random.normal(noise.sideways_m);
+  const double rot2_rad = motion.rot2_rad + random.normal(noise.rot2_rad);
+  const double direction_rad = map_from_robot.theta + rot1_rad;
+  const double c = std::cos(direction_rad);
+  const double s = std::sin(direction_rad);
+  return {map_from_robot.x + trans_m * c - sideways_m * s, map_from_robot.y + trans_m * s + sideways_m * c,
+          wrapped_angle(direction_rad + rot2_rad)};
+}
+
+}  // namespace deltamap::localization

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far the wheels can be trusted: the odometry motion model of Thrun, Burgard and Fox, "Probabilistic Robotics",
+// 2005, Table 5.6. A motion is a turn, a straight line and a turn; each gets noise in proportion to the others.
+#pragma once
+
+#include "core/pose2.hpp"
+#include "core/random.hpp"
+
+namespace deltamap::localization {
+
+/// Deviations, not variances: alpha_1 of the book is turn_per_turn², and so on.
+struct MotionModelParams {
+  double turn_per_turn = 0.15;       ///< deviation of a turn, rad a rad of turn; >= 0 (√α1)
+  double turn_per_metre_rad = 0.10;  ///< deviation of a turn, rad a metre driven; >= 0 (√α2)
+  double metre_per_metre = 0.10;     ///< deviation of a distance, m a metre driven; >= 0 (√α3)
+  double metre_per_turn_m = 0.02;    ///< deviation of a distance, m a rad of turn; >= 0 (√α4)
+  double position_floor_m =
+      0.005;  ///< deviation that every step gets, m; > 0: keeps a standing robot's particles apart
+  double heading_floor_rad = 0.003;          ///< deviation that every step gets, rad; > 0
+  double unknown_speed_m_per_s = 0.3;        ///< deviation a second without odometry, m; >= 0
+  double unknown_turn_rate_rad_per_s = 0.3;  ///< deviation a second without odometry, rad; >= 0
+};
+
+/// A motion between two odometry poses: turn, drive, turn.
+struct TurnDriveTurn {
+  double rot1_rad = 0.0;
+  double trans_m = 0.0;  ///< along rot1; negative only for steps below 10 mm
+  double rot2_rad = 0.0;
+};
+
+/// Below 10 mm of translation the direction is noise (1 mm steps): rot1 = 0 and rot2 is the whole turn.
+[[nodiscard]] TurnDriveTurn turn_drive_turn(const Pose2& motion);
+
+/// Deviations of one step's noise.
+struct MotionNoise {
+  double rot1_rad = 0.0;
+  double trans_m = 0.0;
+  double sideways_m = 0.0;
+  double rot2_rad = 0.0;
+};
+
+/// Reversing is no half turn: each turn counts as min(|rot|, π - |rot|).
+[[nodiscard]] MotionNoise motion_noise(const TurnDriveTurn& motion, double unknown_s, const MotionModelParams& params);
+
+/// Where a robot may be after the motion: one draw.
+[[nodiscard]] Pose2 sampled_motion(const Pose2& map_from_robot, const TurnDriveTurn& motion, const MotionNoise& noise,
+                                   Random& random);
+
+}  // namespace deltamap::localization

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Remembers the last odometry and answers where the wheels say the robot was at any beam's time: interpolated between
+// two reports, extrapolated a little past the newest, never waiting (CONTRACT "Poses and time").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+
+namespace deltamap::localization {
+
+struct OdometryBufferParams {
+  int capacity = 512;                          ///< reports remembered; 2..65536
+  double extrapolation_s = 0.15;               ///< longest reach past the newest report, s; >= 0
+  double max_speed_m_per_s = 1.5;              ///< of the robot: faster readings are clamped, m/s; > 0
+  double max_turn_rate_rad_per_s = 5.2359878;  ///< of the robot: faster readings are clamped, rad/s; > 0 (300°/s)
+};
+
+struct BodyVelocity {
+  double speed_m_per_s = 0.0;        ///< forward
+  double turn_rate_rad_per_s = 0.0;  ///< counter-clockwise
+};
+
+/// The wheels' answer for one instant.
+struct OdometryAt {
+  Pose2 odom_from_robot;  ///< in the frame of `epoch`
+  std::uint32_t epoch = 0;
+  Pose2 joined_from_robot;   ///< in one frame over all epochs; the jump between two epochs counts as standing still
+  double uncovered_s = 0.0;  ///< seconds between the instant and the nearest report that could speak for it
+};
+
+class OdometryBuffer {
+ public:
+  explicit OdometryBuffer(const OdometryBufferParams& params);
+
+  /// Reports must come in order of time; one that is not newer than the last is left out, unless the clock fell back by
+  /// more than a second: then the past is forgotten.
+  void add(const Odometry& odometry);
+
+  /// Nothing before the first report.
+  [[nodiscard]] std::optional<OdometryAt> at(Timestamp time) const;
+
+  /// Measured over a tenth of a second around the instant, clamped to what the robot can do.
+  [[nodiscard]] BodyVelocity velocity_at(Timestamp time) const;
+
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+
+ private:
+  struct Report {
+    Timestamp time;
+    Pose2 odom_from_robot;
+    Pose2 joined_from_robot;
+    std::uint32_t epoch = 0;
+    BodyVelocity reported;
+  };
+  /// 0 is the oldest.
+  [[nodiscard]] const Report& report(std::size_t age_order) const { return ring_[(first_ + age_order) % ring_.size()]; }
+  [[nodiscard]] const Report& newest() const { return report(count_ - 1); }
+  [[nodiscard]] std::size_t first_not_before(Timestamp time) const;
+  [[nodiscard]] OdometryAt extrapolated(const Report& last, double ahead_s) const;
+  [[nodiscard]] BodyVelocity newest_velocity() const;
+  [[nodiscard]] BodyVelocity clamped(const BodyVelocity& velocity) const;
+
+  OdometryBufferParams params_;
+  std::vector<Report> ring_;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace deltamap::localization

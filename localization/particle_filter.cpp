@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/particle_filter.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "localization/resampling.hpp"
+#include "localization/weighing.hpp"
+
+namespace deltamap::localization {
+
+ParticleFilter::ParticleFilter(const ParticleFilterParams& params, std::uint64_t seed)
+    : params_{params}, random_{seed} {
+  params_.min = std::max(1, params_.min);
+  params_.max = std::max(params_.min, params_.max);
+}
+
+void ParticleFilter::start_around(const Pose2& map_from_robot, double position_deviation_m,
+                                  double heading_deviation_rad) {
+  particles_.resize_uniform(static_cast<std::size_t>(params_.min));
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const double x_m = map_from_robot.x + random_.normal(position_deviation_m);
+    const double y_m = map_from_robot.y + random_.normal(position_deviation_m);
+    particles_.set_pose(i, {x_m, y_m, wrapped_angle(map_from_robot.theta + random_.normal(heading_deviation_rad))});
+  }
+}
+
+void ParticleFilter::start_at(std::span<const Pose2> map_from_robot) {
+  particles_.resize_uniform(map_from_robot.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_.set_pose(i, map_from_robot[i]);
+}
+
+void ParticleFilter::move(const Pose2& motion, double unknown_s, const MotionModelParams& model) {
+  const TurnDriveTurn turns = turn_drive_turn(motion);
+  const MotionNoise noise = motion_noise(turns, unknown_s, model);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    particles_.set_pose(i, sampled_motion(particles_.pose(i), turns, noise, random_));
+  }
+}
+
+std::span<const std::int32_t> ParticleFilter::weigh(const LikelihoodField& field, const BeamEnds& ends) {
+  assert(ends.size() > 0 && "a scan without ends weighs nothing");
+  const double per_step =
+      -LikelihoodField::kStep * std::min(1.0, params_.evidence_beams / static_cast<double>(ends.size()));
+  misfits_.resize(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    misfits_[i] = misfit_steps(field, ends, particles_.pose(i));
+    particles_.log_weight[i] += per_step * misfits_[i];
+  }
+  normalize_weights();
+  return misfits_;
+}
+
+void ParticleFilter::normalize_weights() {
+  const double best = *std::max_element(particles_.log_weight.begin(), particles_.log_weight.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    particles_.log_weight[i] -= best;
+    particles_.weight[i] = std::exp(particles_.log_weight[i]);
+    sum += particles_.weight[i];
+  }
+  for (double& weight : particles_.weight) weight /= sum;
+}
+
+double ParticleFilter::n_eff() const { return effective_sample_size(particles_.weight); }
+
+bool ParticleFilter::resample_if_needed(std::size_t occupied_cells) {
+  if (n_eff() >= params_.resample_below * static_cast<double>(particles_.size())) return false;
+  const std::size_t count = std::clamp(kld_sample_count(occupied_cells, params_.kld_error, params_.kld_quantile),
+                                       static_cast<std::size_t>(params_.min), static_cast<std::size_t>(params_.max));
+  choice_ = low_variance_choice(particles_.weight, count, random_.uniform(), std::move(choice_));
+  drawn_.resize_uniform(count);
+  for (std::size_t i = 0; i < count; ++i) drawn_.set_pose(i, particles_.pose(choice_[i]));
+  std::swap(particles_, drawn_);
+  return true;
+}
+
+}  // namespace deltamap::localization

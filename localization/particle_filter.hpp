@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The particle filter of Thrun, Burgard and Fox, "Probabilistic Robotics", 2005, Table 8.2: moves its guesses as the
+// wheels did, weighs them by a scan, and draws them anew when too few carry the weight.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/random.hpp"
+#include "localization/deskew.hpp"
+#include "localization/likelihood_field.hpp"
+#include "localization/motion_model.hpp"
+#include "localization/particle_set.hpp"
+
+namespace deltamap::localization {
+
+struct ParticleFilterParams {
+  int min = 500;                ///< fewest particles; 10..max
+  int max = 5000;               ///< most particles: what global localization starts with; min..200000
+  double resample_below = 0.5;  ///< share of the particles below which N_eff calls for resampling; 0..1
+  double evidence_beams =
+      12.0;  ///< how many independent beams a whole scan counts as; > 0: neighbouring beams see the same things
+  double kld_error = 0.05;     ///< bound of the approximation error that sets the number of particles; > 0 (ε)
+  double kld_quantile = 2.33;  ///< of the normal distribution, how surely the bound holds; > 0 (z)
+};
+
+class ParticleFilter {
+ public:
+  ParticleFilter(const ParticleFilterParams& params, std::uint64_t seed);
+
+  /// Around one pose, normally distributed.
+  void start_around(const Pose2& map_from_robot, double position_deviation_m, double heading_deviation_rad);
+  /// Exactly there, all equally likely.
+  void start_at(std::span<const Pose2> map_from_robot);
+
+  void move(const Pose2& motion, double unknown_s, const MotionModelParams& model);
+
+  /// Accumulates the scan into the weights. Answers each particle's misfit (weighing.hpp); valid until the next call.
+  /// `ends` must not be empty.
+  std::span<const std::int32_t> weigh(const LikelihoodField& field, const BeamEnds& ends);
+
+  /// N_eff (Eq. 5) of the accumulated weights.
+  [[nodiscard]] double n_eff() const;
+
+  /// Draws anew where N_eff is low; as many particles as `occupied_cells` cells call for. True where it did.
+  bool resample_if_needed(std::size_t occupied_cells);
+
+  [[nodiscard]] const ParticleSet& particles() const { return particles_; }
+  [[nodiscard]] Random& random() { return random_; }
+
+ private:
+  void normalize_weights();
+
+  ParticleFilterParams params_;
+  Random random_;
+  ParticleSet particles_;
+  ParticleSet drawn_;
+  std::vector<std::uint32_t> choice_;
+  std::vector<std::int32_t> misfits_;
+};
+
+}  // namespace deltamap::localization

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/pose_refinement.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::localization {
+namespace {
+
+constexpr double kSettled_m = 5e-4;
+constexpr double kSettled_rad = 2e-4;
+
+/// Sum over the beams of wJᵀJ/σ² and wJᵀd/σ².
+struct NormalEquations {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+};
+
+NormalEquations normal_equations(const LikelihoodField& field, const BeamEnds& ends, const Pose2& pose) {
+  const double inverse_variance = 1.0 / (field.hit_deviation_m() * field.hit_deviation_m());
+  const double random_share = field.params().random_share;
+  const double c = std::cos(pose.theta);
+  const double s = std::sin(pose.theta);
+  NormalEquations sum;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const double dx = c * static_cast<double>(ends.x_m[i]) - s * static_cast<double>(ends.y_m[i]);
+    const double dy = s * static_cast<double>(ends.x_m[i]) + c * static_cast<double>(ends.y_m[i]);
+    const FieldDistance at = distance_at(field, pose.x + dx, pose.y + dy);
+    if (at.slope.x() == 0.0 && at.slope.y() == 0.0) continue;
+    const double hit = (1.0 - random_share) * std::exp(-0.5 * at.distance_m * at.distance_m * inverse_variance);
+    const double weight = inverse_variance * hit / (hit + random_share);  // probability that the map explains the beam
+    const Eigen::Vector3d jacobian{at.slope.x(), at.slope.y(), at.slope.y() * dx - at.slope.x() * dy};
+    sum.information.noalias() += weight * jacobian * jacobian.transpose();
+    sum.pull.noalias() += weight * at.distance_m * jacobian;
+  }
+  return sum;
+}
+
+Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
+  return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
+}
+
+}  // namespace
+
+FieldDistance distance_at(const LikelihoodField& field, double x_m, double y_m) {
+  const LikelihoodField::Bordered bordered = field.bordered();
+  const GridGeometry& geometry = field.geometry();
+  const double cells_per_m = 1.0 / geometry.resolution_m;
+  // In the bordered field the centre of cell (0, 0) lies at (1.5, 1.5); centres are the knots.
+  const double x = std::clamp((x_m - geometry.origin.x()) * cells_per_m + 0.5, 0.0, bordered.width - 1.001);
+  const double y = std::clamp((y_m - geometry.origin.y()) * cells_per_m + 0.5, 0.0, bordered.height - 1.001);
+  const auto column = static_cast<std::ptrdiff_t>(x);
+  const auto row = static_cast<std::ptrdiff_t>(y);
+  const double u = x - static_cast<double>(column);
+  const double v = y - static_cast<double>(row);
+  const std::uint8_t* at = bordered.bytes + row * bordered.width + column;
+  const auto& distance = field.distance_of_steps_m();
+  const double low_left = static_cast<double>(distance[at[0]]);
+  const double low_right = static_cast<double>(distance[at[1]]);
+  const double high_left = static_cast<double>(distance[at[bordered.width]]);
+  const double high_right = static_cast<double>(distance[at[bordered.width + 1]]);
+  const double low = low_left + u * (low_right - low_left);
+  const double high = high_left + u * (high_right - high_left);
+  return {
+      low + v * (high - low),
+      {((1.0 - v) * (low_right - low_left) + v * (high_right - high_left)) * cells_per_m, (high - low) * cells_per_m}};
+}
+
+RefinedPose refined(const LikelihoodField& field, const BeamEnds& ends, const RefinedPose& prior, double beam_share,
+                    const RefinementParams& params) {
+  if (params.steps <= 0 || ends.size() == 0) return prior;
+  // A floor keeps the prior invertible when all particles have come to lie on one point.
+  const Eigen::Matrix3d spread = prior.covariance + Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix();
+  const Eigen::Matrix3d prior_information = params.prior_share * spread.inverse();
+  Pose2 pose = prior.map_from_robot;
+  Eigen::Matrix3d information = prior_information;
+  for (int step = 0; step < params.steps; ++step) {
+    const NormalEquations beams = normal_equations(field, ends, pose);
+    information = prior_information + beam_share * beams.information;
+    const Eigen::Vector3d pull = beam_share * beams.pull + prior_information * difference(prior.map_from_robot, pose);
+    const Eigen::Vector3d move = -information.ldlt().solve(pull);
+    if (!move.allFinite()) return prior;
+    pose = {pose.x + move.x(), pose.y + move.y(), wrapped_angle(pose.theta + move.z())};
+    if (move.head<2>().norm() < kSettled_m && std::abs(move.z()) < kSettled_rad) break;
+  }
+  const Eigen::Vector3d shift = difference(prior.map_from_robot, pose);
+  if (shift.head<2>().norm() > params.longest_shift_m || std::abs(shift.z()) > params.largest_turn_rad) return prior;
+  return {pose, information.inverse()};
+}
+
+}  // namespace deltamap::localization

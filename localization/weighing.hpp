@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hot path: how badly a scan fits at a pose, as an integer sum of the field's steps. Whole numbers add up the same
+// in any order, so that every instruction set gives the same weights; the ends are turned with one sine and cosine a
+// pose.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "localization/deskew.hpp"
+#include "localization/likelihood_field.hpp"
+
+namespace deltamap::localization {
+
+/// Σ over the ends of the field's steps of -ln p(z), with the robot at the pose.
+[[nodiscard]] std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends,
+                                        const Pose2& map_from_robot);
+
+/// exp(mean of ln p(z)) for a sum over `beams` ends; in (0, 1]. beams > 0.
+[[nodiscard]] double mean_likelihood(std::int64_t steps, std::size_t beams);
+
+}  // namespace deltamap::localization
