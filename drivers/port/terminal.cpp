@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/port/terminal.hpp"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <linux/serial.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace deltamap::drivers::port {
+namespace {
+
+constexpr std::array<std::pair<unsigned, speed_t>, 8> kSpeeds{{{9600, B9600},
+                                                               {19200, B19200},
+                                                               {38400, B38400},
+                                                               {57600, B57600},
+                                                               {115200, B115200},
+                                                               {230400, B230400},
+                                                               {460800, B460800},
+                                                               {500000, B500000}}};
+
+std::optional<speed_t> speed_of(unsigned baud) {
+  for (const auto& [known, speed] : kSpeeds) {
+    if (known == baud) return speed;
+  }
+  return std::nullopt;
+}
+
+/// Devices 136 to 143 are the slaves of pseudo-terminals (kernel's devices.txt).
+bool is_pseudo_terminal(int descriptor) {
+  struct stat status {};
+  return ::fstat(descriptor, &status) == 0 && major(status.st_rdev) >= 136 && major(status.st_rdev) <= 143;
+}
+
+std::string group_of(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return "dialout";
+  if ((status.st_mode & S_IRGRP) == 0 || (status.st_mode & S_IWGRP) == 0) return "dialout";
+  const struct group* owner = ::getgrgid(status.st_gid);
+  return owner != nullptr && status.st_gid != 0 ? owner->gr_name : "dialout";
+}
+
+std::string reason_of(const std::string& path, int error) {
+  switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+      return "is missing (" + std::string(std::strerror(error)) + "): not plugged in or switched on?";
+    case EBUSY:
+    case EWOULDBLOCK:
+      return "is busy: another program has it open";
+    case EACCES:
+    case EPERM:
+      return "is forbidden (" + std::string(std::strerror(error)) + "): join the group '" + group_of(path) + "'";
+    default:
+      return "cannot be opened: " + std::string(std::strerror(error));
+  }
+}
+
+/// 8N1, nothing translated, no flow control, no modem lines.
+bool set_raw(int descriptor) {
+  termios line{};
+  if (::tcgetattr(descriptor, &line) != 0) return false;
+  ::cfmakeraw(&line);
+  line.c_cflag |= CLOCAL | CREAD;
+  line.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS | HUPCL);
+  line.c_cc[VMIN] = 1;
+  line.c_cc[VTIME] = 0;
+  return ::tcsetattr(descriptor, TCSANOW, &line) == 0;
+}
+
+/// FTDI adapters hold bytes back for 16 ms unless asked not to (protocols.md B7). Others refuse: no harm.
+void ask_for_low_latency(int descriptor) {
+  serial_struct settings{};
+  if (::ioctl(descriptor, TIOCGSERIAL, &settings) != 0) return;
+  settings.flags |= ASYNC_LOW_LATENCY;
+  (void)::ioctl(descriptor, TIOCSSERIAL, &settings);
+}
+
+/// The lock keeps out our own kind, root's too; TIOCEXCL keeps out everyone else. A pseudo-terminal would stay
+/// exclusive after a crash for as long as the simulator holds its other end, so there the lock must do.
+bool own_exclusively(int descriptor) {
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return false;
+  return is_pseudo_terminal(descriptor) || ::ioctl(descriptor, TIOCEXCL) == 0;
+}
+
+}  // namespace
+
+OpenedTerminal open_terminal(const std::string& path, unsigned baud) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return {-1, path + " " + reason_of(path, errno)};
+  const auto refuse = [&](const std::string& why) {
+    ::close(descriptor);
+    return OpenedTerminal{-1, path + " " + why};
+  };
+  if (::isatty(descriptor) != 1) return refuse("is not a serial port");
+  if (!own_exclusively(descriptor)) return refuse(reason_of(path, errno));
+  if (!set_raw(descriptor)) return refuse(reason_of(path, errno));
+  ask_for_low_latency(descriptor);
+  if (const std::string why = set_line_speed(descriptor, baud); !why.empty()) {
+    close_terminal(descriptor);
+    return {-1, path + " " + why};
+  }
+  discard_unread_bytes(descriptor);
+  return {descriptor, ""};
+}
+
+void close_terminal(int descriptor) {
+  (void)::ioctl(descriptor, TIOCNXCL);
+  ::close(descriptor);
+}
+
+std::string set_line_speed(int descriptor, unsigned baud) {
+  const auto speed = speed_of(baud);
+  if (!speed) return "cannot run at " + std::to_string(baud) + " baud";
+  termios line{};
+  if (::tcgetattr(descriptor, &line) != 0 || ::cfsetspeed(&line, *speed) != 0 ||
+      ::tcsetattr(descriptor, TCSANOW, &line) != 0) {
+    return "cannot run at " + std::to_string(baud) + " baud: " + std::strerror(errno);
+  }
+  return "";
+}
+
+int unsent_bytes(int descriptor) {
+  int count = 0;
+  return ::ioctl(descriptor, TIOCOUTQ, &count) == 0 ? count : 0;
+}
+
+void discard_unread_bytes(int descriptor) { (void)::tcflush(descriptor, TCIFLUSH); }
+
+}  // namespace deltamap::drivers::port

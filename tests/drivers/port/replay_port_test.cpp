@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/port/replay_port.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::drivers::port {
+namespace {
+
+ByteRecord chunk(double at_s, Direction direction, std::uint8_t byte) {
+  return {PortId::kRobot, direction, timestamp_from_ns(0) + duration_from_seconds(100.0 + at_s), {byte}, "", 0};
+}
+
+TEST(ReplayPort, GivesWhatCameInAndTheNotesAndMarksTheWindow) {
+  const test::TemporaryFolder folder;
+  {
+    ByteLogWriter writer{folder.path() / "a.pcapng", {}};
+    writer.write(chunk(0.0, Direction::kIn, 0));
+    writer.write(chunk(1.0, Direction::kOut, 1));
+    ByteRecord note = chunk(1.5, Direction::kIn, 0);
+    note.bytes.clear();
+    note.note = "revision 1 before scan 2";
+    writer.write(note);
+    writer.write(chunk(2.0, Direction::kIn, 2));
+    writer.write(chunk(3.0, Direction::kIn, 3));
+    writer.close();
+  }
+  ReplayPort replay{folder.path() / "a.pcapng", {.from_s = 1.2, .to_s = 2.5}};
+  const auto first = replay.next();
+  EXPECT_EQ(first.value().record.bytes, (std::vector<std::uint8_t>{0}));
+  EXPECT_FALSE(first->in_window);
+  const auto note = replay.next();
+  EXPECT_EQ(note.value().record.note, "revision 1 before scan 2");
+  EXPECT_TRUE(note->in_window);
+  EXPECT_EQ(replay.next().value().record.bytes, (std::vector<std::uint8_t>{2}));
+  EXPECT_FALSE(replay.next());
+}
+
+}  // namespace
+}  // namespace deltamap::drivers::port

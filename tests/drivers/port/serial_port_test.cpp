@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// The serial port against the other end of a pseudo-terminal.
+#include "drivers/port/serial_port.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+#include "drivers/port/port_clock.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::drivers::port {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// The device's end.
+class PseudoTerminal {
+ public:
+  PseudoTerminal() : master_{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)} {
+    (void)::grantpt(master_);
+    (void)::unlockpt(master_);
+    path_ = ::ptsname(master_);
+  }
+  ~PseudoTerminal() { hang_up(); }
+  void hang_up() {
+    if (master_ >= 0) ::close(master_);
+    master_ = -1;
+  }
+  void send(const Bytes& bytes) const {
+    ASSERT_EQ(::write(master_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  [[nodiscard]] Bytes received() const {
+    Bytes bytes(4096);
+    const ssize_t count = ::read(master_, bytes.data(), bytes.size());
+    bytes.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    return bytes;
+  }
+  [[nodiscard]] speed_t speed() const {
+    termios line{};
+    (void)::tcgetattr(master_, &line);
+    return ::cfgetospeed(&line);
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  int master_;
+  std::string path_;
+};
+
+void run_until(boost::asio::io_context& loop, const std::function<bool()>& done) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!done()) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+    loop.restart();
+    loop.run_one_for(std::chrono::milliseconds(20));
+  }
+}
+
+TEST(SerialPort, CarriesEveryByteValueBothWaysUnchanged) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(port) << refused;
+  Bytes all;
+  for (int i = 0; i < 256; ++i) all.push_back(static_cast<std::uint8_t>(i));
+  Bytes in;
+  Timestamp stamp;
+  const Timestamp before = port_clock_now();
+  port->start({[&](std::span<const std::uint8_t> bytes, Timestamp at) {
+                 in.insert(in.end(), bytes.begin(), bytes.end());
+                 stamp = at;
+               },
+               {}});
+  port->write(all);
+  device.send(all);
+  Bytes out;
+  run_until(loop, [&] {
+    const Bytes more = device.received();
+    out.insert(out.end(), more.begin(), more.end());
+    return in.size() >= all.size() && out.size() >= all.size();
+  });
+  EXPECT_EQ(in, all);
+  EXPECT_EQ(out, all);
+  EXPECT_GE(stamp, before);
+  EXPECT_LE(stamp, port_clock_now());
+}
+
+TEST(SerialPort, ChangesTheBaudAfterTheBytesBeforeAndBeforeTheBytesAfter) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(port) << refused;
+  EXPECT_EQ(device.speed(), static_cast<speed_t>(B9600));
+  port->start({});
+  port->write(Bytes{1, 2});
+  port->set_baud(500000);
+  port->write(Bytes{3});
+  EXPECT_EQ(device.received(), (Bytes{1, 2}));  // the third byte waits until the first two have had time to leave
+  EXPECT_EQ(device.speed(), static_cast<speed_t>(B9600));
+  EXPECT_EQ(port->baud(), 500000u);
+  Bytes out;
+  run_until(loop, [&] {
+    out = device.received();
+    return !out.empty();
+  });
+  EXPECT_EQ(out, (Bytes{3}));
+  EXPECT_EQ(device.speed(), static_cast<speed_t>(B500000));
+}
+
+TEST(SerialPort, WritesMoreThanTheKernelTakesAtOnce) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 500000);
+  ASSERT_TRUE(port) << refused;
+  Bytes much(100'000);
+  for (std::size_t i = 0; i < much.size(); ++i) much[i] = static_cast<std::uint8_t>(i * 7);
+  port->start({});
+  port->write(much);
+  Bytes out;
+  run_until(loop, [&] {
+    const Bytes more = device.received();
+    out.insert(out.end(), more.begin(), more.end());
+    return out.size() >= much.size();
+  });
+  EXPECT_EQ(out, much);
+}
+
+TEST(SerialPort, TellsOnceWhenTheDeviceHangsUp) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(port) << refused;
+  int told = 0;
+  std::string why;
+  port->start({{}, [&](const std::string& reason) {
+                 ++told;
+                 why = reason;
+                 port.reset();  // as a session does that gives up
+               }});
+  device.hang_up();
+  run_until(loop, [&] { return told > 0; });
+  loop.restart();
+  loop.run_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(told, 1);
+  EXPECT_NE(why.find("the device"), std::string::npos) << why;
+}
+
+TEST(SerialPort, CallsNoHandlerAfterItIsGone) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(port) << refused;
+  port->start({[](std::span<const std::uint8_t>, Timestamp) { FAIL(); }, [](const std::string&) { FAIL(); }});
+  port->set_baud(123);  // refused by the line: would be told
+  device.send({1});
+  port.reset();
+  loop.run_for(std::chrono::milliseconds(20));
+}
+
+TEST(SerialPort, MayBeDestroyedByItsOwnHandler) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(port) << refused;
+  port->start({[&](std::span<const std::uint8_t>, Timestamp) { port.reset(); }, {}});
+  device.send({1, 2, 3});
+  run_until(loop, [&] { return port == nullptr; });
+}
+
+TEST(SerialPort, SaysThatADeviceIsBusyAndTakesItOnceItIsFree) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto first = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(first.port);
+  const auto second = open_serial_port(loop, device.path(), 9600);
+  EXPECT_FALSE(second.port);
+  EXPECT_EQ(second.refused, device.path() + " is busy: another program has it open");
+  first.port.reset();
+  EXPECT_TRUE(open_serial_port(loop, device.path(), 9600).port);
+}
+
+TEST(SerialPort, NamesTheDeviceAndTheReasonItCannotBeUsed) {
+  boost::asio::io_context loop;
+  const test::TemporaryFolder folder;
+  EXPECT_NE(open_serial_port(loop, "/dev/no-such-port", 9600).refused.find("/dev/no-such-port is missing"),
+            std::string::npos);
+  EXPECT_NE(open_serial_port(loop, folder.write("file", ""), 9600).refused.find("is not a serial port"),
+            std::string::npos);
+  PseudoTerminal device;
+  EXPECT_NE(open_serial_port(loop, device.path(), 12345).refused.find("cannot run at 12345 baud"), std::string::npos);
+}
+
+TEST(SerialPort, NamesTheGroupToJoinWhereTheDeviceIsForbidden) {
+  boost::asio::io_context loop;
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(::chmod(folder.path().c_str(), 0755), 0);
+  const auto file = folder.write("forbidden", "");
+  ASSERT_EQ(::chmod(file.c_str(), 0), 0);
+  constexpr uid_t kNobody = 65534;
+  const uid_t own = ::geteuid();
+  if (own == 0) (void)!::seteuid(kNobody);  // root may open everything
+  const std::string refused = open_serial_port(loop, file, 9600).refused;
+  if (own == 0) (void)!::seteuid(own);
+  EXPECT_NE(refused.find("is forbidden"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("join the group 'dialout'"), std::string::npos) << refused;
+}
+
+}  // namespace
+}  // namespace deltamap::drivers::port
