@@ -2,6 +2,7 @@
 #include "localization/pose_refinement.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the localizer alone over a CARMEN log and writes the trajectory (TUM) with the CPU time a scan: for tuning,
+// without the drivers and the mapping around it.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <vector>
+
+#include "core/angle.hpp"
+#include "core/grid_file.hpp"
+#include "daemon/tool/carmen_log.hpp"
+#include "localization/localizer.hpp"
+#include "localization/localizer_params.hpp"
+
+namespace {
+
+using namespace deltamap;
+using daemon::tool::CarmenLog;
+using daemon::tool::CarmenScan;
+
+constexpr double kScanDuration_s = 0.0133;  // 75 Hz mirror
+constexpr double kGap_s = 0.1;              // longest time without an odometry report
+
+struct Options {
+  std::string log;
+  std::string map;
+  std::string out;
+  std::string figures;
+  double laser_x_m = 0.0;
+  double no_return_m = 80.0;
+  std::vector<double> initial_pose;  // x, y, degrees
+  std::uint64_t seed = 1;
+  double from_s = 0.0;
+};
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Scan scan_of(const CarmenScan& logged, const Options& options, std::uint32_t number) {
+  Scan scan;
+  scan.time = logged.time;
+  scan.received = logged.time + duration_from_seconds(kScanDuration_s);
+  scan.number = number;
+  scan.first_bearing_rad = logged.first_bearing_rad;
+  scan.bearing_step_rad = logged.bearing_step_rad;
+  scan.max_range_m = options.no_return_m;
+  scan.robot_from_laser = {options.laser_x_m, 0.0, 0.0};
+  const auto count = static_cast<double>(logged.ranges_m.size());
+  for (std::size_t i = 0; i < logged.ranges_m.size(); ++i) {
+    const double range_m = logged.ranges_m[i];
+    const auto offset_s = static_cast<float>(kScanDuration_s * static_cast<double>(i) / count);
+    if (range_m > 0.0 && range_m < options.no_return_m) {
+      scan.beams.push_back({static_cast<float>(range_m), offset_s, BeamKind::kRange});
+    } else {
+      scan.beams.push_back({0.0F, offset_s, range_m > 0.0 ? BeamKind::kBeyondMaximum : BeamKind::kNotValid});
+    }
+  }
+  return scan;
+}
+
+/// Reports as the robot would have sent them: one at the scan, others in between.
+class OdometryFeed {
+ public:
+  void lead_to(Timestamp time, const Pose2& odom_from_robot, localization::Localizer& localizer) {
+    if (started_ && time > last_.time) {
+      const double gap_s = seconds(time - last_.time);
+      const int parts = static_cast<int>(std::ceil(gap_s / kGap_s));
+      const Odometry from = last_;
+      for (int i = 1; i < parts; ++i) {
+        const double share = static_cast<double>(i) / parts;
+        report(from.time + duration_from_seconds(share * gap_s),
+               interpolated(from.odom_from_robot, odom_from_robot, share), localizer);
+      }
+    }
+    report(time, odom_from_robot, localizer);
+  }
+
+ private:
+  void report(Timestamp time, const Pose2& odom_from_robot, localization::Localizer& localizer) {
+    last_ = Odometry{};
+    last_.time = time;
+    last_.odom_from_robot = odom_from_robot;
+    localizer.observe(last_);
+    started_ = true;
+  }
+  Odometry last_;
+  bool started_ = false;
+};
+
+void write_pose(std::ostream& out, const Estimate& estimate) {
+  const Pose2& pose = estimate.map_from_robot;
+  out << static_cast<double>(unix_ns(estimate.time)) * 1e-9 << ' ' << pose.x << ' ' << pose.y << " 0 0 0 "
+      << std::sin(0.5 * pose.theta) << ' ' << std::cos(0.5 * pose.theta) << '\n';
+}
+
+void run(const Options& options, const localization::LocalizerParams& params) {
+  std::optional<localization::InitialPose> initial;
+  if (options.initial_pose.size() == 3) {
+    initial =
+        localization::InitialPose{{options.initial_pose[0], options.initial_pose[1], radians(options.initial_pose[2])}};
+  }
+  localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), initial,
+                                    options.seed};
+  std::ofstream out{options.out};
+  out.setf(std::ios::fixed);
+  out.precision(6);
+  std::ofstream figures{options.figures};
+  CarmenLog log{options.log};
+  OdometryFeed feed;
+  std::vector<double> cpu_s;
+  std::optional<Timestamp> began;
+  std::uint32_t number = 0;
+  while (const auto record = log.next()) {
+    const auto* logged = std::get_if<CarmenScan>(&*record);
+    if (logged == nullptr || !logged->poses) continue;
+    began = began.value_or(logged->time);
+    if (seconds(logged->time - *began) < options.from_s) continue;
+    Scan scan = scan_of(*logged, options, number++);
+    const double start_s = cpu_seconds();
+    feed.lead_to(logged->time, logged->poses->odom_from_robot, localizer);
+    const TrackedScan tracked = localizer.observe(std::move(scan));
+    cpu_s.push_back(cpu_seconds() - start_s);
+    const Estimate& estimate = tracked.estimate;
+    write_pose(out, estimate);
+    figures << static_cast<double>(unix_ns(estimate.time)) * 1e-9 << ' ' << static_cast<int>(estimate.state) << ' '
+            << estimate.n_eff << ' ' << estimate.particles << ' ' << estimate.w_avg << ' '
+            << std::sqrt(estimate.covariance(0, 0)) << ' ' << std::sqrt(estimate.covariance(1, 1)) << ' '
+            << std::sqrt(estimate.covariance(2, 2)) << '\n';
+  }
+  std::sort(cpu_s.begin(), cpu_s.end());
+  double sum_s = 0.0;
+  for (const double s : cpu_s) sum_s += s;
+  std::cout << "scans " << cpu_s.size() << ", CPU a scan: mean " << 1e3 * sum_s / static_cast<double>(cpu_s.size())
+            << " ms, median " << 1e3 * cpu_s[cpu_s.size() / 2] << " ms, most " << 1e3 * cpu_s.back() << " ms\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"runs the localizer over a CARMEN log"};
+  Options options;
+  localization::LocalizerParams params;
+  app.add_option("log", options.log)->required();
+  app.add_option("map", options.map)->required();
+  app.add_option("out", options.out, "trajectory, TUM")->required();
+  app.add_option("--figures", options.figures, "state, N_eff, particles, w_avg and deviations of each scan")
+      ->default_val("/dev/null");
+  app.add_option("--laser", options.laser_x_m, "laser ahead of the robot, m");
+  app.add_option("--no-return", options.no_return_m, "ranges from here on are no hits, m");
+  app.add_option("--initial-pose", options.initial_pose, "X,Y,DEG of the robot")->delimiter(',')->expected(3);
+  app.add_option("--seed", options.seed);
+  app.add_option("--from", options.from_s, "seconds to leave out");
+  app.add_option("--min", params.particles.min);
+  app.add_option("--max", params.particles.max);
+  app.add_option("--beams", params.beams);
+  app.add_option("--evidence", params.particles.evidence_beams);
+  app.add_option("--resample", params.particles.resample_below);
+  app.add_option("--hit", params.field.hit_deviation_m);
+  app.add_option("--random", params.field.random_share);
+  app.add_option("--unknown", params.field.unknown_likelihood);
+  app.add_option("--turn-per-turn", params.motion.turn_per_turn);
+  app.add_option("--turn-per-metre", params.motion.turn_per_metre_rad);
+  app.add_option("--metre-per-metre", params.motion.metre_per_metre);
+  app.add_option("--metre-per-turn", params.motion.metre_per_turn_m);
+  app.add_option("--position-floor", params.motion.position_floor_m);
+  app.add_option("--heading-floor", params.motion.heading_floor_rad);
+  app.add_option("--refine", params.refinement.steps);
+  app.add_option("--prior", params.refinement.prior_share);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(options, params);
+  } catch (const std::exception& error) {
+    std::cerr << "localization_bench: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
