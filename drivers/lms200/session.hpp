@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// The conversation with an LMS200: finds its baud whatever state it is in, brings variant, units and mode to what is
+// wanted (writing its EEPROM only where they differ), lets it stream, and turns its telegrams into Scans (protocols.md
+// B3 to B8). Knows no port and no clock.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/time.hpp"
+#include "drivers/decoder_counts.hpp"
+#include "drivers/lms200/command.hpp"
+#include "drivers/lms200/configuration.hpp"
+#include "drivers/lms200/measurement.hpp"
+#include "drivers/lms200/status.hpp"
+#include "drivers/lms200/telegram.hpp"
+#include "drivers/session.hpp"
+
+namespace deltamap::drivers::lms200 {
+
+struct Lms200Params {
+  ScanVariant variant{180, 50};                ///< wanted; variant_named("180/0.5")
+  Units units = Units::kMillimetre;            ///< wanted
+  std::optional<std::uint8_t> measuring_mode;  ///< wanted, B4 byte 5; empty: keep, but 06h where it is too short
+  unsigned baud = 38400;                       ///< wanted: 9600, 19200, 38400 or 500000
+  double max_range_m = 0.0;                    ///< longer ranges become kBeyondMaximum; 0: as far as the mode goes
+  Pose2 robot_from_laser;                      ///< the mount
+  double power_on_wait_s = 65.0;               ///< how long a silent laser may still be starting up (B8)
+  double scan_timeout_s = 2.0;                 ///< silence while streaming after which the session has failed
+  double assume_after_s = 5.0;  ///< a recording without the laser's replies: the wanted mode counts after this
+};
+
+struct Lms200Output {
+  SessionOutput output;
+  std::vector<Scan> scans;
+};
+
+class Lms200Session {
+ public:
+  /// Throws std::invalid_argument for a variant, mode or baud that the laser does not have.
+  Lms200Session(const Lms200Params& params, SessionMode mode);
+
+  /// The port is open and at any speed: begins with the search. Also the way back after `failed`.
+  [[nodiscard]] Lms200Output start(Timestamp now);
+  [[nodiscard]] Lms200Output on_bytes(std::span<const std::uint8_t> bytes, Timestamp stamp);
+  [[nodiscard]] Lms200Output on_time(Timestamp now);
+  /// Replays only: the recording says that the line changed its speed.
+  void on_baud(unsigned baud);
+  /// Stops the stream; nothing is sent after it.
+  [[nodiscard]] Lms200Output close(Timestamp now);
+
+  [[nodiscard]] bool is_streaming() const { return state_ == State::kStreaming; }
+  [[nodiscard]] unsigned baud() const { return decoder_.baud(); }
+  [[nodiscard]] DecoderCounts counts() const;
+  /// Time from one scan to the next at this variant and baud (B7), for judging staleness.
+  [[nodiscard]] double nominal_period_s() const;
+
+ private:
+  enum class State {
+    kIdle,      // not started, closed, failed, or listening only
+    kStopping,  // stream told to stop at this baud, waiting for silence
+    kProbing,   // status requested
+    kAwaitingPowerOn,
+    kSettingBaud,
+    kSettling,  // the laser needs a moment after a change of baud
+    kSettingVariant,
+    kReadingConfiguration,
+    kEnteringInstallation,
+    kWritingConfiguration,
+    kVerifyingConfiguration,
+    kStarting,  // stream requested
+    kStreaming
+  };
+
+  void take_telegram(const Telegram& telegram, Lms200Output& out);
+  void learn(const Telegram& telegram, Lms200Output& out);
+  void take_scan(const Telegram& telegram, Lms200Output& out);
+  void advance(const Telegram& telegram, Lms200Output& out);
+
+  void begin_stopping(Timestamp now, Lms200Output& out);
+  void next_baud(Timestamp now, Lms200Output& out);
+  void enter(State state, Timestamp now, Lms200Output& out);
+  void retry_or_give_up(Timestamp now, Lms200Output& out);
+  void configure_next(Timestamp now, Lms200Output& out);
+  void compare_configuration(Timestamp now, Lms200Output& out);
+  void fail(std::string reason, Lms200Output& out);
+  [[nodiscard]] Configuration wanted_configuration() const;
+
+  void write(std::vector<std::uint8_t> bytes, Lms200Output& out);
+  void set_baud(unsigned baud, Lms200Output& out);
+  void wake_in(double delay_s, Timestamp now);
+  [[nodiscard]] Lms200Output finished(Lms200Output out) const;
+
+  Lms200Params params_;
+  SessionMode mode_;
+  TelegramDecoder decoder_;
+  DecoderCounts content_counts_;  // malformed and unknown, on top of the decoder's own
+  std::uint32_t next_scan_number_ = 0;
+
+  // What the laser said about itself.
+  std::optional<std::uint8_t> known_mode_;
+  std::optional<ScanVariant> known_variant_;
+  std::optional<Configuration> known_configuration_;
+  std::optional<Timestamp> first_scan_without_mode_;
+
+  State state_ = State::kIdle;
+  std::vector<unsigned> bauds_;  // in the order of trying
+  std::size_t attempt_ = 0;
+  int tries_ = 0;  // of the present step
+  bool wrote_configuration_ = false;
+  std::optional<Timestamp> wake_at_;
+  std::optional<Timestamp> search_began_;
+  std::optional<Timestamp> last_scan_;
+};
+
+}  // namespace deltamap::drivers::lms200

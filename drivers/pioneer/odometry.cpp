@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/pioneer/odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+namespace deltamap::drivers::pioneer {
+namespace {
+
+constexpr int kPositionModulus = 1 << 15;  // 15- and 16-bit senders alike (A8)
+
+/// The change of a counter that wraps, centred on 0: in [-modulus / 2, modulus / 2).
+int wrapped_difference(int from, int to, int modulus) {
+  const int forward = ((to - from) % modulus + modulus) % modulus;
+  return forward < modulus / 2 ? forward : forward - modulus;
+}
+
+double heading_rad(const Sip& sip) {
+  return wrapped_angle(sip.heading_units * (2.0 * std::numbers::pi / kHeadingUnitsPerTurn));
+}
+
+}  // namespace
+
+std::optional<RobotModel> model_named(std::string_view subtype) {
+  if (subtype == "p3dx-sh") return RobotModel{.metres_per_unit = 0.001};
+  if (subtype == "p3dx") return RobotModel{.metres_per_unit = 0.000485};
+  return std::nullopt;
+}
+
+void OdometryTracker::set_model(const RobotModel& model) {
+  if (model == model_) return;
+  model_ = model;
+  begin_epoch();
+}
+
+void OdometryTracker::begin_epoch() {
+  if (!last_) return;
+  last_.reset();
+  ++epoch_;
+}
+
+Odometry OdometryTracker::observe(const Sip& sip, Timestamp time) {
+  int dx_units = 0;
+  int dy_units = 0;
+  if (last_) {
+    dx_units = wrapped_difference(last_->sip.x_units, sip.x_units, kPositionModulus);
+    dy_units = wrapped_difference(last_->sip.y_units, sip.y_units, kPositionModulus);
+    const int turn_units = wrapped_difference(last_->sip.heading_units, sip.heading_units, kHeadingUnitsPerTurn);
+    if (is_jump(dx_units, dy_units, turn_units, seconds(time - last_->time))) begin_epoch();
+  }
+  if (last_) {
+    x_units_ += dx_units;
+    y_units_ += dy_units;
+  } else {
+    x_units_ = 0;
+    y_units_ = 0;
+  }
+  last_ = Reference{sip, time};
+
+  Odometry odometry;
+  odometry.time = time;
+  odometry.odom_from_robot = {static_cast<double>(x_units_) * model_.metres_per_unit,
+                              static_cast<double>(y_units_) * model_.metres_per_unit, heading_rad(sip)};
+  odometry.speed_m_per_s = (sip.left_mm_per_s + sip.right_mm_per_s) / 2.0 * 0.001;
+  odometry.turn_rate_rad_per_s = (sip.right_mm_per_s - sip.left_mm_per_s) / 2.0 * model_.turn_rate_per_speed;
+  odometry.epoch = epoch_;
+  odometry.motors_enabled = sip.has(sip_flag::kMotorsEnabled);
+  odometry.stop_button = sip.has(sip_flag::kStopButton);
+  odometry.stalled = sip.left_stall || sip.right_stall;
+  odometry.front_bumpers = sip.front_bumpers;
+  odometry.rear_bumpers = sip.rear_bumpers;
+  odometry.battery_v = sip.battery_x10_decivolts.value_or(sip.battery_decivolts) * 0.1;
+  return odometry;
+}
+
+bool OdometryTracker::is_jump(int dx_units, int dy_units, int turn_units, double elapsed_s) const {
+  // A8: 3 vmax dt + 0.5 m, or 30 degrees. SIPs come every 100 ms; where some were lost, the turn may be larger in
+  // proportion (3 times the flash default of 100 deg/s makes the same 30 degrees in 100 ms).
+  constexpr double kSlackFactor = 3.0;
+  constexpr double kSlackM = 0.5;
+  constexpr double kMaxTurnRad = 30.0 * std::numbers::pi / 180.0;
+  constexpr double kUsualTopTurnRate = 100.0 * std::numbers::pi / 180.0;
+  const double dt_s = std::max(elapsed_s, 0.0);
+  const double step_m = std::hypot(dx_units, dy_units) * model_.metres_per_unit;
+  const double turn_rad = std::abs(turn_units) * (2.0 * std::numbers::pi / kHeadingUnitsPerTurn);
+  const double wrap_m = kPositionModulus * model_.metres_per_unit;
+  const bool is_ambiguous = model_.max_speed_m_per_s * dt_s > wrap_m / 2.0;
+  return is_ambiguous || step_m > kSlackFactor * model_.max_speed_m_per_s * dt_s + kSlackM ||
+         turn_rad > std::max(kMaxTurnRad, kSlackFactor * kUsualTopTurnRate * dt_s);
+}
+
+}  // namespace deltamap::drivers::pioneer
