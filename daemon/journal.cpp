@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/journal.hpp"
+
+#include <cinttypes>
+#include <cstdio>
+
+namespace deltamap::daemon {
+namespace {
+
+using Kind = Decision::Kind;
+
+template <typename... Fields>
+bool matches(const std::string& note, const char* format, Fields*... fields) {
+  int read = -1;
+  const int found = std::sscanf(note.c_str(), format, fields..., &read);
+  return found == static_cast<int>(sizeof...(fields)) && read == static_cast<int>(note.size());
+}
+
+}  // namespace
+
+std::string note_of(const RunIdentity& run) {
+  char text[80];
+  (void)std::snprintf(text, sizeof text, "run settings %016" PRIx64 " map %016" PRIx64, run.settings, run.map);
+  return text;
+}
+
+std::optional<RunIdentity> run_of_note(std::string_view note) {
+  RunIdentity run;
+  if (!matches(std::string(note), "run settings %16" SCNx64 " map %16" SCNx64 "%n", &run.settings, &run.map))
+    return std::nullopt;
+  return run;
+}
+
+std::string note_of(const Decision& decision) {
+  const std::string scan = std::to_string(decision.scan);
+  const std::string number = std::to_string(decision.number);
+  switch (decision.kind) {
+    case Kind::kRevision:
+      return "revision " + number + " before scan " + scan;
+    case Kind::kScanDropped:
+      return "scan " + scan + " dropped";
+    case Kind::kScanLost:
+      return "scan " + scan + " lost";
+    case Kind::kOdometryLost:
+      return "odometry " + number + " lost";
+    case Kind::kTrackedLost:
+      return "tracked scan " + scan + " lost";
+    case Kind::kSetLost:
+      return "set of phase " + number + " lost";
+    case Kind::kPhaseClosed:
+      return "phase " + number + " closed at scan " + scan;
+  }
+  return {};
+}
+
+std::optional<Decision> decision_of_note(std::string_view note) {
+  const std::string text{note};
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  if (matches(text, "revision %" SCNu32 " before scan %" SCNu32 "%n", &a, &b)) return Decision{Kind::kRevision, b, a};
+  if (matches(text, "scan %" SCNu32 " dropped%n", &a)) return Decision{Kind::kScanDropped, a, 0};
+  if (matches(text, "scan %" SCNu32 " lost%n", &a)) return Decision{Kind::kScanLost, a, 0};
+  if (matches(text, "odometry %" SCNu32 " lost%n", &a)) return Decision{Kind::kOdometryLost, 0, a};
+  if (matches(text, "tracked scan %" SCNu32 " lost%n", &a)) return Decision{Kind::kTrackedLost, a, 0};
+  if (matches(text, "set of phase %" SCNu32 " lost%n", &a)) return Decision{Kind::kSetLost, 0, a};
+  if (matches(text, "phase %" SCNu32 " closed at scan %" SCNu32 "%n", &a, &b))
+    return Decision{Kind::kPhaseClosed, b, a};
+  return std::nullopt;
+}
+
+void Journal::read(std::string_view note) {
+  if (const auto run = run_of_note(note)) {
+    *this = Journal{};
+    run_ = run;
+    return;
+  }
+  const auto decision = decision_of_note(note);
+  if (!decision) return;
+  switch (decision->kind) {
+    case Kind::kRevision:
+      revisions_[decision->scan] = decision->number;
+      break;
+    case Kind::kScanDropped:
+      dropped_.insert(decision->scan);
+      break;
+    case Kind::kScanLost:
+      lost_.insert(decision->scan);
+      break;
+    case Kind::kOdometryLost:
+      lost_odometry_.insert(decision->number);
+      break;
+    case Kind::kTrackedLost:
+      lost_tracked_.insert(decision->scan);
+      break;
+    case Kind::kSetLost:
+      lost_sets_.insert(decision->number);
+      break;
+    case Kind::kPhaseClosed:
+      closed_[decision->number] = decision->scan;
+      break;
+  }
+}
+
+std::optional<std::uint32_t> Journal::revision_before(std::uint32_t scan) const {
+  const auto found = revisions_.find(scan);
+  return found == revisions_.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::optional<std::uint32_t> Journal::closing_scan(std::uint32_t phase) const {
+  const auto found = closed_.find(phase);
+  return found == closed_.end() ? std::nullopt : std::optional{found->second};
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/outputs.hpp"
+
+#include <unistd.h>
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace deltamap::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double unix_seconds(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
+double milliseconds(double seconds) { return seconds * 1e3; }
+
+Json as_json(const ChangeNote& change) {
+  Json json;
+  json["time"] = unix_seconds(change.time);
+  json["phase"] = change.phase;
+  json["scans"] = change.scans;
+  json["accepted"] = change.revision.has_value();
+  json["revision"] = change.revision ? Json(*change.revision) : Json(nullptr);
+  json["added"] = change.added;
+  json["freed"] = change.freed;
+  json["forgotten"] = change.forgotten;
+  json["box_m"] = {change.box_low.x(), change.box_low.y(), change.box_high.x(), change.box_high.y()};
+  json["acceptance"] = change.acceptance;
+  json["reason"] = change.reason;
+  return json;
+}
+
+}  // namespace
+
+std::string tum_line(const TrajectoryPoint& point) {
+  const Pose2& pose = point.map_from_robot;
+  const std::int64_t ns = unix_ns(point.time);
+  char line[192];
+  const int length =
+      std::snprintf(line, sizeof line, "%" PRId64 ".%09" PRId64 " %.6f %.6f 0 0 0 %.9f %.9f\n", ns / 1'000'000'000,
+                    ns % 1'000'000'000, pose.x, pose.y, std::sin(pose.theta / 2.0), std::cos(pose.theta / 2.0));
+  return {line, static_cast<std::size_t>(length)};
+}
+
+std::string json_line(const ChangeNote& change) { return as_json(change).dump() + "\n"; }
+
+LineFile::LineFile(std::filesystem::path file)
+    : file_{std::move(file)}, out_{file_, std::ios::binary | std::ios::trunc} {
+  check();
+}
+
+void LineFile::write(const std::string& line) {
+  out_ << line;
+  check();
+}
+
+void LineFile::flush() {
+  out_.flush();
+  check();
+}
+
+void LineFile::check() const {
+  if (!out_) throw std::runtime_error(file_.string() + ": cannot write");
+}
+
+std::string json_text(const RunReport& report) {
+  Json json;
+  const ScanCounts& scans = report.scans;
+  json["scans"] = scans.decoded;
+  json["localized"] = scans.localized;
+  json["odometry"] = scans.odometry;
+  json["drops"] = {{"scans_overtaken", scans.dropped},     {"scans_lost", scans.lost},
+                   {"odometry_lost", scans.odometry_lost}, {"tracked_lost", scans.tracked_lost},
+                   {"sets_lost", scans.sets_lost},         {"recording_lost", scans.recording_lost}};
+  json["delta_phases"] = report.phases;
+  Json refusals = Json::object();
+  Json revisions = Json::array();
+  for (const ChangeNote& change : report.changes) {
+    if (!change.revision) refusals[change.reason] = refusals.value(change.reason, 0) + 1;
+    if (change.revision) {
+      revisions.push_back({{"number", *change.revision},
+                           {"time", unix_seconds(change.time)},
+                           {"phase", change.phase},
+                           {"added", change.added},
+                           {"freed", change.freed},
+                           {"forgotten", change.forgotten}});
+    }
+  }
+  json["revisions"] = revisions;
+  json["refusals"] = refusals;
+  json["time_lost_s"] = report.time_lost_s;
+  json["time_global_s"] = report.time_global_s;
+  json["recorded_s"] = report.recorded_s;
+  const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));
+  json["cpu"] = {{"total_s", report.cpu_total_s},         {"per_scan_ms", milliseconds(per_scan)},
+                 {"decoding_s", report.cpu.decoding_s},   {"localization_s", report.cpu.localization_s},
+                 {"awareness_s", report.cpu.awareness_s}, {"map_update_s", report.cpu.map_update_s},
+                 {"recording_s", report.cpu.recording_s}};
+  json["wall_s"] = report.wall_s;
+  json["peak_resident_bytes"] = report.peak_resident_bytes;
+  json["latency_ms"] = {{"of", report.latency_of},
+                        {"p50", milliseconds(report.latency_p50_s)},
+                        {"p99", milliseconds(report.latency_p99_s)},
+                        {"max", milliseconds(report.latency_max_s)}};
+  if (!report.journal.empty())
+    json["journal"] = {{"state", report.journal}, {"differences", report.journal_differences}};
+  json["wire"] = report.wire;
+  return json.dump(2) + "\n";
+}
+
+std::uint64_t peak_resident_bytes() {
+  // Not getrusage: its maximum is inherited from whoever started this program.
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    std::uint64_t kilobytes = 0;
+    if (std::sscanf(line.c_str(), "VmHWM: %" SCNu64, &kilobytes) == 1) return kilobytes * 1024;
+  }
+  return 0;
+}
+
+StagingFolder::StagingFolder(std::filesystem::path target)
+    : target_{std::filesystem::absolute(target).lexically_normal()} {
+  if (!target_.has_filename()) target_ = target_.parent_path();
+  std::error_code error;
+  if (std::filesystem::exists(target_) && !std::filesystem::is_directory(target_)) {
+    throw std::runtime_error(target_.string() + ": is no folder");
+  }
+  staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
+  std::filesystem::create_directories(staging_, error);
+  if (error) throw std::runtime_error(staging_.string() + ": cannot create: " + error.message());
+}
+
+StagingFolder::~StagingFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(staging_, ignored);
+}
+
+void StagingFolder::commit() {
+  std::filesystem::create_directories(target_);
+  for (const auto& entry : std::filesystem::directory_iterator(staging_)) {
+    std::filesystem::rename(entry.path(), target_ / entry.path().filename());
+  }
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files of --out (CONTRACT: programs): trajectory.tum, changes.jsonl, map.yaml with map.pgm, report.json. A replay
+// writes them aside and moves them in place when all is done, so that a failure leaves nothing half-written; the daemon
+// writes them while it runs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/messages.hpp"
+
+namespace deltamap::daemon {
+
+/// The robot's pose in the map at the time of a scan's first beam.
+struct TrajectoryPoint {
+  Timestamp time;
+  Pose2 map_from_robot;
+};
+
+/// One line of trajectory.tum: "t x y 0 0 0 qz qw" and a line end.
+[[nodiscard]] std::string tum_line(const TrajectoryPoint& point);
+
+/// A Δ that was accepted or refused.
+struct ChangeNote {
+  Timestamp time;  ///< end of the Δ-phase
+  std::uint32_t phase = 0;
+  std::uint32_t scans = 0;
+  std::optional<std::uint32_t> revision;  ///< nothing: refused
+  std::uint32_t added = 0;                ///< cells that became occupied
+  std::uint32_t freed = 0;                ///< cells that became free
+  std::uint32_t forgotten = 0;            ///< cells that became unknown
+  Point2 box_low{0.0, 0.0};               ///< bounding box of the changed cells in the map, m
+  Point2 box_high{0.0, 0.0};
+  double acceptance = 0.0;  ///< Eq. 11
+  std::string reason;       ///< empty where accepted
+};
+
+/// One line of changes.jsonl with its line end.
+[[nodiscard]] std::string json_line(const ChangeNote& change);
+
+/// A text file that is written line by line. Throws std::runtime_error naming the file where the disk is full.
+class LineFile {
+ public:
+  explicit LineFile(std::filesystem::path file);
+  void write(const std::string& line);
+  /// Everything so far goes to the kernel.
+  void flush();
+
+ private:
+  void check() const;
+  std::filesystem::path file_;
+  std::ofstream out_;
+};
+
+struct ScanCounts {
+  std::uint64_t decoded = 0;
+  std::uint64_t localized = 0;
+  std::uint64_t dropped = 0;  ///< overtaken by a newer scan
+  std::uint64_t lost = 0;     ///< sensor channel full
+  std::uint64_t odometry = 0;
+  std::uint64_t odometry_lost = 0;
+  std::uint64_t tracked_lost = 0;    ///< localized, but not seen by Δ-awareness
+  std::uint64_t sets_lost = 0;       ///< Δ-phases that found the map thread busy
+  std::uint64_t recording_lost = 0;  ///< chunks of bytes that the recorder could not take
+};
+
+struct StageCpu {
+  double decoding_s = 0.0;  ///< live: the whole io thread
+  double localization_s = 0.0;
+  double awareness_s = 0.0;
+  double map_update_s = 0.0;
+  double recording_s = 0.0;  ///< recording and output files
+};
+
+/// Everything that report.json says.
+struct RunReport {
+  ScanCounts scans;
+  std::uint32_t phases = 0;
+  std::vector<ChangeNote> changes;
+  double time_lost_s = 0.0;
+  double time_global_s = 0.0;
+  double recorded_s = 0.0;  ///< from the first scan to the last
+  StageCpu cpu;
+  double cpu_total_s = 0.0;
+  double wall_s = 0.0;
+  std::uint64_t peak_resident_bytes = 0;
+  std::string latency_of;  ///< "last byte to pose" or "step", the time that localizing took
+  double latency_p50_s = 0.0;
+  double latency_p99_s = 0.0;
+  double latency_max_s = 0.0;
+  std::string journal;  ///< replay: "obeyed", "none" or why it was not obeyed
+  std::uint32_t journal_differences = 0;
+  std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
+};
+
+[[nodiscard]] std::string json_text(const RunReport& report);
+
+/// Highest resident set of this process so far.
+[[nodiscard]] std::uint64_t peak_resident_bytes();
+
+/// A folder that comes into being whole: files are written to path() and moved into place by commit(). What was not
+/// committed disappears.
+class StagingFolder {
+ public:
+  /// Throws std::runtime_error naming the folder.
+  explicit StagingFolder(std::filesystem::path target);
+  ~StagingFolder();
+  StagingFolder(const StagingFolder&) = delete;
+  StagingFolder& operator=(const StagingFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return staging_; }
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path staging_;
+};
+
+}  // namespace deltamap::daemon

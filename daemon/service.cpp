@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/service.hpp"
+
+#include <systemd/sd-daemon.h>
+
+namespace deltamap::daemon::service {
+
+void tell_ready() { (void)sd_notify(0, "READY=1"); }
+void tell_stopping() { (void)sd_notify(0, "STOPPING=1"); }
+void tell_status(const std::string& line) { (void)sd_notify(0, ("STATUS=" + line).c_str()); }
+void feed_watchdog() { (void)sd_notify(0, "WATCHDOG=1"); }
+
+std::optional<Duration> watchdog_period() {
+  std::uint64_t period_us = 0;
+  if (sd_watchdog_enabled(0, &period_us) <= 0) return std::nullopt;
+  return std::chrono::microseconds{period_us};
+}
+
+}  // namespace deltamap::daemon::service

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What systemd hears of the daemon (sd_notify(3)). Without systemd every call does nothing.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/time.hpp"
+
+namespace deltamap::daemon::service {
+
+void tell_ready();
+void tell_stopping();
+void tell_status(const std::string& line);
+/// To be called more often than watchdog_period() while everything moves.
+void feed_watchdog();
+/// Nothing where no watchdog waits for us.
+[[nodiscard]] std::optional<Duration> watchdog_period();
+
+}  // namespace deltamap::daemon::service

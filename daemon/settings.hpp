@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the operator may choose. Read strictly from one YAML file and --set overrides: an unknown key, a value of the
+// wrong type or outside its range stops the start with one line. Behind this door everything is in metres, radians and
+// seconds.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/pose2.hpp"
+#include "daemon/setting_key.hpp"
+#include "drivers/lms200/session.hpp"
+#include "drivers/pioneer/session.hpp"
+#include "localization/localizer_params.hpp"
+
+namespace deltamap::daemon {
+
+struct RobotSettings {
+  std::string port = "/dev/ttyUSB0";
+  drivers::pioneer::PioneerParams session;  ///< enable_motors is not a key: it follows from navigation.mode
+};
+
+struct LaserSettings {
+  std::string port = "/dev/ttyUSB1";
+  drivers::lms200::Lms200Params session;
+};
+
+struct MapSettings {
+  std::string file;   ///< M_0
+  std::string store;  ///< revisions; empty: not kept
+};
+
+struct RecordingSettings {
+  std::string file;            ///< pcapng; empty: not recorded
+  double max_gigabytes = 8.0;  ///< the recording ends there, the daemon goes on
+};
+
+struct Settings {
+  std::uint64_t seed = 1;
+  RobotSettings robot;
+  LaserSettings laser;
+  MapSettings map;
+  std::optional<Pose2> initial_pose;  ///< map_from_robot at the first scan; nothing: global localization
+  localization::LocalizerParams localizer;
+  RecordingSettings recording;
+};
+
+/// Every key, in the order of config/default.yaml. The keys refer to `settings`, which must outlive them.
+[[nodiscard]] std::vector<SettingKey> keys_of(Settings& settings);
+
+/// Values that are each in range and cannot be together: one line that names both keys.
+[[nodiscard]] std::optional<std::string> contradiction_in(const Settings& settings);
+
+/// One line that names file, line and key: what main prints before it ends with 2.
+class SettingsError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// `overrides` are "key=value" as given to --set, in order, after the file. Throws SettingsError.
+[[nodiscard]] Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// The same from text; `name` stands for the file in errors.
+[[nodiscard]] Settings parse_settings(const std::string& yaml, const std::string& name,
+                                      const std::vector<std::string>& overrides = {});
+
+/// All settings as a YAML file with unit, range and meaning of every key: --print-config and config/default.yaml.
+[[nodiscard]] std::string settings_as_yaml(const Settings& settings);
+
+/// Names everything that decides what comes out of the same bytes: ports, files and recording are left out.
+[[nodiscard]] std::uint64_t settings_fingerprint(const Settings& settings);
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs one stage of the pipeline on a thread of its own. An exception that leaves the stage is logged and ends the
+// process in order (systemd starts it again); no exception crosses a thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+
+namespace deltamap::daemon {
+
+/// CPU time that the calling thread, or the whole process, has used.
+[[nodiscard]] double thread_cpu_s();
+[[nodiscard]] double process_cpu_s();
+
+/// Since when a stage has been at work on one item: a stage that never comes back starves the watchdog.
+class Workload {
+ public:
+  /// While it lives, the stage is at work.
+  class Item {
+   public:
+    explicit Item(Workload& workload);
+    ~Item();
+    Item(const Item&) = delete;
+    Item& operator=(const Item&) = delete;
+
+   private:
+    Workload& workload_;
+  };
+
+  /// 0 while the stage waits.
+  [[nodiscard]] double busy_s() const;
+
+ private:
+  std::atomic<std::int64_t> began_ns_{0};  // steady clock; 0: waiting
+};
+
+class Stage {
+ public:
+  struct Options {
+    std::string name;  ///< at most 15 characters: the thread's name too
+    int niceness = 0;  ///< 0 to 19: how far behind the other threads
+  };
+  /// Begins at once. `on_failure` is called from the stage's thread with one line.
+  Stage(Options options, std::function<void()> body, std::function<void(const std::string&)> on_failure);
+
+  void join();
+  /// After join().
+  [[nodiscard]] double cpu_s() const { return cpu_s_; }
+
+ private:
+  double cpu_s_ = 0.0;
+  std::jthread thread_;
+};
+
+}  // namespace deltamap::daemon

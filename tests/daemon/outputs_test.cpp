@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/outputs.hpp"
+
+#include <gtest/gtest.h>
+
+#include "daemon/latency_histogram.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+TEST(Trajectory, ALineHasTheExactTimeAndTheHeadingAsQuaternion) {
+  EXPECT_EQ(tum_line({timestamp_from_ns(976052857'123456789), {1.5, -2.25, radians(90.0)}}),
+            "976052857.123456789 1.500000 -2.250000 0 0 0 0.707106781 0.707106781\n");
+  EXPECT_EQ(tum_line({timestamp_from_ns(5'000'000'007), {}}),
+            "5.000000007 0.000000 0.000000 0 0 0 0.000000000 1.000000000\n");
+}
+
+TEST(StagingFolder, WhatIsNotCommittedDisappears) {
+  const test::TemporaryFolder folder;
+  {
+    const StagingFolder staging{folder.path() / "out"};
+    LineFile{staging.path() / "trajectory.tum"}.write("x\n");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(StagingFolder, ACommittedFolderReplacesFilesAndKeepsTheOthers) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "out");
+  (void)folder.write("out/trajectory.tum", "old");
+  (void)folder.write("out/notes.txt", "mine");
+  {
+    StagingFolder staging{folder.path() / "out/"};
+    LineFile{staging.path() / "trajectory.tum"}.write("new");
+    staging.commit();
+  }
+  EXPECT_EQ(std::filesystem::file_size(folder.path() / "out/trajectory.tum"), 3u);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/notes.txt"));
+}
+
+TEST(StagingFolder, AFileInPlaceOfTheFolderIsRefusedByName) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("out", "a file");
+  try {
+    const StagingFolder staging{file};
+    FAIL() << "must refuse";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), file.string() + ": is no folder");
+  }
+}
+
+TEST(LatencyHistogram, AnswersQuantilesWithinOnePercent) {
+  LatencyHistogram histogram;
+  for (int i = 1; i <= 1000; ++i) histogram.add(i * 1e-5);
+  EXPECT_NEAR(histogram.quantile_s(0.5), 5e-3, 5e-5 * 1.1);
+  EXPECT_NEAR(histogram.quantile_s(0.99), 9.9e-3, 9.9e-5 * 1.1);
+  EXPECT_DOUBLE_EQ(histogram.max_s(), 1e-2);
+  EXPECT_DOUBLE_EQ(LatencyHistogram{}.quantile_s(0.99), 0.0);
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+std::string error_of(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
+  try {
+    (void)parse_settings(yaml, "robot.yaml", overrides);
+  } catch (const SettingsError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string content_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(Settings, DefaultsInCodeAndInConfigDefaultYamlAreTheSame) {
+  EXPECT_EQ(content_of(DELTAMAP_SOURCE_DIR "/config/default.yaml"), settings_as_yaml(Settings{}))
+      << "write it anew: deltamapd --config /dev/null --print-config > config/default.yaml";
+}
+
+TEST(Settings, WhatIsPrintedReadsBackToTheSame) {
+  Settings settings;
+  settings.seed = 77;
+  settings.robot.port = "with \"quotes\" and \\ and : colon";
+  settings.laser.session.robot_from_laser = {0.25, -0.1, radians(30.0)};
+  settings.initial_pose = Pose2{1.5, -2.25, radians(-156.2)};
+  const std::string printed = settings_as_yaml(settings);
+  const Settings again = parse_settings(printed, "printed");
+  EXPECT_EQ(settings_as_yaml(again), printed);
+  EXPECT_EQ(again.robot.port, settings.robot.port);
+  EXPECT_NEAR(again.initial_pose->theta, radians(-156.2), 1e-12);
+}
+
+TEST(Settings, EveryKeyHasAMeaningAndADefaultInsideItsOwnLimits) {
+  Settings settings;
+  for (const SettingKey& key : keys_of(settings)) {
+    EXPECT_FALSE(key.meaning.empty()) << key.name;
+    EXPECT_EQ(error_of("", {key.name + "=" + key.text()}), "no error") << key.name;
+  }
+}
+
+TEST(Settings, DegreesInTheFileAreRadiansBehindIt) {
+  const Settings settings =
+      parse_settings("laser: {mount: {yaw_deg: 90}}\nlocalization: {initial_pose: [1, 2, -90]}", "f");
+  EXPECT_DOUBLE_EQ(settings.laser.session.robot_from_laser.theta, radians(90.0));
+  EXPECT_DOUBLE_EQ(settings.initial_pose->theta, radians(-90.0));
+}
+
+TEST(Settings, AnUnknownKeyIsNamedWithFileLineAndTheNearestKnownOne) {
+  EXPECT_EQ(error_of("seed: 1\nlaser:\n  prot: /dev/ttyS0\n"),
+            "robot.yaml:3: unknown key 'laser.prot'; the nearest known key is 'laser.port'");
+  EXPECT_EQ(error_of("laser: {mount: {x: 1}}"),
+            "robot.yaml:1: unknown key 'laser.mount.x'; the nearest known key is 'laser.mount.x_m'");
+}
+
+TEST(Settings, AnIllTypedValueIsNamedWithWhatTheKeyNeeds) {
+  EXPECT_EQ(error_of("laser:\n  max_range_m: far"),
+            "robot.yaml:2: 'laser.max_range_m' needs a number (m, 0 to 90), not 'far'");
+  EXPECT_EQ(error_of("seed: 1.5"), "robot.yaml:1: 'seed' needs a whole number (from 0), not '1.5'");
+  EXPECT_EQ(error_of("seed: \"1\""), "robot.yaml:1: 'seed' needs a whole number (from 0), not '1'");
+  EXPECT_EQ(error_of("robot: {sonar: yes}"), "robot.yaml:1: 'robot.sonar' needs true or false, not 'yes'");
+  EXPECT_EQ(error_of("laser: {units: inch}"), "robot.yaml:1: 'laser.units' needs one of cm | mm, not 'inch'");
+  EXPECT_EQ(error_of("localization: {initial_pose: [1, 2]}"),
+            "robot.yaml:1: 'localization.initial_pose' needs [x m, y m, heading degrees] or null, not a list");
+  EXPECT_EQ(error_of("laser: {port: [a]}"), "robot.yaml:1: 'laser.port' needs text (\"\" for none), not a list");
+  EXPECT_EQ(error_of("laser: {max_range_m: .nan}"),
+            "robot.yaml:1: 'laser.max_range_m' needs a number (m, 0 to 90), not '.nan'");
+  EXPECT_EQ(error_of("seed: {a: 1}"), "robot.yaml:1: 'seed' takes one value, not keys");
+}
+
+TEST(Settings, AValueOutsideItsRangeIsRefused) {
+  EXPECT_EQ(error_of("\n\nlaser: {max_range_m: -1}"),
+            "robot.yaml:3: 'laser.max_range_m' needs a number in its range (m, 0 to 90), not '-1'");
+}
+
+TEST(Settings, AKeyGivenTwiceIsRefused) {
+  EXPECT_EQ(error_of("seed: 1\nseed: 2"), "robot.yaml:2: 'seed' is given twice");
+}
+
+TEST(Settings, ValuesThatContradictEachOtherAreRefused) {
+  EXPECT_EQ(error_of("localization: {particles: {min: 900, max: 800}}"),
+            "robot.yaml: 'localization.particles.min' must not exceed 'localization.particles.max'");
+}
+
+TEST(Settings, BrokenYamlIsNamedWithItsLine) {
+  EXPECT_TRUE(error_of("seed: 1\nlaser: [1, 2\nrobot: {").starts_with("robot.yaml:"))
+      << error_of("seed: 1\nlaser: [1, 2\nrobot: {");
+  EXPECT_EQ(error_of("seed: 1\nlaser: [1, 2\nrobot: {").find('\n'), std::string::npos);
+  EXPECT_EQ(error_of("just words"), "robot.yaml:1: the file must hold keys");
+}
+
+TEST(Settings, AMissingFileIsNamedWithTheReason) {
+  const auto error_with = [](const std::filesystem::path& file) {
+    try {
+      (void)read_settings(file, {});
+    } catch (const SettingsError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error_with("/nowhere/x.yaml"), "/nowhere/x.yaml: cannot read the settings: No such file or directory");
+  EXPECT_EQ(error_with("/tmp"), "/tmp: cannot read the settings: is a folder");
+}
+
+TEST(Settings, AnOverrideFollowsTheSameRulesAndComesLast) {
+  const Settings settings = parse_settings("seed: 1", "f", {"seed=5", "laser.mount.x_m=0.25", "robot.port="});
+  EXPECT_EQ(settings.seed, 5u);
+  EXPECT_DOUBLE_EQ(settings.laser.session.robot_from_laser.x, 0.25);
+  EXPECT_EQ(settings.robot.port, "");
+  EXPECT_EQ(error_of("", {"sede=5"}), "--set sede=5: unknown key 'sede'; the nearest known key is 'seed'");
+  EXPECT_EQ(error_of("", {"seed=many"}), "--set seed=many: 'seed' needs a whole number (from 0), not 'many'");
+  EXPECT_EQ(error_of("", {"seed"}), "--set seed: give key=value");
+}
+
+TEST(Settings, TheFingerprintFollowsWhatDecidesResultsAndNothingElse) {
+  const std::uint64_t before = settings_fingerprint(Settings{});
+  EXPECT_EQ(settings_fingerprint(parse_settings("{robot: {port: /a}, recording: {file: b}}", "f")), before);
+  EXPECT_NE(settings_fingerprint(parse_settings("seed: 2", "f")), before);
+  EXPECT_NE(settings_fingerprint(parse_settings("localization: {initial_pose: [0, 0, 0]}", "f")), before);
+}
+
+}  // namespace
+}  // namespace deltamap::daemon
