@@ -137,22 +137,6 @@ double agreement(const OccupancyGrid& map, std::span<const Point2> points, const
 
 }  // namespace
 
-std::string_view name_of(MergeRefusal refusal) {
-  switch (refusal) {
-    case MergeRefusal::kNone:
-      return "none";
-    case MergeRefusal::kTooFewPoints:
-      return "too few points";
-    case MergeRefusal::kLowAgreement:
-      return "low agreement";
-    case MergeRefusal::kImplausible:
-      return "implausible";
-    case MergeRefusal::kAmbiguous:
-      return "ambiguous";
-  }
-  return "?";
-}
-
 PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
                        const PosePrior& prior, const PriorMergeParams& params) {
   PriorMerge merge;

@@ -6,9 +6,9 @@
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 #include "core/occupancy_grid.hpp"
+#include "mapping/merge/merge_refusal.hpp"
 
 namespace deltamap::mapping::merge {
 
@@ -32,15 +32,6 @@ struct PriorMergeParams {
   double most_chi2 = 16.27;          ///< 3 degrees of freedom, 99.9 %
   double ambiguity_margin = 0.03;    ///< a second pose whose agreement comes this near is one too many; [0, 1]
 };
-
-enum class MergeRefusal : std::uint8_t {
-  kNone,
-  kTooFewPoints,  ///< not enough surface to place
-  kLowAgreement,  ///< no pose in the search brings the surfaces together
-  kImplausible,   ///< the best pose contradicts the prior (χ²)
-  kAmbiguous      ///< two poses fit nearly equally
-};
-[[nodiscard]] std::string_view name_of(MergeRefusal refusal);
 
 struct PriorMerge {
   MergeRefusal refusal = MergeRefusal::kNone;

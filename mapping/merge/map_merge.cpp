@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/merge/map_merge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mapping/merge/axis_spectrum.hpp"
+#include "mapping/merge/hough_spectrum.hpp"
+
+namespace deltamap::mapping::merge {
+namespace {
+
+constexpr std::size_t kLeastContour = 20;     // cells; fewer make no line
+constexpr std::size_t kCoarseCells = 3000;    // of the local map, to sort out hopeless candidates
+constexpr std::size_t kFinalCandidates = 16;  // scored with every cell
+constexpr double kQuarterDegree_rad = 0.25 * 0.017453292519943295;
+
+std::vector<PointInCells> contour_about_centre(const OccupancyGrid& map) {
+  std::vector<PointInCells> points;
+  for (const Cell& cell : contour_cells(map)) {
+    points.push_back(
+        {static_cast<float>(cell.column - 0.5 * map.width()), static_cast<float>(cell.row - 0.5 * map.height())});
+  }
+  return points;
+}
+
+/// Every rotation with every pair of shifts.
+std::vector<CellMotion> spectral_candidates(const OccupancyGrid& map, const LocalCells& local,
+                                            const MapMergeParams& params) {
+  const std::vector<double> map_spectrum = hough_spectrum(contour_about_centre(map), params.hough_bins);
+  const std::vector<double> local_spectrum = hough_spectrum(local.contour(), params.hough_bins);
+  const AxisSpectra map_axes = axis_spectra(map);
+  std::vector<CellMotion> candidates;
+  for (const TurnCandidate& turn : best_turns(map_spectrum, local_spectrum, params.rotations, params.between_bins)) {
+    const AxisSpectra turned = axis_spectra(local.contour(), turn.turn_rad);
+    const std::vector<int> rows = best_shifts(map_axes.y, turned.y, params.shifts);
+    for (const int column : best_shifts(map_axes.x, turned.x, params.shifts)) {
+      for (const int row : rows) {
+        candidates.push_back({turn.turn_rad, static_cast<double>(column), static_cast<double>(row)});
+      }
+    }
+  }
+  return candidates;
+}
+
+/// The candidates worth a full count, by a sample of the cells.
+std::vector<CellMotion> hopeful(const std::vector<CellMotion>& candidates, const OverlayMap& map,
+                                const LocalCells& local) {
+  const LocalCells sample = local.thinned(kCoarseCells);
+  struct Rated {
+    CellMotion motion;
+    double rating;
+  };
+  std::vector<Rated> rated;
+  rated.reserve(candidates.size());
+  for (const CellMotion& motion : candidates) {
+    const OverlayScore score = map.score(sample, motion);
+    rated.push_back({motion, score.acceptance() * score.surface_found});
+  }
+  std::stable_sort(rated.begin(), rated.end(), [](const Rated& a, const Rated& b) { return a.rating > b.rating; });
+  if (rated.size() > kFinalCandidates) rated.resize(kFinalCandidates);
+  std::vector<CellMotion> left;
+  for (const Rated& candidate : rated) left.push_back(candidate.motion);
+  return left;
+}
+
+/// The candidate and its neighbours, as the method asks (§3.4.2).
+std::vector<CellMotion> neighbours(const CellMotion& motion, MergeMethod method) {
+  const int turns = method == MergeMethod::kMa2   ? 2
+                    : method == MergeMethod::kMa3 ? 4
+                    : method == MergeMethod::kMa4 ? 1
+                                                  : 0;
+  const int shifts = method == MergeMethod::kMa4 ? 1 : 0;
+  std::vector<CellMotion> all;
+  for (int turn = -turns; turn <= turns; ++turn) {
+    for (int column = -shifts; column <= shifts; ++column) {
+      for (int row = -shifts; row <= shifts; ++row) {
+        all.push_back({motion.turn_rad + turn * kQuarterDegree_rad, motion.column + column, motion.row + row});
+      }
+    }
+  }
+  return all;
+}
+
+bool clearly_differ(const CellMotion& a, const CellMotion& b) {
+  constexpr double kApart_cells = 5.0;
+  constexpr double kApart_rad = 0.09;  // 5°
+  return std::hypot(a.column - b.column, a.row - b.row) > kApart_cells ||
+         std::abs(turn_between(a.turn_rad, b.turn_rad)) > kApart_rad;
+}
+
+bool fits_nearly_as_well(const OverlayScore& rival, const OverlayScore& best, double margin) {
+  return rival.surface_found > best.surface_found - margin &&
+         rival.surface_agreement > best.surface_agreement - margin && rival.acceptance() > best.acceptance() - margin;
+}
+
+}  // namespace
+
+MapMerge chosen(const std::vector<ScoredMotion>& candidates, const OccupancyGrid& map, const LocalCells& local,
+                const ChoiceParams& params) {
+  // Eq. 11 decides, but only among poses that find the surface: alone it prefers to lay free space on free space.
+  double best_surface = 0.0;
+  for (const ScoredMotion& candidate : candidates) {
+    if (candidate.score.overlap >= params.least_overlap)
+      best_surface = std::max(best_surface, candidate.score.surface_found);
+  }
+  const ScoredMotion* best = nullptr;
+  for (const ScoredMotion& candidate : candidates) {
+    if (candidate.score.overlap < params.least_overlap) continue;
+    if (candidate.score.surface_found < params.surface_margin * best_surface) continue;
+    if (best == nullptr || candidate.score.acceptance() > best->score.acceptance()) best = &candidate;
+  }
+  MapMerge merge;
+  if (best == nullptr) {
+    merge.refusal = MergeRefusal::kLowAgreement;
+    return merge;
+  }
+  merge.map_from_local = map_from_local(best->motion, map.geometry(), local);
+  merge.score = best->score;
+  bool has_rival = false;
+  for (const ScoredMotion& candidate : candidates) {
+    if (!clearly_differ(candidate.motion, best->motion) || candidate.score.overlap < params.least_overlap) continue;
+    has_rival = has_rival || fits_nearly_as_well(candidate.score, best->score, params.ambiguity_margin);
+  }
+  if (best->score.surface_agreement < params.least_agreement || best->score.acceptance() < params.least_acceptance) {
+    merge.refusal = MergeRefusal::kLowAgreement;
+  } else if (params.refuse_ambiguous && has_rival) {
+    merge.refusal = MergeRefusal::kAmbiguous;
+  }
+  return merge;
+}
+
+MapMerge map_merge(const OccupancyGrid& map, const OccupancyGrid& local, const MapMergeParams& params) {
+  assert(map.resolution_m() == local.resolution_m() && "both maps must have the same resolution");
+  const LocalCells local_cells{local};
+  if (local_cells.contour().size() < kLeastContour) {
+    MapMerge refused;
+    refused.refusal = MergeRefusal::kTooFewPoints;
+    return refused;
+  }
+  const OverlayMap overlay{map};
+  std::vector<ScoredMotion> scored;
+  for (const CellMotion& candidate : hopeful(spectral_candidates(map, local_cells, params), overlay, local_cells)) {
+    for (const CellMotion& motion : neighbours(candidate, params.method)) {
+      scored.push_back({motion, overlay.score(local_cells, motion)});
+    }
+  }
+  return chosen(scored, map, local_cells, params.choice);
+}
+
+}  // namespace deltamap::mapping::merge

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two overlapping parts of one world, the second turned and shifted by a known transform: what the paper validates its
+// merge on (§3.4.2, Figures 7 and 8).
+#pragma once
+
+#include <algorithm>
+
+#include "core/angle.hpp"
+#include "core/occupancy_grid.hpp"
+#include "core/random.hpp"
+#include "mapping/merge/transformed_grid.hpp"
+#include "tests/support/drawn_hall.hpp"
+
+namespace deltamap::test {
+
+/// 35 × 35 m inside walls, four blocks of 10 × 10 m and 5 m corridors (paper §4, Figure 7), containers of 2.5 m missing
+/// from the blocks so that no turn maps the hall onto itself. Solid, 0.025 m cells: finer than what is cut from it.
+inline OccupancyGrid drawn_warehouse(std::uint64_t seed) {
+  constexpr double kCell_m = 0.025;
+  Random random{seed};
+  OccupancyGrid hall{{1440, 1440, kCell_m, {-0.5, -0.5}}};
+  fill(hall, {-0.2, -0.2}, {35.2, 35.2}, CellState::kOccupied);
+  fill(hall, {0.0, 0.0}, {35.0, 35.0}, CellState::kFree);
+  for (const double x : {5.0, 20.0}) {
+    for (const double y : {5.0, 20.0}) {
+      for (int i = 0; i < 16; ++i) {
+        if (random.uniform() < 0.3) continue;
+        const Point2 low{x + 2.5 * (i % 4), y + 2.5 * (i / 4)};
+        fill(hall, low, low + Point2{2.5, 2.5}, CellState::kOccupied);
+      }
+    }
+  }
+  return hall;
+}
+
+/// The columns of a grid from one share of its width to another.
+inline OccupancyGrid part_of(const OccupancyGrid& grid, double from_share, double to_share) {
+  const int first = static_cast<int>(from_share * grid.width());
+  const int last = static_cast<int>(to_share * grid.width());
+  GridGeometry geometry = grid.geometry();
+  geometry.origin.x() += first * geometry.resolution_m;
+  geometry.width = last - first;
+  return mapping::merge::transformed_grid(grid, {}, geometry);
+}
+
+/// The grid at another resolution, turned about its middle and shifted, on cells that hold all of it.
+inline OccupancyGrid moved_grid(const OccupancyGrid& grid, const Pose2& moved_from_grid, double resolution_m) {
+  const GridGeometry& g = grid.geometry();
+  Point2 low{1e9, 1e9};
+  Point2 high{-1e9, -1e9};
+  for (const double x : {0.0, g.width * g.resolution_m}) {
+    for (const double y : {0.0, g.height * g.resolution_m}) {
+      const Point2 corner = moved_from_grid * Point2{g.origin + Point2{x, y}};
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+  }
+  const auto cells = [&](double length_m) { return static_cast<int>(std::ceil(length_m / resolution_m)); };
+  const Point2 origin = (low / resolution_m).array().floor() * resolution_m;
+  return mapping::merge::transformed_grid(
+      grid, moved_from_grid, {cells(high.x() - origin.x()), cells(high.y() - origin.y()), resolution_m, origin});
+}
+
+}  // namespace deltamap::test
