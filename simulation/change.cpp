@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/change.hpp"
+
+namespace deltamap::simulation {
+
+std::string_view name_of(ChangeKind kind) {
+  switch (kind) {
+    case ChangeKind::kRemoved: return "removed";
+    case ChangeKind::kAdded: return "added";
+    case ChangeKind::kShifted: break;
+  }
+  return "shifted";
+}
+
+std::optional<ChangeKind> change_kind_named(std::string_view name) {
+  for (const ChangeKind kind : {ChangeKind::kRemoved, ChangeKind::kAdded, ChangeKind::kShifted}) {
+    if (name == name_of(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+World changed(const World& world, const Change& change) {
+  if (change.kind == ChangeKind::kRemoved) return world.without(change.id);
+  return world.with({change.id, ObjectKind::kContainer, change.box});
+}
+
+}  // namespace deltamap::simulation
