@@ -5,9 +5,12 @@ namespace deltamap::simulation {
 
 std::string_view name_of(ChangeKind kind) {
   switch (kind) {
-    case ChangeKind::kRemoved: return "removed";
-    case ChangeKind::kAdded: return "added";
-    case ChangeKind::kShifted: break;
+    case ChangeKind::kRemoved:
+      return "removed";
+    case ChangeKind::kAdded:
+      return "added";
+    case ChangeKind::kShifted:
+      break;
   }
   return "shifted";
 }

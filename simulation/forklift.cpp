@@ -28,9 +28,8 @@ int container_at(const Box& slot, const World& world) {
 
 bool stands_free(const Box& box, int own_id, const World& world) {
   const Box body = grown(box, -kNeighbourGap_m);
-  return std::none_of(world.objects.begin(), world.objects.end(), [&](const Object& object) {
-    return object.id != own_id && overlap(body, object.shape);
-  });
+  return std::none_of(world.objects.begin(), world.objects.end(),
+                      [&](const Object& object) { return object.id != own_id && overlap(body, object.shape); });
 }
 
 bool keeps_away(const Box& box, const Circle& body, double margin_m) {
@@ -107,7 +106,8 @@ bool Forklift::is_harmless(const Change& change, const World& world, const Reach
   if (change.kind == ChangeKind::kRemoved) return true;
   if (!stands_free(change.box, change.id, world)) return false;
   if (change.kind == ChangeKind::kShifted) {
-    const auto slot = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.container == change.id; });
+    const auto slot =
+        std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.container == change.id; });
     if ((change.box.centre - slot->home.centre).norm() > params_.largest_shift_m) return false;
   }
   const ReachableFloor after = reachable_floor(changed(world, change), robot.centre, clearance_m);

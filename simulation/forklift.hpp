@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's virtual fork-lift (§4): on a schedule it removes a container, brings one to an empty slot, or shifts one. It
-// touches only containers that it can reach from the corridors, keeps away from the robot and from people, and leaves every
-// corridor passable.
+// The paper's virtual fork-lift (§4): on a schedule it removes a container, brings one to an empty slot, or shifts one.
+// It touches only containers that it can reach from the corridors, keeps away from the robot and from people, and
+// leaves every corridor passable.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 namespace deltamap::simulation {
 
 struct ForkliftParams {
-  double change_every_s = 60.0;   ///< between changes, > 0; the paper: one a minute
+  double change_every_s = 60.0;  ///< between changes, > 0; the paper: one a minute
   std::vector<ChangeKind> kinds{ChangeKind::kRemoved, ChangeKind::kAdded};
   double smallest_shift_m = 0.3;  ///< > 0
   double largest_shift_m = 0.8;   ///< of a container from its slot, >= smallest_shift_m

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/passages.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -16,7 +17,30 @@ GridGeometry floor_geometry(const World& world) {
           bounds.low};
 }
 
+/// Distance from points to one shape; a box's turn is worked out once for all of them.
+class DistanceTo {
+ public:
+  explicit DistanceTo(const Shape& shape) : shape_{shape}, box_{std::get_if<Box>(&shape)} {
+    if (box_ != nullptr) {
+      axis_ = {std::cos(box_->theta_rad), std::sin(box_->theta_rad)};
+    }
+  }
+  [[nodiscard]] double operator()(const Point2& point) const {
+    if (box_ == nullptr) return distance_between(point, shape_);
+    const Point2 offset = point - box_->centre;
+    const double along = std::abs(offset.dot(axis_)) - 0.5 * box_->width_m;
+    const double across = std::abs(axis_.x() * offset.y() - axis_.y() * offset.x()) - 0.5 * box_->height_m;
+    return std::hypot(std::max(0.0, along), std::max(0.0, across));
+  }
+
+ private:
+  const Shape& shape_;
+  const Box* box_;
+  Point2 axis_{1.0, 0.0};
+};
+
 void block(const Shape& shape, double clearance_m, const GridGeometry& geometry, std::vector<bool>& blocked) {
+  const DistanceTo distance_to{shape};
   const Bounds bounds = bounds_of({{{0, ObjectKind::kWall, shape}}});
   const Cell first = geometry.cell_at(bounds.low - Point2::Constant(clearance_m));
   const Cell last = geometry.cell_at(bounds.high + Point2::Constant(clearance_m));
@@ -24,7 +48,7 @@ void block(const Shape& shape, double clearance_m, const GridGeometry& geometry,
     for (int column = first.column; column <= last.column; ++column) {
       const Cell cell{column, row};
       if (!geometry.contains(cell) || blocked[geometry.index_of(cell)]) continue;
-      if (distance_between(geometry.centre_of(cell), shape) <= clearance_m) blocked[geometry.index_of(cell)] = true;
+      if (distance_to(geometry.centre_of(cell)) <= clearance_m) blocked[geometry.index_of(cell)] = true;
     }
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which floor can be reached by something round of a given size: tells whether corridors are still passable and from which
-// side a container can be seen and lifted.
+// Which floor can be reached by something round of a given size: tells whether corridors are still passable and from
+// which side a container can be seen and lifted.
 #pragma once
 
 #include <vector>

@@ -49,7 +49,8 @@ void Person::move(double dt_s, const RayCaster& world, const Circle& robot) {
 bool Person::is_blocked(const Point2& next, const Point2& direction, const RayCaster& world,
                         const Circle& robot) const {
   const Point2 to_robot = robot.centre - next;
-  if (to_robot.norm() < params_.radius_m + robot.radius_m + kRoomToRobot_m && to_robot.dot(direction) > 0.0) return true;
+  if (to_robot.norm() < params_.radius_m + robot.radius_m + kRoomToRobot_m && to_robot.dot(direction) > 0.0)
+    return true;
   const auto nearest = world.nearest_surface(next, params_.radius_m + kRoomToSurface_m);
   return nearest && nearest->direction.dot(direction) > 0.0;
 }

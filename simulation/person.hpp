@@ -10,13 +10,13 @@
 namespace deltamap::simulation {
 
 struct PersonParams {
-  std::vector<Point2> path;     ///< corners of the way, m, at least two
-  bool closed = false;          ///< from the last corner on to the first; else back the way one came
-  double speed_m_per_s = 1.2;   ///< > 0
-  double radius_m = 0.2;        ///< of the body in the laser's plane, > 0
-  double walk_least_s = 5.0;    ///< shortest and longest time between stops
+  std::vector<Point2> path;    ///< corners of the way, m, at least two
+  bool closed = false;         ///< from the last corner on to the first; else back the way one came
+  double speed_m_per_s = 1.2;  ///< > 0
+  double radius_m = 0.2;       ///< of the body in the laser's plane, > 0
+  double walk_least_s = 5.0;   ///< shortest and longest time between stops
   double walk_most_s = 25.0;
-  double stand_least_s = 2.0;   ///< shortest and longest stop
+  double stand_least_s = 2.0;  ///< shortest and longest stop
   double stand_most_s = 20.0;
 };
 
@@ -41,7 +41,7 @@ class Person {
   Random random_;
   Point2 position_;
   Point2 velocity_{0.0, 0.0};
-  std::size_t corner_ = 1;    // walked to
+  std::size_t corner_ = 1;  // walked to
   bool backwards_ = false;
   bool standing_ = false;
   double phase_left_s_ = 0.0;

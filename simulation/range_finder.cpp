@@ -15,8 +15,7 @@ std::vector<Reading> RangeFinder::measure(const Sweep& sweep, double max_range_m
   for (std::size_t beam = 0; beam < sweep.bearings_rad.size(); ++beam) {
     const double offset_s = sweep.offsets_s[beam];
     const Pose2 map_from_laser = map_from_robot_at(offset_s) * params_.robot_from_laser;
-    readings.push_back(
-        measure_beam(map_from_laser, sweep.bearings_rad[beam], max_range_m, world, people_at(offset_s)));
+    readings.push_back(measure_beam(map_from_laser, sweep.bearings_rad[beam], max_range_m, world, people_at(offset_s)));
   }
   return readings;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an LMS200 measures in the simulated world: each beam at its own time from the moving robot, with noise, dropouts and
-// the mixed readings of a beam that is split by an edge. Ranges in metres; the virtual device turns them into words.
+// What an LMS200 measures in the simulated world: each beam at its own time from the moving robot, with noise, dropouts
+// and the mixed readings of a beam that is split by an edge. Ranges in metres; the virtual device turns them into
+// words.
 #pragma once
 
 #include <functional>

@@ -65,8 +65,8 @@ void Robot::move(const DriveTarget& target, double dt_s, const RayCaster& world,
 double Robot::ground_travel_m(Wheel& wheel, double encoder_m) {
   const double distance_m = std::abs(encoder_m);
   if (distance_m == 0.0) return 0.0;
-  double travel_m = encoder_m * (1.0 + wheel.error) +
-                    random_.normal(params_.wheel_noise_m_per_sqrt_m) * std::sqrt(distance_m);
+  double travel_m =
+      encoder_m * (1.0 + wheel.error) + random_.normal(params_.wheel_noise_m_per_sqrt_m) * std::sqrt(distance_m);
   if (wheel.slip_left_m > 0.0) {
     travel_m -= params_.slip_share * encoder_m;
     wheel.slip_left_m -= distance_m;

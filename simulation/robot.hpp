@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A differential-drive robot with the size and limits of a P3-DX (protocols.md A7): where it truly is, and where its wheels
-// say it is. Obstacles stop it; its motors then stall.
+// A differential-drive robot with the size and limits of a P3-DX (protocols.md A7): where it truly is, and where its
+// wheels say it is. Obstacles stop it; its motors then stall.
 #pragma once
 
 #include <optional>
@@ -13,15 +13,15 @@
 namespace deltamap::simulation {
 
 struct RobotParams {
-  double radius_m = 0.25;                ///< of the round body that touches obstacles, > 0
-  double half_track_m = 0.1786;          ///< half the distance between the wheels as the controller believes it (A7), > 0
-  double track_error = 0.01;             ///< share by which the true track is wider; biases turns
-  double left_wheel_error = 0.002;       ///< share by which the left wheel truly rolls farther than its encoder says
-  double right_wheel_error = -0.001;     ///< the same of the right wheel
+  double radius_m = 0.25;             ///< of the round body that touches obstacles, > 0
+  double half_track_m = 0.1786;       ///< half the distance between the wheels as the controller believes it (A7), > 0
+  double track_error = 0.01;          ///< share by which the true track is wider; biases turns
+  double left_wheel_error = 0.002;    ///< share by which the left wheel truly rolls farther than its encoder says
+  double right_wheel_error = -0.001;  ///< the same of the right wheel
   double wheel_noise_m_per_sqrt_m = 0.002;  ///< deviation of a wheel's travel over one metre, >= 0
-  double slips_per_m = 0.02;             ///< how often a wheel begins to slip, >= 0
-  double slip_length_m = 0.05;           ///< encoder travel during which it slips, >= 0
-  double slip_share = 0.5;               ///< share of that travel that is lost, [0, 1]
+  double slips_per_m = 0.02;                ///< how often a wheel begins to slip, >= 0
+  double slip_length_m = 0.05;              ///< encoder travel during which it slips, >= 0
+  double slip_share = 0.5;                  ///< share of that travel that is lost, [0, 1]
 };
 
 /// What the controller asks of the motors.
@@ -35,11 +35,11 @@ struct DriveTarget {
 };
 
 struct RobotState {
-  Pose2 map_from_robot;              ///< the truth
-  Pose2 odom_from_robot;             ///< integrated by the wheels' encoders
-  double speed_m_per_s = 0.0;        ///< by the encoders
-  double turn_rate_rad_per_s = 0.0;  ///< by the encoders
-  bool stalled = false;              ///< asked to move and held by an obstacle
+  Pose2 map_from_robot;                       ///< the truth
+  Pose2 odom_from_robot;                      ///< integrated by the wheels' encoders
+  double speed_m_per_s = 0.0;                 ///< by the encoders
+  double turn_rate_rad_per_s = 0.0;           ///< by the encoders
+  bool stalled = false;                       ///< asked to move and held by an obstacle
   std::optional<double> contact_bearing_rad;  ///< where the body touches one, robot frame
 };
 

@@ -47,7 +47,8 @@ class WorldReader {
   }
 
   [[nodiscard]] Polyline wall_of(const YAML::Node& wall) const {
-    if (!wall.IsSequence() || wall.size() < 2) refuse_at(wall, top_.file(), "walls", "must be lists of at least two points");
+    if (!wall.IsSequence() || wall.size() < 2)
+      refuse_at(wall, top_.file(), "walls", "must be lists of at least two points");
     Polyline line;
     for (const YAML::Node& point : wall) line.points.push_back(point_of(numbers_of(point, 2, top_.file(), "walls")));
     return line;
@@ -201,9 +202,11 @@ PersonParams person_of(YamlSection person) {
   params.speed_m_per_s = person.number("speed_m_per_s", params.speed_m_per_s, 0.05, 5.0);
   params.radius_m = person.number("radius_m", params.radius_m, 0.03, 1.0);
   params.walk_least_s = person.number("walk_least_s", params.walk_least_s, 0.1, 1e6);
-  params.walk_most_s = person.number("walk_most_s", std::max(params.walk_most_s, params.walk_least_s), params.walk_least_s, 1e6);
+  params.walk_most_s =
+      person.number("walk_most_s", std::max(params.walk_most_s, params.walk_least_s), params.walk_least_s, 1e6);
   params.stand_least_s = person.number("stand_least_s", params.stand_least_s, 0.0, 1e6);
-  params.stand_most_s = person.number("stand_most_s", std::max(params.stand_most_s, params.stand_least_s), params.stand_least_s, 1e6);
+  params.stand_most_s =
+      person.number("stand_most_s", std::max(params.stand_most_s, params.stand_least_s), params.stand_least_s, 1e6);
   person.expect_no_more();
   return params;
 }
@@ -242,7 +245,8 @@ Scenario parse_scenario(const std::string& yaml, const std::string& name) {
 
 Scenario read_scenario(const std::filesystem::path& yaml_file) {
   std::ifstream in(yaml_file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(yaml_file)) throw std::runtime_error(yaml_file.string() + ": cannot be read");
+  if (!in || std::filesystem::is_directory(yaml_file))
+    throw std::runtime_error(yaml_file.string() + ": cannot be read");
   return parse_scenario({std::istreambuf_iterator<char>(in), {}}, yaml_file.string());
 }
 

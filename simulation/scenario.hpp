@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scenario: the world at the start, the robot and its laser, the fork-lift and the people. Read from YAML, strictly: a key
-// that nothing reads is an error.
+// A scenario: the world at the start, the robot and its laser, the fork-lift and the people. Read from YAML, strictly:
+// a key that nothing reads is an error.
 #pragma once
 
 #include <cstdint>
@@ -21,21 +21,21 @@ namespace deltamap::simulation {
 struct RobotSetup {
   std::string model = "p3dx-sh";  ///< p3dx-sh or p3dx: the unit of its odometry (protocols.md A7)
   Pose2 map_from_start;
-  unsigned baud = 9600;           ///< one of 9600, 19200, 38400, 57600, 115200 (A4)
-  double sip_cycle_s = 0.1;       ///< between two SIPs (A6), [0.02, 1]
-  double watchdog_s = 2.0;        ///< of silence until it stops (A9), > 0
-  double battery_v = 12.8;        ///< > 0
-  int sonars = 8;                 ///< 0, 8 or 16
+  unsigned baud = 9600;      ///< one of 9600, 19200, 38400, 57600, 115200 (A4)
+  double sip_cycle_s = 0.1;  ///< between two SIPs (A6), [0.02, 1]
+  double watchdog_s = 2.0;   ///< of silence until it stops (A9), > 0
+  double battery_v = 12.8;   ///< > 0
+  int sonars = 8;            ///< 0, 8 or 16
   RobotParams body;
 };
 
 /// The LMS200 as it is switched on.
 struct LaserSetup {
-  unsigned baud = 9600;         ///< one of 9600, 19200, 38400, 500000 (protocols.md B3)
-  int field_deg = 180;          ///< 100 or 180
-  double step_deg = 0.5;        ///< 0.25 (100° only), 0.5 or 1
-  double resolution_m = 0.01;   ///< unit of a reading: 0.01 or 0.001 (B4 byte 6)
-  double max_range_m = 80.0;    ///< 8, 16, 32 at 1 mm or 80, 160, 320 at 10 mm (B4 byte 5)
+  unsigned baud = 9600;        ///< one of 9600, 19200, 38400, 500000 (protocols.md B3)
+  int field_deg = 180;         ///< 100 or 180
+  double step_deg = 0.5;       ///< 0.25 (100° only), 0.5 or 1
+  double resolution_m = 0.01;  ///< unit of a reading: 0.01 or 0.001 (B4 byte 6)
+  double max_range_m = 80.0;   ///< 8, 16, 32 at 1 mm or 80, 160, 320 at 10 mm (B4 byte 5)
   RangeFinderParams optics;
 };
 

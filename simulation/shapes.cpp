@@ -46,9 +46,8 @@ bool crosses(const Box& box, const Segment& segment) {
   const auto box_corners = corners(box);
   const auto box_axes = axes(box);
   const std::array<Point2, 3> separators{box_axes[0], box_axes[1], Point2{-along.y(), along.x()}.normalized()};
-  return std::none_of(separators.begin(), separators.end(), [&](const Point2& axis) {
-    return apart(shadow(box_corners, axis), shadow(ends, axis));
-  });
+  return std::none_of(separators.begin(), separators.end(),
+                      [&](const Point2& axis) { return apart(shadow(box_corners, axis), shadow(ends, axis)); });
 }
 
 }  // namespace
@@ -127,16 +126,15 @@ bool overlap(const Box& a, const Box& b) {
 }
 
 bool overlap(const Box& box, const Shape& shape) {
-  return std::visit(Overloaded{[&](const Box& other) { return overlap(box, other); },
-                               [&](const Circle& circle) {
-                                 return distance_between(circle.centre, box) + kTouch_m < circle.radius_m;
-                               },
-                               [&](const Polyline&) {
-                                 const auto pieces = segments_of(shape);
-                                 return std::any_of(pieces.begin(), pieces.end(),
-                                                    [&](const Segment& piece) { return crosses(box, piece); });
-                               }},
-                    shape);
+  return std::visit(
+      Overloaded{
+          [&](const Box& other) { return overlap(box, other); },
+          [&](const Circle& circle) { return distance_between(circle.centre, box) + kTouch_m < circle.radius_m; },
+          [&](const Polyline&) {
+            const auto pieces = segments_of(shape);
+            return std::any_of(pieces.begin(), pieces.end(), [&](const Segment& piece) { return crosses(box, piece); });
+          }},
+      shape);
 }
 
 }  // namespace deltamap::simulation

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shapes that a simulated world is made of: segments, circles and boxes in the plane of the laser, in the map frame.
+// The shapes that a simulated world is made of: segments, circles and boxes in the plane of the laser, in the map
+// frame.
 #pragma once
 
 #include <array>

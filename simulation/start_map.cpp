@@ -19,8 +19,8 @@ GridGeometry map_geometry(const World& world, double resolution_m) {
   // Cell borders lie half a cell beside the round coordinates.
   const Point2 origin{std::floor(low.x() / resolution_m + 0.5) * resolution_m - 0.5 * resolution_m,
                       std::floor(low.y() / resolution_m + 0.5) * resolution_m - 0.5 * resolution_m};
-  return {static_cast<int>(std::ceil(size.x() / resolution_m)) + 1, static_cast<int>(std::ceil(size.y() / resolution_m)) + 1,
-          resolution_m, origin};
+  return {static_cast<int>(std::ceil(size.x() / resolution_m)) + 1,
+          static_cast<int>(std::ceil(size.y() / resolution_m)) + 1, resolution_m, origin};
 }
 
 void add_line(const Point2& from, const Point2& to, const GridGeometry& geometry, std::vector<Cell>& cells) {

@@ -8,8 +8,8 @@
 namespace deltamap::simulation {
 
 /// Surfaces that can be seen from the floor where the robot starts are occupied, that floor is free; the inside of
-/// containers, what lies behind walls and surfaces that nobody can see are unknown. Surfaces on round coordinates lie in
-/// the middle of a cell, so that noise does not scatter them over two.
+/// containers, what lies behind walls and surfaces that nobody can see are unknown. Surfaces on round coordinates lie
+/// in the middle of a cell, so that noise does not scatter them over two.
 [[nodiscard]] OccupancyGrid start_map(const World& world, const Point2& robot_start, double resolution_m);
 
 /// The cells that the surface of a shape passes through.

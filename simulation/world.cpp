@@ -7,7 +7,8 @@
 namespace deltamap::simulation {
 
 const Object* World::find(int id) const {
-  const auto found = std::find_if(objects.begin(), objects.end(), [&](const Object& object) { return object.id == id; });
+  const auto found =
+      std::find_if(objects.begin(), objects.end(), [&](const Object& object) { return object.id == id; });
   return found == objects.end() ? nullptr : &*found;
 }
 

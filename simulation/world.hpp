@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The things that stand in a simulated world. Walls and posts stay; containers come, go and are shifted by the fork-lift.
+// The things that stand in a simulated world. Walls and posts stay; containers come, go and are shifted by the
+// fork-lift.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part of a YAML file that is read strictly: what is asked for must have the right type and range, and what nobody asked
-// for is an error. Every complaint is one line with file, line and key.
+// A part of a YAML file that is read strictly: what is asked for must have the right type and range, and what nobody
+// asked for is an error. Every complaint is one line with file, line and key.
 #pragma once
 
 #include <yaml-cpp/yaml.h>

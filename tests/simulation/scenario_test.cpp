@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace deltamap::simulation {
+namespace {
+
+const std::string kRoom = "walls:\n  - [[0, 0], [10, 0], [10, 4], [0, 4], [0, 0]]\nrobot:\n  start: [1, 2, 90]\n";
+
+std::string complaint_of(const std::string& yaml) {
+  try {
+    (void)parse_scenario(yaml, "world.yaml");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Scenario, ReadsWallsBlocksPostsRobotAndPeople) {
+  const Scenario scenario =
+      parse_scenario(kRoom +
+                         "blocks:\n  - {corner: [4, 1], columns: 2, rows: 3, size: [0.3, 0.4], empty: [[1, 2]]}\n"
+                         "posts:\n  - circle: [8, 2, 0.1]\n"
+                         "people:\n  - path: [[2, 1], [3, 1]]\n",
+                     "world.yaml");
+  EXPECT_EQ(scenario.slots.size(), 6u);
+  EXPECT_EQ(scenario.world.objects.size(), 1u + 5u + 1u);
+  EXPECT_NEAR(scenario.slots[0].centre.x(), 4.15, 1e-12);
+  EXPECT_NEAR(scenario.robot.map_from_start.theta, radians(90), 1e-12);
+  EXPECT_EQ(scenario.people.size(), 1u);
+  EXPECT_FALSE(scenario.forklift);
+}
+
+TEST(Scenario, RefusesWhatNobodyReadsWithFileLineAndKey) {
+  EXPECT_EQ(complaint_of(kRoom + "wals: []\n"), "world.yaml: line 5: 'wals' is not a key of 'the scenario'");
+  EXPECT_EQ(complaint_of(kRoom + "forklift:\n  every: 3\n"), "world.yaml: line 6: 'every' is not a key of 'forklift'");
+}
+
+TEST(Scenario, RefusesWrongTypesAndRangesWithTheirLine) {
+  EXPECT_EQ(complaint_of(kRoom + "forklift:\n  change_every_s: soon\n"),
+            "world.yaml: line 6: 'change_every_s' must be a number");
+  EXPECT_EQ(complaint_of(kRoom + "laser:\n  units: inch\n"), "world.yaml: line 6: 'units' must be cm or mm");
+  EXPECT_EQ(complaint_of(kRoom + "laser:\n  baud: 12345\n"),
+            "world.yaml: line 6: 'baud' must be one of 9600, 19200, 38400, 500000");
+  EXPECT_EQ(complaint_of(kRoom + "posts:\n  - circle: [1, 2]\n"),
+            "world.yaml: line 6: 'circle' must be a list of 3 numbers");
+  EXPECT_EQ(complaint_of("walls:\n  - [[0, 0], [10, 0]]\nrobot:\n  start: [1, 0.1, 0]\n"),
+            "world.yaml: line 4: 'start' puts the robot into a wall, a container or a post");
+  EXPECT_EQ(complaint_of(""), "world.yaml: line 1: not a scenario (expected 'walls', 'robot', ...)");
+  EXPECT_EQ(complaint_of("walls: [\n"), "world.yaml: line 2: end of sequence flow not found");
+}
+
+TEST(Scenario, EveryDeliveredScenarioCanBeRead) {
+  for (const char* name : {"hall", "hall_shifts", "room", "demo"}) {
+    const Scenario scenario = read_scenario(std::string(DELTAMAP_SOURCE_DIR "/config/scenarios/") + name + ".yaml");
+    EXPECT_TRUE(scenario.forklift) << name;
+    EXPECT_FALSE(scenario.slots.empty()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::simulation
