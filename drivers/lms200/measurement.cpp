@@ -66,15 +66,6 @@ BeamKind kind_of_code(unsigned value, const RangeCoding& coding) {
   }
 }
 
-Beam beam_from(std::uint16_t word, const RangeCoding& coding, double metres_per_word, double max_range_m) {
-  const unsigned value = word & coding.range_mask;
-  if (value >= coding.beyond_maximum) return {.kind = kind_of_code(value, coding)};
-  if (value == 0) return {.kind = BeamKind::kNotValid};
-  const double range_m = value * metres_per_word;
-  if (range_m > max_range_m) return {.kind = BeamKind::kBeyondMaximum};
-  return {.range_m = static_cast<float>(range_m), .kind = BeamKind::kRange};
-}
-
 }  // namespace
 
 double Measurement::metres_per_word() const {
@@ -134,11 +125,20 @@ std::optional<Scan> scan_from(const Measurement& measurement, const ScanFormat& 
   scan.robot_from_laser = format.robot_from_laser;
   scan.beams.reserve(measurement.words.size());
   for (unsigned i = 0; i < measurement.words.size(); ++i) {
-    Beam beam = beam_from(measurement.words[i], *coding, metres_per_word, scan.max_range_m);
+    Beam beam = decoded_beam(measurement.words[i], *coding, metres_per_word, scan.max_range_m);
     beam.offset_s = static_cast<float>(fan->offset_s(i));
     scan.beams.push_back(beam);
   }
   return scan;
+}
+
+Beam decoded_beam(std::uint16_t word, const RangeCoding& coding, double metres_per_word, double max_range_m) {
+  const unsigned value = word & coding.range_mask;
+  if (value >= coding.beyond_maximum) return {.kind = kind_of_code(value, coding)};
+  if (value == 0) return {.kind = BeamKind::kNotValid};
+  const double range_m = value * metres_per_word;
+  if (range_m > max_range_m) return {.kind = BeamKind::kBeyondMaximum};
+  return {.range_m = static_cast<float>(range_m), .kind = BeamKind::kRange};
 }
 
 std::uint16_t encoded_beam(const Beam& beam, const RangeCoding& coding, double metres_per_word) {

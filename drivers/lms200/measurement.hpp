@@ -43,7 +43,7 @@ struct Measurement {
 struct ScanFormat {
   std::uint8_t measuring_mode = 0;  ///< byte 5 of the configuration: the mask follows from it, not from the units (B4)
   double max_range_m = 0.0;         ///< longer ranges become kBeyondMaximum; 0: as far as the mode goes
-  Pose2 robot_from_laser;           ///< the mount
+  Pose2 robot_from_laser{};         ///< the mount
 };
 
 /// The scan without its number. nullopt for a mode without ranges and a count of values that belongs to no variant.
@@ -51,6 +51,9 @@ struct ScanFormat {
 [[nodiscard]] std::optional<Scan> scan_from(const Measurement& measurement, const ScanFormat& format,
                                             Timestamp first_byte, Timestamp received);
 
+/// Range and kind of one word; the beam's time is left to the caller.
+[[nodiscard]] Beam decoded_beam(std::uint16_t word, const RangeCoding& coding, double metres_per_word,
+                                double max_range_m);
 /// The word that makes scan_from answer this beam: for simulator and import. Ranges are rounded to the unit; 0 and
 /// ranges that reach into the codes become "beyond maximum".
 [[nodiscard]] std::uint16_t encoded_beam(const Beam& beam, const RangeCoding& coding, double metres_per_word);

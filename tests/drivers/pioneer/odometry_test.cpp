@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/pioneer/odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace deltamap::drivers::pioneer {
+namespace {
+
+constexpr double kTolerance = 1e-9;
+const RobotModel kSh = *model_named("p3dx-sh");
+
+/// SIPs a tenth of a second apart.
+class Drive {
+ public:
+  explicit Drive(const RobotModel& model = kSh) : tracker{model} {}
+
+  Odometry at(int x_units, int y_units = 0, int heading_units = 0) {
+    Sip sip;
+    sip.x_units = static_cast<std::uint16_t>(x_units);
+    sip.y_units = static_cast<std::uint16_t>(y_units);
+    sip.heading_units = static_cast<std::int16_t>(heading_units);
+    now += std::chrono::milliseconds{100};
+    return tracker.observe(sip, now);
+  }
+
+  OdometryTracker tracker;
+  Timestamp now = timestamp_from_ns(1'700'000'000'000'000'000);
+};
+
+TEST(OdometryTracker, TakesTheFirstSipAsReference) {
+  Drive drive;
+  const Odometry first = drive.at(12'345, 321, 1024);
+  EXPECT_EQ(first.odom_from_robot.x, 0.0);
+  EXPECT_EQ(first.odom_from_robot.y, 0.0);
+  EXPECT_NEAR(first.odom_from_robot.theta, std::numbers::pi / 2, kTolerance);
+  EXPECT_EQ(first.epoch, 0u);
+  EXPECT_NEAR(drive.at(12'445, 321, 1024).odom_from_robot.x, 0.1, kTolerance);
+}
+
+TEST(OdometryTracker, DrivesThroughTheWrapOfFifteenAndOfSixteenBits) {
+  for (const int modulus : {1 << 15, 1 << 16}) {
+    Drive drive;
+    for (int step = 0; step <= 2000; ++step) {
+      const int x = 100 * step % modulus;
+      const int y = ((modulus - 100 * step) % modulus + modulus) % modulus;
+      const Odometry odometry = drive.at(x, y);
+      ASSERT_NEAR(odometry.odom_from_robot.x, 0.1 * step, kTolerance);
+      ASSERT_NEAR(odometry.odom_from_robot.y, -0.1 * step, kTolerance);
+      ASSERT_EQ(odometry.epoch, 0u);
+    }
+  }
+}
+
+TEST(OdometryTracker, TurnsThroughTheWrapOfTheHeadingBothWays) {
+  for (const int sense : {1, -1}) {
+    Drive drive;
+    for (int step = 0; step < 200; ++step) {
+      const int turned = sense * 100 * step;
+      const int signed_wrap = (turned + 2048) % 4096 - 2048;
+      const Odometry odometry = drive.at(0, 0, signed_wrap);
+      ASSERT_EQ(odometry.epoch, 0u);
+      const double expected = turned * 2 * std::numbers::pi / 4096;
+      ASSERT_NEAR(turn_between(odometry.odom_from_robot.theta, expected), 0.0, kTolerance);
+    }
+  }
+}
+
+TEST(OdometryTracker, ConvertsUnitsByModel) {
+  Drive drive{*model_named("p3dx")};
+  (void)drive.at(0);
+  EXPECT_NEAR(drive.at(1000).odom_from_robot.x, 0.485, kTolerance);
+  EXPECT_FALSE(model_named("at"));
+}
+
+TEST(OdometryTracker, BeginsAnEpochWhereThePoseJumps) {
+  Drive drive;
+  (void)drive.at(0);
+  (void)drive.at(100);
+  const Odometry reset = drive.at(5000, 0, 0);
+  EXPECT_EQ(reset.epoch, 1u);
+  EXPECT_EQ(reset.odom_from_robot.x, 0.0) << "the jump is not integrated";
+  EXPECT_NEAR(drive.at(5100).odom_from_robot.x, 0.1, kTolerance);
+}
+
+TEST(OdometryTracker, BeginsAnEpochWhereTheHeadingJumps) {
+  Drive drive;
+  (void)drive.at(0, 0, 0);
+  EXPECT_EQ(drive.at(0, 0, 330).epoch, 0u) << "29 degrees";
+  EXPECT_EQ(drive.at(0, 0, 330 + 353).epoch, 1u) << "31 degrees";
+}
+
+TEST(OdometryTracker, AllowsALongStepAfterALostSipButNotAfterAnAmbiguousGap) {
+  Drive drive;
+  (void)drive.at(0);
+  drive.now += std::chrono::milliseconds{900};
+  EXPECT_EQ(drive.at(2200).epoch, 0u) << "2.2 m in a second";
+  drive.now += std::chrono::seconds{10};
+  EXPECT_EQ(drive.at(2200).epoch, 1u) << "it may have driven a whole wrap";
+}
+
+TEST(OdometryTracker, BeginsAnEpochWithAnotherModelOnlyAfterTheFirstSip) {
+  OdometryTracker tracker{kSh};
+  tracker.set_model(*model_named("p3dx"));
+  tracker.begin_epoch();
+  EXPECT_EQ(tracker.observe(Sip{}, Timestamp{}).epoch, 0u);
+  tracker.set_model(kSh);
+  EXPECT_EQ(tracker.observe(Sip{}, Timestamp{}).epoch, 1u);
+}
+
+TEST(OdometryTracker, ReportsSpeedsAndState) {
+  Sip sip;
+  sip.left_mm_per_s = 100;
+  sip.right_mm_per_s = 300;
+  sip.right_stall = true;
+  sip.flags = sip_flag::kMotorsEnabled | sip_flag::kStopButton;
+  sip.front_bumpers = 4;
+  sip.battery_decivolts = 121;
+  OdometryTracker tracker{kSh};
+  const Odometry odometry = tracker.observe(sip, Timestamp{});
+  EXPECT_NEAR(odometry.speed_m_per_s, 0.2, kTolerance);
+  EXPECT_NEAR(odometry.turn_rate_rad_per_s, 0.56, kTolerance);
+  EXPECT_TRUE(odometry.stalled);
+  EXPECT_TRUE(odometry.motors_enabled);
+  EXPECT_TRUE(odometry.stop_button);
+  EXPECT_EQ(odometry.front_bumpers, 4);
+  EXPECT_NEAR(odometry.battery_v, 12.1, kTolerance);
+}
+
+}  // namespace
+}  // namespace deltamap::drivers::pioneer
