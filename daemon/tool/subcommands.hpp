@@ -9,6 +9,9 @@ class App;
 
 namespace deltamap::daemon::tool {
 
+// under `deltamap import`
+void add_import_carmen(CLI::App& import);
+
 // under `deltamap map`
 void add_map_picture(CLI::App& map);
 

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first look at a CARMEN log, before it is turned into bytes: which unit its words need, which value means "no
+// return", where its poses come from, which variant of the LMS200 its scans are like (CONTRACT.md, Bytes: import
+// carmen).
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "core/pose2.hpp"
+#include "core/time.hpp"
+#include "daemon/tool/carmen_log.hpp"
+#include "drivers/lms200/configuration.hpp"
+#include "drivers/lms200/variant.hpp"
+
+namespace deltamap::daemon::tool {
+
+struct TimedPose {
+  Timestamp time;
+  Pose2 odom_from_robot;
+};
+
+struct CarmenSurvey {
+  std::size_t scans = 0;          ///< that will be imported
+  std::size_t doubled_scans = 0;  ///< without a pose in a log whose other scans have one: the same sweeps once more
+  bool scans_carry_poses = false;
+  std::vector<TimedPose> odometry;  ///< by time; empty where the scans carry poses
+
+  drivers::lms200::Units units = drivers::lms200::Units::kMillimetre;
+  std::uint8_t measuring_mode = 0;                 ///< protocols.md B4: the one whose codes hold the longest word
+  std::optional<double> no_return_m;               ///< this range and longer ones are no return
+  double no_return_share = 0.0;                    ///< of all beams; 0 where the value was given
+  drivers::lms200::ScanVariant variant{180, 100};  ///< of the first scan
+};
+
+/// The LMS200 variant that is nearest to a scan: first by its field of view, then by its step.
+[[nodiscard]] drivers::lms200::ScanVariant nearest_variant(const CarmenScan& scan);
+
+/// Reads the whole log. `no_return_m` stands in for the log's largest value. Throws std::runtime_error as CarmenLog
+/// does, and where there is no scan.
+[[nodiscard]] CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> no_return_m);
+
+}  // namespace deltamap::daemon::tool
