@@ -32,6 +32,7 @@ struct MapUpdate {
   [[nodiscard]] bool accepted() const { return refusal == Refusal::kNone; }
 };
 
+/// The method is the set's own.
 [[nodiscard]] MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params);
 
 }  // namespace deltamap::mapping

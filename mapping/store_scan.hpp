@@ -8,10 +8,18 @@
 #include <optional>
 
 #include "core/messages.hpp"
+#include "mapping/awareness/delta_phase.hpp"
+#include "mapping/awareness/divergence_ratio.hpp"
+#include "mapping/awareness/evidence_phase.hpp"
 
 namespace deltamap::mapping {
 
-struct StoreScanParams;
+struct StoreScanParams {
+  MappingMethod method = MappingMethod::kEvidence;
+  awareness::DivergenceRatioParams divergence;  ///< w_fast, w_slow and r_d: kept with both methods
+  awareness::DeltaPhaseParams delta_phase;      ///< paper
+  awareness::EvidencePhaseParams evidence;      ///< evidence
+};
 
 /// What Δ-awareness thought of the last scan, for telemetry and the paper's Figures 2 to 4.
 struct Awareness {

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/awareness/evidence_phase.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/grid_ray.hpp"
+
+namespace deltamap::mapping::awareness {
+namespace {
+
+constexpr Question kQuestions[] = {Question::kAdded, Question::kRemoved};
+
+void sort_unique(std::vector<std::uint32_t>& indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+std::vector<std::uint32_t> merged(std::vector<std::uint32_t> all, const std::vector<std::uint32_t>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+}  // namespace
+
+EvidencePhase::EvidencePhase(const EvidencePhaseParams& params) : params_{params}, keyframes_{params.keyframes} {}
+
+double EvidencePhase::least_share(Question question) const {
+  return question == Question::kAdded ? params_.least_added_share : params_.least_removed_share;
+}
+
+bool EvidencePhase::is_proven(Question question, Cell block) const {
+  const Ballot ballot = layer_.ballot(question, block);
+  return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= params_.persistence_s &&
+         ballot.share() >= least_share(question);
+}
+
+/// Votes were cast against the map of their time: where it has changed they are void.
+void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
+  if (map == map_) return;
+  const std::shared_ptr<const OccupancyGrid> before = std::exchange(map_, std::move(map));
+  if (before == nullptr || before->geometry() != map_->geometry()) {
+    layer_ = VoteLayer{params_.votes, map_->geometry()};
+    waiting_.clear();
+    watched_.clear();
+    solid_.assign(layer_.blocks().cell_count(), 0);
+    watched_blocks_.assign(layer_.blocks().cell_count(), 0);
+    find_solid({{0, 0}, {map_->width(), map_->height()}});
+    return;
+  }
+  for (const CellChange& change : changes_between(*before, *map_)) {
+    const CellBox around = grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry());
+    layer_.reset(around);
+    find_solid(around);
+  }
+}
+
+void EvidencePhase::find_solid(const CellBox& cells) {
+  const Cell first = layer_.block_of(cells.first);
+  const int side = layer_.cells_per_block();
+  for (int row = first.row; row * side < cells.last.row; ++row) {
+    for (int column = first.column; column * side < cells.last.column; ++column) {
+      const CellBox block = layer_.cells_of({column, row});
+      bool solid = false;
+      for (int y = block.first.row; y < block.last.row; ++y) {
+        for (int x = block.first.column; x < block.last.column; ++x) {
+          solid = solid || map_->at({x, y}) == CellState::kOccupied;
+        }
+      }
+      solid_[layer_.blocks().index_of({column, row})] = solid ? 1 : 0;
+    }
+  }
+}
+
+void EvidencePhase::count_beams() {
+  short_beams_ = 0;
+  through_beams_ = 0;
+  for (const BeamVerdict& beam : beams_) {
+    short_beams_ += beam.ends_off_map ? 1 : 0;
+    through_beams_ += beam.what == BeamClass::kThrough ? 1 : 0;
+  }
+}
+
+/// One vote a block, question and keyframe; a block that was both hit and passed was hit.
+EvidencePhase::Votes EvidencePhase::votes_of_beams() const {
+  Votes votes;
+  const GridGeometry& blocks = layer_.blocks();
+  const auto add = [&](Blocks& side, Cell block) {
+    if (blocks.contains(block)) side.push_back(static_cast<std::uint32_t>(blocks.index_of(block)));
+  };
+  auto& [yes_added, yes_removed] = votes.yes;
+  auto& [no_added, no_removed] = votes.no;
+  for (const BeamVerdict& beam : beams_) {
+    if (beam.length_m <= 0.0) continue;  // silent
+    for (const Cell& cell : beam.passed) add(yes_removed, layer_.block_of(cell));
+    if (beam.ends_off_map) add(yes_added, blocks.cell_at(beam.end));
+    const Cell end = blocks.cell_at(beam.end);
+    if (beam.ends_at_surface && blocks.contains(end) && watched_blocks_[blocks.index_of(end)] > 0) add(votes.ends, end);
+    if (beam.ends_at_surface && !beam.ends_off_map) {
+      for (int row = -1; row <= 1; ++row) {
+        for (int column = -1; column <= 1; ++column) {
+          const Cell near{end.column + column, end.row + row};
+          if (blocks.contains(near) && solid_[blocks.index_of(near)] != 0) add(no_removed, near);
+        }
+      }
+    }
+    const double clear_m = beam.length_m - beam.interval_m - map_->resolution_m();
+    if (clear_m <= 0.0) continue;
+    const Point2 clear_end = beam.from + (beam.end - beam.from) * (clear_m / beam.length_m);
+    walk_ray(blocks, beam.from, clear_end, [&](Cell block, double) {
+      if (!blocks.contains(block)) return false;
+      if (layer_.is_open(Question::kAdded, block)) add(no_added, block);
+      return true;
+    });
+  }
+  for (const Question question : kQuestions) {
+    const auto i = static_cast<std::size_t>(question);
+    sort_unique(votes.yes[i]);
+    sort_unique(votes.no[i]);
+    Blocks only_no;
+    std::set_difference(votes.no[i].begin(), votes.no[i].end(), votes.yes[i].begin(), votes.yes[i].end(),
+                        std::back_inserter(only_no));
+    votes.no[i] = std::move(only_no);
+  }
+  sort_unique(votes.ends);
+  return votes;
+}
+
+void EvidencePhase::cast(const Votes& votes) {
+  for (const Question question : kQuestions) {
+    const auto i = static_cast<std::size_t>(question);
+    for (const std::uint32_t index : votes.no[i]) layer_.vote(question, layer_.blocks().cell_of(index), false, now_ms_);
+    for (const std::uint32_t index : votes.yes[i]) {
+      const Cell block = layer_.blocks().cell_of(index);
+      layer_.vote(question, block, true, now_ms_);
+      const bool is_waiting = std::any_of(waiting_.begin(), waiting_.end(), [&](const ProvenBlock& proven) {
+        return proven.question == question && proven.block == block;
+      });
+      if (!is_waiting && is_proven(question, block)) waiting_.push_back({question, block, now_ms_});
+    }
+  }
+}
+
+std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlock>& region) const {
+  std::vector<std::uint32_t> indices;
+  const GridGeometry& blocks = layer_.blocks();
+  const Question question = region.front().question;
+  for (const ProvenBlock& proven : region) {
+    for (int row = -params_.reach_blocks; row <= params_.reach_blocks; ++row) {
+      for (int column = -params_.reach_blocks; column <= params_.reach_blocks; ++column) {
+        const Cell block{proven.block.column + column, proven.block.row + row};
+        if (!blocks.contains(block)) continue;
+        const Ballot ballot = layer_.ballot(question, block);
+        const bool joins =
+            ballot.yes >= static_cast<float>(params_.joining_votes) && ballot.share() >= least_share(question);
+        if (joins || block == proven.block) indices.push_back(static_cast<std::uint32_t>(blocks.index_of(block)));
+      }
+    }
+  }
+  sort_unique(indices);
+  std::vector<Cell> cells;
+  for (const std::uint32_t index : indices) cells.push_back(blocks.cell_of(index));
+  return cells;
+}
+
+void EvidencePhase::add_verdicts(Question question, Cell block, std::vector<CellVerdict>& verdicts) const {
+  const CellBox cells = layer_.cells_of(block);
+  for (int row = cells.first.row; row < cells.last.row; ++row) {
+    for (int column = cells.first.column; column < cells.last.column; ++column) {
+      const Cell cell{column, row};
+      if (!map_->geometry().contains(cell)) continue;
+      const bool occupied = (*map_)[cell] == CellState::kOccupied;
+      if (question == Question::kRemoved && occupied) verdicts.push_back({cell, CellState::kFree});
+      if (question == Question::kAdded && !occupied) verdicts.push_back({cell, CellState::kOccupied});
+    }
+  }
+}
+
+/// The block starts anew: were the map update to refuse, it has to be proven again.
+void EvidencePhase::hand_on(Question question, Cell block) {
+  layer_.reset(question, block);
+  std::erase_if(waiting_,
+                [&](const ProvenBlock& proven) { return proven.question == question && proven.block == block; });
+}
+
+std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const Blocks& blocks, std::uint32_t first_ms) {
+  if (set.verdicts.empty()) return std::nullopt;
+  set.phase = phase_ + 1;
+  set.began = *start_ + std::chrono::milliseconds{first_ms};
+  set.scans = keyframes_.that_saw(blocks, set.began);
+  if (set.scans.empty()) return std::nullopt;
+  phase_ = set.phase;
+  return set;
+}
+
+std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
+  std::erase_if(waiting_, [&](const ProvenBlock& proven) { return !is_proven(proven.question, proven.block); });
+  ScanSet set;
+  set.ended = time;
+  Blocks handed_on;
+  std::uint32_t first_ms = now_ms_;
+  for (const std::vector<ProvenBlock>& region : connected_regions(waiting_, params_.reach_blocks)) {
+    const auto [oldest, newest] =
+        std::minmax_element(region.begin(), region.end(),
+                            [](const ProvenBlock& a, const ProvenBlock& b) { return a.since_ms < b.since_ms; });
+    const bool settled = 1e-3 * (now_ms_ - newest->since_ms) >= params_.settle_s ||
+                         1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s;
+    if (region.size() < params_.least_blocks || !settled) continue;
+    const Question question = region.front().question;
+    Blocks blocks;
+    std::uint32_t region_first_ms = now_ms_;
+    for (const Cell& block : with_joining_blocks(region)) {
+      region_first_ms = std::min(region_first_ms, layer_.ballot(question, block).first_ms);
+      add_verdicts(question, block, set.verdicts);
+      blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
+      hand_on(question, block);
+    }
+    if (question == Question::kAdded) watch(blocks, region_first_ms);
+    first_ms = std::min(first_ms, region_first_ms);
+    handed_on = merged(std::move(handed_on), blocks);
+  }
+  sort_unique(handed_on);
+  return with_scans(std::move(set), handed_on, first_ms);
+}
+
+void EvidencePhase::watch(const Blocks& blocks, std::uint32_t first_ms) {
+  if (params_.looks == 0) return;
+  if (watched_.size() >= params_.most_watched) {
+    for (const std::uint32_t index : watched_.front().blocks) --watched_blocks_[index];
+    watched_.erase(watched_.begin());
+  }
+  Watched region{{}, first_ms, 0, params_.first_look, params_.looks};
+  for (const std::uint32_t index : blocks) {
+    const Cell middle = layer_.blocks().cell_of(index);
+    for (int row = -params_.reach_blocks; row <= params_.reach_blocks; ++row) {
+      for (int column = -params_.reach_blocks; column <= params_.reach_blocks; ++column) {
+        const Cell block{middle.column + column, middle.row + row};
+        if (layer_.blocks().contains(block)) {
+          region.blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
+        }
+      }
+    }
+  }
+  sort_unique(region.blocks);
+  for (const std::uint32_t index : region.blocks) ++watched_blocks_[index];
+  watched_.push_back(std::move(region));
+}
+
+void EvidencePhase::see_watched(const Blocks& ends) {
+  if (ends.empty()) return;
+  for (Watched& region : watched_) {
+    const bool seen = std::any_of(ends.begin(), ends.end(), [&](std::uint32_t index) {
+      return std::binary_search(region.blocks.begin(), region.blocks.end(), index);
+    });
+    region.seen += seen ? 1 : 0;
+  }
+}
+
+/// What was written from a few keyframes is drawn anew, both ways, once many more have seen it.
+std::optional<ScanSet> EvidencePhase::another_look(Timestamp time) {
+  const auto due = std::find_if(watched_.begin(), watched_.end(),
+                                [](const Watched& region) { return region.seen >= region.next_look; });
+  if (due == watched_.end()) return std::nullopt;
+  ScanSet set;
+  set.ended = time;
+  for (const std::uint32_t index : due->blocks) {
+    const Cell block = layer_.blocks().cell_of(index);
+    add_verdicts(Question::kAdded, block, set.verdicts);
+    add_verdicts(Question::kRemoved, block, set.verdicts);
+  }
+  std::optional<ScanSet> finished = with_scans(std::move(set), due->blocks, due->first_ms);
+  due->seen = 0;
+  due->next_look *= 3;
+  if (--due->looks_left == 0) {
+    for (const std::uint32_t index : due->blocks) --watched_blocks_[index];
+    watched_.erase(due);
+  }
+  return finished;
+}
+
+std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
+  const Estimate& estimate = tracked.estimate;
+  if (estimate.map == nullptr) return std::nullopt;
+  if (!start_) start_ = tracked.scan.time - std::chrono::seconds{1};  // so that 0 ms means "never"
+  now_ms_ = static_cast<std::uint32_t>(
+      std::chrono::duration_cast<std::chrono::milliseconds>(tracked.scan.time - *start_).count());
+  take_map(estimate.map);
+  short_beams_ = 0;
+  through_beams_ = 0;
+  if (!keyframes_.is_due(tracked) || !speaks(estimate, tracked.turn_rate_rad_per_s, params_.beams)) return std::nullopt;
+
+  beams_ = beam_evidence(*map_, tracked, params_.beams, std::move(beams_));
+  count_beams();
+  const Votes votes = votes_of_beams();
+  cast(votes);
+  Blocks blocks = merged(merged(votes.yes[0], votes.yes[1]), merged(votes.no[0], votes.no[1]));
+  blocks = merged(std::move(blocks), votes.ends);
+  sort_unique(blocks);
+  keyframes_.keep(tracked, std::move(blocks));
+  see_watched(votes.ends);
+  std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);
+  return set ? std::move(set) : another_look(tracked.scan.time);
+}
+
+}  // namespace deltamap::mapping::awareness

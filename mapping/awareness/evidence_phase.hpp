@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Store-scan by evidence: keyframes vote block by block on what is new and what is gone; what keeps being voted for
+// long enough, from enough keyframes and over a large enough region becomes an S(k) with its verdicts.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "mapping/awareness/beam_evidence.hpp"
+#include "mapping/awareness/evidence_regions.hpp"
+#include "mapping/awareness/keyframe_pool.hpp"
+#include "mapping/awareness/vote_layer.hpp"
+
+namespace deltamap::mapping::awareness {
+
+struct EvidencePhaseParams {
+  double persistence_s = 3.0;        ///< votes must span at least so long; >= 0 (mapping.persistence_s)
+  double least_votes = 4.0;          ///< keyframes that say so, worn votes not counted; > 0
+  double least_added_share = 0.65;   ///< of the votes on a block that say "added"; (0.5, 1]
+  double least_removed_share = 0.8;  ///< of the votes on a block that say "removed"; (0.5, 1]
+  int reach_blocks = 2;              ///< proven blocks at most so far apart are one region; >= 1
+  std::uint32_t least_blocks = 3;    ///< a smaller region is a speck and waits; >= 1
+  double settle_s = 2.0;             ///< a region is handed on when it has not grown for so long, …
+  double most_wait_s = 6.0;          ///< … or has waited so long
+  double joining_votes = 2.0;        ///< blocks beside a region with so many votes and the share are taken along
+  std::uint32_t first_look = 8;  ///< keyframes that end in a written region until it is drawn anew, more sharply, …
+  std::uint32_t looks = 3;       ///< … so often, after three times as many keyframes each
+  std::uint32_t most_watched = 64;  ///< regions that wait for another look; the oldest goes
+  BeamEvidenceParams beams;
+  VoteLayerParams votes;
+  KeyframeParams keyframes;
+};
+
+class EvidencePhase {
+ public:
+  explicit EvidencePhase(const EvidencePhaseParams& params);
+
+  [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
+
+  [[nodiscard]] std::uint32_t number() const { return phase_; }
+  /// Blocks that are proven and wait to be handed on.
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+  [[nodiscard]] std::uint32_t short_beams() const { return short_beams_; }
+  [[nodiscard]] std::uint32_t through_beams() const { return through_beams_; }
+
+ private:
+  using Blocks = std::vector<std::uint32_t>;  // indices, sorted and unique once collected
+  struct Votes {
+    Blocks yes[2];
+    Blocks no[2];
+    Blocks ends;  // where beams ended in watched blocks
+  };
+  /// A region that has been written as occupied and is looked at again.
+  struct Watched {
+    Blocks blocks;
+    std::uint32_t first_ms = 0;
+    std::uint32_t seen = 0;
+    std::uint32_t next_look = 0;
+    std::uint32_t looks_left = 0;
+  };
+
+  void take_map(std::shared_ptr<const OccupancyGrid> map);
+  void find_solid(const CellBox& cells);
+  void count_beams();
+  [[nodiscard]] Votes votes_of_beams() const;
+  void cast(const Votes& votes);
+  [[nodiscard]] bool is_proven(Question question, Cell block) const;
+  [[nodiscard]] double least_share(Question question) const;
+  [[nodiscard]] std::optional<ScanSet> settled_regions(Timestamp time);
+  [[nodiscard]] std::vector<Cell> with_joining_blocks(const std::vector<ProvenBlock>& region) const;
+  void add_verdicts(Question question, Cell block, std::vector<CellVerdict>& verdicts) const;
+  void hand_on(Question question, Cell block);
+  void watch(const Blocks& blocks, std::uint32_t first_ms);
+  void see_watched(const Blocks& ends);
+  [[nodiscard]] std::optional<ScanSet> another_look(Timestamp time);
+  [[nodiscard]] std::optional<ScanSet> with_scans(ScanSet set, const Blocks& blocks, std::uint32_t first_ms);
+
+  EvidencePhaseParams params_;
+  std::shared_ptr<const OccupancyGrid> map_;
+  VoteLayer layer_;
+  KeyframePool keyframes_;
+  std::vector<BeamVerdict> beams_;
+  std::vector<ProvenBlock> waiting_;
+  std::vector<std::uint8_t> solid_;  // blocks with an occupied cell
+  std::vector<std::uint8_t> watched_blocks_;
+  std::vector<Watched> watched_;
+  std::optional<Timestamp> start_;
+  std::uint32_t now_ms_ = 0;
+  std::uint32_t phase_ = 0;
+  std::uint32_t short_beams_ = 0;
+  std::uint32_t through_beams_ = 0;
+};
+
+}  // namespace deltamap::mapping::awareness

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/awareness/keyframe_pool.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace deltamap::mapping::awareness {
+namespace {
+
+bool share_one(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool KeyframePool::is_due(const TrackedScan& tracked) const {
+  if (kept_.empty()) return true;
+  const TrackedScan& last = kept_.back().tracked;
+  if (last.odometry_epoch != tracked.odometry_epoch) return true;
+  const Pose2 motion = motion_between(last.odom_from_robot, tracked.odom_from_robot);
+  return motion.position().norm() >= params_.moved_m || std::abs(motion.theta) >= params_.turned_rad ||
+         seconds(tracked.scan.time - last.scan.time) >= params_.waited_s;
+}
+
+void KeyframePool::keep(const TrackedScan& tracked, std::vector<std::uint32_t> sorted_blocks) {
+  if (!kept_.empty() && kept_.back().tracked.odometry_epoch != tracked.odometry_epoch) kept_.clear();
+  if (kept_.size() >= params_.most_kept) kept_.pop_front();
+  kept_.push_back({tracked, std::move(sorted_blocks)});
+  kept_.back().tracked.estimate.map.reset();  // a keyframe outlives the map that its pose was computed on
+}
+
+std::vector<TrackedScan> KeyframePool::that_saw(const std::vector<std::uint32_t>& sorted_blocks,
+                                                Timestamp since) const {
+  std::vector<TrackedScan> scans;
+  for (auto keyframe = kept_.rbegin(); keyframe != kept_.rend() && scans.size() < params_.most_in_set; ++keyframe) {
+    if (keyframe->tracked.scan.time < since) break;
+    if (share_one(keyframe->blocks, sorted_blocks)) scans.push_back(keyframe->tracked);
+  }
+  std::reverse(scans.begin(), scans.end());
+  return scans;
+}
+
+}  // namespace deltamap::mapping::awareness

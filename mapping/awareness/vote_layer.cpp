@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/awareness/vote_layer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::mapping::awareness {
+
+VoteLayer::VoteLayer(const VoteLayerParams& params, const GridGeometry& map) : params_{params} {
+  cells_per_block_ = std::max(1, static_cast<int>(std::lround(params.block_m / map.resolution_m)));
+  blocks_ = {(map.width + cells_per_block_ - 1) / cells_per_block_,
+             (map.height + cells_per_block_ - 1) / cells_per_block_, map.resolution_m * cells_per_block_, map.origin};
+  tiles_across_ = static_cast<std::size_t>(blocks_.width / kTileSide + 1);
+  const std::size_t tiles_up = static_cast<std::size_t>(blocks_.height / kTileSide + 1);
+  open_.assign(blocks_.cell_count(), 0);
+  tile_of_.assign(tiles_across_ * tiles_up, -1);
+}
+
+CellBox VoteLayer::cells_of(Cell block) const {
+  const Cell first{block.column * cells_per_block_, block.row * cells_per_block_};
+  return {first, {first.column + cells_per_block_, first.row + cells_per_block_}};
+}
+
+Ballot VoteLayer::ballot(Question question, Cell block) const {
+  const std::int32_t tile = tile_of_[place_of(block)];
+  if (tile < 0) return {};
+  return tiles_[static_cast<std::size_t>(tile)].ballots[static_cast<std::size_t>(question)][slot_of(block)];
+}
+
+VoteLayer::Tile& VoteLayer::tile_for(Cell block, std::uint32_t now_ms) {
+  const std::size_t place = place_of(block);
+  if (tile_of_[place] < 0) {
+    if (tiles_.size() < params_.most_tiles) {
+      tile_of_[place] = static_cast<std::int32_t>(tiles_.size());
+      tiles_.emplace_back();
+    } else {
+      const auto oldest = std::min_element(tiles_.begin(), tiles_.end(),
+                                           [](const Tile& a, const Tile& b) { return a.last_ms < b.last_ms; });
+      empty_tile(*oldest);
+      tile_of_[oldest->place] = -1;
+      tile_of_[place] = static_cast<std::int32_t>(oldest - tiles_.begin());
+    }
+    tiles_[static_cast<std::size_t>(tile_of_[place])].place = static_cast<std::uint32_t>(place);
+  }
+  Tile& tile = tiles_[static_cast<std::size_t>(tile_of_[place])];
+  tile.last_ms = now_ms;
+  return tile;
+}
+
+void VoteLayer::empty_tile(Tile& tile) {
+  const Cell first{static_cast<int>(tile.place % tiles_across_) * kTileSide,
+                   static_cast<int>(tile.place / tiles_across_) * kTileSide};
+  for (int row = first.row; row < std::min(first.row + kTileSide, blocks_.height); ++row) {
+    for (int column = first.column; column < std::min(first.column + kTileSide, blocks_.width); ++column) {
+      open_[blocks_.index_of({column, row})] = 0;
+    }
+  }
+  tile = Tile{};
+}
+
+void VoteLayer::vote(Question question, Cell block, bool yes, std::uint32_t now_ms) {
+  Ballot& ballot = tile_for(block, now_ms).ballots[static_cast<std::size_t>(question)][slot_of(block)];
+  if (ballot.last_ms != 0 && 1e-3 * (now_ms - ballot.last_ms) > params_.forget_s) ballot.yes = 0.0F;
+  const auto most = static_cast<float>(params_.most_votes);
+  const auto left = static_cast<float>(1.0 - params_.wear);
+  if (yes) {
+    if (ballot.yes < 0.5F) ballot.first_ms = now_ms;
+    ballot.yes = std::min(most, ballot.yes + 1.0F);
+    ballot.no *= left;
+    open_[blocks_.index_of(block)] |= bit_of(question);
+  } else {
+    ballot.no = std::min(most, ballot.no + 1.0F);
+    ballot.yes *= left;
+  }
+  ballot.last_ms = now_ms;
+}
+
+void VoteLayer::reset(Question question, Cell block) {
+  open_[blocks_.index_of(block)] &= static_cast<std::uint8_t>(~bit_of(question));
+  const std::int32_t tile = tile_of_[place_of(block)];
+  if (tile >= 0)
+    tiles_[static_cast<std::size_t>(tile)].ballots[static_cast<std::size_t>(question)][slot_of(block)] = {};
+}
+
+void VoteLayer::reset(const CellBox& cells) {
+  const Cell first = block_of(cells.first);
+  for (int row = first.row; row * cells_per_block_ < cells.last.row; ++row) {
+    for (int column = first.column; column * cells_per_block_ < cells.last.column; ++column) {
+      reset(Question::kAdded, {column, row});
+      reset(Question::kRemoved, {column, row});
+    }
+  }
+}
+
+}  // namespace deltamap::mapping::awareness

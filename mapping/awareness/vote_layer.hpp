@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the keyframes' votes against the map are kept: two ballots a block of cells (something new stands here; what
+// the map has is gone), in tiles that exist only where somebody has voted. New votes wear old ones of the other side
+// away.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid_patch.hpp"
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap::mapping::awareness {
+
+struct VoteLayerParams {
+  double block_m = 0.1;      ///< side of a block; at least one cell
+  double wear = 0.2;         ///< share of the other side's votes that a vote wears away; [0, 1)
+  double most_votes = 20.0;  ///< a side holds at most so many; > 0
+  double forget_s = 300.0;   ///< yes votes on a ballot without votes for so long are void; > 0
+  std::uint32_t most_tiles =
+      1024;  ///< of 16 × 16 blocks, 8 kB each; beyond, the tile that was voted on least recently goes
+};
+
+enum class Question : std::uint8_t {
+  kAdded,   ///< does something stand where the map has nothing?
+  kRemoved  ///< is gone what the map has?
+};
+
+/// One question about one block.
+struct Ballot {
+  float yes = 0.0F;
+  float no = 0.0F;
+  std::uint32_t first_ms = 0;  ///< of the present row of yes votes
+  std::uint32_t last_ms = 0;   ///< of any vote
+
+  [[nodiscard]] double share() const { return yes <= 0.0F ? 0.0 : static_cast<double>(yes / (yes + no)); }
+  [[nodiscard]] double span_s() const { return 1e-3 * static_cast<double>(last_ms - first_ms); }
+};
+
+class VoteLayer {
+ public:
+  VoteLayer() = default;
+  VoteLayer(const VoteLayerParams& params, const GridGeometry& map);
+
+  /// Blocks lie on the map like cells of their own grid.
+  [[nodiscard]] const GridGeometry& blocks() const { return blocks_; }
+  [[nodiscard]] int cells_per_block() const { return cells_per_block_; }
+  [[nodiscard]] Cell block_of(Cell cell) const { return {cell.column / cells_per_block_, cell.row / cells_per_block_}; }
+  [[nodiscard]] CellBox cells_of(Cell block) const;
+
+  /// Has anybody said yes to the question in this block? Asked along every beam.
+  [[nodiscard]] bool is_open(Question question, Cell block) const {
+    return (open_[blocks_.index_of(block)] & bit_of(question)) != 0;
+  }
+  [[nodiscard]] Ballot ballot(Question question, Cell block) const;
+
+  /// A "no" where nobody has said "yes" yet counts too: what has often been confirmed is hard to overturn.
+  void vote(Question question, Cell block, bool yes, std::uint32_t now_ms);
+  void reset(Question question, Cell block);
+  /// Both questions of every block that touches the box of cells.
+  void reset(const CellBox& cells);
+
+ private:
+  static constexpr int kTileSide = 16;
+  struct Tile {
+    Ballot ballots[2][kTileSide * kTileSide];
+    std::uint32_t last_ms = 0;
+    std::uint32_t place = 0;  // index into tile_of_
+  };
+
+  [[nodiscard]] static std::uint8_t bit_of(Question question) {
+    return static_cast<std::uint8_t>(1U << static_cast<unsigned>(question));
+  }
+  [[nodiscard]] std::size_t place_of(Cell block) const {
+    return static_cast<std::size_t>(block.row / kTileSide) * tiles_across_ +
+           static_cast<std::size_t>(block.column / kTileSide);
+  }
+  [[nodiscard]] static std::size_t slot_of(Cell block) {
+    return static_cast<std::size_t>(block.row % kTileSide * kTileSide + block.column % kTileSide);
+  }
+  [[nodiscard]] Tile& tile_for(Cell block, std::uint32_t now_ms);
+  void empty_tile(Tile& tile);
+
+  VoteLayerParams params_;
+  GridGeometry blocks_;
+  int cells_per_block_ = 1;
+  std::size_t tiles_across_ = 0;
+  std::vector<std::uint8_t> open_;     // a bit a question, for each block
+  std::vector<std::int32_t> tile_of_;  // index into tiles_, -1 = none
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace deltamap::mapping::awareness

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns an S(k) of the evidence method into changes: its scans are brought onto what is not in doubt, cast once more
+// around the verdicts, and only cells there that the beams clearly contradict are written.
+#pragma once
+
+#include "core/messages.hpp"
+#include "core/occupancy_grid.hpp"
+#include "mapping/map_update.hpp"
+#include "mapping/placed_scans.hpp"
+
+namespace deltamap::mapping {
+
+struct EvidenceUpdateParams {
+  std::uint32_t least_scans = 2;        ///< fewer that fit are refused; >= 1
+  double most_implausible_share = 0.5;  ///< of the scans that contradict the localizer; more are refused; [0, 1]
+  double longest_m = 12.0;              ///< beams beyond do not draw
+  int added_reach_cells = 4;            ///< cells so far from a verdict "occupied" may become occupied; >= 0
+  int removed_reach_cells = 2;          ///< cells so far from a verdict "free" may become free; >= 0
+  double occupied_hit_share = 0.2;      ///< a cell is occupied from this share of hits on, …
+  int occupied_hits = 2;                ///< … and so many hits
+  double free_hit_share = 0.1;          ///< an occupied or unknown cell becomes free up to this share of hits, …
+  int free_passes = 3;                  ///< … and from so many passes on
+  int least_speck_cells = 3;            ///< smaller groups of new occupied cells that touch nothing are left out
+  double least_acceptance = 0.8;        ///< Eq. 11 of local map and updated map below which the update is refused
+  PlacementParams placement;
+};
+
+[[nodiscard]] MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set,
+                                        const EvidenceUpdateParams& params);
+
+}  // namespace deltamap::mapping

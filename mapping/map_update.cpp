@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/map_update.hpp"
+
+#include "mapping/map_update_params.hpp"
+
+namespace deltamap::mapping {
+
+std::string_view name_of(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kNone:
+      return "none";
+    case Refusal::kTooFewScans:
+      return "too few scans";
+    case Refusal::kNoAlignment:
+      return "no alignment";
+    case Refusal::kNoMerge:
+      return "no merge";
+    case Refusal::kLowAcceptance:
+      return "low acceptance";
+    case Refusal::kImplausible:
+      return "implausible";
+    case Refusal::kNothingChanged:
+      return "nothing changed";
+  }
+  return "?";
+}
+
+MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params) {
+  return evidence_update(map, set, params.evidence);
+}
+
+}  // namespace deltamap::mapping

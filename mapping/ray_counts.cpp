@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/ray_counts.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/grid_ray.hpp"
+
+namespace deltamap::mapping {
+namespace {
+
+void count_up(std::uint16_t& count) {
+  if (count < std::numeric_limits<std::uint16_t>::max()) ++count;
+}
+
+struct BeamInMap {
+  Point2 from;
+  Point2 end;
+  bool hits = true;
+};
+
+/// The beam in the map, cut at `longest_m`.
+BeamInMap beam_in_map(const PlacedScan& scan, std::size_t beam, double longest_m) {
+  const RayInRobot& ray = scan.tracked->rays[beam];
+  const Point2 from = scan.map_from_robot * Point2{ray.origin.cast<double>()};
+  const Point2 end = scan.map_from_robot * Point2{ray.end.cast<double>()};
+  const double length_m = (end - from).norm();
+  if (length_m <= longest_m) return {from, end, true};
+  return {from, from + (end - from) * (longest_m / length_m), false};
+}
+
+}  // namespace
+
+RayCounts::RayCounts(const GridGeometry& map, const CellBox& box)
+    : map_{map},
+      box_{box},
+      counts_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height())) {}
+
+void RayCounts::add(const PlacedScan& scan, double longest_m) {
+  for (std::size_t i = 0; i < scan.tracked->rays.size(); ++i) {
+    if (scan.tracked->scan.beams[i].kind != BeamKind::kRange) continue;
+    const BeamInMap beam = beam_in_map(scan, i, longest_m);
+    const Cell last = map_.cell_at(beam.end);
+    walk_ray(map_, beam.from, beam.end, [&](Cell cell, double) {
+      if (box_.contains(cell) && !(cell == last)) count_up(counts_[index_of(cell)].passes);
+      return true;
+    });
+    if (beam.hits && box_.contains(last)) count_up(counts_[index_of(last)].hits);
+  }
+}
+
+OccupancyGrid RayCounts::local_map(double least_hit_share) const {
+  const Point2 corner = map_.origin + map_.resolution_m * Point2{box_.first.column, box_.first.row};
+  OccupancyGrid local{{std::max(0, box_.width()), std::max(0, box_.height()), map_.resolution_m, corner}};
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (counts_[i].seen() == 0) continue;
+    const bool occupied = counts_[i].hit_share() >= least_hit_share;
+    local.set(local.geometry().cell_of(i), occupied ? CellState::kOccupied : CellState::kFree);
+  }
+  return local;
+}
+
+CellBox box_seen(const GridGeometry& map, std::span<const PlacedScan> scans, double longest_m) {
+  CellBox box;
+  const auto include = [&](const Point2& place) {
+    const Cell cell = map.cell_at(place);
+    if (box.empty()) box = {cell, {cell.column + 1, cell.row + 1}};
+    box.first = {std::min(box.first.column, cell.column), std::min(box.first.row, cell.row)};
+    box.last = {std::max(box.last.column, cell.column + 1), std::max(box.last.row, cell.row + 1)};
+  };
+  for (const PlacedScan& scan : scans) {
+    for (std::size_t i = 0; i < scan.tracked->rays.size(); ++i) {
+      if (scan.tracked->scan.beams[i].kind != BeamKind::kRange) continue;
+      const BeamInMap beam = beam_in_map(scan, i, longest_m);
+      include(beam.from);
+      include(beam.end);
+    }
+  }
+  return grown(box, 0, map);
+}
+
+}  // namespace deltamap::mapping
