@@ -8,7 +8,7 @@ namespace deltamap::localization {
 void FitMonitor::start(LocalizerState state) {
   enter(state);
   misfit_s_ = 0.0;
-  fit_s_ = 0.0;
+  any_fit_ = false;
 }
 
 void FitMonitor::enter(LocalizerState state) {
@@ -30,17 +30,20 @@ LocalizerState FitMonitor::observe(const Observation& scan, const Hypothesis& be
   in_state_s_ += scan.passed_s;
   driven_in_state_m_ += scan.driven_m;
   turned_in_state_rad_ += std::abs(scan.turned_rad);
-  misfit_s_ = scan.fit < params_.lost_below ? misfit_s_ + scan.passed_s : 0.0;
-  fit_s_ = scan.fit > params_.found_above ? fit_s_ + scan.passed_s : 0.0;
+  const double share = any_fit_ ? 1.0 - std::exp(-scan.passed_s / params_.memory_s) : 1.0;
+  mean_fit_ += share * (scan.fit - mean_fit_);
+  any_fit_ = true;
+  misfit_s_ = mean_fit_ < params_.lost_below ? misfit_s_ + scan.passed_s : 0.0;
+  const bool fits = mean_fit_ > params_.found_above;
   switch (state_) {
     case LocalizerState::kGlobal:
-      if (fit_s_ > 0.0 && fit_s_ >= params_.found_after_s && converged(best)) enter(LocalizerState::kTracking);
+      if (fits && converged(best)) enter(LocalizerState::kTracking);
       break;
     case LocalizerState::kTracking:
       if (misfit_s_ >= params_.lost_after_s) enter(LocalizerState::kLost);
       break;
     case LocalizerState::kLost:
-      if (fit_s_ > 0.0 && fit_s_ >= params_.found_after_s) {
+      if (fits) {
         enter(LocalizerState::kTracking);
       } else if (in_state_s_ >= params_.search_after_s && driven_in_state_m_ >= params_.search_after_m) {
         start(LocalizerState::kGlobal);

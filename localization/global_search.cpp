@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "localization/resampling.hpp"
 #include "localization/weighing.hpp"
@@ -15,6 +15,7 @@ namespace {
 struct Candidate {
   Pose2 map_from_robot;
   std::int32_t misfit = 0;
+  std::uint32_t number = 0;  ///< decides between equals
 };
 
 BeamEnds thinned(const BeamEnds& ends, std::size_t count) {
@@ -33,8 +34,11 @@ std::vector<Candidate> best_places(std::vector<Candidate> candidates, std::size_
   constexpr double kApart_m = 0.25;
   constexpr double kApart_rad = 0.15;
   const std::size_t looked_at = std::min(candidates.size(), 5 * count);
-  const auto better = [](const Candidate& a, const Candidate& b) { return a.misfit < b.misfit; };
-  std::stable_sort(candidates.begin(), candidates.end(), better);
+  const auto better = [](const Candidate& a, const Candidate& b) {
+    return a.misfit != b.misfit ? a.misfit < b.misfit : a.number < b.number;
+  };
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(looked_at), candidates.end(),
+                    better);
   std::vector<Candidate> places;
   for (std::size_t i = 0; i < looked_at && places.size() < count; ++i) {
     const Pose2& pose = candidates[i].map_from_robot;
@@ -76,7 +80,8 @@ std::vector<Pose2> poses_anywhere(const GridGeometry& geometry, const std::vecto
 }
 
 std::vector<Pose2> poses_that_fit(const LikelihoodField& field, const OccupancyGrid& map, const BeamEnds& ends,
-                                  std::size_t count, const GlobalSearchParams& params, Random& random) {
+                                  std::size_t count, const Pose2& also, const GlobalSearchParams& params,
+                                  Random& random) {
   const std::vector<std::uint32_t> cells = free_cells(map);
   const double free_m2 = static_cast<double>(cells.size()) * map.resolution_m() * map.resolution_m();
   const auto drawn = static_cast<std::size_t>(std::clamp(params.candidates_per_m2 * free_m2, 1000.0,
@@ -85,9 +90,10 @@ std::vector<Pose2> poses_that_fit(const LikelihoodField& field, const OccupancyG
   std::vector<Candidate> candidates;
   candidates.reserve(drawn);
   for (const Pose2& pose : poses_anywhere(map.geometry(), cells, drawn, random)) {
-    candidates.push_back({pose, misfit_steps(field, judges, pose)});
+    candidates.push_back({pose, misfit_steps(field, judges, pose), static_cast<std::uint32_t>(candidates.size())});
   }
   std::vector<Candidate> places = best_places(std::move(candidates), static_cast<std::size_t>(params.places));
+  places.push_back({also});
 
   const RefinementParams sliding{.steps = 10, .prior_share = 1.0, .longest_shift_m = 0.6, .largest_turn_rad = 0.35};
   const PoseCovariance loose = Eigen::Vector3d{0.09, 0.09, 0.03}.asDiagonal();

@@ -17,9 +17,9 @@ namespace deltamap::localization {
 /// p(z) = (1 - random_share) exp(-d² / 2σ²) + random_share, with d the distance of the beam's end from the nearest
 /// contour; at least unknown_likelihood where the end lies in unknown space.
 struct LikelihoodFieldParams {
-  double hit_deviation_m = 0.10;     ///< of laser and map together, m; > 0 (σ_hit); at least 0.7 cells are used
-  double random_share = 0.05;        ///< share of beams that hit what no map knows; 0.02..0.5 (z_rand)
-  double unknown_likelihood = 0.15;  ///< p(z) of a beam that ends in unknown space; random_share..1
+  double hit_deviation_m = 0.07;    ///< of laser and map together, m; > 0 (σ_hit); at least 0.7 cells are used
+  double random_share = 0.15;       ///< share of beams that hit what no map knows; 0.02..0.5 (z_rand)
+  double unknown_likelihood = 0.2;  ///< p(z) of a beam that ends in unknown space; random_share..1
 };
 
 /// True for an occupied cell with a free neighbour, or an unknown neighbour that is next to free space (8 and 4

@@ -96,7 +96,7 @@ struct Localizer::State {
   /// Lets the scan in `ends` propose where to look.
   void search() {
     const auto count = static_cast<std::size_t>(std::max(params.particles.min, params.particles.max));
-    filter.start_at(poses_that_fit(field, *map, ends, count, params.global, filter.random()));
+    filter.start_at(poses_that_fit(field, *map, ends, count, best.map_from_robot, params.global, filter.random()));
     best = hypotheses.best(filter.particles());
     monitor.start(LocalizerState::kGlobal);
     last_update.reset();
@@ -122,6 +122,11 @@ struct Localizer::State {
            std::abs(since.motion.theta) >= params.update.turn_rad || since.passed_s >= params.update.time_s;
   }
 
+  /// While the pose is unknown a scan counts less: the right place must not die of one changed view.
+  [[nodiscard]] double evidence_beams() const {
+    return monitor.state() == LocalizerState::kGlobal ? params.global.evidence_beams : params.particles.evidence_beams;
+  }
+
   [[nodiscard]] double beam_share() const {
     return std::min(1.0, params.particles.evidence_beams / static_cast<double>(ends.size()));
   }
@@ -130,7 +135,7 @@ struct Localizer::State {
   RefinedPose update(Timestamp time, const std::optional<OdometryAt>& now, const MotionSince& since) {
     if (last_update) filter.move(since.motion, since.unknown_s, params.motion);
     std::span<const std::int32_t> misfits;
-    if (ends.size() > 0) misfits = filter.weigh(field, ends);
+    if (ends.size() > 0) misfits = filter.weigh(field, ends, evidence_beams());
     const double n_eff = filter.n_eff();
     best = hypotheses.best(filter.particles());
     RefinedPose believed{best.map_from_robot, best.covariance};
@@ -174,7 +179,7 @@ struct Localizer::State {
     if (now) last_joined = now->joined_from_robot;
     last_scan = time;
     if (ends.size() == 0) return;  // a scan that saw nothing says nothing
-    seen.fit = mean_likelihood(misfit_steps(field, ends, believed.map_from_robot), ends.size());
+    seen.fit = explained_share(field, ends, believed.map_from_robot);
     const LocalizerState before = monitor.state();
     const LocalizerState after = monitor.observe(seen, best);
     must_search =

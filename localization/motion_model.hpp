@@ -11,11 +11,10 @@ namespace deltamap::localization {
 /// Deviations, not variances: alpha_1 of the book is turn_per_turn², and so on.
 struct MotionModelParams {
   double turn_per_turn = 0.15;       ///< deviation of a turn, rad a rad of turn; >= 0 (√α1)
-  double turn_per_metre_rad = 0.10;  ///< deviation of a turn, rad a metre driven; >= 0 (√α2)
-  double metre_per_metre = 0.10;     ///< deviation of a distance, m a metre driven; >= 0 (√α3)
+  double turn_per_metre_rad = 0.12;  ///< deviation of a turn, rad a metre driven; >= 0 (√α2)
+  double metre_per_metre = 0.07;     ///< deviation of a distance, m a metre driven; >= 0 (√α3)
   double metre_per_turn_m = 0.02;    ///< deviation of a distance, m a rad of turn; >= 0 (√α4)
-  double position_floor_m =
-      0.005;  ///< deviation that every step gets, m; > 0: keeps a standing robot's particles apart
+  double position_floor_m = 0.01;  ///< deviation that every step gets, m; > 0: a standing robot's particles stay apart
   double heading_floor_rad = 0.003;          ///< deviation that every step gets, rad; > 0
   double unknown_speed_m_per_s = 0.3;        ///< deviation a second without odometry, m; >= 0
   double unknown_turn_rate_rad_per_s = 0.3;  ///< deviation a second without odometry, rad; >= 0

@@ -40,10 +40,10 @@ void ParticleFilter::move(const Pose2& motion, double unknown_s, const MotionMod
   }
 }
 
-std::span<const std::int32_t> ParticleFilter::weigh(const LikelihoodField& field, const BeamEnds& ends) {
+std::span<const std::int32_t> ParticleFilter::weigh(const LikelihoodField& field, const BeamEnds& ends,
+                                                    double evidence_beams) {
   assert(ends.size() > 0 && "a scan without ends weighs nothing");
-  const double per_step =
-      -LikelihoodField::kStep * std::min(1.0, params_.evidence_beams / static_cast<double>(ends.size()));
+  const double per_step = -LikelihoodField::kStep * std::min(1.0, evidence_beams / static_cast<double>(ends.size()));
   misfits_.resize(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     misfits_[i] = misfit_steps(field, ends, particles_.pose(i));

@@ -16,13 +16,12 @@
 namespace deltamap::localization {
 
 struct ParticleFilterParams {
-  int min = 500;                ///< fewest particles; 10..max
-  int max = 5000;               ///< most particles: what global localization starts with; min..200000
-  double resample_below = 0.5;  ///< share of the particles below which N_eff calls for resampling; 0..1
-  double evidence_beams =
-      12.0;  ///< how many independent beams a whole scan counts as; > 0: neighbouring beams see the same things
-  double kld_error = 0.05;     ///< bound of the approximation error that sets the number of particles; > 0 (ε)
-  double kld_quantile = 2.33;  ///< of the normal distribution, how surely the bound holds; > 0 (z)
+  int min = 500;                 ///< fewest particles; 10..max
+  int max = 5000;                ///< most particles: what global localization starts with; min..200000
+  double resample_below = 0.5;   ///< share of the particles below which N_eff calls for resampling; 0..1
+  double evidence_beams = 20.0;  ///< independent beams that a scan counts as; > 0: neighbours see the same things
+  double kld_error = 0.05;       ///< bound of the approximation error that sets the number of particles; > 0 (ε)
+  double kld_quantile = 2.33;    ///< of the normal distribution, how surely the bound holds; > 0 (z)
 };
 
 class ParticleFilter {
@@ -37,8 +36,8 @@ class ParticleFilter {
   void move(const Pose2& motion, double unknown_s, const MotionModelParams& model);
 
   /// Accumulates the scan into the weights. Answers each particle's misfit (weighing.hpp); valid until the next call.
-  /// `ends` must not be empty.
-  std::span<const std::int32_t> weigh(const LikelihoodField& field, const BeamEnds& ends);
+  /// `ends` must not be empty; together they count as `evidence_beams` independent ones at most.
+  std::span<const std::int32_t> weigh(const LikelihoodField& field, const BeamEnds& ends, double evidence_beams);
 
   /// N_eff (Eq. 5) of the accumulated weights.
   [[nodiscard]] double n_eff() const;

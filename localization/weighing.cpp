@@ -22,9 +22,9 @@ struct PoseInCells {
   float x, y, c, s;
 };
 
-}  // namespace
-
-std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends, const Pose2& map_from_robot) {
+/// Calls `take` with the field's byte at each end.
+template <typename Take>
+void for_each_byte(const LikelihoodField& field, const BeamEnds& ends, const Pose2& map_from_robot, Take&& take) {
   const LikelihoodField::Bordered bordered = field.bordered();
   const double cells_per_m = 1.0 / field.geometry().resolution_m;
   const PoseInCells pose{static_cast<float>((map_from_robot.x - field.geometry().origin.x()) * cells_per_m + 1.0),
@@ -35,7 +35,6 @@ std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends, co
   const auto last_row = static_cast<float>(bordered.height - 1);
 
   BlockOfCells cells;
-  std::int32_t sum = 0;
   for (std::size_t start = 0; start < ends.size(); start += kBlock) {
     const std::size_t count = std::min(kBlock, ends.size() - start);
     const float* const x_m = ends.x_m.data() + start;
@@ -49,10 +48,26 @@ std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends, co
       cells.row[i] = static_cast<std::int32_t>(y_up < last_row ? y_up : last_row);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      sum += bordered.bytes[static_cast<std::ptrdiff_t>(cells.row[i]) * bordered.width + cells.column[i]];
+      take(bordered.bytes[static_cast<std::ptrdiff_t>(cells.row[i]) * bordered.width + cells.column[i]]);
     }
   }
+}
+
+}  // namespace
+
+std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends, const Pose2& map_from_robot) {
+  std::int32_t sum = 0;
+  for_each_byte(field, ends, map_from_robot, [&](std::uint8_t steps) { sum += steps; });
   return sum;
+}
+
+double explained_share(const LikelihoodField& field, const BeamEnds& ends, const Pose2& map_from_robot) {
+  if (ends.size() == 0) return 0.0;
+  const double even_likelihood = 2.0 * field.params().random_share;  // half hit, half chance
+  const auto even_steps = static_cast<std::uint8_t>(-std::log(even_likelihood) / LikelihoodField::kStep);
+  int explained = 0;
+  for_each_byte(field, ends, map_from_robot, [&](std::uint8_t steps) { explained += steps < even_steps ? 1 : 0; });
+  return explained / static_cast<double>(ends.size());
 }
 
 double mean_likelihood(std::int64_t steps, std::size_t beams) {

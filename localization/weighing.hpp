@@ -16,6 +16,10 @@ namespace deltamap::localization {
 [[nodiscard]] std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends,
                                         const Pose2& map_from_robot);
 
+/// Share of the ends that a contour of the map explains rather than chance: p(hit | d) > 1/2. In [0, 1]; 0 without
+/// ends.
+[[nodiscard]] double explained_share(const LikelihoodField& field, const BeamEnds& ends, const Pose2& map_from_robot);
+
 /// exp(mean of ln p(z)) for a sum over `beams` ends; in (0, 1]. beams > 0.
 [[nodiscard]] double mean_likelihood(std::int64_t steps, std::size_t beams);
 

@@ -15,6 +15,7 @@
 #include "daemon/tool/carmen_log.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
+#include "localization/weighing.hpp"
 
 namespace {
 
@@ -108,6 +109,7 @@ void run(const Options& options, const localization::LocalizerParams& params) {
   }
   localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), initial,
                                     options.seed};
+  const localization::LikelihoodField field{read_grid(options.map), params.field};
   std::ofstream out{options.out};
   out.setf(std::ios::fixed);
   out.precision(6);
@@ -132,7 +134,10 @@ void run(const Options& options, const localization::LocalizerParams& params) {
     figures << static_cast<double>(unix_ns(estimate.time)) * 1e-9 << ' ' << static_cast<int>(estimate.state) << ' '
             << estimate.n_eff << ' ' << estimate.particles << ' ' << estimate.w_avg << ' '
             << std::sqrt(estimate.covariance(0, 0)) << ' ' << std::sqrt(estimate.covariance(1, 1)) << ' '
-            << std::sqrt(estimate.covariance(2, 2)) << '\n';
+            << std::sqrt(estimate.covariance(2, 2)) << ' '
+            << localization::explained_share(field, localization::scoring_ends(tracked.scan, tracked.rays, 0),
+                                             estimate.map_from_robot)
+            << '\n';
   }
   std::sort(cpu_s.begin(), cpu_s.end());
   double sum_s = 0.0;
@@ -150,7 +155,8 @@ int main(int argc, char** argv) {
   app.add_option("log", options.log)->required();
   app.add_option("map", options.map)->required();
   app.add_option("out", options.out, "trajectory, TUM")->required();
-  app.add_option("--figures", options.figures, "state, N_eff, particles, w_avg and deviations of each scan")
+  app.add_option("--figures", options.figures,
+                 "state, N_eff, particles, w_avg, deviations and explained share of each scan")
       ->default_val("/dev/null");
   app.add_option("--laser", options.laser_x_m, "laser ahead of the robot, m");
   app.add_option("--no-return", options.no_return_m, "ranges from here on are no hits, m");
@@ -171,6 +177,10 @@ int main(int argc, char** argv) {
   app.add_option("--metre-per-turn", params.motion.metre_per_turn_m);
   app.add_option("--position-floor", params.motion.position_floor_m);
   app.add_option("--heading-floor", params.motion.heading_floor_rad);
+  app.add_option("--global-evidence", params.global.evidence_beams);
+  app.add_option("--places", params.global.places);
+  app.add_option("--candidates", params.global.candidates_per_m2);
+  app.add_option("--jitter", params.global.jitter_m);
   app.add_option("--refine", params.refinement.steps);
   app.add_option("--prior", params.refinement.prior_share);
   CLI11_PARSE(app, argc, argv);
