@@ -46,13 +46,15 @@ std::vector<Point2> obstacles_of(const Scan& scan, const ObstacleParams& params)
     const double bearing = scan.bearing_rad(beam);
     obstacles.push_back(scan.robot_from_laser * Point2{range_m * std::cos(bearing), range_m * std::sin(bearing)});
   };
-  for (std::size_t i = 0; i < scan.beams.size();) {
+  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
     if (scan.beams[i].kind == BeamKind::kRange) add(i, static_cast<double>(scan.beams[i].range_m));
-    std::size_t end = i;
-    while (end < scan.beams.size() && is_unseen(scan.beams[end])) ++end;
-    const double hiding_m = params.hidden_width_m / (static_cast<double>(end - i) * std::abs(scan.bearing_step_rad));
-    for (; i < end && hiding_m < scan.max_range_m; ++i) add(i, hiding_m);
-    i = std::max(end, i + (end == i ? 1 : 0));
+    if (!is_unseen(scan.beams[i])) continue;
+    std::size_t last = i;
+    while (last + 1 < scan.beams.size() && is_unseen(scan.beams[last + 1])) ++last;
+    const double gap_rad = static_cast<double>(last + 1 - i) * std::abs(scan.bearing_step_rad);
+    const double hiding_m = params.hidden_width_m / gap_rad;
+    for (std::size_t beam = i; beam <= last && hiding_m < scan.max_range_m; ++beam) add(beam, hiding_m);
+    i = last;
   }
   return obstacles;
 }

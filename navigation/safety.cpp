@@ -47,7 +47,10 @@ void Safety::observe(const Scan& scan) {
   scan_ = SeenScan{scan.time, scan.received, obstacles_of(scan, params_.obstacles)};
 }
 
-void Safety::command(const DriveCommand& command, Timestamp now) { command_ = HeldCommand{command, now}; }
+void Safety::command(const DriveCommand& command, Timestamp now) {
+  const bool sane = std::isfinite(command.speed_m_per_s) && std::isfinite(command.turn_rate_rad_per_s);
+  command_ = sane ? std::optional{HeldCommand{command, now}} : std::nullopt;
+}
 
 StopReason Safety::blocking_state(Timestamp now) const {
   if (!command_) return StopReason::kNoCommand;

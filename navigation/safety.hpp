@@ -24,7 +24,7 @@ struct SafetyParams {
   double odometry_life_s = 0.5;          ///< five controller cycles without a packet: the link is gone; > 0
   double max_speed_m_per_s = 0.7;        ///< > 0
   double max_turn_rate_rad_per_s = 1.4;  ///< > 0
-  ObstacleParams obstacles;
+  ObstacleParams obstacles{};
 };
 
 enum class StopReason : std::uint8_t {

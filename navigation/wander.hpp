@@ -24,34 +24,45 @@ struct WanderParams {
   double go_on_m = 0.9;              ///< free path that ends a turn; > turn_away_m
   double shortest_leg_s = 8.0;       ///< before it thinks of another direction; > 0
   double longest_leg_s = 25.0;       ///< >= shortest_leg_s
-  ObstacleParams obstacles;
+  ObstacleParams obstacles{};
 };
 
 class Wander {
  public:
-  Wander(const WanderParams& params, std::uint64_t seed);
+  Wander(const WanderParams& params, std::uint64_t seed) : params_{params}, random_{seed} {}
 
-  /// What to do after this scan; send it to Safety, which has the last word.
+  /// What to do after this scan; hand it to Safety, which has the last word.
   [[nodiscard]] DriveCommand step(const TrackedScan& tracked);
 
  private:
+  /// A turn on the spot. The side is kept to the end, so that a corner cannot make the robot waver.
   struct Turn {
-    double to_rad;  // heading in the odometry's frame
-    double side;    // +1 to the left, -1 to the right: kept to the end, so that a corner cannot make it waver
-    std::uint32_t epoch;
+    double left_to_go_rad;  // > 0, whichever the side
+    double side;            // +1 counter-clockwise, -1 clockwise
+    double last_heading_rad;
+    std::uint32_t epoch;  // of the odometry that measures it
     Timestamp give_up_at;
   };
-  [[nodiscard]] std::optional<DriveCommand> go_on_turning(const TrackedScan& tracked, double free_ahead_m);
-  [[nodiscard]] DriveCommand begin_turn(const TrackedScan& tracked, double by_rad);
-  [[nodiscard]] DriveCommand drive(const TrackedScan& tracked) const;
-  [[nodiscard]] double free_towards_m(double bearing_rad) const;
-  /// A direction out of here: the freer, the likelier; none where nothing is open.
-  [[nodiscard]] std::optional<double> open_direction(double least_turn_rad);
+  struct Field {
+    double right_rad;  // bearings of the outermost beams in the robot's frame
+    double left_rad;
+  };
+  void look(const Scan& scan);
   void plan_leg(Timestamp from);
+  void begin_turn(const TrackedScan& tracked, double by_rad);
+  /// Whether it still has to turn; ends the turn where not.
+  [[nodiscard]] bool keeps_turning(const TrackedScan& tracked, double free_ahead_m);
+  [[nodiscard]] double free_towards_m(double bearing_rad) const;
+  /// A bearing that leads somewhere, at least so far from straight on: the freer, the likelier. None in a dead end.
+  [[nodiscard]] std::optional<double> open_bearing(double least_turn_rad);
+  [[nodiscard]] double more_open_side() const;
+  [[nodiscard]] DriveCommand turning(Timestamp time) const;
+  [[nodiscard]] DriveCommand driving(Timestamp time) const;
 
   WanderParams params_;
   Random random_;
   std::vector<Point2> obstacles_;  // of the present scan, in the robot's frame
+  Field field_{};
   std::optional<Turn> turn_;
   std::optional<Timestamp> leg_ends_;
 };

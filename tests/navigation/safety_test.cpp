@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "navigation/safety.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+namespace deltamap::navigation {
+namespace {
+
+constexpr Timestamp kNow = timestamp_from_ns(1'000'000'000'000);
+
+Timestamp after(double s) { return kNow + duration_from_seconds(s); }
+
+Scan hall(float range_m, Timestamp time = kNow) {
+  Scan scan;
+  scan.time = time;
+  scan.received = time;
+  scan.first_bearing_rad = -std::numbers::pi / 2.0;
+  scan.bearing_step_rad = std::numbers::pi / 180.0;
+  scan.max_range_m = 8.0;
+  scan.beams.assign(181, {range_m, 0.0F, BeamKind::kRange});
+  return scan;
+}
+
+Odometry driving() {
+  Odometry odometry;
+  odometry.time = kNow;
+  odometry.motors_enabled = true;
+  return odometry;
+}
+
+/// All is well: a free hall, motors on, a fresh command.
+Safety at_ease(double speed_m_per_s = 0.5, double turn_rate_rad_per_s = 0.2) {
+  Safety safety{{}};
+  safety.observe(hall(6.0F));
+  safety.observe(driving());
+  safety.command({kNow, speed_m_per_s, turn_rate_rad_per_s}, kNow);
+  return safety;
+}
+
+void expect_stop(const AllowedMotion& motion, StopReason reason) {
+  EXPECT_EQ(motion.stop, reason) << name_of(motion.stop);
+  EXPECT_EQ(motion.speed_m_per_s, 0.0);
+}
+
+TEST(Safety, LetsACommandThroughWhereAllIsWell) {
+  const AllowedMotion motion = at_ease().allowed(kNow);
+  EXPECT_EQ(motion.stop, StopReason::kNone);
+  EXPECT_EQ(motion.speed_m_per_s, 0.5);
+  EXPECT_EQ(motion.turn_rate_rad_per_s, 0.2);
+}
+
+TEST(Safety, StandsStillUntilSomeoneDrives) {
+  Safety safety{{}};
+  safety.observe(hall(6.0F));
+  safety.observe(driving());
+  expect_stop(safety.allowed(kNow), StopReason::kNoCommand);
+  safety.command({kNow, 0.5, 0.0}, kNow);
+  EXPECT_GT(safety.allowed(kNow).speed_m_per_s, 0.0);
+  safety.release();
+  expect_stop(safety.allowed(kNow), StopReason::kNoCommand);
+}
+
+TEST(Safety, LetsACommandExpireAfterItsLifeFromItsArrival) {
+  Safety safety{{.nominal_scan_period_s = 10.0}};
+  safety.observe(hall(6.0F));
+  safety.observe(driving());
+  safety.command({kNow, 0.5, 0.2}, after(0.1));  // decided on a scan of 0.1 s ago
+  EXPECT_EQ(safety.allowed(after(0.39)).stop, StopReason::kNone);
+  const AllowedMotion late = safety.allowed(after(0.41));
+  expect_stop(late, StopReason::kCommandExpired);
+  EXPECT_EQ(late.turn_rate_rad_per_s, 0.0);
+}
+
+TEST(Safety, StopsForAStaleLaserAfterThreePeriods) {
+  Safety safety = at_ease();
+  safety.set_nominal_scan_period(0.05);
+  EXPECT_EQ(safety.allowed(after(0.149)).stop, StopReason::kNone);
+  const AllowedMotion late = safety.allowed(after(0.151));
+  expect_stop(late, StopReason::kStaleLaser);
+  EXPECT_EQ(late.turn_rate_rad_per_s, 0.0);
+  Safety blind{{}};
+  blind.observe(driving());
+  blind.command({kNow, 0.5, 0.0}, kNow);
+  expect_stop(blind.allowed(kNow), StopReason::kStaleLaser);
+}
+
+TEST(Safety, StopsForEveryStateOfTheRobotThatForbidsDriving) {
+  const auto reason_with = [](auto change) {
+    Safety safety = at_ease();
+    Odometry odometry = driving();
+    change(odometry);
+    safety.observe(odometry);
+    const AllowedMotion motion = safety.allowed(kNow);
+    EXPECT_EQ(motion.speed_m_per_s, 0.0);
+    EXPECT_EQ(motion.turn_rate_rad_per_s, 0.0);
+    return motion.stop;
+  };
+  EXPECT_EQ(reason_with([](Odometry& o) { o.stop_button = true; }), StopReason::kStopButton);
+  EXPECT_EQ(reason_with([](Odometry& o) { o.motors_enabled = false; }), StopReason::kMotorsOff);
+  EXPECT_EQ(reason_with([](Odometry& o) { o.front_bumpers = 4; }), StopReason::kBumper);
+  EXPECT_EQ(reason_with([](Odometry& o) { o.rear_bumpers = 1; }), StopReason::kBumper);
+  EXPECT_EQ(reason_with([](Odometry& o) { o.stalled = true; }), StopReason::kStalled);
+  EXPECT_EQ(reason_with([](Odometry& o) { o.time = after(-0.6); }), StopReason::kNoOdometry);
+}
+
+TEST(Safety, StopsWithoutAnyOdometry) {
+  Safety safety{{}};
+  safety.observe(hall(6.0F));
+  safety.command({kNow, 0.5, 0.0}, kNow);
+  expect_stop(safety.allowed(kNow), StopReason::kNoOdometry);
+}
+
+TEST(Safety, RefusesToReverse) { expect_stop(at_ease(-0.2).allowed(kNow), StopReason::kReverse); }
+
+TEST(Safety, StopsBeforeAnObstacleAndLetsTheRobotTurnAway) {
+  Safety safety = at_ease();
+  Scan scan = hall(6.0F);
+  scan.beams[90].range_m = 0.33F;
+  safety.observe(scan);
+  const AllowedMotion motion = safety.allowed(kNow);
+  expect_stop(motion, StopReason::kObstacle);
+  EXPECT_EQ(motion.turn_rate_rad_per_s, 0.2);
+}
+
+TEST(Safety, DoesNotTurnInsideItsOwnSwingCircle) {
+  for (const double speed : {0.0, 0.5}) {
+    Safety safety = at_ease(speed);
+    Scan scan = hall(6.0F);
+    scan.beams[10].range_m = 0.2F;
+    safety.observe(scan);
+    const AllowedMotion motion = safety.allowed(kNow);
+    EXPECT_EQ(motion.turn_rate_rad_per_s, 0.0);
+    if (speed == 0.0) expect_stop(motion, StopReason::kObstacle);
+  }
+}
+
+TEST(Safety, SlowsDownSoFarThatTheStopDistanceIsFree) {
+  const SafetyParams params;
+  Safety safety = at_ease(0.7, 0.0);
+  for (const float range_m : {0.5F, 0.7F, 1.0F, 1.5F}) {
+    safety.observe(hall(range_m));
+    const AllowedMotion motion = safety.allowed(kNow);
+    const double v = motion.speed_m_per_s;
+    const double needed_m = v * v / (2.0 * params.deceleration_m_per_s2) + v * params.reaction_s;
+    EXPECT_LE(needed_m, static_cast<double>(range_m) - params.robot_radius_m - params.margin_m + 1e-6) << range_m;
+    EXPECT_GT(v, 0.1) << range_m;
+  }
+}
+
+TEST(Safety, KeepsAGreaterDistanceTheOlderTheScan) {
+  Safety safety{{.command_life_s = 10.0, .nominal_scan_period_s = 10.0, .odometry_life_s = 10.0}};
+  safety.observe(hall(1.0F));
+  safety.observe(driving());
+  safety.command({kNow, 0.7, 0.0}, kNow);
+  const SafetyParams params;
+  double before = 1.0;
+  for (const double age_s : {0.0, 0.2, 0.5, 1.0, 2.0}) {
+    const double v = safety.allowed(after(age_s)).speed_m_per_s;
+    EXPECT_LT(v, before);
+    EXPECT_NEAR(v * v / (2.0 * params.deceleration_m_per_s2) + v * (params.reaction_s + age_s), 1.0 - 0.26 - 0.08,
+                0.02);
+    before = v;
+  }
+}
+
+TEST(Safety, LooksAlongTheArcThatIsDriven) {
+  Scan scan = hall(6.0F);
+  scan.beams[150].range_m = 0.4F;  // 60° to the left: beside the straight way, on the way of a bend to the left
+  Safety straight = at_ease(0.3, 0.0);
+  straight.observe(scan);
+  EXPECT_EQ(straight.allowed(kNow).speed_m_per_s, 0.3);
+  Safety bend = at_ease(0.3, 0.9);
+  bend.observe(scan);
+  EXPECT_LT(bend.allowed(kNow).speed_m_per_s, 0.3);
+}
+
+TEST(Safety, TakesALaserThatSeesNothingAheadForAWall) {
+  Safety safety = at_ease();
+  Scan scan = hall(6.0F);
+  for (std::size_t i = 60; i < 120; ++i) scan.beams[i].kind = BeamKind::kNotValid;
+  safety.observe(scan);
+  expect_stop(safety.allowed(kNow), StopReason::kObstacle);
+}
+
+TEST(Safety, KeepsSpeedsWithinItsLimits) {
+  const AllowedMotion motion = at_ease(9.0, -9.0).allowed(kNow);
+  EXPECT_LE(motion.speed_m_per_s, SafetyParams{}.max_speed_m_per_s);
+  EXPECT_EQ(motion.turn_rate_rad_per_s, -SafetyParams{}.max_turn_rate_rad_per_s);
+}
+
+TEST(Safety, StopsForACommandThatIsNoNumber) {
+  expect_stop(at_ease(std::numeric_limits<double>::quiet_NaN(), 0.0).allowed(kNow), StopReason::kNoCommand);
+  expect_stop(at_ease(0.1, std::numeric_limits<double>::infinity()).allowed(kNow), StopReason::kNoCommand);
+}
+
+}  // namespace
+}  // namespace deltamap::navigation
