@@ -61,38 +61,54 @@ class Lms200Session {
 
  private:
   enum class State {
-    kIdle,      // not started, closed, failed, or listening only
-    kStopping,  // stream told to stop at this baud, waiting for silence
-    kProbing,   // status requested
-    kAwaitingPowerOn,
-    kSettingBaud,
-    kSettling,  // the laser needs a moment after a change of baud
+    kIdle,             // not started, closed, failed, or listening only
+    kStopping,         // the stream was told to stop at this baud; waiting for silence
+    kProbing,          // status requested
+    kAwaitingPowerOn,  // nobody answered: the laser may be starting up
+    kSettingBaud,      // awaiting the answer at the old speed
+    kSettling,         // a moment until the laser is usable at the new one
     kSettingVariant,
     kReadingConfiguration,
-    kEnteringInstallation,
+    kEnteringInstallation,  // password sent
     kWritingConfiguration,
     kVerifyingConfiguration,
     kStarting,  // stream requested
     kStreaming
   };
+  /// What a step sends, how long it waits for its answer and how often it asks.
+  struct Step {
+    std::vector<std::uint8_t> request;
+    double timeout_s = 0.0;
+    int tries = 1;
+  };
 
+  // What comes in (both modes).
   void take_telegram(const Telegram& telegram, Lms200Output& out);
-  void learn(const Telegram& telegram, Lms200Output& out);
+  void take_status(const Telegram& telegram, Lms200Output& out);
   void take_scan(const Telegram& telegram, Lms200Output& out);
-  void advance(const Telegram& telegram, Lms200Output& out);
+  void forget();
+  [[nodiscard]] std::optional<std::uint8_t> measuring_mode(Timestamp now);
 
-  void begin_stopping(Timestamp now, Lms200Output& out);
+  // The conversation (live).
+  void answer(const Telegram& telegram, Timestamp now, Lms200Output& out);
+  void answer_step(const Telegram& telegram, Timestamp now, Lms200Output& out);
+  void answer_probe(const Telegram& telegram, Timestamp now, Lms200Output& out);
+  void time_out(Timestamp now, Lms200Output& out);
+  void give_up_step(Timestamp now, Lms200Output& out);
+  void begin_step(State state, Timestamp now, Lms200Output& out);
+  void send_step(Timestamp now, Lms200Output& out);
+  [[nodiscard]] Step step_of(State state) const;
+  void search_from(unsigned first_baud);
+  void try_baud(Timestamp now, Lms200Output& out);
   void next_baud(Timestamp now, Lms200Output& out);
-  void enter(State state, Timestamp now, Lms200Output& out);
-  void retry_or_give_up(Timestamp now, Lms200Output& out);
-  void configure_next(Timestamp now, Lms200Output& out);
+  void set_up(Timestamp now, Lms200Output& out);
   void compare_configuration(Timestamp now, Lms200Output& out);
   void fail(std::string reason, Lms200Output& out);
   [[nodiscard]] Configuration wanted_configuration() const;
+  [[nodiscard]] double scan_timeout_s() const;
 
   void write(std::vector<std::uint8_t> bytes, Lms200Output& out);
   void set_baud(unsigned baud, Lms200Output& out);
-  void wake_in(double delay_s, Timestamp now);
   [[nodiscard]] Lms200Output finished(Lms200Output out) const;
 
   Lms200Params params_;
@@ -100,21 +116,26 @@ class Lms200Session {
   TelegramDecoder decoder_;
   DecoderCounts content_counts_;  // malformed and unknown, on top of the decoder's own
   std::uint32_t next_scan_number_ = 0;
+  bool was_told_baud_ = false;  // a recording says it itself
 
   // What the laser said about itself.
   std::optional<std::uint8_t> known_mode_;
   std::optional<ScanVariant> known_variant_;
   std::optional<Configuration> known_configuration_;
   std::optional<Timestamp> first_scan_without_mode_;
+  std::uint8_t scan_health_ = 0;  // of the newest scan
 
   State state_ = State::kIdle;
   std::vector<unsigned> bauds_;  // in the order of trying
   std::size_t attempt_ = 0;
-  int tries_ = 0;  // of the present step
-  bool wrote_configuration_ = false;
-  std::optional<Timestamp> wake_at_;
-  std::optional<Timestamp> search_began_;
-  std::optional<Timestamp> last_scan_;
+  int tries_ = 0;          // of the present step
+  int interruptions_ = 0;  // times that a scan came where silence was wanted, at this baud
+  int writes_ = 0;         // of the configuration
+  bool may_change_baud_ = true;
+  bool may_change_variant_ = true;
+  Timestamp deadline_;  // of the present step
+  Timestamp search_began_;
+  Timestamp last_scan_;
 };
 
 }  // namespace deltamap::drivers::lms200

@@ -17,6 +17,7 @@
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
 #include "drivers/pioneer/command.hpp"
+#include "drivers/pioneer/command_queue.hpp"
 #include "drivers/pioneer/config_packet.hpp"
 #include "drivers/pioneer/extra_packets.hpp"
 #include "drivers/pioneer/odometry.hpp"
@@ -71,36 +72,45 @@ class PioneerSession {
  private:
   enum class State {
     kIdle,       // not started, closed, failed, or listening only
-    kQuieting,   // a left-over connection is being stopped and closed at this baud
+    kQuieting,   // whatever the robot was doing is being stopped and its connection closed
     kSyncing,    // SYNC0, SYNC1, SYNC2, each awaiting its echo
     kOpening,    // OPEN sent, awaiting the first SIP
     kConnected,  // SIPs come
     kSwitching   // HOSTBAUD sent, awaiting any packet at the new speed
   };
+  enum class SwitchStep { kAnnounced, kSpeedSet, kAwaitingPacket };
 
+  // What comes in (both modes).
   void take_packet(const Packet& packet, PioneerOutput& out);
   void take_sip(const Packet& packet, PioneerOutput& out);
   void take_identity(const Packet& packet, PioneerOutput& out);
   void take_config(const Packet& packet, PioneerOutput& out);
-  void advance(const Packet& packet, PioneerOutput& out);
-  void advance_sync(const Packet& packet, PioneerOutput& out);
+  void use_model_of(const std::string& subtype, PioneerOutput& out);
 
-  void begin_attempt(Timestamp now, PioneerOutput& out);
-  void quiet(Timestamp now, PioneerOutput& out);
-  void send_sync(Timestamp now, PioneerOutput& out);
-  void open(Timestamp now, PioneerOutput& out);
-  void set_up(Timestamp now, PioneerOutput& out);
-  void switch_baud(Timestamp now, PioneerOutput& out);
-  void next_attempt(Timestamp now, PioneerOutput& out);
+  // The way to a connection (live).
+  void try_baud(Timestamp now, PioneerOutput& out);
+  void begin_quieting(Timestamp now);
+  void send_sync(std::uint8_t step, Timestamp now);
+  void answer_while_connecting(const Packet& packet, Timestamp now, PioneerOutput& out);
+  void take_echo(const Packet& packet, Timestamp now, PioneerOutput& out);
+  void time_out_while_connecting(Timestamp now, PioneerOutput& out);
+  void begin_connection(Timestamp now, PioneerOutput& out);
+  void begin_switch(Timestamp now, PioneerOutput& out);
+  void continue_switch(Timestamp now, PioneerOutput& out);
+
+  // The connection (live).
+  void answer_while_connected(const Packet& packet, Timestamp now, PioneerOutput& out);
   void keep_alive(Timestamp now, PioneerOutput& out);
-  void send_set_points(Timestamp now, PioneerOutput& out);
-  void enable_motors_once(Timestamp now, PioneerOutput& out);
-  void fail(std::string reason, PioneerOutput& out);
+  void bring_robot_to_wanted_state();
+  void push_set_points();
+  void fail(std::string reason, Timestamp now, PioneerOutput& out);
+  [[nodiscard]] Duration watchdog() const;
+  [[nodiscard]] Duration pulse_interval() const;
 
-  void send(const Command& command, Timestamp now, PioneerOutput& out);
   void set_baud(unsigned baud, PioneerOutput& out);
-  void wake_in(double delay_s, Timestamp now);
-  [[nodiscard]] PioneerOutput finished(PioneerOutput out) const;
+  void write_all(Timestamp now, PioneerOutput& out);
+  void write_due(Timestamp now, PioneerOutput& out);
+  [[nodiscard]] PioneerOutput finished(Timestamp now, PioneerOutput out);
 
   PioneerParams params_;
   SessionMode mode_;
@@ -109,19 +119,28 @@ class PioneerSession {
   DecoderCounts content_counts_;  // malformed and unknown, on top of the decoder's own
   std::optional<RobotIdentity> identity_;
   std::optional<ConfigPacket> config_;
+  std::optional<Sip> newest_sip_;
 
   State state_ = State::kIdle;
+  CommandQueue queue_;
   std::vector<unsigned> bauds_;  // in the order of trying
   std::size_t attempt_ = 0;
+  int tries_ = 0;  // at this baud
   std::uint8_t sync_step_ = 0;
-  int tries_ = 0;  // of the present step
-  std::optional<Timestamp> wake_at_;
-  std::optional<Timestamp> last_sent_;
-  std::optional<Timestamp> last_sip_;
+  Timestamp deadline_;  // of the present step
+
+  // Since the connection began.
+  Timestamp last_sip_;
+  Timestamp next_pulse_;
+  Timestamp next_check_;
   std::optional<DriveCommand> set_point_;
-  bool enable_sent_ = false;
-  bool stop_button_seen_ = false;
-  bool baud_switch_tried_ = false;
+  int config_requests_ = 0;
+  int sonar_requests_ = 0;
+  int enable_requests_ = 0;
+  bool may_enable_ = false;
+  bool switch_tried_ = false;
+  SwitchStep switch_step_ = SwitchStep::kAnnounced;
+  unsigned slow_baud_ = 0;
 };
 
 }  // namespace deltamap::drivers::pioneer

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/pioneer/command_queue.hpp"
+
+#include "drivers/received_bytes.hpp"
+
+namespace deltamap::drivers::pioneer {
+
+std::optional<std::vector<std::uint8_t>> CommandQueue::take_due(Timestamp now, unsigned baud) {
+  constexpr Duration kGap{5'000'000};
+  if (waiting_.empty() || now < free_at_) return std::nullopt;
+  std::vector<std::uint8_t> frame = encoded_command(waiting_.front());
+  waiting_.pop_front();
+  free_at_ = now + line_time(frame.size(), baud) + kGap;
+  last_sent_ = now;
+  return frame;
+}
+
+void CommandQueue::drop(CommandNumber number) {
+  std::erase_if(waiting_, [number](const Command& command) { return command.number == number; });
+}
+
+std::optional<Timestamp> CommandQueue::next_due() const {
+  if (waiting_.empty()) return std::nullopt;
+  return free_at_;
+}
+
+}  // namespace deltamap::drivers::pioneer
