@@ -215,7 +215,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
       blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
       hand_on(question, block);
     }
-    if (question == Question::kAdded) watch(blocks, region_first_ms);
+    watch(blocks, question == Question::kAdded ? params_.reach_blocks : 0, question == Question::kAdded ? region_first_ms : now_ms_);
     first_ms = std::min(first_ms, region_first_ms);
     handed_on = merged(std::move(handed_on), blocks);
   }
@@ -223,7 +223,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
   return with_scans(std::move(set), handed_on, first_ms);
 }
 
-void EvidencePhase::watch(const Blocks& blocks, std::uint32_t first_ms) {
+void EvidencePhase::watch(const Blocks& blocks, int margin_blocks, std::uint32_t first_ms) {
   if (params_.looks == 0) return;
   if (watched_.size() >= params_.most_watched) {
     for (const std::uint32_t index : watched_.front().blocks) --watched_blocks_[index];
@@ -232,8 +232,8 @@ void EvidencePhase::watch(const Blocks& blocks, std::uint32_t first_ms) {
   Watched region{{}, first_ms, 0, params_.first_look, params_.looks};
   for (const std::uint32_t index : blocks) {
     const Cell middle = layer_.blocks().cell_of(index);
-    for (int row = -params_.reach_blocks; row <= params_.reach_blocks; ++row) {
-      for (int column = -params_.reach_blocks; column <= params_.reach_blocks; ++column) {
+    for (int row = -margin_blocks; row <= margin_blocks; ++row) {
+      for (int column = -margin_blocks; column <= margin_blocks; ++column) {
         const Cell block{middle.column + column, middle.row + row};
         if (layer_.blocks().contains(block)) {
           region.blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));

@@ -73,7 +73,7 @@ class EvidencePhase {
   [[nodiscard]] std::vector<Cell> with_joining_blocks(const std::vector<ProvenBlock>& region) const;
   void add_verdicts(Question question, Cell block, std::vector<CellVerdict>& verdicts) const;
   void hand_on(Question question, Cell block);
-  void watch(const Blocks& blocks, std::uint32_t first_ms);
+  void watch(const Blocks& blocks, int margin_blocks, std::uint32_t first_ms);
   void see_watched(const Blocks& ends);
   [[nodiscard]] std::optional<ScanSet> another_look(Timestamp time);
   [[nodiscard]] std::optional<ScanSet> with_scans(ScanSet set, const Blocks& blocks, std::uint32_t first_ms);
