@@ -2,11 +2,11 @@
 #include "daemon/tool/carmen_bytes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "daemon/tool/carmen_words.hpp"
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/status.hpp"
 #include "drivers/pioneer/config_packet.hpp"
@@ -27,41 +27,7 @@ using drivers::port::PortId;
 constexpr Duration kLongestPoseGap = std::chrono::milliseconds(100);  // the controller's cycle
 constexpr Duration kLongestFilledGap = std::chrono::hours(1);  // another session: filling it would only take room
 constexpr Duration kGreetingBefore = std::chrono::milliseconds(100);
-constexpr std::array<std::int64_t, 3> kFirstCodes{0x1FF7, 0x3FF7, 0x7FF7};  // protocols.md B4
-constexpr std::int64_t kCodes = 9;                                          // …F7 to …FF
-constexpr std::int64_t kNotValid = 8;                                       // …FF, counted from …F7
 constexpr std::uint8_t kBatteryDecivolts = 125;
-
-/// The words of a log: its unit and what counts as no return.
-struct WordRules {
-  double words_per_m;
-  std::int64_t first_code;
-  std::optional<std::int64_t> no_return;
-  std::optional<std::int64_t> stated_maximum;
-
-  [[nodiscard]] std::int64_t word(double range_m) const { return std::llround(std::min(range_m * words_per_m, 1e9)); }
-  [[nodiscard]] std::uint16_t code(std::int64_t after_first) const {
-    return static_cast<std::uint16_t>(first_code + after_first);
-  }
-  [[nodiscard]] std::uint16_t encoded(double range_m) const {
-    const std::int64_t value = word(range_m);
-    if (value == 0) return code(kNotValid);
-    for (const std::int64_t first : kFirstCodes) {
-      if (value >= first && value < first + kCodes) return code(value - first);
-    }
-    const bool no_answer = value >= first_code || (no_return && value >= *no_return) || value == stated_maximum;
-    return no_answer ? code(0) : static_cast<std::uint16_t>(value);
-  }
-};
-
-WordRules rules_for(const CarmenScan& scan, const CarmenSurvey& survey) {
-  WordRules rules{};
-  rules.words_per_m = survey.units == lms200::Units::kCentimetre ? 100.0 : 1000.0;
-  rules.first_code = lms200::range_coding(survey.measuring_mode).value_or(lms200::RangeCoding{}).beyond_maximum;
-  if (survey.no_return_m) rules.no_return = rules.word(*survey.no_return_m);
-  if (scan.stated_max_range_m) rules.stated_maximum = rules.word(*scan.stated_max_range_m);
-  return rules;
-}
 
 ByteRecord record_of(PortId port, Timestamp first_byte, std::vector<std::uint8_t> bytes) {
   const Timestamp last_byte = first_byte + drivers::line_time(bytes.size() - 1, kImportBaud);
@@ -96,17 +62,17 @@ pioneer::Sip sip_of(const Pose2& pose, double speed_m_per_s, double turn_rate_ra
 
 lms200::Measurement measurement_of(const CarmenScan& scan, const CarmenSurvey& survey) {
   const lms200::ScanVariant variant = nearest_variant(scan);
-  const WordRules rules = rules_for(scan, survey);
+  const CarmenWords words{scan, survey};
   lms200::Measurement measurement;
   measurement.unit_code = static_cast<std::uint8_t>(survey.units);
-  measurement.words.assign(variant.values(), rules.code(kNotValid));
+  measurement.words.assign(variant.values(), words.not_valid());
   const double first_rad = radians(variant.first_angle_deg() - 90.0);
   const double step_rad = radians(variant.resolution_centideg * 0.01);
   for (std::size_t i = 0; i < measurement.words.size(); ++i) {
     const double bearing_rad = first_rad + static_cast<double>(i) * step_rad;
     const double nearest = std::round((bearing_rad - scan.first_bearing_rad) / scan.bearing_step_rad);
     if (nearest < 0.0 || nearest >= static_cast<double>(scan.ranges_m.size())) continue;
-    measurement.words[i] = rules.encoded(scan.ranges_m[static_cast<std::size_t>(nearest)]);
+    measurement.words[i] = words.encoded(scan.ranges_m[static_cast<std::size_t>(nearest)]);
   }
   return measurement;
 }

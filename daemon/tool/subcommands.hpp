@@ -13,6 +13,7 @@ namespace deltamap::daemon::tool {
 void add_import_carmen(CLI::App& import);
 
 // under `deltamap map`
+void add_map_from_poses(CLI::App& map);
 void add_map_picture(CLI::App& map);
 
 }  // namespace deltamap::daemon::tool
