@@ -122,6 +122,8 @@ void PioneerSession::answer_while_connected(const Packet& packet, Timestamp now,
     // Only a robot that waits for a connection echoes PULSE as SYNC0.
     fail("robot was reset: it waits for a connection", now, out);
   } else if (type == kConfigPacket && config_) {
+    // Its watchdog may be shorter than we thought.
+    next_pulse_ = std::min(next_pulse_, queue_.last_sent().value_or(now) + pulse_interval());
     const bool can_switch = config_->auto_baud != 0;
     if (can_switch && !switch_tried_ && params_.fast_baud != 0 && params_.fast_baud != baud()) begin_switch(now, out);
   }

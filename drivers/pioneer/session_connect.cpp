@@ -131,7 +131,7 @@ void PioneerSession::begin_connection(Timestamp now, PioneerOutput& out) {
   config_requests_ = 0;
   sonar_requests_ = 0;
   enable_requests_ = 0;
-  may_enable_ = params_.enable_motors;
+  may_enable_ = params_.enable_motors && newest_sip_ && !newest_sip_->has(sip_flag::kStopButton);
   switch_tried_ = false;
   next_check_ = now;
   next_pulse_ = now + pulse_interval();

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/pioneer/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/drivers/pioneer/fake_robot.hpp"
+#include "tests/support/hex.hpp"
+
+namespace deltamap::drivers::pioneer {
+namespace {
+
+using tests::bytes_from_hex;
+
+const auto kSync0Frame = bytes_from_hex("fafb03000000");
+const std::vector<std::vector<std::uint8_t>> kQuiet{
+    bytes_from_hex("fafb03370037"), encoded_command({CommandNumber::kVel, 0}),
+    encoded_command({CommandNumber::kRvel, 0}), bytes_from_hex("fafb03020002")};
+
+/// What Conversation needs to know about the session.
+struct TestedSession : PioneerSession {
+  using PioneerSession::PioneerSession;
+  using Messages = std::vector<Odometry>;
+  static const Messages& messages_of(const PioneerOutput& out) { return out.odometry; }
+};
+
+class PioneerSessionTest : public testing::Test {
+ protected:
+  /// Whatever a test does: until the robot is connected, each SYNC0 (which is a PULSE to a robot that was left
+  /// connected) comes right after ESTOP, VEL 0, RVEL 0 and CLOSE at the same speed.
+  void TearDown() override {
+    std::size_t checked = 0;
+    for (const Search& search : searches_) {
+      for (std::size_t i = search.begin; i < search.end; ++i) {
+        if (line.written[i].bytes != kSync0Frame) continue;
+        ++checked;
+        ASSERT_GE(i, search.begin + kQuiet.size());
+        for (std::size_t k = 0; k < kQuiet.size(); ++k) {
+          const tests::WrittenBytes& before = line.written[i - kQuiet.size() + k];
+          EXPECT_EQ(before.bytes, kQuiet[k]) << "before SYNC0 number " << checked;
+          EXPECT_EQ(before.baud, line.written[i].baud);
+        }
+      }
+    }
+    EXPECT_GT(checked, 0u) << "every test connects or tries to";
+  }
+
+  bool connect(double at_most_s = 30.0) {
+    const std::size_t begin = line.written.size();
+    line.start();
+    const bool connected = line.run_until([&] { return session.is_connected(); }, at_most_s);
+    searches_.push_back({begin, line.written.size()});
+    return connected;
+  }
+
+  [[nodiscard]] std::size_t times_obeyed(CommandNumber number) const {
+    return static_cast<std::size_t>(
+        std::count_if(robot.obeyed.begin(), robot.obeyed.end(), [&](const Command& c) { return c.number == number; }));
+  }
+
+  void use(const PioneerParams& params) { session = TestedSession{params, SessionMode::kLive}; }
+
+  TestedSession session{PioneerParams{}, SessionMode::kLive};
+  FakeRobot robot{9600};
+  tests::Conversation<TestedSession, FakeRobot> line{session, robot};
+
+ private:
+  struct Search {
+    std::size_t begin = 0;  // indices into line.written
+    std::size_t end = 0;
+  };
+  std::vector<Search> searches_;
+};
+
+TEST_F(PioneerSessionTest, ConnectsAndDecodesOdometry) {
+  ASSERT_TRUE(connect(2.0));
+  line.run_for(1.0);
+  EXPECT_GE(line.messages.size(), 9u);
+  EXPECT_EQ(session.identity()->subtype, "p3dx-sh");
+  ASSERT_TRUE(session.config());
+  EXPECT_EQ(session.config()->watchdog_ms, 2000);
+  EXPECT_FALSE(robot.sonar_on) << "nobody asked for sonar";
+  EXPECT_EQ(robot.lost, 0) << "commands kept their distance";
+}
+
+TEST_F(PioneerSessionTest, FindsTheRobotAtAnyBaud) {
+  robot = FakeRobot{57600};
+  ASSERT_TRUE(connect());
+  EXPECT_EQ(session.baud(), 57600u);
+}
+
+TEST_F(PioneerSessionTest, NamesTheSpeedsItTriedWhenNobodyAnswers) {
+  robot.is_deaf = true;
+  EXPECT_FALSE(connect(60.0));
+  ASSERT_TRUE(line.failed);
+  EXPECT_EQ(*line.failed, "robot does not answer at 9600, 38400, 115200, 19200, 57600 baud");
+  EXPECT_FALSE(line.wake_at);
+}
+
+TEST_F(PioneerSessionTest, StopsALeftOverRobotBeforeAnythingCouldMakeItResume) {
+  for (const int closes_to_lose : {0, 1}) {
+    robot = FakeRobot{9600};
+    robot.be_left_over(300);
+    robot.closes_to_lose = closes_to_lose;
+    line.failed.reset();
+    ASSERT_TRUE(connect()) << closes_to_lose;
+    line.run_for(1.0);
+    EXPECT_FALSE(robot.has_ever_moved) << closes_to_lose;
+    EXPECT_EQ(line.has_logged("still connected"), closes_to_lose > 0);
+  }
+}
+
+TEST_F(PioneerSessionTest, StartsOverWhenSyncIsAnsweredWithNonsense) {
+  robot.sync1_to_garble = 1;
+  ASSERT_TRUE(connect());
+}
+
+TEST_F(PioneerSessionTest, FeedsTheWatchdogWhileIdle) {
+  ASSERT_TRUE(connect());
+  line.run_for(10.0);
+  EXPECT_FALSE(robot.watchdog_has_stopped);
+  EXPECT_TRUE(session.is_connected());
+}
+
+TEST_F(PioneerSessionTest, FeedsAWatchdogThatIsShorterThanUsual) {
+  robot.config.watchdog_ms = 400;
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  robot.watchdog_has_stopped = false;
+  line.run_for(5.0);
+  EXPECT_FALSE(robot.watchdog_has_stopped);
+  EXPECT_FALSE(line.has_logged("not spoken to"));
+}
+
+TEST_F(PioneerSessionTest, NeverEnablesMotorsByDefault) {
+  ASSERT_TRUE(connect());
+  line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
+  line.run_for(5.0);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 0u);
+  EXPECT_FALSE(robot.has_ever_moved);
+}
+
+TEST_F(PioneerSessionTest, EnablesMotorsWhereAllowedAndDrives) {
+  use({.enable_motors = true});
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  ASSERT_TRUE(robot.motors_on);
+  line.carry_out(session.drive({line.now, 0.3, -0.5}, line.now));
+  line.run_for(0.1);
+  EXPECT_EQ(robot.speed, 300);
+  EXPECT_EQ(robot.turn_rate, -29);
+  line.run_for(5.0);
+  EXPECT_EQ(robot.speed, 300) << "set points are repeated";
+  EXPECT_GT(line.messages.back().odom_from_robot.x, 1.0);
+  EXPECT_FALSE(robot.watchdog_has_stopped);
+  line.carry_out(session.stop_driving(line.now));
+  line.run_for(0.1);
+  EXPECT_FALSE(robot.moves);
+}
+
+TEST_F(PioneerSessionTest, ClampsSetPointsAndRefusesThoseThatAreNoNumbers) {
+  use({.enable_motors = true, .max_speed_m_per_s = 0.25, .max_turn_rate_rad_per_s = 0.5});
+  ASSERT_TRUE(connect());
+  line.carry_out(session.drive({line.now, 9.0, -9.0}, line.now));
+  line.run_for(0.1);
+  EXPECT_EQ(robot.speed, 250);
+  EXPECT_EQ(robot.turn_rate, -29);
+  line.carry_out(session.drive({line.now, std::nan(""), 0.0}, line.now));
+  line.run_for(0.1);
+  EXPECT_EQ(robot.speed, 0);
+  EXPECT_EQ(robot.turn_rate, 0);
+}
+
+TEST_F(PioneerSessionTest, DoesNotEnableMotorsAgainAfterTheStopButton) {
+  use({.enable_motors = true});
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  ASSERT_TRUE(robot.motors_on);
+  const std::size_t enabled = times_obeyed(CommandNumber::kEnable);
+  robot.stop_button = true;
+  robot.motors_on = false;
+  line.run_for(3.0);
+  EXPECT_TRUE(line.messages.back().stop_button);
+  robot.stop_button = false;
+  line.run_for(10.0);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEnable), enabled);
+  EXPECT_FALSE(robot.motors_on);
+}
+
+TEST_F(PioneerSessionTest, DoesNotEnableMotorsWhileTheStopButtonIsHeldAtConnection) {
+  use({.enable_motors = true});
+  robot.stop_button = true;
+  ASSERT_TRUE(connect());
+  line.run_for(5.0);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 0u);
+}
+
+TEST_F(PioneerSessionTest, StopsTheRobotFirstAfterAGapInItsOwnSending) {
+  use({.enable_motors = true});
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
+  line.run_for(1.0);
+  ASSERT_TRUE(robot.moves);
+  // The process stalls: nothing is written for three seconds, the watchdog stops the robot.
+  line.now += std::chrono::seconds{3};
+  robot.tick(line.now);
+  ASSERT_TRUE(robot.watchdog_has_stopped);
+  robot.outgoing.clear();
+  const std::size_t before = robot.obeyed.size();
+  line.carry_out(session.on_bytes(encoded_sip(robot.sip), line.now));
+  robot.has_ever_moved = false;
+  line.run_for(1.0);
+  ASSERT_GT(robot.obeyed.size(), before + 1);
+  EXPECT_EQ(robot.obeyed[before], (Command{CommandNumber::kVel, 0}));
+  EXPECT_EQ(robot.obeyed[before + 1], (Command{CommandNumber::kRvel, 0}));
+  EXPECT_FALSE(robot.has_ever_moved);
+  EXPECT_TRUE(line.has_logged("not spoken to"));
+}
+
+TEST_F(PioneerSessionTest, FailsWhenSipsStopAndComesBackInANewEpoch) {
+  ASSERT_TRUE(connect());
+  line.run_for(1.0);
+  robot.is_mute = true;
+  line.run_for(3.0);
+  ASSERT_TRUE(line.failed);
+  EXPECT_EQ(*line.failed, "robot has been silent for 1000 ms");
+  const std::uint32_t epoch = line.messages.back().epoch;
+  robot.is_mute = false;
+  line.failed.reset();
+  ASSERT_TRUE(connect());
+  line.run_for(0.5);
+  EXPECT_EQ(line.messages.back().epoch, epoch + 1);
+}
+
+TEST_F(PioneerSessionTest, NoticesThatTheRobotWasReset) {
+  ASSERT_TRUE(connect());
+  line.run_for(1.0);
+  robot.connected = false;  // waits for a connection, and echoes PULSE as SYNC0
+  line.run_for(0.9);
+  ASSERT_TRUE(line.failed);
+  EXPECT_EQ(*line.failed, "robot was reset: it waits for a connection");
+}
+
+TEST_F(PioneerSessionTest, SwitchesToAFasterLineWhereTheRobotAllowsIt) {
+  use({.fast_baud = 38400});
+  robot.config.auto_baud = 1;
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  EXPECT_EQ(session.baud(), 38400u);
+  EXPECT_EQ(robot.baud(), 38400u);
+  EXPECT_TRUE(session.is_connected());
+  line.run_for(5.0);
+  EXPECT_FALSE(robot.watchdog_has_stopped);
+  EXPECT_FALSE(line.failed);
+}
+
+TEST_F(PioneerSessionTest, StaysAtItsSpeedWhereTheRobotForbidsAnother) {
+  use({.fast_baud = 38400});
+  robot.config.auto_baud = 0;
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  EXPECT_EQ(times_obeyed(CommandNumber::kHostBaud), 0u);
+  EXPECT_EQ(session.baud(), 9600u);
+}
+
+TEST_F(PioneerSessionTest, GoesBackToTheOldSpeedWhereTheRobotDoesNotFollow) {
+  use({.fast_baud = 115200});
+  robot.config.auto_baud = 2;
+  robot.follows_host_baud = false;
+  ASSERT_TRUE(connect());
+  line.run_for(4.0);
+  EXPECT_EQ(session.baud(), 9600u);
+  EXPECT_TRUE(session.is_connected());
+  EXPECT_TRUE(line.has_logged("did not follow"));
+}
+
+TEST_F(PioneerSessionTest, TakesItsLeaveWithARobotThatStands) {
+  use({.enable_motors = true});
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
+  line.run_for(1.0);
+  line.carry_out(session.close(line.now));
+  EXPECT_EQ(line.written.back().bytes, kQuiet.back());
+  EXPECT_FALSE(line.wake_at);
+  const std::size_t written = line.written.size();
+  line.run_for(3.0);
+  line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
+  EXPECT_EQ(line.written.size(), written) << "nothing is sent after the leave";
+}
+
+TEST_F(PioneerSessionTest, TakesTheModelFromTheRobotAndItsLatencyFromItsConfiguration) {
+  robot.identity.subtype = "p3dx";
+  robot.config.subtype = "p3dx";
+  robot.config.kinematics_delay_ms = 30;
+  use({.enable_motors = true});
+  ASSERT_TRUE(connect());
+  line.run_for(3.0);
+  const double x_before = line.messages.back().odom_from_robot.x;
+  const auto counted_before = robot.sip.x_units;
+  line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
+  line.run_for(1.0);
+  const double units = robot.sip.x_units - counted_before;
+  EXPECT_NEAR(line.messages.back().odom_from_robot.x - x_before, units * 0.000485, 0.03);
+  const Duration age = line.now - line.messages.back().time;
+  EXPECT_GE(age, std::chrono::milliseconds{30} + line_time(24, 9600)) << "latency, and the line time of 24 bytes";
+}
+
+TEST_F(PioneerSessionTest, ListeningToTheRecordingGivesTheSameOdometryAndWritesNothing) {
+  use({.enable_motors = true});
+  robot.config.kinematics_delay_ms = 20;
+  ASSERT_TRUE(connect());
+  line.run_for(1.0);
+  line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
+  line.run_for(2.0);
+  PioneerSession listener{PioneerParams{.model = "p3dx"}, SessionMode::kListenOnly};
+  EXPECT_TRUE(listener.start(line.now).output.requests.empty());
+  std::vector<Odometry> heard;
+  for (const tests::SentBytes& chunk : line.received) {
+    const PioneerOutput out = listener.on_bytes(chunk.bytes, chunk.at);
+    EXPECT_TRUE(out.output.requests.empty());
+    EXPECT_FALSE(out.output.wake_at);
+    heard.insert(heard.end(), out.odometry.begin(), out.odometry.end());
+  }
+  ASSERT_EQ(heard.size(), line.messages.size());
+  for (std::size_t i = 0; i < heard.size(); ++i) {
+    EXPECT_EQ(heard[i].time, line.messages[i].time);
+    EXPECT_EQ(heard[i].odom_from_robot, line.messages[i].odom_from_robot);
+    EXPECT_EQ(heard[i].epoch, line.messages[i].epoch);
+  }
+  EXPECT_TRUE(listener.on_time(line.now + std::chrono::hours{1}).output.requests.empty());
+}
+
+TEST(PioneerSessionParams, AreRefusedWithAReason) {
+  EXPECT_THROW((PioneerSession{{.model = "at"}, SessionMode::kLive}), std::invalid_argument);
+  EXPECT_THROW((PioneerSession{{.baud = 4800}, SessionMode::kLive}), std::invalid_argument);
+  EXPECT_THROW((PioneerSession{{.fast_baud = 1}, SessionMode::kLive}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace deltamap::drivers::pioneer
