@@ -2,14 +2,16 @@
 #include "mapping/alignment/registration.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 namespace deltamap::mapping::alignment {
 namespace {
 
-constexpr double kReachShrink = 0.8;  // per iteration, from the first reach to the last
-constexpr double kDamping = 1e-6;     // of the mean curvature: holds what nothing observes
+constexpr double kReachShrink = 0.8;   // per iteration, from the first reach to the last
+constexpr double kDamping = 1e-6;      // of the mean curvature: holds what nothing observes
+constexpr double kNormalNoise = 0.01;  // mean square error of a normal, rad²: curvature of the stronger axis that leaks
 
 struct NormalEquations {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  // Σ w gᵀg, no unit deviation yet
@@ -44,6 +46,19 @@ NormalEquations normal_equations(std::span<const Point2> points, const NearestSu
   return sums;
 }
 
+/// Noise in the normals pretends to observe the length of a corridor: its share of the curvature is taken off the
+/// weaker axis, so that the covariance does not promise it.
+Eigen::Matrix3d without_normal_noise(const Eigen::Matrix3d& information) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{information.topLeftCorner<2, 2>()};
+  const double weaker = axes.eigenvalues()[0];
+  if (weaker <= 0.0) return information;
+  const double left = std::max(0.0, 1.0 - kNormalNoise * axes.eigenvalues()[1] / weaker);
+  const Eigen::Vector2d axis = axes.eigenvectors().col(0);
+  Eigen::Matrix3d scale = Eigen::Matrix3d::Identity();
+  scale.topLeftCorner<2, 2>() -= (1.0 - std::sqrt(left)) * axis * axis.transpose();
+  return scale * information * scale;
+}
+
 Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
   return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
 }
@@ -75,16 +90,20 @@ Registration registration(std::span<const Point2> points_in_moving, const Neares
     const Eigen::Vector3d from_prior = difference(result.reference_from_moving, prior.pose);
     const Eigen::Matrix3d damping = kDamping * result.information.trace() * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d matrix = result.information + prior.information + damping;
-    const Eigen::Vector3d step = matrix.ldlt().solve(sums.right_side / variance + prior.information * from_prior);
+    const double calm = 2 * i < params.most_iterations ? 1.0 : 0.5;  // breaks cycles of pairs that come and go
+    const Eigen::Vector3d step =
+        calm * matrix.ldlt().solve(sums.right_side / variance + prior.information * from_prior);
     Pose2& pose = result.reference_from_moving;
     pose = {pose.x + step.x(), pose.y + step.y(), wrapped_angle(pose.theta + step.z())};
     const bool at_last_reach = reach_m <= params.last_reach_m;
-    if (at_last_reach && step.cwiseAbs().maxCoeff() < params.settled_m) {
+    const double most2 = params.settled_deviations * params.settled_deviations;
+    if (at_last_reach && step.dot(matrix * step) < most2) {
       result.settled = true;
       break;
     }
     reach_m = std::max(params.last_reach_m, reach_m * kReachShrink);
   }
+  result.information = without_normal_noise(result.information);
   return result;
 }
 

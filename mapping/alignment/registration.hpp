@@ -14,7 +14,7 @@ struct RegistrationParams {
   double first_reach_m = 0.5;       ///< pairs farther apart do not count at first …
   double last_reach_m = 0.12;       ///< … and at the end; > 0, <= first_reach_m
   double point_deviation_m = 0.02;  ///< spread of a point around its line, at least; > 0
-  double settled_m = 1e-5;          ///< a step below this (and the same in rad) ends the iteration
+  double settled_deviations = 0.1;  ///< a step below this share of its own σ ends the iteration; > 0
 };
 
 /// A belief about the pose that is sought; zero information = none.
