@@ -26,7 +26,8 @@ std::string_view name_of(Refusal refusal) {
 }
 
 MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params) {
-  return evidence_update(map, set, params.evidence);
+  return set.method == MappingMethod::kPaper ? paper_update(map, set, params.paper)
+                                             : evidence_update(map, set, params.evidence);
 }
 
 }  // namespace deltamap::mapping

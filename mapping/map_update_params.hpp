@@ -3,11 +3,13 @@
 #pragma once
 
 #include "mapping/evidence_update.hpp"
+#include "mapping/paper_update.hpp"
 
 namespace deltamap::mapping {
 
 struct MapUpdateParams {
   EvidenceUpdateParams evidence;
+  PaperUpdateParams paper;
 };
 
 }  // namespace deltamap::mapping

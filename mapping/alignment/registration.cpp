@@ -97,7 +97,7 @@ Registration registration(std::span<const Point2> points_in_moving, const Neares
     pose = {pose.x + step.x(), pose.y + step.y(), wrapped_angle(pose.theta + step.z())};
     const bool at_last_reach = reach_m <= params.last_reach_m;
     const double most2 = params.settled_deviations * params.settled_deviations;
-    if (at_last_reach && step.dot(matrix * step) < most2) {
+    if (at_last_reach && (step.cwiseAbs().maxCoeff() < params.settled_m || step.dot(matrix * step) < most2)) {
       result.settled = true;
       break;
     }

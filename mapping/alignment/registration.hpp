@@ -11,10 +11,11 @@ namespace deltamap::mapping::alignment {
 
 struct RegistrationParams {
   int most_iterations = 40;
-  double first_reach_m = 0.5;       ///< pairs farther apart do not count at first …
-  double last_reach_m = 0.12;       ///< … and at the end; > 0, <= first_reach_m
-  double point_deviation_m = 0.02;  ///< spread of a point around its line, at least; > 0
-  double settled_deviations = 0.1;  ///< a step below this share of its own σ ends the iteration; > 0
+  double first_reach_m = 0.5;        ///< pairs farther apart do not count at first …
+  double last_reach_m = 0.12;        ///< … and at the end; > 0, <= first_reach_m
+  double point_deviation_m = 0.02;   ///< spread of a point around its line, at least; > 0
+  double settled_m = 1e-5;           ///< a step below this (and the same in rad) ends the iteration …
+  double settled_deviations = 0.05;  ///< … and so does one below this share of its own σ
 };
 
 /// A belief about the pose that is sought; zero information = none.
