@@ -49,8 +49,10 @@ FieldDistance distance_at(const LikelihoodField& field, double x_m, double y_m) 
   const GridGeometry& geometry = field.geometry();
   const double cells_per_m = 1.0 / geometry.resolution_m;
   // In the bordered field the centre of cell (0, 0) lies at (1.5, 1.5); centres are the knots.
-  const double x = std::clamp((x_m - geometry.origin.x()) * cells_per_m + 0.5, 0.0, bordered.width - 1.001);
-  const double y = std::clamp((y_m - geometry.origin.y()) * cells_per_m + 0.5, 0.0, bordered.height - 1.001);
+  const double x_wanted = (x_m - geometry.origin.x()) * cells_per_m + 0.5;
+  const double y_wanted = (y_m - geometry.origin.y()) * cells_per_m + 0.5;
+  const double x = std::clamp(x_wanted, 0.0, bordered.width - 1.001);
+  const double y = std::clamp(y_wanted, 0.0, bordered.height - 1.001);
   const auto column = static_cast<std::ptrdiff_t>(x);
   const auto row = static_cast<std::ptrdiff_t>(y);
   const double u = x - static_cast<double>(column);
@@ -61,6 +63,7 @@ FieldDistance distance_at(const LikelihoodField& field, double x_m, double y_m) 
   const double low_right = static_cast<double>(distance[at[1]]);
   const double high_left = static_cast<double>(distance[at[bordered.width]]);
   const double high_right = static_cast<double>(distance[at[bordered.width + 1]]);
+  if (x != x_wanted || y != y_wanted) return {low_left, {0.0, 0.0}};  // outside the map nothing pulls
   const double low = low_left + u * (low_right - low_left);
   const double high = high_left + u * (high_right - high_left);
   return {

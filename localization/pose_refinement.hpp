@@ -20,7 +20,8 @@ struct RefinedPose {
   PoseCovariance covariance = PoseCovariance::Zero();
 };
 
-/// Distance of a point of the map frame from the contour, bilinear between the cells' centres, with its slope.
+/// Distance of a point of the map frame from the contour, bilinear between the cells' centres, with its slope;
+/// flat outside the map.
 struct FieldDistance {
   double distance_m = 0.0;
   Eigen::Vector2d slope{0.0, 0.0};  ///< ∂distance/∂x, ∂distance/∂y

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/fit_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap::localization {
+namespace {
+
+Hypothesis certain() {
+  Hypothesis best;
+  best.weight = 1.0;
+  best.covariance = Eigen::Vector3d{1e-4, 1e-4, 1e-4}.asDiagonal();
+  return best;
+}
+
+/// Scans at 5 Hz of a robot at 0.4 m/s.
+LocalizerState after(FitMonitor& monitor, double duration_s, double fit, double speed_m_per_s = 0.4) {
+  LocalizerState state = monitor.state();
+  for (int i = 0; i < static_cast<int>(duration_s * 5.0); ++i) {
+    state =
+        monitor.observe({.passed_s = 0.2, .driven_m = 0.2 * speed_m_per_s, .turned_rad = 0.0, .fit = fit}, certain());
+  }
+  return state;
+}
+
+FitMonitor tracking() {
+  FitMonitor monitor{{}};
+  monitor.start(LocalizerState::kTracking);
+  (void)after(monitor, 5.0, 0.95);
+  return monitor;
+}
+
+TEST(FitMonitor, TakesAMuchChangedViewForNoLoss) {
+  FitMonitor monitor = tracking();
+  EXPECT_EQ(after(monitor, 600.0, 0.5), LocalizerState::kTracking);
+  EXPECT_EQ(after(monitor, 8.0, 0.1), LocalizerState::kTracking);
+  EXPECT_EQ(after(monitor, 5.0, 0.9), LocalizerState::kTracking);
+}
+
+TEST(FitMonitor, IsLostAfterALongStrongMisfitAndSearchesOnlyAfterDrivingOn) {
+  FitMonitor monitor = tracking();
+  EXPECT_EQ(after(monitor, 15.0, 0.15), LocalizerState::kLost);
+  EXPECT_EQ(after(monitor, 60.0, 0.15, 0.0), LocalizerState::kLost);
+  EXPECT_EQ(after(monitor, 20.0, 0.15), LocalizerState::kGlobal);
+}
+
+TEST(FitMonitor, TracksAgainWhereTheViewFitsAgain) {
+  FitMonitor monitor = tracking();
+  EXPECT_EQ(after(monitor, 20.0, 0.1), LocalizerState::kLost);
+  EXPECT_EQ(after(monitor, 10.0, 0.9), LocalizerState::kTracking);
+}
+
+TEST(FitMonitor, EndsAGlobalSearchOnlyAfterSeeingEnough) {
+  FitMonitor monitor{{}};
+  monitor.start(LocalizerState::kGlobal);
+  EXPECT_EQ(after(monitor, 30.0, 0.95, 0.0), LocalizerState::kGlobal);
+  EXPECT_EQ(after(monitor, 10.0, 0.95), LocalizerState::kTracking);
+}
+
+TEST(FitMonitor, DoesNotEndAGlobalSearchWithTwoPlacesLeft) {
+  FitMonitor monitor{{}};
+  monitor.start(LocalizerState::kGlobal);
+  Hypothesis torn = certain();
+  torn.weight = 0.6;
+  LocalizerState state{};
+  for (int i = 0; i < 100; ++i) state = monitor.observe({0.2, 0.1, 0.0, 0.9}, torn);
+  EXPECT_EQ(state, LocalizerState::kGlobal);
+  EXPECT_FALSE(monitor.search_failed());
+}
+
+TEST(FitMonitor, NoticesASearchThatFoundNothing) {
+  FitMonitor monitor{{}};
+  monitor.start(LocalizerState::kGlobal);
+  EXPECT_EQ(after(monitor, 30.0, 0.2), LocalizerState::kGlobal);
+  EXPECT_TRUE(monitor.search_failed());
+}
+
+}  // namespace
+}  // namespace deltamap::localization

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/pose_refinement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.hpp"
+#include "tests/support/cast_scan.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+/// A room of 6 × 4 m with a pillar.
+OccupancyGrid room() {
+  OccupancyGrid map{{140, 100, 0.05, {-0.5, -0.5}}, CellState::kOccupied};
+  test::fill_box(map, {0.0, 0.0}, {6.0, 4.0}, CellState::kFree);
+  test::fill_box(map, {4.0, 2.0}, {4.4, 2.6}, CellState::kOccupied);
+  return map;
+}
+
+BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
+  Random random{4};
+  const Scan scan = test::cast_scan(map, map_from_robot, {}, {.noise_m = 0.005}, random);
+  return scoring_ends(scan, deskewed(scan, {}), 0);
+}
+
+TEST(FieldDistance, HasTheSlopeOfItsOwnNumericDifferences) {
+  const LikelihoodField field{room(), {}};
+  Random random{8};
+  constexpr double kStep_m = 1e-6;
+  for (int i = 0; i < 200; ++i) {
+    const double x_m = random.uniform(-0.5, 6.5);
+    const double y_m = random.uniform(-0.5, 4.5);
+    const FieldDistance at = distance_at(field, x_m, y_m);
+    const double ahead = distance_at(field, x_m + kStep_m, y_m).distance_m;
+    const double above = distance_at(field, x_m, y_m + kStep_m).distance_m;
+    EXPECT_NEAR(at.slope.x(), (ahead - at.distance_m) / kStep_m, 1e-4);
+    EXPECT_NEAR(at.slope.y(), (above - at.distance_m) / kStep_m, 1e-4);
+  }
+}
+
+TEST(FieldDistance, IsZeroOnAContourAndGrowsAwayFromIt) {
+  const LikelihoodField field{room(), {}};
+  EXPECT_NEAR(distance_at(field, -0.025, 1.975).distance_m, 0.0, 1e-9);
+  EXPECT_NEAR(distance_at(field, 0.025, 1.975).distance_m, 0.05, 1e-6);
+  EXPECT_NEAR(distance_at(field, 0.050, 1.975).distance_m, 0.075, 1e-6);
+}
+
+TEST(FieldDistance, IsDefinedFarOutsideTheMap) {
+  const LikelihoodField field{room(), {}};
+  EXPECT_TRUE(std::isfinite(distance_at(field, 1e9, -1e9).distance_m));
+  EXPECT_EQ(distance_at(field, 1e9, -1e9).slope, Eigen::Vector2d(0.0, 0.0));
+}
+
+TEST(Refinement, SlidesAPoseToWhereTheScanFits) {
+  const OccupancyGrid map = room();
+  const LikelihoodField field{map, {}};
+  const PoseCovariance loose = Eigen::Vector3d{0.04, 0.04, 0.01}.asDiagonal();
+  for (const Pose2& truth : {Pose2{1.5, 1.2, 0.4}, Pose2{3.0, 3.1, -1.9}, Pose2{5.2, 1.0, 2.7}}) {
+    const BeamEnds ends = ends_from(map, truth);
+    const Pose2 off{truth.x + 0.06, truth.y - 0.05, truth.theta + 0.03};
+    const RefinedPose found = refined(field, ends, {off, loose}, 0.1, {.steps = 10});
+    EXPECT_LT(distance_between(found.map_from_robot, truth),
+              0.04);  // ranges end at a cell's face, contours at its middle
+    EXPECT_LT(std::abs(turn_between(found.map_from_robot.theta, truth.theta)), 0.005);
+    EXPECT_LT(found.covariance.trace(), loose.trace());
+  }
+}
+
+TEST(Refinement, DoesNotSlideAlongACorridorThatShowsNoEnd) {
+  OccupancyGrid corridor{{800, 60, 0.05, {-20.0, -1.5}}, CellState::kOccupied};
+  test::fill_box(corridor, {-20.0, -1.0}, {20.0, 1.0}, CellState::kFree);
+  Random random{4};
+  const Scan scan = test::cast_scan(corridor, {0.0, 0.0, 0.0}, {}, {.max_range_m = 8.0}, random);
+  const BeamEnds ends = scoring_ends(scan, deskewed(scan, {}), 0);
+  const PoseCovariance spread = Eigen::Vector3d{0.04, 0.01, 0.001}.asDiagonal();
+  const RefinedPose found =
+      refined(LikelihoodField{corridor, {}}, ends, {{0.1, 0.05, 0.02}, spread}, 0.1, {.steps = 10, .prior_share = 1.0});
+  EXPECT_NEAR(found.map_from_robot.x, 0.1, 0.03);
+  EXPECT_NEAR(found.map_from_robot.y, 0.0, 0.03);
+  EXPECT_GT(found.covariance(0, 0), 0.5 * spread(0, 0));
+  EXPECT_LT(found.covariance(1, 1), 0.1 * spread(1, 1));
+}
+
+TEST(Refinement, RefusesToGoFarFromWhatTheParticlesSay) {
+  const OccupancyGrid map = room();
+  const RefinedPose prior{{1.65, 1.2, 0.4}, Eigen::Vector3d{0.1, 0.1, 0.1}.asDiagonal()};
+  const RefinedPose found = refined(LikelihoodField{map, {}}, ends_from(map, {1.5, 1.2, 0.4}), prior, 1.0,
+                                    {.steps = 20, .longest_shift_m = 0.05});
+  EXPECT_EQ(found.map_from_robot, prior.map_from_robot);
+}
+
+TEST(Refinement, LeavesThePoseWithoutEndsOrSteps) {
+  const OccupancyGrid map = room();
+  const LikelihoodField field{map, {}};
+  const RefinedPose prior{{1.55, 1.2, 0.4}, PoseCovariance::Zero()};
+  EXPECT_EQ(refined(field, {}, prior, 1.0, {}).map_from_robot, prior.map_from_robot);
+  EXPECT_EQ(refined(field, ends_from(map, {1.5, 1.2, 0.4}), prior, 1.0, {.steps = 0}).map_from_robot,
+            prior.map_from_robot);
+}
+
+}  // namespace
+}  // namespace deltamap::localization
