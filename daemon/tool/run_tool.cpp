@@ -17,6 +17,7 @@ int run_tool(int argc, const char* const* argv) {
   add_map_picture(map);
   CLI::App& import = *app.add_subcommand("import", "other people's logs as recordings")->require_subcommand(1);
   add_import_carmen(import);
+  add_decode(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

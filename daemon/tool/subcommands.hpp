@@ -9,6 +9,8 @@ class App;
 
 namespace deltamap::daemon::tool {
 
+void add_decode(CLI::App& app);
+
 // under `deltamap import`
 void add_import_carmen(CLI::App& import);
 
