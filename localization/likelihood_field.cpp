@@ -9,6 +9,7 @@
 namespace deltamap::localization {
 namespace {
 
+constexpr int kRowsAtOnce = 64;   // of a whole rebuild: its working memory stays small however large the map
 constexpr int kContourReach = 2;  // a cell's being contour depends on cells up to two away
 
 double hit_deviation_on(const GridGeometry& geometry, const LikelihoodFieldParams& params) {
@@ -65,62 +66,74 @@ class WindowBuilder {
         table_{table},
         window_{window},
         wide_{grown(window, table.reach_cells, map.geometry())},
-        column_distance_(static_cast<std::size_t>(wide_.width()) * static_cast<std::size_t>(window.height())) {}
+        never_{table.reach_cells + 1},
+        width_{static_cast<std::size_t>(window.width() + 2 * table.reach_cells)},
+        column_distance_(width_ * static_cast<std::size_t>(window.height()), never_ * never_) {}
 
   [[nodiscard]] std::vector<std::uint8_t> bytes() {
-    for (int column = wide_.first.column; column < wide_.last.column; ++column) measure_column(column);
+    measure_columns_upwards();
+    measure_columns_downwards();
     std::vector<std::uint8_t> bytes;
     bytes.reserve(static_cast<std::size_t>(window_.width()) * static_cast<std::size_t>(window_.height()));
     for (int row = window_.first.row; row < window_.last.row; ++row) {
-      for (int column = window_.first.column; column < window_.last.column; ++column)
-        bytes.push_back(byte_of({column, row}));
+      const int* in_row = row_of_distances(row) + table_.reach_cells;
+      for (int column = window_.first.column; column < window_.last.column; ++column, ++in_row) {
+        const std::uint8_t steps = table_.at(squared_distance(in_row));
+        const bool unknown = map_[{column, row}] == CellState::kUnknown;
+        bytes.push_back(unknown ? std::min(steps, table_.unknown) : steps);
+      }
     }
     return bytes;
   }
 
  private:
-  [[nodiscard]] int& column_distance(int column, int row) {
-    return column_distance_[static_cast<std::size_t>(row - window_.first.row) *
-                                static_cast<std::size_t>(wide_.width()) +
-                            static_cast<std::size_t>(column - wide_.first.column)];
+  /// Squared distances along the columns; entry 0 belongs to the column `reach` before the window's first.
+  [[nodiscard]] int* row_of_distances(int row) {
+    return column_distance_.data() + static_cast<std::size_t>(row - window_.first.row) * width_;
+  }
+  [[nodiscard]] std::size_t entry_of(int column) const {
+    return static_cast<std::size_t>(column - window_.first.column + table_.reach_cells);
   }
 
-  void measure_column(int column) {
-    const int never = table_.reach_cells + 1;
-    int distance = never;
+  void measure_columns_upwards() {
+    std::vector<int> distance(width_, never_);
     for (int row = wide_.first.row; row < window_.last.row; ++row) {
-      distance = is_contour(map_, {column, row}) ? 0 : std::min(distance + 1, never);
-      if (row >= window_.first.row) column_distance(column, row) = distance;
-    }
-    distance = never;
-    for (int row = wide_.last.row; row-- > window_.first.row;) {
-      const bool inside = row < window_.last.row;
-      const bool contour = inside ? column_distance(column, row) == 0 : is_contour(map_, {column, row});
-      distance = contour ? 0 : std::min(distance + 1, never);
-      if (inside) column_distance(column, row) = std::min(column_distance(column, row), distance);
+      int* const squared = row >= window_.first.row ? row_of_distances(row) : nullptr;
+      for (int column = wide_.first.column; column < wide_.last.column; ++column) {
+        int& at = distance[entry_of(column)];
+        at = is_contour(map_, {column, row}) ? 0 : std::min(at + 1, never_);
+        if (squared != nullptr) squared[entry_of(column)] = at * at;
+      }
     }
   }
 
-  [[nodiscard]] std::uint8_t byte_of(Cell cell) {
-    const int never = table_.reach_cells + 1;
-    const auto squared_at = [&](int column) {
-      if (column < wide_.first.column || column >= wide_.last.column) return never * never;
-      const int distance = column_distance(column, cell.row);
-      return distance * distance;
-    };
-    int best = squared_at(cell.column);
-    for (int aside = 1; aside <= table_.reach_cells && aside * aside < best; ++aside) {
-      best = std::min(
-          {best, aside * aside + squared_at(cell.column - aside), aside * aside + squared_at(cell.column + aside)});
+  void measure_columns_downwards() {
+    std::vector<int> distance(width_, never_);
+    for (int row = wide_.last.row; row-- > window_.first.row;) {
+      int* const squared = row < window_.last.row ? row_of_distances(row) : nullptr;
+      for (int column = wide_.first.column; column < wide_.last.column; ++column) {
+        int& at = distance[entry_of(column)];
+        const bool contour = squared != nullptr ? squared[entry_of(column)] == 0 : is_contour(map_, {column, row});
+        at = contour ? 0 : std::min(at + 1, never_);
+        if (squared != nullptr) squared[entry_of(column)] = std::min(squared[entry_of(column)], at * at);
+      }
     }
-    const std::uint8_t steps = table_.at(best);
-    return map_[cell] == CellState::kUnknown ? std::min(steps, table_.unknown) : steps;
+  }
+
+  [[nodiscard]] int squared_distance(const int* in_row) const {
+    int best = *in_row;
+    for (int aside = 1; aside <= table_.reach_cells && aside * aside < best; ++aside) {
+      best = std::min(best, aside * aside + std::min(in_row[-aside], in_row[aside]));
+    }
+    return best;
   }
 
   const OccupancyGrid& map_;
   const StepTable& table_;
   CellBox window_;
-  CellBox wide_;
+  CellBox wide_;  // what the window depends on, inside the map
+  int never_;     // farther than anything that counts, cells
+  std::size_t width_;
   std::vector<int> column_distance_;
 };
 
@@ -155,8 +168,10 @@ LikelihoodField::LikelihoodField(const OccupancyGrid& map, const LikelihoodField
   distance_of_steps_m_ = distances_of_steps(table, geometry_.resolution_m);
   const Bordered size = bordered();
   bytes_.assign(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), table.unknown);
-  const CellBox everything{{0, 0}, {geometry_.width, geometry_.height}};
-  if (!everything.empty()) apply({everything, WindowBuilder{map, everything, table}.bytes()});
+  for (int row = 0; row < geometry_.height; row += kRowsAtOnce) {
+    const CellBox band{{0, row}, {geometry_.width, std::min(row + kRowsAtOnce, geometry_.height)}};
+    if (!band.empty()) apply({band, WindowBuilder{map, band, table}.bytes()});
+  }
 }
 
 std::uint8_t LikelihoodField::steps_at(Cell cell) const {
