@@ -15,7 +15,9 @@ void add_decode(CLI::App& app);
 void add_import_carmen(CLI::App& import);
 
 // under `deltamap map`
+void add_map_compare(CLI::App& map);
 void add_map_from_poses(CLI::App& map);
+void add_map_merge(CLI::App& map);
 void add_map_picture(CLI::App& map);
 
 }  // namespace deltamap::daemon::tool

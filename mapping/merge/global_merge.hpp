@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Merges two maps without a prior, beyond the paper: rotations from the Hough spectra, every shift scored at once by
+// correlating contour and free space (Fourier transform), the best brought to the end by closest lines. Refused where
+// two poses fit nearly equally: a periodic hall is ambiguous.
+#pragma once
+
+#include "mapping/merge/map_merge.hpp"
+
+namespace deltamap::mapping::merge {
+
+/// With the pose brought to the end, less may be wrong than at the published merges' half degrees.
+[[nodiscard]] inline ChoiceParams stricter_choice() {
+  ChoiceParams choice;
+  choice.least_overlap = 0.2;
+  choice.least_agreement = 0.7;
+  choice.least_acceptance = 0.93;
+  return choice;
+}
+
+struct GlobalMergeParams {
+  int hough_bins = 720;   ///< over a turn; even
+  int rotations = 6;      ///< maxima of Eq. 6; each is also tried half a turn on
+  int shifts = 4;         ///< best shifts for each rotation
+  int most_pixels = 512;  ///< side of the correlated pictures; larger maps are shrunk for the search
+  ChoiceParams choice = stricter_choice();
+};
+
+/// Both grids must have the same resolution. The pose is the best one found even where it is refused.
+[[nodiscard]] MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local,
+                                    const GlobalMergeParams& params);
+
+}  // namespace deltamap::mapping::merge

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores every shift of one map over another at once: contour and free space as a picture, correlated by Fourier
+// transform.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mapping/merge/overlay_score.hpp"
+
+namespace deltamap::mapping::merge {
+
+class ShiftCorrelation {
+ public:
+  /// `most_pixels` bounds the side of the pictures: larger maps are shrunk by whole factors.
+  ShiftCorrelation(const OccupancyGrid& map, const LocalCells& local, int most_pixels);
+  ~ShiftCorrelation();
+  ShiftCorrelation(const ShiftCorrelation&) = delete;
+  ShiftCorrelation& operator=(const ShiftCorrelation&) = delete;
+
+  /// The n best places for the local map's middle when turned so, best first, apart from each other.
+  [[nodiscard]] std::vector<CellMotion> best_shifts(double turn_rad, int n) const;
+  /// Cells of the map that one pixel covers along each axis.
+  [[nodiscard]] int cells_per_pixel() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace deltamap::mapping::merge
