@@ -137,7 +137,8 @@ Beam decoded_beam(std::uint16_t word, const RangeCoding& coding, double metres_p
   if (value >= coding.beyond_maximum) return {.kind = kind_of_code(value, coding)};
   if (value == 0) return {.kind = BeamKind::kNotValid};
   const double range_m = value * metres_per_word;
-  if (range_m > max_range_m) return {.kind = BeamKind::kBeyondMaximum};
+  constexpr double kRounding = 0.5;  // of a word: a range exactly at the maximum is one
+  if (range_m > max_range_m + kRounding * metres_per_word) return {.kind = BeamKind::kBeyondMaximum};
   return {.range_m = static_cast<float>(range_m), .kind = BeamKind::kRange};
 }
 

@@ -93,6 +93,8 @@ class Lms200Session {
   void answer(const Telegram& telegram, Timestamp now, Lms200Output& out);
   void answer_step(const Telegram& telegram, Timestamp now, Lms200Output& out);
   void answer_probe(const Telegram& telegram, Timestamp now, Lms200Output& out);
+  void answer_baud_change(const Telegram& telegram, Timestamp now, Lms200Output& out);
+  void finish_variant(Timestamp now, Lms200Output& out);
   void time_out(Timestamp now, Lms200Output& out);
   void give_up_step(Timestamp now, Lms200Output& out);
   void begin_step(State state, Timestamp now, Lms200Output& out);

@@ -25,7 +25,6 @@ constexpr int kMaxWrites = 2;  // the EEPROM stands some thousands
 Lms200Output Lms200Session::start(Timestamp now) {
   Lms200Output out;
   if (mode_ == SessionMode::kListenOnly) return out;
-  forget();
   search_from(params_.baud);
   writes_ = 0;
   may_change_baud_ = true;
@@ -181,28 +180,10 @@ void Lms200Session::answer_step(const Telegram& telegram, Timestamp now, Lms200O
       answer_probe(telegram, now, out);
       break;
     case State::kSettingBaud:
-      if (mode_was_switched(telegram) == true) {
-        out.output.log.push_back("laser line switching baud=" + std::to_string(params_.baud));
-        may_change_baud_ = false;  // once is enough: where it does not follow, it stays where it is
-        search_from(params_.baud);
-        set_baud(params_.baud, out);
-        begin_step(State::kSettling, now, out);
-      } else if (refused || mode_was_switched(telegram) == false) {
-        out.output.log.push_back("laser refuses baud=" + std::to_string(params_.baud) + ": stays at " +
-                                 std::to_string(baud()));
-        may_change_baud_ = false;
-        set_up(now, out);
-      }
+      answer_baud_change(telegram, now, out);
       break;
     case State::kSettingVariant:
-      if (refused || telegram.command == response::kVariant) {
-        if (known_variant_ != params_.variant) {
-          out.output.log.push_back("laser refuses variant=" + name_of(params_.variant) + ": keeps " +
-                                   (known_variant_ ? name_of(*known_variant_) : "its own"));
-        }
-        may_change_variant_ = false;
-        set_up(now, out);
-      }
+      if (refused || telegram.command == response::kVariant) finish_variant(now, out);
       break;
     case State::kReadingConfiguration:
     case State::kVerifyingConfiguration:
@@ -239,6 +220,31 @@ void Lms200Session::answer_step(const Telegram& telegram, Timestamp now, Lms200O
     case State::kSettling:
       break;
   }
+}
+
+void Lms200Session::answer_baud_change(const Telegram& telegram, Timestamp now, Lms200Output& out) {
+  const std::optional<bool> switched = mode_was_switched(telegram);
+  if (switched == true) {
+    out.output.log.push_back("laser line switching baud=" + std::to_string(params_.baud));
+    may_change_baud_ = false;  // once is enough: where it does not follow, it stays where it is
+    search_from(params_.baud);
+    set_baud(params_.baud, out);
+    begin_step(State::kSettling, now, out);
+  } else if (switched == false || telegram.command == response::kRefused) {
+    out.output.log.push_back("laser refuses baud=" + std::to_string(params_.baud) + ": stays at " +
+                             std::to_string(baud()));
+    may_change_baud_ = false;
+    set_up(now, out);
+  }
+}
+
+void Lms200Session::finish_variant(Timestamp now, Lms200Output& out) {
+  if (known_variant_ != params_.variant) {
+    out.output.log.push_back("laser refuses variant=" + name_of(params_.variant) + ": keeps " +
+                             (known_variant_ ? name_of(*known_variant_) : "its own"));
+  }
+  may_change_variant_ = false;
+  set_up(now, out);
 }
 
 void Lms200Session::answer_probe(const Telegram& telegram, Timestamp now, Lms200Output& out) {

@@ -149,6 +149,10 @@ TEST(ScanFromMeasurement, TakesRangesOverTheConfiguredMaximumAsBeyondIt) {
   EXPECT_EQ(scan.beams[0].kind, BeamKind::kRange);
   EXPECT_EQ(scan.beams[1].kind, BeamKind::kBeyondMaximum);
   EXPECT_EQ(scan.max_range_m, 30.0);
+  for (std::uint16_t word = 1; word < 8000; word = static_cast<std::uint16_t>(word + 7)) {
+    const Scan at_maximum = scan_of(measurement_of(181, word, 0), {.max_range_m = word / 100.0});
+    ASSERT_EQ(at_maximum.beams[0].kind, BeamKind::kRange) << word << " cm is not beyond itself";
+  }
 }
 
 TEST(ScanFromMeasurement, CarriesTheMount) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random.hpp"
 #include "tests/drivers/lms200/fake_laser.hpp"
+#include "tests/support/damage.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {
@@ -30,6 +32,7 @@ class Lms200SessionTest : public testing::Test {
   }
 
   void expect_streaming_as_wanted() {
+    line.run_for(1.0);
     EXPECT_TRUE(session.is_streaming());
     EXPECT_EQ(laser.baud(), 38400u);
     EXPECT_EQ(session.baud(), 38400u);
@@ -193,6 +196,19 @@ TEST_F(Lms200SessionTest, FailsWhenScansStopAndComesBackWithNumbersThatGoOn) {
   line.run_for(1.0);
   ASSERT_GT(line.messages.size(), before);
   EXPECT_EQ(line.messages.back().number, line.messages.size() - 1);
+}
+
+TEST_F(Lms200SessionTest, ComesUpThroughNoiseBetweenTelegrams) {
+  Random random{17};
+  line.start();
+  for (int i = 0; i < 400; ++i) {
+    line.run_for(0.03);
+    line.carry_out(session.on_bytes(tests::random_bytes(1 + random.index_below(8), random), line.now));
+  }
+  EXPECT_FALSE(line.failed);
+  EXPECT_GT(session.counts().garbage_bytes, 100u);
+  line.run_for(2.0);
+  expect_streaming_as_wanted();
 }
 
 TEST_F(Lms200SessionTest, KnowsHowOftenScansCome) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random.hpp"
 #include "tests/drivers/pioneer/fake_robot.hpp"
+#include "tests/support/damage.hpp"
 #include "tests/support/hex.hpp"
 
 namespace deltamap::drivers::pioneer {
@@ -112,6 +114,19 @@ TEST_F(PioneerSessionTest, StopsALeftOverRobotBeforeAnythingCouldMakeItResume) {
 TEST_F(PioneerSessionTest, StartsOverWhenSyncIsAnsweredWithNonsense) {
   robot.sync1_to_garble = 1;
   ASSERT_TRUE(connect());
+}
+
+TEST_F(PioneerSessionTest, ConnectsThroughNoiseBetweenPackets) {
+  Random random{19};
+  robot.be_left_over(300);
+  ASSERT_TRUE(connect());
+  for (int i = 0; i < 300; ++i) {
+    line.run_for(0.03);
+    line.carry_out(session.on_bytes(tests::random_bytes(1 + random.index_below(8), random), line.now));
+  }
+  EXPECT_TRUE(session.is_connected());
+  EXPECT_FALSE(robot.has_ever_moved);
+  EXPECT_GT(session.counts().garbage_bytes, 300u);
 }
 
 TEST_F(PioneerSessionTest, FeedsTheWatchdogWhileIdle) {
