@@ -51,7 +51,9 @@ std::optional<double> Wander::open_bearing(double least_turn_rad) {
   };
   std::vector<Way> ways;
   double sum = 0.0;
-  for (double bearing = field_.right_rad; bearing <= field_.left_rad; bearing += kBearingStepRad) {
+  const int steps = static_cast<int>((field_.left_rad - field_.right_rad) / kBearingStepRad);
+  for (int i = 0; i <= steps; ++i) {
+    const double bearing = field_.right_rad + i * kBearingStepRad;
     if (std::abs(bearing) < least_turn_rad) continue;
     const double free_m = free_towards_m(bearing);
     if (free_m < params_.go_on_m) continue;

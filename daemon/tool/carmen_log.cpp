@@ -4,10 +4,10 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace deltamap::daemon::tool {
@@ -197,7 +197,7 @@ std::optional<CarmenRecord> read_record(std::string_view kind, Words& words) {
 CarmenLog::CarmenLog(std::filesystem::path file) : file_{std::move(file)} {
   if (std::filesystem::is_directory(file_)) refuse_file(file_, "is a directory");
   in_.open(file_, std::ios::binary);
-  if (!in_) refuse_file(file_, std::strerror(errno));
+  if (!in_) refuse_file(file_, std::generic_category().message(errno));
   std::string magic(6, '\0');
   in_.read(magic.data(), 6);
   magic.resize(static_cast<std::size_t>(in_.gcount()));

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "drivers/port/byte_log.hpp"
@@ -37,7 +37,7 @@ std::int64_t ticks_per_second(std::uint8_t resolution) {
 ByteLogReader::ByteLogReader(std::filesystem::path file) : file_{std::move(file)} {
   if (std::filesystem::is_directory(file_)) throw std::runtime_error(file_.string() + ": is a directory");
   in_.open(file_, std::ios::binary);
-  if (!in_) throw std::runtime_error(file_.string() + ": " + std::strerror(errno));
+  if (!in_) throw std::runtime_error(file_.string() + ": " + std::generic_category().message(errno));
   in_.seekg(0, std::ios::end);
   size_bytes_ = static_cast<std::uint64_t>(in_.tellg());
   in_.seekg(0);

@@ -4,8 +4,8 @@
 
 #include <cassert>
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "drivers/port/byte_log.hpp"
@@ -14,7 +14,7 @@
 namespace deltamap::drivers::port {
 namespace {
 
-constexpr std::size_t kFlushBytes = 64 * 1024;
+constexpr std::size_t kFlushBytes = std::size_t{64} * 1024;
 constexpr std::uint16_t kLinkTypeUser0 = 147;  // LINKTYPE_USER0 of the tcpdump.org registry; USER1 follows
 constexpr std::uint8_t kNanoseconds = 9;
 
@@ -86,7 +86,7 @@ void ByteLogWriter::fail(const char* what, int reason) {
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
   waiting_.clear();
-  throw std::runtime_error(file_.string() + ": " + what + ": " + std::strerror(reason));
+  throw std::runtime_error(file_.string() + ": " + what + ": " + std::generic_category().message(reason));
 }
 
 void ByteLogWriter::write(const ByteRecord& record) {

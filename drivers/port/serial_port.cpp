@@ -13,8 +13,8 @@
 #include <boost/asio/steady_timer.hpp>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <deque>
+#include <system_error>
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
@@ -58,7 +58,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     if (tasks_.size() == 1) work();
   }
 
-  void discard_input() {
+  void discard_input() const {
     if (!closed_) discard_unread_bytes(terminal_);
   }
 
@@ -97,7 +97,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     const Timestamp stamp = port_clock_now();
     if (count == 0) return fail("the device hung up");
     if (count < 0 && errno != EAGAIN && errno != EINTR) {
-      return fail(std::string("the device is gone (") + std::strerror(errno) + ")");
+      return fail("the device is gone (" + std::generic_category().message(errno) + ")");
     }
     if (count > 0 && handlers_.on_bytes) {
       const auto on_bytes = handlers_.on_bytes;  // the handler may close this port
@@ -123,7 +123,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
         return false;
       }
       if (count <= 0) {
-        fail(std::string("the device does not take bytes (") + std::strerror(errno) + ")");
+        fail("the device does not take bytes (" + std::generic_category().message(errno) + ")");
         return false;
       }
       task.written += static_cast<std::size_t>(count);

@@ -13,8 +13,8 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 namespace deltamap::drivers::port {
@@ -46,8 +46,11 @@ std::string group_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return "dialout";
   if ((status.st_mode & S_IRGRP) == 0 || (status.st_mode & S_IWGRP) == 0) return "dialout";
-  const struct group* owner = ::getgrgid(status.st_gid);
-  return owner != nullptr && status.st_gid != 0 ? owner->gr_name : "dialout";
+  std::array<char, 4096> names{};
+  struct group owner {};
+  struct group* found = nullptr;
+  (void)::getgrgid_r(status.st_gid, &owner, names.data(), names.size(), &found);
+  return found != nullptr && status.st_gid != 0 ? found->gr_name : "dialout";
 }
 
 std::string reason_of(const std::string& path, int error) {
@@ -55,15 +58,15 @@ std::string reason_of(const std::string& path, int error) {
     case ENOENT:
     case ENODEV:
     case ENXIO:
-      return "is missing (" + std::string(std::strerror(error)) + "): not plugged in or switched on?";
+      return "is missing (" + std::generic_category().message(error) + "): not plugged in or switched on?";
     case EBUSY:
     case EWOULDBLOCK:
       return "is busy: another program has it open";
     case EACCES:
     case EPERM:
-      return "is forbidden (" + std::string(std::strerror(error)) + "): join the group '" + group_of(path) + "'";
+      return "is forbidden (" + std::generic_category().message(error) + "): join the group '" + group_of(path) + "'";
     default:
-      return "cannot be opened: " + std::string(std::strerror(error));
+      return "cannot be opened: " + std::generic_category().message(error);
   }
 }
 
@@ -126,7 +129,7 @@ std::string set_line_speed(int descriptor, unsigned baud) {
   termios line{};
   if (::tcgetattr(descriptor, &line) != 0 || ::cfsetspeed(&line, *speed) != 0 ||
       ::tcsetattr(descriptor, TCSANOW, &line) != 0) {
-    return "cannot run at " + std::to_string(baud) + " baud: " + std::strerror(errno);
+    return "cannot run at " + std::to_string(baud) + " baud: " + std::generic_category().message(errno);
   }
   return "";
 }
