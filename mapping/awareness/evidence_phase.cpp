@@ -215,7 +215,8 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
       blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
       hand_on(question, block);
     }
-    watch(blocks, question == Question::kAdded ? params_.reach_blocks : 0, question == Question::kAdded ? region_first_ms : now_ms_);
+    watch(blocks, question == Question::kAdded ? params_.reach_blocks : 0,
+          question == Question::kAdded ? region_first_ms : now_ms_);
     first_ms = std::min(first_ms, region_first_ms);
     handed_on = merged(std::move(handed_on), blocks);
   }

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/database.hpp"
+
+#include <sqlite3.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace deltamap::mapping {
+namespace {
+
+constexpr int kBusy_ms = 3000;  // another program may be reading or writing
+
+int flags_of(Database::Mode mode) {
+  return SQLITE_OPEN_READWRITE | (mode == Database::Mode::kCreate ? SQLITE_OPEN_CREATE : 0);
+}
+
+}  // namespace
+
+Database::Database(std::filesystem::path file, Mode mode) : file_{std::move(file)} {
+  const int result = sqlite3_open_v2(file_.c_str(), &handle_, flags_of(mode) | SQLITE_OPEN_NOMUTEX, nullptr);
+  if (result != SQLITE_OK) {
+    const std::string why = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(result);
+    sqlite3_close(handle_);
+    handle_ = nullptr;
+    fail(why);
+  }
+  sqlite3_busy_timeout(handle_, kBusy_ms);
+}
+
+Database::~Database() { sqlite3_close(handle_); }
+
+Database::Database(Database&& other) noexcept
+    : file_{std::move(other.file_)}, handle_{std::exchange(other.handle_, nullptr)} {}
+
+void Database::fail(const std::string& why) const { throw std::runtime_error(file_.string() + ": " + why); }
+
+void Database::run(const std::string& sql) {
+  if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail(sqlite3_errmsg(handle_));
+}
+
+std::int64_t Database::number(const std::string& sql) {
+  Statement statement{*this, sql};
+  return statement.step() ? statement.number(0) : 0;
+}
+
+std::string Database::text(const std::string& sql) {
+  Statement statement{*this, sql};
+  return statement.step() ? statement.text(0) : std::string{};
+}
+
+Statement::Statement(Database& database, std::string_view sql) : database_{database} {
+  if (sqlite3_prepare_v2(database.handle_, sql.data(), static_cast<int>(sql.size()), &handle_, nullptr) != SQLITE_OK) {
+    database.fail(sqlite3_errmsg(database.handle_));
+  }
+}
+
+Statement::~Statement() { sqlite3_finalize(handle_); }
+
+Statement& Statement::bind(std::int64_t value) {
+  sqlite3_bind_int64(handle_, ++bound_, value);
+  return *this;
+}
+
+Statement& Statement::bind(double value) {
+  sqlite3_bind_double(handle_, ++bound_, value);
+  return *this;
+}
+
+Statement& Statement::bind(const std::string& value) {
+  sqlite3_bind_text(handle_, ++bound_, value.c_str(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
+  return *this;
+}
+
+Statement& Statement::bind(std::span<const std::uint8_t> blob) {
+  sqlite3_bind_blob(handle_, ++bound_, blob.empty() ? nullptr : blob.data(), static_cast<int>(blob.size()),
+                    SQLITE_TRANSIENT);
+  return *this;
+}
+
+bool Statement::step() {
+  const int result = sqlite3_step(handle_);
+  if (result == SQLITE_ROW) return true;
+  if (result != SQLITE_DONE) database_.fail(sqlite3_errmsg(database_.handle_));
+  return false;
+}
+
+std::int64_t Statement::number(int column) const { return sqlite3_column_int64(handle_, column); }
+double Statement::real(int column) const { return sqlite3_column_double(handle_, column); }
+
+std::string Statement::text(int column) const {
+  const auto* text = sqlite3_column_text(handle_, column);
+  return text == nullptr ? std::string{} : std::string{reinterpret_cast<const char*>(text)};
+}
+
+std::vector<std::uint8_t> Statement::blob(int column) const {
+  const auto* bytes = static_cast<const std::uint8_t*>(sqlite3_column_blob(handle_, column));
+  const int size = sqlite3_column_bytes(handle_, column);
+  return bytes == nullptr ? std::vector<std::uint8_t>{} : std::vector<std::uint8_t>{bytes, bytes + size};
+}
+
+Transaction::Transaction(Database& database) : database_{database} { database_.run("BEGIN IMMEDIATE"); }
+
+Transaction::~Transaction() {
+  if (!open_) return;
+  try {
+    database_.run("ROLLBACK");
+  } catch (const std::exception&) {  // the file is gone or full: SQLite rolls back by itself at the next opening
+  }
+}
+
+void Transaction::commit() {
+  database_.run("COMMIT");
+  open_ = false;
+}
+
+}  // namespace deltamap::mapping

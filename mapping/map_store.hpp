@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every revision M_k on disk (SQLite, write-ahead log): the changes of each, a whole grid now and then, and what was
+// refused. Histories are told apart by the hash of M_0, so that another map never finds old revisions. Used by one
+// thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap::mapping {
+
+/// What a revision or a refusal is kept with.
+struct RevisionNote {
+  std::uint32_t phase = 0;  ///< number of the Δ-phase
+  double acceptance = 0.0;  ///< Eq. 11
+  std::string cause;        ///< method, or the reason of the refusal
+};
+
+struct StoredRevision {
+  std::uint32_t number = 0;  ///< k; a refusal has the number of the revision that stayed
+  bool refused = false;
+  Timestamp time;
+  RevisionNote note;
+  std::uint32_t occupied = 0;  ///< cells that became occupied
+  std::uint32_t freed = 0;     ///< cells that became free
+  std::uint32_t unknown = 0;   ///< cells that became unknown
+  CellBox box;                 ///< of the changed cells
+};
+
+class MapStore {
+ public:
+  /// Opens the history of M_0, and begins it where there is none. Revisions at the end that cannot be restored are
+  /// dropped. Throws std::runtime_error: one line that names the file (foreign, damaged, not writable).
+  MapStore(const std::filesystem::path& file, const OccupancyGrid& first);
+  /// Opens the history that was used last in an existing file, to read or to roll back.
+  explicit MapStore(const std::filesystem::path& file);
+  ~MapStore();
+  MapStore(MapStore&&) noexcept;
+  MapStore& operator=(MapStore&&) noexcept;
+
+  [[nodiscard]] std::uint32_t newest() const;
+  /// Damaged revisions that opening has dropped.
+  [[nodiscard]] std::uint32_t dropped() const;
+  /// M_k. Throws std::runtime_error where there is no such revision, or it is damaged.
+  [[nodiscard]] OccupancyGrid grid(std::uint32_t number) const;
+  /// Accepted and refused, in the order in which they were written.
+  [[nodiscard]] std::vector<StoredRevision> history() const;
+
+  /// The revision must follow the newest one.
+  void append(const MapRevision& revision, const RevisionNote& note);
+  void append_refusal(Timestamp time, const RevisionNote& note);
+  /// Writes M_k once more as the newest revision (nothing is lost), and returns its number.
+  std::uint32_t roll_back(std::uint32_t number, Timestamp time);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace deltamap::mapping
