@@ -30,6 +30,13 @@ alignment::NearestSurface surface_around(const OccupancyGrid& map, const CellBox
   return alignment::NearestSurface{std::move(surface), map.resolution_m(), reach_m};
 }
 
+/// How many points have a surface in reach, wherever exactly.
+std::size_t points_near(const alignment::NearestSurface& surface, const std::vector<Point2>& points,
+                        const Pose2& pose) {
+  return static_cast<std::size_t>(std::count_if(
+      points.begin(), points.end(), [&](const Point2& point) { return surface.nearest(pose * point) != nullptr; }));
+}
+
 }  // namespace
 
 Placement placed_scans(const OccupancyGrid& map, const std::vector<TrackedScan>& scans,
@@ -55,14 +62,16 @@ Placement placed_scans(const OccupancyGrid& map, const std::vector<TrackedScan>&
     const alignment::PoseBelief belief = belief_of(guess.tracked->estimate, params);
     const alignment::Registration found =
         alignment::registration(points, surface, guess.map_from_robot, belief, registration_params);
-    if (found.paired < params.least_points) {
+    const Pose2& pose = found.reference_from_moving;
+    const std::size_t near = points_near(surface, points, pose);
+    if (near < params.least_points) {
       placement.scans.push_back(guess);
       continue;
     }
-    const Pose2& pose = found.reference_from_moving;
     const Eigen::Vector3d moved{pose.x - guess.map_from_robot.x, pose.y - guess.map_from_robot.y,
                                 turn_between(guess.map_from_robot.theta, pose.theta)};
-    if (moved.dot(belief.information * moved) > params.most_chi2) {
+    if (moved.dot(belief.information * moved) > params.most_chi2 ||
+        static_cast<double>(found.paired) < params.least_agreement * static_cast<double>(near)) {
       ++placement.implausible;
       continue;
     }

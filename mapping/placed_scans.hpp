@@ -20,13 +20,14 @@ struct PlacementParams {
   double least_position_deviation_m = 0.03;     ///< floor of the pose's σ: particle filters are too sure of themselves
   double least_heading_deviation_rad = 0.0087;  ///< floor of the heading's σ (0.5°)
   double independent_points = 60.0;             ///< at most so many points' worth of information: cell noise is shared
-  std::uint32_t least_points = 30;              ///< with fewer on a surface the localizer's pose stays
+  std::uint32_t least_points = 30;              ///< with fewer near a surface the localizer's pose stays
+  double least_agreement = 0.5;                 ///< share of the points near a surface that come to lie on it; [0, 1]
   double most_chi2 = 16.27;  ///< of a correction under the pose's covariance; 3 degrees of freedom, 99.9 %
 };
 
 struct Placement {
   std::vector<PlacedScan> scans;  ///< those that fit, pointing into the set
-  std::uint32_t implausible = 0;  ///< left out by χ²
+  std::uint32_t implausible = 0;  ///< left out: they contradict the localizer, or do not fit
   Pose2 mean_correction;          ///< of the poses in the map
 };
 

@@ -15,6 +15,7 @@ int run_tool(int argc, const char* const* argv) {
   CLI::App& map = *app.add_subcommand("map", "make, compare, merge and look at maps")->require_subcommand(1);
   add_map_compare(map);
   add_map_from_poses(map);
+  add_map_history(map);
   add_map_merge(map);
   add_map_picture(map);
   CLI::App& import = *app.add_subcommand("import", "other people's logs as recordings")->require_subcommand(1);

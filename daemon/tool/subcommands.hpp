@@ -17,6 +17,7 @@ void add_import_carmen(CLI::App& import);
 // under `deltamap map`
 void add_map_compare(CLI::App& map);
 void add_map_from_poses(CLI::App& map);
+void add_map_history(CLI::App& map);
 void add_map_merge(CLI::App& map);
 void add_map_picture(CLI::App& map);
 

@@ -19,7 +19,7 @@ namespace deltamap::mapping::awareness {
 struct EvidencePhaseParams {
   double persistence_s = 3.0;        ///< votes must span at least so long; >= 0 (mapping.persistence_s)
   double least_votes = 4.0;          ///< keyframes that say so, worn votes not counted; > 0
-  double least_added_share = 0.65;   ///< of the votes on a block that say "added"; (0.5, 1]
+  double least_added_share = 0.8;    ///< of the votes on a block that say "added"; (0.5, 1]
   double least_removed_share = 0.8;  ///< of the votes on a block that say "removed"; (0.5, 1]
   int reach_blocks = 2;              ///< proven blocks at most so far apart are one region; >= 1
   std::uint32_t least_blocks = 3;    ///< a smaller region is a speck and waits; >= 1

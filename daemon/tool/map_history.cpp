@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap map history STORE …`: what the map store remembers: list it, take out a revision, compare two, go back to
+// one.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "core/grid_file.hpp"
+#include "daemon/tool/subcommands.hpp"
+#include "mapping/map_store.hpp"
+#include "mapping/merge/acceptance.hpp"
+
+namespace deltamap::daemon::tool {
+namespace {
+
+using mapping::MapStore;
+using mapping::StoredRevision;
+
+struct Options {
+  std::string store;
+  std::uint32_t number = 0;
+  std::uint32_t other = 0;
+  std::string out;
+  bool json = false;
+};
+
+std::string utc(Timestamp time) {
+  if (unix_ns(time) == 0) return "-";
+  const std::time_t seconds =
+      std::chrono::system_clock::to_time_t(std::chrono::time_point_cast<std::chrono::system_clock::duration>(time));
+  std::tm calendar{};
+  gmtime_r(&seconds, &calendar);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &calendar);
+  return text;
+}
+
+nlohmann::json box_as_json(const CellBox& box) {
+  if (box.empty()) return nullptr;
+  return {box.first.column, box.first.row, box.last.column - 1, box.last.row - 1};
+}
+
+void list(const Options& options) {
+  const MapStore store{options.store};
+  if (!options.json)
+    std::printf("%6s  %-19s  %5s  %8s  %7s  %7s  %s\n", "k", "time (UTC)", "phase", "occupied", "freed", "accept.",
+                "cause");
+  for (const StoredRevision& revision : store.history()) {
+    if (options.json) {
+      const nlohmann::json line{{"number", revision.number},
+                                {"refused", revision.refused},
+                                {"time_ns", unix_ns(revision.time)},
+                                {"phase", revision.note.phase},
+                                {"acceptance", revision.note.acceptance},
+                                {"cause", revision.note.cause},
+                                {"occupied", revision.occupied},
+                                {"freed", revision.freed},
+                                {"unknown", revision.unknown},
+                                {"box", box_as_json(revision.box)}};
+      std::cout << line.dump() << '\n';
+      continue;
+    }
+    const std::string number = revision.refused ? "-" : std::to_string(revision.number);
+    std::printf("%6s  %-19s  %5u  %8u  %7u  %7.3f  %s%s\n", number.c_str(), utc(revision.time).c_str(),
+                revision.note.phase, revision.occupied, revision.freed, revision.note.acceptance,
+                revision.refused ? "refused: " : "", revision.note.cause.c_str());
+  }
+}
+
+void write_revision(const Options& options) {
+  write_grid(MapStore{options.store}.grid(options.number), options.out);
+  if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
+}
+
+void compare(const Options& options) {
+  const MapStore store{options.store};
+  const OccupancyGrid before = store.grid(options.number);
+  const OccupancyGrid after = store.grid(options.other);
+  const auto changes = changes_between(before, after);
+  std::size_t became[3] = {};
+  for (const CellChange& change : changes) ++became[static_cast<std::size_t>(change.after)];
+  const double acceptance = mapping::merge::acceptance(before, after).value();
+  const nlohmann::json result{{"from", options.number},   {"to", options.other},
+                              {"cells", changes.size()},  {"freed", became[0]},
+                              {"occupied", became[1]},    {"unknown", became[2]},
+                              {"acceptance", acceptance}, {"box", box_as_json(bounding_box(changes))}};
+  if (options.json) {
+    std::cout << result.dump() << '\n';
+  } else {
+    std::printf("%zu cells differ: %zu became occupied, %zu free, %zu unknown; acceptance %.4f\n", changes.size(),
+                became[1], became[0], became[2], acceptance);
+  }
+}
+
+void roll_back(const Options& options) {
+  MapStore store{options.store};
+  const std::uint32_t number = store.roll_back(options.number, std::chrono::system_clock::now());
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", number}, {"same_as", options.number}}.dump() << '\n';
+  } else {
+    std::printf("revision %u is revision %u again\n", number, options.number);
+  }
+}
+
+}  // namespace
+
+void add_map_history(CLI::App& map) {
+  auto options = std::make_shared<Options>();
+  CLI::App* history = map.add_subcommand("history", "the revisions of a map: list, export, diff, rollback");
+  history->require_subcommand(1);
+  history->fallthrough();
+  history->add_option("STORE", options->store, "map store (SQLite)")->required();
+  history->add_flag("--json", options->json, "one JSON object a line");
+
+  CLI::App* lister = history->add_subcommand("list", "every revision and refusal, oldest first");
+  lister->fallthrough()->callback([options] { list(*options); });
+
+  CLI::App* exporter = history->add_subcommand("export", "write revision K as a map");
+  exporter->add_option("K", options->number)->required();
+  exporter->add_option("OUT", options->out, "map_server YAML to write")->required();
+  exporter->fallthrough()->callback([options] { write_revision(*options); });
+
+  CLI::App* differ = history->add_subcommand("diff", "what changed from revision J to K");
+  differ->add_option("J", options->number)->required();
+  differ->add_option("K", options->other)->required();
+  differ->fallthrough()->callback([options] { compare(*options); });
+
+  CLI::App* roller = history->add_subcommand("rollback", "make revision K the newest again; nothing is lost");
+  roller->add_option("K", options->number)->required();
+  roller->fallthrough()->callback([options] { roll_back(*options); });
+}
+
+}  // namespace deltamap::daemon::tool

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Awareness by the paper: Eq. 2 and 3 by hand, and the Δ-phases that follow from them.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "mapping/awareness/divergence_ratio.hpp"
+#include "mapping/store_scan.hpp"
+
+namespace deltamap::mapping {
+namespace {
+
+constexpr double kExact = 1e-12;
+
+TEST(DivergenceRatio, StartsBothAveragesAtTheFirstWeight) {
+  awareness::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
+  EXPECT_EQ(ratio.observe(0.8), 0.0);
+  EXPECT_EQ(ratio.w_fast(), 0.8);
+  EXPECT_EQ(ratio.w_slow(), 0.8);
+}
+
+TEST(DivergenceRatio, FollowsEquationsTwoAndThree) {
+  awareness::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
+  (void)ratio.observe(0.8);
+  EXPECT_NEAR(ratio.observe(0.4), 1.0 - 0.76 / 0.796, kExact);  // 0.8 - 0.1 · 0.4 and 0.8 - 0.01 · 0.4
+  EXPECT_NEAR(ratio.observe(0.9), 1.0 - (0.76 + 0.1 * 0.14) / (0.796 + 0.01 * 0.104), kExact);
+}
+
+TEST(DivergenceRatio, IsNegativeWhereScansFitBetterThanTheyUsedTo) {
+  awareness::DivergenceRatio ratio{{}};
+  (void)ratio.observe(0.4);
+  EXPECT_LT(ratio.observe(0.8), 0.0);
+}
+
+class PaperPhases : public testing::Test {
+ protected:
+  PaperPhases() {
+    params.method = MappingMethod::kPaper;
+    params.divergence = {.alpha_slow = 0.01, .alpha_fast = 0.5};
+  }
+
+  /// Sends a scan with that weight.
+  std::optional<ScanSet> send(double w_avg, double n_eff = 400.0, LocalizerState state = LocalizerState::kTracking,
+                              std::uint32_t epoch = 0) {
+    if (!store) store.emplace(params, 1);
+    TrackedScan tracked;
+    tracked.scan.number = sent++;
+    tracked.scan.time = timestamp_from_ns(std::int64_t{sent} * 100'000'000);
+    tracked.estimate.w_avg = w_avg;
+    tracked.estimate.n_eff = n_eff;
+    tracked.estimate.particles = 500;
+    tracked.estimate.state = state;
+    tracked.estimate.map = std::make_shared<const OccupancyGrid>();
+    tracked.odometry_epoch = epoch;
+    return store->observe(tracked);
+  }
+  /// Good scans until the averages agree.
+  void settle() {
+    for (int i = 0; i < 20; ++i) EXPECT_FALSE(send(0.8));
+  }
+
+  StoreScanParams params;
+  std::optional<StoreScan> store;
+  std::uint32_t sent = 0;
+};
+
+TEST_F(PaperPhases, BeginAtTheFirstPositiveRatioAndEndBelowZero) {
+  settle();
+  EXPECT_FALSE(store->awareness().in_phase);
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(send(0.1));
+  EXPECT_TRUE(store->awareness().in_phase);
+  std::optional<ScanSet> set;
+  for (int i = 0; i < 20 && !set; ++i) set = send(0.9);
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->phase, 1u);
+  EXPECT_EQ(set->method, MappingMethod::kPaper);
+  EXPECT_FALSE(store->awareness().in_phase);
+  EXPECT_LT(store->awareness().r_d, 0.0);
+  EXPECT_GT(set->scans.size(), 5u);
+  EXPECT_LT(set->began, set->ended);
+}
+
+TEST_F(PaperPhases, KeepAScanWithTheProbabilityOfTheRatio) {
+  settle();
+  int sent_in_phase = 0;
+  double expected = 0.0;
+  for (; sent_in_phase < 400; ++sent_in_phase) {
+    (void)send(0.5);
+    expected += std::max(0.0, store->awareness().r_d);
+    if (!store->awareness().in_phase) break;
+  }
+  constexpr double kFourDeviations = 40.0;  // of a sum of 400 draws, at most √(400/4) each
+  EXPECT_NEAR(store->awareness().stored_scans, expected, kFourDeviations);
+  EXPECT_GT(store->awareness().stored_scans, 20u);
+}
+
+TEST_F(PaperPhases, KeepNoScanWhosePoseIsPoor) {
+  settle();
+  for (int i = 0; i < 50; ++i) (void)send(0.1, 20.0);  // N_eff 20 of 500
+  EXPECT_TRUE(store->awareness().in_phase);
+  EXPECT_EQ(store->awareness().stored_scans, 0u);
+}
+
+TEST_F(PaperPhases, KeepOnlyWhatIsTracked) {
+  settle();
+  for (int i = 0; i < 50; ++i) (void)send(0.1, 400.0, LocalizerState::kLost);
+  EXPECT_FALSE(store->awareness().in_phase);
+  EXPECT_EQ(store->awareness().r_d, 0.0);
+}
+
+TEST_F(PaperPhases, NeverHoldMoreScansThanTheCap) {
+  params.delta_phase.most_scans = 7;
+  settle();
+  for (int i = 0; i < 200; ++i) (void)send(0.1);
+  EXPECT_EQ(store->awareness().stored_scans, 7u);
+}
+
+TEST_F(PaperPhases, EndWhereTheOdometryJumps) {
+  settle();
+  for (int i = 0; i < 50; ++i) (void)send(0.1);
+  const auto set = send(0.1, 400.0, LocalizerState::kTracking, 1);
+  ASSERT_TRUE(set);
+  for (const TrackedScan& tracked : set->scans) EXPECT_EQ(tracked.odometry_epoch, 0u);
+}
+
+TEST_F(PaperPhases, DrawTheSameScansFromTheSameSeed) {
+  const auto numbers = [&](std::uint64_t seed) {
+    store.emplace(params, seed);
+    sent = 0;
+    settle();
+    for (int i = 0; i < 30; ++i) (void)send(0.5);
+    std::optional<ScanSet> set;
+    for (int i = 0; i < 20 && !set; ++i) set = send(0.9);
+    std::vector<std::uint32_t> kept;
+    for (const TrackedScan& tracked : set->scans) kept.push_back(tracked.scan.number);
+    return kept;
+  };
+  const auto once = numbers(1);
+  EXPECT_EQ(numbers(1), once);
+  EXPECT_NE(numbers(2), once);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping
