@@ -12,19 +12,14 @@
 
 #include "core/angle.hpp"
 #include "core/grid_file.hpp"
-#include "daemon/tool/carmen_log.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/weighing.hpp"
+#include "tests/support/carmen_feed.hpp"
 
 namespace {
 
 using namespace deltamap;
-using daemon::tool::CarmenLog;
-using daemon::tool::CarmenScan;
-
-constexpr double kScanDuration_s = 0.0133;  // 75 Hz mirror
-constexpr double kGap_s = 0.1;              // longest time without an odometry report
 
 struct Options {
   std::string log;
@@ -43,57 +38,6 @@ double cpu_seconds() {
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
-
-Scan scan_of(const CarmenScan& logged, const Options& options, std::uint32_t number) {
-  Scan scan;
-  scan.time = logged.time;
-  scan.received = logged.time + duration_from_seconds(kScanDuration_s);
-  scan.number = number;
-  scan.first_bearing_rad = logged.first_bearing_rad;
-  scan.bearing_step_rad = logged.bearing_step_rad;
-  scan.max_range_m = options.no_return_m;
-  scan.robot_from_laser = {options.laser_x_m, 0.0, 0.0};
-  const auto count = static_cast<double>(logged.ranges_m.size());
-  for (std::size_t i = 0; i < logged.ranges_m.size(); ++i) {
-    const double range_m = logged.ranges_m[i];
-    const auto offset_s = static_cast<float>(kScanDuration_s * static_cast<double>(i) / count);
-    if (range_m > 0.0 && range_m < options.no_return_m) {
-      scan.beams.push_back({static_cast<float>(range_m), offset_s, BeamKind::kRange});
-    } else {
-      scan.beams.push_back({0.0F, offset_s, range_m > 0.0 ? BeamKind::kBeyondMaximum : BeamKind::kNotValid});
-    }
-  }
-  return scan;
-}
-
-/// Reports as the robot would have sent them: one at the scan, others in between.
-class OdometryFeed {
- public:
-  void lead_to(Timestamp time, const Pose2& odom_from_robot, localization::Localizer& localizer) {
-    if (started_ && time > last_.time) {
-      const double gap_s = seconds(time - last_.time);
-      const int parts = static_cast<int>(std::ceil(gap_s / kGap_s));
-      const Odometry from = last_;
-      for (int i = 1; i < parts; ++i) {
-        const double share = static_cast<double>(i) / parts;
-        report(from.time + duration_from_seconds(share * gap_s),
-               interpolated(from.odom_from_robot, odom_from_robot, share), localizer);
-      }
-    }
-    report(time, odom_from_robot, localizer);
-  }
-
- private:
-  void report(Timestamp time, const Pose2& odom_from_robot, localization::Localizer& localizer) {
-    last_ = Odometry{};
-    last_.time = time;
-    last_.odom_from_robot = odom_from_robot;
-    localizer.observe(last_);
-    started_ = true;
-  }
-  Odometry last_;
-  bool started_ = false;
-};
 
 void write_pose(std::ostream& out, const Estimate& estimate) {
   const Pose2& pose = estimate.map_from_robot;
@@ -114,20 +58,14 @@ void run(const Options& options, const localization::LocalizerParams& params) {
   out.setf(std::ios::fixed);
   out.precision(6);
   std::ofstream figures{options.figures};
-  CarmenLog log{options.log};
-  OdometryFeed feed;
+  test::CarmenFeed feed{options.log, options.laser_x_m, options.no_return_m};
   std::vector<double> cpu_s;
   std::optional<Timestamp> began;
-  std::uint32_t number = 0;
-  while (const auto record = log.next()) {
-    const auto* logged = std::get_if<CarmenScan>(&*record);
-    if (logged == nullptr || !logged->poses) continue;
-    began = began.value_or(logged->time);
-    if (seconds(logged->time - *began) < options.from_s) continue;
-    Scan scan = scan_of(*logged, options, number++);
+  while (auto scan = feed.next(localizer)) {
+    began = began.value_or(scan->time);
+    if (seconds(scan->time - *began) < options.from_s) continue;
     const double start_s = cpu_seconds();
-    feed.lead_to(logged->time, logged->poses->odom_from_robot, localizer);
-    const TrackedScan tracked = localizer.observe(std::move(scan));
+    const TrackedScan tracked = localizer.observe(std::move(*scan));
     cpu_s.push_back(cpu_seconds() - start_s);
     const Estimate& estimate = tracked.estimate;
     write_pose(out, estimate);
