@@ -142,12 +142,11 @@ Settings parse_settings(const std::string& yaml, const std::string& name, const 
 Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
-  if (!in || !std::filesystem::is_regular_file(file) || !(text << in.rdbuf())) {
-    const std::string why = std::filesystem::is_directory(file) ? "is a folder"
-                            : errno != 0                        ? std::strerror(errno)
-                                                                : "is empty";
+  if (!in || std::filesystem::is_directory(file)) {
+    const std::string why = std::filesystem::is_directory(file) ? "is a folder" : std::strerror(errno);
     throw SettingsError(file.string() + ": cannot read the settings: " + why);
   }
+  text << in.rdbuf();
   return parse_settings(text.str(), file.string(), overrides);
 }
 

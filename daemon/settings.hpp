@@ -16,6 +16,11 @@
 #include "drivers/lms200/session.hpp"
 #include "drivers/pioneer/session.hpp"
 #include "localization/localizer_params.hpp"
+#include "mapping/map_update_params.hpp"
+#include "mapping/store_scan.hpp"
+#include "navigation/drive_mode.hpp"
+#include "navigation/safety.hpp"
+#include "navigation/wander.hpp"
 
 namespace deltamap::daemon {
 
@@ -34,6 +39,18 @@ struct MapSettings {
   std::string store;  ///< revisions; empty: not kept
 };
 
+struct MappingSettings {
+  bool enabled = true;
+  mapping::StoreScanParams store_scan;
+  mapping::MapUpdateParams update;
+};
+
+struct NavigationSettings {
+  navigation::DriveMode mode = navigation::DriveMode::kOff;
+  navigation::SafetyParams safety;
+  navigation::WanderParams wander;
+};
+
 struct RecordingSettings {
   std::string file;            ///< pcapng; empty: not recorded
   double max_gigabytes = 8.0;  ///< the recording ends there, the daemon goes on
@@ -46,6 +63,8 @@ struct Settings {
   MapSettings map;
   std::optional<Pose2> initial_pose;  ///< map_from_robot at the first scan; nothing: global localization
   localization::LocalizerParams localizer;
+  MappingSettings mapping;
+  NavigationSettings navigation;
   RecordingSettings recording;
 };
 

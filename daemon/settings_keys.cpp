@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of keys: what config/default.yaml lists, in its order.
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -196,6 +197,84 @@ void add_states(localization::LocalizerParams& localizer, Keys& keys) {
                              "spread of the particles around a place"));
 }
 
+void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, Keys& keys) {
+  keys.push_back(number_key("mapping.persistence_s", evidence.persistence_s, "s", 0.0, 86400.0,
+                            "how long a difference must last to become map"));
+  const std::string at = "mapping.evidence.";
+  keys.push_back(number_key(at + "least_votes", evidence.least_votes, "", 0.1, 1000.0, "keyframes that must say so"));
+  keys.push_back(number_key(at + "least_added_share", evidence.least_added_share, "", 0.5, 1.0,
+                            "of the votes on a block that say added"));
+  keys.push_back(number_key(at + "least_removed_share", evidence.least_removed_share, "", 0.5, 1.0,
+                            "of the votes on a block that say removed"));
+  keys.push_back(
+      whole_key(at + "least_blocks", evidence.least_blocks, "", 1, 10000, "a smaller region is a speck and waits"));
+  keys.push_back(number_key(at + "settle_s", evidence.settle_s, "s", 0.0, 3600.0,
+                            "a region is handed on when it has not grown for so long"));
+  keys.push_back(number_key(at + "most_wait_s", evidence.most_wait_s, "s", 0.0, 3600.0, "or has waited so long"));
+  keys.push_back(
+      number_key(at + "most_range_m", evidence.beams.most_range_m, "m", 0.1, 100.0, "a beam says nothing beyond"));
+  keys.push_back(
+      number_key(at + "range_deviation_m", evidence.beams.range_deviation_m, "m", 0.001, 1.0, "of the laser"));
+  keys.push_back(number_key(at + "forget_s", evidence.votes.forget_s, "s", 1.0, 86400.0,
+                            "without votes until a block starts anew"));
+}
+
+void add_mapping(MappingSettings& settings, Keys& keys) {
+  keys.push_back(flag_key("mapping.enabled", settings.enabled, "let the map follow the world"));
+  auto& store_scan = settings.store_scan;
+  keys.push_back(choice_key("mapping.method", store_scan.method,
+                            {{"paper", MappingMethod::kPaper}, {"evidence", MappingMethod::kEvidence}},
+                            "how changes are found and merged"));
+  add_evidence(store_scan.evidence, keys);
+  auto& ratio = store_scan.divergence;
+  keys.push_back(
+      number_key("mapping.paper.alpha_slow", ratio.alpha_slow, "", 1e-6, 1.0, "long-term rate a scan (Eq. 2)"));
+  keys.push_back(
+      number_key("mapping.paper.alpha_fast", ratio.alpha_fast, "", 1e-6, 1.0, "short-term rate a scan (Eq. 2)"));
+  auto& phase = store_scan.delta_phase;
+  keys.push_back(number_key("mapping.paper.least_n_eff_share", phase.least_n_eff_share, "", 0.0, 1.0,
+                            "N_eff / particles (Eq. 5) below which a scan is not kept"));
+  keys.push_back(whole_key("mapping.paper.most_scans", phase.most_scans, "", 2, 100000, "kept in one phase"));
+}
+
+void add_navigation(NavigationSettings& settings, Keys& keys) {
+  using navigation::DriveMode;
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(choice_key("navigation.mode", settings.mode, {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}},
+                 "who drives; off: motors are never enabled"));
+  auto& safety = settings.safety;
+  add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
+                 "swing circle around the axle"));
+  add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0, "kept between the hull and everything"));
+  add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s2", 0.05, 5.0,
+                 "what the controller brakes with"));
+  add(number_key("navigation.safety.reaction_s", safety.reaction_s, "s", 0.0, 2.0, "from a decision to the wheels"));
+  add(number_key("navigation.safety.command_life_s", safety.command_life_s, "s", 0.05, 2.0,
+                 "a drive command older than that is void"));
+  add(number_key("navigation.safety.odometry_life_s", safety.odometry_life_s, "s", 0.1, 5.0,
+                 "silence of the robot after which it must stand"));
+  add(number_key("navigation.safety.max_speed_m_per_s", safety.max_speed_m_per_s, "m/s", 0.01, 2.2,
+                 "whatever the pilot wants"));
+  add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,
+                  "whatever the pilot wants"));
+  add(number_key("navigation.safety.hidden_width_m", safety.obstacles.hidden_width_m, "m", 0.01, 2.0,
+                 "what a gap of beams without answer may hide"));
+  auto& wander = settings.wander;
+  add(number_key("navigation.wander.speed_m_per_s", wander.speed_m_per_s, "m/s", 0.01, 2.2, "where it is clear"));
+  add(degrees_key("navigation.wander.turn_rate_deg_per_s", wander.turn_rate_rad_per_s, 1.0, 500.0, "on the spot"));
+  add(number_key("navigation.wander.side_clearance_m", wander.side_clearance_m, "m", 0.0, 5.0,
+                 "kept to both sides while driving"));
+  add(number_key("navigation.wander.turn_away_m", wander.turn_away_m, "m", 0.05, 10.0,
+                 "free path at which it stops and turns"));
+  add(number_key("navigation.wander.slow_down_m", wander.slow_down_m, "m", 0.05, 20.0,
+                 "free path below which it goes slower"));
+  add(number_key("navigation.wander.go_on_m", wander.go_on_m, "m", 0.05, 20.0, "free path that ends a turn"));
+  add(number_key("navigation.wander.shortest_leg_s", wander.shortest_leg_s, "s", 0.1, 3600.0,
+                 "before it thinks of another direction"));
+  add(number_key("navigation.wander.longest_leg_s", wander.longest_leg_s, "s", 0.1, 3600.0,
+                 "before it thinks of another direction"));
+}
+
 }  // namespace
 
 std::vector<SettingKey> keys_of(Settings& settings) {
@@ -212,6 +291,8 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_particles(settings.localizer, keys);
   add_models(settings.localizer, keys);
   add_states(settings.localizer, keys);
+  add_mapping(settings.mapping, keys);
+  add_navigation(settings.navigation, keys);
   keys.push_back(
       not_for_results(text_key("recording.file", settings.recording.file, "pcapng of both ports; empty: none")));
   keys.push_back(not_for_results(number_key("recording.max_gigabytes", settings.recording.max_gigabytes, "GB", 0.001,
@@ -229,6 +310,14 @@ std::optional<std::string> contradiction_in(const Settings& settings) {
   }
   if (localizer.field.unknown_likelihood < localizer.field.random_share) {
     return "'localization.field.unknown_likelihood' must not lie below 'localization.field.random_share'";
+  }
+  const auto& wander = settings.navigation.wander;
+  if (wander.shortest_leg_s > wander.longest_leg_s) {
+    return "'navigation.wander.shortest_leg_s' must not exceed 'navigation.wander.longest_leg_s'";
+  }
+  if (wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m)) {
+    return "'navigation.wander.turn_away_m' must lie below 'navigation.wander.slow_down_m' and "
+           "'navigation.wander.go_on_m'";
   }
   return std::nullopt;
 }

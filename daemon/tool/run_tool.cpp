@@ -5,6 +5,7 @@
 #include <exception>
 #include <iostream>
 
+#include "daemon/settings.hpp"
 #include "daemon/tool/subcommands.hpp"
 
 namespace deltamap::daemon::tool {
@@ -21,10 +22,14 @@ int run_tool(int argc, const char* const* argv) {
   CLI::App& import = *app.add_subcommand("import", "other people's logs as recordings")->require_subcommand(1);
   add_import_carmen(import);
   add_decode(app);
+  add_replay(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const SettingsError& error) {
+    std::cerr << "deltamap: " << error.what() << '\n';
+    return 2;
   } catch (const std::exception& error) {
     std::cerr << "deltamap: " << error.what() << '\n';
     return 1;

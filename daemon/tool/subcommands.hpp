@@ -14,6 +14,8 @@ void add_decode(CLI::App& app);
 // under `deltamap import`
 void add_import_carmen(CLI::App& import);
 
+void add_replay(CLI::App& app);
+
 // under `deltamap map`
 void add_map_compare(CLI::App& map);
 void add_map_from_poses(CLI::App& map);

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/io_stage.hpp"
+
+#include <boost/asio/post.hpp>
+#include <chrono>
+
+namespace deltamap::daemon {
+namespace {
+
+namespace asio = boost::asio;
+using drivers::lms200::Lms200Output;
+using drivers::lms200::Lms200Session;
+using drivers::pioneer::PioneerOutput;
+using drivers::pioneer::PioneerSession;
+using drivers::port::PortId;
+
+constexpr std::chrono::milliseconds kSafetyPeriod{50};  // twice a controller cycle (protocols.md A6)
+constexpr std::chrono::milliseconds kFarewell{300};     // for the last packets to leave at 9600 baud
+
+drivers::pioneer::PioneerParams robot_params(const Settings& settings) {
+  auto params = settings.robot.session;
+  params.enable_motors = settings.navigation.mode != navigation::DriveMode::kOff;
+  return params;
+}
+
+PortOpener serial_opener(const Settings& settings) {
+  return [robot = settings.robot.port, laser = settings.laser.port](asio::io_context& loop, PortId id, unsigned baud) {
+    return drivers::port::open_serial_port(loop, id == PortId::kRobot ? robot : laser, baud);
+  };
+}
+
+}  // namespace
+
+struct IoStage::State {
+  State(const Settings& settings, Wiring given)
+      : wiring{std::move(given)},
+        drives{settings.navigation.mode != navigation::DriveMode::kOff},
+        safety{settings.navigation.safety},
+        safety_timer{loop},
+        robot{loop,
+              PortId::kRobot,
+              PioneerSession{robot_params(settings), wiring.mode},
+              {opener(settings), recorder(), [this](PioneerOutput& out) { take(out); }, wiring.log}},
+        laser{loop,
+              PortId::kLaser,
+              Lms200Session{settings.laser.session, wiring.mode},
+              {opener(settings), recorder(), [this](Lms200Output& out) { take(out); }, wiring.log}} {}
+
+  [[nodiscard]] PortOpener opener(const Settings& settings) {
+    return wiring.open ? wiring.open : serial_opener(settings);
+  }
+
+  [[nodiscard]] drivers::port::RecordSink recorder() {
+    return [this](drivers::port::ByteRecord&& record) {
+      if (!wiring.recorder.send(std::move(record))) wiring.telemetry.recording_lost.add(1);
+    };
+  }
+
+  void take(PioneerOutput& out) {
+    Telemetry& telemetry = wiring.telemetry;
+    for (Odometry& odometry : out.odometry) {
+      safety.observe(odometry);
+      telemetry.battery_v.set(odometry.battery_v);
+      const auto number = static_cast<std::uint32_t>(telemetry.odometry.value());
+      telemetry.odometry.add(1);
+      if (wiring.sensors.try_send(std::move(odometry))) continue;
+      telemetry.odometry_lost.add(1);
+      note({Decision::Kind::kOdometryLost, 0, number});
+    }
+    const bool up = robot.session().is_connected();
+    if (up && !telemetry.robot_up.value()) robot.tell_connected();
+    telemetry.robot_up.set(up);
+  }
+
+  void take(Lms200Output& out) {
+    Telemetry& telemetry = wiring.telemetry;
+    for (Scan& scan : out.scans) {
+      scan.number = static_cast<std::uint32_t>(telemetry.scans.value());
+      const std::uint32_t number = scan.number;
+      safety.observe(scan);
+      telemetry.scans.add(1);
+      if (wiring.sensors.try_send(std::move(scan))) continue;
+      telemetry.scans_lost.add(1);
+      note({Decision::Kind::kScanLost, number, 0});
+    }
+    const bool up = laser.session().is_streaming();
+    if (up && !telemetry.laser_up.value()) {
+      laser.tell_connected();
+      safety.set_nominal_scan_period(laser.session().nominal_period_s());
+    }
+    telemetry.laser_up.set(up);
+  }
+
+  void note(const Decision& decision) {
+    if (!wiring.recorder.send(note_of(decision))) wiring.telemetry.recording_lost.add(1);
+  }
+
+  void watch_over_motion() {
+    safety_timer.expires_after(kSafetyPeriod);
+    safety_timer.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      send_allowed_motion();
+      watch_over_motion();
+    });
+  }
+
+  void send_allowed_motion() {
+    if (!robot.is_open() || !robot.session().is_connected()) return;
+    const Timestamp now = drivers::port::port_clock_now();
+    const navigation::AllowedMotion motion = safety.allowed(now);
+    wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(motion.stop));
+    robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
+  }
+
+  void close() {
+    safety_timer.cancel();
+    robot.close();
+    laser.close();
+    farewell_timer.expires_after(kFarewell);
+    farewell_timer.async_wait([this](const boost::system::error_code&) { loop.stop(); });
+  }
+
+  asio::io_context loop{1};
+  Wiring wiring;
+  bool drives;
+  navigation::Safety safety;
+  asio::steady_timer safety_timer;
+  asio::steady_timer farewell_timer{loop};
+  DeviceLink<PioneerSession, PioneerOutput> robot;
+  DeviceLink<Lms200Session, Lms200Output> laser;
+};
+
+IoStage::IoStage(const Settings& settings, Wiring wiring)
+    : state_{std::make_unique<State>(settings, std::move(wiring))} {}
+IoStage::~IoStage() = default;
+
+void IoStage::run() {
+  const auto keep_alive = asio::make_work_guard(state_->loop);
+  state_->robot.open();
+  state_->laser.open();
+  if (state_->drives) state_->watch_over_motion();
+  state_->loop.run();
+}
+
+void IoStage::stop() {
+  asio::post(state_->loop, [this] { state_->close(); });
+}
+
+void IoStage::post(const DriveCommand& command) {
+  asio::post(state_->loop, [this, command] { state_->safety.command(command, drivers::port::port_clock_now()); });
+}
+
+std::map<std::string, std::uint64_t> IoStage::counts() const {
+  std::map<std::string, std::uint64_t> all;
+  add_counts(all, "robot", state_->robot.session().counts());
+  add_counts(all, "laser", state_->laser.session().counts());
+  return all;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The io thread: both devices on one event loop, so that messages keep the order in which their bytes came; and safety,
+// which has the last word over every velocity before any pulse goes out.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/channel.hpp"
+#include "core/messages.hpp"
+#include "daemon/device_link.hpp"
+#include "daemon/recorder.hpp"
+#include "daemon/settings.hpp"
+#include "daemon/telemetry.hpp"
+
+namespace deltamap::daemon {
+
+class IoStage {
+ public:
+  struct Wiring {
+    PortOpener open;  ///< empty: the serial devices of the settings
+    drivers::SessionMode mode = drivers::SessionMode::kLive;
+    Channel<SensorMessage>& sensors;
+    RecorderInput& recorder;
+    Telemetry& telemetry;
+    std::function<void(const std::string&)> log;
+  };
+  IoStage(const Settings& settings, Wiring wiring);
+  ~IoStage();
+  IoStage(const IoStage&) = delete;
+  IoStage& operator=(const IoStage&) = delete;
+
+  /// The io thread's work, until stop().
+  void run();
+  /// Any thread: the robot is stopped and both devices let go; run() returns soon after.
+  void stop();
+  /// Any thread.
+  void post(const DriveCommand& command);
+
+  /// After run(): decoder counts by device and cause.
+  [[nodiscard]] std::map<std::string, std::uint64_t> counts() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace deltamap::daemon

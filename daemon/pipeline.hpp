@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The daemon's flow: every channel and every thread, in the order in which a scan passes them. Read pipeline.cpp first.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "daemon/io_stage.hpp"
+#include "daemon/localization_step.hpp"
+#include "daemon/outputs.hpp"
+#include "daemon/settings.hpp"
+#include "daemon/telemetry.hpp"
+
+namespace deltamap::daemon {
+
+class Pipeline {
+ public:
+  struct Options {
+    StartMap start;
+    std::function<void(const MapRevision&)> save;  ///< map thread: every revision, to keep it; may be slow
+    std::optional<std::filesystem::path> out;      ///< an existing folder: the files of a replay, while it runs
+    PortOpener open;                               ///< empty: the serial devices of the settings
+    drivers::SessionMode mode = drivers::SessionMode::kLive;
+    std::function<void(const std::string&)> log;     ///< any thread: a short line
+    std::function<void(const std::string&)> failed;  ///< any thread: a stage has ended by an exception
+  };
+  /// Begins at once. Throws std::runtime_error where the recording or an output file cannot be begun.
+  Pipeline(const Settings& settings, Options options);
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  /// Ports first, map store last: the robot is stopped, what has arrived is worked off, Δ-phases that are in work
+  /// become revisions, the map is written. Answers what report.json says.
+  [[nodiscard]] RunReport stop();
+
+  [[nodiscard]] const Telemetry& telemetry() const;
+  /// The longest time that a stage has been at work on one item: what the watchdog judges by.
+  [[nodiscard]] double longest_work_s() const;
+  [[nodiscard]] std::shared_ptr<const OccupancyGrid> newest_map() const;  ///< after stop()
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace deltamap::daemon

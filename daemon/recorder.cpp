@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/recorder.hpp"
+
+#include <chrono>
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr std::chrono::seconds kFlushPeriod{1};
+
+}  // namespace
+
+using drivers::port::ByteRecord;
+
+Recorder::Recorder(const Options& options, Telemetry& telemetry, std::function<void(const std::string&)> warn)
+    : telemetry_{telemetry},
+      warn_{std::move(warn)},
+      max_bytes_{options.max_gigabytes * 1e9},
+      last_stamp_{options.began} {
+  if (!options.recording.empty()) recording_.emplace(options.recording, options.bauds);
+  write(options.first_note);
+  if (!options.trajectory.empty()) trajectory_.emplace(options.trajectory);
+}
+
+void Recorder::run() {
+  auto last_flush = std::chrono::steady_clock::now();
+  for (;;) {
+    const bool closed = closed_.load(std::memory_order_acquire);
+    bool found = drain(from_io_);
+    found = drain(from_localization_) || found;
+    found = drain(from_awareness_) || found;
+    if (closed && !found) break;
+    if (const auto now = std::chrono::steady_clock::now(); now - last_flush >= kFlushPeriod) {
+      flush();
+      last_flush = now;
+    }
+    if (!found) (void)bell_.try_acquire_for(kFlushPeriod);
+  }
+  flush();
+  if (recording_) recording_->close();
+}
+
+void Recorder::close() {
+  closed_.store(true, std::memory_order_release);
+  bell_.release();
+}
+
+bool Recorder::drain(RecorderInput& input) {
+  bool found = false;
+  while (auto item = input.take()) {
+    write(std::move(*item));
+    (void)bell_.try_acquire();
+    found = true;
+  }
+  return found;
+}
+
+void Recorder::write(RecorderItem&& item) {
+  if (auto* bytes = std::get_if<ByteRecord>(&item)) {
+    last_stamp_ = bytes->stamp;
+    record(*bytes);
+  } else if (auto* note = std::get_if<JournalNote>(&item)) {
+    // Where a note stands among the bytes means nothing: it names its scan.
+    ByteRecord noted;
+    noted.stamp = last_stamp_;
+    noted.note = std::move(*note);
+    record(noted);
+  } else if (trajectory_) {
+    trajectory_->write(tum_line(std::get<TrajectoryPoint>(item)));
+  }
+}
+
+void Recorder::record(const ByteRecord& record) {
+  if (!recording_) return;
+  try {
+    recording_->write(record);
+  } catch (const std::exception& error) {
+    return end_recording(error.what());
+  }
+  telemetry_.recorded_bytes.set(recording_->size_bytes());
+  if (static_cast<double>(recording_->size_bytes()) > max_bytes_)
+    end_recording("it has reached recording.max_gigabytes");
+}
+
+void Recorder::end_recording(const std::string& why) {
+  warn_("the recording ends: " + why);
+  recording_.reset();
+}
+
+void Recorder::flush() {
+  if (trajectory_) trajectory_->flush();
+  if (!recording_) return;
+  try {
+    recording_->flush();
+  } catch (const std::exception& error) {
+    end_recording(error.what());
+  }
+}
+
+}  // namespace deltamap::daemon

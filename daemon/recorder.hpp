@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes what must reach the disk from the threads that cannot wait for it: chunks of bytes and journal notes for the
+// recording, lines for the trajectory. Where the disk is too slow, a channel fills and refuses, and that is counted.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <semaphore>
+#include <variant>
+
+#include "core/channel.hpp"
+#include "daemon/journal.hpp"
+#include "daemon/outputs.hpp"
+#include "daemon/telemetry.hpp"
+#include "drivers/port/byte_log.hpp"
+
+namespace deltamap::daemon {
+
+using JournalNote = std::string;
+using RecorderItem = std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint>;
+
+/// One sender's way to the recorder.
+class RecorderInput {
+ public:
+  RecorderInput(std::size_t capacity, std::counting_semaphore<>& bell) : channel_{capacity}, bell_{bell} {}
+
+  /// Never waits; false where it was refused.
+  bool send(RecorderItem&& item) {
+    const bool sent = channel_.try_send(std::move(item));
+    bell_.release();
+    return sent;
+  }
+  /// Receiver only.
+  [[nodiscard]] std::optional<RecorderItem> take() { return channel_.try_receive(); }
+  [[nodiscard]] std::uint64_t refused() const { return channel_.refused(); }
+
+ private:
+  Channel<RecorderItem> channel_;
+  std::counting_semaphore<>& bell_;
+};
+
+class Recorder {
+ public:
+  struct Options {
+    std::filesystem::path recording;  ///< empty: none
+    drivers::port::FirstBauds bauds;
+    Timestamp began;         ///< now
+    std::string first_note;  ///< what the run begins from
+    double max_gigabytes = 0.0;
+    std::filesystem::path trajectory;  ///< empty: none
+  };
+  /// Throws std::runtime_error where a file cannot be begun. `warn` is told once when the recording ends early.
+  Recorder(const Options& options, Telemetry& telemetry, std::function<void(const std::string&)> warn);
+
+  // One a thread that sends.
+  RecorderInput& from_io() { return from_io_; }
+  RecorderInput& from_localization() { return from_localization_; }
+  RecorderInput& from_awareness() { return from_awareness_; }
+
+  /// The recorder thread's work, until close().
+  void run();
+  /// When all senders have ended: what they sent is still written.
+  void close();
+
+  [[nodiscard]] std::uint64_t refused() const {
+    return from_io_.refused() + from_localization_.refused() + from_awareness_.refused();
+  }
+
+ private:
+  bool drain(RecorderInput& input);
+  void write(RecorderItem&& item);
+  void record(const drivers::port::ByteRecord& record);
+  void end_recording(const std::string& why);
+  void flush();
+
+  Telemetry& telemetry_;
+  std::function<void(const std::string&)> warn_;
+  double max_bytes_;
+  std::optional<drivers::port::ByteLogWriter> recording_;
+  std::optional<LineFile> trajectory_;
+  Timestamp last_stamp_;
+  std::atomic<bool> closed_{false};
+  std::counting_semaphore<> bell_{0};
+  RecorderInput from_io_{4096, bell_};            // full: bytes are missing from the recording
+  RecorderInput from_localization_{2048, bell_};  // full: lines and decisions are missing
+  RecorderInput from_awareness_{256, bell_};      // full: decisions are missing
+};
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/replay_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+
+#include "core/grid_file.hpp"
+#include "daemon/journal.hpp"
+#include "daemon/latency_histogram.hpp"
+#include "daemon/localization_step.hpp"
+#include "daemon/map_step.hpp"
+#include "daemon/recording_decoder.hpp"
+#include "daemon/revision_queue.hpp"
+#include "daemon/stage.hpp"
+#include "drivers/port/replay_port.hpp"
+#include "mapping/store_scan.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using drivers::port::ReplayPort;
+using drivers::port::ReplayWindow;
+
+/// Adds the CPU time between its birth and its end.
+class CpuTimer {
+ public:
+  explicit CpuTimer(double& sum_s) : sum_s_{sum_s}, began_s_{thread_cpu_s()} {}
+  ~CpuTimer() { sum_s_ += elapsed_s(); }
+  CpuTimer(const CpuTimer&) = delete;
+  CpuTimer& operator=(const CpuTimer&) = delete;
+  [[nodiscard]] double elapsed_s() const { return thread_cpu_s() - began_s_; }
+
+ private:
+  double& sum_s_;
+  double began_s_;
+};
+
+void require_whole(const ReplayPort& port) {
+  if (port.cut()) throw std::runtime_error(*port.cut());
+}
+
+/// Reads the recording once for its notes alone, so that what is wrong with it shows before anything is done.
+Journal journal_of(const ReplayJob& job) {
+  ReplayPort port{job.recording, ReplayWindow{job.from_s, job.to_s}};
+  Journal journal;
+  while (const auto replayed = port.next()) {
+    if (!replayed->record.note.empty()) journal.read(replayed->record.note);
+  }
+  require_whole(port);
+  return journal;
+}
+
+class Replay {
+ public:
+  Replay(const ReplayJob& job, const StartMap& start, const std::filesystem::path& out)
+      : job_{job},
+        journal_{journal_of(job)},
+        localization_{job.settings, start},
+        store_scan_{job.settings.mapping.store_scan, job.settings.seed},
+        map_{job.settings, start},
+        trajectory_{out / "trajectory.tum"},
+        changes_{out / "changes.jsonl"} {
+    const RunIdentity identity{settings_fingerprint(job.settings), grid_hash(*start.map)};
+    if (!journal_.run())
+      report_.journal = "none";
+    else if (*journal_.run() != identity)
+      report_.journal = "not obeyed: other settings or map";
+    else if (job.from_s > 0.0)
+      report_.journal = "not obeyed: another start";
+    else
+      report_.journal = "obeyed";
+    obeys_ = report_.journal == "obeyed";
+    revisions_ = std::make_unique<RevisionQueue>(obeys_ ? &journal_ : nullptr, job.map_delay_s);
+  }
+
+  void run(const ReplayProgress& progress);
+  [[nodiscard]] RunReport finish(const std::filesystem::path& out);
+
+ private:
+  void take(Odometry&& odometry, std::uint32_t number);
+  void take(Scan&& scan);
+  void look_for_changes(const TrackedScan& tracked);
+  void update_map(const ScanSet& set);
+
+  const ReplayJob& job_;
+  Journal journal_;
+  bool obeys_ = false;
+  LocalizationStep localization_;
+  mapping::StoreScan store_scan_;
+  MapStep map_;
+  std::unique_ptr<RevisionQueue> revisions_;
+  LineFile trajectory_;
+  LineFile changes_;
+  LatencyHistogram step_times_;
+  RunReport report_;
+};
+
+void Replay::run(const ReplayProgress& progress) {
+  ReplayPort port{job_.recording, ReplayWindow{job_.from_s, job_.to_s}};
+  RecordingDecoder decoder{job_.settings};
+  std::vector<std::pair<Odometry, std::uint32_t>> odometry;
+  std::vector<Scan> scans;
+  const RecordingDecoder::Sinks sinks{
+      [&](Odometry&& message, std::uint32_t number) { odometry.emplace_back(message, number); },
+      [&](Scan&& scan) { scans.push_back(std::move(scan)); }};
+  for (;;) {
+    odometry.clear();
+    scans.clear();
+    {
+      const CpuTimer timer{report_.cpu.decoding_s};
+      const auto replayed = port.next();
+      if (!replayed) break;
+      decoder.feed(replayed->record, sinks);
+      if (!replayed->in_window) continue;
+    }
+    for (auto& [message, number] : odometry) take(std::move(message), number);
+    for (Scan& scan : scans) take(std::move(scan));
+    const double done = static_cast<double>(port.read_bytes()) / static_cast<double>(port.size_bytes());
+    if (!scans.empty() && !progress(done)) throw std::runtime_error("interrupted");
+  }
+  require_whole(port);
+  if (report_.scans.decoded == 0) throw std::runtime_error(job_.recording.string() + ": holds no scan in this window");
+  report_.wire = decoder.counts();
+}
+
+void Replay::take(Odometry&& odometry, std::uint32_t number) {
+  ++report_.scans.odometry;
+  if (obeys_ && journal_.odometry_was_lost(number)) {
+    ++report_.scans.odometry_lost;
+    return;
+  }
+  const CpuTimer timer{report_.cpu.localization_s};
+  localization_.observe(odometry);
+}
+
+void Replay::take(Scan&& scan) {
+  ++report_.scans.decoded;
+  if (obeys_ && journal_.was_lost(scan.number)) {
+    ++report_.scans.lost;
+    return;
+  }
+  if (obeys_ && journal_.was_dropped(scan.number)) {
+    ++report_.scans.dropped;
+    trajectory_.write(tum_line(localization_.pass_over(scan)));
+    return;
+  }
+  std::optional<TrackedScan> tracked;
+  {
+    const CpuTimer timer{report_.cpu.localization_s};
+    while (const auto revision = revisions_->next_before(scan)) localization_.apply(*revision);
+    tracked = localization_.observe(std::move(scan));
+    step_times_.add(timer.elapsed_s());
+  }
+  ++report_.scans.localized;
+  {
+    const CpuTimer timer{report_.cpu.recording_s};
+    trajectory_.write(tum_line({tracked->scan.time, tracked->estimate.map_from_robot}));
+  }
+  if (job_.settings.mapping.enabled) look_for_changes(*tracked);
+}
+
+void Replay::look_for_changes(const TrackedScan& tracked) {
+  if (obeys_ && journal_.tracked_was_lost(tracked.scan.number)) {
+    ++report_.scans.tracked_lost;
+    return;
+  }
+  std::optional<ScanSet> set;
+  {
+    const CpuTimer timer{report_.cpu.awareness_s};
+    set = store_scan_.observe(tracked);
+  }
+  if (!set) return;
+  ++report_.phases;
+  if (obeys_ && journal_.closing_scan(set->phase) != tracked.scan.number) ++report_.journal_differences;
+  if (obeys_ && journal_.set_was_lost(set->phase)) {
+    ++report_.scans.sets_lost;
+    return;
+  }
+  update_map(*set);
+}
+
+void Replay::update_map(const ScanSet& set) {
+  const CpuTimer timer{report_.cpu.map_update_s};
+  MapStep::Result result = map_.update(set);
+  changes_.write(json_line(result.note));
+  report_.changes.push_back(std::move(result.note));
+  if (!result.revision) return;
+  revisions_->push(std::move(*result.revision));
+}
+
+RunReport Replay::finish(const std::filesystem::path& out) {
+  if (obeys_ && journal_.closed_phases() > report_.phases) {
+    report_.journal_differences += static_cast<std::uint32_t>(journal_.closed_phases() - report_.phases);
+  }
+  trajectory_.flush();
+  changes_.flush();
+  write_grid(*map_.map(), out / "map.yaml");
+  report_.time_lost_s = localization_.time_lost_s();
+  report_.time_global_s = localization_.time_global_s();
+  report_.recorded_s = localization_.covered_s();
+  report_.latency_of = "localizing one scan, CPU time";
+  report_.latency_p50_s = step_times_.quantile_s(0.5);
+  report_.latency_p99_s = step_times_.quantile_s(0.99);
+  report_.latency_max_s = step_times_.max_s();
+  return report_;
+}
+
+}  // namespace
+
+RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
+  const auto began = std::chrono::steady_clock::now();
+  const double began_cpu_s = process_cpu_s();
+  const StartMap start{std::make_shared<const OccupancyGrid>(read_grid(job.map)), 0};
+  StagingFolder staging{job.out};
+  RunReport report;
+  {
+    Replay replay{job, start, staging.path()};
+    replay.run(progress);
+    report = replay.finish(staging.path());
+  }
+  report.cpu_total_s = process_cpu_s() - began_cpu_s;
+  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  report.peak_resident_bytes = peak_resident_bytes();
+  LineFile file{staging.path() / "report.json"};
+  file.write(json_text(report));
+  file.flush();
+  staging.commit();
+  return report;
+}
+
+}  // namespace deltamap::daemon

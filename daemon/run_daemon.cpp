@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run_daemon.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <mutex>
+
+#include "core/grid_file.hpp"
+#include "daemon/pipeline.hpp"
+#include "daemon/service.hpp"
+#include "daemon/settings.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr double kStuck_s = 10.0;      // a stage that is at work on one scan for so long will not come back
+constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches
+
+struct CommandLine {
+  std::string config;
+  std::vector<std::string> overrides;
+  std::string out;
+  std::string initial_pose;
+  bool check_only = false;
+  bool print_only = false;
+};
+
+/// Log lines and the status line share the terminal: a log line wipes the status line first.
+class Console {
+ public:
+  void log(spdlog::level::level_enum level, const std::string& line) {
+    const std::scoped_lock lock{mutex_};
+    if (on_terminal_) std::cerr << "\r\033[K" << std::flush;
+    spdlog::log(level, "{}", line);
+  }
+  void show(const std::string& status) {
+    const std::scoped_lock lock{mutex_};
+    if (on_terminal_) {
+      std::cerr << "\r\033[K" << status << std::flush;
+    } else if (seconds_++ % kQuietLogPeriod_s == 0) {
+      spdlog::info("{}", status);
+    }
+  }
+  void end() {
+    if (on_terminal_) std::cerr << '\n';
+  }
+
+ private:
+  std::mutex mutex_;
+  bool on_terminal_ = ::isatty(STDERR_FILENO) != 0;
+  int seconds_ = 0;
+};
+
+void add_options(CLI::App& app, CommandLine& line) {
+  app.add_option("--config", line.config, "settings, YAML")->required();
+  app.add_option("--set", line.overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+  app.add_option("--out", line.out, "also write trajectory.tum, map, changes.jsonl and report.json into this folder");
+  app.add_option("--initial-pose", line.initial_pose, "X,Y,DEG of the robot in the map at the first scan");
+  auto* check = app.add_flag("--check-config", line.check_only, "read the settings and end");
+  app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
+}
+
+sigset_t stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  return signals;
+}
+
+/// Until a signal to stop comes, or a stage fails.
+void watch(const Pipeline& pipeline, Console& console) {
+  const sigset_t signals = stop_signals();
+  const timespec second{1, 0};
+  for (;;) {
+    const int signal = sigtimedwait(&signals, nullptr, &second);
+    if (signal == SIGTERM || signal == SIGINT) return;
+    const std::string status = status_line(pipeline.telemetry());
+    console.show(status);
+    service::tell_status(status);
+    if (pipeline.longest_work_s() < kStuck_s) service::feed_watchdog();
+  }
+}
+
+int run_pipeline(const Settings& settings, const CommandLine& line) {
+  Console console;
+  const sigset_t signals = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // all threads begin with it: only watch() takes them
+
+  if (settings.map.file.empty()) throw std::runtime_error(line.config + ": 'map.file' names no map");
+
+  Pipeline::Options options;
+  options.start = {std::make_shared<const OccupancyGrid>(read_grid(settings.map.file)), 0};
+  if (!line.out.empty()) {
+    std::filesystem::create_directories(line.out);
+    options.out = line.out;
+  }
+  std::atomic<bool> failed{false};
+  options.log = [&console](const std::string& text) { console.log(spdlog::level::info, text); };
+  options.failed = [&console, &failed](const std::string& text) {
+    console.log(spdlog::level::err, text);
+    failed = true;
+    (void)kill(getpid(), SIGTERM);
+  };
+  Pipeline pipeline{settings, std::move(options)};
+  service::tell_ready();
+  watch(pipeline, console);
+  service::tell_stopping();
+  console.end();
+  const RunReport report = pipeline.stop();
+  console.log(spdlog::level::info, "stopped: scans=" + std::to_string(report.scans.decoded) + " phases=" +
+                                       std::to_string(report.phases) + " cpu_s=" + std::to_string(report.cpu_total_s));
+  return failed ? 1 : 0;
+}
+
+}  // namespace
+
+int run_daemon(int argc, const char* const* argv) {
+  CommandLine line;
+  CLI::App app{"deltamapd: keeps a robot localized in a map that follows the world", "deltamapd"};
+  add_options(app, line);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  spdlog::set_default_logger(spdlog::stderr_color_mt("deltamapd"));
+  spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
+  try {
+    if (!line.initial_pose.empty()) line.overrides.push_back("localization.initial_pose=[" + line.initial_pose + "]");
+    const Settings settings = read_settings(line.config, line.overrides);
+    if (line.print_only) std::cout << settings_as_yaml(settings);
+    return line.print_only || line.check_only ? 0 : run_pipeline(settings, line);
+  } catch (const SettingsError& error) {
+    std::cerr << "deltamapd: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "deltamapd: " << error.what() << '\n';
+    return 1;
+  }
+}
+
+}  // namespace deltamap::daemon

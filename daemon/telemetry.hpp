@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the stages tell about themselves while they run: plain counters and last values, each written by one thread and
+// read by any, without locks. The status line and, later, the dashboard read them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "core/messages.hpp"
+
+namespace deltamap::daemon {
+
+/// One value that one thread writes and others look at.
+template <typename T>
+class Gauge {
+ public:
+  void set(T value) { value_.store(value, std::memory_order_relaxed); }
+  /// By its only writer.
+  void add(T amount) { set(value() + amount); }
+  [[nodiscard]] T value() const { return value_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<T> value_{};
+};
+
+struct Telemetry {
+  // io thread
+  Gauge<bool> robot_up, laser_up;
+  Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
+  Gauge<std::uint64_t> recorded_bytes;  ///< recorder thread
+  Gauge<double> battery_v;
+  Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason
+  // localization thread
+  Gauge<std::uint64_t> localized, dropped, tracked_lost;
+  Gauge<double> x_m, y_m, heading_rad, n_eff, w_avg, latency_s;
+  Gauge<std::uint8_t> state;  ///< LocalizerState
+  Gauge<std::uint32_t> particles, revision;
+  // delta thread
+  Gauge<double> r_d;
+  Gauge<bool> in_phase;
+  Gauge<std::uint32_t> phase, stored_scans, phases_closed, sets_lost;
+  // map thread
+  Gauge<std::uint32_t> newest_revision, refused;
+};
+
+/// One line for a person: devices, state and pose, N_eff, w_avg, revision, Δ-phase, drops, latency.
+[[nodiscard]] std::string status_line(const Telemetry& telemetry);
+
+[[nodiscard]] std::string_view name_of(LocalizerState state);
+
+}  // namespace deltamap::daemon
