@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/scenario.hpp"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -219,7 +221,8 @@ Scenario scenario_of(const YAML::Node& root, const std::string& name) {
   scenario.robot = robot_of(top.section("robot"));
   if (top.has("laser")) scenario.laser = laser_of(top.section("laser"));
   if (top.has("forklift")) scenario.forklift = forklift_of(top.section("forklift"));
-  for (const YAML::Node& person : top.items("people")) scenario.people.push_back(person_of({person, name, "people"}));
+  for (const YAML::Node& person : top.items("people"))
+    scenario.people.push_back(person_of(YamlSection{person, name, "people"}));
   top.expect_no_more();
 
   const Point2 start = scenario.robot.map_from_start.position();

@@ -3,18 +3,21 @@
 // asked for is an error. Every complaint is one line with file, line and key.
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
+
+namespace YAML {
+class Node;
+}
 
 namespace deltamap::simulation {
 
 class YamlSection {
  public:
   /// `key` names the section in messages.
-  YamlSection(YAML::Node node, std::string file, std::string key);
+  YamlSection(const YAML::Node& node, std::string file, std::string key);
 
   [[nodiscard]] bool has(const std::string& key);
   [[nodiscard]] double number(const std::string& key, double otherwise, double least, double most);
@@ -34,7 +37,7 @@ class YamlSection {
   [[nodiscard]] const std::string& file() const { return file_; }
 
  private:
-  YAML::Node node_;
+  std::shared_ptr<const YAML::Node> node_;
   std::string file_;
   std::string key_;
   std::set<std::string> asked_;
