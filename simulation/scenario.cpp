@@ -133,6 +133,7 @@ RobotSetup robot_of(YamlSection robot) {
   setup.battery_v = robot.number("battery_v", setup.battery_v, 1.0, 25.0);
   setup.sonars = robot.whole_number("sonars", setup.sonars, 0, 16);
   expect_one_of(robot, "sonars", setup.sonars, std::array{0, 8, 16}, "0, 8, 16");
+  setup.has_bumpers = robot.flag("has_bumpers", setup.has_bumpers);
   setup.body = body_of(robot);
   robot.expect_no_more();
   return setup;

@@ -26,6 +26,7 @@ struct RobotSetup {
   double watchdog_s = 2.0;   ///< of silence until it stops (A9), > 0
   double battery_v = 12.8;   ///< > 0
   int sonars = 8;            ///< 0, 8 or 16
+  bool has_bumpers = false;  ///< five segments in front and five behind
   RobotParams body;
 };
 

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/devices/set_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::simulation::devices {
+namespace {
+
+using drivers::pioneer::Command;
+using drivers::pioneer::CommandNumber;
+
+constexpr double kHalfTrack_m = 0.1786;              // A7
+constexpr double kVel2Unit_m_per_s = 0.02;           // A7: Vel2Divisor 20
+constexpr double kEmergencyDeceleration_m_per_s2 = 2.0;  // TRANSACCTOP of the delivered robot
+constexpr double kArrived_m = 0.002;
+constexpr double kAligned_rad = 0.004;
+
+double metres(int millimetres) { return 0.001 * millimetres; }
+
+/// The speed from which a distance suffices to stop, towards it.
+double braking_speed(double distance, double deceleration, double most) {
+  return std::copysign(std::min(most, std::sqrt(2.0 * deceleration * std::abs(distance))), distance);
+}
+
+}  // namespace
+
+bool SetPoints::take(const Command& command, const WheelMotion& motion) {
+  const int value = command.integer_or(0);
+  const auto set_speed = [&](double speed) {
+    speed_m_per_s_ = speed;
+    move_to_m_.reset();
+    emergency_ = false;
+  };
+  const auto set_turn_rate = [&](double turn_rate) {
+    turn_rate_rad_per_s_ = turn_rate;
+    heading_rad_.reset();
+    emergency_ = false;
+  };
+  switch (command.number) {
+    case CommandNumber::kVel: set_speed(metres(value)); return true;
+    case CommandNumber::kRotate:
+    case CommandNumber::kRvel: set_turn_rate(radians(value)); return true;
+    case CommandNumber::kVel2: {
+      const auto pair = drivers::pioneer::byte_pair(value);
+      const double left = kVel2Unit_m_per_s * pair.left;
+      const double right = kVel2Unit_m_per_s * pair.right;
+      set_speed(0.5 * (left + right));
+      set_turn_rate(0.5 * (right - left) / kHalfTrack_m);
+      return true;
+    }
+    case CommandNumber::kMove:
+      set_speed(0.0);
+      move_to_m_ = motion.travelled_m + metres(value);
+      return true;
+    case CommandNumber::kHead:
+      set_turn_rate(0.0);
+      heading_rad_ = wrapped_angle(radians(value));
+      return true;
+    case CommandNumber::kDhead:
+      set_turn_rate(0.0);
+      heading_rad_ = wrapped_angle(motion.odom_from_robot.theta + radians(value));
+      return true;
+    case CommandNumber::kStop:
+    case CommandNumber::kEstop:
+    case CommandNumber::kQstop:
+      set_speed(0.0);
+      set_turn_rate(0.0);
+      emergency_ = command.number != CommandNumber::kStop;
+      return true;
+    case CommandNumber::kSetA:
+    case CommandNumber::kSetV:
+    case CommandNumber::kSetRa:
+    case CommandNumber::kSetRv: take_limit(command); return true;
+    default: return false;
+  }
+}
+
+void SetPoints::take_limit(const Command& command) {
+  const int value = command.integer_or(0);
+  if (value == 0) return;
+  const double magnitude = std::abs(value);
+  if (command.number == CommandNumber::kSetV) max_speed_m_per_s_ = std::min(2.2, 0.001 * magnitude);
+  if (command.number == CommandNumber::kSetRv) max_turn_rate_rad_per_s_ = std::min(radians(500), radians(magnitude));
+  if (command.number == CommandNumber::kSetA) {
+    (value > 0 ? limits_.acceleration_m_per_s2 : limits_.deceleration_m_per_s2) = 0.001 * magnitude;
+  }
+  if (command.number == CommandNumber::kSetRa) {
+    (value > 0 ? limits_.turn_acceleration_rad_per_s2 : limits_.turn_deceleration_rad_per_s2) = radians(magnitude);
+  }
+}
+
+MotorDemand SetPoints::standstill() const {
+  MotorDemand demand = limits_;
+  if (emergency_) demand.deceleration_m_per_s2 = std::max(kEmergencyDeceleration_m_per_s2, demand.deceleration_m_per_s2);
+  return demand;
+}
+
+MotorDemand SetPoints::demand(const WheelMotion& motion) const {
+  MotorDemand demand = standstill();
+  demand.speed_m_per_s = std::clamp(wanted_speed(motion), -max_speed_m_per_s_, max_speed_m_per_s_);
+  demand.turn_rate_rad_per_s =
+      std::clamp(wanted_turn_rate(motion), -max_turn_rate_rad_per_s_, max_turn_rate_rad_per_s_);
+  return demand;
+}
+
+double SetPoints::wanted_speed(const WheelMotion& motion) const {
+  if (!move_to_m_) return speed_m_per_s_;
+  const double left_m = *move_to_m_ - motion.travelled_m;
+  return std::abs(left_m) < kArrived_m ? 0.0 : braking_speed(left_m, limits_.deceleration_m_per_s2, max_speed_m_per_s_);
+}
+
+double SetPoints::wanted_turn_rate(const WheelMotion& motion) const {
+  if (!heading_rad_) return turn_rate_rad_per_s_;
+  const double left_rad = turn_between(motion.odom_from_robot.theta, *heading_rad_);
+  if (std::abs(left_rad) < kAligned_rad) return 0.0;
+  return braking_speed(left_rad, limits_.turn_deceleration_rad_per_s2, max_turn_rate_rad_per_s_);
+}
+
+}  // namespace deltamap::simulation::devices

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// An LMS200 as its serial port shows it (protocols.md B): bytes and time in, bytes out. It knows no port and no world; what
+// it measures it asks for, scan by scan. Its mirror turns all the time; a scan is sent where the line is free when it is
+// complete, so the rate follows from the baud as in table B7.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "drivers/lms200/configuration.hpp"
+#include "drivers/lms200/telegram.hpp"
+#include "drivers/lms200/variant.hpp"
+#include "simulation/devices/serial_line.hpp"
+
+namespace deltamap::simulation::devices {
+
+struct Lms200Setup {
+  unsigned baud = 9600;                   ///< after power-on
+  bool permanent_baud = false;            ///< keeps its baud over a power cycle (66h)
+  drivers::lms200::ScanVariant variant{180, 50};
+  drivers::lms200::Units units = drivers::lms200::Units::kCentimetre;
+  std::uint8_t measuring_mode = 0x00;     ///< B4 byte 5
+  double start_up_s = 3.0;                ///< of silence after power-on or reset, until 90h; the real one up to 60
+  bool is_up = true;                      ///< has been switched on long ago
+};
+
+/// What a sweep of the mirror has to measure.
+struct SweepRequest {
+  Timestamp begin;                          ///< of the first beam
+  drivers::lms200::ScanVariant variant;
+  double max_range_m = 0.0;                 ///< the farthest that the measuring mode can tell
+};
+
+class VirtualLms200 {
+ public:
+  VirtualLms200(const Lms200Setup& setup, Timestamp power_on, Random random);
+
+  void receive(std::span<const std::uint8_t> bytes, unsigned host_baud, Timestamp now);
+
+  /// Measures a sweep that has just ended: a beam for each value of the variant.
+  using Measure = std::function<std::vector<Beam>(const SweepRequest&)>;
+
+  /// Lets time pass: answers what is due, and sends the scans that are complete.
+  void advance(Timestamp now, const Measure& measure);
+
+  [[nodiscard]] std::vector<std::uint8_t> transmitted(Timestamp now, unsigned host_baud) {
+    return line_.arrived(now, host_baud);
+  }
+  [[nodiscard]] std::optional<Timestamp> next_event() const;
+
+  void cut_power(Timestamp now);       ///< off and on again: back to 9600 unless permanent, 90h when up
+  void nack_next_request() { ++naks_owed_; }  ///< as a disturbed line would make it
+  void set_status_byte(std::uint8_t status) { status_ = status; }  ///< of the scans, B6
+
+  [[nodiscard]] bool is_streaming() const { return streaming_; }
+  [[nodiscard]] unsigned baud() const { return line_.baud(); }
+  [[nodiscard]] const drivers::lms200::Configuration& configuration() const { return configuration_; }
+  [[nodiscard]] const drivers::lms200::ScanVariant& variant() const { return variant_; }
+  [[nodiscard]] int configuration_writes() const { return configuration_writes_; }
+
+ private:
+  struct Answer {
+    Timestamp at;
+    std::vector<std::uint8_t> bytes;
+    std::optional<unsigned> baud_after;   // takes effect once the answer has left
+    bool starts_stream = false;
+    bool restarts = false;                // reset: silence, then 90h
+  };
+
+  void take(const drivers::lms200::Telegram& telegram, Timestamp now);
+  [[nodiscard]] Answer answer_to(const drivers::lms200::Telegram& telegram, Timestamp now);
+  [[nodiscard]] Answer mode_answer(const drivers::lms200::Telegram& telegram, Timestamp now);
+  [[nodiscard]] Answer variant_answer(const drivers::lms200::Telegram& telegram, Timestamp now);
+  [[nodiscard]] Answer configuration_answer(const drivers::lms200::Telegram& telegram, Timestamp now);
+  [[nodiscard]] std::vector<std::uint8_t> status_frame() const;
+  void give(const Answer& answer);
+  void begin_start_up(Timestamp now);
+  void set_baud(unsigned baud);
+  void send_scan(Timestamp end, const Measure& measure);
+  /// When the first scan will be complete that finds the line free.
+  [[nodiscard]] Timestamp next_scan_end() const;
+  [[nodiscard]] Duration scan_duration() const;
+
+  Lms200Setup setup_;
+  Random random_;
+  SerialLine line_;
+  drivers::lms200::TelegramDecoder decoder_;
+  drivers::lms200::Configuration configuration_;
+  drivers::lms200::ScanVariant variant_;
+  Timestamp mirror_start_;                // a turn begins here and every 13.32 ms
+  std::optional<Timestamp> up_at_;        // still silent until then
+  std::deque<Answer> answers_;
+  std::optional<Timestamp> baud_change_at_;
+  unsigned baud_after_ = 0;
+  Timestamp last_host_byte_{};
+  std::optional<Timestamp> last_scan_end_;
+  bool streaming_ = false;
+  bool scan_wanted_ = false;              // one, by 30h
+  bool installing_ = false;
+  bool permanent_baud_ = false;
+  int naks_owed_ = 0;
+  int configuration_writes_ = 0;
+  std::uint8_t status_ = drivers::lms200::kNormalStatus;
+  std::uint8_t telegram_index_ = 0;
+};
+
+}  // namespace deltamap::simulation::devices

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/simulation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "drivers/lms200/measurement.hpp"
+
+namespace deltamap::simulation {
+namespace {
+
+namespace lms200 = drivers::lms200;
+
+constexpr Duration kStep = std::chrono::milliseconds{5};
+constexpr Duration kTruthEvery = std::chrono::milliseconds{100};
+constexpr Duration kForkliftPatience = std::chrono::seconds{1};  // until it looks again where nothing could be done
+
+/// Each has its own chance, so that a change to one does not touch what befalls the others.
+enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPioneer, kLms200, kPeople };
+
+Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
+  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
+  return Random{seed * kSpread + 64 * (index + 1) + static_cast<std::uint64_t>(stream)};
+}
+
+devices::PioneerSetup pioneer_setup(const RobotSetup& robot) {
+  devices::PioneerSetup setup;
+  setup.model = robot.model;
+  setup.baud = robot.baud;
+  setup.sip_cycle_s = robot.sip_cycle_s;
+  setup.watchdog_s = robot.watchdog_s;
+  setup.battery_v = robot.battery_v;
+  setup.sonars = robot.sonars;
+  setup.has_bumpers = robot.has_bumpers;
+  return setup;
+}
+
+devices::Lms200Setup lms200_setup(const LaserSetup& laser) {
+  devices::Lms200Setup setup;
+  setup.baud = laser.baud;
+  setup.variant = {static_cast<std::uint16_t>(laser.field_deg),
+                   static_cast<std::uint16_t>(std::lround(100.0 * laser.step_deg))};
+  setup.units = laser.resolution_m < 0.005 ? lms200::Units::kMillimetre : lms200::Units::kCentimetre;
+  const double reach_words = laser.max_range_m / laser.resolution_m;  // B4: 13, 14 or 15 bits
+  setup.measuring_mode = reach_words > 16'000 ? 0x06 : reach_words > 8'000 ? 0x04 : 0x00;
+  return setup;
+}
+
+DriveTarget target_of(const devices::MotorDemand& demand) {
+  return {demand.speed_m_per_s,         demand.turn_rate_rad_per_s,          demand.acceleration_m_per_s2,
+          demand.deceleration_m_per_s2, demand.turn_acceleration_rad_per_s2, demand.turn_deceleration_rad_per_s2};
+}
+
+/// Where each sonar of the ring sits and looks, robot frame (A7).
+Pose2 robot_from_sonar(int index) {
+  constexpr std::array<std::array<double, 3>, 16> kRing{{{69, 136, 90},      {114, 119, 50},     {148, 78, 30},
+                                                         {166, 27, 10},      {166, -27, -10},    {148, -78, -30},
+                                                         {114, -119, -50},   {69, -136, -90},    {-157, -136, -90},
+                                                         {-203, -119, -130}, {-237, -78, -150},  {-255, -27, -170},
+                                                         {-255, 27, 170},    {-237, 78, 150},    {-203, 119, 130},
+                                                         {-157, 136, 90}}};
+  const auto& [x_mm, y_mm, bearing_deg] = kRing.at(static_cast<std::size_t>(index));
+  return {0.001 * x_mm, 0.001 * y_mm, radians(bearing_deg)};
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
+    : scenario_{scenario},
+      world_{scenario.world},
+      surfaces_{scenario.world},
+      body_{scenario.robot.body, scenario.robot.map_from_start, random_for(params.seed, Stream::kRobot)},
+      range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
+      pioneer_{pioneer_setup(scenario.robot), random_for(params.seed, Stream::kPioneer)},
+      lms200_{lms200_setup(scenario.laser), params.start, random_for(params.seed, Stream::kLms200)},
+      now_{params.start},
+      next_truth_{params.start} {
+  for (const PersonParams& person : scenario.people) {
+    people_.emplace_back(person, random_for(params.seed, Stream::kPeople, people_.size()));
+  }
+  if (scenario.forklift) {
+    forklift_.emplace(*scenario.forklift, scenario.slots, scenario.world, scenario.robot.map_from_start.position(),
+                      random_for(params.seed, Stream::kForklift));
+    change_every_ = duration_from_seconds(params.change_every_s.value_or(scenario.forklift->change_every_s));
+    next_change_ = params.start + change_every_;
+  }
+  history_.add({params.start, body_.state().map_from_robot, {}, people()});
+}
+
+void Simulation::advance_to(Timestamp now) {
+  // The bodies are always moved to the end of the step in which `now` lies, so that everything up to now is known.
+  while (history_.newest().time < now) {
+    const Timestamp step = history_.newest().time;
+    run_devices(std::max(step, now_));
+    work(step);
+    move(step);
+  }
+  now_ = std::max(now_, now);
+  run_devices(now_);
+}
+
+void Simulation::run_devices(Timestamp now) {
+  now_ = std::max(now_, now);
+  pioneer_.advance(now, history_.wheels_at(now), [&](int index) { return sonar_range_m(index, now); });
+  lms200_.advance(now, [&](const devices::SweepRequest& request) { return measure(request); });
+}
+
+void Simulation::move(Timestamp from) {
+  const double dt_s = seconds(kStep);
+  const std::vector<Circle> others = people();
+  body_.move(target_of(pioneer_.demand()), dt_s, surfaces_, others);
+  for (Person& person : people_) person.move(dt_s, surfaces_, robot_body());
+  const RobotState& state = body_.state();
+  travelled_m_ += state.speed_m_per_s * dt_s;
+  turned_rad_ += state.turn_rate_rad_per_s * dt_s;
+  history_.add({from + kStep,
+                state.map_from_robot,
+                {state.odom_from_robot, state.speed_m_per_s, state.turn_rate_rad_per_s, travelled_m_, turned_rad_,
+                 state.stalled, state.contact_bearing_rad},
+                people()});
+}
+
+/// What happens at the beginning of a step: the fork-lift's work, and a line of truth now and then.
+void Simulation::work(Timestamp now) {
+  if (now >= next_truth_) {
+    next_truth_ = now + kTruthEvery;
+    truth_.push_back(TruthPose{now, body_.state().map_from_robot, body_.state().speed_m_per_s, false});
+  }
+  if (!forklift_ || now < next_change_) return;
+  const auto change = forklift_->next_change(world_, robot_body(), people());
+  if (!change) {
+    next_change_ = now + kForkliftPatience;
+    return;
+  }
+  next_change_ = now + change_every_;
+  world_ = changed(world_, *change);
+  surfaces_ = RayCaster{world_};
+  truth_.push_back(TruthChange{now, *change});
+}
+
+std::vector<Beam> Simulation::measure(const devices::SweepRequest& request) {
+  Sweep sweep;
+  for (unsigned beam = 0; beam < request.variant.values(); ++beam) {
+    const double angle_deg = request.variant.first_angle_deg() + 0.01 * request.variant.resolution_centideg * beam;
+    sweep.bearings_rad.push_back(radians(angle_deg - 90.0));
+    sweep.offsets_s.push_back(lms200::beam_offset_s(request.variant, beam));
+  }
+  const auto at = [&](double offset_s) { return request.begin + duration_from_seconds(offset_s); };
+  const auto readings = range_finder_.measure(
+      sweep, request.max_range_m, surfaces_, [&](double offset_s) { return history_.map_from_robot_at(at(offset_s)); },
+      [&](double offset_s) -> std::span<const Circle> { return history_.people_at(at(offset_s)); });
+  const devices::WheelMotion wheels = history_.wheels_at(request.begin);
+  truth_.push_back(
+      TruthPose{request.begin, history_.map_from_robot_at(request.begin), wheels.speed_m_per_s, true});
+  std::vector<Beam> beams;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    beams.push_back({static_cast<float>(readings[i].range_m), static_cast<float>(sweep.offsets_s[i]), readings[i].kind});
+  }
+  return beams;
+}
+
+/// The nearest echo within the sonar's cone of 15°.
+std::optional<double> Simulation::sonar_range_m(int index, Timestamp now) const {
+  constexpr double kReach_m = 5.0;
+  const Pose2 map_from_sonar = history_.map_from_robot_at(now) * robot_from_sonar(index);
+  std::optional<double> nearest;
+  for (const double off_deg : {-7.5, 0.0, 7.5}) {
+    const auto hit = surfaces_.cast(map_from_sonar.position(), map_from_sonar.theta + radians(off_deg), kReach_m,
+                                    history_.people_at(now));
+    if (hit && (!nearest || hit->range_m < *nearest)) nearest = hit->range_m;
+  }
+  return nearest;
+}
+
+Circle Simulation::robot_body() const {
+  return {body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
+}
+
+std::vector<Circle> Simulation::people() const {
+  std::vector<Circle> bodies;
+  for (const Person& person : people_) bodies.push_back(person.body());
+  return bodies;
+}
+
+Timestamp Simulation::next_event() const {
+  Timestamp next = history_.newest().time > now_ ? history_.newest().time : now_ + kStep;
+  for (const auto& event : {pioneer_.next_event(), lms200_.next_event()}) {
+    if (event && *event > now_) next = std::min(next, *event);
+  }
+  return next;
+}
+
+void Simulation::send_to_robot(std::span<const std::uint8_t> bytes, unsigned host_baud) {
+  pioneer_.receive(bytes, host_baud, now_);
+}
+
+void Simulation::send_to_laser(std::span<const std::uint8_t> bytes, unsigned host_baud) {
+  lms200_.receive(bytes, host_baud, now_);
+}
+
+std::vector<std::uint8_t> Simulation::bytes_from_robot(unsigned host_baud) {
+  return pioneer_.transmitted(now_, host_baud);
+}
+
+std::vector<std::uint8_t> Simulation::bytes_from_laser(unsigned host_baud) {
+  return lms200_.transmitted(now_, host_baud);
+}
+
+std::vector<TruthRecord> Simulation::take_truth() {
+  std::vector<TruthRecord> taken;
+  taken.swap(truth_);
+  return taken;
+}
+
+}  // namespace deltamap::simulation

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scenario that lives: the robot drives, people walk, the fork-lift works, and both devices talk on their lines. It runs
+// in whatever time it is given: `deltamap sim` gives it the clock's, tests give it virtual time as fast as they like. The
+// same seed and the same bytes at the same times give the same answers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/time.hpp"
+#include "simulation/devices/virtual_lms200.hpp"
+#include "simulation/devices/virtual_pioneer.hpp"
+#include "simulation/motion_history.hpp"
+#include "simulation/scenario.hpp"
+#include "simulation/truth.hpp"
+
+namespace deltamap::simulation {
+
+struct SimulationParams {
+  std::uint64_t seed = 1;
+  Timestamp start;                       ///< Unix time at which it begins
+  std::optional<double> change_every_s;  ///< in place of the scenario's, > 0
+};
+
+class Simulation {
+ public:
+  Simulation(const Scenario& scenario, const SimulationParams& params);
+
+  /// Lets time pass until `now`; earlier times are ignored. Call it at least at every next_event() for bytes that are
+  /// fetched the moment they arrive.
+  void advance_to(Timestamp now);
+  [[nodiscard]] Timestamp now() const { return now_; }
+  /// The next moment at which something moves or a burst of bytes is whole; at most 5 ms away.
+  [[nodiscard]] Timestamp next_event() const;
+
+  // The host's end of both lines, now. `host_baud` is the speed at which the host's port stands.
+  void send_to_robot(std::span<const std::uint8_t> bytes, unsigned host_baud);
+  void send_to_laser(std::span<const std::uint8_t> bytes, unsigned host_baud);
+  [[nodiscard]] std::vector<std::uint8_t> bytes_from_robot(unsigned host_baud);
+  [[nodiscard]] std::vector<std::uint8_t> bytes_from_laser(unsigned host_baud);
+
+  /// What truly happened since the last call.
+  [[nodiscard]] std::vector<TruthRecord> take_truth();
+
+  [[nodiscard]] Pose2 map_from_robot() const { return history_.map_from_robot_at(now_); }
+  [[nodiscard]] const World& world() const { return world_; }
+  /// To press their buttons and cut their power.
+  [[nodiscard]] devices::VirtualPioneer& robot() { return pioneer_; }
+  [[nodiscard]] devices::VirtualLms200& laser() { return lms200_; }
+
+ private:
+  void run_devices(Timestamp now);
+  void move(Timestamp from);
+  void work(Timestamp now);
+  [[nodiscard]] std::vector<Beam> measure(const devices::SweepRequest& request);
+  [[nodiscard]] std::optional<double> sonar_range_m(int index, Timestamp now) const;
+  [[nodiscard]] Circle robot_body() const;
+  [[nodiscard]] std::vector<Circle> people() const;
+
+  Scenario scenario_;
+  World world_;
+  RayCaster surfaces_;
+  Robot body_;
+  RangeFinder range_finder_;
+  std::vector<Person> people_;
+  std::optional<Forklift> forklift_;
+  Duration change_every_{};
+  Timestamp next_change_{};
+  devices::VirtualPioneer pioneer_;
+  devices::VirtualLms200 lms200_;
+  MotionHistory history_;
+  Timestamp now_;
+  Timestamp next_truth_;
+  double travelled_m_ = 0.0;
+  double turned_rad_ = 0.0;
+  std::vector<TruthRecord> truth_;
+};
+
+}  // namespace deltamap::simulation
