@@ -35,8 +35,7 @@ Pose2 MotionHistory::map_from_robot_at(Timestamp time) const {
 devices::WheelMotion MotionHistory::wheels_at(Timestamp time) const {
   const Between moments = around(time);
   devices::WheelMotion wheels = moments.after->wheels;
-  wheels.odom_from_robot =
-      interpolated(moments.before->wheels.odom_from_robot, wheels.odom_from_robot, moments.share);
+  wheels.odom_from_robot = interpolated(moments.before->wheels.odom_from_robot, wheels.odom_from_robot, moments.share);
   return wheels;
 }
 

@@ -54,11 +54,21 @@ DriveTarget target_of(const devices::MotorDemand& demand) {
 
 /// Where each sonar of the ring sits and looks, robot frame (A7).
 Pose2 robot_from_sonar(int index) {
-  constexpr std::array<std::array<double, 3>, 16> kRing{{{69, 136, 90},      {114, 119, 50},     {148, 78, 30},
-                                                         {166, 27, 10},      {166, -27, -10},    {148, -78, -30},
-                                                         {114, -119, -50},   {69, -136, -90},    {-157, -136, -90},
-                                                         {-203, -119, -130}, {-237, -78, -150},  {-255, -27, -170},
-                                                         {-255, 27, 170},    {-237, 78, 150},    {-203, 119, 130},
+  constexpr std::array<std::array<double, 3>, 16> kRing{{{69, 136, 90},
+                                                         {114, 119, 50},
+                                                         {148, 78, 30},
+                                                         {166, 27, 10},
+                                                         {166, -27, -10},
+                                                         {148, -78, -30},
+                                                         {114, -119, -50},
+                                                         {69, -136, -90},
+                                                         {-157, -136, -90},
+                                                         {-203, -119, -130},
+                                                         {-237, -78, -150},
+                                                         {-255, -27, -170},
+                                                         {-255, 27, 170},
+                                                         {-237, 78, 150},
+                                                         {-203, 119, 130},
                                                          {-157, 136, 90}}};
   const auto& [x_mm, y_mm, bearing_deg] = kRing.at(static_cast<std::size_t>(index));
   return {0.001 * x_mm, 0.001 * y_mm, radians(bearing_deg)};
@@ -151,11 +161,11 @@ std::vector<Beam> Simulation::measure(const devices::SweepRequest& request) {
       sweep, request.max_range_m, surfaces_, [&](double offset_s) { return history_.map_from_robot_at(at(offset_s)); },
       [&](double offset_s) -> std::span<const Circle> { return history_.people_at(at(offset_s)); });
   const devices::WheelMotion wheels = history_.wheels_at(request.begin);
-  truth_.push_back(
-      TruthPose{request.begin, history_.map_from_robot_at(request.begin), wheels.speed_m_per_s, true});
+  truth_.push_back(TruthPose{request.begin, history_.map_from_robot_at(request.begin), wheels.speed_m_per_s, true});
   std::vector<Beam> beams;
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    beams.push_back({static_cast<float>(readings[i].range_m), static_cast<float>(sweep.offsets_s[i]), readings[i].kind});
+    beams.push_back(
+        {static_cast<float>(readings[i].range_m), static_cast<float>(sweep.offsets_s[i]), readings[i].kind});
   }
   return beams;
 }

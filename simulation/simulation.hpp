@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scenario that lives: the robot drives, people walk, the fork-lift works, and both devices talk on their lines. It runs
-// in whatever time it is given: `deltamap sim` gives it the clock's, tests give it virtual time as fast as they like. The
-// same seed and the same bytes at the same times give the same answers.
+// A scenario that lives: the robot drives, people walk, the fork-lift works, and both devices talk on their lines. It
+// runs in whatever time it is given: `deltamap sim` gives it the clock's, tests give it virtual time as fast as they
+// like. The same seed and the same bytes at the same times give the same answers.
 #pragma once
 
 #include <cstdint>

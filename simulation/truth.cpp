@@ -19,7 +19,9 @@ OrderedJson json_of(const Box& box) {
 
 Box box_of(const Json& json) {
   if (!json.is_array() || json.size() != 5) throw std::runtime_error("a box must be a list of 5 numbers");
-  return {{json[0].get<double>(), json[1].get<double>()}, json[2].get<double>(), json[3].get<double>(),
+  return {{json[0].get<double>(), json[1].get<double>()},
+          json[2].get<double>(),
+          json[3].get<double>(),
           json[4].get<double>()};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What truly happened in a simulation: where the robot was and what the fork-lift changed. Written as JSON lines while it
-// runs, read back for scoring.
+// What truly happened in a simulation: where the robot was and what the fork-lift changed. Written as JSON lines while
+// it runs, read back for scoring.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,8 @@ struct Truth {
 
 /// The first line: {"world": ..., "seed": ...}.
 [[nodiscard]] std::string truth_header(const std::string& world, std::uint64_t seed);
-/// {"t_ns": ..., "pose": [x, y, theta], "odom_v": ...} or {"t_ns": ..., "change": {"kind", "id", "box", "from"}}; a box is
-/// [centre x, centre y, width, height, theta], radians. Without the line's end.
+/// {"t_ns": ..., "pose": [x, y, theta], "odom_v": ...} or {"t_ns": ..., "change": {"kind", "id", "box", "from"}}; a box
+/// is [centre x, centre y, width, height, theta], radians. Without the line's end.
 [[nodiscard]] std::string truth_line(const TruthRecord& record);
 
 /// A last line that was cut short is left out. Throws std::runtime_error naming file and line.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pseudo-terminal that stands for a serial port: the simulator holds one end, a symbolic link leads programs to the other.
+// A pseudo-terminal that stands for a serial port: the simulator holds one end, a symbolic link leads programs to the
+// other.
 #pragma once
 
 #include <cstdint>

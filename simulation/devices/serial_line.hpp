@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's transmitter: bytes leave one after another at the line's speed and arrive at the host as they would on a wire.
-// Where host and device disagree on the speed, garbage arrives.
+// A device's transmitter: bytes leave one after another at the line's speed and arrive at the host as they would on a
+// wire. Where host and device disagree on the speed, garbage arrives.
 #pragma once
 
 #include <cstdint>

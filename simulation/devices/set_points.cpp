@@ -10,8 +10,8 @@ namespace {
 using drivers::pioneer::Command;
 using drivers::pioneer::CommandNumber;
 
-constexpr double kHalfTrack_m = 0.1786;              // A7
-constexpr double kVel2Unit_m_per_s = 0.02;           // A7: Vel2Divisor 20
+constexpr double kHalfTrack_m = 0.1786;                  // A7
+constexpr double kVel2Unit_m_per_s = 0.02;               // A7: Vel2Divisor 20
 constexpr double kEmergencyDeceleration_m_per_s2 = 2.0;  // TRANSACCTOP of the delivered robot
 constexpr double kArrived_m = 0.002;
 constexpr double kAligned_rad = 0.004;
@@ -38,9 +38,13 @@ bool SetPoints::take(const Command& command, const WheelMotion& motion) {
     emergency_ = false;
   };
   switch (command.number) {
-    case CommandNumber::kVel: set_speed(metres(value)); return true;
+    case CommandNumber::kVel:
+      set_speed(metres(value));
+      return true;
     case CommandNumber::kRotate:
-    case CommandNumber::kRvel: set_turn_rate(radians(value)); return true;
+    case CommandNumber::kRvel:
+      set_turn_rate(radians(value));
+      return true;
     case CommandNumber::kVel2: {
       const auto pair = drivers::pioneer::byte_pair(value);
       const double left = kVel2Unit_m_per_s * pair.left;
@@ -71,8 +75,11 @@ bool SetPoints::take(const Command& command, const WheelMotion& motion) {
     case CommandNumber::kSetA:
     case CommandNumber::kSetV:
     case CommandNumber::kSetRa:
-    case CommandNumber::kSetRv: take_limit(command); return true;
-    default: return false;
+    case CommandNumber::kSetRv:
+      take_limit(command);
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -92,7 +99,8 @@ void SetPoints::take_limit(const Command& command) {
 
 MotorDemand SetPoints::standstill() const {
   MotorDemand demand = limits_;
-  if (emergency_) demand.deceleration_m_per_s2 = std::max(kEmergencyDeceleration_m_per_s2, demand.deceleration_m_per_s2);
+  if (emergency_)
+    demand.deceleration_m_per_s2 = std::max(kEmergencyDeceleration_m_per_s2, demand.deceleration_m_per_s2);
   return demand;
 }
 

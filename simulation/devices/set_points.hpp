@@ -50,9 +50,9 @@ class SetPoints {
 
   double speed_m_per_s_ = 0.0;
   double turn_rate_rad_per_s_ = 0.0;
-  std::optional<double> heading_rad_;    // HEAD, DHEAD: odometry frame
-  std::optional<double> move_to_m_;      // MOVE: value of travelled_m to stop at
-  bool emergency_ = false;               // since ESTOP
+  std::optional<double> heading_rad_;  // HEAD, DHEAD: odometry frame
+  std::optional<double> move_to_m_;    // MOVE: value of travelled_m to stop at
+  bool emergency_ = false;             // since ESTOP
   double max_speed_m_per_s_ = 0.75;
   double max_turn_rate_rad_per_s_ = 1.745;
   MotorDemand limits_;

@@ -24,8 +24,8 @@ constexpr double kAnswerDelay_s = 0.010;
 constexpr double kModeDelay_s = 0.080;
 constexpr double kVariantDelay_s = 0.060;
 constexpr double kWriteDelay_s = 0.250;
-/// A pause that long ends an unfinished telegram. The real limit is 6 ms (B1); an operating system that schedules the host
-/// is given some more.
+/// A pause that long ends an unfinished telegram. The real limit is 6 ms (B1); an operating system that schedules the
+/// host is given some more.
 constexpr double kHostPause_s = 0.060;
 
 std::uint8_t mode_of(const lms200::Telegram& telegram) { return telegram.data.empty() ? 0xFF : telegram.data.front(); }
@@ -80,13 +80,20 @@ void VirtualLms200::take(const lms200::Telegram& telegram, Timestamp now) {
 VirtualLms200::Answer VirtualLms200::answer_to(const lms200::Telegram& telegram, Timestamp now) {
   const Timestamp soon = now + duration_from_seconds(kAnswerDelay_s);
   switch (telegram.command) {
-    case command::kSetMode: return mode_answer(telegram, now);
-    case command::kSetVariant: return variant_answer(telegram, now);
-    case command::kReadConfiguration: return {soon, lms200::configuration_reply(configuration_), {}};
-    case command::kWriteConfiguration: return configuration_answer(telegram, now);
-    case command::kRequestStatus: return {soon, status_frame(), {}};
-    case command::kRequestType: return {soon, lms200::type_reply(kType), {}};
-    case command::kRequestErrors: return {soon, lms200::encoded_reply(lms200::response::kErrors, {}), {}};
+    case command::kSetMode:
+      return mode_answer(telegram, now);
+    case command::kSetVariant:
+      return variant_answer(telegram, now);
+    case command::kReadConfiguration:
+      return {soon, lms200::configuration_reply(configuration_), {}};
+    case command::kWriteConfiguration:
+      return configuration_answer(telegram, now);
+    case command::kRequestStatus:
+      return {soon, status_frame(), {}};
+    case command::kRequestType:
+      return {soon, lms200::type_reply(kType), {}};
+    case command::kRequestErrors:
+      return {soon, lms200::encoded_reply(lms200::response::kErrors, {}), {}};
     case command::kSetPermanentBaud:
       if (mode_of(telegram) > 1) break;
       permanent_baud_ = mode_of(telegram) == 1;
@@ -96,7 +103,8 @@ VirtualLms200::Answer VirtualLms200::answer_to(const lms200::Telegram& telegram,
       answer.restarts = true;
       return answer;
     }
-    default: break;
+    default:
+      break;
   }
   return {soon, lms200::refused_reply(), {}};
 }
@@ -125,8 +133,12 @@ VirtualLms200::Answer VirtualLms200::mode_answer(const lms200::Telegram& telegra
       answer.starts_stream = true;
       return answer;
     case mode::kDiagnostic:
-    case mode::kOnRequest: installing_ = streaming_ = false; return answer;
-    default: answer.bytes = lms200::refused_reply(); return answer;
+    case mode::kOnRequest:
+      installing_ = streaming_ = false;
+      return answer;
+    default:
+      answer.bytes = lms200::refused_reply();
+      return answer;
   }
 }
 
@@ -145,7 +157,8 @@ VirtualLms200::Answer VirtualLms200::configuration_answer(const lms200::Telegram
     configuration_ = *written;
     ++configuration_writes_;
   }
-  return {now + duration_from_seconds(kWriteDelay_s), lms200::configuration_written_reply(accepted, configuration_), {}};
+  return {
+      now + duration_from_seconds(kWriteDelay_s), lms200::configuration_written_reply(accepted, configuration_), {}};
 }
 
 std::vector<std::uint8_t> VirtualLms200::status_frame() const {

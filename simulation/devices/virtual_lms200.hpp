@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An LMS200 as its serial port shows it (protocols.md B): bytes and time in, bytes out. It knows no port and no world; what
-// it measures it asks for, scan by scan. Its mirror turns all the time; a scan is sent where the line is free when it is
-// complete, so the rate follows from the baud as in table B7.
+// An LMS200 as its serial port shows it (protocols.md B): bytes and time in, bytes out. It knows no port and no world;
+// what it measures it asks for, scan by scan. Its mirror turns all the time; a scan is sent where the line is free when
+// it is complete, so the rate follows from the baud as in table B7.
 #pragma once
 
 #include <cstdint>
@@ -21,20 +21,20 @@
 namespace deltamap::simulation::devices {
 
 struct Lms200Setup {
-  unsigned baud = 9600;                   ///< after power-on
-  bool permanent_baud = false;            ///< keeps its baud over a power cycle (66h)
+  unsigned baud = 9600;         ///< after power-on
+  bool permanent_baud = false;  ///< keeps its baud over a power cycle (66h)
   drivers::lms200::ScanVariant variant{180, 50};
   drivers::lms200::Units units = drivers::lms200::Units::kCentimetre;
-  std::uint8_t measuring_mode = 0x00;     ///< B4 byte 5
-  double start_up_s = 3.0;                ///< of silence after power-on or reset, until 90h; the real one up to 60
-  bool is_up = true;                      ///< has been switched on long ago
+  std::uint8_t measuring_mode = 0x00;  ///< B4 byte 5
+  double start_up_s = 3.0;             ///< of silence after power-on or reset, until 90h; the real one up to 60
+  bool is_up = true;                   ///< has been switched on long ago
 };
 
 /// What a sweep of the mirror has to measure.
 struct SweepRequest {
-  Timestamp begin;                          ///< of the first beam
+  Timestamp begin;  ///< of the first beam
   drivers::lms200::ScanVariant variant;
-  double max_range_m = 0.0;                 ///< the farthest that the measuring mode can tell
+  double max_range_m = 0.0;  ///< the farthest that the measuring mode can tell
 };
 
 class VirtualLms200 {
@@ -54,7 +54,7 @@ class VirtualLms200 {
   }
   [[nodiscard]] std::optional<Timestamp> next_event() const;
 
-  void cut_power(Timestamp now);       ///< off and on again: back to 9600 unless permanent, 90h when up
+  void cut_power(Timestamp now);              ///< off and on again: back to 9600 unless permanent, 90h when up
   void nack_next_request() { ++naks_owed_; }  ///< as a disturbed line would make it
   void set_status_byte(std::uint8_t status) { status_ = status; }  ///< of the scans, B6
 
@@ -68,9 +68,9 @@ class VirtualLms200 {
   struct Answer {
     Timestamp at;
     std::vector<std::uint8_t> bytes;
-    std::optional<unsigned> baud_after;   // takes effect once the answer has left
+    std::optional<unsigned> baud_after;  // takes effect once the answer has left
     bool starts_stream = false;
-    bool restarts = false;                // reset: silence, then 90h
+    bool restarts = false;  // reset: silence, then 90h
   };
 
   void take(const drivers::lms200::Telegram& telegram, Timestamp now);
@@ -93,15 +93,15 @@ class VirtualLms200 {
   drivers::lms200::TelegramDecoder decoder_;
   drivers::lms200::Configuration configuration_;
   drivers::lms200::ScanVariant variant_;
-  Timestamp mirror_start_;                // a turn begins here and every 13.32 ms
-  std::optional<Timestamp> up_at_;        // still silent until then
+  Timestamp mirror_start_;          // a turn begins here and every 13.32 ms
+  std::optional<Timestamp> up_at_;  // still silent until then
   std::deque<Answer> answers_;
   std::optional<Timestamp> baud_change_at_;
   unsigned baud_after_ = 0;
   Timestamp last_host_byte_{};
   std::optional<Timestamp> last_scan_end_;
   bool streaming_ = false;
-  bool scan_wanted_ = false;              // one, by 30h
+  bool scan_wanted_ = false;  // one, by 30h
   bool installing_ = false;
   bool permanent_baud_ = false;
   int naks_owed_ = 0;

@@ -18,7 +18,7 @@ using pioneer::CommandNumber;
 
 constexpr double kSonarCycle_s = 0.04;  // A5: SONARCYCLE as delivered
 constexpr double kSonarReach_m = 5.0;
-constexpr double kHalfTrack_m = 0.1786;  // A7
+constexpr double kHalfTrack_m = 0.1786;       // A7
 constexpr double kTicksPerMetre = 128'000.0;  // A10: TICKSMM 128
 constexpr std::uint16_t kFifteenBits = 0x7FFF;
 constexpr int kBumperSegments = 5;  // front and rear each
@@ -89,13 +89,27 @@ void VirtualPioneer::obey(const Command& command, Timestamp now) {
   if (set_points_.take(command, motion_)) return;
   const int value = command.integer_or(1);
   switch (command.number) {
-    case CommandNumber::kClose: disconnect(); break;
-    case CommandNumber::kEnable: motors_enabled_ = value != 0 && !stop_button_; break;
-    case CommandNumber::kSetO: set_pose_to_zero(); break;
-    case CommandNumber::kConfig: line_.send(config_frame(), now); break;
-    case CommandNumber::kSonar: sonar_on_ = value != 0 && setup_.sonars > 0; break;
-    case CommandNumber::kEncoder: encoder_stream_ = value > 0; break;
-    case CommandNumber::kIoRequest: io_stream_ = value > 0; break;
+    case CommandNumber::kClose:
+      disconnect();
+      break;
+    case CommandNumber::kEnable:
+      motors_enabled_ = value != 0 && !stop_button_;
+      break;
+    case CommandNumber::kSetO:
+      set_pose_to_zero();
+      break;
+    case CommandNumber::kConfig:
+      line_.send(config_frame(), now);
+      break;
+    case CommandNumber::kSonar:
+      sonar_on_ = value != 0 && setup_.sonars > 0;
+      break;
+    case CommandNumber::kEncoder:
+      encoder_stream_ = value > 0;
+      break;
+    case CommandNumber::kIoRequest:
+      io_stream_ = value > 0;
+      break;
     case CommandNumber::kBatTest: {
       fake_battery_decivolts_.reset();
       if (value != 0) fake_battery_decivolts_ = value;
@@ -104,7 +118,8 @@ void VirtualPioneer::obey(const Command& command, Timestamp now) {
     case CommandNumber::kHostBaud:
       if (const auto baud = pioneer::baud_of_host_code(value); baud && setup_.can_change_baud) set_baud(*baud);
       break;
-    default: break;  // PULSE, and what a stock P3-DX has no hardware for
+    default:
+      break;  // PULSE, and what a stock P3-DX has no hardware for
   }
 }
 
@@ -208,7 +223,8 @@ void VirtualPioneer::add_sonar(pioneer::Sip& sip, Timestamp now, const Sonar& so
     for (int array = 0; array < setup_.sonars / 8; ++array) {
       const int index = 8 * array + sonar_fired_ % 8;
       const double range_m = std::min(kSonarReach_m, sonar(index).value_or(kSonarReach_m));
-      sip.sonar.push_back({static_cast<std::uint8_t>(index), static_cast<std::uint16_t>(std::lround(1000.0 * range_m))});
+      sip.sonar.push_back(
+          {static_cast<std::uint8_t>(index), static_cast<std::uint16_t>(std::lround(1000.0 * range_m))});
     }
   }
 }

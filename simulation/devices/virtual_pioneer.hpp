@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The controller of a P3-DX as its serial port shows it (protocols.md A): bytes and time in, bytes and demands on the motors
-// out. It knows no port and no world. Its watchdog is the real one (A9): it stops the robot and, at the next packet of any
-// kind, lets it resume its old set points.
+// The controller of a P3-DX as its serial port shows it (protocols.md A): bytes and time in, bytes and demands on the
+// motors out. It knows no port and no world. Its watchdog is the real one (A9): it stops the robot and, at the next
+// packet of any kind, lets it resume its old set points.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,9 @@ struct PioneerSetup {
   double sip_cycle_s = 0.1;       ///< A6
   double watchdog_s = 2.0;        ///< A9
   double battery_v = 12.8;
-  int sonars = 8;                 ///< 0, 8 or 16
+  int sonars = 8;  ///< 0, 8 or 16
   bool has_bumpers = false;
-  bool can_change_baud = true;    ///< AUTOBAUD 1: honours HOSTBAUD
+  bool can_change_baud = true;  ///< AUTOBAUD 1: honours HOSTBAUD
 };
 
 class VirtualPioneer {
@@ -99,7 +99,7 @@ class VirtualPioneer {
   bool io_stream_ = false;
   int sonar_fired_ = 0;
   std::optional<int> fake_battery_decivolts_;
-  WheelMotion motion_;      // with the pose as the controller counts it, from its last zero
+  WheelMotion motion_;       // with the pose as the controller counts it, from its last zero
   Pose2 wheels_from_robot_;  // with the pose as the wheels counted it since power-on
   Pose2 wheels_from_zero_;   // where the controller's pose was last set to zero
   SetPoints set_points_;
