@@ -75,7 +75,11 @@ std::vector<Cell> surface_cells(const Shape& shape, const GridGeometry& geometry
 }
 
 OccupancyGrid start_map(const World& world, const Point2& robot_start, double resolution_m) {
-  OccupancyGrid grid{map_geometry(world, resolution_m)};
+  return surveyed_map(world, robot_start, map_geometry(world, resolution_m));
+}
+
+OccupancyGrid surveyed_map(const World& world, const Point2& robot_start, const GridGeometry& geometry) {
+  OccupancyGrid grid{geometry};
   for (const Object& object : world.objects) {
     for (const Cell cell : surface_cells(object.shape, grid.geometry())) grid.set(cell, CellState::kOccupied);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// M_0 of a scenario: what a perfect survey of the initial world would have drawn.
+// M_0 of a scenario: what a perfect survey of the initial world would have drawn; of any world, for scoring.
 #pragma once
 
 #include "core/occupancy_grid.hpp"
@@ -11,6 +11,9 @@ namespace deltamap::simulation {
 /// containers, what lies behind walls and surfaces that nobody can see are unknown. Surfaces on round coordinates lie
 /// in the middle of a cell, so that noise does not scatter them over two.
 [[nodiscard]] OccupancyGrid start_map(const World& world, const Point2& robot_start, double resolution_m);
+
+/// The same on a given grid.
+[[nodiscard]] OccupancyGrid surveyed_map(const World& world, const Point2& robot_start, const GridGeometry& geometry);
 
 /// The cells that the surface of a shape passes through.
 [[nodiscard]] std::vector<Cell> surface_cells(const Shape& shape, const GridGeometry& geometry);

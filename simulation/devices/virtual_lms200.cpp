@@ -47,7 +47,7 @@ VirtualLms200::VirtualLms200(const Lms200Setup& setup, Timestamp power_on, Rando
 
 void VirtualLms200::receive(std::span<const std::uint8_t> bytes, unsigned host_baud, Timestamp now) {
   if (up_at_) return;
-  if (now - last_host_byte_ > duration_from_seconds(kHostPause_s)) decoder_.set_baud(line_.baud());
+  if (now - last_host_byte_ > duration_from_seconds(kHostPause_s)) (void)decoder_.finish();
   last_host_byte_ = now;
   const auto damaged_before = decoder_.counts().bad_checksum;
   const auto heard = garbled(bytes, host_baud, line_.baud(), random_);

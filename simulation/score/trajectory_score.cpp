@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/score/trajectory_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace deltamap::simulation::score {
+namespace {
+
+constexpr double kFarOff_m = 0.5;
+
+/// The value below which a share of the sorted values lies.
+double quantile(const std::vector<double>& sorted, double share) {
+  if (sorted.empty()) return 0.0;
+  const auto index = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5);
+  return sorted[index];
+}
+
+}  // namespace
+
+std::vector<StampedPose> read_trajectory(const std::filesystem::path& tum_file) {
+  std::ifstream in(tum_file);
+  if (!in || std::filesystem::is_directory(tum_file)) throw std::runtime_error(tum_file.string() + ": cannot be read");
+  std::vector<StampedPose> trajectory;
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.empty() || line.front() == '#') continue;
+    std::istringstream fields(line);
+    double t = 0.0, x = 0.0, y = 0.0, z = 0.0, qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;
+    if (!(fields >> t >> x >> y >> z >> qx >> qy >> qz >> qw)) {
+      throw std::runtime_error(tum_file.string() + ": line " + std::to_string(number) +
+                               ": not a pose (t x y z qx qy qz qw)");
+    }
+    trajectory.push_back({Timestamp{duration_from_seconds(t)}, {x, y, wrapped_angle(2.0 * std::atan2(qz, qw))}});
+  }
+  if (trajectory.empty()) throw std::runtime_error(tum_file.string() + ": line 1: holds no pose");
+  return trajectory;
+}
+
+TrajectoryScore trajectory_score(const std::vector<StampedPose>& trajectory, const Truth& truth) {
+  std::vector<double> errors_m;
+  std::vector<double> turns_rad;
+  for (const StampedPose& pose : trajectory) {
+    if (pose.time < truth.poses.front().time || pose.time > truth.poses.back().time) continue;
+    const Pose2 true_pose = pose_at(truth, pose.time);
+    errors_m.push_back(deltamap::distance_between(pose.map_from_robot, true_pose));
+    turns_rad.push_back(std::abs(turn_between(pose.map_from_robot.theta, true_pose.theta)));
+  }
+  std::sort(errors_m.begin(), errors_m.end());
+  std::sort(turns_rad.begin(), turns_rad.end());
+  TrajectoryScore score;
+  score.poses = errors_m.size();
+  if (errors_m.empty()) return score;
+  const auto far = errors_m.end() - std::upper_bound(errors_m.begin(), errors_m.end(), kFarOff_m);
+  score.median_m = quantile(errors_m, 0.5);
+  score.p95_m = quantile(errors_m, 0.95);
+  score.max_m = errors_m.back();
+  score.share_beyond_half_metre = static_cast<double>(far) / static_cast<double>(errors_m.size());
+  score.median_heading_rad = quantile(turns_rad, 0.5);
+  return score;
+}
+
+}  // namespace deltamap::simulation::score

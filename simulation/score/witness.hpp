@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Watches one change from the robot's true poses: how long each of its faces was seen and which cells of the map the
+// beams touched there.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <unordered_set>
+#include <vector>
+
+#include "core/occupancy_grid.hpp"
+#include "simulation/ray_caster.hpp"
+
+namespace deltamap::simulation::score {
+
+/// A beam of the true world.
+struct TrueBeam {
+  Point2 from{0.0, 0.0};
+  double bearing_rad = 0.0;
+  double range_m = 0.0;  ///< to the hit, or as far as the robot sees
+  std::optional<RayHit> hit;
+};
+
+class Witness {
+ public:
+  /// Of a container that has come: beams that hit it see it.
+  static Witness of_appearance(int id, const Box& box, const GridGeometry& geometry);
+  /// Of a container that has gone: beams see that it is gone where they pass through cells that its surface occupied.
+  static Witness of_disappearance(const Box& box, const GridGeometry& geometry, std::unordered_set<std::size_t> former);
+
+  void look(const TrueBeam& beam);
+  /// The pose from which the last beams came stood for so long.
+  void end_look(double seconds);
+
+  [[nodiscard]] double longest_seen_s() const;
+  /// Cells touched, by index in the map.
+  [[nodiscard]] const std::unordered_set<std::size_t>& touched() const { return touched_; }
+
+ private:
+  Witness(int id, const Box& box, const GridGeometry& geometry, std::unordered_set<std::size_t> former);
+  void look_through(const TrueBeam& beam);
+
+  int id_;
+  Box box_;
+  std::array<Segment, 4> faces_;
+  GridGeometry geometry_;
+  std::unordered_set<std::size_t> former_;
+  std::array<bool, 4> seen_now_{};
+  std::array<double, 4> seen_s_{};
+  std::unordered_set<std::size_t> touched_;
+};
+
+}  // namespace deltamap::simulation::score
