@@ -32,7 +32,10 @@ ChangeNote note_of(const ScanSet& set, const mapping::MapUpdate& update, const G
 }  // namespace
 
 MapStep::MapStep(const Settings& settings, StartMap start)
-    : update_{settings.mapping.update}, localizer_{settings.localizer}, newest_{std::move(start)} {}
+    : method_{settings.mapping.store_scan.method == MappingMethod::kPaper ? "paper" : "evidence"},
+      update_{settings.mapping.update},
+      localizer_{settings.localizer},
+      newest_{std::move(start)} {}
 
 MapStep::Result MapStep::update(const ScanSet& set) {
   mapping::MapUpdate update = mapping::map_update(*newest_.map, set, update_);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "core/messages.hpp"
 #include "daemon/localization_step.hpp"
@@ -23,11 +24,14 @@ class MapStep {
   };
   [[nodiscard]] Result update(const ScanSet& set);
 
+  /// "paper" or "evidence": kept with each revision.
+  [[nodiscard]] std::string_view method() const { return method_; }
   /// M_k, the newest map.
   [[nodiscard]] const std::shared_ptr<const OccupancyGrid>& map() const { return newest_.map; }
   [[nodiscard]] std::uint32_t revision() const { return newest_.revision; }
 
  private:
+  std::string_view method_;
   mapping::MapUpdateParams update_;
   localization::LocalizerParams localizer_;
   StartMap newest_;

@@ -9,6 +9,7 @@
 #include "daemon/latency_histogram.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recorder.hpp"
+#include "daemon/revision_keeper.hpp"
 #include "daemon/stage.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "mapping/store_scan.hpp"
@@ -24,6 +25,15 @@ constexpr int kRecorderNiceness = 5;
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
+}
+
+/// A history that begins with this run; nothing where the settings keep theirs in the same file.
+std::optional<mapping::MapStore> begun_store(const std::filesystem::path& file, const OccupancyGrid& start,
+                                             const std::filesystem::path& configured) {
+  std::error_code ignored;
+  if (!configured.empty() && std::filesystem::equivalent(file, configured, ignored)) return std::nullopt;
+  for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part, ignored);
+  return mapping::MapStore{file, start};
 }
 
 std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batch) {
@@ -64,6 +74,8 @@ struct Pipeline::State {
   mapping::StoreScan store_scan;
   std::optional<ScanSet> waiting_set;  // the map thread was busy: offered again at the next scan
   MapStep map_step;
+  mapping::MapStore* store;                    // of the settings; null after it has failed
+  std::optional<mapping::MapStore> out_store;  // of --out: begins with this run
   std::optional<LineFile> changes;
   std::vector<ChangeNote> change_notes;
 
@@ -73,7 +85,7 @@ struct Pipeline::State {
   void show(const Estimate& estimate, Timestamp received);
   void hand_over(ScanSet set);
   void update_map(const ScanSet& set);
-  void save(const MapRevision& revision);
+  void save(const MapStep::Result& result);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
 
   Workload localization_work, awareness_work, map_work;
@@ -101,12 +113,14 @@ Pipeline::State::State(const Settings& given, Options wanted)
           .log = options.log}},
       localization{settings, options.start},
       store_scan{settings.mapping.store_scan, settings.seed},
-      map_step{settings, options.start} {
+      map_step{settings, options.start},
+      store{options.store} {
   if (settings.navigation.mode == navigation::DriveMode::kWander) {
     pilot.emplace(settings.navigation.wander, settings.seed);
   }
   if (options.out) {
     changes.emplace(*options.out / "changes.jsonl");
+    out_store = begun_store(*options.out / "map_store.sqlite", *options.start.map, settings.map.store);
     write_grid(*options.start.map, *options.out / "map.yaml");
   }
   telemetry.newest_revision.set(options.start.revision);
@@ -240,20 +254,27 @@ void Pipeline::State::update_map(const ScanSet& set) {
   if (!result.revision) {
     telemetry.refused.add(1);
     options.log("map unchanged: phase=" + std::to_string(set.phase) + " reason=" + result.note.reason);
-    return;
+    return save(result);
   }
   telemetry.newest_revision.set(result.revision->number);
   options.log("map changed: revision=" + std::to_string(result.revision->number) +
               " phase=" + std::to_string(set.phase) + " added=" + std::to_string(result.note.added) +
               " freed=" + std::to_string(result.note.freed));
-  const MapRevision kept = *result.revision;
-  (void)revisions.try_send(std::move(*result.revision));
-  save(kept);
+  MapRevision published = *result.revision;
+  (void)revisions.try_send(std::move(published));
+  save(result);
 }
 
-void Pipeline::State::save(const MapRevision& revision) {
-  if (options.save) options.save(revision);
-  if (options.out) write_grid(*revision.map, *options.out / "map.yaml");
+void Pipeline::State::save(const MapStep::Result& result) {
+  if (out_store) keep(*out_store, result, map_step.method(), options.start.revision);
+  if (options.out && result.revision) write_grid(*result.revision->map, *options.out / "map.yaml");
+  if (store == nullptr) return;
+  try {
+    keep(*store, result, map_step.method());
+  } catch (const std::exception& error) {
+    options.log(std::string("revisions are kept no longer: ") + error.what());
+    store = nullptr;
+  }
 }
 
 // --- start and stop ---

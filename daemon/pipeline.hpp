@@ -12,6 +12,7 @@
 #include "daemon/outputs.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/telemetry.hpp"
+#include "mapping/map_store.hpp"
 
 namespace deltamap::daemon {
 
@@ -19,9 +20,9 @@ class Pipeline {
  public:
   struct Options {
     StartMap start;
-    std::function<void(const MapRevision&)> save;  ///< map thread: every revision, to keep it; may be slow
-    std::optional<std::filesystem::path> out;      ///< an existing folder: the files of a replay, while it runs
-    PortOpener open;                               ///< empty: the serial devices of the settings
+    mapping::MapStore* store = nullptr;  ///< takes every revision and refusal in the map thread; outlives the pipeline
+    std::optional<std::filesystem::path> out;  ///< an existing folder: the files of a replay, while it runs
+    PortOpener open;                           ///< empty: the serial devices of the settings
     drivers::SessionMode mode = drivers::SessionMode::kLive;
     std::function<void(const std::string&)> log;     ///< any thread: a short line
     std::function<void(const std::string&)> failed;  ///< any thread: a stage has ended by an exception

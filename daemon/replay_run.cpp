@@ -12,6 +12,7 @@
 #include "daemon/localization_step.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recording_decoder.hpp"
+#include "daemon/revision_keeper.hpp"
 #include "daemon/revision_queue.hpp"
 #include "daemon/stage.hpp"
 #include "drivers/port/replay_port.hpp"
@@ -60,6 +61,7 @@ class Replay {
         localization_{job.settings, start},
         store_scan_{job.settings.mapping.store_scan, job.settings.seed},
         map_{job.settings, start},
+        store_{out / "map_store.sqlite", *start.map},
         trajectory_{out / "trajectory.tum"},
         changes_{out / "changes.jsonl"} {
     const RunIdentity identity{settings_fingerprint(job.settings), grid_hash(*start.map)};
@@ -91,6 +93,7 @@ class Replay {
   mapping::StoreScan store_scan_;
   MapStep map_;
   std::unique_ptr<RevisionQueue> revisions_;
+  mapping::MapStore store_;
   LineFile trajectory_;
   LineFile changes_;
   LatencyHistogram step_times_;
@@ -185,6 +188,7 @@ void Replay::update_map(const ScanSet& set) {
   const CpuTimer timer{report_.cpu.map_update_s};
   MapStep::Result result = map_.update(set);
   changes_.write(json_line(result.note));
+  keep(store_, result, map_.method());
   report_.changes.push_back(std::move(result.note));
   if (!result.revision) return;
   revisions_->push(std::move(*result.revision));

@@ -16,6 +16,7 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
 #include "daemon/settings.hpp"
+#include "mapping/map_store.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -67,6 +68,16 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
 }
 
+/// The newest revision of this map, or M_0 itself.
+StartMap start_map(OccupancyGrid first, const mapping::MapStore* store, Console& console) {
+  if (store != nullptr && store->dropped() > 0) {
+    console.log(spdlog::level::warn, "map store: damaged revisions dropped=" + std::to_string(store->dropped()));
+  }
+  if (store == nullptr || store->newest() == 0) return {std::make_shared<const OccupancyGrid>(std::move(first)), 0};
+  console.log(spdlog::level::info, "map store: goes on with revision=" + std::to_string(store->newest()));
+  return {std::make_shared<const OccupancyGrid>(store->grid(store->newest())), store->newest()};
+}
+
 sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -96,8 +107,13 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
 
   if (settings.map.file.empty()) throw std::runtime_error(line.config + ": 'map.file' names no map");
 
+  OccupancyGrid first = read_grid(settings.map.file);
+  std::optional<mapping::MapStore> store;
+  if (!settings.map.store.empty()) store.emplace(settings.map.store, first);
+
   Pipeline::Options options;
-  options.start = {std::make_shared<const OccupancyGrid>(read_grid(settings.map.file)), 0};
+  options.start = start_map(std::move(first), store ? &*store : nullptr, console);
+  options.store = store ? &*store : nullptr;
   if (!line.out.empty()) {
     std::filesystem::create_directories(line.out);
     options.out = line.out;
