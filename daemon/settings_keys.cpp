@@ -160,13 +160,12 @@ void add_states(localization::LocalizerParams& localizer, Keys& keys) {
                              "height of such a cell"));
   auto& fit = localizer.fit;
   keys.push_back(number_key("localization.fit.lost_below", fit.lost_below, "", 0.0, 1.0,
-                            "fit of a scan (w_avg) that counts as misfit"));
-  keys.push_back(
-      number_key("localization.fit.found_above", fit.found_above, "", 0.0, 1.0, "fit that counts as found again"));
+                            "mean share of beams that the map explains: misfit below"));
+  keys.push_back(number_key("localization.fit.found_above", fit.found_above, "", 0.0, 1.0, "and found again above"));
   keys.push_back(
       number_key("localization.fit.lost_after_s", fit.lost_after_s, "s", 0.001, 3600.0, "unbroken misfit until lost"));
-  keys.push_back(number_key("localization.fit.memory_s", fit.memory_s, "s", 0.001, 3600.0,
-                            "time constant of the fit's running mean"));
+  keys.push_back(
+      number_key("localization.fit.memory_s", fit.memory_s, "s", 0.001, 3600.0, "time constant of that mean"));
   keys.push_back(number_key("localization.fit.search_after_s", fit.search_after_s, "s", 0.0, 86400.0,
                             "lost until the whole map is searched"));
   keys.push_back(

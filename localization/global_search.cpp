@@ -31,8 +31,8 @@ BeamEnds thinned(const BeamEnds& ends, std::size_t count) {
 
 /// The best first, each at least a step away from the better ones: otherwise one corner takes all the places.
 std::vector<Candidate> best_places(std::vector<Candidate> candidates, std::size_t count) {
-  constexpr double kApart_m = 0.25;
-  constexpr double kApart_rad = 0.15;
+  constexpr double kApartM = 0.25;
+  constexpr double kApartRad = 0.15;
   const std::size_t looked_at = std::min(candidates.size(), 5 * count);
   const auto better = [](const Candidate& a, const Candidate& b) {
     return a.misfit != b.misfit ? a.misfit < b.misfit : a.number < b.number;
@@ -43,8 +43,8 @@ std::vector<Candidate> best_places(std::vector<Candidate> candidates, std::size_
   for (std::size_t i = 0; i < looked_at && places.size() < count; ++i) {
     const Pose2& pose = candidates[i].map_from_robot;
     const bool apart = std::none_of(places.begin(), places.end(), [&](const Candidate& place) {
-      return distance_between(pose, place.map_from_robot) < kApart_m &&
-             std::abs(turn_between(pose.theta, place.map_from_robot.theta)) < kApart_rad;
+      return distance_between(pose, place.map_from_robot) < kApartM &&
+             std::abs(turn_between(pose.theta, place.map_from_robot.theta)) < kApartRad;
     });
     if (apart) places.push_back(candidates[i]);
   }

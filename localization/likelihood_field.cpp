@@ -67,7 +67,7 @@ class WindowBuilder {
         window_{window},
         wide_{grown(window, table.reach_cells, map.geometry())},
         never_{table.reach_cells + 1},
-        width_{static_cast<std::size_t>(window.width() + 2 * table.reach_cells)},
+        width_{static_cast<std::size_t>(window.width()) + 2 * static_cast<std::size_t>(table.reach_cells)},
         column_distance_(width_ * static_cast<std::size_t>(window.height()), never_ * never_) {}
 
   [[nodiscard]] std::vector<std::uint8_t> bytes() {

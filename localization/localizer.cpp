@@ -12,7 +12,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kJumpBetweenEpochs_s = 0.3;  // how long odometry counts as silent when its epoch changes
+constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as silent when its epoch changes
 
 /// The last scan that changed the particles.
 struct LastUpdate {
@@ -113,7 +113,7 @@ struct Localizer::State {
     }
     since.motion = motion_between(last_update->odometry->joined_from_robot, now->joined_from_robot);
     since.unknown_s = std::min(now->uncovered_s, since.passed_s);
-    if (now->epoch != last_update->odometry->epoch) since.unknown_s += kJumpBetweenEpochs_s;
+    if (now->epoch != last_update->odometry->epoch) since.unknown_s += kJumpBetweenEpochsS;
     return since;
   }
 
@@ -156,7 +156,7 @@ struct Localizer::State {
 
   /// Between updates: the particles stay, the answer follows the wheels and the scan.
   RefinedPose follow(const MotionSince& since) {
-    const RefinedPose prior = carried(last_update->believed, since, params.motion);
+    RefinedPose prior = carried(last_update->believed, since, params.motion);
     if (ends.size() == 0) return prior;
     const Hypothesis standing = hypotheses.best(filter.particles());
     double sum = 0.0;

@@ -8,7 +8,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kDirectionIsNoise_m = 0.010;
+constexpr double kDirectionIsNoiseM = 0.010;
 
 double turned_rad(double rot_rad) { return std::min(std::abs(rot_rad), std::numbers::pi - std::abs(rot_rad)); }
 
@@ -16,14 +16,14 @@ double turned_rad(double rot_rad) { return std::min(std::abs(rot_rad), std::numb
 
 TurnDriveTurn turn_drive_turn(const Pose2& motion) {
   const double trans_m = std::hypot(motion.x, motion.y);
-  if (trans_m < kDirectionIsNoise_m) return {0.0, motion.x, motion.theta};
+  if (trans_m < kDirectionIsNoiseM) return {0.0, motion.x, motion.theta};
   const double rot1_rad = std::atan2(motion.y, motion.x);
   return {rot1_rad, trans_m, wrapped_angle(motion.theta - rot1_rad)};
 }
 
 MotionNoise motion_noise(const TurnDriveTurn& motion, double unknown_s, const MotionModelParams& params) {
   const double rot1_rad = turned_rad(motion.rot1_rad);
-  const bool on_the_spot = std::abs(motion.trans_m) < kDirectionIsNoise_m;
+  const bool on_the_spot = std::abs(motion.trans_m) < kDirectionIsNoiseM;
   const double rot2_rad = on_the_spot ? std::abs(motion.rot2_rad) : turned_rad(motion.rot2_rad);
   const double unknown_m = params.unknown_speed_m_per_s * unknown_s;
   const double unknown_rad = params.unknown_turn_rate_rad_per_s * unknown_s;

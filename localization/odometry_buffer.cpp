@@ -8,9 +8,9 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kClockFellBack_s = 1.0;
-constexpr double kVelocityBase_s = 0.08;        // shorter bases turn 1 mm steps into noise
-constexpr double kLongestVelocityBase_s = 0.5;  // a velocity of longer ago says nothing about now
+constexpr double kClockFellBackS = 1.0;
+constexpr double kVelocityBaseS = 0.08;        // shorter bases turn 1 mm steps into noise
+constexpr double kLongestVelocityBaseS = 0.5;  // a velocity of longer ago says nothing about now
 
 BodyVelocity velocity_of(const Pose2& motion, double duration_s) {
   const double forward = std::cos(0.5 * motion.theta) * motion.x + std::sin(0.5 * motion.theta) * motion.y;
@@ -37,7 +37,7 @@ void OdometryBuffer::add(const Odometry& odometry) {
                {odometry.speed_m_per_s, odometry.turn_rate_rad_per_s}};
   if (count_ > 0) {
     const Report& last = newest();
-    if (seconds(last.time - fresh.time) > kClockFellBack_s) {
+    if (seconds(last.time - fresh.time) > kClockFellBackS) {
       fresh.joined_from_robot = last.joined_from_robot;
       count_ = 0;
     } else if (fresh.time <= last.time && fresh.epoch == last.epoch) {
@@ -104,8 +104,8 @@ BodyVelocity OdometryBuffer::newest_velocity() const {
   for (std::size_t back = count_ - 1; back-- > 0;) {
     const Report& earlier = report(back);
     const double base_s = seconds(last.time - earlier.time);
-    if (earlier.epoch != last.epoch || base_s > kLongestVelocityBase_s) break;
-    if (base_s < kVelocityBase_s) continue;
+    if (earlier.epoch != last.epoch || base_s > kLongestVelocityBaseS) break;
+    if (base_s < kVelocityBaseS) continue;
     return clamped(velocity_of(motion_between(earlier.odom_from_robot, last.odom_from_robot), base_s));
   }
   return clamped(last.reported);
@@ -113,10 +113,10 @@ BodyVelocity OdometryBuffer::newest_velocity() const {
 
 BodyVelocity OdometryBuffer::velocity_at(Timestamp time) const {
   if (count_ == 0) return {};
-  const Timestamp from = std::max(time - duration_from_seconds(0.5 * kVelocityBase_s), report(0).time);
-  const Timestamp to = std::min(time + duration_from_seconds(0.5 * kVelocityBase_s), newest().time);
+  const Timestamp from = std::max(time - duration_from_seconds(0.5 * kVelocityBaseS), report(0).time);
+  const Timestamp to = std::min(time + duration_from_seconds(0.5 * kVelocityBaseS), newest().time);
   const double base_s = seconds(to - from);
-  if (base_s < 0.5 * kVelocityBase_s) {
+  if (base_s < 0.5 * kVelocityBaseS) {
     const double silent_s = seconds(time - newest().time);
     return silent_s > params_.extrapolation_s ? BodyVelocity{} : newest_velocity();
   }

@@ -9,8 +9,8 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kSettled_m = 5e-4;
-constexpr double kSettled_rad = 2e-4;
+constexpr double kSettledM = 5e-4;
+constexpr double kSettledRad = 2e-4;
 
 /// Sum over the beams of wJᵀJ/σ² and wJᵀd/σ².
 struct NormalEquations {
@@ -86,7 +86,7 @@ RefinedPose refined(const LikelihoodField& field, const BeamEnds& ends, const Re
     const Eigen::Vector3d move = -information.ldlt().solve(pull);
     if (!move.allFinite()) return prior;
     pose = {pose.x + move.x(), pose.y + move.y(), wrapped_angle(pose.theta + move.z())};
-    if (move.head<2>().norm() < kSettled_m && std::abs(move.z()) < kSettled_rad) break;
+    if (move.head<2>().norm() < kSettledM && std::abs(move.z()) < kSettledRad) break;
   }
   const Eigen::Vector3d shift = difference(prior.map_from_robot, pose);
   if (shift.head<2>().norm() > params.longest_shift_m || std::abs(shift.z()) > params.largest_turn_rad) return prior;

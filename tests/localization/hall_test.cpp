@@ -15,8 +15,8 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kScanPeriod_s = 0.2133;  // 38400 baud, 181 values (protocols.md B7)
-constexpr double kSpeed_m_per_s = 0.4;
+constexpr double kScanPeriodS = 0.2133;  // 38400 baud, 181 values (protocols.md B7)
+constexpr double kSpeedMPerS = 0.4;
 
 OccupancyGrid hall() {
   OccupancyGrid map{{720, 720, 0.05, {-0.5, -0.5}}};
@@ -74,11 +74,11 @@ Errors drive_round(const OccupancyGrid& world, double max_range_m, std::uint64_t
     }
     const double off_rad = turn_between(truth.theta, std::atan2(to.y(), to.x()));
     const double turn_rad = std::clamp(off_rad, -0.15, 0.15);
-    const double forward_m = std::abs(off_rad) > 0.5 ? 0.0 : kSpeed_m_per_s * kScanPeriod_s;
+    const double forward_m = std::abs(off_rad) > 0.5 ? 0.0 : kSpeedMPerS * kScanPeriodS;
     truth = truth * Pose2{forward_m, 0.0, turn_rad};
     const double slip = 1.0 + random.normal(0.05);
     odom = odom * Pose2{1.01 * slip * forward_m, 0.0, 1.02 * turn_rad + 0.02 * forward_m + random.normal(0.002)};
-    time += duration_from_seconds(kScanPeriod_s);
+    time += duration_from_seconds(kScanPeriodS);
     Odometry odometry;
     odometry.time = time;
     odometry.odom_from_robot = odom;

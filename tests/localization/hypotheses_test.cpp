@@ -46,6 +46,7 @@ TEST(Hypotheses, TakesTheMeanHeadingAcrossTheSeam) {
 
 TEST(Hypotheses, JoinsAChainOfNeighbours) {
   std::vector<Pose2> chain;
+  chain.reserve(40);
   for (int i = 0; i < 40; ++i) chain.push_back({-8.0 + 0.4 * i, 0.3, 0.0});
   HypothesisFinder finder{{.cell_m = 0.5}};
   const Hypothesis best = finder.best(particles_at(chain, {}));

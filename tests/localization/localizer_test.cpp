@@ -16,7 +16,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kScanPeriod_s = 0.2;
+constexpr double kScanPeriodS = 0.2;
 
 /// 10 × 6 m, nowhere the same.
 OccupancyGrid flat() {
@@ -46,7 +46,7 @@ class Drive {
   }
 
   void step() {
-    time_ += duration_from_seconds(kScanPeriod_s);
+    time_ += duration_from_seconds(kScanPeriodS);
     const bool at_end = (truth_.x > lane_end_m_ && !backwards_) || (truth_.x < lane_start_m_ && backwards_);
     if (at_end && turns_left_ == 0) turns_left_ = 10;
     const Pose2 motion = standing_         ? Pose2{}
@@ -118,7 +118,7 @@ TEST(Localizer, FillsInEverythingThatTheOthersJudgeBy) {
   const TrackedScan tracked = drive.next(localizer);
   EXPECT_EQ(tracked.rays.size(), tracked.scan.beams.size());
   EXPECT_EQ(tracked.estimate.time, tracked.scan.time);
-  EXPECT_NEAR(tracked.speed_m_per_s, 0.08 * 1.03 / kScanPeriod_s, 0.02);
+  EXPECT_NEAR(tracked.speed_m_per_s, 0.08 * 1.03 / kScanPeriodS, 0.02);
   EXPECT_GE(tracked.estimate.n_eff, 1.0);
   EXPECT_LE(tracked.estimate.n_eff, tracked.estimate.particles);
   EXPECT_GT(tracked.estimate.w_avg, 0.3);
@@ -242,7 +242,7 @@ TEST(Localizer, WorksWithoutOdometry) {
   Pose2 truth = drive.truth();
   Estimate estimate;
   for (int i = 0; i < 40; ++i) {
-    time += duration_from_seconds(kScanPeriod_s);
+    time += duration_from_seconds(kScanPeriodS);
     truth = truth * Pose2{0.02, 0.0, 0.0};
     estimate = localizer.observe(test::cast_scan(flat(), truth, time, {}, random)).estimate;
   }

@@ -28,15 +28,15 @@ BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
 TEST(FieldDistance, HasTheSlopeOfItsOwnNumericDifferences) {
   const LikelihoodField field{room(), {}};
   Random random{8};
-  constexpr double kStep_m = 1e-6;
+  constexpr double kStepM = 1e-6;
   for (int i = 0; i < 200; ++i) {
     const double x_m = random.uniform(-0.5, 6.5);
     const double y_m = random.uniform(-0.5, 4.5);
     const FieldDistance at = distance_at(field, x_m, y_m);
-    const double ahead = distance_at(field, x_m + kStep_m, y_m).distance_m;
-    const double above = distance_at(field, x_m, y_m + kStep_m).distance_m;
-    EXPECT_NEAR(at.slope.x(), (ahead - at.distance_m) / kStep_m, 1e-4);
-    EXPECT_NEAR(at.slope.y(), (above - at.distance_m) / kStep_m, 1e-4);
+    const double ahead = distance_at(field, x_m + kStepM, y_m).distance_m;
+    const double above = distance_at(field, x_m, y_m + kStepM).distance_m;
+    EXPECT_NEAR(at.slope.x(), (ahead - at.distance_m) / kStepM, 1e-4);
+    EXPECT_NEAR(at.slope.y(), (above - at.distance_m) / kStepM, 1e-4);
   }
 }
 

@@ -19,8 +19,8 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kLost_m = 0.5;
-constexpr double kSameTime_s = 0.05;
+constexpr double kLostM = 0.5;
+constexpr double kSameTimeS = 0.05;
 
 struct RealLog {
   std::string log;
@@ -43,13 +43,14 @@ struct ReferencePose {
 };
 
 std::filesystem::path data_folder() {
-  const char* folder = std::getenv("DELTAMAP_DATA");
+  const char* folder = std::getenv("DELTAMAP_DATA");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   return folder != nullptr ? folder : DELTAMAP_SOURCE_DIR "/../shared/data";
 }
 
 std::filesystem::path unpacked(const std::filesystem::path& packed, const std::filesystem::path& folder) {
-  const std::filesystem::path to = folder / packed.stem();
+  std::filesystem::path to = folder / packed.stem();
   const std::string command = "xz -dc '" + packed.string() + "' > '" + to.string() + "'";
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread
   if (std::system(command.c_str()) != 0) throw std::runtime_error(packed.string() + ": cannot be unpacked");
   return to;
 }
@@ -102,12 +103,12 @@ TEST_P(RealLogs, AreFollowedWithinTheFiguresThatWePromise) {
            reference[nearest + 1].time <= estimate.time + duration_from_seconds(0.001)) {
       ++nearest;
     }
-    if (std::abs(seconds(estimate.time - reference[nearest].time)) > kSameTime_s) continue;
+    if (std::abs(seconds(estimate.time - reference[nearest].time)) > kSameTimeS) continue;
     const Pose2 map_from_laser = estimate.map_from_robot * inverse(laser_from_robot);
     errors_m.push_back(distance_between(map_from_laser, reference[nearest].map_from_laser));
   }
   ASSERT_GE(errors_m.size(), reference.size() * 99 / 100);
-  EXPECT_LE(share_above(errors_m, kLost_m), 0.01);
+  EXPECT_LE(share_above(errors_m, kLostM), 0.01);
   EXPECT_LE(share_above(errors_m, real.median_m), 0.5);
   EXPECT_LE(share_above(errors_m, real.p95_m), 0.05);
 }

@@ -32,14 +32,14 @@ class CarmenFeed {
   }
 
  private:
-  static constexpr double kScanDuration_s = 0.0133;  // half a turn of the 75 Hz mirror
-  static constexpr double kGap_s = 0.1;
+  static constexpr double kScanDurationS = 0.0133;  // half a turn of the 75 Hz mirror
+  static constexpr double kGapS = 0.1;
 
   void lead_to(Timestamp time, const Pose2& odom_from_robot, localization::Localizer& localizer) {
     if (last_ && time > last_->time) {
       const Odometry from = *last_;
       const double gap_s = seconds(time - from.time);
-      const int parts = static_cast<int>(std::ceil(gap_s / kGap_s));
+      const int parts = static_cast<int>(std::ceil(gap_s / kGapS));
       for (int i = 1; i < parts; ++i) {
         const double share = static_cast<double>(i) / parts;
         report(from.time + duration_from_seconds(share * gap_s),
@@ -59,7 +59,7 @@ class CarmenFeed {
   Scan scan_of(const daemon::tool::CarmenScan& logged) {
     Scan scan;
     scan.time = logged.time;
-    scan.received = logged.time + duration_from_seconds(kScanDuration_s);
+    scan.received = logged.time + duration_from_seconds(kScanDurationS);
     scan.number = number_++;
     scan.first_bearing_rad = logged.first_bearing_rad;
     scan.bearing_step_rad = logged.bearing_step_rad;
@@ -68,7 +68,7 @@ class CarmenFeed {
     const auto count = static_cast<double>(logged.ranges_m.size());
     for (std::size_t i = 0; i < logged.ranges_m.size(); ++i) {
       const double range_m = logged.ranges_m[i];
-      const auto offset_s = static_cast<float>(kScanDuration_s * static_cast<double>(i) / count);
+      const auto offset_s = static_cast<float>(kScanDurationS * static_cast<double>(i) / count);
       if (range_m > 0.0 && range_m < no_return_m_) {
         scan.beams.push_back({static_cast<float>(range_m), offset_s, BeamKind::kRange});
       } else {
