@@ -21,7 +21,7 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr double kStuck_s = 10.0;      // a stage that is at work on one scan for so long will not come back
+constexpr double kStuck_s = 10.0;       // a stage that is at work on one item for so long (a map update: 100 s) has hung
 constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches
 
 struct CommandLine {

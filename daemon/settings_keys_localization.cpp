@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of keys: localization.
+#include "daemon/settings_keys.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
+  auto& particles = localizer.particles;
+  keys.push_back(whole_key("localization.particles.min", particles.min, "", 10, 200000, "fewest particles"));
+  keys.push_back(whole_key("localization.particles.max", particles.max, "", 10, 200000,
+                           "most particles; global localization begins with them"));
+  keys.push_back(number_key("localization.particles.resample_below", particles.resample_below, "", 0.0, 1.0,
+                            "share of the particles below which N_eff (Eq. 5) calls for resampling"));
+  keys.push_back(number_key("localization.particles.evidence_beams", particles.evidence_beams, "", 0.1, 1000.0,
+                            "independent beams that a whole scan counts as"));
+  keys.push_back(number_key("localization.particles.kld_error", particles.kld_error, "", 0.001, 1.0,
+                            "bound of the approximation error that sets their number"));
+  keys.push_back(number_key("localization.particles.kld_quantile", particles.kld_quantile, "", 0.1, 5.0,
+                            "how surely the bound holds"));
+  keys.push_back(whole_key("localization.beams", localizer.beams, "", 0, 1000, "beams of a scan that score; 0: all"));
+  auto& update = localizer.update;
+  keys.push_back(number_key("localization.update.distance_m", update.distance_m, "m", 0.0, 10.0,
+                            "driven until a scan is weighed again"));
+  keys.push_back(
+      degrees_key("localization.update.turn_deg", update.turn_rad, 0.0, 180.0, "turned until a scan is weighed again"));
+  keys.push_back(number_key("localization.update.time_s", update.time_s, "s", 0.001, 3600.0,
+                            "passed until a scan is weighed again"));
+}
+
+void add_models(localization::LocalizerParams& localizer, Keys& keys) {
+  auto& motion = localizer.motion;
+  keys.push_back(number_key("localization.motion.turn_per_turn", motion.turn_per_turn, "rad/rad", 0.0, 10.0,
+                            "deviation of a turn by turning"));
+  keys.push_back(degrees_key("localization.motion.turn_per_metre_deg", motion.turn_per_metre_rad, 0.0, 180.0,
+                             "deviation of a turn by driving a metre"));
+  keys.push_back(number_key("localization.motion.metre_per_metre", motion.metre_per_metre, "m/m", 0.0, 10.0,
+                            "deviation of a distance by driving"));
+  keys.push_back(number_key("localization.motion.metre_per_turn_m", motion.metre_per_turn_m, "m/rad", 0.0, 10.0,
+                            "deviation of a distance by turning"));
+  keys.push_back(number_key("localization.motion.position_floor_m", motion.position_floor_m, "m", 1e-6, 1.0,
+                            "deviation of every step"));
+  keys.push_back(degrees_key("localization.motion.heading_floor_deg", motion.heading_floor_rad, 1e-6, 90.0,
+                             "deviation of every step"));
+  keys.push_back(number_key("localization.motion.unknown_speed_m_per_s", motion.unknown_speed_m_per_s, "m/s", 0.0, 10.0,
+                            "deviation a second without odometry"));
+  keys.push_back(degrees_key("localization.motion.unknown_turn_rate_deg_per_s", motion.unknown_turn_rate_rad_per_s, 0.0,
+                             360.0, "deviation a second without odometry"));
+  auto& odometry = localizer.odometry;
+  keys.push_back(number_key("localization.odometry.extrapolation_s", odometry.extrapolation_s, "s", 0.0, 1.0,
+                            "longest reach past the newest report"));
+  keys.push_back(number_key("localization.odometry.max_speed_m_per_s", odometry.max_speed_m_per_s, "m/s", 0.01, 10.0,
+                            "of the robot: faster readings are clamped"));
+  keys.push_back(degrees_key("localization.odometry.max_turn_rate_deg_per_s", odometry.max_turn_rate_rad_per_s, 1.0,
+                             1000.0, "of the robot: faster readings are clamped"));
+  auto& field = localizer.field;
+  keys.push_back(number_key("localization.field.hit_deviation_m", field.hit_deviation_m, "m", 0.001, 2.0,
+                            "of laser and map together (sigma_hit)"));
+  keys.push_back(number_key("localization.field.random_share", field.random_share, "", 0.02, 0.5,
+                            "share of beams that hit what no map knows (z_rand)"));
+  keys.push_back(number_key("localization.field.unknown_likelihood", field.unknown_likelihood, "", 0.02, 1.0,
+                            "of a beam that ends in unknown space"));
+  auto& refinement = localizer.refinement;
+  keys.push_back(
+      whole_key("localization.refinement.steps", refinement.steps, "", 0, 30, "Gauss-Newton steps at most; 0: off"));
+  keys.push_back(number_key("localization.refinement.prior_share", refinement.prior_share, "", 0.0, 10.0,
+                            "how strongly the particles hold the pose"));
+  keys.push_back(number_key("localization.refinement.longest_shift_m", refinement.longest_shift_m, "m", 0.001, 10.0,
+                            "a pose refined farther is refused"));
+  keys.push_back(degrees_key("localization.refinement.largest_turn_deg", refinement.largest_turn_rad, 0.01, 180.0,
+                             "a pose refined farther is refused"));
+}
+
+void add_states(localization::LocalizerParams& localizer, Keys& keys) {
+  auto& hypothesis = localizer.hypothesis;
+  keys.push_back(number_key("localization.hypothesis.cell_m", hypothesis.cell_m, "m", 0.01, 10.0,
+                            "particles in neighbouring cells belong together"));
+  keys.push_back(degrees_key("localization.hypothesis.heading_cell_deg", hypothesis.heading_cell_rad, 1.0, 90.0,
+                             "height of such a cell"));
+  auto& fit = localizer.fit;
+  keys.push_back(number_key("localization.fit.lost_below", fit.lost_below, "", 0.0, 1.0,
+                            "mean share of beams that the map explains: misfit below"));
+  keys.push_back(number_key("localization.fit.found_above", fit.found_above, "", 0.0, 1.0, "and found again above"));
+  keys.push_back(
+      number_key("localization.fit.lost_after_s", fit.lost_after_s, "s", 0.001, 3600.0, "unbroken misfit until lost"));
+  keys.push_back(
+      number_key("localization.fit.memory_s", fit.memory_s, "s", 0.001, 3600.0, "time constant of that mean"));
+  keys.push_back(number_key("localization.fit.search_after_s", fit.search_after_s, "s", 0.0, 86400.0,
+                            "lost until the whole map is searched"));
+  keys.push_back(
+      number_key("localization.fit.search_after_m", fit.search_after_m, "m", 0.0, 1000.0, "and driven since"));
+  keys.push_back(number_key("localization.fit.converged_share", fit.converged_share, "", 0.5, 1.0,
+                            "weight of the best hypothesis that ends global localization"));
+  keys.push_back(number_key("localization.fit.converged_m", fit.converged_m, "m", 0.001, 10.0,
+                            "its deviation that ends global localization"));
+  keys.push_back(degrees_key("localization.fit.converged_deg", fit.converged_rad, 0.1, 180.0,
+                             "its deviation that ends global localization"));
+  keys.push_back(number_key("localization.fit.converged_after_m", fit.converged_after_m, "m", 0.0, 1000.0,
+                            "driven before global localization may end"));
+  keys.push_back(
+      degrees_key("localization.fit.converged_after_deg", fit.converged_after_rad, 0.0, 3600.0, "or turned"));
+  auto& global = localizer.global;
+  keys.push_back(number_key("localization.global.candidates_per_m2", global.candidates_per_m2, "1/m2", 0.1, 10000.0,
+                            "poses drawn over free space"));
+  keys.push_back(whole_key("localization.global.most_candidates", global.most_candidates, "", 1, 10000000,
+                           "however large the map"));
+  keys.push_back(whole_key("localization.global.beams", global.beams, "", 1, 1000, "beams that judge a candidate"));
+  keys.push_back(whole_key("localization.global.places", global.places, "", 1, 100000,
+                           "candidates that are slid to their best fit"));
+  keys.push_back(number_key("localization.global.evidence_beams", global.evidence_beams, "", 0.1, 1000.0,
+                            "independent beams that the scan counts as; low keeps more places"));
+  keys.push_back(number_key("localization.global.jitter_m", global.jitter_m, "m", 0.0, 10.0,
+                            "spread of the particles around a place"));
+  keys.push_back(degrees_key("localization.global.jitter_deg", global.jitter_rad, 0.0, 180.0,
+                             "spread of the particles around a place"));
+}
+
+}  // namespace
+
+void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys) {
+  add_particles(localizer, keys);
+  add_models(localizer, keys);
+  add_states(localizer, keys);
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of keys: mapping.
+#include "daemon/settings_keys.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, Keys& keys) {
+  keys.push_back(number_key("mapping.persistence_s", evidence.persistence_s, "s", 0.0, 86400.0,
+                            "how long a difference must last to become map"));
+  const std::string at = "mapping.evidence.";
+  keys.push_back(number_key(at + "least_votes", evidence.least_votes, "", 0.1, 1000.0, "keyframes that must say so"));
+  keys.push_back(number_key(at + "least_added_share", evidence.least_added_share, "", 0.5, 1.0,
+                            "of the votes on a block that say added"));
+  keys.push_back(number_key(at + "least_removed_share", evidence.least_removed_share, "", 0.5, 1.0,
+                            "of the votes on a block that say removed"));
+  keys.push_back(
+      whole_key(at + "least_blocks", evidence.least_blocks, "", 1, 10000, "a smaller region is a speck and waits"));
+  keys.push_back(number_key(at + "settle_s", evidence.settle_s, "s", 0.0, 3600.0,
+                            "a region is handed on when it has not grown for so long"));
+  keys.push_back(number_key(at + "most_wait_s", evidence.most_wait_s, "s", 0.0, 3600.0, "or has waited so long"));
+  keys.push_back(
+      number_key(at + "most_range_m", evidence.beams.most_range_m, "m", 0.1, 100.0, "a beam says nothing beyond"));
+  keys.push_back(
+      number_key(at + "range_deviation_m", evidence.beams.range_deviation_m, "m", 0.001, 1.0, "of the laser"));
+  keys.push_back(number_key(at + "forget_s", evidence.votes.forget_s, "s", 1.0, 86400.0,
+                            "without votes until a block starts anew"));
+}
+
+void add_evidence_update(mapping::EvidenceUpdateParams& evidence, Keys& keys) {
+  const std::string with_evidence = "mapping.evidence.update.";
+  keys.push_back(
+      whole_key(with_evidence + "least_scans", evidence.least_scans, "", 1, 1000, "fewer that fit are refused"));
+  keys.push_back(
+      number_key(with_evidence + "longest_m", evidence.longest_m, "m", 0.1, 100.0, "beams beyond do not draw"));
+  keys.push_back(number_key(with_evidence + "most_implausible_share", evidence.most_implausible_share, "", 0.0, 1.0,
+                            "of the scans that contradict the localizer"));
+  keys.push_back(number_key(with_evidence + "occupied_hit_share", evidence.occupied_hit_share, "", 0.0, 1.0,
+                            "hits among the beams in a cell that make it occupied"));
+  keys.push_back(number_key(with_evidence + "free_hit_share", evidence.free_hit_share, "", 0.0, 1.0,
+                            "hits among the beams in a cell that still leave it free"));
+  keys.push_back(whole_key(with_evidence + "least_speck_cells", evidence.least_speck_cells, "", 1, 10000,
+                           "smaller groups of new occupied cells are left out"));
+  keys.push_back(number_key(with_evidence + "least_acceptance", evidence.least_acceptance, "", 0.0, 1.0,
+                            "acceptance (Eq. 11) below which an update is refused"));
+}
+
+void add_paper(mapping::StoreScanParams& store_scan, Keys& keys) {
+  auto& ratio = store_scan.divergence;
+  keys.push_back(
+      number_key("mapping.paper.alpha_slow", ratio.alpha_slow, "", 1e-6, 1.0, "long-term rate a scan (Eq. 2)"));
+  keys.push_back(
+      number_key("mapping.paper.alpha_fast", ratio.alpha_fast, "", 1e-6, 1.0, "short-term rate a scan (Eq. 2)"));
+  auto& phase = store_scan.delta_phase;
+  keys.push_back(number_key("mapping.paper.least_n_eff_share", phase.least_n_eff_share, "", 0.0, 1.0,
+                            "N_eff / particles (Eq. 5) below which a scan is not kept"));
+  keys.push_back(whole_key("mapping.paper.most_scans", phase.most_scans, "", 2, 100000, "kept in one phase"));
+}
+
+void add_paper_update(mapping::PaperUpdateParams& paper, Keys& keys) {
+  const std::string as_published = "mapping.paper.update.";
+  keys.push_back(whole_key(as_published + "least_scans", paper.least_scans, "", 2, 1000, "fewer draw no map"));
+  keys.push_back(number_key(as_published + "least_acceptance", paper.least_acceptance, "", 0.0, 1.0,
+                            "acceptance (Eq. 11) below which a merge is refused"));
+  keys.push_back(flag_key(as_published + "refuse_implausible", paper.refuse_implausible,
+                          "refuse a merge that contradicts the localizer's pose (not published)"));
+  keys.push_back(number_key(as_published + "most_chi2", paper.most_chi2, "", 0.0, 1000.0, "where it contradicts"));
+}
+
+}  // namespace
+
+void add_mapping_keys(MappingSettings& settings, Keys& keys) {
+  keys.push_back(flag_key("mapping.enabled", settings.enabled, "let the map follow the world"));
+  auto& store_scan = settings.store_scan;
+  keys.push_back(choice_key("mapping.method", store_scan.method,
+                            {{"paper", MappingMethod::kPaper}, {"evidence", MappingMethod::kEvidence}},
+                            "how changes are found and merged"));
+  add_evidence(store_scan.evidence, keys);
+  add_evidence_update(settings.update.evidence, keys);
+  add_paper(store_scan, keys);
+  add_paper_update(settings.update.paper, keys);
+}
+
+}  // namespace deltamap::daemon
