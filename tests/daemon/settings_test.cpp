@@ -31,6 +31,15 @@ TEST(Settings, DefaultsInCodeAndInConfigDefaultYamlAreTheSame) {
       << "write it anew: deltamapd --config /dev/null --print-config > config/default.yaml";
 }
 
+TEST(Settings, TheDeliveredFilesAreReadable) {
+  for (const char* name : {"default", "pioneer", "simulation"}) {
+    const std::string file = std::string(DELTAMAP_SOURCE_DIR "/config/") + name + ".yaml";
+    EXPECT_NO_THROW((void)read_settings(file, {})) << file;
+  }
+  const Settings pioneer = read_settings(DELTAMAP_SOURCE_DIR "/config/pioneer.yaml", {});
+  EXPECT_EQ(pioneer.navigation.mode, navigation::DriveMode::kOff) << "a daemon that starts does not move the robot";
+}
+
 TEST(Settings, WhatIsPrintedReadsBackToTheSame) {
   Settings settings;
   settings.seed = 77;
