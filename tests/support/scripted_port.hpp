@@ -66,7 +66,10 @@ class ScriptedPorts {
     timer_->async_wait([this](const boost::system::error_code& error) {
       if (error) return;
       const auto next = script_.next();
-      if (!next) return played_.set_value();
+      if (!next) {
+        timer_.reset();  // it must not outlive the loop
+        return played_.set_value();
+      }
       const auto& record = next->record;
       const auto& handlers = handlers_[record.port == PortId::kRobot ? 0 : 1];
       if (!began_) began_ = record.stamp;
