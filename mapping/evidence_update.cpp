@@ -2,6 +2,7 @@
 #include "mapping/evidence_update.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -55,7 +56,9 @@ class DoubtMask {
 
 CellState state_after(CellState before, Cell cell, const RayCount& count, const DoubtMask& mask,
                       const EvidenceUpdateParams& params) {
-  const bool is_free = count.passes >= params.free_passes && count.hit_share() <= params.free_hit_share;
+  const int decisive = count.hits + count.clear_passes;
+  const bool is_free =
+      count.clear_passes >= params.free_passes && count.hits <= params.free_hit_share * static_cast<double>(decisive);
   if (before == CellState::kOccupied) return mask.may_be_removed(cell) && is_free ? CellState::kFree : before;
   if (mask.may_be_added(cell) && count.hits >= params.occupied_hits && count.hit_share() >= params.occupied_hit_share) {
     return CellState::kOccupied;
@@ -65,12 +68,15 @@ CellState state_after(CellState before, Cell cell, const RayCount& count, const 
 
 std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask,
                                            const EvidenceUpdateParams& params) {
+  const int unknown_reach = static_cast<int>(std::ceil(params.unknown_reach_m / map.resolution_m()));
+  const CellBox box = grown(mask.box(), unknown_reach, map.geometry());
   std::vector<CellChange> changes;
-  for (int row = mask.box().first.row; row < mask.box().last.row; ++row) {
-    for (int column = mask.box().first.column; column < mask.box().last.column; ++column) {
+  for (int row = box.first.row; row < box.last.row; ++row) {
+    for (int column = box.first.column; column < box.last.column; ++column) {
       const Cell cell{column, row};
-      if (!mask.contains(cell) || !counts.box().contains(cell)) continue;
+      if (!counts.box().contains(cell)) continue;
       const CellState before = map[cell];
+      if (before != CellState::kUnknown && !mask.contains(cell)) continue;
       const CellState after = state_after(before, cell, counts[cell], mask, params);
       if (after != before) changes.push_back({cell, before, after});
     }
@@ -121,7 +127,7 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
   }
 
   RayCounts counts{map.geometry(), box_seen(map.geometry(), placement.scans, params.longest_m)};
-  for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m);
+  for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
   MapUpdate update;
   update.map_from_local = placement.mean_correction;
   update.changes = contradicted_cells(map, counts, mask, params);

@@ -36,13 +36,17 @@ RayCounts::RayCounts(const GridGeometry& map, const CellBox& box)
       box_{box},
       counts_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height())) {}
 
-void RayCounts::add(const PlacedScan& scan, double longest_m) {
+void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
   for (std::size_t i = 0; i < scan.tracked->rays.size(); ++i) {
     if (scan.tracked->scan.beams[i].kind != BeamKind::kRange) continue;
     const BeamInMap beam = beam_in_map(scan, i, longest_m);
     const Cell last = map_.cell_at(beam.end);
-    walk_ray(map_, beam.from, beam.end, [&](Cell cell, double) {
-      if (box_.contains(cell) && !(cell == last)) count_up(counts_[index_of(cell)].passes);
+    const double clear_end_m = (beam.end - beam.from).norm() - clear_m;
+    walk_ray(map_, beam.from, beam.end, [&](Cell cell, double entered_m) {
+      if (!box_.contains(cell) || cell == last) return true;
+      RayCount& count = counts_[index_of(cell)];
+      count_up(count.passes);
+      if (entered_m < clear_end_m) count_up(count.clear_passes);
       return true;
     });
     if (beam.hits && box_.contains(last)) count_up(counts_[index_of(last)].hits);

@@ -22,6 +22,7 @@ struct PlacedScan {
 struct RayCount {
   std::uint16_t hits = 0;
   std::uint16_t passes = 0;
+  std::uint16_t clear_passes = 0;  ///< of these, those that ended clearly beyond
 
   [[nodiscard]] int seen() const { return hits + passes; }
   [[nodiscard]] double hit_share() const { return seen() == 0 ? 0.0 : static_cast<double>(hits) / seen(); }
@@ -31,8 +32,9 @@ class RayCounts {
  public:
   RayCounts(const GridGeometry& map, const CellBox& box);
 
-  /// Counts the beams that have a range; those longer than `longest_m` only as passing, up to there.
-  void add(const PlacedScan& scan, double longest_m);
+  /// Counts the beams that have a range; those longer than `longest_m` only as passing, up to there. A pass is clear
+  /// where the beam goes on for `clear_m`.
+  void add(const PlacedScan& scan, double longest_m, double clear_m);
 
   [[nodiscard]] const CellBox& box() const { return box_; }
   /// `cell` must lie in the box.

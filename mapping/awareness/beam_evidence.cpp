@@ -85,21 +85,22 @@ class BeamJudge {
     walk_ray(map_.geometry(), beam.from, beam.end, [&](Cell cell, double entered_m) {
       if (map_.at(cell) == CellState::kOccupied) {
         if (!passage) passage = Passage{entered_m, entered_m, beam.passed.size()};
+        if (entered_m > limit_m) return false;  // the beam ends inside: it has passed what lies before
         passage->left_m = entered_m + map_.resolution_m();
         beam.passed.push_back(cell);
       } else if (passage && entered_m > passage->left_m + gap_m) {
-        close(beam, *passage, limit_m);
+        close(beam, *passage);
         passage.reset();
       }
       return entered_m <= limit_m || passage.has_value();
     });
-    if (passage) close(beam, *passage, limit_m);
+    if (passage) close(beam, *passage);
   }
 
  private:
   /// Keeps the cells of a passage only where the beam ends beyond it and its neighbours on both sides cross it too.
-  void close(BeamVerdict& beam, const Passage& passage, double limit_m) const {
-    if (passage.left_m > limit_m || !crosses_for_every_pose(beam, passage)) beam.passed.resize(passage.first);
+  void close(BeamVerdict& beam, const Passage& passage) const {
+    if (!crosses_for_every_pose(beam, passage)) beam.passed.resize(passage.first);
   }
 
   [[nodiscard]] bool crosses_for_every_pose(const BeamVerdict& beam, const Passage& passage) const {

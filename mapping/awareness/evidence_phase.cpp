@@ -257,7 +257,8 @@ void EvidencePhase::see_watched(const Blocks& ends) {
   }
 }
 
-/// What was written from a few keyframes is drawn anew, both ways, once many more have seen it.
+/// What was written from a few keyframes is drawn again, more sharply, once many more have seen it. It only gains: a
+/// glance from afar must not wipe out what was drawn from nearby.
 std::optional<ScanSet> EvidencePhase::another_look(Timestamp time) {
   const auto due = std::find_if(watched_.begin(), watched_.end(),
                                 [](const Watched& region) { return region.seen >= region.next_look; });
@@ -265,9 +266,7 @@ std::optional<ScanSet> EvidencePhase::another_look(Timestamp time) {
   ScanSet set;
   set.ended = time;
   for (const std::uint32_t index : due->blocks) {
-    const Cell block = layer_.blocks().cell_of(index);
-    add_verdicts(Question::kAdded, block, set.verdicts);
-    add_verdicts(Question::kRemoved, block, set.verdicts);
+    add_verdicts(Question::kAdded, layer_.blocks().cell_of(index), set.verdicts);
   }
   std::optional<ScanSet> finished = with_scans(std::move(set), due->blocks, due->first_ms);
   due->seen = 0;
