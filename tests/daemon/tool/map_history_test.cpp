@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/grid_file.hpp"
+#include "daemon/tool/run_tool.hpp"
+#include "mapping/map_store.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon::tool {
+namespace {
+
+struct ToolRun {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+
+/// `deltamap map history WORDS…`
+ToolRun history(std::vector<std::string> words) {
+  std::vector<const char*> arguments{"deltamap", "map", "history"};
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  ToolRun run;
+  run.code = run_tool(static_cast<int>(arguments.size()), arguments.data());
+  run.out = testing::internal::GetCapturedStdout();
+  run.err = testing::internal::GetCapturedStderr();
+  return run;
+}
+
+class MapHistory : public testing::Test {
+ protected:
+  MapHistory() {
+    mapping::MapStore store{file, first};
+    store.append_refusal(timestamp_from_ns(500), {1, 0.3, "low acceptance"});
+    second.set({2, 3}, CellState::kOccupied);
+    second.set({4, 3}, CellState::kFree);
+    MapRevision revision;
+    revision.number = 1;
+    revision.time = timestamp_from_ns(1'000'000'000);
+    revision.changes = changes_between(first, second);
+    revision.map = std::make_shared<const OccupancyGrid>(second);
+    store.append(revision, {2, 0.9, "evidence"});
+  }
+
+  test::TemporaryFolder folder;
+  std::string file = (folder.path() / "store.sqlite").string();
+  OccupancyGrid first{{10, 8, 0.1, {0.0, 0.0}}, CellState::kUnknown};
+  OccupancyGrid second = first;
+};
+
+TEST_F(MapHistory, ListsRevisionsAndRefusalsAsJsonLines) {
+  const ToolRun run = history({file, "list", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  std::istringstream lines{run.out};
+  std::string line;
+  std::vector<nlohmann::json> rows;
+  while (std::getline(lines, line)) rows.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["cause"], "first map");
+  EXPECT_EQ(rows[1]["refused"], true);
+  EXPECT_EQ(rows[2]["number"], 1);
+  EXPECT_EQ(rows[2]["occupied"], 1);
+  EXPECT_EQ(rows[2]["freed"], 1);
+  EXPECT_EQ(rows[2]["box"], (nlohmann::json{2, 3, 4, 3}));
+}
+
+TEST_F(MapHistory, ListsForPeopleToo) {
+  const ToolRun run = history({file, "list"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_NE(run.out.find("refused: low acceptance"), std::string::npos);
+  EXPECT_NE(run.out.find("1970-01-01 00:00:01"), std::string::npos);
+}
+
+TEST_F(MapHistory, WritesARevisionAsAMap) {
+  const std::string out = (folder.path() / "one.yaml").string();
+  EXPECT_EQ(history({file, "export", "1", out}).code, 0);
+  EXPECT_EQ(read_grid(out), second);
+}
+
+TEST_F(MapHistory, TellsWhatChangedBetweenTwo) {
+  const ToolRun run = history({file, "diff", "0", "1", "--json"});
+  const auto result = nlohmann::json::parse(run.out);
+  EXPECT_EQ(result["cells"], 2);
+  EXPECT_EQ(result["occupied"], 1);
+  EXPECT_EQ(result["freed"], 1);
+}
+
+TEST_F(MapHistory, GoesBackToAnEarlierMap) {
+  const ToolRun run = history({file, "rollback", "0", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(run.out)["number"], 2);
+  EXPECT_EQ((mapping::MapStore{file, first}.grid(2)), first);
+}
+
+TEST_F(MapHistory, AnswersInOneLineWhatItCannotDo) {
+  const std::string out = (folder.path() / "nine.yaml").string();
+  const std::string text = folder.write("notes.txt", "no store").string();
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {file, "export", "9", out}, {text, "list"}, {folder.path() / "none.sqlite", "list"}}) {
+    const ToolRun run = history(words);
+    EXPECT_EQ(run.code, 1);
+    EXPECT_NE(run.err.find(words[0] + ": "), std::string::npos) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(history({file, "explode"}).code, 2);
+  EXPECT_EQ(history({file, "export", "one", out}).code, 2);
+}
+
+}  // namespace
+}  // namespace deltamap::daemon::tool
