@@ -42,9 +42,8 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (before == nullptr || before->geometry() != map_->geometry()) {
     layer_ = VoteLayer{params_.votes, map_->geometry()};
     waiting_.clear();
-    watched_.clear();
     solid_.assign(layer_.blocks().cell_count(), 0);
-    watched_blocks_.assign(layer_.blocks().cell_count(), 0);
+    watched_ = WatchList{params_.watch, layer_.blocks()};
     find_solid({{0, 0}, {map_->width(), map_->height()}});
     return;
   }
@@ -95,7 +94,7 @@ EvidencePhase::Votes EvidencePhase::votes_of_beams() const {
     for (const Cell& cell : beam.passed) add(yes_removed, layer_.block_of(cell));
     if (beam.ends_off_map) add(yes_added, blocks.cell_at(beam.end));
     const Cell end = blocks.cell_at(beam.end);
-    if (beam.ends_at_surface && blocks.contains(end) && watched_blocks_[blocks.index_of(end)] > 0) add(votes.ends, end);
+    if (beam.ends_at_surface && blocks.contains(end) && watched_.is_watched(end)) add(votes.ends, end);
     if (beam.ends_at_surface && !beam.ends_off_map) {
       for (int row = -1; row <= 1; ++row) {
         for (int column = -1; column <= 1; ++column) {
@@ -215,8 +214,9 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
       blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
       hand_on(question, block);
     }
-    watch(blocks, question == Question::kAdded ? params_.reach_blocks : 0,
-          question == Question::kAdded ? region_first_ms : now_ms_);
+    // Keyframes from before a thing went would draw it again: what was freed counts from now on.
+    const bool added = question == Question::kAdded;
+    watched_.watch(blocks, added ? params_.reach_blocks : 0, added ? region_first_ms : now_ms_);
     first_ms = std::min(first_ms, region_first_ms);
     handed_on = merged(std::move(handed_on), blocks);
   }
@@ -224,58 +224,17 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
   return with_scans(std::move(set), handed_on, first_ms);
 }
 
-void EvidencePhase::watch(const Blocks& blocks, int margin_blocks, std::uint32_t first_ms) {
-  if (params_.looks == 0) return;
-  if (watched_.size() >= params_.most_watched) {
-    for (const std::uint32_t index : watched_.front().blocks) --watched_blocks_[index];
-    watched_.erase(watched_.begin());
-  }
-  Watched region{{}, first_ms, 0, params_.first_look, params_.looks};
-  for (const std::uint32_t index : blocks) {
-    const Cell middle = layer_.blocks().cell_of(index);
-    for (int row = -margin_blocks; row <= margin_blocks; ++row) {
-      for (int column = -margin_blocks; column <= margin_blocks; ++column) {
-        const Cell block{middle.column + column, middle.row + row};
-        if (layer_.blocks().contains(block)) {
-          region.blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
-        }
-      }
-    }
-  }
-  sort_unique(region.blocks);
-  for (const std::uint32_t index : region.blocks) ++watched_blocks_[index];
-  watched_.push_back(std::move(region));
-}
-
-void EvidencePhase::see_watched(const Blocks& ends) {
-  if (ends.empty()) return;
-  for (Watched& region : watched_) {
-    const bool seen = std::any_of(ends.begin(), ends.end(), [&](std::uint32_t index) {
-      return std::binary_search(region.blocks.begin(), region.blocks.end(), index);
-    });
-    region.seen += seen ? 1 : 0;
-  }
-}
-
 /// What was written from a few keyframes is drawn again, more sharply, once many more have seen it. It only gains: a
 /// glance from afar must not wipe out what was drawn from nearby.
 std::optional<ScanSet> EvidencePhase::another_look(Timestamp time) {
-  const auto due = std::find_if(watched_.begin(), watched_.end(),
-                                [](const Watched& region) { return region.seen >= region.next_look; });
-  if (due == watched_.end()) return std::nullopt;
+  const std::optional<Look> look = watched_.due_look();
+  if (!look) return std::nullopt;
   ScanSet set;
   set.ended = time;
-  for (const std::uint32_t index : due->blocks) {
+  for (const std::uint32_t index : look->blocks) {
     add_verdicts(Question::kAdded, layer_.blocks().cell_of(index), set.verdicts);
   }
-  std::optional<ScanSet> finished = with_scans(std::move(set), due->blocks, due->first_ms);
-  due->seen = 0;
-  due->next_look *= 3;
-  if (--due->looks_left == 0) {
-    for (const std::uint32_t index : due->blocks) --watched_blocks_[index];
-    watched_.erase(due);
-  }
-  return finished;
+  return with_scans(std::move(set), look->blocks, look->first_ms);
 }
 
 std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
@@ -297,7 +256,7 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   blocks = merged(std::move(blocks), votes.ends);
   sort_unique(blocks);
   keyframes_.keep(tracked, std::move(blocks));
-  see_watched(votes.ends);
+  watched_.see(votes.ends);
   std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);
   return set ? std::move(set) : another_look(tracked.scan.time);
 }

@@ -13,6 +13,7 @@
 #include "mapping/awareness/evidence_regions.hpp"
 #include "mapping/awareness/keyframe_pool.hpp"
 #include "mapping/awareness/vote_layer.hpp"
+#include "mapping/awareness/watch_list.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -26,12 +27,10 @@ struct EvidencePhaseParams {
   double settle_s = 2.0;             ///< a region is handed on when it has not grown for so long, …
   double most_wait_s = 6.0;          ///< … or has waited so long
   double joining_votes = 2.0;        ///< blocks beside a region with so many votes and the share are taken along
-  std::uint32_t first_look = 8;  ///< keyframes that end in a written region until it is drawn anew, more sharply, …
-  std::uint32_t looks = 3;       ///< … so often, after three times as many keyframes each
-  std::uint32_t most_watched = 64;  ///< regions that wait for another look; the oldest goes
   BeamEvidenceParams beams;
   VoteLayerParams votes;
   KeyframeParams keyframes;
+  WatchParams watch;
 };
 
 class EvidencePhase {
@@ -53,14 +52,6 @@ class EvidencePhase {
     Blocks no[2];
     Blocks ends;  // where beams ended in watched blocks
   };
-  /// A region that has been written as occupied and is looked at again.
-  struct Watched {
-    Blocks blocks;
-    std::uint32_t first_ms = 0;
-    std::uint32_t seen = 0;
-    std::uint32_t next_look = 0;
-    std::uint32_t looks_left = 0;
-  };
 
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void find_solid(const CellBox& cells);
@@ -73,8 +64,6 @@ class EvidencePhase {
   [[nodiscard]] std::vector<Cell> with_joining_blocks(const std::vector<ProvenBlock>& region) const;
   void add_verdicts(Question question, Cell block, std::vector<CellVerdict>& verdicts) const;
   void hand_on(Question question, Cell block);
-  void watch(const Blocks& blocks, int margin_blocks, std::uint32_t first_ms);
-  void see_watched(const Blocks& ends);
   [[nodiscard]] std::optional<ScanSet> another_look(Timestamp time);
   [[nodiscard]] std::optional<ScanSet> with_scans(ScanSet set, const Blocks& blocks, std::uint32_t first_ms);
 
@@ -85,8 +74,7 @@ class EvidencePhase {
   std::vector<BeamVerdict> beams_;
   std::vector<ProvenBlock> waiting_;
   std::vector<std::uint8_t> solid_;  // blocks with an occupied cell
-  std::vector<std::uint8_t> watched_blocks_;
-  std::vector<Watched> watched_;
+  WatchList watched_;
   std::optional<Timestamp> start_;
   std::uint32_t now_ms_ = 0;
   std::uint32_t phase_ = 0;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/awareness/watch_list.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace deltamap::mapping::awareness {
+
+void WatchList::forget(std::vector<Region>::iterator region) {
+  for (const std::uint32_t index : region->look.blocks) --watchers_[index];
+  regions_.erase(region);
+}
+
+void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms) {
+  if (params_.looks == 0 || params_.most_watched == 0) return;
+  if (regions_.size() >= params_.most_watched) forget(regions_.begin());
+  Region region{{{}, first_ms}, 0, params_.first_look, params_.looks};
+  std::vector<std::uint32_t>& wide = region.look.blocks;
+  for (const std::uint32_t index : blocks) {
+    const Cell middle = geometry_.cell_of(index);
+    for (int row = -margin_blocks; row <= margin_blocks; ++row) {
+      for (int column = -margin_blocks; column <= margin_blocks; ++column) {
+        const Cell block{middle.column + column, middle.row + row};
+        if (geometry_.contains(block)) wide.push_back(static_cast<std::uint32_t>(geometry_.index_of(block)));
+      }
+    }
+  }
+  std::sort(wide.begin(), wide.end());
+  wide.erase(std::unique(wide.begin(), wide.end()), wide.end());
+  for (const std::uint32_t index : wide) ++watchers_[index];
+  regions_.push_back(std::move(region));
+}
+
+void WatchList::see(const std::vector<std::uint32_t>& ends) {
+  for (Region& region : regions_) {
+    const std::vector<std::uint32_t>& blocks = region.look.blocks;
+    const bool seen = std::any_of(ends.begin(), ends.end(), [&](std::uint32_t index) {
+      return std::binary_search(blocks.begin(), blocks.end(), index);
+    });
+    region.seen += seen ? 1 : 0;
+  }
+}
+
+std::optional<Look> WatchList::due_look() {
+  const auto due = std::find_if(regions_.begin(), regions_.end(),
+                                [](const Region& region) { return region.seen >= region.next_look; });
+  if (due == regions_.end()) return std::nullopt;
+  Look look = due->look;
+  due->seen = 0;
+  due->next_look *= 3;
+  if (--due->looks_left == 0) forget(due);
+  return look;
+}
+
+}  // namespace deltamap::mapping::awareness

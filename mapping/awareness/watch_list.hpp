@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Regions that have been handed on, to be looked at again: one was written from a few keyframes and gets sharper from
+// more; another was freed, and something may come back to it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap::mapping::awareness {
+
+struct WatchParams {
+  std::uint32_t first_look = 8;     ///< keyframes with beams that end in a region until the next look, …
+  std::uint32_t looks = 3;          ///< … so often, after three times as many keyframes each
+  std::uint32_t most_watched = 64;  ///< regions; the oldest goes; at most 255
+};
+
+/// What is to be looked at now: blocks by index, sorted, and since when their keyframes count.
+struct Look {
+  std::vector<std::uint32_t> blocks;
+  std::uint32_t first_ms = 0;
+};
+
+class WatchList {
+ public:
+  WatchList() = default;
+  WatchList(const WatchParams& params, const GridGeometry& blocks)
+      : params_{params}, geometry_{blocks}, watchers_(blocks.cell_count(), 0) {}
+
+  /// Watches the blocks and those within `margin_blocks` of them.
+  void watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms);
+
+  [[nodiscard]] bool is_watched(Cell block) const { return watchers_[geometry_.index_of(block)] > 0; }
+
+  /// The watched blocks in which a keyframe's beams ended, sorted.
+  void see(const std::vector<std::uint32_t>& ends);
+
+  /// The first region that enough keyframes have seen.
+  [[nodiscard]] std::optional<Look> due_look();
+
+ private:
+  struct Region {
+    Look look;
+    std::uint32_t seen = 0;
+    std::uint32_t next_look = 0;
+    std::uint32_t looks_left = 0;
+  };
+  void forget(std::vector<Region>::iterator region);
+
+  WatchParams params_;
+  GridGeometry geometry_;
+  std::vector<std::uint8_t> watchers_;  // regions that each block belongs to
+  std::vector<Region> regions_;         // oldest first
+};
+
+}  // namespace deltamap::mapping::awareness
