@@ -43,12 +43,13 @@ MapUpdate paper_update(const OccupancyGrid& map, const ScanSet& set, const Paper
   };
   if (set.scans.size() < params.least_scans) return refused(Refusal::kTooFewScans);
   const auto aligned = alignment::scan_alignment(set.scans, params.alignment);
-  if (!aligned) return refused(Refusal::kNoAlignment);
+  if (!aligned || aligned->scans.size() < params.least_scans) return refused(Refusal::kNoAlignment);
 
   const OccupancyGrid local = drawn(set, *aligned, map.geometry(), params.local_map);
   const merge::MapMerge merged = merge::map_merge(map, local, params.merge);
-  if (!merged.accepted()) return refused(Refusal::kNoMerge);
+  update.acceptance = merged.score.acceptance();
   update.map_from_local = merged.map_from_local;
+  if (!merged.accepted()) return refused(Refusal::kNoMerge);
 
   const OccupancyGrid moved = merge::transformed_grid(local, merged.map_from_local, map.geometry());
   update.acceptance = merge::acceptance(map, moved).value();

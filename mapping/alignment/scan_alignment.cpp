@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace deltamap::mapping::alignment {
 namespace {
@@ -47,6 +48,49 @@ std::vector<std::uint32_t> partners(std::uint32_t scan, const std::vector<Pose2>
   return near;
 }
 
+bool is_tight(const PoseCovariance& covariance, const ScanAlignmentParams& params) {
+  return std::sqrt(covariance.topLeftCorner<2, 2>().trace()) <= params.most_link_deviation_m &&
+         std::sqrt(covariance(2, 2)) <= params.most_link_deviation_rad;
+}
+
+/// The largest group of scans that hang together by matches and by odometry that is worth something: 1 for its members.
+std::vector<char> largest_group(std::uint32_t count, const std::vector<PoseLink>& links,
+                                const ScanAlignmentParams& params) {
+  std::vector<std::uint32_t> group(count);
+  std::iota(group.begin(), group.end(), 0U);
+  for (const PoseLink& link : links) {
+    if (!link.may_drop && !is_tight(link.covariance, params)) continue;
+    const std::uint32_t from = group[link.from];
+    std::replace(group.begin(), group.end(), group[link.to], from);
+  }
+  std::vector<std::uint32_t> members(count, 0);
+  for (const std::uint32_t label : group) ++members[label];
+  const auto largest = static_cast<std::uint32_t>(std::max_element(members.begin(), members.end()) - members.begin());
+  std::vector<char> is_in(count, 0);
+  for (std::uint32_t i = 0; i < count; ++i) is_in[i] = group[i] == largest;
+  return is_in;
+}
+
+/// What is left of the network when only the scans that `is_in` marks stay, numbered anew.
+void keep_group(const std::vector<char>& is_in, std::vector<std::size_t>& scans, std::vector<Pose2>& guesses,
+                std::vector<PoseLink>& links) {
+  std::vector<std::uint32_t> number(is_in.size(), 0);
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < is_in.size(); ++i) {
+    if (!is_in[i]) continue;
+    scans[kept] = scans[i];
+    guesses[kept] = guesses[i];
+    number[i] = kept++;
+  }
+  scans.resize(kept);
+  guesses.resize(kept);
+  std::erase_if(links, [&](const PoseLink& link) { return !is_in[link.from] || !is_in[link.to]; });
+  for (PoseLink& link : links) {
+    link.from = number[link.from];
+    link.to = number[link.to];
+  }
+}
+
 bool odometry_is_usable(const TrackedScan& before, const TrackedScan& after) {
   return before.odometry_epoch == after.odometry_epoch;
 }
@@ -78,13 +122,15 @@ std::optional<ScanAlignment> scan_alignment(std::span<const TrackedScan> scans, 
       if (match) links.push_back({other, i, match->first_from_second, match->covariance, true});
     }
   }
+  keep_group(largest_group(count, links, params), alignment.scans, guesses, links);
+  if (alignment.scans.size() < 2) return std::nullopt;
   const PoseAnchor anchor{
       0, guesses.front(),
       scan_at(0).estimate.covariance + diagonal(params.least_anchor_deviation_m, params.least_anchor_deviation_rad)};
   PoseNetwork network = solved_network(guesses, links, {&anchor, 1}, params.network);
   if (!network.solved) return std::nullopt;
 
-  std::vector<char> is_matched(count, 0);
+  std::vector<char> is_matched(guesses.size(), 0);
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (!links[i].may_drop) continue;
     ++alignment.matches;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Registers the scans of S(k) consistently (paper §3.3): odometry and pairwise matches become links of a pose network,
-// the localizer's first pose holds it in the map. Where the scans do not hang together there is no answer.
+// the localizer's first pose holds it in the map. Only scans that hang together are used: a long way on odometry alone
+// tears a set apart. Where too few do there is no answer.
 #pragma once
 
 #include <optional>
@@ -24,6 +25,8 @@ struct ScanAlignmentParams {
   double odometry_rad_per_rad = 0.1;          ///< rad per rad turned
   double odometry_least_m = 0.02;             ///< floor of σ
   double odometry_least_rad = 0.01;           ///< floor of σ
+  double most_link_deviation_m = 0.2;         ///< looser odometry does not hold scans together unless they match
+  double most_link_deviation_rad = 0.05;      ///< the same in heading
   double least_anchor_deviation_m = 0.02;     ///< floor of the first pose's σ
   double least_anchor_deviation_rad = 0.005;  ///< floor of the first pose's σ
   double least_matched_share = 0.5;           ///< of the scans must be held by a match that was not dropped; [0, 1]

@@ -30,11 +30,19 @@ std::optional<ScanSet> DeltaPhase::close(Timestamp time) {
   return finished;
 }
 
+void DeltaPhase::abandon() {
+  open_ = false;
+  set_ = empty_set(set_.phase);
+}
+
 std::optional<ScanSet> DeltaPhase::observe(const TrackedScan& tracked, double r_d) {
   const Timestamp time = tracked.scan.time;
   if (open_ && !set_.scans.empty() && set_.scans.back().odometry_epoch != tracked.odometry_epoch) return close(time);
+  if (tracked.estimate.state != LocalizerState::kTracking) {
+    if (open_) abandon();
+    return std::nullopt;
+  }
   if (open_ && r_d < 0.0) return close(time);
-  if (tracked.estimate.state != LocalizerState::kTracking) return std::nullopt;
   if (!open_ && r_d > 0.0) {
     open_ = true;
     set_ = empty_set(set_.phase + 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Store-scan as the paper has it (§3.2): a Δ-phase begins when r_d turns positive and ends when it falls below zero. In
-// between a scan is kept with the probability r_d, unless N_eff says that the pose is poor (§3.2.1).
+// between a scan is kept with the probability r_d, unless N_eff says that the pose is poor (§3.2.1). The paper supposes
+// a robot that knows where it is: a phase in which the localizer loses its way is abandoned.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,7 @@ class DeltaPhase {
  private:
   [[nodiscard]] bool is_worth_keeping(const TrackedScan& tracked, double r_d);
   [[nodiscard]] std::optional<ScanSet> close(Timestamp time);
+  void abandon();
 
   DeltaPhaseParams params_;
   Random random_;

@@ -25,7 +25,8 @@ struct ChoiceParams {
   double least_overlap = 0.15;     ///< share of the local map's known cells that must lie on known cells; [0, 1]
   double least_agreement = 0.6;    ///< share of its contour on known cells that must be found again; [0, 1]
   double least_acceptance = 0.9;   ///< Eq. 11; [0, 1]
-  double surface_margin = 0.8;     ///< poses that find less than this share of the best one's surface do not compete
+  double surface_margin = 0.6;     ///< poses that find less than this share of the best one's surface do not compete:
+                                   ///< maps that share two thirds find no more at the true pose
   bool refuse_ambiguous = true;    ///< refuse where a clearly different pose fits nearly as well (not published)
   double ambiguity_margin = 0.02;  ///< what nearly means: in Eq. 11, and in shares of the contour; [0, 1]
 };

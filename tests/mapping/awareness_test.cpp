@@ -109,6 +109,18 @@ TEST_F(PaperPhases, KeepOnlyWhatIsTracked) {
   EXPECT_EQ(store->awareness().r_d, 0.0);
 }
 
+TEST_F(PaperPhases, AreAbandonedWhereTheLocalizerIsLost) {
+  settle();
+  for (int i = 0; i < 30; ++i) (void)send(0.1);
+  EXPECT_GT(store->awareness().stored_scans, 0u);
+  EXPECT_FALSE(send(0.1, 400.0, LocalizerState::kLost));
+  EXPECT_FALSE(store->awareness().in_phase);
+  EXPECT_EQ(store->awareness().stored_scans, 0u);
+  EXPECT_FALSE(send(0.1)) << "the ratio is still positive: a new phase begins";
+  EXPECT_TRUE(store->awareness().in_phase);
+  EXPECT_EQ(store->awareness().phase, 2u);
+}
+
 TEST_F(PaperPhases, NeverHoldMoreScansThanTheCap) {
   params.delta_phase.most_scans = 7;
   settle();

@@ -119,6 +119,24 @@ TEST(ScanAlignment, ThinsTooManyScansEvenly) {
   EXPECT_EQ(alignment->scans, (std::vector<std::size_t>{0, 3, 6, 9, 12, 15, 18, 21, 24}));
 }
 
+/// Two rooms of one phase, joined by nothing but a long way on odometry that turned the second one round.
+TEST(ScanAlignment, LeavesOutScansThatOnlyAPoorOdometryHolds) {
+  const OccupancyGrid hall = test::drawn_hall(0.02);
+  Random random{8};
+  std::vector<TrackedScan> scans;
+  for (int i = 0; i < 10; ++i) {
+    const bool is_apart = i >= 7;
+    const Pose2 pose = is_apart ? Pose2{18.0, 2.0 + 0.2 * (i - 7), 0.2} : Pose2{1.5 + 0.2 * i, 7.0, 2.0};
+    scans.push_back(test::seen_scan(hall, pose, 0.01, random, 6.0));
+    scans.back().odom_from_robot = is_apart ? Pose2{0.0, 0.0, 0.6} * pose : pose;
+  }
+  const auto alignment = scan_alignment(scans, {});
+  ASSERT_TRUE(alignment);
+  EXPECT_EQ(alignment->scans, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(alignment->map_from_robot.size(), 7U);
+  EXPECT_EQ(alignment->covariances.size(), 7U);
+}
+
 TEST(ScanAlignment, HasNoAnswerForScansThatDoNotOverlap) {
   const OccupancyGrid hall = test::drawn_hall(0.02);
   Random random{6};

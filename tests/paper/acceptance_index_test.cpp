@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eq. 11 on halls: what it says, and what it hides.
+#include <gtest/gtest.h>
+
+#include "mapping/merge/acceptance.hpp"
+#include "mapping/merge/contour_score.hpp"
+#include "tests/support/changed_hall.hpp"
+
+namespace deltamap::mapping::merge {
+namespace {
+
+TEST(Equation11, IsAgreementOverAgreementAndDisagreement) {
+  const OccupancyGrid before = test::drawn_hall(0.05);
+  const OccupancyGrid after = test::changed_hall();
+  std::size_t same = 0;
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < before.cells().size(); ++i) {
+    if (before.cells()[i] == CellState::kUnknown || after.cells()[i] == CellState::kUnknown) continue;
+    ++(before.cells()[i] == after.cells()[i] ? same : different);
+  }
+  const Acceptance counts = acceptance(before, after);
+  EXPECT_EQ(counts.agreeing, same);
+  EXPECT_EQ(counts.disagreeing, different);
+  EXPECT_DOUBLE_EQ(counts.value(), static_cast<double>(same) / static_cast<double>(same + different));
+  EXPECT_DOUBLE_EQ(acceptance(after, before).value(), counts.value());
+  EXPECT_DOUBLE_EQ(acceptance(after, after).value(), 1.0);
+}
+
+TEST(Equation11, HardlyNoticesAMapThatIsNeverUpdated) {
+  const OccupancyGrid stale = test::drawn_hall(0.05);
+  const OccupancyGrid truth = test::changed_hall();
+  EXPECT_GT(acceptance(stale, truth).value(), 0.95) << "three containers are wrong";
+  EXPECT_LT(contour_score(truth, stale).f1(), 0.93);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::merge

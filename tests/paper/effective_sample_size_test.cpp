@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figure 6 of the paper: N_eff (Eq. 5) of the localizer while it drives straight, straight past a change, and turns.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/support/changed_hall.hpp"
+#include "tests/support/hall_drive.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+class MeanShare {
+ public:
+  void operator()(const TrackedScan& tracked) {
+    sum_ += tracked.estimate.n_eff / tracked.estimate.particles;
+    ++count_;
+  }
+  [[nodiscard]] double value() const { return sum_ / count_; }
+
+ private:
+  double sum_ = 0.0;
+  int count_ = 0;
+};
+
+TEST(Figure6, TurningLowersTheEffectiveSampleSizeAndAChangeDoesNot) {
+  const OccupancyGrid hall = test::drawn_hall(0.05);
+  const OccupancyGrid changed = test::changed_hall();
+  MeanShare straight;
+  MeanShare past_a_change;
+  MeanShare turning;
+  const auto settle = [](const TrackedScan&) {};
+  for (const std::uint64_t seed : {21U, 22U, 23U}) {
+    test::HallDrive on_known{hall, {1.5, 7.0, 0.0}, seed};
+    on_known.drive_to({3.0, 7.0}, hall, settle);
+    on_known.drive_to({14.0, 7.0}, hall, [&](const TrackedScan& tracked) { straight(tracked); });
+    on_known.turn(80, hall, [&](const TrackedScan& tracked) { turning(tracked); });
+    test::HallDrive on_changed{hall, {1.5, 7.0, 0.0}, seed};
+    on_changed.drive_to({3.0, 7.0}, changed, settle);
+    on_changed.drive_to({14.0, 7.0}, changed, [&](const TrackedScan& tracked) { past_a_change(tracked); });
+  }
+  std::printf("N_eff / particles: straight %.3f, straight past a change %.3f, turning %.3f\n", straight.value(),
+              past_a_change.value(), turning.value());
+  EXPECT_LT(turning.value(), 0.85 * straight.value());
+  EXPECT_LT(turning.value(), 0.85 * past_a_change.value());
+}
+
+}  // namespace
+}  // namespace deltamap::localization
