@@ -33,6 +33,7 @@ class DeviceLink {
     PortOpener open;
     drivers::port::RecordSink record;             ///< every chunk and note
     std::function<void(Output&)> on_messages;     ///< what the session decoded
+    std::function<void()> on_lost;                ///< the port has failed or could not be opened
     std::function<void(const std::string&)> log;  ///< a short line
   };
 
@@ -52,7 +53,10 @@ class DeviceLink {
         std::move(answer.port), id_, [this](drivers::port::ByteRecord&& record) { keep(std::move(record)); },
         drivers::port::port_clock_now);
     port_->start({[this](std::span<const std::uint8_t> bytes, Timestamp stamp) { take(bytes, stamp); },
-                  [this](const std::string& reason) { fail(port_->name() + ": " + reason); }});
+                  [this](const std::string& reason) {
+                    // A port that is being let go may hang up as well: its session has failed before.
+                    if (port_) fail(port_->name() + ": " + reason);
+                  }});
     drivers::port::ByteRecord began;
     began.port = id_;
     began.stamp = drivers::port::port_clock_now();
@@ -132,6 +136,7 @@ class DeviceLink {
 
   void retry(const std::string& reason) {
     if (closed_) return;
+    hooks_.on_lost();
     const auto pause = reconnect_.failed(reason, drivers::port::port_clock_now());
     if (pause.log) log(*pause.log);
     retry_timer_.expires_after(std::max(Duration{0}, pause.try_again_at - drivers::port::port_clock_now()));
@@ -142,7 +147,11 @@ class DeviceLink {
     });
   }
 
-  void log(const std::string& line) { hooks_.log(std::string(name_of(id_)) + ": " + line); }
+  // Sessions name their device at the beginning of most lines.
+  void log(const std::string& line) {
+    const std::string name{name_of(id_)};
+    hooks_.log(line.starts_with(name + " ") ? line : name + ": " + line);
+  }
 
   boost::asio::io_context& loop_;
   drivers::port::PortId id_;

@@ -40,11 +40,13 @@ struct IoStage::State {
         robot{loop,
               PortId::kRobot,
               PioneerSession{robot_params(settings), wiring.mode},
-              {opener(settings), recorder(), [this](PioneerOutput& out) { take(out); }, wiring.log}},
+              {opener(settings), recorder(), [this](PioneerOutput& out) { take(out); },
+               [this] { wiring.telemetry.robot_up.set(false); }, wiring.log}},
         laser{loop,
               PortId::kLaser,
               Lms200Session{settings.laser.session, wiring.mode},
-              {opener(settings), recorder(), [this](Lms200Output& out) { take(out); }, wiring.log}} {}
+              {opener(settings), recorder(), [this](Lms200Output& out) { take(out); },
+               [this] { wiring.telemetry.laser_up.set(false); }, wiring.log}} {}
 
   [[nodiscard]] PortOpener opener(const Settings& settings) {
     return wiring.open ? wiring.open : serial_opener(settings);

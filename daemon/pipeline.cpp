@@ -87,10 +87,12 @@ struct Pipeline::State {
   void update_map(const ScanSet& set);
   void save(const MapStep::Result& result);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
+  void end_threads();
 
   Workload localization_work, awareness_work, map_work;
   double wall_began_s = 0.0;
   std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread;
+  bool ended = false;
 };
 
 Pipeline::State::State(const Settings& given, Options wanted)
@@ -241,6 +243,8 @@ void Pipeline::State::hand_over(ScanSet set) {
 
 void Pipeline::State::update_maps() {
   while (const auto set = sets.receive()) update_map(*set);
+  // The delta thread has ended: what it could not hand over is worked off too.
+  if (waiting_set) update_map(*waiting_set);
 }
 
 void Pipeline::State::update_map(const ScanSet& set) {
@@ -282,24 +286,26 @@ void Pipeline::State::save(const MapStep::Result& result) {
 Pipeline::Pipeline(const Settings& settings, Options options)
     : state_{std::make_unique<State>(settings, std::move(options))} {}
 
-Pipeline::~Pipeline() {
-  if (state_->io_thread) (void)stop();
+Pipeline::~Pipeline() { state_->end_threads(); }
+
+void Pipeline::State::end_threads() {
+  if (ended) return;
+  ended = true;
+  io.stop();
+  io_thread->join();
+  sensors.close();
+  localization_thread->join();
+  tracked_scans.close();
+  awareness_thread->join();
+  sets.close();
+  map_thread->join();
+  recorder.close();
+  recorder_thread->join();
 }
 
 RunReport Pipeline::stop() {
   State& s = *state_;
-  s.io.stop();
-  s.io_thread->join();
-  s.sensors.close();
-  s.localization_thread->join();
-  s.tracked_scans.close();
-  s.awareness_thread->join();
-  s.sets.close();
-  s.map_thread->join();
-  if (s.waiting_set) s.update_map(*s.waiting_set);
-  s.recorder.close();
-  s.recorder_thread->join();
-
+  s.end_threads();
   RunReport report;
   const Telemetry& t = s.telemetry;
   report.scans = {.decoded = t.scans.value(),
@@ -331,7 +337,6 @@ RunReport Pipeline::stop() {
     file.write(json_text(report));
     file.flush();
   }
-  s.io_thread.reset();
   return report;
 }
 

@@ -34,7 +34,8 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   /// Ports first, map store last: the robot is stopped, what has arrived is worked off, Δ-phases that are in work
-  /// become revisions, the map is written. Answers what report.json says.
+  /// become revisions, the map is written. Answers what report.json says; throws std::runtime_error where that cannot
+  /// be written.
   [[nodiscard]] RunReport stop();
 
   [[nodiscard]] const Telemetry& telemetry() const;

@@ -115,7 +115,9 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   options.start = start_map(std::move(first), store ? &*store : nullptr, console);
   options.store = store ? &*store : nullptr;
   if (!line.out.empty()) {
-    std::filesystem::create_directories(line.out);
+    std::error_code error;
+    std::filesystem::create_directories(line.out, error);
+    if (error || !std::filesystem::is_directory(line.out)) throw std::runtime_error(line.out + ": is no folder");
     options.out = line.out;
   }
   std::atomic<bool> failed{false};

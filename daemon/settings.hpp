@@ -56,6 +56,10 @@ struct RecordingSettings {
   double max_gigabytes = 8.0;  ///< the recording ends there, the daemon goes on
 };
 
+struct ControlSettings {
+  std::string socket;  ///< for `deltamap ctl`; empty: none
+};
+
 struct Settings {
   std::uint64_t seed = 1;
   RobotSettings robot;
@@ -65,6 +69,7 @@ struct Settings {
   localization::LocalizerParams localizer;
   MappingSettings mapping;
   NavigationSettings navigation;
+  ControlSettings control;
   RecordingSettings recording;
 };
 

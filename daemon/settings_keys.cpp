@@ -87,8 +87,9 @@ void add_laser(LaserSettings& laser, Keys& keys) {
 void add_navigation(NavigationSettings& settings, Keys& keys) {
   using navigation::DriveMode;
   const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
-  add(choice_key("navigation.mode", settings.mode, {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}},
-                 "who drives; off: motors are never enabled"));
+  add(choice_key("navigation.mode", settings.mode,
+                 {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}, {"patrol", DriveMode::kPatrol}},
+                 "who drives; off: motors are never enabled; patrol is not built yet"));
   auto& safety = settings.safety;
   add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
                  "swing circle around the axle"));
@@ -138,6 +139,8 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_localization_keys(settings.localizer, keys);
   add_mapping_keys(settings.mapping, keys);
   add_navigation(settings.navigation, keys);
+  keys.push_back(not_for_results(text_key("control.socket", settings.control.socket,
+                                          "where `deltamap ctl` will find the daemon: nobody listens there yet")));
   keys.push_back(
       not_for_results(text_key("recording.file", settings.recording.file, "pcapng of both ports; empty: none")));
   keys.push_back(not_for_results(number_key("recording.max_gigabytes", settings.recording.max_gigabytes, "GB", 0.001,
@@ -155,6 +158,9 @@ std::optional<std::string> contradiction_in(const Settings& settings) {
   }
   if (localizer.field.unknown_likelihood < localizer.field.random_share) {
     return "'localization.field.unknown_likelihood' must not lie below 'localization.field.random_share'";
+  }
+  if (settings.navigation.mode == navigation::DriveMode::kPatrol) {
+    return "'navigation.mode: patrol' is not built yet: off or wander";
   }
   const auto& wander = settings.navigation.wander;
   if (wander.shortest_leg_s > wander.longest_leg_s) {

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "core/angle.hpp"
 #include "core/random.hpp"
 #include "localization/deskew.hpp"
 #include "localization/likelihood_field.hpp"
@@ -19,7 +20,7 @@ struct GlobalSearchParams {
   int places = 1000;                 ///< candidates that are slid to their best fit; > 0
   double evidence_beams = 3.0;  ///< independent beams that the scan counts as here; > 0: low keeps more places alive
   double jitter_m = 0.1;        ///< spread of the particles around a place, m; >= 0
-  double jitter_rad = 0.035;    ///< likewise, rad; >= 0 (2°)
+  double jitter_rad = radians(2.0);  ///< likewise, rad; >= 0
 };
 
 /// Indices of the free cells (GridGeometry::index_of), rising.

@@ -8,14 +8,15 @@
 #include <span>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "core/pose2.hpp"
 #include "localization/particle_set.hpp"
 
 namespace deltamap::localization {
 
 struct HypothesisParams {
-  double cell_m = 0.5;                     ///< side of a cell, m; > 0
-  double heading_cell_rad = 0.2617993878;  ///< height of a cell, rad; > 0, at most π/2 (15°)
+  double cell_m = 0.5;                      ///< side of a cell, m; > 0
+  double heading_cell_rad = radians(15.0);  ///< height of a cell, rad; > 0, at most π/2
 };
 
 struct Hypothesis {

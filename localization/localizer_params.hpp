@@ -2,6 +2,7 @@
 // Everything that can be set about localization. Each part's own parameters stand beside the part.
 #pragma once
 
+#include "core/angle.hpp"
 #include "localization/fit_monitor.hpp"
 #include "localization/global_search.hpp"
 #include "localization/hypotheses.hpp"
@@ -16,9 +17,9 @@ namespace deltamap::localization {
 /// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
 /// robot that stands still does not talk itself into certainty.
 struct UpdateParams {
-  double distance_m = 0.05;  ///< driven since the last update, m; >= 0
-  double turn_rad = 0.035;   ///< turned since the last update, rad; >= 0 (2°)
-  double time_s = 1.0;       ///< passed since the last update, s; > 0
+  double distance_m = 0.05;        ///< driven since the last update, m; >= 0
+  double turn_rad = radians(2.0);  ///< turned since the last update, rad; >= 0
+  double time_s = 1.0;             ///< passed since the last update, s; > 0
 };
 
 struct LocalizerParams {

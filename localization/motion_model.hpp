@@ -3,6 +3,7 @@
 // 2005, Table 5.6. A motion is a turn, a straight line and a turn; each gets noise in proportion to the others.
 #pragma once
 
+#include "core/angle.hpp"
 #include "core/pose2.hpp"
 #include "core/random.hpp"
 
@@ -10,14 +11,14 @@ namespace deltamap::localization {
 
 /// Deviations, not variances: alpha_1 of the book is turn_per_turn², and so on.
 struct MotionModelParams {
-  double turn_per_turn = 0.15;       ///< deviation of a turn, rad a rad of turn; >= 0 (√α1)
-  double turn_per_metre_rad = 0.12;  ///< deviation of a turn, rad a metre driven; >= 0 (√α2)
-  double metre_per_metre = 0.07;     ///< deviation of a distance, m a metre driven; >= 0 (√α3)
-  double metre_per_turn_m = 0.02;    ///< deviation of a distance, m a rad of turn; >= 0 (√α4)
+  double turn_per_turn = 0.15;               ///< deviation of a turn, rad a rad of turn; >= 0 (√α1)
+  double turn_per_metre_rad = radians(6.9);  ///< deviation of a turn, rad a metre driven; >= 0 (√α2)
+  double metre_per_metre = 0.07;             ///< deviation of a distance, m a metre driven; >= 0 (√α3)
+  double metre_per_turn_m = 0.02;            ///< deviation of a distance, m a rad of turn; >= 0 (√α4)
   double position_floor_m = 0.01;  ///< deviation that every step gets, m; > 0: a standing robot's particles stay apart
-  double heading_floor_rad = 0.003;          ///< deviation that every step gets, rad; > 0
-  double unknown_speed_m_per_s = 0.3;        ///< deviation a second without odometry, m; >= 0
-  double unknown_turn_rate_rad_per_s = 0.3;  ///< deviation a second without odometry, rad; >= 0
+  double heading_floor_rad = radians(0.172);           ///< deviation that every step gets, rad; > 0
+  double unknown_speed_m_per_s = 0.3;                  ///< deviation a second without odometry, m; >= 0
+  double unknown_turn_rate_rad_per_s = radians(17.2);  ///< deviation a second without odometry, rad; >= 0
 };
 
 /// A motion between two odometry poses: turn, drive, turn.

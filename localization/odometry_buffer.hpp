@@ -8,15 +8,16 @@
 #include <optional>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "core/messages.hpp"
 
 namespace deltamap::localization {
 
 struct OdometryBufferParams {
-  int capacity = 512;                          ///< reports remembered; 2..65536
-  double extrapolation_s = 0.15;               ///< longest reach past the newest report, s; >= 0
-  double max_speed_m_per_s = 1.5;              ///< of the robot: faster readings are clamped, m/s; > 0
-  double max_turn_rate_rad_per_s = 5.2359878;  ///< of the robot: faster readings are clamped, rad/s; > 0 (300°/s)
+  int capacity = 512;                               ///< reports remembered; 2..65536
+  double extrapolation_s = 0.15;                    ///< longest reach past the newest report, s; >= 0
+  double max_speed_m_per_s = 1.5;                   ///< of the robot: faster readings are clamped, m/s; > 0
+  double max_turn_rate_rad_per_s = radians(300.0);  ///< of the robot: faster readings are clamped, rad/s; > 0
 };
 
 struct BodyVelocity {

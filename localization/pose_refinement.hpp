@@ -3,16 +3,17 @@
 // field, each beam weighted by how probably it hit what the map knows. Held back by what the particles already know.
 #pragma once
 
+#include "core/angle.hpp"
 #include "localization/deskew.hpp"
 #include "localization/likelihood_field.hpp"
 
 namespace deltamap::localization {
 
 struct RefinementParams {
-  int steps = 6;                     ///< Gauss-Newton steps at most; 0..30, 0 = off
-  double prior_share = 0.3;          ///< how strongly the particles' covariance holds the pose; 0..10
-  double longest_shift_m = 0.3;      ///< a refined pose farther from the particles' mean is refused, m; > 0
-  double largest_turn_rad = 0.1745;  ///< likewise, rad; > 0 (10°)
+  int steps = 6;                            ///< Gauss-Newton steps at most; 0..30, 0 = off
+  double prior_share = 0.3;                 ///< how strongly the particles' covariance holds the pose; 0..10
+  double longest_shift_m = 0.3;             ///< a refined pose farther from the particles' mean is refused, m; > 0
+  double largest_turn_rad = radians(10.0);  ///< likewise, rad; > 0
 };
 
 struct RefinedPose {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "core/messages.hpp"
 #include "navigation/free_path.hpp"
 
@@ -23,7 +24,7 @@ struct SafetyParams {
   double nominal_scan_period_s = 0.107;  ///< laser stale after three of these; 180/1° at 38400 (protocols.md B7); > 0
   double odometry_life_s = 0.5;          ///< five controller cycles without a packet: the link is gone; > 0
   double max_speed_m_per_s = 0.7;        ///< > 0
-  double max_turn_rate_rad_per_s = 1.4;  ///< > 0
+  double max_turn_rate_rad_per_s = radians(80.0);  ///< > 0
   ObstacleParams obstacles{};
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "core/messages.hpp"
 #include "core/random.hpp"
 #include "navigation/free_path.hpp"
@@ -15,15 +16,15 @@
 namespace deltamap::navigation {
 
 struct WanderParams {
-  double speed_m_per_s = 0.5;        ///< where it is clear; > 0
-  double turn_rate_rad_per_s = 0.8;  ///< on the spot; > 0
-  double robot_radius_m = 0.26;      ///< swing circle of the P3-DX; > 0
-  double side_clearance_m = 0.15;    ///< kept to both sides while driving; more than safety's margin
-  double turn_away_m = 0.45;         ///< free path at which it stops and turns; > 0
-  double slow_down_m = 1.5;          ///< free path below which it goes slower; > turn_away_m
-  double go_on_m = 0.9;              ///< free path that ends a turn; > turn_away_m
-  double shortest_leg_s = 8.0;       ///< before it thinks of another direction; > 0
-  double longest_leg_s = 25.0;       ///< >= shortest_leg_s
+  double speed_m_per_s = 0.5;                  ///< where it is clear; > 0
+  double turn_rate_rad_per_s = radians(46.0);  ///< on the spot; > 0
+  double robot_radius_m = 0.26;                ///< swing circle of the P3-DX; > 0
+  double side_clearance_m = 0.15;              ///< kept to both sides while driving; more than safety's margin
+  double turn_away_m = 0.45;                   ///< free path at which it stops and turns; > 0
+  double slow_down_m = 1.5;                    ///< free path below which it goes slower; > turn_away_m
+  double go_on_m = 0.9;                        ///< free path that ends a turn; > turn_away_m
+  double shortest_leg_s = 8.0;                 ///< before it thinks of another direction; > 0
+  double longest_leg_s = 25.0;                 ///< >= shortest_leg_s
   ObstacleParams obstacles{};
 };
 

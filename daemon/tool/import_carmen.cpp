@@ -161,9 +161,11 @@ void add_import_carmen(CLI::App& import) {
   CLI::App& command = *import.add_subcommand("carmen", "a CARMEN log as the bytes of a P3-DX and an LMS200");
   command.add_option("LOG", options->log, "CARMEN log (FLASER, ROBOTLASER1, RAWLASER1, ODOM)")->required();
   command.add_option("OUT", options->recording, "recording to write (.pcapng)")->required();
-  command.add_option("--no-return", options->no_return_m,
-                     "ranges of this many metres and more are no return (0: only the scanner's own codes are); "
-                     "default: the log's largest value, where at least 0.3 % of the beams have it");
+  command
+      .add_option("--no-return", options->no_return_m,
+                  "ranges of this many metres and more are no return (0: only the scanner's own codes are); "
+                  "default: the log's largest value, where at least 0.3 % of the beams have it")
+      ->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "print the result as JSON");
   command.callback([options] {
     const CarmenImport done = import_carmen(options->log, options->recording, options->no_return_m);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/tool/live_simulation.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -64,21 +67,48 @@ class SteadyClock {
   Duration offset_;
 };
 
+/// One simulator a folder; a lock, because links stay behind when a simulator is killed.
+class LinksFolder {
+ public:
+  explicit LinksFolder(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor_ < 0) throw std::runtime_error(folder.string() + ": " + std::strerror(errno));
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    ::close(descriptor_);
+    throw std::runtime_error(folder.string() + ": another simulator has its links here");
+  }
+  ~LinksFolder() { ::close(descriptor_); }
+  LinksFolder(const LinksFolder&) = delete;
+  LinksFolder& operator=(const LinksFolder&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 class TruthFile {
  public:
-  TruthFile(const std::optional<std::filesystem::path>& file, const std::string& world, std::uint64_t seed) {
+  TruthFile(const std::optional<std::filesystem::path>& file, const std::string& world, std::uint64_t seed)
+      : name_{file ? file->string() : ""} {
     if (!file) return;
     out_.open(*file, std::ios::trunc);
     if (!out_) throw std::runtime_error(file->string() + ": cannot be written: " + std::strerror(errno));
     out_ << simulation::truth_header(world, seed) << std::endl;
+    check();
   }
   void write(const std::vector<simulation::TruthRecord>& records) {
     if (!out_.is_open()) return;
     for (const auto& record : records) out_ << simulation::truth_line(record) << '\n';
     if (!records.empty()) out_.flush();  // whoever looks on sees whole lines
+    check();
   }
 
  private:
+  void check() const {
+    if (!out_) throw std::runtime_error(name_ + ": cannot be written: " + std::strerror(errno));
+  }
+
+  std::string name_;
   std::ofstream out_;
 };
 
@@ -101,7 +131,7 @@ void sleep_until(Timestamp wake, const SteadyClock& clock, const StopSignals& si
 void run_live(const simulation::Scenario& scenario, const LiveSimulationOptions& options) {
   const StopSignals signals;
   const SteadyClock clock;
-  std::filesystem::create_directories(options.links);
+  const LinksFolder folder{options.links};
   simulation::devices::PseudoTerminal robot_port{options.links / "robot"};
   simulation::devices::PseudoTerminal laser_port{options.links / "laser"};
   TruthFile truth{options.truth, scenario.file, options.seed};

@@ -20,7 +20,7 @@ struct ReplayOptions {
   std::string config;
   std::vector<std::string> overrides;
   std::string initial_pose;
-  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> seed;
   bool as_json = false;
 };
 

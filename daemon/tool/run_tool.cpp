@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <stdexcept>
 
 #include "daemon/settings.hpp"
 #include "daemon/tool/subcommands.hpp"
@@ -27,6 +28,7 @@ int run_tool(int argc, const char* const* argv) {
   add_replay(app);
   try {
     app.parse(argc, argv);
+    if (!std::cout.flush()) throw std::runtime_error("standard output: cannot be written");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const SettingsError& error) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "core/messages.hpp"
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
@@ -33,9 +34,9 @@ struct PioneerParams {
   bool enable_motors = false;      ///< allowed to send ENABLE 1, once a connection and never after the STOP button
   bool sonar = false;              ///< keep the sonar on: longer SIPs
   double max_speed_m_per_s = 0.4;  ///< set points are clamped to it, (0, 2.2]
-  double max_turn_rate_rad_per_s = 0.87;  ///< set points are clamped to it, (0, 8.7]
-  double pulse_interval_s = 0.5;          ///< packets to the robot at least this often; well below its watchdog of 2 s
-  double sip_timeout_s = 1.0;             ///< silence after which the session has failed
+  double max_turn_rate_rad_per_s = radians(50.0);  ///< set points are clamped to it, (0, 8.7]
+  double pulse_interval_s = 0.5;  ///< packets to the robot at least this often; well below its watchdog of 2 s
+  double sip_timeout_s = 1.0;     ///< silence after which the session has failed
 };
 
 struct PioneerOutput {

@@ -28,10 +28,17 @@ void make_raw(int slave) {
   ::tcsetattr(slave, TCSANOW, &settings);
 }
 
+/// A link of a simulator that was killed leads nowhere, or to whoever was given the number of its pseudo-terminal next.
+bool is_left_over(const std::filesystem::path& link) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(link, error)) return false;
+  const bool leads_nowhere = !std::filesystem::exists(link, error);
+  return leads_nowhere || std::filesystem::read_symlink(link, error).parent_path() == "/dev/pts";
+}
+
 void place_link(const std::filesystem::path& target, const std::filesystem::path& link) {
   std::error_code error;
-  const bool is_left_over = std::filesystem::is_symlink(link, error) && !std::filesystem::exists(link, error);
-  if (is_left_over) std::filesystem::remove(link, error);
+  if (is_left_over(link)) std::filesystem::remove(link, error);
   std::filesystem::create_symlink(target, link, error);
   if (error) refuse(link, "the link cannot be placed: " + error.message());
 }

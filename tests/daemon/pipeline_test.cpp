@@ -132,6 +132,12 @@ TEST_F(PipelineTest, TheSameReplayTwiceGivesTheSameBytesAndAnotherSeedOthers) {
   EXPECT_NE(content_of(folder_.path() / "once/trajectory.tum"), content_of(folder_.path() / "other/trajectory.tum"));
 }
 
+TEST_F(PipelineTest, AReportThatCannotBeWrittenIsAnErrorAndNoCrash) {
+  fs::create_directories(folder_.path() / "live");
+  fs::create_symlink("/dev/full", folder_.path() / "live/report.json");
+  EXPECT_THROW((void)run_live(std::chrono::microseconds(0)), std::runtime_error);
+}
+
 TEST_F(PipelineTest, AJournalOfOtherSettingsIsNotObeyed) {
   (void)run_live(std::chrono::microseconds(0));
   settings_.seed = 2;

@@ -95,6 +95,40 @@ TEST(Settings, AValueOutsideItsRangeIsRefused) {
             "robot.yaml:3: 'laser.max_range_m' needs a number in its range (m, 0 to 90), not '-1'");
 }
 
+TEST(Settings, EveryKeyThatScriptsSetIsKnown) {
+  const Settings settings = parse_settings("", "robot.yaml",
+                                           {"robot.port=/dev/a b",
+                                            "robot.model=p3dx",
+                                            "laser.port=",
+                                            "laser.baud=500000",
+                                            "laser.variant=100/0.25",
+                                            "laser.units=cm",
+                                            "laser.max_range_m=32",
+                                            "laser.mount.x_m=0.25",
+                                            "laser.mount.y_m=-0.1",
+                                            "laser.mount.yaw_deg=-90",
+                                            "localization.beams=0",
+                                            "localization.particles.min=500",
+                                            "localization.particles.max=500",
+                                            "mapping.enabled=false",
+                                            "mapping.method=paper",
+                                            "mapping.persistence_s=3",
+                                            "navigation.mode=wander",
+                                            "map.file=m.yaml",
+                                            "map.store=s.sqlite",
+                                            "control.socket=/run/deltamap/ctl.sock",
+                                            "recording.file=r.pcapng",
+                                            "recording.max_gigabytes=1"});
+  EXPECT_EQ(settings.robot.port, "/dev/a b");
+  EXPECT_EQ(settings.laser.port, "");
+  EXPECT_EQ(settings.control.socket, "/run/deltamap/ctl.sock");
+}
+
+TEST(Settings, PatrolIsRefusedUntilItIsBuilt) {
+  EXPECT_EQ(error_of("navigation: {mode: patrol}"),
+            "robot.yaml: 'navigation.mode: patrol' is not built yet: off or wander");
+}
+
 TEST(Settings, AKeyGivenTwiceIsRefused) {
   EXPECT_EQ(error_of("seed: 1\nseed: 2"), "robot.yaml:2: 'seed' is given twice");
 }

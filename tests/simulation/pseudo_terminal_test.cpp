@@ -48,6 +48,15 @@ TEST(PseudoTerminal, RemovesItsLinkAndReplacesOneThatLeadsNowhere) {
   EXPECT_TRUE(std::filesystem::exists(link));
 }
 
+TEST(PseudoTerminal, ReplacesTheLinkOfAKilledSimulatorWhoseNumberIsInUseAgain) {
+  const test::TemporaryFolder folder;
+  const PseudoTerminal other{folder.path() / "other"};
+  const auto number = std::filesystem::read_symlink(folder.path() / "other");
+  std::filesystem::create_symlink(number, folder.path() / "robot");
+  const PseudoTerminal port{folder.path() / "robot"};
+  EXPECT_NE(std::filesystem::read_symlink(folder.path() / "robot"), number);
+}
+
 TEST(PseudoTerminal, LeavesOtherFilesAlone) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("robot", "precious");
