@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/io_stage.hpp"
 
+#include <atomic>
 #include <boost/asio/post.hpp>
 #include <chrono>
 
@@ -123,6 +124,7 @@ struct IoStage::State {
   }
 
   asio::io_context loop{1};
+  std::atomic<std::int64_t> asked_ns{0};  // port clock; 0: the loop owes no answer
   Wiring wiring;
   bool drives;
   navigation::Safety safety;
@@ -150,6 +152,16 @@ void IoStage::stop() {
 
 void IoStage::post(const DriveCommand& command) {
   asio::post(state_->loop, [this, command] { state_->safety.command(command, drivers::port::port_clock_now()); });
+}
+
+double IoStage::silence_s() const {
+  const std::int64_t now_ns = unix_ns(drivers::port::port_clock_now());
+  if (const std::int64_t asked_ns = state_->asked_ns; asked_ns != 0) {
+    return seconds(Duration{now_ns - asked_ns});
+  }
+  state_->asked_ns = now_ns;
+  asio::post(state_->loop, [state = state_.get()] { state->asked_ns = 0; });
+  return 0.0;
 }
 
 std::map<std::string, std::uint64_t> IoStage::counts() const {

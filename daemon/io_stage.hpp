@@ -37,6 +37,10 @@ class IoStage {
   /// Any thread.
   void post(const DriveCommand& command);
 
+  /// Any one thread, now and then: for how long the loop owes an answer to an earlier call. It takes many small turns:
+  /// one that hangs shows in that no other comes.
+  [[nodiscard]] double silence_s() const;
+
   /// After run(): decoder counts by device and cause.
   [[nodiscard]] std::map<std::string, std::uint64_t> counts() const;
 

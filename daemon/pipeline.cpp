@@ -343,8 +343,8 @@ RunReport Pipeline::stop() {
 const Telemetry& Pipeline::telemetry() const { return state_->telemetry; }
 
 double Pipeline::longest_work_s() const {
-  return std::max(
-      {state_->localization_work.busy_s(), state_->awareness_work.busy_s(), state_->map_work.busy_s() / 10.0});
+  return std::max({state_->io.silence_s(), state_->localization_work.busy_s(), state_->awareness_work.busy_s(),
+                   state_->map_work.busy_s() / 10.0});
 }
 
 std::shared_ptr<const OccupancyGrid> Pipeline::newest_map() const { return state_->map_step.map(); }

@@ -132,6 +132,27 @@ TEST_F(PipelineTest, TheSameReplayTwiceGivesTheSameBytesAndAnotherSeedOthers) {
   EXPECT_NE(content_of(folder_.path() / "once/trajectory.tum"), content_of(folder_.path() / "other/trajectory.tum"));
 }
 
+TEST_F(PipelineTest, AnIoThreadThatHangsShowsInTheLongestWork) {
+  std::promise<void> comes_back;
+  Pipeline::Options options;
+  options.start.map = std::make_shared<const OccupancyGrid>(read_grid(folder_.path() / "room.yaml"));
+  options.open = [hangs = comes_back.get_future().share()](boost::asio::io_context&, drivers::port::PortId, unsigned) {
+    hangs.wait();
+    return drivers::port::SerialPortAnswer{nullptr, "is missing"};
+  };
+  options.log = [](const std::string&) {};
+  options.failed = [](const std::string& why) { FAIL() << why; };
+  Pipeline pipeline{settings_, std::move(options)};
+  const auto give_up_at = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  double longest_s = 0.0;
+  while (longest_s <= 0.01 && std::chrono::steady_clock::now() < give_up_at) longest_s = pipeline.longest_work_s();
+  comes_back.set_value();
+  EXPECT_GT(longest_s, 0.01);
+  while (longest_s > 0.0 && std::chrono::steady_clock::now() < give_up_at) longest_s = pipeline.longest_work_s();
+  EXPECT_EQ(longest_s, 0.0);
+  (void)pipeline.stop();
+}
+
 TEST_F(PipelineTest, AReportThatCannotBeWrittenIsAnErrorAndNoCrash) {
   fs::create_directories(folder_.path() / "live");
   fs::create_symlink("/dev/full", folder_.path() / "live/report.json");
