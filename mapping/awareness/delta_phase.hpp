@@ -13,7 +13,7 @@
 namespace deltamap::mapping::awareness {
 
 struct DeltaPhaseParams {
-  double least_n_eff_share = 0.2;  ///< N_eff / particles (Eq. 5) below which a scan is not kept; [0, 1]
+  double least_n_eff_share = 0.3;  ///< N_eff / particles (Eq. 5) below which a scan is not kept; [0, 1]
   std::uint32_t most_scans = 400;  ///< kept in one phase; what comes later is not kept (memory); > 0
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "mapping/awareness/delta_phase.hpp"
 #include "tests/support/changed_hall.hpp"
 #include "tests/support/hall_drive.hpp"
 
@@ -13,12 +14,17 @@ namespace {
 class MeanShare {
  public:
   void operator()(const TrackedScan& tracked) {
-    sum_ += tracked.estimate.n_eff / tracked.estimate.particles;
+    const double share = tracked.estimate.n_eff / tracked.estimate.particles;
+    sum_ += share;
+    below_gate_ += share < mapping::awareness::DeltaPhaseParams{}.least_n_eff_share ? 1 : 0;
     ++count_;
   }
   [[nodiscard]] double value() const { return sum_ / count_; }
+  /// Scans that store-scan would not keep (§3.2.1).
+  [[nodiscard]] double rejected() const { return static_cast<double>(below_gate_) / count_; }
 
  private:
+  int below_gate_ = 0;
   double sum_ = 0.0;
   int count_ = 0;
 };
@@ -41,6 +47,11 @@ TEST(Figure6, TurningLowersTheEffectiveSampleSizeAndAChangeDoesNot) {
   }
   std::printf("N_eff / particles: straight %.3f, straight past a change %.3f, turning %.3f\n", straight.value(),
               past_a_change.value(), turning.value());
+  std::printf("rejected by the gate: %.2f, %.2f, %.2f\n", straight.rejected(), past_a_change.rejected(),
+              turning.rejected());
+  EXPECT_LT(straight.rejected(), 0.1);
+  EXPECT_LT(past_a_change.rejected(), 0.3);
+  EXPECT_GT(turning.rejected(), 0.6);
   EXPECT_LT(turning.value(), 0.85 * straight.value());
   EXPECT_LT(turning.value(), 0.85 * past_a_change.value());
 }
