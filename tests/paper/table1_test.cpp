@@ -11,7 +11,7 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::array<std::uint64_t, 2> kLayouts{312, 313};
+constexpr std::array<std::uint64_t, 2> kLayouts{701, 702};
 constexpr double kResolution_m = 0.1;
 
 struct Row {
@@ -58,7 +58,8 @@ TEST(Table1, AllFourMethodsPlaceHeldOutHalls) {
   }
 }
 
-/// §3.4.2 turns by whole degrees, which a spectrum of 360 bins meets exactly.
+/// §3.4.2 turns by whole degrees, which a spectrum of 360 bins meets exactly. Of this layout two thirds of the contour,
+/// all that the parts share, are less than four fifths of what the best wrong pose finds.
 TEST(Table1, WholeDegreesFlatterTheMethod) {
   const OccupancyGrid hall = test::drawn_warehouse(313);
   const OccupancyGrid map = test::moved_grid(test::part_of(hall, 0.0, 0.75), {}, kResolution_m);
