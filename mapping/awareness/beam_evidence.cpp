@@ -11,6 +11,9 @@
 namespace deltamap::mapping::awareness {
 namespace {
 
+/// A face met at a slant lies farther along for a beam beside: up to so many times as far as the beam lies aside (14°).
+constexpr double kMostSlant = 4.0;
+
 struct PoseDeviation {
   double position_m;
   double heading_rad;
@@ -108,7 +111,7 @@ class BeamJudge {
     const Point2 left{-along.y(), along.x()};
     const double near_m = params_.deviations * deviation_.position_m;
     const double far_m = params_.deviations * aside_m(deviation_, beam.length_m);
-    const double slack_m = params_.beyond_m + near_m;
+    const double slack_m = params_.beyond_m + near_m + kMostSlant * (far_m - near_m);
     for (const double side : {1.0, -1.0}) {
       const Point2 from = beam.from + side * near_m * left;
       const Point2 end = beam.end + side * far_m * left;
