@@ -121,6 +121,15 @@ std::uint64_t peak_resident_bytes() {
   return 0;
 }
 
+void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out) {
+  for (const char* name : {"map.yaml", "map.pgm"}) {
+    std::error_code ignored;
+    const auto mine = std::filesystem::path(map).replace_extension(std::filesystem::path(name).extension());
+    if (!std::filesystem::equivalent(mine, out / name, ignored)) continue;
+    throw std::runtime_error(mine.string() + ": --out would overwrite it; give another folder");
+  }
+}
+
 StagingFolder::StagingFolder(std::filesystem::path target)
     : target_{std::filesystem::absolute(target).lexically_normal()} {
   if (!target_.has_filename()) target_ = target_.parent_path();

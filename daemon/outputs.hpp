@@ -103,6 +103,9 @@ struct RunReport {
 /// Highest resident set of this process so far.
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 
+/// Throws std::runtime_error where `out` is the folder of the map that the run begins with: it would be overwritten.
+void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out);
+
 /// A folder that comes into being whole: files are written to path() and moved into place by commit(). What was not
 /// committed disappears.
 class StagingFolder {

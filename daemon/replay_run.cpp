@@ -217,6 +217,7 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   const auto began = std::chrono::steady_clock::now();
   const double began_cpu_s = process_cpu_s();
   const StartMap start{std::make_shared<const OccupancyGrid>(read_grid(job.map)), 0};
+  require_map_elsewhere(job.map, job.out);
   StagingFolder staging{job.out};
   RunReport report;
   {

@@ -13,6 +13,7 @@
 #include <mutex>
 
 #include "core/grid_file.hpp"
+#include "daemon/outputs.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
 #include "daemon/settings.hpp"
@@ -21,7 +22,7 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr double kStuck_s = 10.0;       // a stage that is at work on one item for so long (a map update: 100 s) has hung
+constexpr double kStuck_s = 10.0;      // a stage that is at work on one item for so long (a map update: 100 s) has hung
 constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches
 
 struct CommandLine {
@@ -118,6 +119,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
     std::error_code error;
     std::filesystem::create_directories(line.out, error);
     if (error || !std::filesystem::is_directory(line.out)) throw std::runtime_error(line.out + ": is no folder");
+    require_map_elsewhere(settings.map.file, line.out);
     options.out = line.out;
   }
   std::atomic<bool> failed{false};

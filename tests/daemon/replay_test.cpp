@@ -66,6 +66,15 @@ class ReplayTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(ReplayTest, NeverOverwritesTheMapThatItBeginsWith) {
+  fs::create_directories(folder_.path() / "out");
+  write_grid(test::small_room(false), folder_.path() / "out/map.yaml");
+  ReplayJob over_its_map = job();
+  over_its_map.map = folder_.path() / "out/map.yaml";
+  EXPECT_EQ(error_of(over_its_map), "out/map.yaml: --out would overwrite it; give another folder");
+  EXPECT_FALSE(fs::exists(folder_.path() / "out/trajectory.tum"));
+}
+
 TEST_F(ReplayTest, WritesEveryFileOfTheContract) {
   EXPECT_EQ(error_of(job()), "");
   for (const char* name :
