@@ -2,11 +2,24 @@
 #include "daemon/recorder.hpp"
 
 #include <chrono>
+#include <stdexcept>
+#include <system_error>
 
 namespace deltamap::daemon {
 namespace {
 
 constexpr std::chrono::seconds kFlushPeriod{1};
+
+/// A service that has crashed is started again at once: the recording of the crash must outlive that.
+void keep_previous(const std::filesystem::path& recording) {
+  if (!std::filesystem::is_regular_file(recording)) return;
+  std::filesystem::path previous = recording;
+  previous.replace_extension(".previous" + recording.extension().string());
+  std::error_code error;
+  std::filesystem::rename(recording, previous, error);
+  if (error)
+    throw std::runtime_error(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
+}
 
 }  // namespace
 
@@ -17,7 +30,10 @@ Recorder::Recorder(const Options& options, Telemetry& telemetry, std::function<v
       warn_{std::move(warn)},
       max_bytes_{options.max_gigabytes * 1e9},
       last_stamp_{options.began} {
-  if (!options.recording.empty()) recording_.emplace(options.recording, options.bauds);
+  if (!options.recording.empty()) {
+    keep_previous(options.recording);
+    recording_.emplace(options.recording, options.bauds);
+  }
   write(options.first_note);
   if (!options.trajectory.empty()) trajectory_.emplace(options.trajectory);
 }

@@ -42,7 +42,7 @@ class RecorderInput {
 class Recorder {
  public:
   struct Options {
-    std::filesystem::path recording;  ///< empty: none
+    std::filesystem::path recording;  ///< empty: none; an older file is kept as NAME.previous.pcapng
     drivers::port::FirstBauds bauds;
     Timestamp began;         ///< now
     std::string first_note;  ///< what the run begins from

@@ -3,7 +3,7 @@
 """Measures every figure that the project promises and writes docs/results/check.md. Called by ./dev check.
 
   check.py [--quick] [--only NAME]     --quick: one short demo, one seed; for trying the check itself"""
-import argparse, filecmp, json, lzma, os, pathlib, platform, shutil, subprocess, sys
+import argparse, concurrent.futures, filecmp, json, lzma, os, pathlib, platform, shutil, subprocess, sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("DELTAMAP_DATA", ROOT.parent / "shared" / "data"))
@@ -119,19 +119,27 @@ def check_wean(table):
     table.add(on, "lost", s["lost"], "≤ 0.01", s["lost"] <= 0.01)
 
 
+def play_demo(seed, seconds):
+    folder = OUT / ("demo-%d" % seed)
+    run("tests/system/demo.sh", "--for", seconds, "--seed", seed, "--out", folder, "--pin", "0")
+    return folder
+
+
 def check_demo(table, seeds, seconds):
-    for seed in seeds:
-        folder = OUT / ("demo-%d" % seed)
-        run("tests/system/demo.sh", "--for", seconds, "--seed", seed, "--out", folder, "--pin", "0")
+    # All at once, every daemon on the same processor: a demo needs a twentieth of it.
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        folders = list(pool.map(lambda seed: play_demo(seed, seconds), seeds))
+    for seed, folder in zip(seeds, folders):
         s = json.loads((folder / "score.json").read_text())
-        on = "demo, %d s, seed %d, one CPU" % (seconds, seed)
-        table.add(on, "changes seen 10 s and found", "%d of %d" % (s["changes"]["found"], s["changes"]["eligible"]), "≥ 80 %",
-                  s["changes"]["found"] >= 0.8 * s["changes"]["eligible"])
-        table.add(on, "localization error, median, m", round(s["localization"]["median_m"], 4), "≤ 0.06", s["localization"]["median_m"] <= 0.06)
-        table.add(on, "localization error, worst, m", round(s["localization"]["max_m"], 3), "≤ 0.5", s["localization"]["max_m"] <= 0.5)
+        on = "demo, %d s, seed %d" % (seconds, seed)
+        found, eligible = s["changes"]["found"], s["changes"]["eligible"]
+        table.add(on, "changes seen 10 s and found", "%d of %d" % (found, eligible), "≥ 80 %", found >= 0.8 * eligible)
+        error = s["localization"]
+        table.add(on, "localization error, median, m", round(error["median_m"], 4), "≤ 0.06", error["median_m"] <= 0.06)
+        table.add(on, "localization error, worst, m", round(error["max_m"], 3), "≤ 0.5", error["max_m"] <= 0.5)
         report = json.loads((folder / "run/report.json").read_text())
-        latency = report["latency_ms"]
-        table.add(on, "last byte → pose, 99 %, ms", round(latency["p99"], 2), "≤ 20", latency["p99"] <= 20)
+        p99 = report["latency_ms"]["p99"]
+        table.add(on + ", one CPU, %d map updates" % len(report["revisions"]), "last byte → pose, 99 %, ms", round(p99, 2), "≤ 20", p99 <= 20)
         again = OUT / ("demo-%d-replayed" % seed)
         run(BIN / "deltamap", "replay", folder / "recording.pcapng", "--map", folder / "m0.yaml", "--config", "config/simulation.yaml",
             "--out", again, "--seed", seed)
