@@ -25,6 +25,7 @@ struct ScoreOptions {
   std::filesystem::path map;
   std::filesystem::path start_map;
   double range_m = 0.0;
+  int face_beams = score::ChangeScoreParams{}.face_beams;
   bool json = false;
 };
 
@@ -107,6 +108,7 @@ void run_score(const ScoreOptions& options) {
   }
   score::ChangeScoreParams params;
   params.range_m = options.range_m > 0.0 ? options.range_m : scenario.laser.max_range_m;
+  params.face_beams = options.face_beams;
   const auto changes =
       score::change_score(scenario, truth, read_grid(options.start_map), read_grid(options.map), params);
   if (options.json) {
@@ -127,6 +129,8 @@ void add_score(CLI::App& app) {
   command.add_option("--map", options->map, "the map at the end (YAML)")->required();
   command.add_option("--start-map", options->start_map, "the map at the start (YAML)")->required();
   command.add_option("--range", options->range_m, "how far the robot sees, m (default: the scenario's laser)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--face-beams", options->face_beams, "beams of one scan that make a face seen (default 3)")
       ->check(CLI::PositiveNumber);
   command.add_flag("--json", options->json, "print JSON");
   command.callback([options] { run_score(*options); });

@@ -50,7 +50,7 @@ class Retrospect {
         if (!watched.change.is_overtaken) watched.witness.look(beam);
       }
     }
-    for (Watched& watched : watched_) watched.witness.end_look(seconds);
+    for (Watched& watched : watched_) watched.witness.end_look(seconds, params.face_beams);
   }
 
   [[nodiscard]] const World& world() const { return world_; }

@@ -17,6 +17,7 @@ struct ChangeScoreParams {
   double range_m = 32.0;         ///< as far as the robot sees, > 0
   int beams = 181;               ///< over the half circle ahead, >= 2
   double seen_least_s = 10.0;    ///< of one face, for a change to count
+  int face_beams = 3;            ///< beams of one scan that make a face seen: one alone shows no extent; >= 1
   double found_share = 0.5;      ///< of its visible cells that must be right
   double longest_look_s = 0.25;  ///< that one pose stands for where the truth has a gap
 };

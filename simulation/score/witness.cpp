@@ -38,7 +38,7 @@ Witness Witness::of_disappearance(const Box& box, const GridGeometry& geometry,
 void Witness::look(const TrueBeam& beam) {
   if (id_ == kNobody) return look_through(beam);
   if (!beam.hit || beam.hit->object != id_) return;
-  seen_now_[static_cast<std::size_t>(beam.hit->face)] = true;
+  ++beams_now_[static_cast<std::size_t>(beam.hit->face)];
   const Point2 end = beam.from + beam.range_m * Point2{std::cos(beam.bearing_rad), std::sin(beam.bearing_rad)};
   const Cell cell = geometry_.cell_at(end);
   if (geometry_.contains(cell)) touched_.insert(geometry_.index_of(cell));
@@ -56,22 +56,24 @@ void Witness::look_through(const TrueBeam& beam) {
   for (std::size_t face = 0; face < faces_.size(); ++face) {
     const auto range_m = crossing(beam, direction, faces_[face]);
     if (!range_m || *range_m > clear_m) continue;
+    bool shows = false;
     const Point2 begin = beam.from + std::max(0.0, *range_m - reach_m) * direction;
     const Point2 end = beam.from + std::min(clear_m, *range_m + reach_m) * direction;
     walk_ray(geometry_, begin, end, [&](Cell cell, double) {
       if (geometry_.contains(cell) && former_.contains(geometry_.index_of(cell))) {
         touched_.insert(geometry_.index_of(cell));
-        seen_now_[face] = true;
+        shows = true;
       }
       return true;
     });
+    if (shows) ++beams_now_[face];
   }
 }
 
-void Witness::end_look(double seconds) {
-  for (std::size_t face = 0; face < seen_now_.size(); ++face) {
-    if (seen_now_[face]) seen_s_[face] += seconds;
-    seen_now_[face] = false;
+void Witness::end_look(double seconds, int face_beams) {
+  for (std::size_t face = 0; face < beams_now_.size(); ++face) {
+    if (beams_now_[face] >= face_beams) seen_s_[face] += seconds;
+    beams_now_[face] = 0;
   }
 }
 

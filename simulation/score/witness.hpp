@@ -29,8 +29,9 @@ class Witness {
   static Witness of_disappearance(const Box& box, const GridGeometry& geometry, std::unordered_set<std::size_t> former);
 
   void look(const TrueBeam& beam);
-  /// The pose from which the last beams came stood for so long.
-  void end_look(double seconds);
+  /// The pose from which the last beams came stood for so long; a face that fewer than `face_beams` of them showed was
+  /// not seen.
+  void end_look(double seconds, int face_beams);
 
   [[nodiscard]] double longest_seen_s() const;
   /// Cells touched, by index in the map.
@@ -45,7 +46,7 @@ class Witness {
   std::array<Segment, 4> faces_;
   GridGeometry geometry_;
   std::unordered_set<std::size_t> former_;
-  std::array<bool, 4> seen_now_{};
+  std::array<int, 4> beams_now_{};
   std::array<double, 4> seen_s_{};
   std::unordered_set<std::size_t> touched_;
 };
