@@ -4,24 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/cast_scan.hpp"
+#include "tests/support/drawn_flat.hpp"
 
 namespace deltamap::localization {
 namespace {
 
-/// 10 × 6 m, nowhere the same.
-OccupancyGrid flat() {
-  OccupancyGrid map{{220, 140, 0.05, {-0.5, -0.5}}};
-  test::fill_box(map, {-0.2, -0.2}, {10.2, 6.2}, CellState::kOccupied);
-  test::fill_box(map, {0.0, 0.0}, {10.0, 6.0}, CellState::kFree);
-  test::fill_box(map, {3.0, 0.0}, {3.2, 4.0}, CellState::kOccupied);
-  test::fill_box(map, {6.0, 2.5}, {6.2, 6.0}, CellState::kOccupied);
-  test::fill_box(map, {8.0, 1.0}, {8.9, 1.6}, CellState::kOccupied);
-  test::fill_box(map, {1.0, 4.8}, {1.5, 6.0}, CellState::kOccupied);
-  return map;
-}
-
 TEST(GlobalSearch, SpreadsPosesOverFreeCellsOnly) {
-  const OccupancyGrid map = flat();
+  const OccupancyGrid map = test::drawn_flat();
   Random random{3};
   const auto poses = poses_anywhere(map.geometry(), free_cells(map), 5000, random);
   int left = 0;
@@ -33,7 +22,7 @@ TEST(GlobalSearch, SpreadsPosesOverFreeCellsOnly) {
 }
 
 TEST(GlobalSearch, PutsParticlesWhereTheScanFits) {
-  const OccupancyGrid map = flat();
+  const OccupancyGrid map = test::drawn_flat();
   const LikelihoodField field{map, {}};
   const Pose2 truth{4.5, 2.0, 1.1};
   Random random{3};
@@ -49,7 +38,7 @@ TEST(GlobalSearch, PutsParticlesWhereTheScanFits) {
 }
 
 TEST(GlobalSearch, KeepsWhatWasBelievedWhereItStillFits) {
-  const OccupancyGrid map = flat();
+  const OccupancyGrid map = test::drawn_flat();
   const LikelihoodField field{map, {}};
   const Pose2 truth{4.5, 2.0, 1.1};
   Random random{3};

@@ -11,24 +11,13 @@
 
 #include "localization/localizer_params.hpp"
 #include "tests/support/cast_scan.hpp"
+#include "tests/support/drawn_flat.hpp"
 #include "tests/support/drawn_grid.hpp"
 
 namespace deltamap::localization {
 namespace {
 
 constexpr double kScanPeriodS = 0.2;
-
-/// 10 × 6 m, nowhere the same.
-OccupancyGrid flat() {
-  OccupancyGrid map{{220, 140, 0.05, {-0.5, -0.5}}};
-  test::fill_box(map, {-0.2, -0.2}, {10.2, 6.2}, CellState::kOccupied);
-  test::fill_box(map, {0.0, 0.0}, {10.0, 6.0}, CellState::kFree);
-  test::fill_box(map, {3.0, 0.0}, {3.2, 4.0}, CellState::kOccupied);
-  test::fill_box(map, {6.0, 2.5}, {6.2, 6.0}, CellState::kOccupied);
-  test::fill_box(map, {8.0, 1.0}, {8.9, 1.6}, CellState::kOccupied);
-  test::fill_box(map, {1.0, 4.8}, {1.5, 6.0}, CellState::kOccupied);
-  return map;
-}
 
 /// A robot that drives to and fro along a lane of constant y, with odometry that drifts.
 class Drive {
@@ -100,8 +89,8 @@ Localizer localizer_at_start(const LocalizerParams& params, const OccupancyGrid&
 }
 
 TEST(Localizer, FollowsADrivingRobotThroughDrift) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   for (int i = 0; i < 300; ++i) {
     const TrackedScan tracked = drive.next(localizer);
     if (i < 10) continue;
@@ -112,8 +101,8 @@ TEST(Localizer, FollowsADrivingRobotThroughDrift) {
 }
 
 TEST(Localizer, FillsInEverythingThatTheOthersJudgeBy) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   for (int i = 0; i < 5; ++i) (void)drive.next(localizer);
   const TrackedScan tracked = drive.next(localizer);
   EXPECT_EQ(tracked.rays.size(), tracked.scan.beams.size());
@@ -130,8 +119,8 @@ TEST(Localizer, FillsInEverythingThatTheOthersJudgeBy) {
 
 TEST(Localizer, GivesTheSameBytesForTheSameInputAndSeed) {
   const auto run = [](std::uint64_t seed) {
-    Drive drive{flat()};
-    Localizer localizer = localizer_at_start(small(), flat(), seed);
+    Drive drive{test::drawn_flat()};
+    Localizer localizer = localizer_at_start(small(), test::drawn_flat(), seed);
     std::vector<double> numbers;
     for (int i = 0; i < 60; ++i) {
       const Estimate estimate = drive.next(localizer).estimate;
@@ -147,8 +136,8 @@ TEST(Localizer, GivesTheSameBytesForTheSameInputAndSeed) {
 }
 
 TEST(Localizer, AnswersEveryScanOfAStandingRobotAndStaysHonest) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   drive.stand();
   for (int i = 0; i < 600; ++i) {
     const Estimate estimate = drive.next(localizer).estimate;
@@ -161,8 +150,8 @@ TEST(Localizer, AnswersEveryScanOfAStandingRobotAndStaysHonest) {
 }
 
 TEST(Localizer, FindsItselfWithoutAnInitialPose) {
-  Drive drive{flat()};
-  Localizer localizer{small(), std::make_shared<const OccupancyGrid>(flat()), std::nullopt, 3};
+  Drive drive{test::drawn_flat()};
+  Localizer localizer{small(), std::make_shared<const OccupancyGrid>(test::drawn_flat()), std::nullopt, 3};
   TrackedScan tracked = drive.next(localizer);
   EXPECT_EQ(tracked.estimate.state, LocalizerState::kGlobal);
   for (int i = 0; i < 150; ++i) tracked = drive.next(localizer);
@@ -171,8 +160,8 @@ TEST(Localizer, FindsItselfWithoutAnInitialPose) {
 }
 
 TEST(Localizer, GoesFromLostToGlobalAndFindsItselfAfterBeingCarriedAway) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   for (int i = 0; i < 20; ++i) (void)drive.next(localizer);
   drive.carry_to({6.8, 5.3}, 6.8, 9.3);
   bool was_lost = false;
@@ -190,8 +179,8 @@ TEST(Localizer, GoesFromLostToGlobalAndFindsItselfAfterBeingCarriedAway) {
 }
 
 TEST(Localizer, StartsAgainAroundThePoseThatAPersonGives) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   for (int i = 0; i < 10; ++i) (void)drive.next(localizer);
   localizer.relocalize({{1.0, 1.0, 2.0}});
   const Estimate wrong = drive.next(localizer).estimate;
@@ -210,12 +199,12 @@ TEST(Localizer, RefusesAMapWithoutFreeCells) {
 }
 
 TEST(Localizer, CarriesThePoseByOdometryThroughScansWithoutReturns) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   TrackedScan tracked;
   for (int i = 0; i < 15; ++i) tracked = drive.next(localizer);
   const double w_avg = tracked.estimate.w_avg;
-  drive.world() = OccupancyGrid{flat().geometry(), CellState::kFree};
+  drive.world() = OccupancyGrid{test::drawn_flat().geometry(), CellState::kFree};
   for (int i = 0; i < 10; ++i) {
     tracked = drive.next(localizer);
     EXPECT_EQ(tracked.estimate.w_avg, w_avg);
@@ -225,7 +214,7 @@ TEST(Localizer, CarriesThePoseByOdometryThroughScansWithoutReturns) {
 }
 
 TEST(Localizer, AnswersAScanWithoutAnyBeam) {
-  Localizer localizer = localizer_at_start(small(), flat());
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   Scan empty;
   empty.time = timestamp_from_ns(1'700'000'000'000'000'000);
   const TrackedScan tracked = localizer.observe(empty);
@@ -235,8 +224,8 @@ TEST(Localizer, AnswersAScanWithoutAnyBeam) {
 }
 
 TEST(Localizer, WorksWithoutOdometry) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   Random random{2};
   Timestamp time = drive.time();
   Pose2 truth = drive.truth();
@@ -244,14 +233,14 @@ TEST(Localizer, WorksWithoutOdometry) {
   for (int i = 0; i < 40; ++i) {
     time += duration_from_seconds(kScanPeriodS);
     truth = truth * Pose2{0.02, 0.0, 0.0};
-    estimate = localizer.observe(test::cast_scan(flat(), truth, time, {}, random)).estimate;
+    estimate = localizer.observe(test::cast_scan(test::drawn_flat(), truth, time, {}, random)).estimate;
   }
   EXPECT_LT(distance_between(estimate.map_from_robot, truth), 0.2);
 }
 
 TEST(Localizer, SurvivesAJumpOfTheOdometry) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   for (int i = 0; i < 20; ++i) (void)drive.next(localizer);
   drive.jump_odometry();
   for (int i = 0; i < 20; ++i) {
@@ -262,8 +251,8 @@ TEST(Localizer, SurvivesAJumpOfTheOdometry) {
 }
 
 TEST(Localizer, SurvivesAClockThatFallsBack) {
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   for (int i = 0; i < 20; ++i) (void)drive.next(localizer);
   drive.fall_back(100.0);
   TrackedScan tracked;
@@ -283,14 +272,14 @@ MapRevision revision_of(std::uint32_t number, const OccupancyGrid& before, const
 }
 
 TEST(Localizer, GivesTheSameAnswersWhetherARevisionComesAsPatchOrIsRebuilt) {
-  OccupancyGrid changed = flat();
+  OccupancyGrid changed = test::drawn_flat();
   test::fill_box(changed, {5.0, 0.0}, {5.6, 0.7}, CellState::kOccupied);
   const auto run = [&](bool with_patch, std::uint32_t number) {
     Drive drive{changed};
-    Localizer localizer = localizer_at_start(small(), flat());
+    Localizer localizer = localizer_at_start(small(), test::drawn_flat());
     std::vector<double> numbers;
     for (int i = 0; i < 40; ++i) {
-      if (i == 20) localizer.apply(revision_of(number, flat(), changed, with_patch));
+      if (i == 20) localizer.apply(revision_of(number, test::drawn_flat(), changed, with_patch));
       const Estimate estimate = drive.next(localizer).estimate;
       EXPECT_EQ(estimate.revision, i < 20 ? 0u : number);
       numbers.insert(numbers.end(), {estimate.map_from_robot.x, estimate.map_from_robot.y, estimate.w_avg});
@@ -303,21 +292,21 @@ TEST(Localizer, GivesTheSameAnswersWhetherARevisionComesAsPatchOrIsRebuilt) {
 }
 
 TEST(Localizer, FitsBetterOnceTheMapFollowsTheWorld) {
-  OccupancyGrid changed = flat();
+  OccupancyGrid changed = test::drawn_flat();
   test::fill_box(changed, {5.0, 0.0}, {5.6, 0.9}, CellState::kOccupied);
   Drive drive{changed};
-  Localizer localizer = localizer_at_start(small(), flat());
+  Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   double before = 0.0;
   for (int i = 0; i < 8; ++i) before = drive.next(localizer).estimate.w_avg;
-  localizer.apply(revision_of(1, flat(), changed, true));
+  localizer.apply(revision_of(1, test::drawn_flat(), changed, true));
   EXPECT_GT(drive.next(localizer).estimate.w_avg, before + 0.03);
 }
 
 TEST(Localizer, UsesOnlyAsManyBeamsAsAsked) {
   LocalizerParams params = small();
   params.beams = 30;
-  Drive drive{flat()};
-  Localizer localizer = localizer_at_start(params, flat());
+  Drive drive{test::drawn_flat()};
+  Localizer localizer = localizer_at_start(params, test::drawn_flat());
   TrackedScan tracked;
   for (int i = 0; i < 60; ++i) tracked = drive.next(localizer);
   EXPECT_LT(distance_between(tracked.estimate.map_from_robot, drive.truth()), 0.15);
