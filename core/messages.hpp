@@ -67,6 +67,31 @@ enum class LocalizerState : std::uint8_t {
   kLost       ///< scans have stopped fitting and no change of the map explains it
 };
 
+/// What the beams of one scan say at the estimated pose, each held against the range that the map expects there.
+struct BeamCounts {
+  std::uint32_t expected = 0;  ///< beams of which the map expects a range: fit + short_of + beyond
+  std::uint32_t fit = 0;       ///< ended where expected
+  std::uint32_t short_of = 0;  ///< ended before: something stands in the way
+  std::uint32_t beyond = 0;    ///< went through what the map knows as an obstacle
+};
+
+enum class PoseVerdict : std::uint8_t {
+  kUndecided,  ///< too little in view that has proven stable, or another place fits as well
+  kRight,
+  kWrong
+};
+
+/// Am I lost, or is the map out of date? Two answers, not one label, and what they rest on.
+struct Belief {
+  double pose_right = 0.5;  ///< P(the robot is where the estimate says), [0, 1]
+  double map_wrong = 0.5;   ///< P(what is in view differs from the map), [0, 1]
+  PoseVerdict verdict = PoseVerdict::kUndecided;
+  BeamCounts stable;         ///< beams on cells that have long proven stable: bad fit there speaks of the pose
+  BeamCounts elsewhere;      ///< all others: bad fit there speaks of the map
+  double rival_share = 0.0;  ///< of the belief that the best other place in the map holds, [0, 1]
+  Pose2 map_from_rival;      ///< that place; of no meaning where its share is 0
+};
+
 /// What the localizer believes at one scan.
 struct Estimate {
   Timestamp time;                                      ///< of the scan's first beam
@@ -75,6 +100,7 @@ struct Estimate {
   LocalizerState state = LocalizerState::kGlobal;
   double n_eff = 0.0;  ///< effective sample size before resampling, Eq. 5; in [1, particles]
   std::uint32_t particles = 0;
+  Belief belief{};     ///< how right the pose is, and how wrong the map
   double w_avg = 0.0;  ///< exp of the mean log-likelihood of the used beams, averaged over the best hypothesis; (0, 1]
   std::uint32_t revision = 0;                ///< number k of the map that the pose was computed on
   std::shared_ptr<const OccupancyGrid> map;  ///< that map, M_k
