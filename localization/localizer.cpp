@@ -57,7 +57,8 @@ struct Localizer::State {
         odometry{given.odometry},
         filter{given.particles, seed},
         hypotheses{given.hypothesis},
-        monitor{given.fit} {}
+        monitor{given.fit},
+        stability{map->geometry(), given.stability} {}
 
   LocalizerParams params;
   std::shared_ptr<const OccupancyGrid> map;
@@ -67,6 +68,7 @@ struct Localizer::State {
   ParticleFilter filter;
   HypothesisFinder hypotheses;
   FitMonitor monitor;
+  Stability stability;
   Hypothesis best;
   BeamEnds ends;
   std::optional<LastUpdate> last_update;
@@ -186,6 +188,15 @@ struct Localizer::State {
         must_search || monitor.search_failed() || (before == LocalizerState::kLost && after == LocalizerState::kGlobal);
   }
 
+  /// For a revision that does not follow on the present map.
+  void forget_differences(const OccupancyGrid& next) {
+    if (next.geometry() == map->geometry()) {
+      stability.forget(changes_between(*map, next));
+    } else {
+      stability = Stability{next.geometry(), params.stability};
+    }
+  }
+
   [[nodiscard]] Estimate estimate(Timestamp time, const RefinedPose& believed) const {
     return {.time = time,
             .map_from_robot = believed.map_from_robot,
@@ -245,14 +256,20 @@ void Localizer::apply(const MapRevision& revision) {
   const bool follows = revision.number == state.revision + 1 && revision.map->geometry() == state.map->geometry();
   if (follows && (revision.changes.empty() || !revision.field_patch.box.empty())) {
     state.field.apply(revision.field_patch);
+    state.stability.forget(revision.changes);
   } else {
     state.field = LikelihoodField{*revision.map, state.params.field};
+    state.forget_differences(*revision.map);
   }
   state.map = revision.map;
   state.revision = revision.number;
 }
 
 void Localizer::relocalize(const InitialPose& pose) { state_->start_around(pose); }
+
+StabilityRecord Localizer::stability() const { return state_->stability.record(); }
+
+bool Localizer::restore(const StabilityRecord& record) { return state_->stability.restore(record); }
 
 FieldPatch prepared_field_patch(const LocalizerParams& params, const OccupancyGrid& map,
                                 std::span<const CellChange> changes) {

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/messages.hpp"
+#include "localization/stability.hpp"
 
 namespace deltamap::localization {
 
@@ -41,6 +42,11 @@ class Localizer {
 
   /// Starts again around a pose that a person gave.
   void relocalize(const InitialPose& pose);
+
+  /// What of the map has proven to stay, to be kept across restarts.
+  [[nodiscard]] StabilityRecord stability() const;
+  /// Takes what an earlier run has learned; false, and nothing taken, where it belongs to a map of another geometry.
+  [[nodiscard]] bool restore(const StabilityRecord& record);
 
  private:
   struct State;

@@ -11,6 +11,7 @@
 #include "localization/odometry_buffer.hpp"
 #include "localization/particle_filter.hpp"
 #include "localization/pose_refinement.hpp"
+#include "localization/stability.hpp"
 
 namespace deltamap::localization {
 
@@ -33,6 +34,7 @@ struct LocalizerParams {
   UpdateParams update;
   GlobalSearchParams global;
   FitParams fit;
+  StabilityParams stability;
 };
 
 }  // namespace deltamap::localization
