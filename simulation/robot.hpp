@@ -50,6 +50,13 @@ class Robot {
   /// Moves for dt_s seconds, a few milliseconds at a time.
   void move(const DriveTarget& target, double dt_s, const RayCaster& world, std::span<const Circle> people);
 
+  /// Someone carries it there; its wheels notice nothing.
+  void carry_to(const Pose2& map_from_robot) { state_.map_from_robot = map_from_robot; }
+  /// Its wheels roll that far on the spot; it stands.
+  void spin_wheels(const Pose2& robot_from_moved) {
+    state_.odom_from_robot = state_.odom_from_robot * robot_from_moved;
+  }
+
   [[nodiscard]] const RobotState& state() const { return state_; }
   [[nodiscard]] const RobotParams& params() const { return params_; }
 

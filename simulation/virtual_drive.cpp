@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/virtual_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "drivers/lms200/measurement.hpp"
+
+namespace deltamap::simulation {
+namespace {
+
+constexpr Timestamp kStart = timestamp_from_ns(1'700'000'000'000'000'000);
+constexpr drivers::lms200::ScanVariant kFan{180, 100};
+constexpr double kSweep_s = 0.5 * drivers::lms200::kMirrorTurnS;
+constexpr double kStep_s = 0.01;                  // of bodies, at most
+constexpr double kForkliftPatience_s = 1.0;       // until it looks again where nothing could be done
+constexpr double kBodyRoom_m = 0.2;               // between the robot's body and what stands around it
+constexpr double kWheelUnit_m = 0.001;            // of a p3dx-sh's position and wheel speeds (A7)
+constexpr double kHeadingUnit_rad = 0.001534;     // A6
+constexpr double kLongestInMillimetres_m = 32.0;  // B4
+
+/// Each has its own chance, so that a change to one does not touch what befalls the others.
+enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPilot, kPeople, kMany };
+
+Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
+  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
+  return Random{seed * kSpread + 64 * (index + 1) + static_cast<std::uint64_t>(stream)};
+}
+
+double rounded_to(double value, double unit) { return unit * std::round(value / unit); }
+
+Scenario started_at(Scenario scenario, const std::optional<Pose2>& map_from_start) {
+  if (map_from_start) scenario.robot.map_from_start = *map_from_start;
+  return scenario;
+}
+
+Sweep fan() {
+  Sweep sweep;
+  for (unsigned beam = 0; beam < kFan.values(); ++beam) {
+    sweep.bearings_rad.push_back(radians(static_cast<double>(beam) - 90.0));
+    sweep.offsets_s.push_back(drivers::lms200::beam_offset_s(kFan, beam));
+  }
+  return sweep;
+}
+
+}  // namespace
+
+VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& params)
+    : scenario_{started_at(scenario, params.map_from_start)},
+      params_{params},
+      world_{scenario.world},
+      surfaces_{scenario.world},
+      body_{scenario.robot.body, scenario_.robot.map_from_start, random_for(params.seed, Stream::kRobot)},
+      range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
+      pilot_{params.route, scenario.world, scenario_.robot.map_from_start.position(),
+             random_for(params.seed, Stream::kPilot)},
+      now_{kStart},
+      next_odometry_{kStart},
+      next_change_{kStart},
+      fan_{fan()} {
+  scenario_.people.insert(scenario_.people.end(), params.people.begin(), params.people.end());
+  for (const PersonParams& person : scenario_.people) {
+    people_.emplace_back(person, random_for(params.seed, Stream::kPeople, people_.size()));
+  }
+  if (params.forklift) {
+    forklift_.emplace(*params.forklift, scenario.slots, scenario.world, scenario_.robot.map_from_start.position(),
+                      random_for(params.seed, Stream::kForklift));
+    next_change_ = kStart + duration_from_seconds(params.forklift->change_every_s);
+  }
+}
+
+DriveStep VirtualDrive::next() {
+  step_ = {};
+  let_forklift_work();
+  target_ = pilot_.target(body_.state(), people(), params_.scan_period_s);
+  const Timestamp end = now_ + duration_from_seconds(params_.scan_period_s);
+  step_.map_from_robot = body_.state().map_from_robot;
+  step_.scan = sweep();
+  while (now_ < end) advance(std::min(kStep_s, seconds(end - now_)));
+  step_.scan.received = now_;
+  return std::move(step_);
+}
+
+/// The robot moves while the mirror turns: between where it is at the sweep's begin and at its end.
+Scan VirtualDrive::sweep() {
+  Scan scan;
+  scan.time = now_;
+  scan.number = scans_++;
+  scan.first_bearing_rad = radians(-90.0);
+  scan.bearing_step_rad = radians(1.0);
+  scan.max_range_m = params_.max_range_m;
+  scan.robot_from_laser = scenario_.laser.optics.robot_from_laser;
+  const std::vector<Circle> standing = people();
+  const Pose2 begin = body_.state().map_from_robot;
+  advance(kSweep_s);
+  const Pose2 end = body_.state().map_from_robot;
+  const auto readings = range_finder_.measure(
+      fan_, params_.max_range_m, surfaces_,
+      [&](double offset_s) { return interpolated(begin, end, offset_s / kSweep_s); },
+      [&](double) -> std::span<const Circle> { return standing; });
+  const double unit_m = params_.max_range_m > kLongestInMillimetres_m ? 0.01 : 0.001;
+  scan.beams.reserve(readings.size());
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    scan.beams.push_back({static_cast<float>(rounded_to(readings[i].range_m, unit_m)),
+                          static_cast<float>(fan_.offsets_s[i]), readings[i].kind});
+  }
+  return scan;
+}
+
+void VirtualDrive::advance(double dt_s) {
+  const RobotState before = body_.state();
+  const Timestamp from = now_;
+  body_.move(target_, dt_s, surfaces_, people());
+  const Circle robot{body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
+  for (Person& person : people_) person.move(dt_s, surfaces_, robot);
+  now_ = now_ + duration_from_seconds(dt_s);
+  report_odometry(before, from);
+}
+
+void VirtualDrive::report_odometry(const RobotState& before, Timestamp from) {
+  while (next_odometry_ <= now_) {
+    const RobotState& after = body_.state();
+    const double share = seconds(next_odometry_ - from) / seconds(now_ - from);
+    const Pose2 odom = interpolated(before.odom_from_robot, after.odom_from_robot, share);
+    Odometry odometry;
+    odometry.time = next_odometry_;
+    odometry.odom_from_robot = {rounded_to(odom.x, kWheelUnit_m), rounded_to(odom.y, kWheelUnit_m),
+                                wrapped_angle(rounded_to(odom.theta, kHeadingUnit_rad))};
+    const double half_track_m = scenario_.robot.body.half_track_m;
+    const double turning_m_per_s = after.turn_rate_rad_per_s * half_track_m;
+    const double left_m_per_s = rounded_to(after.speed_m_per_s - turning_m_per_s, kWheelUnit_m);
+    const double right_m_per_s = rounded_to(after.speed_m_per_s + turning_m_per_s, kWheelUnit_m);
+    odometry.speed_m_per_s = 0.5 * (left_m_per_s + right_m_per_s);
+    odometry.turn_rate_rad_per_s = (right_m_per_s - left_m_per_s) / (2.0 * half_track_m);
+    odometry.motors_enabled = true;
+    odometry.stalled = after.stalled;
+    odometry.battery_v = scenario_.robot.battery_v;
+    step_.odometry.push_back(odometry);
+    next_odometry_ = next_odometry_ + duration_from_seconds(params_.odometry_period_s);
+  }
+}
+
+void VirtualDrive::let_forklift_work() {
+  if (!forklift_ || now_ < next_change_) return;
+  const Circle robot{body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
+  const auto done = forklift_->next_change(world_, robot, people());
+  next_change_ = now_ + duration_from_seconds(done ? params_.forklift->change_every_s : kForkliftPatience_s);
+  if (!done) return;
+  change(*done);
+  step_.changes.push_back(*done);
+}
+
+void VirtualDrive::kidnap(const Pose2& map_from_robot) { body_.carry_to(map_from_robot); }
+
+void VirtualDrive::change(const Change& change) {
+  world_ = changed(world_, change);
+  surfaces_ = RayCaster{world_};
+  pilot_.see(world_, body_.state().map_from_robot.position());
+}
+
+std::vector<Change> VirtualDrive::change_many(double share, const ForkliftParams& params) {
+  Forklift forklift{params, scenario_.slots, world_, body_.state().map_from_robot.position(),
+                    random_for(params_.seed, Stream::kMany, many_++)};
+  const auto stands_at = [](const World& world, const Box& slot) {
+    return std::any_of(world.objects.begin(), world.objects.end(), [&](const Object& object) {
+      const Box* box = std::get_if<Box>(&object.shape);
+      return box != nullptr && (box->centre - slot.centre).norm() < 0.01;
+    });
+  };
+  const auto differing = [&](const World& world) {
+    return std::count_if(scenario_.slots.begin(), scenario_.slots.end(),
+                         [&](const Box& slot) { return stands_at(world, slot) != stands_at(scenario_.world, slot); });
+  };
+  const double wanted = share * static_cast<double>(scenario_.slots.size());
+  const Circle robot{body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
+  std::vector<Change> changes;
+  World world = world_;
+  const std::size_t most = 4 * scenario_.slots.size();
+  while (static_cast<double>(differing(world)) < wanted && changes.size() < most) {
+    const auto done = forklift.next_change(world, robot, people());
+    if (!done) break;
+    world = changed(world, *done);
+    changes.push_back(*done);
+  }
+  world_ = std::move(world);
+  surfaces_ = RayCaster{world_};
+  pilot_.see(world_, robot.centre);
+  return changes;
+}
+
+std::vector<Circle> VirtualDrive::people() const {
+  std::vector<Circle> bodies;
+  for (const Person& person : people_) bodies.push_back(person.body());
+  return bodies;
+}
+
+bool VirtualDrive::is_free(const Point2& place) const {
+  const double room_m = scenario_.robot.body.radius_m + kBodyRoom_m;
+  if (surfaces_.nearest_surface(place, room_m)) return false;
+  const auto inside = [&](const Object& object) { return distance_between(place, object.shape) < room_m; };
+  if (std::any_of(world_.objects.begin(), world_.objects.end(), inside)) return false;
+  const std::vector<Circle> standing = people();
+  return std::none_of(standing.begin(), standing.end(),
+                      [&](const Circle& person) { return (person.centre - place).norm() < room_m + person.radius_m; });
+}
+
+Pose2 VirtualDrive::place_anywhere(Random& random) const {
+  Pose2 place = pilot_.place_anywhere(random);
+  while (!is_free(place.position())) place = pilot_.place_anywhere(random);
+  return place;
+}
+
+}  // namespace deltamap::simulation

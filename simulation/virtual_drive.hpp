@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A robot that drives about a scenario in virtual time and gives the messages that the drivers would make of its
+// devices, without their bytes: as fast as it can be computed, with the truth beside. The same scenario, parameters and
+// calls give the same messages, bit for bit.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "simulation/forklift.hpp"
+#include "simulation/person.hpp"
+#include "simulation/range_finder.hpp"
+#include "simulation/route_pilot.hpp"
+#include "simulation/scenario.hpp"
+
+namespace deltamap::simulation {
+
+/// The scans are those of an LMS200 at 180/1 and 38400 baud: 181 beams in half a turn of the mirror, every 8th turn
+/// (protocols.md B7). The body and its wheels' errors, the laser's optics and mount are the scenario's.
+struct VirtualDriveParams {
+  std::uint64_t seed = 1;
+  std::optional<Pose2> map_from_start{};  ///< in place of the scenario's
+  double scan_period_s = 8 * 0.01332;     ///< between first beams, > 0.01
+  double max_range_m = 80.0;              ///< longer readings are kBeyondMaximum; up to 32 in mm, above in cm (B4)
+  double odometry_period_s = 0.1;         ///< between SIPs (A6), > 0
+  RoutePilotParams route{};
+  std::vector<PersonParams> people{};        ///< besides the scenario's
+  std::optional<ForkliftParams> forklift{};  ///< none: nothing changes by itself
+};
+
+struct DriveStep {
+  std::vector<Odometry> odometry;  ///< what arrived before the scan, in order
+  Scan scan;
+  Pose2 map_from_robot;         ///< the truth at Scan::time
+  std::vector<Change> changes;  ///< of the fork-lift since the last scan; the scan shows them
+};
+
+class VirtualDrive {
+ public:
+  VirtualDrive(const Scenario& scenario, const VirtualDriveParams& params);
+
+  /// One scan period later.
+  [[nodiscard]] DriveStep next();
+
+  // What befalls the robot and the world between two scans.
+  /// Carried there; odometry notices nothing. The place must be free.
+  void kidnap(const Pose2& map_from_robot);
+  /// The body moves that far and the wheels say nothing.
+  void slip(const Pose2& robot_from_moved) { kidnap(body_.state().map_from_robot * robot_from_moved); }
+  /// The wheels turn that far and the body stands.
+  void spin(const Pose2& robot_from_moved) { body_.spin_wheels(robot_from_moved); }
+  void change(const Change& change);
+  /// Many acts of a fork-lift at once, until that share of the slots is not as in the scenario. Fewer where no more can
+  /// be done without harm.
+  std::vector<Change> change_many(double share, const ForkliftParams& forklift);
+
+  [[nodiscard]] const World& world() const { return world_; }
+  [[nodiscard]] const RayCaster& surfaces() const { return surfaces_; }
+  [[nodiscard]] Pose2 map_from_robot() const { return body_.state().map_from_robot; }
+  [[nodiscard]] std::vector<Circle> people() const;
+  /// Room for a body around it and around everyone.
+  [[nodiscard]] bool is_free(const Point2& place) const;
+  /// Free, with any heading.
+  [[nodiscard]] Pose2 place_anywhere(Random& random) const;
+
+ private:
+  void advance(double dt_s);
+  void report_odometry(const RobotState& before, Timestamp from);
+  void let_forklift_work();
+  [[nodiscard]] Scan sweep();
+
+  Scenario scenario_;
+  VirtualDriveParams params_;
+  World world_;
+  RayCaster surfaces_;
+  Robot body_;
+  RangeFinder range_finder_;
+  RoutePilot pilot_;
+  std::vector<Person> people_;
+  std::optional<Forklift> forklift_;
+  std::uint64_t many_ = 0;  // calls of change_many
+  Timestamp now_;
+  Timestamp next_odometry_;
+  Timestamp next_change_;
+  DriveTarget target_;
+  DriveStep step_;
+  std::uint32_t scans_ = 0;
+  Sweep fan_;
+};
+
+}  // namespace deltamap::simulation
