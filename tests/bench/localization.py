@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures every figure that the localizer promises, beside those of its peers, and writes docs/results/localization.md.
+Called by ./dev bench localization.
+
+  localization.py [--quick] [--only NAME]...   --quick: few repetitions, seeds and runs; writes into build/ alone
+                                               --only: measures these parts anew and keeps what is known of the others"""
+import argparse, json, pathlib, platform, subprocess, sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import localizer_cost, on_experiments, on_intel
+from measuring import OUT, ROOT, run
+
+# In the order of the table. Each answers a list of rows.
+PARTS = {
+    "cost": localizer_cost.rows,
+    "patch": localizer_cost.patch_rows,
+    "memory": localizer_cost.memory_rows,
+    "hall": on_experiments.hall_rows,
+    "stale-map": on_experiments.stale_map_rows,
+    "verdict": on_experiments.verdict_rows,
+    "intel": on_intel.known_start_rows,
+    "global": on_intel.global_start_rows,
+}
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def mark(row):
+    return {True: "met", False: "**missed**", None: ""}[row["met"]]
+
+
+def markdown(parts):
+    revisions = sorted({part["revision"] for part in parts.values()})
+    lines = ["# The localizer, measured", "",
+             "Written by `./dev bench localization` at %s on %s. Times are CPU time of one thread, medians; peers' figures were"
+             % (", ".join(revisions), processor()),
+             "measured on one machine on the same logs with 500 particles and 60 beams. Instructions are those that callgrind counts:",
+             "they repeat on any machine.", "",
+             "| figure | peers | ours | at least | |", "|---|---|---|---|---|"]
+    for part in parts.values():
+        for row in part["rows"]:
+            lines.append("| %s | %s | %s | %s | %s |" % (row["figure"], row["peers"], row["ours"], row["target"], mark(row)))
+    judged = [row["met"] for part in parts.values() for row in part["rows"] if row["met"] is not None]
+    lines += ["", "%d of %d met." % (sum(judged), len(judged)), ""]
+    return "\n".join(lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", choices=list(PARTS), action="append")
+    arguments = parser.parse_args()
+    folder = OUT / ("quick" if arguments.quick else "full")
+    folder.mkdir(parents=True, exist_ok=True)
+    revision = run("git", "describe", "--always", "--dirty").strip()
+    known = {}
+    for name, measure in PARTS.items():
+        kept = folder / (name + ".json")
+        if name in (arguments.only or PARTS):
+            rows = measure(arguments.quick)
+            kept.write_text(json.dumps({"revision": revision, "rows": rows}, indent=1, ensure_ascii=False))
+            for row in rows:
+                print("%-10s %s: %s (%s)" % (mark(row), row["figure"], row["ours"], row["target"]), flush=True)
+        if kept.exists():
+            known[name] = json.loads(kept.read_text())
+    (folder / "localization.json").write_text(json.dumps(known, indent=1, ensure_ascii=False))
+    target = folder / "localization.md" if arguments.quick else ROOT / "docs/results/localization.md"
+    target.write_text(markdown(known))
+    print("written: %s" % target.relative_to(ROOT))
+    raise SystemExit(0 if all(row["met"] is not False for part in known.values() for row in part["rows"]) else 1)
+
+
+main()

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the localizer costs: runs build/*/bench/localizer_cost, alone for times and under callgrind for instructions."""
+import re, subprocess
+
+from measuring import ROOT, row, run
+
+X86_64 = ROOT / "build/release/bench/localizer_cost"
+ATOM = ROOT / "build/atom/bench/localizer_cost"
+COUNTED_SCANS = 100
+
+
+def figures(program, what, beams, quick, scans=1500):
+    """What the program prints, by name. `beams` 0: all 181."""
+    text = run(program, what, beams, 3 if quick else 9, 300 if quick else scans)
+    return {name: float(value) for name, value in (line.split() for line in text.splitlines())}
+
+
+def instructions(program, what, beams):
+    """Instructions inside the measured section, per unit of it."""
+    done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
+                           "--toggle-collect=measured(*", program, what, str(beams), "1", str(COUNTED_SCANS)],
+                          cwd=ROOT, text=True, capture_output=True)
+    counted = re.search(r"Collected : (\d+)", done.stderr)
+    units = re.search(r"^units (\S+)", done.stdout, re.MULTILINE)
+    if done.returncode or not counted or not units:
+        raise SystemExit("callgrind on %s %s failed:\n%s%s" % (program, what, done.stdout, done.stderr))
+    return int(counted.group(1)) / float(units.group(1))
+
+
+def weighing_rows(program, on, quick, limit, peers):
+    made = []
+    for beams, peer in peers:
+        f = figures(program, "weigh", beams, quick)
+        made.append(row("weighing, per particle and beam, %d beams%s" % (beams or 181, on),
+                        "%.2f ns; %.1f instructions" % (f["ns"], instructions(program, "weigh", beams)),
+                        "≤ %d ns" % limit, f["ns"] <= limit, peer))
+    return made
+
+
+def update_rows(program, on, quick, limits):
+    made = []
+    for beams, limit, peer in limits:
+        f = figures(program, "update", beams, quick)
+        made.append(row("whole update, 500 × %d%s" % (beams or 181, on),
+                        "%.0f µs; %.0f thousand instructions" % (f["mean_us"], instructions(program, "update", beams) / 1e3),
+                        "≤ %d µs" % limit if limit else "", f["mean_us"] <= limit if limit else None, peer))
+    return made
+
+
+def tracking_rows(program, on, quick, judged):
+    made = []
+    for beams in (60, 0):
+        f = figures(program, "track", beams, quick, scans=3000)
+        met = f["mean_us"] <= 80 and f["rmse_m"] <= 0.02 if judged and beams else None
+        made.append(row("a tracking scan as delivered, KLD and refinement, static hall, %d beams%s" % (beams or 181, on),
+                        "%.0f µs at %.3f m (%.0f particles); %.0f thousand instructions"
+                        % (f["mean_us"], f["rmse_m"], f["particles"], instructions(program, "track", beams) / 1e3),
+                        "≤ 80 µs at ≤ 0.02 m" if met is not None else "", met,
+                        "iris_lama (no particles) 28 µs at 0.045 m" if met is not None else ""))
+    return made
+
+
+def rows(quick):
+    atom = ", 32-bit build"
+    return (weighing_rows(X86_64, "", quick, 4, [(60, "beluga 13.7 ns, MRPT 37, amcl 50, nav2 54"), (0, "beluga 9.0 ns")])
+            + update_rows(X86_64, "", quick, [(60, 150, "beluga 411 µs, nav2 1616"), (0, 400, "beluga 815 µs, nav2 3871")])
+            + tracking_rows(X86_64, "", quick, True)
+            + weighing_rows(ATOM, atom, quick, 10, [(60, "nav2 133 ns"), (0, "")])
+            + update_rows(ATOM, atom, quick, [(60, 0, ""), (0, 0, "")])
+            + tracking_rows(ATOM, atom, quick, False))
+
+
+def patch_rows(quick):
+    made = []
+    for program, on in ((X86_64, ""), (ATOM, ", 32-bit build")):
+        f = figures(program, "patch", 0, quick)
+        made.append(row("a 5 × 5 m container patched into a 700² field%s" % on,
+                        "%.2f ms (whole rebuild %.1f ms); %.1f million instructions"
+                        % (f["ms"], f["rebuild_ms"], instructions(program, "patch", 0) / 1e6),
+                        "" if on else "≤ 1 ms", None if on else f["ms"] <= 1,
+                        "" if on else "full rebuild 35–70 ms; iris_lama 0.8–3 ms"))
+    return made
+
+
+def memory_rows(quick):
+    made = []
+    for program, on in ((X86_64, ""), (ATOM, ", 32-bit build")):
+        f = figures(program, "memory", 0, quick)
+        made.append(row("resident memory, this localizer alone, 700² map, 2000 particles%s" % on,
+                        "%.1f MB (peak %.1f MB)" % (f["VmRSS"], f["VmHWM"]), "" if on else "≤ 14 MB",
+                        None if on else f["VmHWM"] <= 14, "" if on else "nav2 core 16 MB"))
+    return made
