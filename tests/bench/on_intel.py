@@ -41,6 +41,15 @@ def errors(estimate, reference):
     return found
 
 
+def interpolated(poses, times, t):
+    at = bisect.bisect(times, t)
+    if at == 0 or at == len(times):
+        return None
+    a, b = poses[at - 1], poses[at]
+    share = (t - a[0]) / (b[0] - a[0])
+    return t, a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2]), a[3] + share * math.remainder(b[3] - a[3], 2 * math.pi)
+
+
 def motion_between(a, b):
     dx, dy, c, s = b[1] - a[1], b[2] - a[2], math.cos(a[3]), math.sin(a[3])
     return c * dx + s * dy, -s * dx + c * dy
@@ -55,9 +64,9 @@ def relations_mean_m(estimate):
     times, off_m = [pose[0] for pose in estimate], []
     for line in lzma.open(file, "rt"):
         t1, t2, x, y = map(float, line.split()[:4])
-        i, j = nearest(times, t1), nearest(times, t2)
-        if i is not None and j is not None:
-            dx, dy = motion_between(estimate[i], estimate[j])
+        one, other = interpolated(estimate, times, t1), interpolated(estimate, times, t2)
+        if one and other:
+            dx, dy = motion_between(one, other)
             off_m.append(math.hypot(dx - x, dy - y))
     return sum(off_m) / len(off_m)
 
@@ -96,7 +105,7 @@ def known_start_rows(quick):
             rmse.append(math.sqrt(sum(m * m for m in off_m) / len(off_m)))
             lost.append(len(reference) - sum(m <= LOST_M for m in off_m))
             relations.append(relations_mean_m(poses))
-        beside = "" if relations[0] is None else "; relations %.3f m (of the reference itself %.3f)" % (
+        beside = "" if relations[0] is None else "; relations, mean: %.3f m (the reference itself: %.3f)" % (
             median(relations), relations_mean_m(reference))
         made.append(row("`intel` from its known start, 500 particles, %s: RMSE, seeds 1–%d" % (told, len(rmse)),
                         "%s m, lost %d scans%s" % (" ".join("%.3f" % m for m in rmse), max(lost), beside),
