@@ -10,6 +10,7 @@ class App;
 namespace deltamap::daemon::tool {
 
 void add_decode(CLI::App& app);
+void add_experiment(CLI::App& app);
 void add_score(CLI::App& app);
 void add_sim(CLI::App& app);
 

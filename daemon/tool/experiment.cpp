@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap experiment`: drives simulated robots until the figures of an experiment are known.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "daemon/settings.hpp"
+#include "daemon/tool/experiment/registry.hpp"
+#include "daemon/tool/experiment/result_files.hpp"
+#include "daemon/tool/experiment/run_pool.hpp"
+#include "daemon/tool/progress.hpp"
+#include "daemon/tool/subcommands.hpp"
+
+namespace deltamap::daemon::tool {
+namespace {
+
+struct ExperimentOptions {
+  std::string name;
+  std::filesystem::path out;
+  std::string config;
+  std::vector<std::string> overrides;
+  int jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  bool with_scans = false;
+  bool as_json = false;
+  experiment::Options options;
+};
+
+std::unique_ptr<experiment::Experiment> experiment_named(const std::string& name) {
+  std::string names;
+  for (auto& known : experiment::experiments()) {
+    if (known->name() == name) return std::move(known);
+    names += (names.empty() ? "" : ", ") + known->name();
+  }
+  throw CLI::ValidationError{"there is no experiment '" + name + "'; there are " + names};
+}
+
+void print(const experiment::Results& results) {
+  for (const experiment::Figure& figure : results.report.figures) {
+    std::cout << std::left << std::setw(64) << figure.name << ' ' << std::setw(10) << experiment::text_of(figure.value)
+              << ' ' << figure.unit;
+    if (figure.target) std::cout << (figure.target->is_met_by(figure.value) ? "  met" : "  missed");
+    std::cout << '\n';
+  }
+}
+
+/// Who interrupts now comes too late: the files are a moment's work.
+void write(const experiment::Results& results, const ExperimentOptions& given) {
+  const auto interrupted = std::signal(SIGINT, SIG_IGN);
+  const auto ended = std::signal(SIGTERM, SIG_IGN);
+  experiment::write_results(results, given.out, given.with_scans);
+  (void)std::signal(SIGINT, interrupted);
+  (void)std::signal(SIGTERM, ended);
+}
+
+void run(const ExperimentOptions& given) {
+  const auto chosen = experiment_named(given.name);
+  experiment::Options options = given.options;
+  const Settings settings = given.config.empty() ? parse_settings("", "--set", given.overrides)
+                                                 : read_settings(given.config, given.overrides);
+  options.localizer = settings.localizer;
+  experiment::expect_writable(given.out);
+  experiment::Results results{
+      chosen->name(), chosen->what(), options.seed, options.quick, chosen->runs(options), {}, {}};
+  {
+    Progress progress{chosen->name(), results.runs.size()};
+    progress.show(0);
+    results.outcomes =
+        experiment::outcomes_of(results.runs, given.jobs, [&](std::size_t done) { progress.show(done); });
+  }
+  results.report = chosen->report(results.outcomes);
+  write(results, given);
+  if (given.as_json) {
+    std::cout << experiment::summary_json(results);
+  } else {
+    print(results);
+  }
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& app) {
+  auto given = std::make_shared<ExperimentOptions>();
+  CLI::App& command = *app.add_subcommand("experiment", "what the localizer reaches in simulated drives");
+  std::string names;
+  for (const auto& known : experiment::experiments()) names += (names.empty() ? "" : ", ") + known->name();
+  command.add_option("name", given->name, names)->required();
+  command.add_option("--out", given->out, "folder for NAME.csv, summary.json and index.html")->required();
+  command.add_flag("--quick", given->options.quick, "fewer and shorter runs: to see that it works");
+  command.add_option("--seed", given->options.seed, "first seed (default 1)");
+  command.add_option("--jobs", given->jobs, "runs at once (default: the processors)")->check(CLI::Range(1, 256));
+  command.add_option("--minutes", given->options.minutes, "of each drive, in place of the experiment's")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--repeats", given->options.repeats, "seeds, or runs of each kind, in place of the experiment's")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--scenarios", given->options.scenarios, "folder of the scenarios (default config/scenarios)");
+  command.add_option("--config", given->config, "settings of the localizer, YAML (default: as delivered)");
+  command.add_option("--set", given->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+  command.add_flag("--scans", given->with_scans, "write scans/RUN.csv too: every scan of every run");
+  command.add_flag("--json", given->as_json, "print the summary as JSON");
+  command.callback([given] { run(*given); });
+}
+
+}  // namespace deltamap::daemon::tool

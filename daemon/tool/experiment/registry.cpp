@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/experiment/registry.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace deltamap::daemon::tool::experiment {
+
+std::vector<std::unique_ptr<Experiment>> experiments() {
+  std::vector<std::unique_ptr<Experiment>> all;
+  all.push_back(hall_experiment());
+  return all;
+}
+
+const std::string& Outcome::label(std::string_view name) const {
+  const auto found = std::find_if(labels.begin(), labels.end(), [&](const auto& pair) { return pair.first == name; });
+  assert(found != labels.end() && "the label exists");
+  return found->second;
+}
+
+double Outcome::number(std::string_view name) const {
+  const auto found = std::find_if(numbers.begin(), numbers.end(), [&](const auto& pair) { return pair.first == name; });
+  assert(found != numbers.end() && "the number exists");
+  return found->second;
+}
+
+}  // namespace deltamap::daemon::tool::experiment

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The experiments that there are.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/tool/experiment/experiment.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+
+[[nodiscard]] std::unique_ptr<Experiment> hall_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> stale_map_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> verdict_experiment();
+
+/// All, by name.
+[[nodiscard]] std::vector<std::unique_ptr<Experiment>> experiments();
+
+}  // namespace deltamap::daemon::tool::experiment

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap experiment` at the command line, with drives of seconds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "daemon/tool/experiment/registry.hpp"
+#include "daemon/tool/experiment/result_files.hpp"
+#include "daemon/tool/experiment/svg_chart.hpp"
+#include "daemon/tool/experiment/weakest_axis.hpp"
+#include "daemon/tool/run_tool.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kScenarios = DELTAMAP_SOURCE_DIR "/config/scenarios";
+
+struct Answer {
+  int code = 0;
+  std::string out;
+  std::string errors;
+};
+
+Answer deltamap(std::vector<std::string> words) {
+  words.insert(words.begin(), "deltamap");
+  std::vector<const char*> arguments;
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int code = run_tool(static_cast<int>(arguments.size()), arguments.data());
+  return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+}
+
+Answer experiment(const std::string& name, const fs::path& out, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words{"experiment", name,        "--out", out.string(), "--scenarios",
+                                 kScenarios,   "--minutes", "0.1",   "--repeats",  "1"};
+  words.insert(words.end(), more.begin(), more.end());
+  return deltamap(words);
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(Experiment, EachLeavesATableASummaryAndAPage) {
+  for (const auto& known : experiment::experiments()) {
+    const test::TemporaryFolder folder;
+    const Answer answer = experiment(known->name(), folder.path(), {"--json"});
+    ASSERT_EQ(answer.code, 0) << answer.errors;
+    std::vector<std::string> expected{known->name() + ".csv", "index.html", "summary.json"};
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(names_in(folder.path()), expected);
+    EXPECT_EQ(answer.out, content_of(folder.path() / "summary.json"));
+    const auto summary = nlohmann::json::parse(answer.out);
+    EXPECT_EQ(summary["experiment"], known->name());
+    EXPECT_GT(summary["runs"], 0);
+    EXPECT_GT(summary["figures"].size(), 3u);
+    for (const auto& figure : summary["figures"]) EXPECT_EQ(figure.contains("target"), figure.contains("met"));
+    const std::string page = content_of(folder.path() / "index.html");
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_EQ(page.find("src="), std::string::npos) << "a page stands alone";
+    EXPECT_EQ(page.find("http"), std::string::npos) << "a page stands alone";
+  }
+}
+
+TEST(Experiment, GivesTheSameFilesHoweverManyRunsGoOnAtOnce) {
+  for (const auto& known : experiment::experiments()) {
+    const test::TemporaryFolder one;
+    const test::TemporaryFolder three;
+    ASSERT_EQ(experiment(known->name(), one.path(), {"--jobs", "1"}).code, 0);
+    ASSERT_EQ(experiment(known->name(), three.path(), {"--jobs", "3"}).code, 0);
+    for (const std::string& name : names_in(one.path())) {
+      EXPECT_EQ(content_of(one.path() / name), content_of(three.path() / name)) << name;
+    }
+  }
+}
+
+TEST(Experiment, WritesEveryScanOnRequest) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(experiment("hall", folder.path(), {"--scans"}).code, 0);
+  const auto files = names_in(folder.path() / "scans");
+  ASSERT_EQ(files.size(), 4u);
+  const std::string scans = content_of(folder.path() / "scans" / files.front());
+  EXPECT_EQ(scans.substr(0, 4), "t_s,");
+  EXPECT_GT(std::count(scans.begin(), scans.end(), '\n'), 50);
+}
+
+TEST(Experiment, RefusesAnUnknownNameAndListsThoseThatThereAre) {
+  const test::TemporaryFolder folder;
+  const Answer answer = experiment("hal", folder.path() / "new");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.errors.find("'hal'"), std::string::npos) << answer.errors;
+  for (const auto& known : experiment::experiments()) {
+    EXPECT_NE(answer.errors.find(known->name()), std::string::npos) << answer.errors;
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "new"));
+}
+
+TEST(Experiment, RefusesAFolderThatCannotBeWrittenInOneLine) {
+  const test::TemporaryFolder folder;
+  const Answer answer = experiment("hall", folder.write("file", "x") / "below");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(std::count(answer.errors.begin(), answer.errors.end(), '\n'), 1) << answer.errors;
+  EXPECT_NE(answer.errors.find("below"), std::string::npos) << answer.errors;
+}
+
+TEST(Experiment, RefusesAFolderWithoutScenariosInOneLine) {
+  const test::TemporaryFolder folder;
+  const Answer answer = deltamap(
+      {"experiment", "hall", "--out", (folder.path() / "out").string(), "--scenarios", folder.path().string()});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(answer.errors.find("hall.yaml"), std::string::npos) << answer.errors;
+}
+
+TEST(Experiment, RefusesASettingThatThereIsNot) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--set", "localization.no_such_key=1"}).code, 2);
+  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--jobs", "0"}).code, 2);
+  EXPECT_EQ(deltamap({"experiment", "hall", "--out", folder.path().string(), "--minutes", "-1"}).code, 2);
+}
+
+TEST(Experiment, TriesTheFolderWithoutLeavingATrace) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(experiment::expect_writable(folder.write("file", "x") / "below"), std::runtime_error);
+  experiment::expect_writable(folder.path() / "made");
+  EXPECT_TRUE(names_in(folder.path() / "made").empty());
+}
+
+TEST(Target, IsMetOnlyByAMeasuredFigureWithinItsLimits) {
+  const experiment::Target target{.least = 0.9, .most = 0.98};
+  EXPECT_TRUE(target.is_met_by(0.95));
+  EXPECT_FALSE(target.is_met_by(0.89));
+  EXPECT_FALSE(target.is_met_by(1.0));
+  EXPECT_FALSE(target.is_met_by(std::nan("")));
+}
+
+TEST(ScanTable, AnswersItsStatistics) {
+  EXPECT_DOUBLE_EQ(experiment::root_mean_square({3.0, -4.0, 0.0, 0.0}), 2.5);
+  EXPECT_DOUBLE_EQ(experiment::quantile({5.0, 1.0, 4.0, 2.0, 3.0}, 0.8), 4.0);
+  EXPECT_DOUBLE_EQ(experiment::share_above({0.1, 0.6, 0.5, 0.7}, 0.5), 0.5);
+  EXPECT_TRUE(std::isnan(experiment::mean_of({})));
+}
+
+TEST(Chart, MakesTextHarmless) {
+  const std::string svg = experiment::svg_of({"t", "a < b", "y", {{"\"one\"", {{0.0, 1.0}, {1.0, 2.0}}}}});
+  EXPECT_EQ(svg.find("a < b"), std::string::npos);
+  EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
+  EXPECT_NE(svg.find("&quot;one&quot;"), std::string::npos);
+}
+
+TEST(WeakestAxis, LiesAlongACorridorWithoutEnd) {
+  const simulation::World corridor{{{1, simulation::ObjectKind::kWall, simulation::Polyline{{{-50, 0}, {50, 0}}}},
+                                    {2, simulation::ObjectKind::kWall, simulation::Polyline{{{-50, 4}, {50, 4}}}}}};
+  const auto axis = experiment::weakest_axis(corridor, simulation::RayCaster{corridor}, {0.0, 1.5, 0.3}, 8.0);
+  EXPECT_NEAR(std::abs(axis.direction.x()), 1.0, 1e-6);
+  EXPECT_NEAR(axis.share, 0.0, 1e-9);
+}
+
+TEST(WeakestAxis, IsWellObservedInARoom) {
+  const simulation::World room{
+      {{1, simulation::ObjectKind::kWall, simulation::Polyline{{{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}}}}}};
+  EXPECT_GT(experiment::weakest_axis(room, simulation::RayCaster{room}, {3.0, 3.0, 0.3}, 8.0).share, 0.1);
+}
+
+}  // namespace
+}  // namespace deltamap::daemon::tool
