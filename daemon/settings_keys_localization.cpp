@@ -99,20 +99,52 @@ void add_states(localization::LocalizerParams& localizer, Keys& keys) {
                             "driven before global localization may end"));
   keys.push_back(
       degrees_key("localization.fit.converged_after_deg", fit.converged_after_rad, 0.0, 3600.0, "or turned"));
+}
+
+void add_places(localization::LocalizerParams& localizer, Keys& keys) {
   auto& global = localizer.global;
-  keys.push_back(number_key("localization.global.candidates_per_m2", global.candidates_per_m2, "1/m2", 0.1, 10000.0,
-                            "poses drawn over free space"));
-  keys.push_back(whole_key("localization.global.most_candidates", global.most_candidates, "", 1, 10000000,
-                           "however large the map"));
-  keys.push_back(whole_key("localization.global.beams", global.beams, "", 1, 1000, "beams that judge a candidate"));
-  keys.push_back(whole_key("localization.global.places", global.places, "", 1, 100000,
-                           "candidates that are slid to their best fit"));
-  keys.push_back(number_key("localization.global.evidence_beams", global.evidence_beams, "", 0.1, 1000.0,
-                            "independent beams that the scan counts as; low keeps more places"));
-  keys.push_back(number_key("localization.global.jitter_m", global.jitter_m, "m", 0.0, 10.0,
-                            "spread of the particles around a place"));
-  keys.push_back(degrees_key("localization.global.jitter_deg", global.jitter_rad, 0.0, 180.0,
-                             "spread of the particles around a place"));
+  keys.push_back(whole_key("localization.global.candidates_a_scan", global.candidates_a_scan, "", 100, 100000000,
+                           "poses of the whole map that are looked at in one scan while the pose is unknown"));
+  keys.push_back(
+      whole_key("localization.global.places", global.places, "", 1, 100000, "of these, slid to their best fit"));
+  keys.push_back(
+      whole_key("localization.global.places_a_scan", global.places_a_scan, "", 1, 100000, "of these, in one scan"));
+  keys.push_back(number_key("localization.global.again_after_m", global.again_after_m, "m", 0.01, 1000.0,
+                            "driven until the whole map is looked at again"));
+  keys.push_back(degrees_key("localization.global.again_after_deg", global.again_after_rad, 0.1, 3600.0, "or turned"));
+  auto& places = localizer.places;
+  keys.push_back(
+      whole_key("localization.places.most", places.most, "", 1, 1000, "places followed while the pose is unknown"));
+  keys.push_back(whole_key("localization.places.most_while_believing", places.most_while_believing, "", 1, 1000,
+                           "and beside a believed pose"));
+  keys.push_back(whole_key("localization.places.beams", places.beams, "", 1, 1000, "of a scan that judge a place"));
+  keys.push_back(number_key("localization.places.evidence_beams", places.evidence_beams, "", 0.1, 1000.0,
+                            "independent beams that a scan counts as between places"));
+  keys.push_back(number_key("localization.places.step_m", places.step_m, "m", 0.001, 100.0,
+                            "driven until a scan tells something new"));
+  keys.push_back(degrees_key("localization.places.step_deg", places.step_rad, 0.1, 360.0, "or turned"));
+  keys.push_back(number_key("localization.places.memory_steps", places.memory_steps, "", 1.001, 1e6,
+                            "such scans until their evidence has faded to 1/e"));
+  keys.push_back(number_key("localization.places.hopeless", places.hopeless, "", 0.1, 1000.0,
+                            "log evidence behind the best at which a place is given up"));
+  auto& rivals = localizer.rivals;
+  keys.push_back(whole_key("localization.rivals.probes", rivals.probes, "", 0, 100000000,
+                           "poses of the whole map that are looked at in one scan while tracking"));
+  keys.push_back(whole_key("localization.rivals.probes_nearby", rivals.probes_nearby, "", 0, 1000000,
+                           "and around the believed pose"));
+  keys.push_back(number_key("localization.rivals.nearby_m", rivals.nearby_m, "m", 0.01, 100.0, "how far around"));
+  keys.push_back(degrees_key("localization.rivals.nearby_deg", rivals.nearby_rad, 0.1, 180.0, "likewise"));
+  keys.push_back(number_key("localization.rivals.nearby_prior", rivals.nearby_prior, "", 1e-30, 1.0,
+                            "odds of a place nearby against the believed one, before any scan"));
+  keys.push_back(number_key("localization.rivals.elsewhere_prior", rivals.elsewhere_prior, "", 1e-30, 1.0,
+                            "odds of any other place: how rarely somebody carries the robot away"));
+  keys.push_back(whole_key("localization.rivals.refined_a_scan", rivals.refined_a_scan, "", 0, 1000,
+                           "places slid to their best fit at a scan"));
+  keys.push_back(number_key("localization.rivals.winning_share", rivals.winning_share, "", 0.5, 1.0,
+                            "of the belief at which another place is believed instead"));
+  keys.push_back(number_key("localization.rivals.block_m", rivals.block_m, "m", 0.01, 10.0,
+                            "lattice of poses: between two positions"));
+  keys.push_back(whole_key("localization.rivals.headings", rivals.headings, "", 1, 720, "and headings"));
 }
 
 }  // namespace
@@ -121,6 +153,7 @@ void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys)
   add_particles(localizer, keys);
   add_models(localizer, keys);
   add_states(localizer, keys);
+  add_places(localizer, keys);
 }
 
 }  // namespace deltamap::daemon

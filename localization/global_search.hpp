@@ -1,38 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where could the robot be, when nobody says? Draws many poses over the free space, lets one scan judge them, slides
-// the best ones to where they fit, and answers with particles around them. Later scans decide between the places.
+// Where could the robot be, when nobody says? Looks through the whole map with one scan, so many poses a scan, then
+// slides the best ones to where they fit, so many a scan: no single scan is held up. Later scans decide (place_bank).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/angle.hpp"
-#include "core/random.hpp"
-#include "localization/deskew.hpp"
-#include "localization/likelihood_field.hpp"
-#include "localization/pose_refinement.hpp"
+#include "localization/lattice_search.hpp"
 
 namespace deltamap::localization {
 
 struct GlobalSearchParams {
-  double candidates_per_m2 = 300.0;  ///< poses drawn a square metre of free space, 1/m²; > 0
-  int most_candidates = 300000;      ///< however large the map; > 0
-  int beams = 45;                    ///< beams that judge a candidate; > 0
-  int places = 1000;                 ///< candidates that are slid to their best fit; > 0
-  double evidence_beams = 3.0;  ///< independent beams that the scan counts as here; > 0: low keeps more places alive
-  double jitter_m = 0.1;        ///< spread of the particles around a place, m; >= 0
-  double jitter_rad = radians(2.0);  ///< likewise, rad; >= 0
+  int candidates_a_scan = 60000;           ///< poses looked at in one scan; > 0
+  int places = 600;                        ///< candidates that are slid to their best fit; > 0
+  int places_a_scan = 80;                  ///< of these in one scan; > 0
+  double again_after_m = 0.5;              ///< driven until the whole map is looked at again, m; > 0
+  double again_after_rad = radians(30.0);  ///< or turned, rad; > 0
 };
 
-/// Indices of the free cells (GridGeometry::index_of), rising.
-[[nodiscard]] std::vector<std::uint32_t> free_cells(const OccupancyGrid& map);
+/// Slides a pose of the coarse lattice to where the scan fits.
+[[nodiscard]] Pose2 settled(const LikelihoodField& field, const BeamEnds& ends, const Pose2& pose);
 
-/// `count` poses spread evenly over the free cells, with any heading. `cells` must not be empty.
-[[nodiscard]] std::vector<Pose2> poses_anywhere(const GridGeometry& geometry, const std::vector<std::uint32_t>& cells,
-                                                std::size_t count, Random& random);
+class GlobalSearch {
+ public:
+  GlobalSearch(const GlobalSearchParams& params, int headings);
 
-/// `count` poses where the scan says the robot may be; `also` is tried beside the draws (what was believed until now).
-[[nodiscard]] std::vector<Pose2> poses_that_fit(const LikelihoodField& field, const OccupancyGrid& map,
-                                                const BeamEnds& ends, std::size_t count, const Pose2& also,
-                                                const GlobalSearchParams& params, Random& random);
+  /// The next scan begins a new look at the whole map.
+  void start();
+  [[nodiscard]] bool under_way() const { return stage_ != Stage::kDone; }
+
+  /// One scan's share of the work. Answers places where this scan fits; valid until the next call.
+  [[nodiscard]] std::span<const Pose2> look(const CoarseField& coarse, const LikelihoodField& field,
+                                            const BeamEnds& ends, const Pose2& joined_from_robot);
+
+ private:
+  enum class Stage : std::uint8_t { kBegin, kLooking, kSliding, kDone };
+  [[nodiscard]] bool due_again(const Pose2& joined_from_robot) const;
+
+  GlobalSearchParams params_;
+  LatticeSearch lattice_;
+  Stage stage_ = Stage::kBegin;
+  BeamEnds ends_;            // of the scan that the whole map is held against
+  Pose2 joined_from_robot_;  // where it was taken
+  std::size_t left_ = 0;     // poses to look at
+  std::vector<Candidate> candidates_;
+  std::size_t next_ = 0;  // candidate to slide
+  std::vector<Pose2> places_;
+};
 
 }  // namespace deltamap::localization

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +13,7 @@
 namespace deltamap::localization {
 namespace {
 
+constexpr std::uint64_t kSeedOfRivals = 0x52697661;
 constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as silent when its epoch changes
 
 /// The last scan that changed the particles.
@@ -31,6 +33,16 @@ struct MotionSince {
 std::shared_ptr<const OccupancyGrid> with_free_space(std::shared_ptr<const OccupancyGrid> map) {
   if (!map || count_of(*map, CellState::kFree) == 0) throw std::runtime_error("the map has no free cell to be in");
   return map;
+}
+
+/// What is known before the first scan: the middle of the map, give or take all of it.
+Hypothesis anywhere_in(const OccupancyGrid& map) {
+  const Point2 half = 0.5 * map.resolution_m() * Point2{map.width(), map.height()};
+  const Point2 middle = map.geometry().origin + half;
+  const double turn = std::numbers::pi;
+  return {{middle.x(), middle.y(), 0.0},
+          Eigen::Vector3d{half.x() * half.x() / 3.0, half.y() * half.y() / 3.0, turn * turn / 3.0}.asDiagonal(),
+          0.0};
 }
 
 /// A pose and its covariance carried along a motion.
@@ -58,7 +70,8 @@ struct Localizer::State {
         filter{given.particles, seed},
         hypotheses{given.hypothesis},
         monitor{given.fit},
-        stability{map->geometry(), given.stability} {}
+        stability{map->geometry(), given.stability},
+        rivals{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfRivals} {}
 
   LocalizerParams params;
   std::shared_ptr<const OccupancyGrid> map;
@@ -69,40 +82,47 @@ struct Localizer::State {
   HypothesisFinder hypotheses;
   FitMonitor monitor;
   Stability stability;
+  Rivals rivals;
   Hypothesis best;
   BeamEnds ends;
   std::optional<LastUpdate> last_update;
   std::optional<Timestamp> last_scan;
-  Pose2 last_joined;  ///< odometry at the last scan
-  bool must_search = false;
+  Pose2 last_joined;   ///< odometry at the last scan
   double w_avg = 1.0;  ///< before any scan nothing speaks against the pose
 
   void start_around(const InitialPose& pose) {
     filter.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
     best = hypotheses.best(filter.particles());
     monitor.start(LocalizerState::kTracking);
+    rivals.start_believing();
     last_update.reset();
-    must_search = false;
   }
 
   void start_anywhere() {
-    const std::vector<std::uint32_t> cells = free_cells(*map);
-    const auto count = static_cast<std::size_t>(std::max(params.particles.min, params.particles.max));
-    filter.start_at(poses_anywhere(map->geometry(), cells, count, filter.random()));
-    best = hypotheses.best(filter.particles());
+    rivals.start_anywhere();
+    best = anywhere_in(*map);
     monitor.start(LocalizerState::kGlobal);
     last_update.reset();
-    must_search = true;
   }
 
-  /// Lets the scan in `ends` propose where to look.
-  void search() {
-    const auto count = static_cast<std::size_t>(std::max(params.particles.min, params.particles.max));
-    filter.start_at(poses_that_fit(field, *map, ends, count, best.map_from_robot, params.global, filter.random()));
+  /// The best place that has come to mind leads, until it is believed.
+  RefinedPose search(Timestamp time, const std::optional<OdometryAt>& now) {
+    const Pose2 joined = now ? now->joined_from_robot : last_joined;
+    const RivalReport& report = rivals.observe(field, {.ends = ends, .joined_from_robot = joined});
+    if (const std::optional<Place> place = rivals.best_place()) {
+      best = {place->map_from_robot, place->covariance, place->share};
+      if (ends.size() > 0) w_avg = mean_likelihood(misfit_steps(field, ends, best.map_from_robot), ends.size());
+    }
+    const RefinedPose believed{best.map_from_robot, best.covariance};
+    last_update = LastUpdate{time, now, believed, report.effective_places};
+    return believed;
+  }
+
+  /// The particles start anew around a place that has won.
+  void believe_in(const RefinedPose& place) {
+    filter.start_around(place.map_from_robot, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0);
     best = hypotheses.best(filter.particles());
-    monitor.start(LocalizerState::kGlobal);
-    last_update.reset();
-    must_search = false;
+    rivals.start_believing();
   }
 
   [[nodiscard]] MotionSince motion_since_update(Timestamp time, const std::optional<OdometryAt>& now) const {
@@ -124,11 +144,6 @@ struct Localizer::State {
            std::abs(since.motion.theta) >= params.update.turn_rad || since.passed_s >= params.update.time_s;
   }
 
-  /// While the pose is unknown a scan counts less: the right place must not die of one changed view.
-  [[nodiscard]] double evidence_beams() const {
-    return monitor.state() == LocalizerState::kGlobal ? params.global.evidence_beams : params.particles.evidence_beams;
-  }
-
   [[nodiscard]] double beam_share() const {
     return std::min(1.0, params.particles.evidence_beams / static_cast<double>(ends.size()));
   }
@@ -137,7 +152,7 @@ struct Localizer::State {
   RefinedPose update(Timestamp time, const std::optional<OdometryAt>& now, const MotionSince& since) {
     if (last_update) filter.move(since.motion, since.unknown_s, params.motion);
     std::span<const std::int32_t> misfits;
-    if (ends.size() > 0) misfits = filter.weigh(field, ends, evidence_beams());
+    if (ends.size() > 0) misfits = filter.weigh(field, ends, params.particles.evidence_beams);
     const double n_eff = filter.n_eff();
     best = hypotheses.best(filter.particles());
     RefinedPose believed{best.map_from_robot, best.covariance};
@@ -170,6 +185,17 @@ struct Localizer::State {
     return refined(field, ends, prior, beam_share(), params.refinement);
   }
 
+  RefinedPose believed(Timestamp time, const std::optional<OdometryAt>& now) {
+    if (monitor.state() == LocalizerState::kGlobal) return search(time, now);
+    const MotionSince since = motion_since_update(time, now);
+    const RefinedPose believed = update_due(since) ? update(time, now, since) : follow(since);
+    (void)rivals.observe(field, {.ends = ends,
+                                 .joined_from_robot = now ? now->joined_from_robot : last_joined,
+                                 .map_from_believed = believed.map_from_robot,
+                                 .unknown_s = since.unknown_s});
+    return believed;
+  }
+
   void judge(Timestamp time, const std::optional<OdometryAt>& now, const RefinedPose& believed) {
     FitMonitor::Observation seen;
     if (last_scan) seen.passed_s = std::max(0.0, seconds(time - *last_scan));
@@ -184,8 +210,9 @@ struct Localizer::State {
     seen.fit = explained_share(field, ends, believed.map_from_robot);
     const LocalizerState before = monitor.state();
     const LocalizerState after = monitor.observe(seen, best);
-    must_search =
-        must_search || monitor.search_failed() || (before == LocalizerState::kLost && after == LocalizerState::kGlobal);
+    if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) believe_in(believed);
+    if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) rivals.stop_believing();
+    if (monitor.search_failed()) start_anywhere();
   }
 
   /// For a revision that does not follow on the present map.
@@ -203,7 +230,8 @@ struct Localizer::State {
             .covariance = believed.covariance,
             .state = monitor.state(),
             .n_eff = last_update->n_eff,
-            .particles = static_cast<std::uint32_t>(filter.particles().size()),
+            .particles = static_cast<std::uint32_t>(
+                monitor.state() == LocalizerState::kGlobal ? rivals.report().places : filter.particles().size()),
             .w_avg = w_avg,
             .revision = revision,
             .map = map};
@@ -234,10 +262,7 @@ TrackedScan Localizer::observe(Scan scan) {
   const BodyVelocity velocity = state.odometry.velocity_at(time);
   tracked.rays = deskewed(scan, velocity);
   state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
-  if (state.must_search && state.ends.size() > 0) state.search();
-
-  const MotionSince since = state.motion_since_update(time, now);
-  const RefinedPose believed = state.update_due(since) ? state.update(time, now, since) : state.follow(since);
+  const RefinedPose believed = state.believed(time, now);
   state.judge(time, now, believed);
 
   tracked.estimate = state.estimate(time, believed);
@@ -256,10 +281,12 @@ void Localizer::apply(const MapRevision& revision) {
   const bool follows = revision.number == state.revision + 1 && revision.map->geometry() == state.map->geometry();
   if (follows && (revision.changes.empty() || !revision.field_patch.box.empty())) {
     state.field.apply(revision.field_patch);
+    state.rivals.apply(*revision.map, state.field, revision.field_patch.box);
     state.stability.forget(revision.changes);
   } else {
     state.field = LikelihoodField{*revision.map, state.params.field};
     state.forget_differences(*revision.map);
+    state.rivals.apply(*revision.map, state.field, {{0, 0}, {revision.map->width(), revision.map->height()}});
   }
   state.map = revision.map;
   state.revision = revision.number;

@@ -10,7 +10,9 @@
 #include "localization/motion_model.hpp"
 #include "localization/odometry_buffer.hpp"
 #include "localization/particle_filter.hpp"
+#include "localization/place_bank.hpp"
 #include "localization/pose_refinement.hpp"
+#include "localization/rivals.hpp"
 #include "localization/stability.hpp"
 
 namespace deltamap::localization {
@@ -33,6 +35,8 @@ struct LocalizerParams {
   RefinementParams refinement;
   UpdateParams update;
   GlobalSearchParams global;
+  RivalsParams rivals;
+  PlaceBankParams places;
   FitParams fit;
   StabilityParams stability;
 };

@@ -31,6 +31,7 @@ struct Options {
   std::vector<double> initial_pose;  // x, y, degrees
   std::uint64_t seed = 1;
   double from_s = 0.0;
+  double to_s = 1e9;
 };
 
 double cpu_seconds() {
@@ -64,6 +65,7 @@ void run(const Options& options, const localization::LocalizerParams& params) {
   while (auto scan = feed.next(localizer)) {
     began = began.value_or(scan->time);
     if (seconds(scan->time - *began) < options.from_s) continue;
+    if (seconds(scan->time - *began) > options.to_s) break;
     const double start_s = cpu_seconds();
     const TrackedScan tracked = localizer.observe(std::move(*scan));
     cpu_s.push_back(cpu_seconds() - start_s);
@@ -101,6 +103,7 @@ int main(int argc, char** argv) {
   app.add_option("--initial-pose", options.initial_pose, "X,Y,DEG of the robot")->delimiter(',')->expected(3);
   app.add_option("--seed", options.seed);
   app.add_option("--from", options.from_s, "seconds to leave out");
+  app.add_option("--to", options.to_s, "seconds after which to end");
   app.add_option("--min", params.particles.min);
   app.add_option("--max", params.particles.max);
   app.add_option("--beams", params.beams);
@@ -115,10 +118,12 @@ int main(int argc, char** argv) {
   app.add_option("--metre-per-turn", params.motion.metre_per_turn_m);
   app.add_option("--position-floor", params.motion.position_floor_m);
   app.add_option("--heading-floor", params.motion.heading_floor_rad);
-  app.add_option("--global-evidence", params.global.evidence_beams);
+  app.add_option("--candidates", params.global.candidates_a_scan);
   app.add_option("--places", params.global.places);
-  app.add_option("--candidates", params.global.candidates_per_m2);
-  app.add_option("--jitter", params.global.jitter_m);
+  app.add_option("--place-evidence", params.places.evidence_beams);
+  app.add_option("--memory", params.places.memory_steps);
+  app.add_option("--headings", params.rivals.headings);
+  app.add_option("--block", params.rivals.block_m);
   app.add_option("--refine", params.refinement.steps);
   app.add_option("--prior", params.refinement.prior_share);
   CLI11_PARSE(app, argc, argv);

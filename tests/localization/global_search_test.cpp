@@ -3,52 +3,139 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/cast_scan.hpp"
 #include "tests/support/drawn_flat.hpp"
 
 namespace deltamap::localization {
 namespace {
 
-TEST(GlobalSearch, SpreadsPosesOverFreeCellsOnly) {
-  const OccupancyGrid map = test::drawn_flat();
-  Random random{3};
-  const auto poses = poses_anywhere(map.geometry(), free_cells(map), 5000, random);
-  int left = 0;
-  for (const Pose2& pose : poses) {
-    ASSERT_EQ(map.at(map.geometry().cell_at(pose.position())), CellState::kFree);
-    left += pose.x < 3.0 ? 1 : 0;
-  }
-  EXPECT_NEAR(left / 5000.0, 0.3, 0.02);
+constexpr double kBlock_m = 0.25;
+constexpr int kHeadings = 48;
+
+BeamEnds seen_from(const Pose2& truth, std::uint64_t seed) {
+  Random random{seed};
+  const Scan scan = test::cast_scan(test::drawn_flat(), truth, {}, {}, random);
+  return scoring_ends(scan, deskewed(scan, {}), 60);
 }
 
-TEST(GlobalSearch, PutsParticlesWhereTheScanFits) {
-  const OccupancyGrid map = test::drawn_flat();
-  const LikelihoodField field{map, {}};
-  const Pose2 truth{4.5, 2.0, 1.1};
-  Random random{3};
-  const Scan scan = test::cast_scan(map, truth, {}, {}, random);
-  const BeamEnds ends = scoring_ends(scan, deskewed(scan, {}), 0);
-  const auto poses = poses_that_fit(field, map, ends, 1000, {1.0, 1.0, 0.0}, {}, random);
-  ASSERT_EQ(poses.size(), 1000u);
-  int near = 0;
-  for (const Pose2& pose : poses) {
-    near += distance_between(pose, truth) < 0.4 && std::abs(turn_between(pose.theta, truth.theta)) < 0.2 ? 1 : 0;
-  }
-  EXPECT_GT(near, 5);
+bool near(const Pose2& a, const Pose2& b) {
+  return distance_between(a, b) < 0.1 && std::abs(turn_between(a.theta, b.theta)) < radians(3.0);
 }
 
-TEST(GlobalSearch, KeepsWhatWasBelievedWhereItStillFits) {
+TEST(CoarseField, IsAsGoodInEachBlockAsItsBestCell) {
   const OccupancyGrid map = test::drawn_flat();
   const LikelihoodField field{map, {}};
-  const Pose2 truth{4.5, 2.0, 1.1};
-  Random random{3};
-  const Scan scan = test::cast_scan(map, truth, {}, {}, random);
-  const BeamEnds ends = scoring_ends(scan, deskewed(scan, {}), 0);
-  const GlobalSearchParams few{.most_candidates = 1000, .places = 5};
-  const auto poses = poses_that_fit(field, map, ends, 200, truth, few, random);
-  int near = 0;
-  for (const Pose2& pose : poses) near += distance_between(pose, truth) < 0.4 ? 1 : 0;
-  EXPECT_GT(near, 40);
+  const CoarseField coarse{map, field, kBlock_m};
+  const int cells = 5;
+  for (int row = 0; row < coarse.rows(); ++row) {
+    for (int column = 0; column < coarse.columns(); ++column) {
+      int best = 255;
+      for (int i = 0; i < cells * cells; ++i) {
+        const Cell cell{column * cells + i % cells, row * cells + i / cells};
+        if (map.geometry().contains(cell)) best = std::min<int>(best, field.steps_at(cell));
+      }
+      const auto bordered = coarse.bordered();
+      ASSERT_EQ(bordered.bytes[(row + 1) * bordered.width + column + 1], best) << column << ' ' << row;
+    }
+  }
+}
+
+TEST(CoarseField, FollowsAChangeOfTheMapAsIfBuiltAnew) {
+  const OccupancyGrid before = test::drawn_flat();
+  OccupancyGrid after = before;
+  test::fill_box(after, {4.0, 1.0}, {5.1, 1.7}, CellState::kOccupied);
+  CoarseField patched{before, LikelihoodField{before, {}}, kBlock_m};
+  const LikelihoodField field{after, {}};
+  patched.update(after, field, field_patch(after, changes_between(before, after), {}).box);
+  const CoarseField built{after, field, kBlock_m};
+  const auto size = static_cast<std::size_t>(built.bordered().width * built.bordered().height);
+  EXPECT_TRUE(std::equal(built.bordered().bytes, built.bordered().bytes + size, patched.bordered().bytes));
+  EXPECT_TRUE(std::ranges::equal(built.free_blocks(), patched.free_blocks()));
+  EXPECT_LT(patched.free_blocks().size(), CoarseField(before, field, kBlock_m).free_blocks().size());
+}
+
+TEST(CoarseField, TakesBeamsThatLeaveTheMapAsEndingInTheUnknown) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  const CoarseField coarse{map, field, kBlock_m};
+  const BeamEnds far{{1000.0F, 5000.0F, 9e9F}, {0.0F, -3000.0F, 1.0F}};
+  const std::int32_t misfit = coarse_misfit(coarse, turned_beams(far, 1.0, kBlock_m), coarse.free_blocks()[7], 1 << 20);
+  EXPECT_EQ(misfit, 3 * field.steps_at({-1, -1}));
+}
+
+TEST(LatticeSearch, LooksAtEveryPoseOnceHoweverItIsSliced) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  const CoarseField coarse{map, field, kBlock_m};
+  const BeamEnds ends = seen_from({4.5, 2.0, 1.1}, 3);
+  LatticeSearch whole{kHeadings, 100};
+  EXPECT_TRUE(whole.look(coarse, ends, whole.poses(coarse)));
+  LatticeSearch sliced{kHeadings, 100};
+  std::size_t looked_at = 0;
+  while (!sliced.look(coarse, ends, 777)) looked_at += 777;
+  EXPECT_LT(looked_at, sliced.poses(coarse));
+  EXPECT_GE(looked_at + 777, sliced.poses(coarse));
+  const auto expected = whole.best_apart(20);
+  const auto found = sliced.best_apart(20);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].map_from_robot, expected[i].map_from_robot);
+}
+
+TEST(GlobalSearch, FindsTheRobotFromManyPlacesInItsFirstLook) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  const CoarseField coarse{map, field, kBlock_m};
+  int found = 0;
+  int tried = 0;
+  for (const std::uint32_t block : coarse.free_blocks()) {
+    if (block % 17 != 0) continue;
+    const Point2 at = coarse.centre_of(block);
+    const Pose2 truth{at.x() + 0.11, at.y() - 0.09, wrapped_angle(0.37 * block)};
+    if (map.at(map.geometry().cell_at(truth.position())) != CellState::kFree) continue;
+    const BeamEnds ends = seen_from(truth, block);
+    GlobalSearch search{{}, kHeadings};
+    bool seen = false;
+    for (int scan = 0; scan < 20 && search.under_way(); ++scan) {
+      for (const Pose2& place : search.look(coarse, field, ends, {})) seen = seen || near(place, truth);
+    }
+    found += seen ? 1 : 0;
+    ++tried;
+  }
+  EXPECT_GT(tried, 30);
+  EXPECT_GE(found, tried * 95 / 100);
+}
+
+TEST(GlobalSearch, CarriesWhatItFoundAlongWithTheWheels) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  const CoarseField coarse{map, field, kBlock_m};
+  GlobalSearch search{{.candidates_a_scan = 8000}, kHeadings};
+  Pose2 truth{1.0, 2.0, 0.9};
+  Pose2 joined{7.0, 8.0, -2.0};  // odometry starts anywhere
+  bool found = false;
+  int scans = 0;
+  for (; scans < 40 && search.under_way(); ++scans) {
+    for (const Pose2& place : search.look(coarse, field, seen_from(truth, 1), joined)) {
+      found = found || near(place, truth);
+    }
+    const Pose2 motion{0.03, 0.0, 0.02};
+    truth = truth * motion;
+    joined = joined * motion;
+  }
+  EXPECT_GT(scans, 10);
+  EXPECT_TRUE(found);
+}
+
+TEST(GlobalSearch, RestsUntilTheRobotHasMovedOn) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  const CoarseField coarse{map, field, kBlock_m};
+  const BeamEnds ends = seen_from({4.5, 2.0, 1.1}, 3);
+  GlobalSearch search{{}, kHeadings};
+  while (search.under_way()) (void)search.look(coarse, field, ends, {});
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(search.look(coarse, field, ends, {0.1, 0.0, 0.1}).empty());
+  EXPECT_FALSE(search.under_way());
+  (void)search.look(coarse, field, ends, {0.6, 0.0, 0.1});
+  EXPECT_TRUE(search.under_way());
 }
 
 }  // namespace

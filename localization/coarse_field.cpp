@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled with -O3: the cells of eight beams are found by one instruction (SSE2).
+#include "localization/coarse_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::localization {
+
+CoarseField::CoarseField(const OccupancyGrid& map, const LikelihoodField& field, double block_m)
+    : cells_a_block_{std::max(1, static_cast<int>(std::lround(block_m / map.resolution_m())))},
+      block_m_{cells_a_block_ * map.resolution_m()},
+      columns_{(map.width() + cells_a_block_ - 1) / cells_a_block_},
+      rows_{(map.height() + cells_a_block_ - 1) / cells_a_block_},
+      origin_{map.geometry().origin} {
+  const auto area = static_cast<std::size_t>(columns_ + 2) * static_cast<std::size_t>(rows_ + 2);
+  bytes_.assign(area, field.steps_at({-1, -1}));
+  free_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false);
+  update(map, field, {{0, 0}, {map.width(), map.height()}});
+}
+
+void CoarseField::update(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed) {
+  if (changed.empty()) return;
+  const int last_row = (changed.last.row - 1) / cells_a_block_;
+  const int last_column = (changed.last.column - 1) / cells_a_block_;
+  for (int row = changed.first.row / cells_a_block_; row <= last_row; ++row) {
+    for (int column = changed.first.column / cells_a_block_; column <= last_column; ++column) {
+      look_at(map, field, column, row);
+    }
+  }
+  list_free_blocks();
+}
+
+bool CoarseField::is_free(const OccupancyGrid& map, int column, int row) const {
+  const Cell middle{column * cells_a_block_ + cells_a_block_ / 2, row * cells_a_block_ + cells_a_block_ / 2};
+  for (int y = middle.row - 1; y <= middle.row; ++y) {
+    for (int x = middle.column - 1; x <= middle.column; ++x) {
+      if (map.at({x, y}) == CellState::kFree) return true;
+    }
+  }
+  return map.at(middle) == CellState::kFree;
+}
+
+void CoarseField::look_at(const OccupancyGrid& map, const LikelihoodField& field, int column, int row) {
+  const Cell first{column * cells_a_block_, row * cells_a_block_};
+  const Cell last{std::min(first.column + cells_a_block_, map.width()),
+                  std::min(first.row + cells_a_block_, map.height())};
+  const LikelihoodField::Bordered fine = field.bordered();
+  std::uint8_t best = 255;
+  for (int y = first.row; y < last.row; ++y) {
+    const std::uint8_t* const from = fine.bytes + static_cast<std::ptrdiff_t>(y + 1) * fine.width + first.column + 1;
+    best = std::min(best, *std::min_element(from, from + (last.column - first.column)));
+  }
+  const auto at = static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(columns_ + 2);
+  bytes_[at + static_cast<std::size_t>(column + 1)] = best;
+  free_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)] =
+      is_free(map, column, row);
+}
+
+void CoarseField::list_free_blocks() {
+  free_blocks_.clear();
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    if (free_[i]) free_blocks_.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+Point2 CoarseField::centre_of(std::uint32_t block) const {
+  const auto columns = static_cast<std::uint32_t>(columns_);
+  return {origin_.x() + (block % columns + 0.5) * block_m_, origin_.y() + (block / columns + 0.5) * block_m_};
+}
+
+TurnedBeams turned_beams(const BeamEnds& ends, double heading_rad, double block_m) {
+  constexpr double kFarthest = 16000.0;  // blocks; the map's border is nearer
+  TurnedBeams beams;
+  beams.count = std::min(ends.size(), TurnedBeams::kMost);
+  const double c = std::cos(heading_rad) / block_m;
+  const double s = std::sin(heading_rad) / block_m;
+  const auto whole = [kFarthest](double blocks) {
+    return static_cast<std::int16_t>(std::clamp(std::floor(blocks + 0.5), -kFarthest, kFarthest));
+  };
+  std::size_t i = 0;
+  for (const std::size_t first : {0u, 2u, 1u, 3u}) {  // those looked at early shall see all sides
+    for (std::size_t nth = first; nth < beams.count; nth += 4, ++i) {
+      const std::size_t from = nth * ends.size() / beams.count;
+      const auto x_m = static_cast<double>(ends.x_m[from]);
+      const auto y_m = static_cast<double>(ends.y_m[from]);
+      beams.columns[i] = whole(c * x_m - s * y_m);
+      beams.rows[i] = whole(s * x_m + c * y_m);
+    }
+  }
+  return beams;
+}
+
+std::int32_t coarse_misfit(const CoarseField& field, const TurnedBeams& beams, std::uint32_t block,
+                           std::int32_t enough) {
+  constexpr std::size_t kAtOnce = 8;
+  static_assert(TurnedBeams::kMost % kAtOnce == 0);
+  const LikelihoodField::Bordered bordered = field.bordered();
+  const auto columns = static_cast<std::uint32_t>(field.columns());
+  const auto own_column = static_cast<std::int16_t>(block % columns + 1);
+  const auto own_row = static_cast<std::int16_t>(block / columns + 1);
+  const auto last_column = static_cast<std::int16_t>(bordered.width - 1);
+  const auto last_row = static_cast<std::int16_t>(bordered.height - 1);
+  std::int32_t sum = 0;
+  for (std::size_t start = 0; start < beams.count; start += kAtOnce) {
+    std::array<std::int16_t, kAtOnce> column;
+    std::array<std::int16_t, kAtOnce> row;
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      const auto x = static_cast<std::int16_t>(own_column + beams.columns[start + i]);
+      const auto y = static_cast<std::int16_t>(own_row + beams.rows[start + i]);
+      column[i] = std::clamp<std::int16_t>(x, 0, last_column);
+      row[i] = std::clamp<std::int16_t>(y, 0, last_row);
+    }
+    const std::size_t count = std::min(kAtOnce, beams.count - start);
+    for (std::size_t i = 0; i < count; ++i) {
+      sum += bordered.bytes[static_cast<std::ptrdiff_t>(row[i]) * bordered.width + column[i]];
+    }
+    if (sum >= enough) break;
+  }
+  return sum;
+}
+
+}  // namespace deltamap::localization

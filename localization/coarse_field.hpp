@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The likelihood field seen from afar: of each block of cells the best value, small enough to stay in the cache. A pose
+// somewhere in a block fits here at least about as well as in the field itself, so that a coarse lattice of poses finds
+// the places worth a closer look (after Olson, "Real-time correlative scan matching", 2009).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid_patch.hpp"
+#include "localization/deskew.hpp"
+#include "localization/likelihood_field.hpp"
+
+namespace deltamap::localization {
+
+class CoarseField {
+ public:
+  /// Blocks of about `block_m`; at least one cell.
+  CoarseField(const OccupancyGrid& map, const LikelihoodField& field, double block_m);
+
+  /// Looks again at the blocks that the box of changed cells touches.
+  void update(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed);
+
+  /// Blocks in whose middle a robot may stand: one of the cells there is free. Rising.
+  [[nodiscard]] std::span<const std::uint32_t> free_blocks() const { return free_blocks_; }
+  [[nodiscard]] Point2 centre_of(std::uint32_t block) const;
+  [[nodiscard]] double block_m() const { return block_m_; }
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int rows() const { return rows_; }
+
+  /// Blocks with a border of one unknown block on each side, as in LikelihoodField::bordered().
+  [[nodiscard]] LikelihoodField::Bordered bordered() const { return {bytes_.data(), columns_ + 2, rows_ + 2}; }
+  [[nodiscard]] Point2 origin() const { return origin_; }
+
+ private:
+  [[nodiscard]] bool is_free(const OccupancyGrid& map, int column, int row) const;
+  void look_at(const OccupancyGrid& map, const LikelihoodField& field, int column, int row);
+  void list_free_blocks();
+
+  int cells_a_block_;
+  double block_m_;
+  int columns_;
+  int rows_;
+  Point2 origin_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<bool> free_;
+  std::vector<std::uint32_t> free_blocks_;
+};
+
+/// A few beams of a scan turned to one heading, as whole blocks from the block that the robot stands in.
+struct TurnedBeams {
+  static constexpr std::size_t kMost = 32;
+  std::array<std::int16_t, kMost> columns{};
+  std::array<std::int16_t, kMost> rows{};
+  std::size_t count = 0;
+};
+[[nodiscard]] TurnedBeams turned_beams(const BeamEnds& ends, double heading_rad, double block_m);
+
+/// Sum of the field's steps over the beams with the robot in the middle of the block; `enough` ends it early with a
+/// number that is at least as large.
+[[nodiscard]] std::int32_t coarse_misfit(const CoarseField& field, const TurnedBeams& beams, std::uint32_t block,
+                                         std::int32_t enough);
+
+}  // namespace deltamap::localization

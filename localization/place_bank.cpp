@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/place_bank.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "localization/weighing.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+double odds_of(const Place& place) { return place.log_evidence + place.log_prior; }
+
+double weighted_mean(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
+                     const Pose2& pose) {
+  const double c = std::cos(pose.theta);
+  const double s = std::sin(pose.theta);
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto x_m = static_cast<double>(ends.x_m[i]);
+    const auto y_m = static_cast<double>(ends.y_m[i]);
+    const Point2 end{pose.x + c * x_m - s * y_m, pose.y + s * x_m + c * y_m};
+    sum += static_cast<double>(weights[i]) * field.steps_at(field.geometry().cell_at(end));
+    weight += static_cast<double>(weights[i]);
+  }
+  return weight > 0.0 ? -LikelihoodField::kStep * sum / weight : 0.0;
+}
+
+}  // namespace
+
+double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
+                           const Pose2& pose) {
+  if (ends.size() == 0) return 0.0;
+  if (!weights.empty()) return weighted_mean(field, ends, weights, pose);
+  return -LikelihoodField::kStep * misfit_steps(field, ends, pose) / static_cast<double>(ends.size());
+}
+
+PlaceBank::PlaceBank(const PlaceBankParams& params) : params_{params} {
+  places_.reserve(static_cast<std::size_t>(std::max(params.most, params.most_while_believing)) + 1);
+}
+
+void PlaceBank::clear() {
+  places_.clear();
+  believing_ = false;
+}
+
+void PlaceBank::believe(const Pose2& map_from_robot) {
+  if (!believing_) {
+    places_.clear();
+    places_.push_back({});
+    believing_ = true;
+  }
+  places_.front().map_from_robot = map_from_robot;
+}
+
+void PlaceBank::stop_believing() {
+  believing_ = false;
+  for (Place& place : places_) {
+    place.log_evidence = 0.0;
+    place.log_prior = 0.0;
+    place.followed_m = 0.0;
+    place.followed_rad = 0.0;
+  }
+}
+
+void PlaceBank::carry(const Pose2& motion) {
+  const double driven_m = motion.position().norm();
+  for (Place& place : places_) {
+    place.map_from_robot = place.map_from_robot * motion;
+    place.followed_m += driven_m;
+    place.followed_rad += std::abs(motion.theta);
+  }
+}
+
+void PlaceBank::slide(Place& place, const LikelihoodField& field, const BeamEnds& ends, double unknown_s) const {
+  const RefinementParams sliding{.steps = 2, .prior_share = 1.0};
+  const double loose_m = 0.06 + 0.3 * unknown_s;
+  const double loose_rad = radians(3.0) + 0.3 * unknown_s;
+  const PoseCovariance loose =
+      Eigen::Vector3d{loose_m * loose_m, loose_m * loose_m, loose_rad * loose_rad}.asDiagonal();
+  const double beam_share = std::min(1.0, 20.0 / static_cast<double>(ends.size()));
+  const RefinedPose slid = refined(field, ends, {place.map_from_robot, loose}, beam_share, sliding);
+  place.map_from_robot = slid.map_from_robot;
+  place.covariance = slid.covariance;
+}
+
+void PlaceBank::slide(const LikelihoodField& field, const BeamEnds& ends, std::size_t count, double unknown_s) {
+  constexpr double kClose = 5.0;
+  const std::size_t first = believing_ ? 1 : 0;
+  if (places_.empty() || ends.size() == 0) return;
+  const double close = odds_of(*reference()) - kClose;
+  // The believed one too: places slid to their best fit would beat it by a hair at each scan.
+  if (believing_) slide(places_.front(), field, ends, unknown_s);
+  const std::size_t others = places_.size() - first;
+  if (others == 0) return;
+  for (std::size_t i = 0; i < others; ++i) {
+    const std::size_t after = (i + others - next_to_slide_ % others) % others;  // how soon its turn comes
+    Place& place = places_[first + i];
+    if (after < count || odds_of(place) > close) slide(place, field, ends, unknown_s);
+  }
+  next_to_slide_ = (next_to_slide_ + count) % others;
+}
+
+void PlaceBank::weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights) {
+  const double kept = 1.0 - 1.0 / params_.memory_steps;
+  for (Place& place : places_) {
+    place.log_evidence = kept * place.log_evidence +
+                         params_.evidence_beams * mean_log_likelihood(field, ends, weights, place.map_from_robot);
+  }
+}
+
+bool PlaceBank::same(const Pose2& a, const Pose2& b) const {
+  const double x_m = a.x - b.x;
+  const double y_m = a.y - b.y;
+  return x_m * x_m + y_m * y_m < params_.same_m * params_.same_m &&
+         std::abs(turn_between(a.theta, b.theta)) < params_.same_rad;
+}
+
+bool PlaceBank::knows(const Pose2& pose) const {
+  return std::any_of(places_.begin(), places_.end(),
+                     [&](const Place& place) { return same(place.map_from_robot, pose); });
+}
+
+const Place* PlaceBank::reference() const {
+  if (places_.empty()) return nullptr;
+  if (believing_) return &places_.front();
+  return &*std::max_element(places_.begin(), places_.end(),
+                            [](const Place& a, const Place& b) { return odds_of(a) < odds_of(b); });
+}
+
+void PlaceBank::admit(const Place& place) {
+  if (knows(place.map_from_robot)) return;
+  const auto room = static_cast<std::size_t>(believing_ ? params_.most_while_believing : params_.most);
+  const std::size_t first = believing_ ? 1 : 0;
+  if (places_.size() < room + first) {
+    places_.push_back(place);
+    return;
+  }
+  const auto worst = std::min_element(places_.begin() + static_cast<std::ptrdiff_t>(first), places_.end(),
+                                      [](const Place& a, const Place& b) { return odds_of(a) < odds_of(b); });
+  if (worst != places_.end() && odds_of(*worst) < odds_of(place)) *worst = place;
+}
+
+void PlaceBank::settle() {
+  const Place* const held_against = reference();
+  if (held_against == nullptr) return;
+  const double hopeless = held_against->log_evidence - params_.hopeless;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const bool believed = believing_ && i == 0;
+    if (!believed && places_[i].log_evidence < hopeless) continue;
+    std::size_t twin = 0;
+    while (twin < kept && !same(places_[twin].map_from_robot, places_[i].map_from_robot)) ++twin;
+    if (twin == kept) {
+      places_[kept++] = places_[i];
+    } else if (!(believing_ && twin == 0) && odds_of(places_[twin]) < odds_of(places_[i])) {
+      const double followed_m = std::max(places_[twin].followed_m, places_[i].followed_m);
+      const double followed_rad = std::max(places_[twin].followed_rad, places_[i].followed_rad);
+      places_[twin] = places_[i];
+      places_[twin].followed_m = followed_m;
+      places_[twin].followed_rad = followed_rad;
+    }
+  }
+  places_.resize(kept);
+
+  double best = odds_of(places_.front());
+  for (const Place& place : places_) best = std::max(best, odds_of(place));
+  double sum = 0.0;
+  for (Place& place : places_) {
+    place.share = std::exp(odds_of(place) - best);
+    sum += place.share;
+  }
+  for (Place& place : places_) place.share /= sum;
+}
+
+}  // namespace deltamap::localization

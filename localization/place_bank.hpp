@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// A bank of places where the robot may be. Each is carried along by odometry, slid a little to where the scans fit, and
+// collects evidence: what independent beams of decorrelated scans say, with a memory that fades over metres.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/angle.hpp"
+#include "localization/deskew.hpp"
+#include "localization/likelihood_field.hpp"
+#include "localization/pose_refinement.hpp"
+
+namespace deltamap::localization {
+
+struct PlaceBankParams {
+  int most = 200;                   ///< places while nothing is believed; 1..1000
+  int most_while_believing = 24;    ///< and beside a believed pose; 1..most
+  int beams = 60;                   ///< of a scan that judge a place; > 0
+  double evidence_beams = 4.0;      ///< independent beams that a scan counts as; > 0: neighbours see the same things
+  double step_m = 0.2;              ///< driven until a scan tells something new, m; > 0
+  double step_rad = radians(15.0);  ///< or turned, rad; > 0
+  double memory_steps = 40.0;       ///< scans that count until their evidence has faded to 1/e; > 1
+  double hopeless = 14.0;           ///< behind the best one by this log evidence a place is given up; > 0
+  double same_m = 0.3;              ///< two places nearer than this are one, m; > 0
+  double same_rad = radians(10.0);  ///< and turned less, rad; > 0
+};
+
+struct Place {
+  Pose2 map_from_robot;
+  PoseCovariance covariance = PoseCovariance::Zero();
+  double log_evidence = 0.0;
+  double log_prior = 0.0;
+  double share = 0.0;
+  double followed_m = 0.0;
+  double followed_rad = 0.0;
+};
+
+/// Mean over the beams of ln p(z) with the robot at the pose; weights may be empty. 0 without beams.
+[[nodiscard]] double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends,
+                                         std::span<const float> weights, const Pose2& pose);
+
+class PlaceBank {
+ public:
+  explicit PlaceBank(const PlaceBankParams& params);
+
+  [[nodiscard]] const PlaceBankParams& params() const { return params_; }
+  [[nodiscard]] std::span<const Place> places() const { return places_; }
+  /// The one that is believed, if any; always the first.
+  [[nodiscard]] bool believing() const { return believing_; }
+
+  void clear();
+  /// The first place from now on; its pose is given, not followed.
+  void believe(const Pose2& map_from_robot);
+  /// The believed one becomes a place like all others, and all start with equal odds.
+  void stop_believing();
+
+  void carry(const Pose2& motion);
+  /// Slides `count` places, a round after the other, those that come close to the best one always.
+  void slide(const LikelihoodField& field, const BeamEnds& ends, std::size_t count, double unknown_s);
+  /// Once for each decorrelated scan.
+  void weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights);
+  /// A new place, unless it is known. Takes the room of a worse one where the bank is full.
+  void admit(const Place& place);
+  /// Joins places that have come together, gives up hopeless ones, shares the belief.
+  void settle();
+
+  /// The place that new ones are held against; nothing while there is none.
+  [[nodiscard]] const Place* reference() const;
+  [[nodiscard]] bool knows(const Pose2& pose) const;
+
+ private:
+  [[nodiscard]] bool same(const Pose2& a, const Pose2& b) const;
+  void slide(Place& place, const LikelihoodField& field, const BeamEnds& ends, double unknown_s) const;
+
+  PlaceBankParams params_;
+  std::vector<Place> places_;
+  bool believing_ = false;
+  std::size_t next_to_slide_ = 0;
+};
+
+}  // namespace deltamap::localization

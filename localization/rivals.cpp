@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/rivals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "localization/weighing.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+constexpr std::size_t kProbesKept = 8;
+constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that a newcomer may fit worse by
+constexpr double kOverlooked = -2.0;        // log odds of a place that earlier looks did not find
+constexpr double kFarthestBehind = 6.0;     // log evidence: the stack may hold scans from before a slip
+
+}  // namespace
+
+Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const GlobalSearchParams& search,
+               const OccupancyGrid& map, const LikelihoodField& field, std::uint64_t seed)
+    : params_{params},
+      coarse_{map, field, params.block_m},
+      probes_{params.headings, kProbesKept},
+      search_{search, params.headings},
+      bank_{bank},
+      random_{seed} {}
+
+void Rivals::start_believing() {
+  believing_ = true;
+  bank_.clear();
+  stack_.clear();
+  report_ = {};
+}
+
+void Rivals::stop_believing() {
+  believing_ = false;
+  bank_.stop_believing();
+  stack_.clear();
+  search_.start();
+  write_report();
+}
+
+void Rivals::start_anywhere() {
+  bank_.clear();
+  stop_believing();
+}
+
+std::optional<Place> Rivals::best_place() const {
+  const Place* const best = bank_.reference();
+  return best != nullptr ? std::optional{*best} : std::nullopt;
+}
+
+void Rivals::apply(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed) {
+  const bool whole = changed.width() == map.width() && changed.height() == map.height();
+  if (whole) {
+    coarse_ = CoarseField{map, field, params_.block_m};  // it may have grown
+  } else {
+    coarse_.update(map, field, changed);
+  }
+}
+
+void Rivals::thin(const Seen& seen) {
+  const auto most = static_cast<std::size_t>(std::max(1, bank_.params().beams));
+  const std::size_t count = std::min(most, seen.ends.size());
+  ends_.x_m.resize(count);
+  ends_.y_m.resize(count);
+  weights_.resize(seen.beam_weights.empty() ? 0 : count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = i * seen.ends.size() / count;
+    ends_.x_m[i] = seen.ends.x_m[from];
+    ends_.y_m[i] = seen.ends.y_m[from];
+    if (!weights_.empty()) weights_[i] = seen.beam_weights[from];
+  }
+}
+
+const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& seen) {
+  const Pose2 motion = last_joined_ ? motion_between(*last_joined_, seen.joined_from_robot) : Pose2{};
+  last_joined_ = seen.joined_from_robot;
+  bank_.carry(motion);
+  if (believing_ && seen.map_from_believed) bank_.believe(*seen.map_from_believed);
+  thin(seen);
+  if (ends_.size() == 0) return report_;
+
+  const auto slid = static_cast<std::size_t>(believing_ ? params_.refined_a_scan : bank_.params().most);
+  bank_.slide(field, ends_, slid, seen.unknown_s);
+  since_step_m_ += motion.position().norm();
+  since_step_rad_ += std::abs(motion.theta);
+  if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
+    bank_.weigh(field, ends_, weights_);
+    since_step_m_ = 0.0;
+    since_step_rad_ = 0.0;
+  }
+  if (believing_) {
+    probe(field, seen.joined_from_robot);
+  } else {
+    const std::span<const Pose2> found = search_.look(coarse_, field, ends_, seen.joined_from_robot);
+    if (!found.empty()) admit_all(field, found, seen.joined_from_robot);
+  }
+  bank_.settle();
+  stack_.add(ends_, seen.joined_from_robot);
+  write_report();
+  return report_;
+}
+
+double Rivals::recent_log_likelihood(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
+  return mean_log_likelihood(field, ends_, weights_, pose) + stack_.log_likelihood(field, pose, joined);
+}
+
+void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined) {
+  constexpr double kJustFoundM = 0.5;
+  const Place* const best = bank_.reference();
+  const bool proven = best != nullptr && best->followed_m > kJustFoundM;  // then no newcomer starts ahead of it
+  const std::optional<Pose2> held_against = best != nullptr ? std::optional{best->map_from_robot} : std::nullopt;
+  const double its_likelihood = recent_log_likelihood(field, held_against.value_or(poses.front()), joined);
+  const double base = best != nullptr ? best->log_evidence : 0.0;
+  for (const Pose2& pose : poses) {
+    const double ahead = bank_.params().evidence_beams * (recent_log_likelihood(field, pose, joined) - its_likelihood);
+    bank_.admit({.map_from_robot = pose,
+                 .log_evidence = base + (proven ? std::min(0.0, ahead) : ahead),
+                 .log_prior = proven ? kOverlooked : 0.0});
+  }
+}
+
+void Rivals::probe(const LikelihoodField& field, const Pose2& joined) {
+  if (bank_.places().empty()) return;
+  (void)probes_.look(coarse_, ends_, static_cast<std::size_t>(params_.probes));
+  probe_nearby_next_ = !probe_nearby_next_;
+  if (probe_nearby_next_) {
+    const std::optional<Pose2> nearby = best_nearby(field);
+    if (nearby) admit_rival(field, *nearby, joined);
+    return;
+  }
+  for (const Candidate& candidate : probes_.best_apart(1)) admit_rival(field, candidate.map_from_robot, joined);
+}
+
+std::optional<Pose2> Rivals::best_nearby(const LikelihoodField& field) {
+  const Pose2 believed = bank_.places().front().map_from_robot;
+  std::optional<Pose2> best;
+  std::int32_t least = std::numeric_limits<std::int32_t>::max();
+  for (int i = 0; i < params_.probes_nearby; ++i) {
+    const double x_m = random_.uniform(-params_.nearby_m, params_.nearby_m);
+    const double y_m = random_.uniform(-params_.nearby_m, params_.nearby_m);
+    const double turn_rad = random_.uniform(-params_.nearby_rad, params_.nearby_rad);
+    const Pose2 tried{believed.x + x_m, believed.y + y_m, wrapped_angle(believed.theta + turn_rad)};
+    if (bank_.knows(tried)) continue;
+    const std::int32_t misfit = misfit_steps(field, ends_, tried);
+    if (misfit >= least) continue;
+    least = misfit;
+    best = tried;
+  }
+  return best;
+}
+
+/// Beside a believed pose only what fits the scan nearly as well is worth following.
+void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined) {
+  const Place& own = bank_.places().front();
+  const Pose2 pose = settled(field, ends_, rough);
+  if (bank_.knows(pose)) return;
+  const double gain = mean_log_likelihood(field, ends_, weights_, pose) -
+                      mean_log_likelihood(field, ends_, weights_, own.map_from_robot);
+  if (gain < -kFitsNearlyAsWell) return;
+  const bool nearby = distance_between(pose, own.map_from_robot) < params_.nearby_m &&
+                      std::abs(turn_between(pose.theta, own.map_from_robot.theta)) < params_.nearby_rad;
+  double ahead = bank_.params().evidence_beams * gain;
+  if (!nearby) {  // a slip lies behind a nearby place: before it, the scans say nothing of it
+    ahead = bank_.params().evidence_beams *
+            (recent_log_likelihood(field, pose, joined) - recent_log_likelihood(field, own.map_from_robot, joined));
+  }
+  bank_.admit({.map_from_robot = pose,
+               .log_evidence = own.log_evidence + std::clamp(ahead, -kFarthestBehind, 0.0),
+               .log_prior = std::log(nearby ? params_.nearby_prior : params_.elsewhere_prior)});
+}
+
+void Rivals::write_report() {
+  const std::span<const Place> places = bank_.places();
+  report_ = {};
+  report_.own_known = bank_.believing();
+  report_.places = places.size();
+  double squared_shares = 0.0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Place& place = places[i];
+    squared_shares += place.share * place.share;
+    if (report_.own_known && i == 0) {
+      report_.own_log_evidence = place.log_evidence;
+      report_.own_share = place.share;
+      continue;
+    }
+    RivalPlace entry{place.map_from_robot, place.log_evidence, place.share, place.followed_m};
+    for (std::size_t rank = 0; rank < report_.listed; ++rank) {
+      if (entry.share > report_.rivals[rank].share) std::swap(entry, report_.rivals[rank]);
+    }
+    if (report_.listed < RivalReport::kListed) report_.rivals[report_.listed++] = entry;
+  }
+  report_.effective_places = squared_shares > 0.0 ? 1.0 / squared_shares : 1.0;
+}
+
+}  // namespace deltamap::localization

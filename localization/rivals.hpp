@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where else in the map the robot might be. Follows some places beside the believed one, lets every few decimetres of
+// driving speak for or against each, and looks through the whole map for further ones, a little at each scan. A place
+// that fits as well as the believed one stays a rival for ever; one that fits clearly better for metres wins.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/random.hpp"
+#include "localization/coarse_field.hpp"
+#include "localization/global_search.hpp"
+#include "localization/lattice_search.hpp"
+#include "localization/place_bank.hpp"
+#include "localization/scan_stack.hpp"
+
+namespace deltamap::localization {
+
+struct RivalsParams {
+  int probes = 800;                   ///< poses of the whole map that are looked at in a scan while tracking; >= 0
+  int probes_nearby = 60;             ///< and around the believed pose: slips; >= 0
+  double nearby_m = 1.5;              ///< how far "around" is, m; > 0
+  double nearby_rad = radians(20.0);  ///< likewise, rad; > 0
+  double nearby_prior = 1e-3;         ///< odds of such a place against the believed one, before any scan; 0..1
+  double elsewhere_prior = 1e-6;      ///< odds of any other place: nobody carries robots about; 0..1
+  double winning_share = 0.98;        ///< of the belief at which another place is believed instead; 0.5..1
+  int refined_a_scan = 4;             ///< places that are slid to their best fit at a scan while tracking; >= 0
+  double block_m = 0.25;              ///< side of the coarse field's blocks, m; > 0
+  int headings = 48;                  ///< of the lattice of poses; > 0
+};
+
+/// A place that is not believed, with what speaks for it.
+struct RivalPlace {
+  Pose2 map_from_robot;
+  double log_evidence = 0.0;  ///< ln p(recent scans | there), from independent beams; <= 0
+  double share = 0.0;         ///< of the belief, [0, 1]
+  double followed_m = 0.0;    ///< driven since it was found
+};
+
+/// The believed place and the best others. All shares, those of places not listed too, sum to 1.
+struct RivalReport {
+  static constexpr std::size_t kListed = 4;
+  bool own_known = false;         ///< false: nothing is believed, the best place leads `rivals`
+  double own_log_evidence = 0.0;  ///< as in RivalPlace
+  double own_share = 0.0;
+  std::array<RivalPlace, kListed> rivals;  ///< best first
+  std::size_t listed = 0;                  ///< of them in use
+  std::size_t places = 0;                  ///< followed in all, the believed one too
+  double effective_places = 1.0;           ///< 1 / Σ share²
+};
+
+class Rivals {
+ public:
+  Rivals(const RivalsParams& params, const PlaceBankParams& bank, const GlobalSearchParams& search,
+         const OccupancyGrid& map, const LikelihoodField& field, std::uint64_t seed);
+
+  /// From now on the pose given with each scan is believed; all other places are forgotten.
+  void start_believing();
+  /// From now on nothing is believed: all known places start with equal odds, and the whole map is searched.
+  void stop_believing();
+  /// As stop_believing(), and forgets all places.
+  void start_anywhere();
+
+  struct Seen {
+    const BeamEnds& ends;                      ///< robot frame; may be empty
+    std::span<const float> beam_weights{};     ///< what each beam counts, >= 0; empty: all alike
+    Pose2 joined_from_robot;                   ///< by odometry (OdometryAt)
+    std::optional<Pose2> map_from_believed{};  ///< where the robot is believed to be, if anywhere
+    double unknown_s = 0.0;                    ///< seconds since the last scan that odometry does not cover
+  };
+  const RivalReport& observe(const LikelihoodField& field, const Seen& seen);
+
+  [[nodiscard]] const RivalReport& report() const { return report_; }
+  /// The best place of all while nothing is believed; nothing before a scan has found one.
+  [[nodiscard]] std::optional<Place> best_place() const;
+  /// True while a search of the whole map is under way.
+  [[nodiscard]] bool searching() const { return search_.under_way(); }
+
+  /// The map has changed within the box (all of it: a box of the whole map).
+  void apply(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed);
+
+ private:
+  void thin(const Seen& seen);
+  void probe(const LikelihoodField& field, const Pose2& joined);
+  void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined);
+  void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
+  [[nodiscard]] std::optional<Pose2> best_nearby(const LikelihoodField& field);
+  [[nodiscard]] double recent_log_likelihood(const LikelihoodField& field, const Pose2& pose,
+                                             const Pose2& joined) const;
+  void write_report();
+
+  RivalsParams params_;
+  CoarseField coarse_;
+  LatticeSearch probes_;
+  GlobalSearch search_;
+  PlaceBank bank_;
+  ScanStack stack_;
+  Random random_;
+  BeamEnds ends_;  // thinned
+  std::vector<float> weights_;
+  std::optional<Pose2> last_joined_;
+  bool believing_ = false;
+  bool probe_nearby_next_ = false;
+  double since_step_m_ = 0.0;
+  double since_step_rad_ = 0.0;
+  RivalReport report_;
+};
+
+}  // namespace deltamap::localization

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/rivals.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/drawn_flat.hpp"
+#include "tests/support/drawn_hall.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+const Pose2 kMotion{0.1, 0.0, 0.1};  // of each scan: round a circle of 1 m
+
+/// 12 × 12 m with one block in each quarter: looks the same after every quarter turn about its middle (6, 6).
+OccupancyGrid symmetric_hall() {
+  OccupancyGrid hall{{280, 280, 0.05, {-1.0, -1.0}}};
+  test::fill_box(hall, {-0.2, -0.2}, {12.2, 12.2}, CellState::kOccupied);
+  test::fill_box(hall, {0.0, 0.0}, {12.0, 12.0}, CellState::kFree);
+  for (const double x : {2.0, 8.5}) {
+    for (const double y : {2.0, 8.5}) {
+      test::fill_box(hall, {x, y}, {x + 1.5, y + 1.5}, CellState::kOccupied);
+    }
+  }
+  return hall;
+}
+
+Pose2 turned_about_the_middle(const Pose2& pose, int quarters) {
+  const Pose2 middle_from_map = inverse(Pose2{6.0, 6.0, 0.0});
+  return Pose2{6.0, 6.0, 0.5 * std::numbers::pi * quarters} * middle_from_map * pose;
+}
+
+/// A robot that drives in circles; `believed` is where it is thought to be, carried along by exact wheels.
+class Round {
+ public:
+  Round(const OccupancyGrid& map, const OccupancyGrid& world, const Pose2& truth, std::uint64_t seed,
+        const RivalsParams& params = {})
+      : world_{world}, truth_{truth}, random_{seed}, field_{map, {}}, rivals_{params, {}, {}, map, field_, seed} {}
+
+  [[nodiscard]] Rivals& rivals() { return rivals_; }
+  [[nodiscard]] const Pose2& truth() const { return truth_; }
+
+  const RivalReport& step(std::optional<Pose2> believed) {
+    const Pose2 motion = kMotion;
+    truth_ = truth_ * motion;
+    joined_ = joined_ * motion;
+    const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
+    return rivals_.observe(field_, {.ends = scoring_ends(scan, deskewed(scan, {}), 0),
+                                    .joined_from_robot = joined_,
+                                    .map_from_believed = believed});
+  }
+
+ private:
+  const OccupancyGrid& world_;
+  Pose2 truth_;
+  Pose2 joined_;
+  Random random_;
+  LikelihoodField field_;
+  Rivals rivals_;
+};
+
+bool near(const Pose2& a, const Pose2& b) {
+  return distance_between(a, b) < 0.2 && std::abs(turn_between(a.theta, b.theta)) < radians(5.0);
+}
+
+TEST(Rivals, LeaveNearlyAllBeliefToAPoseThatFits) {
+  const OccupancyGrid map = test::drawn_flat();
+  Round round{map, map, {1.6, 1.0, 0.0}, 1};
+  round.rivals().start_believing();
+  for (int i = 0; i < 100; ++i) {
+    const RivalReport& report = round.step(round.truth() * kMotion);
+    ASSERT_TRUE(report.own_known);
+    ASSERT_GT(report.own_share, 0.98) << i;
+  }
+}
+
+TEST(Rivals, FindPlacesThatFitAsWellAndNeverPreferThem) {
+  const OccupancyGrid map = symmetric_hall();
+  Round round{map, map, {6.0, 4.0, 0.0}, 2};
+  round.rivals().start_believing();
+  int others_known = 0;
+  for (int i = 0; i < 300; ++i) {
+    const RivalReport& report = round.step(round.truth() * kMotion);
+    ASSERT_GT(report.own_share, 0.99) << i;
+    others_known = 0;
+    for (std::size_t rank = 0; rank < report.listed; ++rank) {
+      for (int quarters = 1; quarters < 4; ++quarters) {
+        const bool there = near(report.rivals[rank].map_from_robot, turned_about_the_middle(round.truth(), quarters));
+        if (there) {
+          EXPECT_GT(report.rivals[rank].log_evidence, report.own_log_evidence - 8.0);
+        }
+        others_known += there ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(others_known, 3);
+}
+
+TEST(Rivals, WinOverAWrongPoseWithinMetres) {
+  const OccupancyGrid map = test::drawn_flat();
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Round round{map, map, {1.6, 1.0, 0.0}, seed};
+    round.rivals().start_believing();
+    Pose2 believed{7.5, 3.0, 1.5};
+    double driven_m = 0.0;
+    bool won = false;
+    while (!won && driven_m < 15.0) {
+      believed = believed * kMotion;
+      const RivalReport& report = round.step(believed);
+      driven_m += 0.1;
+      won = report.listed > 0 && report.rivals[0].share > 0.98;
+      if (won) {
+        EXPECT_TRUE(near(report.rivals[0].map_from_robot, round.truth())) << seed;
+      }
+    }
+    EXPECT_TRUE(won) << seed;
+    EXPECT_GT(driven_m, 0.5) << seed;
+  }
+}
+
+TEST(Rivals, FindTheRobotAfterASlip) {
+  const OccupancyGrid map = test::drawn_flat();
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Round round{map, map, {1.6, 1.0, 0.0}, seed};
+    round.rivals().start_believing();
+    bool won = false;
+    for (int i = 0; i < 60 && !won; ++i) {
+      const Pose2 next = round.truth() * kMotion;
+      const RivalReport& report = round.step(Pose2{next.x + 0.5, next.y + 0.5, next.theta});
+      won = report.listed > 0 && report.rivals[0].share > 0.98;
+      if (won) {
+        EXPECT_TRUE(near(report.rivals[0].map_from_robot, round.truth())) << seed;
+      }
+    }
+    EXPECT_TRUE(won) << seed;
+  }
+}
+
+TEST(Rivals, ShareTheBeliefAmongSymmetricPlacesWithoutCollapsing) {
+  const OccupancyGrid map = symmetric_hall();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Round round{map, map, {6.0, 4.0, 0.0}, seed};
+    round.rivals().start_anywhere();
+    for (int i = 0; i < 400; ++i) {
+      const RivalReport& report = round.step(std::nullopt);
+      EXPECT_FALSE(report.own_known);
+      if (i < 100) continue;
+      ASSERT_EQ(report.listed, 4u) << i;
+      ASSERT_LT(report.rivals[0].share, 0.9) << i;
+      ASSERT_GT(report.rivals[3].share, 0.01) << i;
+    }
+  }
+}
+
+TEST(Rivals, SettleOnTheOnePlaceThatFitsWhereNothingIsBelieved) {
+  const OccupancyGrid map = test::drawn_flat();
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Round round{map, map, {1.6, 1.0, 0.0}, seed};
+    round.rivals().start_anywhere();
+    EXPECT_FALSE(round.rivals().best_place());
+    for (int i = 0; i < 50; ++i) (void)round.step(std::nullopt);
+    const auto best = round.rivals().best_place();
+    ASSERT_TRUE(best);
+    EXPECT_GT(best->share, 0.98) << seed;
+    EXPECT_TRUE(near(best->map_from_robot, round.truth())) << seed;
+  }
+}
+
+TEST(Rivals, LearnNothingWhileTheRobotStands) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  Rivals rivals{{}, {}, {}, map, field, 1};
+  rivals.start_believing();
+  Random random{1};
+  const Pose2 truth{1.6, 1.0, 0.0};
+  for (int i = 0; i < 200; ++i) {
+    const Scan scan = test::cast_scan(map, truth, {}, {}, random);
+    const RivalReport& report = rivals.observe(field, {.ends = scoring_ends(scan, deskewed(scan, {}), 0),
+                                                       .joined_from_robot = {},
+                                                       .map_from_believed = Pose2{7.5, 3.0, 1.5}});
+    ASSERT_GT(report.own_share, 0.9) << "one view is no evidence, however often it is repeated";
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::localization
