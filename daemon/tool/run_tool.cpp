@@ -25,6 +25,9 @@ int run_tool(int argc, const char* const* argv) {
   add_map_picture(map);
   CLI::App& import = *app.add_subcommand("import", "other people's logs as recordings")->require_subcommand(1);
   add_import_carmen(import);
+  CLI::App& calibrate =
+      *app.add_subcommand("calibrate", "fit the robot's parameters to a recording")->require_subcommand(1);
+  add_calibrate_motion(calibrate);
   add_decode(app);
   add_replay(app);
   try {

@@ -14,6 +14,9 @@ void add_experiment(CLI::App& app);
 void add_score(CLI::App& app);
 void add_sim(CLI::App& app);
 
+// under `deltamap calibrate`
+void add_calibrate_motion(CLI::App& calibrate);
+
 // under `deltamap import`
 void add_import_carmen(CLI::App& import);
 
