@@ -33,6 +33,7 @@ class RoutePilot {
   /// What to drive for the next dt_s seconds.
   [[nodiscard]] DriveTarget target(const RobotState& robot, std::span<const Circle> people, double dt_s);
 
+  [[nodiscard]] bool reaches(const Point2& place) const { return floor_.contains(place); }
   /// A place on the floor with room around it, and any heading.
   [[nodiscard]] Pose2 place_anywhere(Random& random) const;
 

@@ -62,6 +62,8 @@ class VirtualDrive {
   [[nodiscard]] std::vector<Circle> people() const;
   /// Room for a body around it and around everyone.
   [[nodiscard]] bool is_free(const Point2& place) const;
+  /// Free, and a robot could drive there from where this one is.
+  [[nodiscard]] bool is_on_floor(const Point2& place) const { return pilot_.reaches(place) && is_free(place); }
   /// Free, with any heading.
   [[nodiscard]] Pose2 place_anywhere(Random& random) const;
 

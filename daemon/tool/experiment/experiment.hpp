@@ -53,7 +53,7 @@ struct Target {
 struct Figure {
   std::string name;
   double value = 0.0;  ///< NaN where there is nothing to measure
-  std::string unit;    ///< empty: a share or a count
+  std::string unit{};  ///< empty: a share or a count
   std::optional<Target> target{};
   std::string peers{};  ///< what others reach
 };
@@ -67,7 +67,7 @@ struct Chart {
   std::string title;
   std::string x;
   std::string y;
-  std::vector<Series> series;
+  std::vector<Series> series{};
   bool with_diagonal = false;  ///< y = x, for reliability
 };
 

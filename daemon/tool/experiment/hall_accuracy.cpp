@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/tool/experiment/localizer_drive.hpp"
+#include "daemon/tool/experiment/localizer_variants.hpp"
 #include "daemon/tool/experiment/registry.hpp"
 #include "daemon/tool/experiment/weakest_axis.hpp"
 
@@ -17,19 +18,6 @@ constexpr double kUnobserved = 0.05;  // share of information along an axis belo
 constexpr double kInside1 = 3.841;
 constexpr double kInside2 = 5.991;
 constexpr double kInside3 = 7.815;
-
-struct Setting {
-  std::string name;
-  localization::LocalizerParams params;
-};
-
-/// As the peers were measured, and as the daemon is delivered.
-std::vector<Setting> settings_of(const localization::LocalizerParams& delivered) {
-  localization::LocalizerParams peers = delivered;
-  peers.particles.min = peers.particles.max = 500;
-  peers.beams = 60;
-  return {{"500x60", peers}, {"delivered", delivered}};
-}
 
 std::vector<double> row_of(const Followed& scan, const WeakestAxis& axis) {
   const PoseError error = error_of(scan);
@@ -95,8 +83,8 @@ ScanTable joined(const std::vector<Outcome>& outcomes, const std::string& settin
   return all;
 }
 
-Outcome follow(const simulation::Scenario& scenario, const Setting& setting, double range_m, std::uint64_t seed,
-               double minutes) {
+Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& setting, double range_m,
+               std::uint64_t seed, double minutes) {
   simulation::VirtualDriveParams drive;
   drive.seed = seed;
   drive.max_range_m = range_m;
@@ -132,7 +120,7 @@ std::vector<Run> HallAccuracy::runs(const Options& options) const {
   const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
   const double minutes = options.minutes.value_or(options.quick ? 2.0 : 10.0);
   std::vector<Run> runs;
-  for (const Setting& setting : settings_of(options.localizer)) {
+  for (const LocalizerVariant& setting : localizer_variants(options.localizer)) {
     for (const double range_m : {80.0, 8.0}) {
       for (int i = 0; i < seeds; ++i) {
         const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);

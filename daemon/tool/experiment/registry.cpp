@@ -9,6 +9,8 @@ namespace deltamap::daemon::tool::experiment {
 std::vector<std::unique_ptr<Experiment>> experiments() {
   std::vector<std::unique_ptr<Experiment>> all;
   all.push_back(hall_experiment());
+  all.push_back(stale_map_experiment());
+  all.push_back(verdict_experiment());
   return all;
 }
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/experiment/lived_in.hpp"
+
+#include <utility>
+
+namespace deltamap::daemon::tool::experiment {
+
+simulation::ForkliftParams busy_forklift(double change_every_s) {
+  simulation::ForkliftParams forklift;
+  forklift.change_every_s = change_every_s;
+  forklift.kinds = {simulation::ChangeKind::kRemoved, simulation::ChangeKind::kAdded, simulation::ChangeKind::kShifted};
+  forklift.least_filled = 0.3;
+  return forklift;
+}
+
+LivedIn::LivedIn(const simulation::Scenario& scenario, std::vector<simulation::PersonParams> people,
+                 const localization::LocalizerParams& localizer, std::shared_ptr<const OccupancyGrid> map,
+                 const LivedInParams& params)
+    : scenario_{scenario}, people_{std::move(people)}, localizer_{localizer}, map_{std::move(map)}, params_{params} {}
+
+const localization::StabilityRecord& LivedIn::stability() {
+  std::call_once(driven_, [this] { drive(); });
+  return stability_;
+}
+
+void LivedIn::drive() {
+  simulation::VirtualDriveParams drive;
+  drive.seed = params_.seed;
+  drive.max_range_m = params_.max_range_m;
+  drive.people = people_;
+  drive.forklift = busy_forklift(params_.change_every_s);
+  LocalizerDrive pair{scenario_, drive, localizer_, map_, localization::InitialPose{scenario_.robot.map_from_start}};
+  while (pair.next().passed_s < 60.0 * params_.minutes) {
+  }
+  stability_ = pair.localizer().stability();
+}
+
+}  // namespace deltamap::daemon::tool::experiment

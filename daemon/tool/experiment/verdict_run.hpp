@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// One run of `verdict`: a robot that knows where it is drives; then, at one moment, containers change and something
+// befalls it; then it drives on. Does it notice, and does it say so?
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "daemon/tool/experiment/lived_in.hpp"
+#include "daemon/tool/experiment/scan_table.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+
+enum class PoseEvent : std::uint8_t {
+  kNothing,   ///< the pose stays right
+  kBay,       ///< carried exactly one container (2.5 m) or one block (15 m) on, heading kept
+  kSlip,      ///< 0.3 to 1 m anywhere, 10° at most
+  kElsewhere  ///< carried to any free place and heading
+};
+inline constexpr std::array kPoseEvents{PoseEvent::kNothing, PoseEvent::kBay, PoseEvent::kSlip, PoseEvent::kElsewhere};
+[[nodiscard]] std::string_view name_of(PoseEvent event);
+
+struct VerdictRun {
+  std::uint64_t seed = 1;
+  PoseEvent event = PoseEvent::kNothing;
+  double changed_share = 0.0;  ///< of the containers, at the moment of the event
+  double max_range_m = 80.0;
+  double before_s = 10.0;  ///< of driving
+  double after_s = 60.0;   ///< likewise
+};
+
+struct VerdictPlace {
+  simulation::Scenario scenario;
+  std::vector<simulation::PersonParams> people;
+  std::shared_ptr<const OccupancyGrid> map;  ///< M_0
+  localization::LocalizerParams localizer;
+};
+
+/// A row for every scan; `since_event_s` is negative before it. `map_is_wrong`: more than 5 % of the beams truly end
+/// where M_0's world would not have ended them, people left aside.
+[[nodiscard]] ScanTable verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
+                                      const VerdictRun& run);
+
+}  // namespace deltamap::daemon::tool::experiment
