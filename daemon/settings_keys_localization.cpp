@@ -19,6 +19,8 @@ void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(number_key("localization.particles.kld_quantile", particles.kld_quantile, "", 0.1, 5.0,
                             "how surely the bound holds"));
   keys.push_back(whole_key("localization.beams", localizer.beams, "", 0, 1000, "beams of a scan that score; 0: all"));
+  keys.push_back(number_key("localization.gap_s", localizer.gap_s, "s", 0.1, 1e9,
+                            "without a scan, after which the pose must prove itself again"));
   auto& update = localizer.update;
   keys.push_back(number_key("localization.update.distance_m", update.distance_m, "m", 0.0, 10.0,
                             "driven until a scan is weighed again"));
@@ -142,6 +144,8 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
                            "places slid to their best fit at a scan"));
   keys.push_back(number_key("localization.rivals.winning_share", rivals.winning_share, "", 0.5, 1.0,
                             "of the belief at which another place is believed instead"));
+  keys.push_back(number_key("localization.rivals.wins_after_m", rivals.wins_after_m, "m", 0.0, 1000.0,
+                            "driven since it was found before another place may win"));
   keys.push_back(number_key("localization.rivals.block_m", rivals.block_m, "m", 0.01, 10.0,
                             "lattice of poses: between two positions"));
   keys.push_back(whole_key("localization.rivals.headings", rivals.headings, "", 1, 720, "and headings"));

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "localization/localizer_params.hpp"
@@ -14,6 +12,7 @@ namespace deltamap::localization {
 namespace {
 
 constexpr std::uint64_t kSeedOfRivals = 0x52697661;
+constexpr double kFarthestGuessS = 3.0;      // of silence: after longer ones particles near the old pose are no guess
 constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as silent when its epoch changes
 
 /// The last scan that changed the particles.
@@ -29,21 +28,6 @@ struct MotionSince {
   double unknown_s = 0.0;
   double passed_s = 0.0;
 };
-
-std::shared_ptr<const OccupancyGrid> with_free_space(std::shared_ptr<const OccupancyGrid> map) {
-  if (!map || count_of(*map, CellState::kFree) == 0) throw std::runtime_error("the map has no free cell to be in");
-  return map;
-}
-
-/// What is known before the first scan: the middle of the map, give or take all of it.
-Hypothesis anywhere_in(const OccupancyGrid& map) {
-  const Point2 half = 0.5 * map.resolution_m() * Point2{map.width(), map.height()};
-  const Point2 middle = map.geometry().origin + half;
-  const double turn = std::numbers::pi;
-  return {{middle.x(), middle.y(), 0.0},
-          Eigen::Vector3d{half.x() * half.x() / 3.0, half.y() * half.y() / 3.0, turn * turn / 3.0}.asDiagonal(),
-          0.0};
-}
 
 /// A pose and its covariance carried along a motion.
 RefinedPose carried(const RefinedPose& believed, const MotionSince& since, const MotionModelParams& model) {
@@ -83,22 +67,43 @@ struct Localizer::State {
   FitMonitor monitor;
   Stability stability;
   Rivals rivals;
+  PoseCheck check;  ///< under way: particles around a pose that is not yet believed
+  LocalizerCounts counts;
   Hypothesis best;
   BeamEnds ends;
   std::optional<LastUpdate> last_update;
   std::optional<Timestamp> last_scan;
+  std::optional<std::uint32_t> last_epoch;
   Pose2 last_joined;   ///< odometry at the last scan
   double w_avg = 1.0;  ///< before any scan nothing speaks against the pose
+
+  void start_at(const InitialPose& given) {
+    const Start start = usable_start(*map, given);
+    counts.poses_in_obstacle += start.kind == StartKind::kCheck && !given.remembered ? 1 : 0;
+    counts.poses_refused += start.kind == StartKind::kAnywhere ? 1 : 0;
+    if (start.kind == StartKind::kAnywhere) return start_anywhere();
+    start_around(start.pose);
+    last_update.reset();
+    if (start.kind == StartKind::kCheck) check_pose();
+  }
 
   void start_around(const InitialPose& pose) {
     filter.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
     best = hypotheses.best(filter.particles());
     monitor.start(LocalizerState::kTracking);
     rivals.start_believing();
-    last_update.reset();
+    check.end();
+  }
+
+  /// The particles stay where they are, but must prove themselves.
+  void check_pose() {
+    monitor.start(LocalizerState::kGlobal);
+    check.start();
   }
 
   void start_anywhere() {
+    ++counts.searches;
+    check.end();
     rivals.start_anywhere();
     best = anywhere_in(*map);
     monitor.start(LocalizerState::kGlobal);
@@ -119,10 +124,15 @@ struct Localizer::State {
   }
 
   /// The particles start anew around a place that has won.
-  void believe_in(const RefinedPose& place) {
-    filter.start_around(place.map_from_robot, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0);
-    best = hypotheses.best(filter.particles());
-    rivals.start_believing();
+  void believe_in(const Pose2& place) {
+    start_around({place, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0});
+    last_update->believed = {best.map_from_robot, best.covariance};
+  }
+
+  /// A place that holds nearly all belief, for long enough, and that the map explains now.
+  [[nodiscard]] bool has_won(const RivalPlace& place) const {
+    return place.share >= params.rivals.winning_share && place.followed_m >= params.rivals.wins_after_m &&
+           ends.size() > 0 && explained_share(field, ends, place.map_from_robot) >= params.fit.found_above;
   }
 
   [[nodiscard]] MotionSince motion_since_update(Timestamp time, const std::optional<OdometryAt>& now) const {
@@ -135,7 +145,11 @@ struct Localizer::State {
     }
     since.motion = motion_between(last_update->odometry->joined_from_robot, now->joined_from_robot);
     since.unknown_s = std::min(now->uncovered_s, since.passed_s);
-    if (now->epoch != last_update->odometry->epoch) since.unknown_s += kJumpBetweenEpochsS;
+    if (now->epoch != last_update->odometry->epoch) {
+      const double silent_s = since.passed_s > 2.0 * params.update.time_s ? since.passed_s : 0.0;
+      since.unknown_s += std::clamp(silent_s, kJumpBetweenEpochsS, kFarthestGuessS);
+    }
+
     return since;
   }
 
@@ -185,15 +199,40 @@ struct Localizer::State {
     return refined(field, ends, prior, beam_share(), params.refinement);
   }
 
+  /// Before the scan is used: what is wrong with it, or with the time since the last one.
+  void note_oddities(Timestamp time, const std::optional<OdometryAt>& now) {
+    ++counts.scans;
+    counts.scans_without_return += ends.size() == 0 ? 1 : 0;
+    counts.scans_without_odometry += now ? 0 : 1;
+    counts.odometry_epochs += now && last_epoch && now->epoch != *last_epoch ? 1 : 0;
+    if (now) last_epoch = now->epoch;
+    if (!last_scan) return;
+    const double passed_s = seconds(time - *last_scan);
+    if (passed_s < 0.0) {
+      ++counts.clock_fell_back;
+      if (last_update) last_update->time = time;
+    }
+    if (passed_s < params.gap_s || monitor.state() != LocalizerState::kTracking) return;
+    ++counts.gaps;
+    check_pose();
+  }
+
   RefinedPose believed(Timestamp time, const std::optional<OdometryAt>& now) {
-    if (monitor.state() == LocalizerState::kGlobal) return search(time, now);
+    if (monitor.state() == LocalizerState::kGlobal && !check.under_way()) return search(time, now);
     const MotionSince since = motion_since_update(time, now);
     const RefinedPose believed = update_due(since) ? update(time, now, since) : follow(since);
-    (void)rivals.observe(field, {.ends = ends,
-                                 .joined_from_robot = now ? now->joined_from_robot : last_joined,
-                                 .map_from_believed = believed.map_from_robot,
-                                 .unknown_s = since.unknown_s});
-    return believed;
+    const bool lost = monitor.state() == LocalizerState::kLost;
+    const RivalReport& report =
+        rivals.observe(field, {.ends = ends,
+                               .joined_from_robot = now ? now->joined_from_robot : last_joined,
+                               .map_from_believed = lost ? std::nullopt : std::optional{believed.map_from_robot},
+                               .unknown_s = since.unknown_s});
+    if (report.listed == 0 || !has_won(report.rivals.front())) return believed;
+    ++counts.recoveries;
+    last_update->time = time;
+    last_update->odometry = now;
+    believe_in(report.rivals.front().map_from_robot);
+    return last_update->believed;
   }
 
   void judge(Timestamp time, const std::optional<OdometryAt>& now, const RefinedPose& believed) {
@@ -208,11 +247,26 @@ struct Localizer::State {
     last_scan = time;
     if (ends.size() == 0) return;  // a scan that saw nothing says nothing
     seen.fit = explained_share(field, ends, believed.map_from_robot);
+    if (check.under_way()) return judge_start(seen.fit);
     const LocalizerState before = monitor.state();
     const LocalizerState after = monitor.observe(seen, best);
-    if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) believe_in(believed);
-    if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) rivals.stop_believing();
-    if (monitor.search_failed()) start_anywhere();
+    if (monitor.search_failed()) {
+      ++counts.searches_failed;
+      start_anywhere();
+    }
+    if (before == after) return;
+    if (after == LocalizerState::kLost) rivals.stop_believing();
+    if (before == LocalizerState::kLost && after == LocalizerState::kTracking) rivals.start_believing();
+    if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) ++counts.searches;
+    if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) believe_in(believed.map_from_robot);
+  }
+
+  void judge_start(double fit) {
+    const PoseCheck::Answer answer = check.observe(fit, params.fit.found_above);
+    counts.poses_confirmed += answer == PoseCheck::Answer::kFits ? 1 : 0;
+    counts.poses_refuted += answer == PoseCheck::Answer::kDoesNotFit ? 1 : 0;
+    if (answer == PoseCheck::Answer::kFits) monitor.start(LocalizerState::kTracking);
+    if (answer == PoseCheck::Answer::kDoesNotFit) start_anywhere();
   }
 
   /// For a revision that does not follow on the present map.
@@ -242,7 +296,7 @@ Localizer::Localizer(const LocalizerParams& params, std::shared_ptr<const Occupa
                      std::optional<InitialPose> initial_pose, std::uint64_t seed)
     : state_{std::make_unique<State>(params, std::move(map), seed)} {
   if (initial_pose) {
-    state_->start_around(*initial_pose);
+    state_->start_at(*initial_pose);
   } else {
     state_->start_anywhere();
   }
@@ -262,6 +316,7 @@ TrackedScan Localizer::observe(Scan scan) {
   const BodyVelocity velocity = state.odometry.velocity_at(time);
   tracked.rays = deskewed(scan, velocity);
   state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
+  state.note_oddities(time, now);
   const RefinedPose believed = state.believed(time, now);
   state.judge(time, now, believed);
 
@@ -292,7 +347,11 @@ void Localizer::apply(const MapRevision& revision) {
   state.revision = revision.number;
 }
 
-void Localizer::relocalize(const InitialPose& pose) { state_->start_around(pose); }
+void Localizer::relocalize(const InitialPose& pose) { state_->start_at(pose); }
+
+const RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
+
+const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 
 StabilityRecord Localizer::stability() const { return state_->stability.record(); }
 

@@ -9,18 +9,14 @@
 #include <span>
 
 #include "core/messages.hpp"
+#include "localization/localizer_counts.hpp"
+#include "localization/rivals.hpp"
 #include "localization/stability.hpp"
+#include "localization/start_pose.hpp"
 
 namespace deltamap::localization {
 
 struct LocalizerParams;
-
-/// Where the robot's frame lies in the map at the first scan, and how far to trust it.
-struct InitialPose {
-  Pose2 map_from_robot;
-  double position_deviation_m = 0.2;
-  double heading_deviation_rad = 0.17453292519943295;  // 10°
-};
 
 class Localizer {
  public:
@@ -40,8 +36,12 @@ class Localizer {
   /// Takes M_k from the next scan on: copies the prepared patch where k follows the present number, else rebuilds.
   void apply(const MapRevision& revision);
 
-  /// Starts again around a pose that a person gave.
+  /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp).
   void relocalize(const InitialPose& pose);
+
+  /// What else in the map the scans may mean, as of the last scan.
+  [[nodiscard]] const RivalReport& rivals() const;
+  [[nodiscard]] const LocalizerCounts& counts() const;
 
   /// What of the map has proven to stay, to be kept across restarts.
   [[nodiscard]] StabilityRecord stability() const;

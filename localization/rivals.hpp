@@ -26,6 +26,7 @@ struct RivalsParams {
   double nearby_prior = 1e-3;         ///< odds of such a place against the believed one, before any scan; 0..1
   double elsewhere_prior = 1e-6;      ///< odds of any other place: nobody carries robots about; 0..1
   double winning_share = 0.98;        ///< of the belief at which another place is believed instead; 0.5..1
+  double wins_after_m = 1.0;          ///< driven since it was found before another place may win, m; >= 0
   int refined_a_scan = 4;             ///< places that are slid to their best fit at a scan while tracking; >= 0
   double block_m = 0.25;              ///< side of the coarse field's blocks, m; > 0
   int headings = 48;                  ///< of the lattice of poses; > 0
