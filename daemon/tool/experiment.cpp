@@ -24,6 +24,7 @@ struct ExperimentOptions {
   std::string config;
   std::vector<std::string> overrides;
   int jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  std::string only;  // part of a run's name
   bool with_scans = false;
   bool as_json = false;
   experiment::Options options;
@@ -65,6 +66,10 @@ void run(const ExperimentOptions& given) {
   experiment::expect_writable(given.out);
   experiment::Results results{
       chosen->name(), chosen->what(), options.seed, options.quick, chosen->runs(options), {}, {}};
+  std::erase_if(results.runs,
+                [&](const experiment::Run& one) { return one.name.find(given.only) == std::string::npos; });
+  if (results.runs.empty())
+    throw CLI::ValidationError{"no run of '" + given.name + "' has '" + given.only + "' in its name"};
   {
     Progress progress{chosen->name(), results.runs.size()};
     progress.show(0);
@@ -96,6 +101,7 @@ void add_experiment(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command.add_option("--repeats", given->options.repeats, "seeds, or runs of each kind, in place of the experiment's")
       ->check(CLI::Range(1, 10000));
+  command.add_option("--only", given->only, "only runs with this in their name, for example depot-bay");
   command.add_option("--scenarios", given->options.scenarios, "folder of the scenarios (default config/scenarios)");
   command.add_option("--config", given->config, "settings of the localizer, YAML (default: as delivered)");
   command.add_option("--set", given->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);

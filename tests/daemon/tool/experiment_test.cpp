@@ -143,6 +143,14 @@ TEST(Experiment, TriesTheFolderWithoutLeavingATrace) {
   EXPECT_TRUE(names_in(folder.path() / "made").empty());
 }
 
+TEST(Experiment, DoesOnlyTheRunsThatAreAskedFor) {
+  const test::TemporaryFolder folder;
+  const Answer answer = experiment("hall", folder.path(), {"--only", "500x60-8m", "--json"});
+  ASSERT_EQ(answer.code, 0) << answer.errors;
+  EXPECT_EQ(nlohmann::json::parse(answer.out)["runs"], 1);
+  EXPECT_EQ(experiment("hall", folder.path(), {"--only", "no such run"}).code, 2);
+}
+
 TEST(Target, IsMetOnlyByAMeasuredFigureWithinItsLimits) {
   const experiment::Target target{.least = 0.9, .most = 0.98};
   EXPECT_TRUE(target.is_met_by(0.95));

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/experiment/verdict_report.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "daemon/tool/experiment/verdict_part.hpp"
+#include "daemon/tool/experiment/verdict_run.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+namespace {
+
+constexpr double kRecovery_s = 30.0;
+
+double share_of(double part, double whole) { return whole > 0.0 ? part / whole : std::nan(""); }
+
+std::string of(double part, double whole) { return text_of(part) + " of " + text_of(whole); }
+
+TextTable table_of(const std::vector<Outcome>& outcomes, const std::string& place) {
+  TextTable table{
+      place,
+      {"event", "changed", "range, m", "runs", "once wrong", "wrong called right > 5 s", "right called lost",
+       "recovered in 30 s", "recovered in 60 s", "noticed after, mean s", "Brier pose", "Brier map"},
+      {}};
+  for (const PoseEvent event : kPoseEvents) {
+    for (const double changed : kVerdictChangedShares) {
+      for (const double range_m : kVerdictRanges_m) {
+        const VerdictPart part{outcomes, [&](const Outcome& o) {
+                                 return o.label("place") == place && o.label("event") == name_of(event) &&
+                                        o.label("changed") == text_of(changed) &&
+                                        o.label("range_m") == text_of(range_m);
+                               }};
+        if (part.runs() == 0.0) continue;
+        const double wrong = part.once_wrong();
+        table.rows.push_back(
+            {std::string{name_of(event)}, text_of(100.0 * changed) + " %", text_of(range_m), text_of(part.runs()),
+             text_of(wrong), text_of(part.wrong_called_right()), of(part.right_called_lost(), part.runs() - wrong),
+             of(part.recovered_in(kRecovery_s), wrong), of(part.recovered_in(HUGE_VAL), wrong),
+             text_of(part.mean_noticed_s()), text_of(part.pose().brier()), text_of(part.map().brier())});
+      }
+    }
+  }
+  return table;
+}
+
+Series series_of(const Reliability& reliability, const std::string& name) {
+  Series series{name, {}};
+  for (const Reliability::Bin& bin : reliability.bins) {
+    if (bin.scans > 0.0) series.points.emplace_back(bin.given / bin.scans, bin.came / bin.scans);
+  }
+  return series;
+}
+
+TextTable table_of(const Reliability& reliability, const std::string& title) {
+  TextTable table{title, {"given", "mean", "came true", "scans"}, {}};
+  for (std::size_t i = 0; i < reliability.bins.size(); ++i) {
+    const Reliability::Bin& bin = reliability.bins[i];
+    const double low = 0.1 * static_cast<double>(i);
+    table.rows.push_back({text_of(low) + "–" + text_of(low + 0.1), text_of(bin.given / bin.scans),
+                          text_of(bin.came / bin.scans), text_of(bin.scans)});
+  }
+  return table;
+}
+
+void add_figures(Report& report, const std::string& place, const VerdictPart& part) {
+  const double wrong = part.once_wrong();
+  const double right = part.runs() - wrong;
+  const auto add = [&](const std::string& what, double value, const std::string& unit, std::optional<Target> target) {
+    report.figures.push_back({place + ": " + what, value, unit, target});
+  };
+  add("wrong poses called right for more than 5 s", share_of(part.wrong_called_right(), wrong), "",
+      Target{.most = 0.01});
+  add("right poses called lost", share_of(part.right_called_lost(), right), "", Target{.most = 0.02});
+  add("Brier score of P(pose right)", part.pose().brier(), "", std::nullopt);
+  add("Brier score of P(map wrong)", part.map().brier(), "", std::nullopt);
+  // In the hall other places look the same: to come right again is luck.
+  const auto recovery = place == "hall" ? std::nullopt : std::optional{Target{.least = 0.95}};
+  add("wrong poses right again, and called so, within 30 s", share_of(part.recovered_in(kRecovery_s), wrong), "",
+      recovery);
+  add("wrong poses right again, and called so, at all", share_of(part.recovered_in(HUGE_VAL), wrong), "", std::nullopt);
+  add("half of the wrong poses right again after", part.recovery_quantile_s(0.5), "s", std::nullopt);
+  add("runs once wrong", wrong, "", std::nullopt);
+  add("runs never wrong", right, "", std::nullopt);
+  add("time called right in runs never wrong", part.called_right_when_right(), "", std::nullopt);
+}
+
+}  // namespace
+
+Report verdict_report(const std::vector<Outcome>& outcomes) {
+  Report report;
+  for (const std::string place : {"hall", "depot"}) {
+    const VerdictPart part{outcomes, [&](const Outcome& outcome) { return outcome.label("place") == place; }};
+    add_figures(report, place, part);
+    report.tables.push_back(table_of(outcomes, place));
+    const Reliability pose = part.pose();
+    const Reliability map = part.map();
+    report.tables.push_back(table_of(pose, place + ": P(pose right)"));
+    report.tables.push_back(table_of(map, place + ": P(map wrong)"));
+    report.charts.push_back({place + ": reliability",
+                             "probability given",
+                             "share that came true",
+                             {series_of(pose, "pose right"), series_of(map, "map wrong")},
+                             true});
+  }
+  return report;
+}
+
+}  // namespace deltamap::daemon::tool::experiment
