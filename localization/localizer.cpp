@@ -61,6 +61,8 @@ struct Localizer::State {
   std::shared_ptr<const OccupancyGrid> map;
   std::uint32_t revision = 0;
   LikelihoodField field;
+  std::optional<BeamModel> beam_model;  ///< only where it is chosen
+  Point2 robot_from_laser{0.0, 0.0};
   OdometryBuffer odometry;
   ParticleFilter filter;
   HypothesisFinder hypotheses;
@@ -162,11 +164,28 @@ struct Localizer::State {
     return std::min(1.0, params.particles.evidence_beams / static_cast<double>(ends.size()));
   }
 
+  [[nodiscard]] std::int32_t misfit_at(const Pose2& map_from_robot) const {
+    return beam_model ? beam_model->misfit_steps(ends, robot_from_laser, map_from_robot)
+                      : misfit_steps(field, ends, map_from_robot);
+  }
+
+  [[nodiscard]] std::span<const std::int32_t> weighed() {
+    if (!beam_model) return filter.weigh(field, ends, params.particles.evidence_beams);
+    return filter.weigh_by([&](const Pose2& pose) { return misfit_at(pose); }, ends.size(),
+                           params.particles.evidence_beams);
+  }
+
+  /// The beam model knows the range that counts as none only from the scans.
+  void make_beam_model(const Scan& scan) {
+    robot_from_laser = scan.robot_from_laser.position();
+    if (params.model == ScanModel::kBeam && !beam_model) beam_model.emplace(*map, params.beam_model, scan.max_range_m);
+  }
+
   /// Moves and weighs the particles; they may be drawn anew afterwards.
   RefinedPose update(Timestamp time, const std::optional<OdometryAt>& now, const MotionSince& since) {
     if (last_update) filter.move(since.motion, since.unknown_s, params.motion);
     std::span<const std::int32_t> misfits;
-    if (ends.size() > 0) misfits = filter.weigh(field, ends, params.particles.evidence_beams);
+    if (ends.size() > 0) misfits = weighed();
     const double n_eff = filter.n_eff();
     best = hypotheses.best(filter.particles());
     RefinedPose believed{best.map_from_robot, best.covariance};
@@ -192,7 +211,7 @@ struct Localizer::State {
     const Hypothesis standing = hypotheses.best(filter.particles());
     double sum = 0.0;
     for (const std::uint32_t i : hypotheses.members()) {
-      sum += mean_likelihood(misfit_steps(field, ends, filter.particles().pose(i) * since.motion), ends.size());
+      sum += mean_likelihood(misfit_at(filter.particles().pose(i) * since.motion), ends.size());
     }
     w_avg = sum / static_cast<double>(hypotheses.members().size());
     best.weight = standing.weight;
@@ -315,6 +334,7 @@ TrackedScan Localizer::observe(Scan scan) {
   const std::optional<OdometryAt> now = state.odometry.at(time);
   const BodyVelocity velocity = state.odometry.velocity_at(time);
   tracked.rays = deskewed(scan, velocity);
+  state.make_beam_model(scan);
   state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
   state.note_oddities(time, now);
   const RefinedPose believed = state.believed(time, now);
@@ -345,6 +365,7 @@ void Localizer::apply(const MapRevision& revision) {
   }
   state.map = revision.map;
   state.revision = revision.number;
+  state.beam_model.reset();
 }
 
 void Localizer::relocalize(const InitialPose& pose) { state_->start_at(pose); }

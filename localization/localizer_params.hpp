@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/angle.hpp"
+#include "localization/beam_model.hpp"
 #include "localization/fit_monitor.hpp"
 #include "localization/global_search.hpp"
 #include "localization/hypotheses.hpp"
@@ -31,7 +32,9 @@ struct LocalizerParams {
   ParticleFilterParams particles;
   OdometryBufferParams odometry;
   MotionModelParams motion;
+  ScanModel model = ScanModel::kLikelihoodField;  ///< what weighs the particles
   LikelihoodFieldParams field;
+  BeamModelParams beam_model;  ///< with kBeam
   HypothesisParams hypothesis;
   RefinementParams refinement;
   UpdateParams update;

@@ -43,14 +43,13 @@ void ParticleFilter::move(const Pose2& motion, double unknown_s, const MotionMod
 std::span<const std::int32_t> ParticleFilter::weigh(const LikelihoodField& field, const BeamEnds& ends,
                                                     double evidence_beams) {
   assert(ends.size() > 0 && "a scan without ends weighs nothing");
-  const double per_step = -LikelihoodField::kStep * std::min(1.0, evidence_beams / static_cast<double>(ends.size()));
-  misfits_.resize(particles_.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    misfits_[i] = misfit_steps(field, ends, particles_.pose(i));
-    particles_.log_weight[i] += per_step * misfits_[i];
-  }
+  return weigh_by([&](const Pose2& pose) { return misfit_steps(field, ends, pose); }, ends.size(), evidence_beams);
+}
+
+void ParticleFilter::accumulate(std::size_t beams, double evidence_beams) {
+  const double per_step = -LikelihoodField::kStep * std::min(1.0, evidence_beams / static_cast<double>(beams));
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_.log_weight[i] += per_step * misfits_[i];
   normalize_weights();
-  return misfits_;
 }
 
 void ParticleFilter::normalize_weights() {

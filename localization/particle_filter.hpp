@@ -39,6 +39,15 @@ class ParticleFilter {
   /// `ends` must not be empty; together they count as `evidence_beams` independent ones at most.
   std::span<const std::int32_t> weigh(const LikelihoodField& field, const BeamEnds& ends, double evidence_beams);
 
+  /// The same by another measure: `misfit_at(Pose2)` answers steps, the sum over `beams` ends.
+  template <typename MisfitAt>
+  std::span<const std::int32_t> weigh_by(MisfitAt&& misfit_at, std::size_t beams, double evidence_beams) {
+    misfits_.resize(particles_.size());
+    for (std::size_t i = 0; i < particles_.size(); ++i) misfits_[i] = misfit_at(particles_.pose(i));
+    accumulate(beams, evidence_beams);
+    return misfits_;
+  }
+
   /// N_eff (Eq. 5) of the accumulated weights.
   [[nodiscard]] double n_eff() const;
 
@@ -49,6 +58,7 @@ class ParticleFilter {
   [[nodiscard]] Random& random() { return random_; }
 
  private:
+  void accumulate(std::size_t beams, double evidence_beams);
   void normalize_weights();
 
   ParticleFilterParams params_;

@@ -1,15 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rows that simulated drives answer: runs `deltamap experiment` and reads its summary.json."""
-from measuring import row
+"""The rows that simulated drives answer: runs `deltamap experiment` and takes from its summary.json every figure that has
+something to reach."""
+import json
+
+from measuring import OUT, TOOL, row, run
+
+
+def number(value):
+    return "nothing to measure" if value is None else "%.4g" % value
+
+
+def target_of(figure):
+    bounds, unit = figure["target"], " " + figure["unit"] if figure["unit"] else ""
+    return ", ".join(sign + " " + number(bounds[side]) + unit for side, sign in (("least", "≥"), ("most", "≤")) if side in bounds)
+
+
+def experiment_rows(name, quick):
+    folder = OUT / "runs" / ("experiment-" + name)
+    run(TOOL, "experiment", name, "--out", folder, *(["--quick"] if quick else []))
+    summary = json.loads((folder / "summary.json").read_text())
+    return [row("%s: %s" % (name, figure["name"]), ("%s %s" % (number(figure["value"]), figure["unit"])).strip(),
+                target_of(figure), figure["met"], figure.get("peers", ""))
+            for figure in summary["figures"] if figure.get("target")]
 
 
 def hall_rows(quick):
-    return []
+    return experiment_rows("hall", quick)
 
 
 def stale_map_rows(quick):
-    return []
+    return experiment_rows("stale-map", quick)
 
 
 def verdict_rows(quick):
-    return []
+    return experiment_rows("verdict", quick)
