@@ -8,6 +8,8 @@ namespace deltamap::localization {
 void FitMonitor::start(LocalizerState state) {
   enter(state);
   misfit_s_ = 0.0;
+  wrong_s_ = 0.0;
+  distrusted_s_ = 0.0;
   any_fit_ = false;
 }
 
@@ -26,24 +28,36 @@ bool FitMonitor::converged(const Hypothesis& best) const {
          best.covariance(2, 2) <= params_.converged_rad * params_.converged_rad;
 }
 
+void FitMonitor::count(const Observation& scan) {
+  const double share = any_fit_ ? 1.0 - std::exp(-scan.passed_s / params_.memory_s) : 1.0;
+  mean_fit_ += share * (scan.fit - mean_fit_);
+  any_fit_ = true;
+  const auto grown_while = [&](bool so, double so_far_s) { return so ? so_far_s + scan.passed_s : 0.0; };
+  const bool misfit = mean_fit_ < params_.lost_below && scan.verdict != PoseVerdict::kRight;
+  misfit_s_ = grown_while(misfit, misfit_s_);
+  wrong_s_ = grown_while(scan.verdict == PoseVerdict::kWrong, wrong_s_);
+  distrusted_s_ = grown_while(scan.trust <= params_.distrust, distrusted_s_);
+}
+
 LocalizerState FitMonitor::observe(const Observation& scan, const Hypothesis& best) {
   in_state_s_ += scan.passed_s;
   driven_in_state_m_ += scan.driven_m;
   turned_in_state_rad_ += std::abs(scan.turned_rad);
-  const double share = any_fit_ ? 1.0 - std::exp(-scan.passed_s / params_.memory_s) : 1.0;
-  mean_fit_ += share * (scan.fit - mean_fit_);
-  any_fit_ = true;
-  misfit_s_ = mean_fit_ < params_.lost_below ? misfit_s_ + scan.passed_s : 0.0;
-  const bool fits = mean_fit_ > params_.found_above;
+  count(scan);
+  const bool fits = mean_fit_ > params_.found_above && distrusted_s_ == 0.0 && wrong_s_ == 0.0;
+  const bool held = scan.verdict == PoseVerdict::kRight || scan.trust >= 1.0 - params_.distrust;
   switch (state_) {
     case LocalizerState::kGlobal:
       if (fits && converged(best)) enter(LocalizerState::kTracking);
       break;
     case LocalizerState::kTracking:
-      if (misfit_s_ >= params_.lost_after_s) enter(LocalizerState::kLost);
+      if (misfit_s_ >= params_.lost_after_s || wrong_s_ > params_.lost_by_verdict_s ||
+          distrusted_s_ >= params_.distrusted_after_s) {
+        enter(LocalizerState::kLost);
+      }
       break;
     case LocalizerState::kLost:
-      if (fits) {
+      if (fits || held) {
         enter(LocalizerState::kTracking);
       } else if (in_state_s_ >= params_.search_after_s && driven_in_state_m_ >= params_.search_after_m) {
         start(LocalizerState::kGlobal);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges whether the localizer knows where it is: global, tracking or lost. A changed map makes scans fit a little
-// worse for long, or much worse for a moment; only a long and strong misfit means lost, and only a lost robot that has
-// driven on searches the whole map again.
+// Judges whether the localizer knows where it is: global, tracking or lost. A changed map makes scans fit worse for
+// long, however much worse: a pose that is held by what has proven to stay is not lost. Lost means that the verdict on
+// the pose is wrong, or a long misfit that nothing explains; only a lost robot that has driven on searches the map
+// anew.
 #pragma once
 
 #include "core/angle.hpp"
@@ -18,6 +19,9 @@ struct FitParams {
   double lost_below = 0.4;                      ///< mean fit that counts as misfit; 0..1
   double found_above = 0.6;                     ///< mean fit that counts as found again; lost_below..1
   double lost_after_s = 10.0;                   ///< unbroken misfit until lost, s; > 0
+  double lost_by_verdict_s = 1.5;               ///< unbroken verdict "wrong" until lost, s; >= 0
+  double distrusted_after_s = 25.0;             ///< unbroken trust below `distrust` until lost, s; > 0
+  double distrust = 0.1;                        ///< P(pose right) by all beams, proven or not; 0..0.5
   double search_after_s = 10.0;                 ///< lost until the whole map is searched, s; >= 0
   double search_after_m = 2.0;                  ///< driven while lost until then, m; >= 0: someone may stand in the way
   double converged_share = 0.98;                ///< weight of the best hypothesis that ends global localization; 0.5..1
@@ -38,6 +42,8 @@ class FitMonitor {
     double driven_m = 0.0;  ///< since the last scan
     double turned_rad = 0.0;
     double fit = 0.0;
+    PoseVerdict verdict = PoseVerdict::kUndecided;
+    double trust = 0.5;  ///< P(pose right) by all beams, whether on proven tiles or not
   };
   /// The state after this scan. kGlobal after kLost: the whole map is to be searched.
   LocalizerState observe(const Observation& scan, const Hypothesis& best);
@@ -49,14 +55,17 @@ class FitMonitor {
  private:
   [[nodiscard]] bool converged(const Hypothesis& best) const;
   void enter(LocalizerState state);
+  void count(const Observation& scan);
 
   FitParams params_;
   LocalizerState state_ = LocalizerState::kGlobal;
   double in_state_s_ = 0.0;
   double driven_in_state_m_ = 0.0;
   double turned_in_state_rad_ = 0.0;
-  double misfit_s_ = 0.0;  ///< unbroken
-  double mean_fit_ = 0.5;  ///< running mean
+  double misfit_s_ = 0.0;      ///< unbroken
+  double wrong_s_ = 0.0;       ///< unbroken
+  double distrusted_s_ = 0.0;  ///< unbroken
+  double mean_fit_ = 0.5;      ///< running mean
   bool any_fit_ = false;
 };
 

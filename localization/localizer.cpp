@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::uint64_t kSeedOfRivals = 0x52697661;
 constexpr double kFarthestGuessS = 3.0;      // of silence: after longer ones particles near the old pose are no guess
+constexpr double kTrustAtStart = 0.9;        // P(pose right) at a pose that a person gave or that has won,
+constexpr double kTrustInNothing = 0.1;      // and before there is any
 constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as silent when its epoch changes
 
 /// The last scan that changed the particles.
@@ -54,7 +56,7 @@ struct Localizer::State {
         filter{given.particles, seed},
         hypotheses{given.hypothesis},
         monitor{given.fit},
-        stability{map->geometry(), given.stability},
+        judgement{*map, given.judgement},
         rivals{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfRivals} {}
 
   LocalizerParams params;
@@ -67,7 +69,7 @@ struct Localizer::State {
   ParticleFilter filter;
   HypothesisFinder hypotheses;
   FitMonitor monitor;
-  Stability stability;
+  Judgement judgement;
   Rivals rivals;
   PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
@@ -94,6 +96,7 @@ struct Localizer::State {
     best = hypotheses.best(filter.particles());
     monitor.start(LocalizerState::kTracking);
     rivals.start_believing();
+    judgement.start(kTrustAtStart);
     check.end();
   }
 
@@ -107,6 +110,7 @@ struct Localizer::State {
     ++counts.searches;
     check.end();
     rivals.start_anywhere();
+    judgement.start(kTrustInNothing);
     best = anywhere_in(*map);
     monitor.start(LocalizerState::kGlobal);
     last_update.reset();
@@ -254,20 +258,30 @@ struct Localizer::State {
     return last_update->believed;
   }
 
-  void judge(Timestamp time, const std::optional<OdometryAt>& now, const RefinedPose& believed) {
+  void judge(const Scan& scan, std::span<const RayInRobot> rays, const std::optional<OdometryAt>& now,
+             const RefinedPose& believed) {
     FitMonitor::Observation seen;
-    if (last_scan) seen.passed_s = std::max(0.0, seconds(time - *last_scan));
+    if (last_scan) seen.passed_s = std::max(0.0, seconds(scan.time - *last_scan));
     if (now && last_scan) {
       const Pose2 motion = motion_between(last_joined, now->joined_from_robot);
       seen.driven_m = motion.position().norm();
-      seen.turned_rad = motion.theta;
+      seen.turned_rad = std::abs(motion.theta);
     }
     if (now) last_joined = now->joined_from_robot;
-    last_scan = time;
+    last_scan = scan.time;
     if (ends.size() == 0) return;  // a scan that saw nothing says nothing
     seen.fit = explained_share(field, ends, believed.map_from_robot);
     if (check.under_way()) return judge_start(seen.fit);
     const LocalizerState before = monitor.state();
+    const Belief& belief = judgement.observe({.map = *map,
+                                              .scan = scan,
+                                              .rays = rays,
+                                              .believed = believed,
+                                              .state = before,
+                                              .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
+                                              .rivals = rivals.report()});
+    seen.verdict = belief.verdict;
+    seen.trust = judgement.trust();
     const LocalizerState after = monitor.observe(seen, best);
     if (monitor.search_failed()) {
       ++counts.searches_failed;
@@ -288,15 +302,6 @@ struct Localizer::State {
     if (answer == PoseCheck::Answer::kDoesNotFit) start_anywhere();
   }
 
-  /// For a revision that does not follow on the present map.
-  void forget_differences(const OccupancyGrid& next) {
-    if (next.geometry() == map->geometry()) {
-      stability.forget(changes_between(*map, next));
-    } else {
-      stability = Stability{next.geometry(), params.stability};
-    }
-  }
-
   [[nodiscard]] Estimate estimate(Timestamp time, const RefinedPose& believed) const {
     return {.time = time,
             .map_from_robot = believed.map_from_robot,
@@ -305,6 +310,7 @@ struct Localizer::State {
             .n_eff = last_update->n_eff,
             .particles = static_cast<std::uint32_t>(
                 monitor.state() == LocalizerState::kGlobal ? rivals.report().places : filter.particles().size()),
+            .belief = judgement.belief(),
             .w_avg = w_avg,
             .revision = revision,
             .map = map};
@@ -338,7 +344,7 @@ TrackedScan Localizer::observe(Scan scan) {
   state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
   state.note_oddities(time, now);
   const RefinedPose believed = state.believed(time, now);
-  state.judge(time, now, believed);
+  state.judge(scan, tracked.rays, now, believed);
 
   tracked.estimate = state.estimate(time, believed);
   if (now) {
@@ -357,10 +363,10 @@ void Localizer::apply(const MapRevision& revision) {
   if (follows && (revision.changes.empty() || !revision.field_patch.box.empty())) {
     state.field.apply(revision.field_patch);
     state.rivals.apply(*revision.map, state.field, revision.field_patch.box);
-    state.stability.forget(revision.changes);
+    state.judgement.forget(revision.changes);
   } else {
     state.field = LikelihoodField{*revision.map, state.params.field};
-    state.forget_differences(*revision.map);
+    state.judgement.forget(*state.map, *revision.map);
     state.rivals.apply(*revision.map, state.field, {{0, 0}, {revision.map->width(), revision.map->height()}});
   }
   state.map = revision.map;
@@ -374,9 +380,9 @@ const RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
 
 const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 
-StabilityRecord Localizer::stability() const { return state_->stability.record(); }
+StabilityRecord Localizer::stability() const { return state_->judgement.stability().record(); }
 
-bool Localizer::restore(const StabilityRecord& record) { return state_->stability.restore(record); }
+bool Localizer::restore(const StabilityRecord& record) { return state_->judgement.restore(record); }
 
 FieldPatch prepared_field_patch(const LocalizerParams& params, const OccupancyGrid& map,
                                 std::span<const CellChange> changes) {

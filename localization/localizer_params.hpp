@@ -7,6 +7,7 @@
 #include "localization/fit_monitor.hpp"
 #include "localization/global_search.hpp"
 #include "localization/hypotheses.hpp"
+#include "localization/judgement.hpp"
 #include "localization/likelihood_field.hpp"
 #include "localization/motion_model.hpp"
 #include "localization/odometry_buffer.hpp"
@@ -14,7 +15,6 @@
 #include "localization/place_bank.hpp"
 #include "localization/pose_refinement.hpp"
 #include "localization/rivals.hpp"
-#include "localization/stability.hpp"
 
 namespace deltamap::localization {
 
@@ -42,7 +42,7 @@ struct LocalizerParams {
   RivalsParams rivals;
   PlaceBankParams places;
   FitParams fit;
-  StabilityParams stability;
+  JudgementParams judgement;
 };
 
 }  // namespace deltamap::localization

@@ -75,5 +75,34 @@ TEST(FitMonitor, NoticesASearchThatFoundNothing) {
   EXPECT_TRUE(monitor.search_failed());
 }
 
+TEST(FitMonitor, TracksOnWhereLittleFitsButProvenTilesHoldThePose) {
+  FitMonitor monitor = tracking();
+  LocalizerState state{};
+  for (int i = 0; i < 300; ++i) {
+    state = monitor.observe({.passed_s = 0.2, .driven_m = 0.1, .fit = 0.2, .verdict = PoseVerdict::kRight}, certain());
+  }
+  EXPECT_EQ(state, LocalizerState::kTracking);
+}
+
+TEST(FitMonitor, IsLostWhereTheVerdictStaysWrongHoweverWellMostBeamsFit) {
+  FitMonitor monitor = tracking();
+  const FitMonitor::Observation wrong{
+      .passed_s = 0.2, .driven_m = 0.1, .turned_rad = 0.0, .fit = 0.8, .verdict = PoseVerdict::kWrong};
+  EXPECT_EQ(monitor.observe(wrong, certain()), LocalizerState::kTracking) << "one view is not enough";
+  LocalizerState state{};
+  for (int i = 0; i < 10; ++i) state = monitor.observe(wrong, certain());
+  EXPECT_EQ(state, LocalizerState::kLost);
+}
+
+TEST(FitMonitor, IsLostAfterLongDistrustThatNothingProvenConfirms) {
+  FitMonitor monitor = tracking();
+  const FitMonitor::Observation odd{.passed_s = 0.2, .driven_m = 0.1, .turned_rad = 0.0, .fit = 0.7, .trust = 0.05};
+  LocalizerState state{};
+  for (int i = 0; i < 100; ++i) state = monitor.observe(odd, certain());
+  EXPECT_EQ(state, LocalizerState::kTracking);
+  for (int i = 0; i < 40; ++i) state = monitor.observe(odd, certain());
+  EXPECT_EQ(state, LocalizerState::kLost);
+}
+
 }  // namespace
 }  // namespace deltamap::localization
