@@ -99,6 +99,29 @@ TEST(VirtualDrive, ComesAboutTheWholeHallWithoutTouchingAnything) {
   for (const bool been : quarters) EXPECT_TRUE(been);
 }
 
+TEST(VirtualDrive, GetsAlongWithPeopleAndAForkLift) {
+  VirtualDriveParams params;
+  params.seed = 8;
+  params.forklift = ForkliftParams{.change_every_s = 20.0};
+  VirtualDrive drive{read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/depot.yaml"), params};
+  double driven_m = 0.0;
+  double least_room_m = 10.0;
+  std::size_t changes = 0;
+  Pose2 last = drive.map_from_robot();
+  for (int scan = 0; scan < 5600; ++scan) {
+    const DriveStep step = drive.next();
+    changes += step.changes.size();
+    for (const Circle& person : drive.people()) {
+      least_room_m = std::min(least_room_m, (person.centre - step.map_from_robot.position()).norm());
+    }
+    driven_m += distance_between(last, step.map_from_robot);
+    last = step.map_from_robot;
+  }
+  EXPECT_GE(changes, 20u);
+  EXPECT_GT(driven_m, 150.0);    // of 298 m without anyone in the way
+  EXPECT_GT(least_room_m, 0.4);  // between centres; bodies touch at 0.45, walked into by the person
+}
+
 TEST(VirtualDrive, DoesNotTellOdometryOfAKidnap) {
   VirtualDrive drive{hall(), {.seed = 4}};
   for (int scan = 0; scan < 100; ++scan) (void)drive.next();

@@ -156,6 +156,7 @@ Report StaleMap::report(const std::vector<Outcome>& outcomes) const {
   for (const std::string variant : {"500x60", "delivered"}) {
     for (const std::string range : {"80", "8"}) {
       const Pooled pooled{outcomes, variant, range};
+      if (pooled.outcomes().empty()) continue;  // not asked for
       add_figures(report, variant, range, pooled);
       Chart errors{variant + ", " + range + " m", "time, min", "error of position, mean of a minute, m", {}};
       Chart belief{variant + ", " + range + " m: belief", "time, min", "probability, mean of a minute", {}};

@@ -90,6 +90,7 @@ Report verdict_report(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string place : {"hall", "depot"}) {
     const VerdictPart part{outcomes, [&](const Outcome& outcome) { return outcome.label("place") == place; }};
+    if (part.runs() == 0.0) continue;  // not asked for
     add_figures(report, place, part);
     report.tables.push_back(table_of(outcomes, place));
     const Reliability pose = part.pose();
