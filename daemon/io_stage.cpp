@@ -47,7 +47,9 @@ struct IoStage::State {
               PortId::kLaser,
               Lms200Session{settings.laser.session, wiring.mode},
               {opener(settings), recorder(), [this](Lms200Output& out) { take(out); },
-               [this] { wiring.telemetry.laser_up.set(false); }, wiring.log}} {}
+               [this] { wiring.telemetry.laser_up.set(false); }, wiring.log}} {
+    wiring.telemetry.drives.set(drives);
+  }
 
   [[nodiscard]] PortOpener opener(const Settings& settings) {
     return wiring.open ? wiring.open : serial_opener(settings);
@@ -115,6 +117,18 @@ struct IoStage::State {
     robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
   }
 
+  void let_drive(bool may_drive) {
+    if (!drives) return;
+    wiring.telemetry.drives.set(may_drive);
+    if (may_drive) return;
+    safety.release();
+    send_allowed_motion();
+  }
+
+  void take(const DriveCommand& command) {
+    if (wiring.telemetry.drives.value()) safety.command(command, drivers::port::port_clock_now());
+  }
+
   void close() {
     safety_timer.cancel();
     robot.close();
@@ -126,7 +140,7 @@ struct IoStage::State {
   asio::io_context loop{1};
   std::atomic<std::int64_t> asked_ns{0};  // port clock; 0: the loop owes no answer
   Wiring wiring;
-  bool drives;
+  bool drives;  // by the settings
   navigation::Safety safety;
   asio::steady_timer safety_timer;
   asio::steady_timer farewell_timer{loop};
@@ -151,7 +165,11 @@ void IoStage::stop() {
 }
 
 void IoStage::post(const DriveCommand& command) {
-  asio::post(state_->loop, [this, command] { state_->safety.command(command, drivers::port::port_clock_now()); });
+  asio::post(state_->loop, [state = state_.get(), command] { state->take(command); });
+}
+
+void IoStage::let_drive(bool may_drive) {
+  asio::post(state_->loop, [state = state_.get(), may_drive] { state->let_drive(may_drive); });
 }
 
 double IoStage::silence_s() const {

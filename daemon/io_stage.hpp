@@ -34,8 +34,11 @@ class IoStage {
   void run();
   /// Any thread: the robot is stopped and both devices let go; run() returns soon after.
   void stop();
-  /// Any thread.
+  /// Any thread. Not listened to while nobody may drive.
   void post(const DriveCommand& command);
+  /// Any thread. The pilot may drive (again), or must not: the robot is then told to stand at once. Where the settings
+  /// say that nobody drives, nothing happens: no velocity is ever sent.
+  void let_drive(bool may_drive);
 
   /// Any one thread, now and then: for how long the loop owes an answer to an earlier call. It takes many small turns:
   /// one that hangs shows in that no other comes.

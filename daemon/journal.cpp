@@ -16,19 +16,32 @@ bool matches(const std::string& note, const char* format, Fields*... fields) {
   return found == static_cast<int>(sizeof...(fields)) && read == static_cast<int>(note.size());
 }
 
+/// Every bit of the pose survives.
+std::string note_of_relocalization(const Pose2& pose, const std::string& scan) {
+  char text[128];
+  (void)std::snprintf(text, sizeof text, "relocalized to %.17g %.17g %.17g before scan ", pose.x, pose.y, pose.theta);
+  return text + scan;
+}
+
 }  // namespace
 
 std::string note_of(const RunIdentity& run) {
-  char text[80];
+  char text[104];
   (void)std::snprintf(text, sizeof text, "run settings %016" PRIx64 " map %016" PRIx64, run.settings, run.map);
-  return text;
+  if (run.memory == 0) return text;
+  char memory[32];
+  (void)std::snprintf(memory, sizeof memory, " memory %016" PRIx64, run.memory);
+  return std::string(text) + memory;
 }
 
 std::optional<RunIdentity> run_of_note(std::string_view note) {
+  const std::string text{note};
   RunIdentity run;
-  if (!matches(std::string(note), "run settings %16" SCNx64 " map %16" SCNx64 "%n", &run.settings, &run.map))
-    return std::nullopt;
-  return run;
+  if (matches(text, "run settings %16" SCNx64 " map %16" SCNx64 "%n", &run.settings, &run.map)) return run;
+  if (matches(text, "run settings %16" SCNx64 " map %16" SCNx64 " memory %16" SCNx64 "%n", &run.settings, &run.map,
+              &run.memory))
+    return run;
+  return std::nullopt;
 }
 
 std::string note_of(const Decision& decision) {
@@ -49,6 +62,12 @@ std::string note_of(const Decision& decision) {
       return "set of phase " + number + " lost";
     case Kind::kPhaseClosed:
       return "phase " + number + " closed at scan " + scan;
+    case Kind::kPaused:
+      return "mapping paused before scan " + scan;
+    case Kind::kResumed:
+      return "mapping resumed before scan " + scan;
+    case Kind::kRelocalized:
+      return note_of_relocalization(decision.map_from_robot, scan);
   }
   return {};
 }
@@ -65,6 +84,11 @@ std::optional<Decision> decision_of_note(std::string_view note) {
   if (matches(text, "set of phase %" SCNu32 " lost%n", &a)) return Decision{Kind::kSetLost, 0, a};
   if (matches(text, "phase %" SCNu32 " closed at scan %" SCNu32 "%n", &a, &b))
     return Decision{Kind::kPhaseClosed, b, a};
+  if (matches(text, "mapping paused before scan %" SCNu32 "%n", &a)) return Decision{Kind::kPaused, a, 0};
+  if (matches(text, "mapping resumed before scan %" SCNu32 "%n", &a)) return Decision{Kind::kResumed, a, 0};
+  Pose2 pose;
+  if (matches(text, "relocalized to %lf %lf %lf before scan %" SCNu32 "%n", &pose.x, &pose.y, &pose.theta, &a))
+    return Decision{Kind::kRelocalized, a, 0, pose};
   return std::nullopt;
 }
 
@@ -98,6 +122,11 @@ void Journal::read(std::string_view note) {
     case Kind::kPhaseClosed:
       closed_[decision->number] = decision->scan;
       break;
+    case Kind::kPaused:
+    case Kind::kResumed:
+    case Kind::kRelocalized:
+      commands_[decision->scan].push_back(*decision);
+      break;
   }
 }
 
@@ -109,6 +138,11 @@ std::optional<std::uint32_t> Journal::revision_before(std::uint32_t scan) const 
 std::optional<std::uint32_t> Journal::closing_scan(std::uint32_t phase) const {
   const auto found = closed_.find(phase);
   return found == closed_.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::span<const Decision> Journal::commands_before(std::uint32_t scan) const {
+  const auto found = commands_.find(scan);
+  return found == commands_.end() ? std::span<const Decision>{} : found->second;
 }
 
 }  // namespace deltamap::daemon

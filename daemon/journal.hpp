@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scheduling journal. Live, the moment at which a revision arrives or a queue overflows depends on the CPU; each
-// such decision is written into the recording as a note, and a replay that starts from the same settings and map obeys
-// it, so that it comes to the same trajectory, revisions and Δ-phases.
+// The scheduling journal. Live, the moment at which a revision arrives or a queue overflows depends on the CPU, and an
+// operator may step in; each such decision is written into the recording as a note, and a replay that starts from the
+// same settings and map obeys it, so that it comes to the same trajectory, revisions and Δ-phases.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "core/pose2.hpp"
 
 namespace deltamap::daemon {
 
@@ -17,6 +21,7 @@ namespace deltamap::daemon {
 struct RunIdentity {
   std::uint64_t settings = 0;  ///< settings_fingerprint(), which holds seed and initial pose too
   std::uint64_t map = 0;       ///< grid_hash() of the map that the run starts on
+  std::uint64_t memory = 0;    ///< of what an earlier run has left besides (pose, stability); a replay has none: 0
   friend bool operator==(const RunIdentity&, const RunIdentity&) = default;
 };
 
@@ -28,10 +33,14 @@ struct Decision {
     kOdometryLost,  ///< odometry number `number` found the sensor channel full
     kTrackedLost,   ///< scan `scan` was localized and found the tracked channel full
     kSetLost,       ///< S(k) of Δ-phase `number` found the map thread busy for too long
-    kPhaseClosed    ///< Δ-phase `number` ended at scan `scan`
+    kPhaseClosed,   ///< Δ-phase `number` ended at scan `scan`
+    kPaused,        ///< by the operator: Δ-mapping does not see scan `scan` and those after it
+    kResumed,       ///< by the operator: it sees scan `scan` again
+    kRelocalized    ///< by the operator: to `map_from_robot` before scan `scan`
   } kind = Kind::kRevision;
   std::uint32_t scan = 0;
   std::uint32_t number = 0;
+  Pose2 map_from_robot{};
   friend bool operator==(const Decision&, const Decision&) = default;
 };
 
@@ -57,11 +66,14 @@ class Journal {
   /// The scan at which a Δ-phase ended in the recorded run.
   [[nodiscard]] std::optional<std::uint32_t> closing_scan(std::uint32_t phase) const;
   [[nodiscard]] std::size_t closed_phases() const { return closed_.size(); }
+  /// What the operator asked for before the scan, in order.
+  [[nodiscard]] std::span<const Decision> commands_before(std::uint32_t scan) const;
 
  private:
   std::optional<RunIdentity> run_;
   std::map<std::uint32_t, std::uint32_t> revisions_;  // scan → revision
   std::map<std::uint32_t, std::uint32_t> closed_;     // phase → scan
+  std::map<std::uint32_t, std::vector<Decision>> commands_;
   std::set<std::uint32_t> dropped_, lost_, lost_odometry_, lost_tracked_, lost_sets_;
 };
 

@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the localization thread does with each message, and what a replay does in its place: odometry, revisions and
-// scans to the localizer, a trajectory point for every scan.
+// What the localization thread does with each message, and what a replay does in its place: odometry, revisions, scans
+// and an operator's pose to the localizer; a trajectory point and a line of localization.csv for every scan.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 
 #include "core/messages.hpp"
+#include "daemon/localization_log.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/settings.hpp"
 #include "localization/localizer.hpp"
+#include "localization/odometry_buffer.hpp"
+#include "mapping/awareness/divergence_ratio.hpp"
 
 namespace deltamap::daemon {
 
-/// The map that a run starts on: M_0, or the newest revision of the store.
+/// What a run starts on: M_0, or the newest revision of the store, and what an earlier run has left.
 struct StartMap {
   std::shared_ptr<const OccupancyGrid> map;
   std::uint32_t revision = 0;
+  std::optional<Pose2>
+      remembered{};  ///< map_from_robot at the end of the run before; the settings' pose goes before it
 };
 
 class LocalizationStep {
@@ -30,26 +34,34 @@ class LocalizationStep {
   /// A scan that a newer one has overtaken: where odometry alone says that it was taken.
   [[nodiscard]] TrajectoryPoint pass_over(const Scan& scan);
   void apply(const MapRevision& revision);
+  /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°).
+  void relocalize(const Pose2& map_from_robot);
 
+  /// Of the newest scan that was localized.
+  [[nodiscard]] const LocalizationRow& row() const { return row_; }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }
+  [[nodiscard]] const VerdictTimes& verdict_times() const { return verdict_times_; }
   /// From the first scan to the last.
   [[nodiscard]] double covered_s() const;
 
  private:
-  [[nodiscard]] std::optional<Odometry> odometry_at(Timestamp time) const;
   void count_time(Timestamp time);
+  void note(const TrackedScan& tracked);
 
   localization::Localizer localizer_;
-  std::deque<Odometry> recent_odometry_;
+  localization::OdometryBuffer odometry_;  // for the scans that the localizer does not see
+  mapping::awareness::DivergenceRatio ratio_;
+  LocalizationRow row_;
   Pose2 last_map_from_robot_;
-  Pose2 last_odom_from_robot_;
-  std::optional<std::uint32_t> last_epoch_;
+  std::optional<localization::OdometryAt> last_odometry_;
   LocalizerState last_state_ = LocalizerState::kGlobal;
+  PoseVerdict last_verdict_ = PoseVerdict::kUndecided;
   std::optional<Timestamp> first_scan_;
   std::optional<Timestamp> last_scan_;
   double time_lost_s_ = 0.0;
   double time_global_s_ = 0.0;
+  VerdictTimes verdict_times_;
 };
 
 }  // namespace deltamap::daemon

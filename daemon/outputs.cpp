@@ -93,6 +93,9 @@ std::string json_text(const RunReport& report) {
   json["refusals"] = refusals;
   json["time_lost_s"] = report.time_lost_s;
   json["time_global_s"] = report.time_global_s;
+  json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
+                          {"undecided_s", report.verdict_times.undecided_s},
+                          {"wrong_s", report.verdict_times.wrong_s}};
   json["recorded_s"] = report.recorded_s;
   const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));
   json["cpu"] = {{"total_s", report.cpu_total_s},         {"per_scan_ms", milliseconds(per_scan)},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of --out (CONTRACT: programs): trajectory.tum, changes.jsonl, map.yaml with map.pgm, report.json. A replay
+// The files of --out (CONTRACT: programs): trajectory.tum, localization.csv, changes.jsonl, map, report.json. A replay
 // writes them aside and moves them in place when all is done, so that a failure leaves nothing half-written; the daemon
 // writes them while it runs.
 #pragma once
@@ -77,6 +77,13 @@ struct StageCpu {
   double recording_s = 0.0;  ///< recording and output files
 };
 
+/// How long the localizer held its pose for what (Belief::verdict).
+struct VerdictTimes {
+  double right_s = 0.0;
+  double undecided_s = 0.0;
+  double wrong_s = 0.0;
+};
+
 /// Everything that report.json says.
 struct RunReport {
   ScanCounts scans;
@@ -84,6 +91,7 @@ struct RunReport {
   std::vector<ChangeNote> changes;
   double time_lost_s = 0.0;
   double time_global_s = 0.0;
+  VerdictTimes verdict_times;
   double recorded_s = 0.0;  ///< from the first scan to the last
   StageCpu cpu;
   double cpu_total_s = 0.0;

@@ -6,14 +6,14 @@
 
 #include "core/channel.hpp"
 #include "core/grid_file.hpp"
-#include "daemon/latency_histogram.hpp"
+#include "daemon/control_desk.hpp"
+#include "daemon/localization_stage.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/revision_keeper.hpp"
 #include "daemon/stage.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "mapping/store_scan.hpp"
-#include "navigation/wander.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -22,6 +22,7 @@ using Kind = Decision::Kind;
 
 constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even on one processor
 constexpr int kRecorderNiceness = 5;
+constexpr int kControlNiceness = 5;
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
@@ -36,11 +37,19 @@ std::optional<mapping::MapStore> begun_store(const std::filesystem::path& file, 
   return mapping::MapStore{file, start};
 }
 
-std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batch) {
-  for (std::size_t i = batch.size(); i-- > 0;) {
-    if (std::holds_alternative<Scan>(batch[i])) return i;
+/// Nothing where the settings name no socket. A daemon that cannot be commanded still does its work; but not beside
+/// another one.
+std::unique_ptr<ControlDesk> control_desk(const Settings& settings, ControlDesk::Wiring wiring) {
+  if (settings.control.socket.empty()) return nullptr;
+  const auto log = wiring.log;
+  try {
+    return std::make_unique<ControlDesk>(settings, std::move(wiring));
+  } catch (const control::AlreadyServed&) {
+    throw;
+  } catch (const std::exception& error) {
+    log(std::string("no `deltamap ctl` in this run: ") + error.what());
+    return nullptr;
   }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -53,24 +62,24 @@ struct Pipeline::State {
   Settings settings;
   Options options;
   Telemetry telemetry;
-  Recorder recorder;
 
   Channel<SensorMessage> sensors{128};  // io → localization: the newest message, journaled
   Channel<TrackedScan> tracked_scans{
       128};                           // localization → delta: the newest scan is not looked at for changes, journaled
   Channel<ScanSet> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
+  Channel<Command> commands{16};      // control → localization: the newest command, and its sender is told
 
-  IoStage io;               // bytes → Odometry, Scan
-  void localize();          // Odometry, Scan, MapRevision → TrackedScan, DriveCommand
-  void look_for_changes();  // TrackedScan → ScanSet
-  void update_maps();       // ScanSet → MapRevision
+  // The first that touches a file: where another daemon listens at the socket, this one ends before it does harm.
+  std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
+  Recorder recorder;                     // bytes, decisions, lines → disk
+  IoStage io;                            // bytes → Odometry, Scan
+  LocalizationStage localization;        // Odometry, Scan, MapRevision, Command → TrackedScan, DriveCommand
+  void look_for_changes();               // TrackedScan → ScanSet
+  void update_maps();                    // ScanSet → MapRevision
 
   // --- what each thread owns ---
 
-  LocalizationStep localization;
-  std::optional<navigation::Wander> pilot;
-  LatencyHistogram latency;
   mapping::StoreScan store_scan;
   std::optional<ScanSet> waiting_set;  // the map thread was busy: offered again at the next scan
   MapStep map_step;
@@ -79,33 +88,40 @@ struct Pipeline::State {
   std::optional<LineFile> changes;
   std::vector<ChangeNote> change_notes;
 
-  void work_off(std::vector<SensorMessage>& batch);
-  void localize(Scan scan);
-  void pass_over(const Scan& scan);
-  void show(const Estimate& estimate, Timestamp received);
+  void tell(const CommandOutcome& outcome) {
+    if (control) control->tell(outcome);
+  }
   void hand_over(ScanSet set);
   void update_map(const ScanSet& set);
   void save(const MapStep::Result& result);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
   void end_threads();
 
-  Workload localization_work, awareness_work, map_work;
+  Workload awareness_work, map_work;
   double wall_began_s = 0.0;
-  std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread;
+  std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread;
   bool ended = false;
 };
 
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{std::move(wanted)},
+      control{control_desk(settings, {.map = options.start.map->geometry(),
+                                      .commands = commands,
+                                      .telemetry = telemetry,
+                                      .let_drive = [this](bool may_drive) { io.let_drive(may_drive); },
+                                      .log = options.log})},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),
-                .first_note = note_of(RunIdentity{settings_fingerprint(settings), grid_hash(*options.start.map)}),
+                .first_note =
+                    note_of(RunIdentity{settings_fingerprint(settings), grid_hash(*options.start.map), options.memory}),
                 .max_gigabytes = settings.recording.max_gigabytes,
-                .trajectory = in_folder(options.out, "trajectory.tum")},
+                .trajectory = in_folder(options.out, "trajectory.tum"),
+                .localization = in_folder(options.out, "localization.csv"),
+                .memory = memory_places(settings.map.store)},
                telemetry,
-               options.log},
+               {.log = options.log, .saved = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       io{settings,
          {.open = options.open,
           .mode = options.mode,
@@ -113,20 +129,27 @@ Pipeline::State::State(const Settings& given, Options wanted)
           .recorder = recorder.from_io(),
           .telemetry = telemetry,
           .log = options.log}},
-      localization{settings, options.start},
+      localization{settings,
+                   options.start,
+                   options.first_map,
+                   {.sensors = sensors,
+                    .revisions = revisions,
+                    .commands = commands,
+                    .tracked_scans = tracked_scans,
+                    .recorder = recorder.from_localization(),
+                    .telemetry = telemetry,
+                    .drive = [this](const DriveCommand& command) { io.post(command); },
+                    .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       store_scan{settings.mapping.store_scan, settings.seed},
       map_step{settings, options.start},
       store{options.store} {
-  if (settings.navigation.mode == navigation::DriveMode::kWander) {
-    pilot.emplace(settings.navigation.wander, settings.seed);
-  }
   if (options.out) {
     changes.emplace(*options.out / "changes.jsonl");
     out_store = begun_store(*options.out / "map_store.sqlite", *options.start.map, settings.map.store);
     write_grid(*options.start.map, *options.out / "map.yaml");
   }
   telemetry.newest_revision.set(options.start.revision);
-  telemetry.revision.set(options.start.revision);
+  telemetry.estimate.revision.set(options.start.revision);
   wall_began_s = seconds(drivers::port::port_clock_now().time_since_epoch());
 
   // Receivers before senders.
@@ -137,78 +160,12 @@ Pipeline::State::State(const Settings& given, Options wanted)
   awareness_thread = std::make_unique<Stage>(
       Stage::Options{"delta", 0}, [this] { look_for_changes(); }, options.failed);
   localization_thread = std::make_unique<Stage>(
-      Stage::Options{"localization", 0}, [this] { localize(); }, options.failed);
+      Stage::Options{"localization", 0}, [this] { localization.run(); }, options.failed);
   io_thread = std::make_unique<Stage>(
       Stage::Options{"io", 0}, [this] { io.run(); }, options.failed);
-}
-
-// --- localization thread ---
-
-void Pipeline::State::localize() {
-  std::vector<SensorMessage> batch;
-  batch.reserve(sensors.capacity());
-  while (auto message = sensors.receive()) {
-    // After a stall the queue is drained: all odometry counts, of the scans only the newest.
-    const Workload::Item item{localization_work};
-    batch.clear();
-    batch.push_back(std::move(*message));
-    while (batch.size() < sensors.capacity()) {
-      auto more = sensors.try_receive();
-      if (!more) break;
-      batch.push_back(std::move(*more));
-    }
-    work_off(batch);
-  }
-}
-
-void Pipeline::State::work_off(std::vector<SensorMessage>& batch) {
-  const auto newest_scan = newest_scan_in(batch);
-  for (std::size_t i = 0; i < batch.size(); ++i) {
-    if (const auto* odometry = std::get_if<Odometry>(&batch[i])) {
-      localization.observe(*odometry);
-    } else if (i == newest_scan) {
-      localize(std::move(std::get<Scan>(batch[i])));
-    } else {
-      pass_over(std::get<Scan>(batch[i]));
-    }
-  }
-}
-
-void Pipeline::State::pass_over(const Scan& scan) {
-  telemetry.dropped.add(1);
-  note(recorder.from_localization(), {Kind::kScanDropped, scan.number, 0});
-  (void)recorder.from_localization().send(localization.pass_over(scan));
-}
-
-void Pipeline::State::localize(Scan scan) {
-  const std::uint32_t number = scan.number;
-  while (const auto revision = revisions.try_receive()) {
-    localization.apply(*revision);
-    // Counted from the start of the run, as a replay does.
-    note(recorder.from_localization(), {Kind::kRevision, number, revision->number - options.start.revision});
-  }
-  TrackedScan tracked = localization.observe(std::move(scan));
-  show(tracked.estimate, tracked.scan.received);
-  (void)recorder.from_localization().send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
-  if (pilot) io.post(pilot->step(tracked));
-  if (!settings.mapping.enabled || tracked_scans.try_send(std::move(tracked))) return;
-  telemetry.tracked_lost.add(1);
-  note(recorder.from_localization(), {Kind::kTrackedLost, number, 0});
-}
-
-void Pipeline::State::show(const Estimate& estimate, Timestamp received) {
-  const double latency_s = seconds(drivers::port::port_clock_now() - received);
-  latency.add(latency_s);
-  telemetry.localized.add(1);
-  telemetry.latency_s.set(latency_s);
-  telemetry.x_m.set(estimate.map_from_robot.x);
-  telemetry.y_m.set(estimate.map_from_robot.y);
-  telemetry.heading_rad.set(estimate.map_from_robot.theta);
-  telemetry.n_eff.set(estimate.n_eff);
-  telemetry.w_avg.set(estimate.w_avg);
-  telemetry.particles.set(estimate.particles);
-  telemetry.revision.set(estimate.revision);
-  telemetry.state.set(static_cast<std::uint8_t>(estimate.state));
+  if (!control) return;
+  control_thread = std::make_unique<Stage>(
+      Stage::Options{"control", kControlNiceness}, [this] { control->run(); }, options.failed);
 }
 
 // --- delta thread ---
@@ -291,6 +248,10 @@ Pipeline::~Pipeline() { state_->end_threads(); }
 void Pipeline::State::end_threads() {
   if (ended) return;
   ended = true;
+  if (control) {
+    control->stop();
+    control_thread->join();
+  }
   io.stop();
   io_thread->join();
   sensors.close();
@@ -319,18 +280,20 @@ RunReport Pipeline::stop() {
                   .recording_lost = s.recorder.refused()};
   report.phases = t.phases_closed.value();
   report.changes = s.change_notes;
-  report.time_lost_s = s.localization.time_lost_s();
-  report.time_global_s = s.localization.time_global_s();
-  report.recorded_s = s.localization.covered_s();
+  const LocalizationStep& localization = s.localization.step();
+  report.time_lost_s = localization.time_lost_s();
+  report.time_global_s = localization.time_global_s();
+  report.verdict_times = localization.verdict_times();
+  report.recorded_s = localization.covered_s();
   report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.awareness_thread->cpu_s(),
                 s.map_thread->cpu_s(), s.recorder_thread->cpu_s()};
   report.cpu_total_s = process_cpu_s();
   report.wall_s = seconds(drivers::port::port_clock_now().time_since_epoch()) - s.wall_began_s;
   report.peak_resident_bytes = peak_resident_bytes();
   report.latency_of = "last byte of a scan to its pose";
-  report.latency_p50_s = s.latency.quantile_s(0.5);
-  report.latency_p99_s = s.latency.quantile_s(0.99);
-  report.latency_max_s = s.latency.max_s();
+  report.latency_p50_s = s.localization.latency().quantile_s(0.5);
+  report.latency_p99_s = s.localization.latency().quantile_s(0.99);
+  report.latency_max_s = s.localization.latency().max_s();
   report.wire = s.io.counts();
   if (s.options.out) {
     LineFile file{*s.options.out / "report.json"};
@@ -343,7 +306,7 @@ RunReport Pipeline::stop() {
 const Telemetry& Pipeline::telemetry() const { return state_->telemetry; }
 
 double Pipeline::longest_work_s() const {
-  return std::max({state_->io.silence_s(), state_->localization_work.busy_s(), state_->awareness_work.busy_s(),
+  return std::max({state_->io.silence_s(), state_->localization.workload().busy_s(), state_->awareness_work.busy_s(),
                    state_->map_work.busy_s() / 10.0});
 }
 

@@ -20,6 +20,8 @@ class Pipeline {
  public:
   struct Options {
     StartMap start;
+    std::uint64_t first_map = 0;  ///< grid_hash() of M_0
+    std::uint64_t memory = 0;     ///< fingerprint of what else the run begins from (start.remembered); 0: nothing
     mapping::MapStore* store = nullptr;  ///< takes every revision and refusal in the map thread; outlives the pipeline
     std::optional<std::filesystem::path> out;  ///< an existing folder: the files of a replay, while it runs
     PortOpener open;                           ///< empty: the serial devices of the settings
@@ -27,7 +29,8 @@ class Pipeline {
     std::function<void(const std::string&)> log;     ///< any thread: a short line
     std::function<void(const std::string&)> failed;  ///< any thread: a stage has ended by an exception
   };
-  /// Begins at once. Throws std::runtime_error where the recording or an output file cannot be begun.
+  /// Begins at once. Throws std::runtime_error where the recording or an output file cannot be begun, or another daemon
+  /// listens at the control socket.
   Pipeline(const Settings& settings, Options options);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;

@@ -25,17 +25,22 @@ void keep_previous(const std::filesystem::path& recording) {
 
 using drivers::port::ByteRecord;
 
-Recorder::Recorder(const Options& options, Telemetry& telemetry, std::function<void(const std::string&)> warn)
+Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
     : telemetry_{telemetry},
-      warn_{std::move(warn)},
+      hooks_{std::move(hooks)},
       max_bytes_{options.max_gigabytes * 1e9},
+      memory_{options.memory, hooks_.log},
       last_stamp_{options.began} {
   if (!options.recording.empty()) {
     keep_previous(options.recording);
     recording_.emplace(options.recording, options.bauds);
+    telemetry_.records.set(true);
   }
   write(options.first_note);
   if (!options.trajectory.empty()) trajectory_.emplace(options.trajectory);
+  if (options.localization.empty()) return;
+  localization_.emplace(options.localization);
+  localization_->write(csv_header());
 }
 
 void Recorder::run() {
@@ -81,9 +86,22 @@ void Recorder::write(RecorderItem&& item) {
     noted.stamp = last_stamp_;
     noted.note = std::move(*note);
     record(noted);
-  } else if (trajectory_) {
-    trajectory_->write(tum_line(std::get<TrajectoryPoint>(item)));
+  } else if (const auto* point = std::get_if<TrajectoryPoint>(&item)) {
+    if (trajectory_) trajectory_->write(tum_line(*point));
+  } else if (const auto* row = std::get_if<std::unique_ptr<const LocalizationRow>>(&item)) {
+    if (localization_) localization_->write(csv_line(**row));
+  } else if (const auto* pose = std::get_if<std::unique_ptr<const KeptPose>>(&item)) {
+    memory_.keep(**pose);
+  } else if (const auto* order = std::get_if<std::unique_ptr<const SaveOrder>>(&item)) {
+    save(**order);
+  } else {
+    hooks_.log(std::get<LogLine>(item).text);
   }
+}
+
+void Recorder::save(const SaveOrder& order) {
+  const CommandOutcome outcome = memory_.save(order);
+  if (hooks_.saved) hooks_.saved(outcome);
 }
 
 void Recorder::record(const ByteRecord& record) {
@@ -99,12 +117,14 @@ void Recorder::record(const ByteRecord& record) {
 }
 
 void Recorder::end_recording(const std::string& why) {
-  warn_("the recording ends: " + why);
+  hooks_.log("the recording ends: " + why);
+  telemetry_.records.set(false);
   recording_.reset();
 }
 
 void Recorder::flush() {
   if (trajectory_) trajectory_->flush();
+  if (localization_) localization_->flush();
   if (!recording_) return;
   try {
     recording_->flush();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes what must reach the disk from the threads that cannot wait for it: chunks of bytes and journal notes for the
-// recording, lines for the trajectory. Where the disk is too slow, a channel fills and refuses, and that is counted.
+// Takes what must reach the disk (or the log) from the threads that cannot wait for it: chunks of bytes and journal
+// notes for the recording, lines for trajectory.tum and localization.csv, the pose that outlives the run. Where the
+// disk is too slow, a channel fills and refuses, and that is counted.
 #pragma once
 
 #include <memory>
@@ -10,6 +11,8 @@
 
 #include "core/channel.hpp"
 #include "daemon/journal.hpp"
+#include "daemon/localization_log.hpp"
+#include "daemon/memory_keeper.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/telemetry.hpp"
 #include "drivers/port/byte_log.hpp"
@@ -17,7 +20,12 @@
 namespace deltamap::daemon {
 
 using JournalNote = std::string;
-using RecorderItem = std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint>;
+struct LogLine {
+  std::string text;
+};
+using RecorderItem =
+    std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint, std::unique_ptr<const LocalizationRow>,
+                 std::unique_ptr<const KeptPose>, std::unique_ptr<const SaveOrder>, LogLine>;
 
 /// One sender's way to the recorder.
 class RecorderInput {
@@ -47,10 +55,16 @@ class Recorder {
     Timestamp began;         ///< now
     std::string first_note;  ///< what the run begins from
     double max_gigabytes = 0.0;
-    std::filesystem::path trajectory;  ///< empty: none
+    std::filesystem::path trajectory{};    ///< empty: none
+    std::filesystem::path localization{};  ///< localization.csv; empty: none
+    MemoryPlaces memory{};                 ///< empty: nothing is kept
   };
-  /// Throws std::runtime_error where a file cannot be begun. `warn` is told once when the recording ends early.
-  Recorder(const Options& options, Telemetry& telemetry, std::function<void(const std::string&)> warn);
+  struct Hooks {
+    std::function<void(const std::string&)> log;         ///< a short line, for instance that the recording ends early
+    std::function<void(const CommandOutcome&)> saved{};  ///< a save order is done; may be empty
+  };
+  /// Throws std::runtime_error where a file cannot be begun.
+  Recorder(const Options& options, Telemetry& telemetry, Hooks hooks);
 
   // One a thread that sends.
   RecorderInput& from_io() { return from_io_; }
@@ -71,13 +85,16 @@ class Recorder {
   void write(RecorderItem&& item);
   void record(const drivers::port::ByteRecord& record);
   void end_recording(const std::string& why);
+  void save(const SaveOrder& order);
   void flush();
 
   Telemetry& telemetry_;
-  std::function<void(const std::string&)> warn_;
+  Hooks hooks_;
   double max_bytes_;
   std::optional<drivers::port::ByteLogWriter> recording_;
   std::optional<LineFile> trajectory_;
+  std::optional<LineFile> localization_;
+  MemoryKeeper memory_;
   Timestamp last_stamp_;
   std::atomic<bool> closed_{false};
   std::counting_semaphore<> bell_{0};

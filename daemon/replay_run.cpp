@@ -63,10 +63,14 @@ class Replay {
         map_{job.settings, start},
         store_{out / "map_store.sqlite", *start.map},
         trajectory_{out / "trajectory.tum"},
+        localization_log_{out / "localization.csv"},
         changes_{out / "changes.jsonl"} {
+    localization_log_.write(csv_header());
     const RunIdentity identity{settings_fingerprint(job.settings), grid_hash(*start.map)};
     if (!journal_.run())
       report_.journal = "none";
+    else if (journal_.run()->memory != 0)
+      report_.journal = "not obeyed: it began with a pose that was kept";
     else if (*journal_.run() != identity)
       report_.journal = "not obeyed: other settings or map";
     else if (job.from_s > 0.0)
@@ -83,18 +87,21 @@ class Replay {
  private:
   void take(Odometry&& odometry, std::uint32_t number);
   void take(Scan&& scan);
+  void obey_commands_before(std::uint32_t scan);
   void look_for_changes(const TrackedScan& tracked);
   void update_map(const ScanSet& set);
 
   const ReplayJob& job_;
   Journal journal_;
   bool obeys_ = false;
+  bool is_paused_ = false;
   LocalizationStep localization_;
   mapping::StoreScan store_scan_;
   MapStep map_;
   std::unique_ptr<RevisionQueue> revisions_;
   mapping::MapStore store_;
   LineFile trajectory_;
+  LineFile localization_log_;
   LineFile changes_;
   LatencyHistogram step_times_;
   RunReport report_;
@@ -153,6 +160,7 @@ void Replay::take(Scan&& scan) {
   {
     const CpuTimer timer{report_.cpu.localization_s};
     while (const auto revision = revisions_->next_before(scan)) localization_.apply(*revision);
+    if (obeys_) obey_commands_before(scan.number);
     tracked = localization_.observe(std::move(scan));
     step_times_.add(timer.elapsed_s());
   }
@@ -160,8 +168,17 @@ void Replay::take(Scan&& scan) {
   {
     const CpuTimer timer{report_.cpu.recording_s};
     trajectory_.write(tum_line({tracked->scan.time, tracked->estimate.map_from_robot}));
+    localization_log_.write(csv_line(localization_.row()));
   }
-  if (job_.settings.mapping.enabled) look_for_changes(*tracked);
+  if (job_.settings.mapping.enabled && !is_paused_) look_for_changes(*tracked);
+}
+
+void Replay::obey_commands_before(std::uint32_t scan) {
+  for (const Decision& command : journal_.commands_before(scan)) {
+    if (command.kind == Decision::Kind::kRelocalized) localization_.relocalize(command.map_from_robot);
+    if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
+    if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
+  }
 }
 
 void Replay::look_for_changes(const TrackedScan& tracked) {
@@ -199,10 +216,12 @@ RunReport Replay::finish(const std::filesystem::path& out) {
     report_.journal_differences += static_cast<std::uint32_t>(journal_.closed_phases() - report_.phases);
   }
   trajectory_.flush();
+  localization_log_.flush();
   changes_.flush();
   write_grid(*map_.map(), out / "map.yaml");
   report_.time_lost_s = localization_.time_lost_s();
   report_.time_global_s = localization_.time_global_s();
+  report_.verdict_times = localization_.verdict_times();
   report_.recorded_s = localization_.covered_s();
   report_.latency_of = "localizing one scan, CPU time";
   report_.latency_p50_s = step_times_.quantile_s(0.5);

@@ -79,6 +79,17 @@ StartMap start_map(OccupancyGrid first, const mapping::MapStore* store, Console&
   return {std::make_shared<const OccupancyGrid>(store->grid(store->newest())), store->newest()};
 }
 
+/// Where the run before has left the robot; a pose that a person gave goes before it.
+void remember_pose(const Settings& settings, Pipeline::Options& options, Console& console) {
+  if (settings.initial_pose || settings.map.store.empty()) return;
+  const auto kept = read_kept_pose(memory_places(settings.map.store).pose, options.first_map);
+  if (!kept.why_not.empty()) console.log(spdlog::level::warn, "no pose to begin with: " + kept.why_not);
+  if (!kept.pose) return;
+  options.start.remembered = kept.pose->map_from_robot;
+  options.memory = kept.fingerprint;
+  console.log(spdlog::level::info, begin_line(*kept.pose));
+}
+
 sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -113,7 +124,9 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   if (!settings.map.store.empty()) store.emplace(settings.map.store, first);
 
   Pipeline::Options options;
+  options.first_map = grid_hash(first);
   options.start = start_map(std::move(first), store ? &*store : nullptr, console);
+  remember_pose(settings, options, console);
   options.store = store ? &*store : nullptr;
   if (!line.out.empty()) {
     std::error_code error;

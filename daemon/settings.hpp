@@ -56,6 +56,13 @@ struct RecordingSettings {
   double max_gigabytes = 8.0;  ///< the recording ends there, the daemon goes on
 };
 
+/// What outlives the run, beside map.store; a replay does not look at it.
+struct MemorySettings {
+  double pose_period_s = 5.0;         ///< between two writings of the pose; > 0
+  double position_deviation_m = 0.5;  ///< how far the robot may have been pushed while it was off; > 0
+  double heading_deviation_rad = radians(20.0);
+};
+
 struct ControlSettings {
   std::string socket;  ///< for `deltamap ctl`; empty: none
 };
@@ -67,6 +74,7 @@ struct Settings {
   MapSettings map;
   std::optional<Pose2> initial_pose;  ///< map_from_robot at the first scan; nothing: global localization
   localization::LocalizerParams localizer;
+  MemorySettings memory;
   MappingSettings mapping;
   NavigationSettings navigation;
   ControlSettings control;

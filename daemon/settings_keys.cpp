@@ -123,6 +123,16 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
                  "before it thinks of another direction"));
 }
 
+void add_memory(MemorySettings& memory, Keys& keys) {
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(number_key("localization.memory.pose_period_s", memory.pose_period_s, "s", 0.1, 3600.0,
+                 "between two writings of the pose beside map.store"));
+  add(number_key("localization.memory.position_deviation_m", memory.position_deviation_m, "m", 0.01, 10.0,
+                 "of a kept pose: the robot may have been pushed while it was off"));
+  add(degrees_key("localization.memory.heading_deviation_deg", memory.heading_deviation_rad, 0.1, 180.0,
+                  "of a kept pose"));
+}
+
 }  // namespace
 
 std::vector<SettingKey> keys_of(Settings& settings) {
@@ -135,12 +145,13 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   keys.push_back(
       not_for_results(text_key("map.store", settings.map.store, "SQLite file of all revisions; empty: not kept")));
   keys.push_back(pose_key("localization.initial_pose", settings.initial_pose,
-                          "robot in the map at the first scan; null: found by itself"));
+                          "robot in the map at the first scan; null: where the store keeps it, or found by itself"));
   add_localization_keys(settings.localizer, keys);
+  add_memory(settings.memory, keys);
   add_mapping_keys(settings.mapping, keys);
   add_navigation(settings.navigation, keys);
-  keys.push_back(not_for_results(text_key("control.socket", settings.control.socket,
-                                          "where `deltamap ctl` will find the daemon: nobody listens there yet")));
+  keys.push_back(not_for_results(
+      text_key("control.socket", settings.control.socket, "where `deltamap ctl` finds the daemon; empty: nowhere")));
   keys.push_back(
       not_for_results(text_key("recording.file", settings.recording.file, "pcapng of both ports; empty: none")));
   keys.push_back(not_for_results(number_key("recording.max_gigabytes", settings.recording.max_gigabytes, "GB", 0.001,

@@ -3,6 +3,7 @@
 // read by any, without locks. The status line and, later, the dashboard read them.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <string>
@@ -24,18 +25,40 @@ class Gauge {
   std::atomic<T> value_{};
 };
 
+struct BeamCountGauges {
+  Gauge<std::uint32_t> expected, fit, short_of, beyond;
+  void set(const BeamCounts& counts);
+  [[nodiscard]] BeamCounts value() const;
+};
+
+/// The newest estimate, value by value: a reader may find two scans mixed, which a person does not see.
+struct EstimateGauges {
+  Gauge<double> x_m, y_m, heading_rad, n_eff, w_avg;
+  std::array<Gauge<double>, 6> covariance;  ///< xx xy xh yy yh hh
+  Gauge<std::uint8_t> state;                ///< LocalizerState
+  Gauge<std::uint32_t> particles, revision;
+  Gauge<double> pose_right, map_wrong;
+  Gauge<std::uint8_t> verdict;  ///< PoseVerdict
+  BeamCountGauges stable, elsewhere;
+  Gauge<double> rival_share, rival_x_m, rival_y_m, rival_heading_rad;
+  void set(const Estimate& estimate);
+};
+
 struct Telemetry {
   // io thread
   Gauge<bool> robot_up, laser_up;
-  Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
-  Gauge<std::uint64_t> recorded_bytes;  ///< recorder thread
+  Gauge<bool> drives;  ///< the pilot's commands are listened to
   Gauge<double> battery_v;
   Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason
+  Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
+  // recorder thread
+  Gauge<std::uint64_t> recorded_bytes;
+  Gauge<bool> records;  ///< false: never began, or has ended
   // localization thread
   Gauge<std::uint64_t> localized, dropped, tracked_lost;
-  Gauge<double> x_m, y_m, heading_rad, n_eff, w_avg, latency_s;
-  Gauge<std::uint8_t> state;  ///< LocalizerState
-  Gauge<std::uint32_t> particles, revision;
+  EstimateGauges estimate;
+  Gauge<double> latency_s;
+  Gauge<bool> paused;  ///< by the operator: Δ-mapping sees no scans
   // delta thread
   Gauge<double> r_d;
   Gauge<bool> in_phase;
@@ -44,9 +67,10 @@ struct Telemetry {
   Gauge<std::uint32_t> newest_revision, refused;
 };
 
-/// One line for a person: devices, state and pose, N_eff, w_avg, revision, Δ-phase, drops, latency.
+/// One line for a person: devices, state, verdict and pose, N_eff, w_avg, revision, Δ-phase, drops, latency.
 [[nodiscard]] std::string status_line(const Telemetry& telemetry);
 
 [[nodiscard]] std::string_view name_of(LocalizerState state);
+[[nodiscard]] std::string_view name_of(PoseVerdict verdict);
 
 }  // namespace deltamap::daemon

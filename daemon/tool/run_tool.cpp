@@ -14,6 +14,7 @@ namespace deltamap::daemon::tool {
 int run_tool(int argc, const char* const* argv) {
   CLI::App app{"deltamap: keeps a robot localized in a map that follows the world", "deltamap"};
   app.require_subcommand(1);
+  add_ctl(app);
   add_experiment(app);
   add_score(app);
   add_sim(app);

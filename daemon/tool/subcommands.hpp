@@ -9,6 +9,7 @@ class App;
 
 namespace deltamap::daemon::tool {
 
+void add_ctl(CLI::App& app);
 void add_decode(CLI::App& app);
 void add_experiment(CLI::App& app);
 void add_score(CLI::App& app);

@@ -10,19 +10,24 @@ using Kind = Decision::Kind;
 
 TEST(Journal, EveryDecisionSurvivesTheRecording) {
   for (const Kind kind : {Kind::kRevision, Kind::kScanDropped, Kind::kScanLost, Kind::kOdometryLost, Kind::kTrackedLost,
-                          Kind::kSetLost, Kind::kPhaseClosed}) {
+                          Kind::kSetLost, Kind::kPhaseClosed, Kind::kPaused, Kind::kResumed, Kind::kRelocalized}) {
     Decision decision{kind, 4000000000u, 7};
     if (kind == Kind::kOdometryLost || kind == Kind::kSetLost) decision.scan = 0;
-    if (kind == Kind::kScanDropped || kind == Kind::kScanLost || kind == Kind::kTrackedLost) decision.number = 0;
+    const bool has_no_number = kind == Kind::kScanDropped || kind == Kind::kScanLost || kind == Kind::kTrackedLost ||
+                               kind == Kind::kPaused || kind == Kind::kResumed || kind == Kind::kRelocalized;
+    if (has_no_number) decision.number = 0;
+    if (kind == Kind::kRelocalized) decision.map_from_robot = {-1.0 / 3.0, 1e-9, 2.0 / 7.0};
     EXPECT_EQ(decision_of_note(note_of(decision)), decision) << note_of(decision);
   }
   const RunIdentity run{0x0123456789ABCDEFu, 0xFEDCBA9876543210u};
   EXPECT_EQ(run_of_note(note_of(run)), run);
+  const RunIdentity with_memory{1, 2, 0xFFFFFFFFFFFFFFFFu};
+  EXPECT_EQ(run_of_note(note_of(with_memory)), with_memory);
 }
 
 TEST(Journal, OtherNotesAreNoDecisions) {
-  for (const char* note :
-       {"baud 38400", "", "scan 5", "scan 5 dropped twice", "scan -x dropped", "revision 1 before"}) {
+  for (const char* note : {"baud 38400", "", "scan 5", "scan 5 dropped twice", "scan -x dropped", "revision 1 before",
+                           "relocalized to 1 2 before scan 3", "mapping paused before scan"}) {
     EXPECT_FALSE(decision_of_note(note)) << note;
     EXPECT_FALSE(run_of_note(note)) << note;
   }
@@ -40,6 +45,20 @@ TEST(Journal, AnswersWhatWasDecidedInTheNewestRun) {
   EXPECT_EQ(journal.revision_before(9), 2u);
   EXPECT_FALSE(journal.revision_before(8));
   EXPECT_EQ(journal.closing_scan(4), 8u);
+  EXPECT_TRUE(journal.commands_before(9).empty());
+}
+
+TEST(Journal, KeepsTheOperatorsCommandsInTheirOrder) {
+  const Decision first{Kind::kRelocalized, 9, 0, {1.0, 2.0, 0.5}};
+  const Decision second{Kind::kPaused, 9, 0};
+  const Decision third{Kind::kRelocalized, 9, 0, {3.0, 4.0, -0.5}};
+  Journal journal;
+  for (const Decision& decision : {first, second, third}) journal.read(note_of(decision));
+  journal.read(note_of({Kind::kResumed, 10, 0}));
+  const auto commands = journal.commands_before(9);
+  EXPECT_EQ(std::vector<Decision>(commands.begin(), commands.end()), (std::vector<Decision>{first, second, third}));
+  ASSERT_EQ(journal.commands_before(10).size(), 1u);
+  EXPECT_EQ(journal.commands_before(10).front().kind, Kind::kResumed);
 }
 
 }  // namespace

@@ -5,93 +5,16 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <sstream>
-
-#include "core/grid_file.hpp"
-#include "daemon/replay_run.hpp"
-#include "daemon/tool/import_carmen.hpp"
-#include "tests/support/scripted_drive.hpp"
-#include "tests/support/scripted_port.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/pipeline_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 namespace fs = std::filesystem;
+using test::content_of;
+using test::lines_of;
 
-constexpr double kDrive_s = 45.0;
-
-std::string content_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-std::size_t lines_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-std::string first_difference(const std::string& one, const std::string& other) {
-  if (one == other) return "";
-  const auto differ = std::mismatch(one.begin(), one.end(), other.begin(), other.end());
-  const auto at = static_cast<std::size_t>(differ.first - one.begin());
-  const std::size_t line = one.rfind('\n', at == 0 ? 0 : at - 1) + 1;
-  return "line " + std::to_string(lines_of(one.substr(0, at)) + 1) + ": " + one.substr(line, 100) + " | " +
-         (line < other.size() ? other.substr(line, 100) : "");
-}
-
-class PipelineTest : public testing::Test {
- protected:
-  PipelineTest() {
-    test::write_drive(folder_.path() / "drive.log", kDrive_s);
-    (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
-    write_grid(test::small_room(false), folder_.path() / "room.yaml");
-    const Pose2 start = test::pose_on_drive(0.0);
-    settings_.initial_pose = start;
-    settings_.localizer.particles.min = 200;
-    settings_.localizer.particles.max = 200;
-    settings_.recording.file = folder_.path() / "live.pcapng";
-  }
-
-  RunReport run_live(std::chrono::microseconds pause) {
-    test::ScriptedPorts ports{folder_.path() / "drive.pcapng", pause};
-    auto played = ports.played();
-    fs::create_directories(folder_.path() / "live");
-    Pipeline::Options options;
-    options.start.map = std::make_shared<const OccupancyGrid>(read_grid(folder_.path() / "room.yaml"));
-    options.out = folder_.path() / "live";
-    options.mode = drivers::SessionMode::kListenOnly;
-    options.open = [&ports](boost::asio::io_context& loop, drivers::port::PortId id, unsigned) {
-      return ports.open(loop, id);
-    };
-    options.log = [](const std::string&) {};
-    options.failed = [](const std::string& why) { FAIL() << why; };
-    Pipeline pipeline{settings_, std::move(options)};
-    EXPECT_EQ(played.wait_for(std::chrono::seconds(200)), std::future_status::ready);
-    return pipeline.stop();
-  }
-
-  RunReport replay(const std::string& recording, const std::string& out) {
-    ReplayJob job;
-    job.recording = folder_.path() / recording;
-    job.map = folder_.path() / "room.yaml";
-    job.settings = settings_;
-    job.out = folder_.path() / out;
-    return run_replay(job, [](double) { return true; });
-  }
-
-  void expect_same_files(const std::string& one, const std::string& other) {
-    for (const char* name : {"trajectory.tum", "changes.jsonl", "map.pgm", "map.yaml"}) {
-      const std::string content = content_of(folder_.path() / one / name);
-      EXPECT_EQ(first_difference(content, content_of(folder_.path() / other / name)), "") << name;
-      EXPECT_TRUE(std::string(name) == "changes.jsonl" || !content.empty()) << name;
-    }
-  }
-
-  test::TemporaryFolder folder_;
-  Settings settings_;
-};
+class PipelineTest : public test::PipelineFixture {};
 
 TEST_F(PipelineTest, AnUnhurriedLiveRunAndItsReplayGiveTheSameBytes) {
   const RunReport live = run_live(std::chrono::microseconds(2000));
@@ -107,6 +30,7 @@ TEST_F(PipelineTest, AnUnhurriedLiveRunAndItsReplayGiveTheSameBytes) {
   EXPECT_EQ(again.journal_differences, 0u);
   expect_same_files("live", "replayed");
   EXPECT_EQ(lines_of(content_of(folder_.path() / "live/trajectory.tum")), live.scans.decoded);
+  EXPECT_EQ(lines_of(content_of(folder_.path() / "live/localization.csv")), live.scans.localized + 1);
 }
 
 TEST_F(PipelineTest, ARunThatDropsScansIsReplayedWithTheSameDrops) {
@@ -134,15 +58,12 @@ TEST_F(PipelineTest, TheSameReplayTwiceGivesTheSameBytesAndAnotherSeedOthers) {
 
 TEST_F(PipelineTest, AnIoThreadThatHangsShowsInTheLongestWork) {
   std::promise<void> comes_back;
-  Pipeline::Options options;
-  options.start.map = std::make_shared<const OccupancyGrid>(read_grid(folder_.path() / "room.yaml"));
-  options.open = [hangs = comes_back.get_future().share()](boost::asio::io_context&, drivers::port::PortId, unsigned) {
+  Pipeline::Options hanging = options();
+  hanging.open = [hangs = comes_back.get_future().share()](boost::asio::io_context&, drivers::port::PortId, unsigned) {
     hangs.wait();
     return drivers::port::SerialPortAnswer{nullptr, "is missing"};
   };
-  options.log = [](const std::string&) {};
-  options.failed = [](const std::string& why) { FAIL() << why; };
-  Pipeline pipeline{settings_, std::move(options)};
+  Pipeline pipeline{settings_, std::move(hanging)};
   const auto give_up_at = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   double longest_s = 0.0;
   while (longest_s <= 0.01 && std::chrono::steady_clock::now() < give_up_at) longest_s = pipeline.longest_work_s();

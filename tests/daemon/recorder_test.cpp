@@ -22,7 +22,7 @@ TEST(Recorder, KeepsTheRecordingOfTheRunBefore) {
                              .max_gigabytes = 1.0,
                              .trajectory = {}},
                             telemetry,
-                            [](const std::string&) {}};
+                            {.log = [](const std::string&) {}}};
   }
   std::ostringstream kept;
   kept << std::ifstream(folder.path() / "bytes.previous.pcapng", std::ios::binary).rdbuf();
@@ -40,7 +40,7 @@ TEST(Recorder, NamesTheRecordingThatItCannotBegin) {
                                   .max_gigabytes = 1.0,
                                   .trajectory = {}};
   try {
-    const Recorder recorder{options, telemetry, [](const std::string&) {}};
+    const Recorder recorder{options, telemetry, {.log = [](const std::string&) {}}};
     FAIL() << "there is no folder for it";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string{error.what()}.find("bytes.pcapng"), std::string::npos) << error.what();

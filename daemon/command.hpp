@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an operator asks of the localization thread while it runs. Taken before a scan and written into the recording
+// with that scan's number, so that a replay repeats it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/pose2.hpp"
+
+namespace deltamap::daemon {
+
+struct Command {
+  enum class Kind : std::uint8_t {
+    kPause,       ///< Δ-mapping sees no scan from now on
+    kResume,      ///< and sees them again
+    kRelocalize,  ///< the robot stands at map_from_robot
+    kSave         ///< map and pose on disk; changes nothing
+  } kind = Kind::kSave;
+  Pose2 map_from_robot;      ///< kRelocalize
+  std::uint64_t ticket = 0;  ///< names the command in its CommandOutcome
+};
+
+/// What became of a command.
+struct CommandOutcome {
+  std::uint64_t ticket = 0;
+  bool done = true;
+  std::string message;  ///< one line: what was done, or why it could not be
+};
+
+}  // namespace deltamap::daemon

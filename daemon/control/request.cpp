@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/request.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace deltamap::daemon::control {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Kind = Request::Kind;
+
+constexpr double kFarthest_m = 1e6;
+constexpr double kLargest_deg = 1e6;
+
+constexpr std::array<std::pair<std::string_view, Kind>, 4> kPlainCommands{
+    {{"status", Kind::kStatus}, {"pause", Kind::kPause}, {"resume", Kind::kResume}, {"save", Kind::kSave}}};
+
+std::optional<double> number_in(const Json& json, const char* key, double largest) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_number()) return std::nullopt;
+  const double number = found->get<double>();
+  return std::isfinite(number) && std::abs(number) <= largest ? std::optional{number} : std::nullopt;
+}
+
+RequestAnswer relocalization_in(const Json& json) {
+  const auto x_m = number_in(json, "x_m", kFarthest_m);
+  const auto y_m = number_in(json, "y_m", kFarthest_m);
+  const auto heading_deg = number_in(json, "heading_deg", kLargest_deg);
+  if (!x_m || !y_m || !heading_deg) return {std::nullopt, "'relocalize' needs the numbers x_m, y_m and heading_deg"};
+  return {Request{Kind::kRelocalize, {*x_m, *y_m, wrapped_angle(radians(*heading_deg))}}, ""};
+}
+
+RequestAnswer drive_in(const Json& json) {
+  const auto mode = json.find("mode");
+  if (mode != json.end() && *mode == "off") return {Request{Kind::kDriveOff, {}}, ""};
+  if (mode != json.end() && *mode == "wander") return {Request{Kind::kDriveWander, {}}, ""};
+  return {std::nullopt, "'drive' needs the mode off or wander"};
+}
+
+std::string_view name_of(Kind kind) {
+  for (const auto& [name, plain] : kPlainCommands) {
+    if (plain == kind) return name;
+  }
+  return kind == Kind::kRelocalize ? "relocalize" : "drive";
+}
+
+}  // namespace
+
+RequestAnswer request_of_line(std::string_view line) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object()) return {std::nullopt, "a request is one JSON object in one line"};
+  const auto command = json.find("command");
+  if (command == json.end() || !command->is_string()) return {std::nullopt, "a request needs a command"};
+  const auto& name = command->get_ref<const std::string&>();
+  for (const auto& [plain, kind] : kPlainCommands) {
+    if (name == plain) return {Request{kind, {}}, ""};
+  }
+  if (name == "relocalize") return relocalization_in(json);
+  if (name == "drive") return drive_in(json);
+  return {std::nullopt, "unknown command '" + name + "'"};
+}
+
+std::string line_of(const Request& request) {
+  Json json;
+  json["command"] = name_of(request.kind);
+  if (request.kind == Kind::kRelocalize) {
+    json["x_m"] = request.map_from_robot.x;
+    json["y_m"] = request.map_from_robot.y;
+    json["heading_deg"] = degrees(request.map_from_robot.theta);
+  }
+  if (request.kind == Kind::kDriveOff) json["mode"] = "off";
+  if (request.kind == Kind::kDriveWander) json["mode"] = "wander";
+  return json.dump();
+}
+
+std::string done_line(std::string_view message) {
+  Json json;
+  json["ok"] = true;
+  json["message"] = message;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string error_line(std::string_view error) {
+  Json json;
+  json["ok"] = false;
+  json["error"] = error;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string words_of(const Request& request) {
+  if (request.kind == Kind::kDriveOff) return "drive off";
+  if (request.kind == Kind::kDriveWander) return "drive wander";
+  if (request.kind != Kind::kRelocalize) return std::string(name_of(request.kind));
+  const Pose2& pose = request.map_from_robot;
+  char text[96];
+  (void)std::snprintf(text, sizeof text, "relocalize %.2f,%.2f,%.0f", pose.x, pose.y, degrees(pose.theta));
+  return text;
+}
+
+}  // namespace deltamap::daemon::control

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `deltamap ctl` may ask of the running daemon, and how both write it on the control socket: one JSON line a
+// request, one a reply. Knows no socket.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/pose2.hpp"
+
+namespace deltamap::daemon::control {
+
+inline constexpr std::size_t kLongestLine = 4096;  ///< bytes of a request with its line end
+
+struct Request {
+  enum class Kind : std::uint8_t {
+    kStatus,
+    kPause,       ///< the map stays as it is; the localizer goes on
+    kResume,      ///< the map follows the world again
+    kSave,        ///< map and pose on disk, now
+    kRelocalize,  ///< the robot stands at map_from_robot
+    kDriveOff,
+    kDriveWander
+  } kind = Kind::kStatus;
+  Pose2 map_from_robot;  ///< kRelocalize
+  friend bool operator==(const Request&, const Request&) = default;
+};
+
+/// A request, or one line that says what is wrong with it.
+struct RequestAnswer {
+  std::optional<Request> request;
+  std::string refused;
+};
+[[nodiscard]] RequestAnswer request_of_line(std::string_view line);
+
+// Lines without their line end.
+[[nodiscard]] std::string line_of(const Request& request);
+/// {"ok":true,"message":…}
+[[nodiscard]] std::string done_line(std::string_view message);
+/// {"ok":false,"error":…}
+[[nodiscard]] std::string error_line(std::string_view error);
+
+/// The request as a person would type it: "relocalize 1.00,2.00,90".
+[[nodiscard]] std::string words_of(const Request& request);
+
+}  // namespace deltamap::daemon::control

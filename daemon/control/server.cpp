@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/server.hpp"
+
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
+#include <chrono>
+#include <set>
+
+#include "daemon/control/request.hpp"
+
+namespace deltamap::daemon::control {
+namespace {
+
+namespace asio = boost::asio;
+using Protocol = asio::local::stream_protocol;
+using boost::system::error_code;
+
+constexpr std::size_t kMostClients = 16;
+constexpr std::chrono::milliseconds kPauseAfterFailure{200};  // no descriptor is free: look again then
+constexpr mode_t kOwnerAndGroup = 0660;
+
+[[noreturn]] void refuse(const std::filesystem::path& socket, const std::string& why) {
+  throw std::runtime_error(socket.string() + ": cannot listen: " + why);
+}
+
+/// What lies at the path is no socket, or somebody answers there: refused. What a crash left is removed.
+void clear_the_way(asio::io_context& loop, const std::filesystem::path& socket) {
+  std::error_code ignored;
+  const auto status = std::filesystem::symlink_status(socket, ignored);
+  if (!std::filesystem::exists(status)) return;
+  if (!std::filesystem::is_socket(status)) refuse(socket, "a file that is no socket is in the way");
+  Protocol::socket caller{loop};
+  error_code error;
+  caller.connect(Protocol::endpoint{socket.string()}, error);
+  if (!error || error == asio::error::try_again || error == asio::error::would_block) {
+    throw AlreadyServed(socket.string() + ": another daemon listens there");
+  }
+  if (error != asio::error::connection_refused) refuse(socket, error.message());
+  std::filesystem::remove(socket, ignored);
+}
+
+/// Never wider than owner and group, not even for a moment; and not narrower, whatever the umask.
+Protocol::acceptor listening_at(asio::io_context& loop, const std::filesystem::path& socket) {
+  try {
+    const Protocol::endpoint endpoint{socket.string()};  // throws where the path is too long
+    clear_the_way(loop, socket);
+    Protocol::acceptor acceptor{loop, Protocol{}};
+    (void)::fchmod(acceptor.native_handle(), kOwnerAndGroup);
+    acceptor.bind(endpoint);
+    if (::chmod(socket.c_str(), kOwnerAndGroup) != 0) refuse(socket, "its permissions cannot be set");
+    acceptor.listen();
+    return acceptor;
+  } catch (const boost::system::system_error& error) {
+    refuse(socket, error.code().message());
+  }
+}
+
+/// One client: a line, its reply, the next line.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  Session(Protocol::socket socket, const Server::Options& options, std::function<void(Session*)> on_end)
+      : socket_{std::move(socket)}, patience_{socket_.get_executor()}, options_{options}, on_end_{std::move(on_end)} {}
+
+  void listen() {
+    asio::async_read_until(
+        socket_, asio::dynamic_buffer(received_, kLongestLine), '\n',
+        [self = shared_from_this()](const error_code& error, std::size_t size) { self->take(error, size); });
+  }
+
+  void say_and_end(const std::string& line) {
+    ends_ = true;
+    say(line);
+  }
+
+  void close() {
+    error_code ignored;
+    patience_.cancel();
+    socket_.close(ignored);
+  }
+
+ private:
+  void take(const error_code& error, std::size_t size) {
+    if (error == asio::error::not_found) {
+      return say_and_end(error_line("a request has at most " + std::to_string(kLongestLine) + " bytes"));
+    }
+    if (error) return on_end_(this);
+    const std::string line = received_.substr(0, size - 1);
+    received_.erase(0, size);
+    wait_for_reply();
+    options_.handle(line, [self = weak_from_this(), number = number_, to = socket_.get_executor()](std::string reply) {
+      asio::post(to, [self, number, reply = std::move(reply)] {
+        if (const auto session = self.lock()) session->answer(number, reply);
+      });
+    });
+  }
+
+  void wait_for_reply() {
+    ++number_;
+    awaits_ = true;
+    patience_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+        std::chrono::duration<double>(options_.patience_s)));
+    patience_.async_wait([self = shared_from_this(), number = number_](const error_code& error) {
+      if (!error) self->answer(number, self->options_.late_reply);
+    });
+  }
+
+  void answer(std::uint64_t number, const std::string& line) {
+    if (!awaits_ || number != number_ || !socket_.is_open()) return;
+    awaits_ = false;
+    patience_.cancel();
+    say(line);
+  }
+
+  void say(const std::string& line) {
+    reply_ = line + "\n";
+    asio::async_write(socket_, asio::buffer(reply_), [self = shared_from_this()](const error_code& error, std::size_t) {
+      if (error || self->ends_) return self->on_end_(self.get());
+      self->listen();
+    });
+  }
+
+  Protocol::socket socket_;
+  asio::steady_timer patience_;
+  const Server::Options& options_;
+  std::function<void(Session*)> on_end_;
+  std::string received_;
+  std::string reply_;
+  std::uint64_t number_ = 0;  // of the request that is being answered
+  bool awaits_ = false;
+  bool ends_ = false;
+};
+
+}  // namespace
+
+struct Server::State {
+  explicit State(Options given)
+      : options{std::move(given)}, acceptor{listening_at(loop, options.socket)}, retry_timer{loop} {}
+
+  void accept() {
+    acceptor.async_accept([this](const error_code& error, Protocol::socket socket) {
+      if (error == asio::error::operation_aborted) return;
+      if (error) return accept_later();
+      welcome(std::move(socket));
+      accept();
+    });
+  }
+
+  void accept_later() {
+    retry_timer.expires_after(kPauseAfterFailure);
+    retry_timer.async_wait([this](const error_code& error) {
+      if (!error) accept();
+    });
+  }
+
+  void welcome(Protocol::socket socket) {
+    const bool is_full = sessions.size() >= kMostClients;
+    const auto session = std::make_shared<Session>(std::move(socket), options, [this](Session* ended) { end(ended); });
+    sessions.insert(session);
+    if (is_full) return session->say_and_end(error_line("too many clients"));
+    session->listen();
+  }
+
+  void end(Session* ended) {
+    ended->close();
+    std::erase_if(sessions, [ended](const auto& session) { return session.get() == ended; });
+  }
+
+  void close() {
+    error_code ignored;
+    acceptor.close(ignored);
+    retry_timer.cancel();
+    for (const auto& session : sessions) session->close();
+    sessions.clear();
+    loop.stop();
+  }
+
+  asio::io_context loop{1};
+  Options options;
+  Protocol::acceptor acceptor;
+  asio::steady_timer retry_timer;
+  std::set<std::shared_ptr<Session>> sessions;
+};
+
+Server::Server(Options options) : state_{std::make_unique<State>(std::move(options))} {}
+
+Server::~Server() {
+  std::error_code ignored;
+  std::filesystem::remove(state_->options.socket, ignored);
+}
+
+void Server::run() {
+  const auto keep_alive = asio::make_work_guard(state_->loop);
+  state_->accept();
+  state_->loop.run();
+}
+
+void Server::stop() {
+  asio::post(state_->loop, [this] { state_->close(); });
+}
+
+void Server::post(std::function<void()> work) { asio::post(state_->loop, std::move(work)); }
+
+}  // namespace deltamap::daemon::control

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control_desk.hpp"
+
+#include "daemon/status_report.hpp"
+#include "drivers/port/port_clock.hpp"
+
+namespace deltamap::daemon {
+
+using control::done_line;
+using control::error_line;
+using control::Request;
+
+ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
+    : settings_{settings},
+      wiring_{std::move(wiring)},
+      began_{drivers::port::port_clock_now()},
+      server_{
+          {.socket = settings.control.socket,
+           .handle = [this](const std::string& line, control::Server::Reply reply) { answer(line, std::move(reply)); },
+           .late_reply = done_line("waits for the next scan")}} {}
+
+void ControlDesk::answer(const std::string& line, control::Server::Reply reply) {
+  const control::RequestAnswer answer = control::request_of_line(line);
+  if (!answer.request) return reply(error_line(answer.refused));
+  const Request& request = *answer.request;
+  if (request.kind != Request::Kind::kStatus) wiring_.log("ctl: " + control::words_of(request));
+  switch (request.kind) {
+    case Request::Kind::kStatus:
+      return reply(status_json_line(wiring_.telemetry, settings_, seconds(drivers::port::port_clock_now() - began_)));
+    case Request::Kind::kDriveOff:
+      return reply(drive(false));
+    case Request::Kind::kDriveWander:
+      return reply(drive(true));
+    case Request::Kind::kPause:
+      return command(Command::Kind::kPause, request, std::move(reply));
+    case Request::Kind::kResume:
+      return command(Command::Kind::kResume, request, std::move(reply));
+    case Request::Kind::kSave:
+      return command(Command::Kind::kSave, request, std::move(reply));
+    case Request::Kind::kRelocalize:
+      if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position())))
+        return reply(error_line("that pose lies outside the map"));
+      return command(Command::Kind::kRelocalize, request, std::move(reply));
+  }
+}
+
+std::string ControlDesk::drive(bool may_drive) {
+  if (may_drive && settings_.navigation.mode != navigation::DriveMode::kWander) {
+    return error_line("'navigation.mode' is not wander: this daemon never drives");
+  }
+  wiring_.let_drive(may_drive);
+  return done_line(may_drive ? "wanders from the next scan on" : "the robot is told to stand");
+}
+
+void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
+  const std::uint64_t ticket = next_ticket_++;
+  if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, ticket})) {
+    return reply(error_line("too many commands wait for a scan already"));
+  }
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+}
+
+void ControlDesk::tell(const CommandOutcome& outcome) {
+  server_.post([this, outcome] {
+    const auto found = waiting_.find(outcome.ticket);
+    if (found == waiting_.end()) return;
+    wiring_.log("ctl: " + control::words_of(found->second.request) + ": " + outcome.message);
+    found->second.reply(outcome.done ? done_line(outcome.message) : error_line(outcome.message));
+    waiting_.erase(found);
+  });
+}
+
+}  // namespace deltamap::daemon

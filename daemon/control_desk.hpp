@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers the operator (`deltamap ctl`) in the control thread: the status from telemetry; what concerns pose and map is
+// sent to the localization thread, which takes it before its next scan; who drives is the io thread's.
+#pragma once
+
+#include <map>
+
+#include "core/channel.hpp"
+#include "core/occupancy_grid.hpp"
+#include "daemon/command.hpp"
+#include "daemon/control/request.hpp"
+#include "daemon/control/server.hpp"
+#include "daemon/settings.hpp"
+#include "daemon/telemetry.hpp"
+
+namespace deltamap::daemon {
+
+class ControlDesk {
+ public:
+  struct Wiring {
+    GridGeometry map;  ///< where a robot can be
+    Channel<Command>& commands;
+    const Telemetry& telemetry;
+    std::function<void(bool may_drive)> let_drive;
+    std::function<void(const std::string&)> log;
+  };
+  /// Listens from now on. Throws control::AlreadyServed, or std::runtime_error with one line that names the socket.
+  ControlDesk(const Settings& settings, Wiring wiring);
+
+  /// The control thread's work, until stop().
+  void run() { server_.run(); }
+  void stop() { server_.stop(); }
+  /// Any thread: a command has been taken, or could not be.
+  void tell(const CommandOutcome& outcome);
+
+ private:
+  struct Waiting {
+    control::Request request;
+    control::Server::Reply reply;
+  };
+  void answer(const std::string& line, control::Server::Reply reply);
+  [[nodiscard]] std::string drive(bool may_drive);
+  void command(Command::Kind kind, const control::Request& request, control::Server::Reply reply);
+
+  Settings settings_;
+  Wiring wiring_;
+  Timestamp began_;
+  std::uint64_t next_ticket_ = 1;
+  std::map<std::uint64_t, Waiting> waiting_;  // by ticket
+  control::Server server_;                    // last: its handler uses the others
+};
+
+}  // namespace deltamap::daemon

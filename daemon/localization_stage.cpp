@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/localization_stage.hpp"
+
+#include <vector>
+
+#include "drivers/port/port_clock.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using Kind = Decision::Kind;
+
+std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batch) {
+  for (std::size_t i = batch.size(); i-- > 0;) {
+    if (std::holds_alternative<Scan>(batch[i])) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& start, std::uint64_t first_map,
+                                     Wiring wiring)
+    : wiring_{std::move(wiring)},
+      step_{settings, start},
+      mapping_enabled_{settings.mapping.enabled},
+      first_revision_{start.revision},
+      first_map_{first_map},
+      map_{start.map},
+      pose_period_s_{settings.memory.pose_period_s} {
+  if (settings.navigation.mode == navigation::DriveMode::kWander) {
+    pilot_.emplace(settings.navigation.wander, settings.seed);
+  }
+}
+
+void LocalizationStage::run() {
+  std::vector<SensorMessage> batch;
+  batch.reserve(wiring_.sensors.capacity());
+  while (auto message = wiring_.sensors.receive()) {
+    // After a stall the queue is drained: all odometry counts, of the scans only the newest.
+    const Workload::Item item{workload_};
+    batch.clear();
+    batch.push_back(std::move(*message));
+    while (batch.size() < wiring_.sensors.capacity()) {
+      auto more = wiring_.sensors.try_receive();
+      if (!more) break;
+      batch.push_back(std::move(*more));
+    }
+    work_off(batch);
+  }
+  if (last_kept_) keep_pose();
+}
+
+void LocalizationStage::work_off(std::vector<SensorMessage>& batch) {
+  const auto newest_scan = newest_scan_in(batch);
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (const auto* odometry = std::get_if<Odometry>(&batch[i])) {
+      step_.observe(*odometry);
+    } else if (i == newest_scan) {
+      localize(std::move(std::get<Scan>(batch[i])));
+    } else {
+      pass_over(std::get<Scan>(batch[i]));
+    }
+  }
+}
+
+void LocalizationStage::pass_over(const Scan& scan) {
+  wiring_.telemetry.dropped.add(1);
+  note({Kind::kScanDropped, scan.number, 0});
+  (void)wiring_.recorder.send(step_.pass_over(scan));
+}
+
+void LocalizationStage::localize(Scan scan) {
+  const std::uint32_t number = scan.number;
+  take_revisions(number);
+  take_commands(number);
+  TrackedScan tracked = step_.observe(std::move(scan));
+  show(tracked.estimate, tracked.scan.received);
+  tell_changes();
+  (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
+  (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
+  map_ = tracked.estimate.map;
+  keep_now_and_then(tracked.scan.time);
+  if (pilot_) wiring_.drive(pilot_->step(tracked));
+  if (!mapping_enabled_ || is_paused_ || wiring_.tracked_scans.try_send(std::move(tracked))) return;
+  wiring_.telemetry.tracked_lost.add(1);
+  note({Kind::kTrackedLost, number, 0});
+}
+
+void LocalizationStage::take_revisions(std::uint32_t scan) {
+  while (const auto revision = wiring_.revisions.try_receive()) {
+    step_.apply(*revision);
+    // Counted from the start of the run, as a replay does.
+    note({Kind::kRevision, scan, revision->number - first_revision_});
+  }
+}
+
+// --- the operator ---
+
+void LocalizationStage::take_commands(std::uint32_t scan) {
+  while (const auto command = wiring_.commands.try_receive()) {
+    if (command->kind == Command::Kind::kSave) {
+      save(*command);
+    } else {
+      wiring_.answer(obey(*command, scan));
+    }
+  }
+}
+
+CommandOutcome LocalizationStage::obey(const Command& command, std::uint32_t scan) {
+  const std::string from = " from scan " + std::to_string(scan) + " on";
+  if (command.kind == Command::Kind::kRelocalize) {
+    step_.relocalize(command.map_from_robot);
+    note({Kind::kRelocalized, scan, 0, command.map_from_robot});
+    return {command.ticket, true, "the robot starts there with scan " + std::to_string(scan)};
+  }
+  if (!mapping_enabled_) return {command.ticket, false, "'mapping.enabled' is false: there is nothing to pause"};
+  is_paused_ = command.kind == Command::Kind::kPause;
+  wiring_.telemetry.paused.set(is_paused_);
+  note({is_paused_ ? Kind::kPaused : Kind::kResumed, scan, 0});
+  return {command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from};
+}
+
+/// The recorder answers when both are on disk.
+void LocalizationStage::save(const Command& command) {
+  if (!last_kept_) {
+    wiring_.answer({command.ticket, false, "no scan has been localized yet: nothing to save"});
+  } else if (!wiring_.recorder.send(
+                 std::make_unique<const SaveOrder>(SaveOrder{command.ticket, pose_to_keep(), map_}))) {
+    wiring_.answer({command.ticket, false, "the disk is too slow: try again"});
+  }
+}
+
+// --- what others see ---
+
+void LocalizationStage::show(const Estimate& estimate, Timestamp received) {
+  const double latency_s = seconds(drivers::port::port_clock_now() - received);
+  latency_.add(latency_s);
+  wiring_.telemetry.localized.add(1);
+  wiring_.telemetry.latency_s.set(latency_s);
+  wiring_.telemetry.estimate.set(estimate);
+}
+
+void LocalizationStage::tell_changes() {
+  const LocalizationRow& row = step_.row();
+  if (row.state != told_state_) {
+    (void)wiring_.recorder.send(LogLine{state_line(row)});
+    told_state_ = row.state;
+  }
+  if (row.belief.verdict != told_verdict_) {
+    (void)wiring_.recorder.send(LogLine{verdict_line(row)});
+    told_verdict_ = row.belief.verdict;
+  }
+}
+
+// --- what outlives the run ---
+
+void LocalizationStage::keep_now_and_then(Timestamp time) {
+  // A clock that fell back does not end the keeping.
+  if (last_kept_ && time >= *last_kept_ && seconds(time - *last_kept_) < pose_period_s_) return;
+  last_kept_ = time;
+  keep_pose();
+}
+
+void LocalizationStage::keep_pose() { (void)wiring_.recorder.send(std::make_unique<const KeptPose>(pose_to_keep())); }
+
+KeptPose LocalizationStage::pose_to_keep() const {
+  const LocalizationRow& row = step_.row();
+  return {.first_map = first_map_,
+          .revision = row.revision,
+          .time = row.time,
+          .map_from_robot = row.map_from_robot,
+          .covariance = row.covariance,
+          .is_sure = row.state == LocalizerState::kTracking && row.belief.verdict != PoseVerdict::kWrong};
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The localization thread: sensor messages in their order, before each scan the revisions and the operator's commands
+// that have come; out go the tracked scan, what the pilot wants, and what is worth keeping. Decisions that depend on
+// the clock are noted for the recording.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "core/channel.hpp"
+#include "core/messages.hpp"
+#include "daemon/command.hpp"
+#include "daemon/latency_histogram.hpp"
+#include "daemon/localization_step.hpp"
+#include "daemon/recorder.hpp"
+#include "daemon/settings.hpp"
+#include "daemon/stage.hpp"
+#include "daemon/telemetry.hpp"
+#include "navigation/wander.hpp"
+
+namespace deltamap::daemon {
+
+class LocalizationStage {
+ public:
+  struct Wiring {
+    Channel<SensorMessage>& sensors;
+    Channel<MapRevision>& revisions;
+    Channel<Command>& commands;
+    Channel<TrackedScan>& tracked_scans;
+    RecorderInput& recorder;
+    Telemetry& telemetry;
+    std::function<void(const DriveCommand&)> drive;     ///< what the pilot wants
+    std::function<void(const CommandOutcome&)> answer;  ///< never waits
+  };
+  /// Throws std::runtime_error where the map has no free cell.
+  LocalizationStage(const Settings& settings, const StartMap& start, std::uint64_t first_map, Wiring wiring);
+
+  /// The thread's work, until the sensor channel is closed and empty.
+  void run();
+
+  [[nodiscard]] const Workload& workload() const { return workload_; }
+  // After run().
+  [[nodiscard]] const LocalizationStep& step() const { return step_; }
+  [[nodiscard]] const LatencyHistogram& latency() const { return latency_; }
+
+ private:
+  void work_off(std::vector<SensorMessage>& batch);
+  void pass_over(const Scan& scan);
+  void localize(Scan scan);
+  void take_revisions(std::uint32_t scan);
+  void take_commands(std::uint32_t scan);
+  [[nodiscard]] CommandOutcome obey(const Command& command, std::uint32_t scan);
+  void save(const Command& command);
+  void show(const Estimate& estimate, Timestamp received);
+  void tell_changes();
+  void keep_now_and_then(Timestamp time);
+  void keep_pose();
+  [[nodiscard]] KeptPose pose_to_keep() const;
+  void note(const Decision& decision) { (void)wiring_.recorder.send(note_of(decision)); }
+
+  Wiring wiring_;
+  LocalizationStep step_;
+  std::optional<navigation::Wander> pilot_;
+  LatencyHistogram latency_;
+  Workload workload_;
+  bool mapping_enabled_;
+  bool is_paused_ = false;
+  std::uint32_t first_revision_;
+  std::uint64_t first_map_;
+  std::shared_ptr<const OccupancyGrid> map_;
+  double pose_period_s_;
+  std::optional<Timestamp> last_kept_;
+  std::optional<LocalizerState> told_state_;
+  std::optional<PoseVerdict> told_verdict_;
+};
+
+}  // namespace deltamap::daemon

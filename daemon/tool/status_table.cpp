@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/status_table.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace deltamap::daemon::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double number(const Json& json, const char* path) {
+  const auto found = Json::json_pointer(path);
+  return json.contains(found) && json[found].is_number() ? json[found].get<double>() : 0.0;
+}
+
+std::string word(const Json& json, const char* path) {
+  const auto found = Json::json_pointer(path);
+  return json.contains(found) && json[found].is_string() ? json[found].get<std::string>() : "-";
+}
+
+template <typename... Values>
+std::string line(const char* name, const char* format, const Values&... values) {
+  char head[16];
+  char text[256];
+  (void)std::snprintf(head, sizeof head, "%-13s", name);
+  (void)std::snprintf(text, sizeof text, format, values...);
+  return std::string(head) + text + "\n";
+}
+
+std::string pose_line(const Json& s) {
+  const double deviation_deg = std::sqrt(number(s, "/covariance/hh_rad2")) * 57.29577951308232;
+  return line("pose", "x=%.2f y=%.2f m heading=%.1f deg (deviations %.3f, %.3f m, %.1f deg)", number(s, "/pose/x_m"),
+              number(s, "/pose/y_m"), number(s, "/pose/heading_deg"), std::sqrt(number(s, "/covariance/xx_m2")),
+              std::sqrt(number(s, "/covariance/yy_m2")), deviation_deg);
+}
+
+std::string belief_lines(const Json& s) {
+  std::string text = line("belief", "pose %s (right %.2f), map wrong here %.2f", word(s, "/belief/verdict").c_str(),
+                          number(s, "/belief/pose_right"), number(s, "/belief/map_wrong"));
+  text += line("", "beams that fit: %.0f of %.0f on what is stable, %.0f of %.0f elsewhere",
+               number(s, "/belief/stable/fit"), number(s, "/belief/stable/expected"),
+               number(s, "/belief/elsewhere/fit"), number(s, "/belief/elsewhere/expected"));
+  if (number(s, "/belief/rival/share") <= 0.0) return text;
+  return text + line("", "or else at x=%.2f y=%.2f m heading=%.0f deg (share %.2f)", number(s, "/belief/rival/x_m"),
+                     number(s, "/belief/rival/y_m"), number(s, "/belief/rival/heading_deg"),
+                     number(s, "/belief/rival/share"));
+}
+
+std::string map_line(const Json& s) {
+  return line("map", "revision %.0f (newest %.0f), %.0f refused, mapping %s, phase %.0f%s", number(s, "/revision"),
+              number(s, "/newest_revision"), number(s, "/refused"), word(s, "/mapping").c_str(),
+              number(s, "/phase/number"), s.value("/phase/open"_json_pointer, false) ? " open" : "");
+}
+
+std::string scans_line(const Json& s) {
+  double drops = 0.0;
+  if (s.contains("drops") && s["drops"].is_object()) {
+    for (const auto& count : s["drops"]) drops += count.is_number() ? count.get<double>() : 0.0;
+  }
+  return line("scans", "%.0f, %.0f localized, %.0f messages dropped, latency %.1f ms", number(s, "/scans"),
+              number(s, "/localized"), drops, number(s, "/latency_ms"));
+}
+
+}  // namespace
+
+std::string status_table(const Json& s) {
+  std::string text = line("state", "%s", word(s, "/state").c_str());
+  text += pose_line(s);
+  text += belief_lines(s);
+  text += line("filter", "%.0f particles, n_eff %.0f, w_avg %.3f", number(s, "/particles"), number(s, "/n_eff"),
+               number(s, "/w_avg"));
+  text += map_line(s);
+  text += scans_line(s);
+  text += line("ports", "robot %s (%.1f V), laser %s", word(s, "/ports/robot").c_str(), number(s, "/battery_v"),
+               word(s, "/ports/laser").c_str());
+  text += line("drive", "%s, stopped by: %s", word(s, "/drive").c_str(), word(s, "/stopped_by").c_str());
+  text += line("running", "%.0f s", number(s, "/since_start_s"));
+  if (s.contains("recording") && s["recording"].is_object()) {
+    text += line("recording", "%s, %.1f MB%s", word(s, "/recording/file").c_str(), number(s, "/recording/bytes") * 1e-6,
+                 s.value("/recording/goes_on"_json_pointer, false) ? "" : ", has ended");
+  }
+  return text;
+}
+
+}  // namespace deltamap::daemon::tool

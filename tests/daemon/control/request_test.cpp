@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/request.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap::daemon::control {
+namespace {
+
+using Kind = Request::Kind;
+
+TEST(Request, EveryRequestSurvivesTheSocket) {
+  for (const Kind kind :
+       {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kDriveOff, Kind::kDriveWander}) {
+    const Request request{kind, {}};
+    const RequestAnswer answer = request_of_line(line_of(request));
+    ASSERT_TRUE(answer.request) << line_of(request) << answer.refused;
+    EXPECT_EQ(*answer.request, request) << line_of(request);
+  }
+  const auto answer = request_of_line(line_of({Kind::kRelocalize, {-1.25, 2.5, radians(-90.0)}}));
+  ASSERT_TRUE(answer.request) << answer.refused;
+  EXPECT_EQ(answer.request->kind, Kind::kRelocalize);
+  EXPECT_DOUBLE_EQ(answer.request->map_from_robot.x, -1.25);
+  EXPECT_DOUBLE_EQ(answer.request->map_from_robot.y, 2.5);
+  EXPECT_NEAR(answer.request->map_from_robot.theta, radians(-90.0), 1e-12);
+}
+
+TEST(Request, WhatIsWrongIsSaidInOneLine) {
+  const auto refusal = [](const char* line) {
+    const RequestAnswer answer = request_of_line(line);
+    EXPECT_FALSE(answer.request) << line;
+    EXPECT_EQ(answer.refused.find('\n'), std::string::npos);
+    return answer.refused;
+  };
+  for (const char* garbage : {"", "status", "[]", "42", "{", "{\"command\":\"stat", "\xFF\xFE", "null", "[[[[[["}) {
+    EXPECT_EQ(refusal(garbage), "a request is one JSON object in one line") << garbage;
+  }
+  EXPECT_EQ(refusal("{}"), "a request needs a command");
+  EXPECT_EQ(refusal(R"({"command":7})"), "a request needs a command");
+  EXPECT_EQ(refusal(R"({"command":"explode"})"), "unknown command 'explode'");
+  for (const char* pose : {R"({"command":"relocalize"})", R"({"command":"relocalize","x_m":1,"y_m":2})",
+                           R"({"command":"relocalize","x_m":"1","y_m":2,"heading_deg":3})",
+                           R"({"command":"relocalize","x_m":1e300,"y_m":2,"heading_deg":3})"}) {
+    EXPECT_EQ(refusal(pose), "'relocalize' needs the numbers x_m, y_m and heading_deg") << pose;
+  }
+  EXPECT_EQ(refusal(R"({"command":"drive"})"), "'drive' needs the mode off or wander");
+  EXPECT_EQ(refusal(R"({"command":"drive","mode":"patrol"})"), "'drive' needs the mode off or wander");
+}
+
+TEST(Request, ARepliedTextIsOneLineOfJsonWhateverItHolds) {
+  EXPECT_EQ(done_line("a \"map\""), R"({"ok":true,"message":"a \"map\""})");
+  EXPECT_EQ(error_line("two\nlines"), R"({"ok":false,"error":"two\nlines"})");
+  EXPECT_EQ(error_line("\xFF").find('\xFF'), std::string::npos);
+}
+
+TEST(Request, IsLoggedAsAPersonWouldTypeIt) {
+  EXPECT_EQ(words_of({Kind::kRelocalize, {1.0, -2.0, radians(90.0)}}), "relocalize 1.00,-2.00,90");
+  EXPECT_EQ(words_of({Kind::kDriveOff, {}}), "drive off");
+  EXPECT_EQ(words_of({Kind::kSave, {}}), "save");
+}
+
+}  // namespace
+}  // namespace deltamap::daemon::control

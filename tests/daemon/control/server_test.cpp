@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// The control socket with real clients: polite ones, rude ones, and some that go away.
+#include "daemon/control/server.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <future>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "daemon/control/client.hpp"
+#include "daemon/control/request.hpp"
+#include "tests/support/socket_client.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon::control {
+namespace {
+
+namespace fs = std::filesystem;
+using test::SocketClient;
+
+class ServerTest : public testing::Test {
+ protected:
+  void TearDown() override { end(); }
+
+  void serve(Server::Handler handle, double patience_s = 60.0) {
+    server_.emplace(Server::Options{socket(), std::move(handle), "too late", patience_s});
+    thread_ = std::jthread{[this] { server_->run(); }};
+  }
+  void serve_echo() {
+    serve([](const std::string& line, const Server::Reply& reply) { reply("re: " + line); });
+  }
+  void end() {
+    if (!server_) return;
+    server_->stop();
+    thread_.join();
+    server_.reset();
+  }
+  [[nodiscard]] fs::path socket() const { return folder_.path() / "ctl.sock"; }
+
+  test::TemporaryFolder folder_;
+  std::optional<Server> server_;
+  std::jthread thread_;
+};
+
+TEST_F(ServerTest, EachOfSeveralClientsGetsItsOwnReplies) {
+  serve_echo();
+  SocketClient one{socket()};
+  SocketClient other{socket()};
+  EXPECT_TRUE(one.send("a\nb\n"));
+  EXPECT_EQ(other.asked("c"), "re: c");
+  EXPECT_EQ(one.line(), "re: a");
+  EXPECT_EQ(one.line(), "re: b");
+  EXPECT_EQ(exchange(socket(), "d"), "re: d");
+}
+
+TEST_F(ServerTest, ARequestMayComeInPieces) {
+  serve_echo();
+  SocketClient client{socket()};
+  for (const char* piece : {"sta", "t", "us", "\n"}) EXPECT_TRUE(client.send(piece));
+  EXPECT_EQ(client.line(), "re: status");
+}
+
+TEST_F(ServerTest, AClientThatVanishesBeforeItsReplyHarmsNobody) {
+  std::promise<Server::Reply> asked;
+  serve([&](const std::string& line, const Server::Reply& reply) {
+    line == "slow" ? asked.set_value(reply) : reply("re: " + line);
+  });
+  SocketClient gone{socket()};
+  EXPECT_TRUE(gone.send("slow\n"));
+  const Server::Reply reply = asked.get_future().get();
+  gone.vanish();
+  reply("nobody hears this");
+  SocketClient half{socket()};
+  EXPECT_TRUE(half.send("half a requ"));
+  half.vanish();
+  EXPECT_EQ(exchange(socket(), "still there?"), "re: still there?");
+}
+
+TEST_F(ServerTest, AReplyMayComeLaterFromAnotherThreadAndOnlyTheFirstCounts) {
+  std::promise<Server::Reply> asked;
+  serve([&](const std::string& line, const Server::Reply& reply) {
+    line == "slow" ? asked.set_value(reply) : reply("re: " + line);
+  });
+  SocketClient client{socket()};
+  EXPECT_TRUE(client.send("slow\n"));
+  const Server::Reply reply = asked.get_future().get();
+  reply("first");
+  reply("second");
+  EXPECT_EQ(client.line(), "first");
+  EXPECT_EQ(client.asked("next"), "re: next");
+}
+
+TEST_F(ServerTest, WhereNoReplyComesTheClientIsToldSo) {
+  std::vector<Server::Reply> kept;
+  serve([&](const std::string&, Server::Reply reply) { kept.push_back(std::move(reply)); }, 0.05);
+  SocketClient client{socket()};
+  EXPECT_EQ(client.asked("slow"), "too late");
+}
+
+TEST_F(ServerTest, AnOverlongLineIsAnErrorAndTheEndOfThatClientOnly) {
+  serve_echo();
+  SocketClient client{socket()};
+  (void)client.send(std::string(100'000, 'x'));
+  EXPECT_EQ(client.line(), error_line("a request has at most 4096 bytes"));
+  EXPECT_EQ(client.line(), "");
+  EXPECT_EQ(exchange(socket(), std::string(kLongestLine - 1, 'y')), "re: " + std::string(kLongestLine - 1, 'y'));
+}
+
+TEST_F(ServerTest, AClientTooManyIsToldSoAndPlacesComeFree) {
+  serve_echo();
+  std::vector<std::unique_ptr<SocketClient>> clients;
+  for (int i = 0; i < 16; ++i) {
+    clients.push_back(std::make_unique<SocketClient>(socket()));
+    ASSERT_EQ(clients.back()->asked("hello"), "re: hello");
+  }
+  SocketClient late{socket()};
+  EXPECT_EQ(late.line(), error_line("too many clients"));
+  clients.clear();
+  std::string reply;
+  for (int tries = 0; tries < 1000 && reply != "re: now"; ++tries) reply = SocketClient{socket()}.asked("now");
+  EXPECT_EQ(reply, "re: now");
+}
+
+TEST_F(ServerTest, TheSocketIsForOwnerAndGroupAndGoneAtTheEnd) {
+  const mode_t before = ::umask(0077);
+  serve_echo();
+  ::umask(before);
+  struct stat status {};
+  ASSERT_EQ(::stat(socket().c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0660u);
+  end();
+  EXPECT_FALSE(fs::exists(socket()));
+}
+
+TEST_F(ServerTest, WhatACrashLeftBehindIsReplaced) {
+  {
+    const int left = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, socket().c_str(), sizeof address.sun_path - 1);
+    ASSERT_EQ(::bind(left, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    ::close(left);
+  }
+  ASSERT_TRUE(fs::exists(socket()));
+  serve_echo();
+  EXPECT_EQ(exchange(socket(), "alive"), "re: alive");
+}
+
+TEST_F(ServerTest, ALiveDaemonIsNotReplaced) {
+  serve_echo();
+  try {
+    const Server second{{socket(), [](const std::string&, const Server::Reply&) {}, ""}};
+    FAIL() << "must refuse";
+  } catch (const AlreadyServed& error) {
+    EXPECT_EQ(error.what(), socket().string() + ": another daemon listens there");
+  }
+  EXPECT_EQ(exchange(socket(), "mine"), "re: mine");
+}
+
+TEST_F(ServerTest, AFileOfSomebodyElseIsLeftAlone) {
+  (void)folder_.write("ctl.sock", "precious");
+  const auto refusal_at = [](const fs::path& path) -> std::string {
+    try {
+      const Server server{{path, [](const std::string&, const Server::Reply&) {}, ""}};
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal_at(socket()), socket().string() + ": cannot listen: a file that is no socket is in the way");
+  EXPECT_EQ(fs::file_size(socket()), 8u);
+  const fs::path nowhere = folder_.path() / "missing/ctl.sock";
+  EXPECT_EQ(refusal_at(nowhere), nowhere.string() + ": cannot listen: No such file or directory");
+  const fs::path endless = folder_.path() / std::string(200, 'n');
+  EXPECT_TRUE(refusal_at(endless).starts_with(endless.string() + ": cannot listen: ")) << refusal_at(endless);
+}
+
+TEST_F(ServerTest, AClientWithoutADaemonIsToldInOneLine) {
+  try {
+    (void)exchange(socket(), "status");
+    FAIL() << "nobody listens";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), socket().string() + ": no daemon listens there (No such file or directory)");
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::daemon::control

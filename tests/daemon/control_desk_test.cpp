@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// The operator and the running daemon, over a real socket: what is answered, what a replay repeats, and who may drive.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "daemon/control/request.hpp"
+#include "daemon/control/server.hpp"
+#include "daemon/tool/run_tool.hpp"
+#include "tests/support/pipeline_fixture.hpp"
+#include "tests/support/simulated_ports.hpp"
+#include "tests/support/socket_client.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using control::Request;
+using Json = nlohmann::json;
+using test::content_of;
+using test::SocketClient;
+using namespace std::chrono_literals;
+
+constexpr auto kGiveUp = 60s;
+
+/// Asks until the answer is as wanted.
+template <typename Wanted>
+bool comes_true(const Wanted& wanted) {
+  const auto give_up_at = std::chrono::steady_clock::now() + kGiveUp;
+  while (!wanted()) {
+    if (std::chrono::steady_clock::now() > give_up_at) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+class ControlDeskTest : public test::PipelineFixture {
+ protected:
+  ControlDeskTest() { settings_.control.socket = folder_.path() / "ctl.sock"; }
+
+  [[nodiscard]] Json asked(const Request& request) const {
+    SocketClient client{settings_.control.socket};
+    return Json::parse(client.asked(control::line_of(request)));
+  }
+  [[nodiscard]] Json status() const { return asked({Request::Kind::kStatus, {}}); }
+  [[nodiscard]] bool reached_scan(int scan) const {
+    return comes_true([&] { return status()["localized"] > scan; });
+  }
+  [[nodiscard]] int exit_code(std::vector<const char*> arguments) const {
+    arguments.insert(arguments.begin(), {"deltamap", "ctl", "--socket", settings_.control.socket.c_str()});
+    return tool::run_tool(static_cast<int>(arguments.size()), arguments.data());
+  }
+};
+
+TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedByTheReplayBitForBit) {
+  const RunReport live = run_live(3ms, [&](const Pipeline&) {
+    ASSERT_TRUE(reached_scan(20));
+    EXPECT_EQ(asked({Request::Kind::kPause, {}})["ok"], true);
+    EXPECT_EQ(status()["mapping"], "paused");
+    ASSERT_TRUE(reached_scan(60));
+    const Pose2 aside = test::pose_on_drive(6.0) * Pose2{0.3, -0.2, 0.1};
+    EXPECT_EQ(asked({Request::Kind::kRelocalize, aside})["ok"], true);
+    ASSERT_TRUE(reached_scan(120));
+    EXPECT_EQ(asked({Request::Kind::kResume, {}})["ok"], true);
+    EXPECT_EQ(status()["mapping"], "on");
+  });
+  const RunReport again = replay("live.pcapng", "replayed");
+  EXPECT_EQ(again.journal, "obeyed");
+  EXPECT_EQ(again.journal_differences, 0u);
+  expect_same_files("live", "replayed");
+  EXPECT_EQ(live.scans.recording_lost, 0u);
+
+  // It did make a difference.
+  (void)replay("drive.pcapng", "untouched");
+  EXPECT_NE(content_of(folder_.path() / "untouched/trajectory.tum"),
+            content_of(folder_.path() / "live/trajectory.tum"));
+}
+
+TEST_F(ControlDeskTest, WhileMappingIsPausedTheMapStaysAsItIs) {
+  const RunReport live = run_live(2ms, [&](const Pipeline&) {
+    ASSERT_TRUE(reached_scan(0));
+    EXPECT_EQ(exit_code({"pause"}), 0);
+  });
+  EXPECT_GT(live.scans.localized, 300u);
+  EXPECT_TRUE(live.changes.empty()) << "without the pause the box becomes map";
+}
+
+TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
+  (void)run_live(2ms, [&](const Pipeline&) {
+    ASSERT_TRUE(reached_scan(50));
+    const Json told = status();
+    EXPECT_EQ(told["ok"], true);
+    EXPECT_EQ(told["state"], "tracking");
+    EXPECT_GT(told["pose"]["x_m"], 2.0);
+    EXPECT_GT(told["covariance"]["xx_m2"], 0.0);
+    EXPECT_TRUE(told["belief"]["verdict"].is_string());
+    EXPECT_GE(told["belief"]["pose_right"], 0.0);
+    EXPECT_EQ(told["particles"], 200);
+    EXPECT_GE(told["n_eff"], 1.0);
+    EXPECT_GT(told["w_avg"], 0.0);
+    EXPECT_EQ(told["revision"], 0);
+    EXPECT_EQ(told["drive"], "off");
+    EXPECT_EQ(told["recording"]["file"], settings_.recording.file);
+    EXPECT_EQ(told["recording"]["goes_on"], true);
+    EXPECT_GT(told["since_start_s"], 0.0);
+    EXPECT_EQ(told["drops"].size(), 6u);
+
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(exit_code({"status"}), 0);
+    const std::string table = testing::internal::GetCapturedStdout();
+    for (const char* topic : {"state        tracking", "pose         x=", "belief       pose ",
+                              "map          revision 0", "ports        robot ", "drive        off", "recording    "}) {
+      EXPECT_NE(table.find(topic), std::string::npos) << topic << '\n' << table;
+    }
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(exit_code({"status", "--json"}), 0);
+    EXPECT_EQ(Json::parse(testing::internal::GetCapturedStdout())["state"], "tracking");
+  });
+}
+
+TEST_F(ControlDeskTest, SaveWritesMapAndPoseBesideTheStoreAndSaysWhere) {
+  settings_.map.store = folder_.path() / "kept.sqlite";
+  (void)run_live(2ms, [&](const Pipeline&) {
+    ASSERT_TRUE(reached_scan(10));
+    const Json reply = asked({Request::Kind::kSave, {}});
+    EXPECT_EQ(reply["ok"], true) << reply;
+    const auto map = folder_.path() / "kept.saved.yaml";
+    EXPECT_NE(reply["message"].get<std::string>().find(map.string()), std::string::npos) << reply;
+    EXPECT_EQ(read_grid(map), test::small_room(false));
+    EXPECT_FALSE(content_of(folder_.path() / "kept.pose.json").empty());
+  });
+}
+
+TEST_F(ControlDeskTest, GarbageAndWrongRequestsAreAnsweredAndHarmNothing) {
+  const RunReport live = run_live(2ms, [&](const Pipeline&) {
+    SocketClient client{settings_.control.socket};
+    EXPECT_EQ(client.asked("hello"), R"({"ok":false,"error":"a request is one JSON object in one line"})");
+    EXPECT_EQ(client.asked(R"({"command":"explode"})"), R"({"ok":false,"error":"unknown command 'explode'"})");
+    EXPECT_EQ(asked({Request::Kind::kRelocalize, {99.0, 1.0, 0.0}})["error"], "that pose lies outside the map");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(exit_code({"relocalize", "99,1,0"}), 1);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "deltamap: that pose lies outside the map\n");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(exit_code({"relocalize", "1,2"}), 2);
+    EXPECT_EQ(exit_code({"drive", "patrol"}), 2);
+    EXPECT_EQ(exit_code({"explode"}), 2);
+    (void)testing::internal::GetCapturedStderr();
+    SocketClient asks_and_goes{settings_.control.socket};
+    (void)asks_and_goes.send(control::line_of({Request::Kind::kPause, {}}) + "\n");
+    asks_and_goes.vanish();
+  });
+  EXPECT_GT(live.scans.localized, 300u);
+}
+
+TEST_F(ControlDeskTest, WithoutADaemonTheToolSaysSoInOneLineAndEndsWithOne) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(exit_code({"status"}), 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "deltamap: " + settings_.control.socket + ": no daemon listens there (No such file or directory)\n");
+}
+
+TEST_F(ControlDeskTest, ASecondDaemonEndsBeforeItTouchesAnything) {
+  (void)run_live(2ms, [&](const Pipeline&) {
+    const auto recorded = std::filesystem::path(settings_.recording.file);
+    EXPECT_THROW((Pipeline{settings_, options()}), control::AlreadyServed);
+    EXPECT_TRUE(std::filesystem::exists(recorded));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "live.previous.pcapng"));
+    EXPECT_TRUE(reached_scan(0)) << "the first one still answers";
+  });
+}
+
+TEST_F(ControlDeskTest, ASocketThatCannotBeIsToldAndTheDaemonWorksWithoutIt) {
+  settings_.control.socket = folder_.path() / "missing/ctl.sock";
+  EXPECT_GT(run_live(0ms).scans.decoded, 300u);
+}
+
+// --- who drives ---
+
+class DriveTest : public ControlDeskTest {
+ protected:
+  void SetUp() override {
+    settings_.laser.session.baud = 38400;
+    settings_.initial_pose = Pose2{1.0, 2.0, 0.0};
+    settings_.recording.file.clear();
+  }
+
+  void run(const std::function<void(const test::SimulatedPorts&)>& operate) {
+    const auto scenario =
+        simulation::read_scenario(std::filesystem::path(DELTAMAP_SOURCE_DIR) / "config/scenarios/room.yaml");
+    test::SimulatedPorts ports{scenario, 1};
+    Pipeline::Options live = options();
+    live.open = [&ports](boost::asio::io_context& loop, drivers::port::PortId id, unsigned baud) {
+      return ports.open(loop, id, baud);
+    };
+    std::optional<Pipeline> pipeline{std::in_place, settings_, std::move(live)};
+    ASSERT_TRUE(reached_scan(5));
+    operate(ports);
+    (void)pipeline->stop();
+    ports.end();
+  }
+
+  /// Whether anything that makes wheels turn or motors hold was among the commands from `first` on.
+  static bool moves(const test::SimulatedPorts& ports, std::size_t first = 0) {
+    using Number = drivers::pioneer::CommandNumber;
+    const auto sent = ports.commands();
+    return std::any_of(sent.begin() + static_cast<std::ptrdiff_t>(std::min(first, sent.size())), sent.end(),
+                       [](const test::SimulatedPorts::SentCommand& command) {
+                         const bool is_motion = command.number == static_cast<std::uint8_t>(Number::kVel) ||
+                                                command.number == static_cast<std::uint8_t>(Number::kRvel) ||
+                                                command.number == static_cast<std::uint8_t>(Number::kEnable);
+                         const bool is_zero =
+                             command.argument.size() == 3 && command.argument[1] == 0 && command.argument[2] == 0;
+                         return is_motion && !is_zero;
+                       });
+  }
+};
+
+TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
+  run([&](const test::SimulatedPorts& ports) {
+    const Json refused = asked({Request::Kind::kDriveWander, {}});
+    EXPECT_EQ(refused["ok"], false);
+    EXPECT_EQ(refused["error"], "'navigation.mode' is not wander: this daemon never drives");
+    EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 10));
+    EXPECT_FALSE(moves(ports));
+    EXPECT_EQ(status()["drive"], "off");
+  });
+}
+
+TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  run([&](const test::SimulatedPorts& ports) {
+    EXPECT_TRUE(comes_true([&] { return moves(ports); }));
+    EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
+    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "no command"; }));
+    EXPECT_EQ(status()["drive"], "off");
+    const std::size_t stopped = ports.commands().size();
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 10));
+    EXPECT_FALSE(moves(ports, stopped)) << "the pilot is not listened to";
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+    EXPECT_TRUE(comes_true([&] { return moves(ports, stopped); }));
+    EXPECT_EQ(status()["drive"], "wander");
+  });
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

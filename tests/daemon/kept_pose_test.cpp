@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/kept_pose.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/grid_file.hpp"
+#include "daemon/memory_keeper.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+KeptPose some_pose() {
+  KeptPose pose;
+  pose.first_map = 0xFEDCBA9876543210u;
+  pose.revision = 7;
+  pose.time = timestamp_from_ns(1'700'000'000'123'456'789);
+  pose.map_from_robot = {-1.0 / 3.0, 2.0 / 7.0, 1.0 / 11.0};
+  pose.is_sure = true;
+  return pose;
+}
+
+/// Why the pose in this text is not used; without the folder.
+std::string refusal(const test::TemporaryFolder& folder, const std::string& text) {
+  const auto file = folder.write("store.pose.json", text);
+  const KeptPoseAnswer answer = read_kept_pose(file, some_pose().first_map);
+  EXPECT_FALSE(answer.pose) << text;
+  EXPECT_EQ(answer.fingerprint, 0u);
+  const std::string name = file.string() + ": ";
+  EXPECT_TRUE(answer.why_not.starts_with(name)) << answer.why_not;
+  return answer.why_not.substr(name.size());
+}
+
+TEST(KeptPose, ComesBackBitForBit) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("store.pose.json", json_text(some_pose()));
+  const KeptPoseAnswer answer = read_kept_pose(file, some_pose().first_map);
+  ASSERT_TRUE(answer.pose) << answer.why_not;
+  EXPECT_EQ(answer.pose->map_from_robot, some_pose().map_from_robot);
+  EXPECT_EQ(answer.pose->revision, 7u);
+  EXPECT_EQ(answer.pose->time, some_pose().time);
+  EXPECT_NE(answer.fingerprint, 0u);
+}
+
+TEST(KeptPose, WithoutAFileThereIsNothingToSay) {
+  const test::TemporaryFolder folder;
+  const KeptPoseAnswer answer = read_kept_pose(folder.path() / "store.pose.json", 1);
+  EXPECT_FALSE(answer.pose);
+  EXPECT_EQ(answer.why_not, "");
+}
+
+TEST(KeptPose, EveryCutAndEveryForeignFileIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::string whole = json_text(some_pose());
+  for (std::size_t length = 0; length + 1 < whole.size(); ++length) {
+    EXPECT_EQ(refusal(folder, whole.substr(0, length)), "holds no pose");
+  }
+  EXPECT_EQ(refusal(folder, "hello"), "holds no pose");
+  EXPECT_EQ(refusal(folder, std::string(100'000, '[')), "holds no pose");
+  EXPECT_EQ(refusal(folder, R"({"map":"fedcba9876543210","sure":true,"x_m":"1"})"), "holds no pose");
+}
+
+TEST(KeptPose, APoseInAnotherMapOrOfALostRobotIsNotUsed) {
+  const test::TemporaryFolder folder;
+  KeptPose other = some_pose();
+  other.first_map = 1;
+  EXPECT_EQ(refusal(folder, json_text(other)), "the pose belongs to another map");
+  KeptPose lost = some_pose();
+  lost.is_sure = false;
+  EXPECT_EQ(refusal(folder, json_text(lost)), "the robot did not know where it was");
+}
+
+TEST(MemoryKeeper, KeepsThePoseBesideTheStore) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> warnings;
+  MemoryKeeper keeper{memory_places(folder.path() / "map_store.sqlite"),
+                      [&](const std::string& line) { warnings.push_back(line); }};
+  keeper.keep(some_pose());
+  EXPECT_TRUE(read_kept_pose(folder.path() / "map_store.pose.json", some_pose().first_map).pose);
+  EXPECT_TRUE(warnings.empty());
+}
+
+TEST(MemoryKeeper, AFullDiskIsToldOnceAndDoesNotEndTheKeeping) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> warnings;
+  MemoryKeeper keeper{memory_places(folder.path() / "later/map_store.sqlite"),
+                      [&](const std::string& line) { warnings.push_back(line); }};
+  keeper.keep(some_pose());
+  keeper.keep(some_pose());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with("the pose is not kept: ")) << warnings[0];
+  std::filesystem::create_directory(folder.path() / "later");
+  keeper.keep(some_pose());
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_TRUE(warnings[1].starts_with("the pose is kept again: ")) << warnings[1];
+}
+
+TEST(MemoryKeeper, SavesMapAndPoseAndSaysWhere) {
+  const test::TemporaryFolder folder;
+  MemoryKeeper keeper{memory_places(folder.path() / "map_store.sqlite"), [](const std::string&) {}};
+  const auto map = std::make_shared<const OccupancyGrid>(GridGeometry{4, 3, 0.05, {0.0, 0.0}}, CellState::kFree);
+  const CommandOutcome outcome = keeper.save({5, some_pose(), map});
+  EXPECT_TRUE(outcome.done) << outcome.message;
+  EXPECT_EQ(outcome.ticket, 5u);
+  const auto saved = folder.path() / "map_store.saved.yaml";
+  EXPECT_NE(outcome.message.find(saved.string()), std::string::npos) << outcome.message;
+  EXPECT_EQ(read_grid(saved), *map);
+  EXPECT_TRUE(read_kept_pose(folder.path() / "map_store.pose.json", some_pose().first_map).pose);
+
+  MemoryKeeper nowhere{memory_places(""), [](const std::string&) {}};
+  EXPECT_FALSE(nowhere.save({6, some_pose(), map}).done);
+}
+
+}  // namespace
+}  // namespace deltamap::daemon
