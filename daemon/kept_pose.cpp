@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "daemon/fingerprint.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -19,12 +21,6 @@ std::string hex_of(std::uint64_t hash) {
   char text[24];
   (void)std::snprintf(text, sizeof text, "%016" PRIx64, hash);
   return text;
-}
-
-std::uint64_t fnv1a(const std::string& text) {
-  std::uint64_t hash = 0xCBF29CE484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
-  return hash;
 }
 
 std::optional<double> number_in(const Json& json, const char* key) {
@@ -59,8 +55,9 @@ std::optional<KeptPose> pose_in(const Json& json, std::uint64_t first_map) {
 
 MemoryPlaces memory_places(const std::filesystem::path& store) {
   if (store.empty()) return {};
-  MemoryPlaces places{store, store};
+  MemoryPlaces places{store, store, store};
   places.pose.replace_extension(".pose.json");
+  places.stability.replace_extension(".stability");
   places.saved_map.replace_extension(".saved.yaml");
   return places;
 }
@@ -98,7 +95,7 @@ KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t f
   if (map == json.end() || *map != hex_of(first_map)) return refused("the pose belongs to another map");
   if (!pose->is_sure) return refused("the robot did not know where it was");
   answer.pose = pose;
-  answer.fingerprint = fnv1a(text.str());
+  answer.fingerprint = fingerprint_of(text.str());
   return answer;
 }
 

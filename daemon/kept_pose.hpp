@@ -25,6 +25,7 @@ struct KeptPose {
 /// Where things are kept that belong to a store; all empty where there is none.
 struct MemoryPlaces {
   std::filesystem::path pose;       ///< NAME.pose.json
+  std::filesystem::path stability;  ///< NAME.stability
   std::filesystem::path saved_map;  ///< NAME.saved.yaml with its PGM: what `ctl save` writes
 };
 [[nodiscard]] MemoryPlaces memory_places(const std::filesystem::path& store);

@@ -17,6 +17,11 @@ std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batc
   return std::nullopt;
 }
 
+/// A clock that fell back does not end the keeping.
+bool is_due(const std::optional<Timestamp>& last, Timestamp time, double period_s) {
+  return !last || time < *last || seconds(time - *last) >= period_s;
+}
+
 }  // namespace
 
 LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& start, std::uint64_t first_map,
@@ -27,7 +32,8 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
       first_revision_{start.revision},
       first_map_{first_map},
       map_{start.map},
-      pose_period_s_{settings.memory.pose_period_s} {
+      memory_{settings.memory},
+      is_kept_{!settings.map.store.empty()} {
   if (settings.navigation.mode == navigation::DriveMode::kWander) {
     pilot_.emplace(settings.navigation.wander, settings.seed);
   }
@@ -48,7 +54,9 @@ void LocalizationStage::run() {
     }
     work_off(batch);
   }
-  if (last_kept_) keep_pose();
+  if (!pose_kept_) return;
+  keep_pose();
+  keep_stability();
 }
 
 void LocalizationStage::work_off(std::vector<SensorMessage>& batch) {
@@ -123,7 +131,7 @@ CommandOutcome LocalizationStage::obey(const Command& command, std::uint32_t sca
 
 /// The recorder answers when both are on disk.
 void LocalizationStage::save(const Command& command) {
-  if (!last_kept_) {
+  if (!pose_kept_) {
     wiring_.answer({command.ticket, false, "no scan has been localized yet: nothing to save"});
   } else if (!wiring_.recorder.send(
                  std::make_unique<const SaveOrder>(SaveOrder{command.ticket, pose_to_keep(), map_}))) {
@@ -156,13 +164,26 @@ void LocalizationStage::tell_changes() {
 // --- what outlives the run ---
 
 void LocalizationStage::keep_now_and_then(Timestamp time) {
-  // A clock that fell back does not end the keeping.
-  if (last_kept_ && time >= *last_kept_ && seconds(time - *last_kept_) < pose_period_s_) return;
-  last_kept_ = time;
-  keep_pose();
+  if (is_due(pose_kept_, time, memory_.pose_period_s)) {
+    pose_kept_ = time;
+    keep_pose();
+  }
+  if (!stability_kept_) stability_kept_ = time;  // at the start there is nothing new
+  if (is_due(stability_kept_, time, memory_.stability_period_s)) {
+    stability_kept_ = time;
+    keep_stability();
+  }
 }
 
-void LocalizationStage::keep_pose() { (void)wiring_.recorder.send(std::make_unique<const KeptPose>(pose_to_keep())); }
+void LocalizationStage::keep_pose() {
+  if (is_kept_) (void)wiring_.recorder.send(std::make_unique<const KeptPose>(pose_to_keep()));
+}
+
+void LocalizationStage::keep_stability() {
+  if (!is_kept_) return;
+  (void)wiring_.recorder.send(std::make_unique<const KeptStability>(
+      KeptStability{.first_map = first_map_, .revision = step_.row().revision, .record = step_.stability()}));
+}
 
 KeptPose LocalizationStage::pose_to_keep() const {
   const LocalizationRow& row = step_.row();

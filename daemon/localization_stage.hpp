@@ -55,6 +55,7 @@ class LocalizationStage {
   void tell_changes();
   void keep_now_and_then(Timestamp time);
   void keep_pose();
+  void keep_stability();
   [[nodiscard]] KeptPose pose_to_keep() const;
   void note(const Decision& decision) { (void)wiring_.recorder.send(note_of(decision)); }
 
@@ -68,8 +69,10 @@ class LocalizationStage {
   std::uint32_t first_revision_;
   std::uint64_t first_map_;
   std::shared_ptr<const OccupancyGrid> map_;
-  double pose_period_s_;
-  std::optional<Timestamp> last_kept_;
+  MemorySettings memory_;
+  bool is_kept_;                        // there is a store to keep it beside
+  std::optional<Timestamp> pose_kept_;  // nothing until the first scan
+  std::optional<Timestamp> stability_kept_;
   std::optional<LocalizerState> told_state_;
   std::optional<PoseVerdict> told_verdict_;
 };

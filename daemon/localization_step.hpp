@@ -20,8 +20,9 @@ namespace deltamap::daemon {
 struct StartMap {
   std::shared_ptr<const OccupancyGrid> map;
   std::uint32_t revision = 0;
-  std::optional<Pose2>
-      remembered{};  ///< map_from_robot at the end of the run before; the settings' pose goes before it
+  /// map_from_robot at the end of the run before; the settings' pose goes before it.
+  std::optional<Pose2> remembered{};
+  std::optional<localization::StabilityRecord> stability{};  ///< what earlier runs have learned of this map
 };
 
 class LocalizationStep {
@@ -39,6 +40,7 @@ class LocalizationStep {
 
   /// Of the newest scan that was localized.
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
+  [[nodiscard]] localization::StabilityRecord stability() const { return localizer_.stability(); }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }
   [[nodiscard]] const VerdictTimes& verdict_times() const { return verdict_times_; }

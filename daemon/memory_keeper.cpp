@@ -7,14 +7,18 @@
 
 namespace deltamap::daemon {
 
-void MemoryKeeper::keep(const KeptPose& pose) {
-  if (places_.pose.empty()) return;
+void MemoryKeeper::keep(const KeptPose& pose) { replace(places_.pose, json_text(pose)); }
+
+void MemoryKeeper::keep(const KeptStability& stability) { replace(places_.stability, file_text(stability)); }
+
+void MemoryKeeper::replace(const std::filesystem::path& file, const std::string& content) {
+  if (file.empty()) return;
   try {
-    replace_file(places_.pose, json_text(pose));
-    if (fails_) warn_("the pose is kept again: " + places_.pose.string());
+    replace_file(file, content);
+    if (fails_) warn_("pose and stability are kept again: " + file.string());
     fails_ = false;
   } catch (const std::exception& error) {
-    if (!fails_) warn_(std::string("the pose is not kept: ") + error.what());
+    if (!fails_) warn_(std::string("pose and stability are not kept: ") + error.what());
     fails_ = true;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes what outlives the run beside the store, in the recorder thread: the pose every few seconds, pose and map when
-// the operator asks for it.
+// Writes what outlives the run beside the store, in the recorder thread: the pose every few seconds, what has proven
+// stable every minute, pose and map when the operator asks for it.
 #pragma once
 
 #include <functional>
@@ -10,6 +10,7 @@
 #include "core/occupancy_grid.hpp"
 #include "daemon/command.hpp"
 #include "daemon/kept_pose.hpp"
+#include "daemon/kept_stability.hpp"
 
 namespace deltamap::daemon {
 
@@ -22,14 +23,17 @@ struct SaveOrder {
 
 class MemoryKeeper {
  public:
-  /// `warn` is told once when the pose cannot be written, and once when it can again.
+  /// `warn` is told once when nothing can be written, and once when it can again.
   MemoryKeeper(MemoryPlaces places, std::function<void(const std::string&)> warn)
       : places_{std::move(places)}, warn_{std::move(warn)} {}
 
   void keep(const KeptPose& pose);
+  void keep(const KeptStability& stability);
   [[nodiscard]] CommandOutcome save(const SaveOrder& order);
 
  private:
+  void replace(const std::filesystem::path& file, const std::string& content);
+
   MemoryPlaces places_;
   std::function<void(const std::string&)> warn_;
   bool fails_ = false;

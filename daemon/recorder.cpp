@@ -92,6 +92,8 @@ void Recorder::write(RecorderItem&& item) {
     if (localization_) localization_->write(csv_line(**row));
   } else if (const auto* pose = std::get_if<std::unique_ptr<const KeptPose>>(&item)) {
     memory_.keep(**pose);
+  } else if (const auto* stability = std::get_if<std::unique_ptr<const KeptStability>>(&item)) {
+    memory_.keep(**stability);
   } else if (const auto* order = std::get_if<std::unique_ptr<const SaveOrder>>(&item)) {
     save(**order);
   } else {

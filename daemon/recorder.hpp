@@ -23,9 +23,9 @@ using JournalNote = std::string;
 struct LogLine {
   std::string text;
 };
-using RecorderItem =
-    std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint, std::unique_ptr<const LocalizationRow>,
-                 std::unique_ptr<const KeptPose>, std::unique_ptr<const SaveOrder>, LogLine>;
+using RecorderItem = std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint,
+                                  std::unique_ptr<const LocalizationRow>, std::unique_ptr<const KeptPose>,
+                                  std::unique_ptr<const KeptStability>, std::unique_ptr<const SaveOrder>, LogLine>;
 
 /// One sender's way to the recorder.
 class RecorderInput {

@@ -13,6 +13,8 @@
 #include <mutex>
 
 #include "core/grid_file.hpp"
+#include "daemon/kept_pose.hpp"
+#include "daemon/kept_stability.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
@@ -81,13 +83,28 @@ StartMap start_map(OccupancyGrid first, const mapping::MapStore* store, Console&
 
 /// Where the run before has left the robot; a pose that a person gave goes before it.
 void remember_pose(const Settings& settings, Pipeline::Options& options, Console& console) {
-  if (settings.initial_pose || settings.map.store.empty()) return;
-  const auto kept = read_kept_pose(memory_places(settings.map.store).pose, options.first_map);
-  if (!kept.why_not.empty()) console.log(spdlog::level::warn, "no pose to begin with: " + kept.why_not);
-  if (!kept.pose) return;
-  options.start.remembered = kept.pose->map_from_robot;
-  options.memory = kept.fingerprint;
-  console.log(spdlog::level::info, begin_line(*kept.pose));
+  if (settings.initial_pose) return;
+  const auto answer = read_kept_pose(memory_places(settings.map.store).pose, options.first_map);
+  if (!answer.why_not.empty()) console.log(spdlog::level::warn, "no pose to begin with: " + answer.why_not);
+  if (!answer.pose) return;
+  options.start.remembered = answer.pose->map_from_robot;
+  options.memory ^= answer.fingerprint;
+  console.log(spdlog::level::info, begin_line(*answer.pose));
+}
+
+/// What the runs before have learned; of cells that were rewritten since, nothing.
+void remember_stability(const Settings& settings, const mapping::MapStore& store, Pipeline::Options& options,
+                        Console& console) {
+  auto answer = read_kept_stability(memory_places(settings.map.store).stability, options.first_map);
+  if (!answer.why_not.empty()) console.log(spdlog::level::warn, "stability is earned anew: " + answer.why_not);
+  if (!answer.kept) return;
+  if (answer.kept->revision > store.newest()) {
+    console.log(spdlog::level::warn, "stability is earned anew: it belongs to a revision that the store has lost");
+    return;
+  }
+  const auto changes = changes_between(store.grid(answer.kept->revision), *options.start.map);
+  options.start.stability = without(answer.kept->record, settings.localizer.stability, changes);
+  options.memory ^= answer.fingerprint;
 }
 
 sigset_t stop_signals() {
@@ -126,7 +143,10 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   Pipeline::Options options;
   options.first_map = grid_hash(first);
   options.start = start_map(std::move(first), store ? &*store : nullptr, console);
-  remember_pose(settings, options, console);
+  if (store) {
+    remember_pose(settings, options, console);
+    remember_stability(settings, *store, options, console);
+  }
   options.store = store ? &*store : nullptr;
   if (!line.out.empty()) {
     std::error_code error;

@@ -11,6 +11,8 @@
 #include <set>
 #include <sstream>
 
+#include "daemon/fingerprint.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -175,14 +177,11 @@ std::string settings_as_yaml(const Settings& settings) {
 
 std::uint64_t settings_fingerprint(const Settings& settings) {
   Settings copy = settings;
-  std::uint64_t hash = 0xCBF29CE484222325u;  // FNV-1a
+  std::string all;
   for (const SettingKey& key : keys_of(copy)) {
-    if (!key.affects_result) continue;
-    for (const char c : key.name + "=" + key.text() + "\n") {
-      hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
-    }
+    if (key.affects_result) all += key.name + "=" + key.text() + "\n";
   }
-  return hash;
+  return fingerprint_of(all);
 }
 
 }  // namespace deltamap::daemon

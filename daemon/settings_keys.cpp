@@ -127,6 +127,8 @@ void add_memory(MemorySettings& memory, Keys& keys) {
   const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
   add(number_key("localization.memory.pose_period_s", memory.pose_period_s, "s", 0.1, 3600.0,
                  "between two writings of the pose beside map.store"));
+  add(number_key("localization.memory.stability_period_s", memory.stability_period_s, "s", 1.0, 86400.0,
+                 "between two writings of what has proven stable"));
   add(number_key("localization.memory.position_deviation_m", memory.position_deviation_m, "m", 0.01, 10.0,
                  "of a kept pose: the robot may have been pushed while it was off"));
   add(degrees_key("localization.memory.heading_deviation_deg", memory.heading_deviation_rad, 0.1, 180.0,

@@ -46,7 +46,7 @@ void ask(const CtlOptions& options, const Request& request) {
   if (!reply["ok"].get<bool>()) throw std::runtime_error(reply.value("error", "the daemon could not"));
   if (options.as_json) return;
   if (request.kind == Kind::kStatus)
-    std::cout << status_table(reply);
+    std::cout << status_table(line);
   else
     std::cout << reply.value("message", "done") << '\n';
 }

@@ -65,7 +65,8 @@ std::string scans_line(const Json& s) {
 
 }  // namespace
 
-std::string status_table(const Json& s) {
+std::string status_table(const std::string& reply_line) {
+  const Json s = Json::parse(reply_line, nullptr, false);
   std::string text = line("state", "%s", word(s, "/state").c_str());
   text += pose_line(s);
   text += belief_lines(s);

@@ -2,12 +2,11 @@
 // The daemon's status for a person: what `deltamap ctl status` prints.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace deltamap::daemon::tool {
 
-/// A line a topic. Values that the reply lacks are left out.
-[[nodiscard]] std::string status_table(const nlohmann::ordered_json& status);
+/// A line a topic, from the daemon's reply; a value that the reply lacks is 0 or "-".
+[[nodiscard]] std::string status_table(const std::string& reply_line);
 
 }  // namespace deltamap::daemon::tool

@@ -88,11 +88,11 @@ TEST(MemoryKeeper, AFullDiskIsToldOnceAndDoesNotEndTheKeeping) {
   keeper.keep(some_pose());
   keeper.keep(some_pose());
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_TRUE(warnings[0].starts_with("the pose is not kept: ")) << warnings[0];
+  EXPECT_TRUE(warnings[0].starts_with("pose and stability are not kept: ")) << warnings[0];
   std::filesystem::create_directory(folder.path() / "later");
   keeper.keep(some_pose());
   ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_TRUE(warnings[1].starts_with("the pose is kept again: ")) << warnings[1];
+  EXPECT_TRUE(warnings[1].starts_with("pose and stability are kept again: ")) << warnings[1];
 }
 
 TEST(MemoryKeeper, SavesMapAndPoseAndSaysWhere) {

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A daemon that is killed in mid-drive begins again where the robot is, without being told; a damaged pose is ignored
+# with a warning. usage: restart.sh FOLDER-OF-PROGRAMS
+set -euo pipefail
+bin=$(realpath "$1")
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+out=$(mktemp -d)
+world=config/scenarios/room.yaml
+daemon= simulator=
+end() {
+  for process in $daemon $simulator; do kill -9 "$process" 2>/dev/null || true; done
+  rm -rf "$out"
+}
+trap end EXIT
+fail() { echo "restart: $1" >&2; cat "$out"/*.log >&2; exit 1; }
+
+"$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
+"$bin/deltamap" sim --world "$world" --links "$out" --seed 1 --truth "$out/truth.jsonl" 2>"$out/sim.log" &
+simulator=$!
+for _ in $(seq 100); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
+
+# start NAME [OPTION...]: a daemon that is up and has localized some scans
+start() {
+  local name=$1
+  shift
+  "$bin/deltamapd" --config config/simulation.yaml --set robot.port="$out/robot" --set laser.port="$out/laser" \
+    --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" \
+    --set localization.memory.pose_period_s=1 --out "$out/$name" "$@" 2>"$out/$name.log" &
+  daemon=$!
+  for _ in $(seq 400); do
+    [[ -s $out/$name/trajectory.tum ]] && return
+    kill -0 "$daemon" 2>/dev/null || fail "$name: the daemon has ended"
+    sleep 0.1
+  done
+  fail "$name: no scan in time"
+}
+
+start first --initial-pose 1,2,0
+sleep 12
+kill -9 "$daemon" && wait "$daemon" 2>/dev/null || true
+[[ -S $out/ctl.sock ]] || fail "a killed daemon leaves its socket behind: this test expects so"
+[[ -s $out/store.pose.json ]] || fail "no pose was kept"
+
+start second --set localization.initial_pose=null
+sleep 8
+"$bin/deltamap" ctl --socket "$out/ctl.sock" status --json >"$out/status.json"
+kill "$daemon" && wait "$daemon" || fail "the second daemon did not end well"
+grep -q 'begins at the pose that was kept' "$out/second.log" || fail "the pose that was kept is not used"
+grep -q '"state":"tracking"' "$out/status.json" || fail "the robot is not found again"
+# The robot drove on for a moment after the last pose was kept: the first seconds are for finding it again.
+tail -n 30 "$out/second/trajectory.tum" >"$out/settled.tum"
+worst=$("$bin/deltamap" score --truth "$out/truth.jsonl" --world "$world" --trajectory "$out/settled.tum" \
+  --start-map "$out/m0.yaml" --map "$out/second/map.yaml" --json | sed -n 's/^ *"max_m": \([0-9.]*\).*/\1/p')
+awk -v worst="$worst" 'BEGIN { exit !(worst != "" && worst < 0.3) }' || fail "after the restart it is ${worst:-?} m off"
+
+echo 'not a pose' >"$out/store.pose.json"
+start third --set localization.initial_pose=null
+kill "$daemon" && wait "$daemon" || fail "the third daemon did not end well"
+daemon=
+grep -q 'warning no pose to begin with: .*store.pose.json: holds no pose' "$out/third.log" || fail "no warning"
+grep -q 'localizer: global' "$out/third.log" || fail "it does not begin with global localization"
+echo "restart: after kill -9 at most $worst m off"
