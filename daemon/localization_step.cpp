@@ -10,7 +10,7 @@ std::optional<localization::InitialPose> initial_pose(const Settings& settings, 
   if (settings.initial_pose) return localization::InitialPose{*settings.initial_pose};
   if (!start.remembered) return std::nullopt;
   return localization::InitialPose{*start.remembered, settings.memory.position_deviation_m,
-                                   settings.memory.heading_deviation_rad};
+                                   settings.memory.heading_deviation_rad, true};
 }
 
 }  // namespace
@@ -53,6 +53,23 @@ void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(rev
 
 void LocalizationStep::relocalize(const Pose2& map_from_robot) {
   localizer_.relocalize(localization::InitialPose{map_from_robot});
+}
+
+std::map<std::string, std::uint64_t> LocalizationStep::counts() const {
+  const localization::LocalizerCounts& c = localizer_.counts();
+  return {{"scans", c.scans},
+          {"scans_without_return", c.scans_without_return},
+          {"scans_without_odometry", c.scans_without_odometry},
+          {"clock_fell_back", c.clock_fell_back},
+          {"odometry_epochs", c.odometry_epochs},
+          {"gaps", c.gaps},
+          {"poses_in_obstacle", c.poses_in_obstacle},
+          {"poses_refused", c.poses_refused},
+          {"poses_confirmed", c.poses_confirmed},
+          {"poses_refuted", c.poses_refuted},
+          {"searches", c.searches},
+          {"searches_failed", c.searches_failed},
+          {"recoveries", c.recoveries}};
 }
 
 double LocalizationStep::covered_s() const { return first_scan_ ? seconds(*last_scan_ - *first_scan_) : 0.0; }

@@ -3,6 +3,7 @@
 // and an operator's pose to the localizer; a trajectory point and a line of localization.csv for every scan.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -44,6 +45,8 @@ class LocalizationStep {
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }
   [[nodiscard]] const VerdictTimes& verdict_times() const { return verdict_times_; }
+  /// What befell the localizer (localization/localizer_counts.hpp), by name.
+  [[nodiscard]] std::map<std::string, std::uint64_t> counts() const;
   /// From the first scan to the last.
   [[nodiscard]] double covered_s() const;
 

@@ -96,6 +96,7 @@ std::string json_text(const RunReport& report) {
   json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
                           {"undecided_s", report.verdict_times.undecided_s},
                           {"wrong_s", report.verdict_times.wrong_s}};
+  json["localizer"] = report.localizer;
   json["recorded_s"] = report.recorded_s;
   const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));
   json["cpu"] = {{"total_s", report.cpu_total_s},         {"per_scan_ms", milliseconds(per_scan)},

@@ -284,6 +284,7 @@ RunReport Pipeline::stop() {
   report.time_lost_s = localization.time_lost_s();
   report.time_global_s = localization.time_global_s();
   report.verdict_times = localization.verdict_times();
+  report.localizer = localization.counts();
   report.recorded_s = localization.covered_s();
   report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.awareness_thread->cpu_s(),
                 s.map_thread->cpu_s(), s.recorder_thread->cpu_s()};

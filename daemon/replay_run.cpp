@@ -222,6 +222,7 @@ RunReport Replay::finish(const std::filesystem::path& out) {
   report_.time_lost_s = localization_.time_lost_s();
   report_.time_global_s = localization_.time_global_s();
   report_.verdict_times = localization_.verdict_times();
+  report_.localizer = localization_.counts();
   report_.recorded_s = localization_.covered_s();
   report_.latency_of = "localizing one scan, CPU time";
   report_.latency_p50_s = step_times_.quantile_s(0.5);
