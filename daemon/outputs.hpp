@@ -93,7 +93,7 @@ struct RunReport {
   double time_global_s = 0.0;
   VerdictTimes verdict_times;
   std::map<std::string, std::uint64_t> localizer;  ///< what befell it, by name
-  double recorded_s = 0.0;  ///< from the first scan to the last
+  double recorded_s = 0.0;                         ///< from the first scan to the last
   StageCpu cpu;
   double cpu_total_s = 0.0;
   double wall_s = 0.0;

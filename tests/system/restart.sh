@@ -37,7 +37,9 @@ start() {
 }
 
 start first --initial-pose 1,2,0
-sleep 12
+sleep 10
+"$bin/deltamap" ctl --socket "$out/ctl.sock" drive off
+sleep 3  # it stands, and the pose that is kept is of now
 kill -9 "$daemon" && wait "$daemon" 2>/dev/null || true
 [[ -S $out/ctl.sock ]] || fail "a killed daemon leaves its socket behind: this test expects so"
 [[ -s $out/store.pose.json ]] || fail "no pose was kept"
@@ -48,8 +50,8 @@ sleep 8
 kill "$daemon" && wait "$daemon" || fail "the second daemon did not end well"
 grep -q 'begins at the pose that was kept' "$out/second.log" || fail "the pose that was kept is not used"
 grep -q '"state":"tracking"' "$out/status.json" || fail "the robot is not found again"
-# The robot drove on for a moment after the last pose was kept: the first seconds are for finding it again.
-tail -n 30 "$out/second/trajectory.tum" >"$out/settled.tum"
+# The first second is for checking it.
+tail -n +10 "$out/second/trajectory.tum" >"$out/settled.tum"
 worst=$("$bin/deltamap" score --truth "$out/truth.jsonl" --world "$world" --trajectory "$out/settled.tum" \
   --start-map "$out/m0.yaml" --map "$out/second/map.yaml" --json | sed -n 's/^ *"max_m": \([0-9.]*\).*/\1/p')
 awk -v worst="$worst" 'BEGIN { exit !(worst != "" && worst < 0.3) }' || fail "after the restart it is ${worst:-?} m off"
