@@ -47,13 +47,17 @@ std::uint32_t Random::index_below(std::uint32_t count) {
 }
 
 double Random::normal() {
-  // Kinderman and Monahan 1977, with Leva's quick bounds left out: 1.37 pairs of uniforms a number.
+  // Kinderman and Monahan 1977: 1.37 pairs of uniforms a number. The bounds around the exact test, which spare nearly
+  // every logarithm, are those of Leva, "A fast normal random number generator", 1992.
   constexpr double kWidth = 1.7155277699214135;  // 2 sqrt(2 / e)
   for (;;) {
     const double u = ((*this)() + 0.5) * 0x1p-32;
     const double v = kWidth * (uniform() - 0.5);
-    const double x = v / u;
-    if (x * x <= -4.0 * std::log(u)) return x;
+    const double x = u - 0.449871;
+    const double y = std::abs(v) + 0.386595;
+    const double q = x * x + y * (0.19600 * y - 0.25472 * x);
+    if (q > 0.27846) continue;
+    if (q < 0.27597 || v * v <= -4.0 * u * u * std::log(u)) return v / u;
   }
 }
 
