@@ -69,6 +69,7 @@ std::span<const Pose2> GlobalSearch::look(const CoarseField& coarse, const Likel
     candidates_ = lattice_.best_apart(static_cast<std::size_t>(params_.places));
     next_ = 0;
     stage_ = Stage::kSliding;
+    return places_;
   }
   // Carried along by the wheels since the scan that found them, and slid to where the newest scan fits.
   const Pose2 motion = motion_between(joined_from_robot_, joined_from_robot);

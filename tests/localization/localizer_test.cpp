@@ -170,6 +170,7 @@ TEST(Localizer, FindsItselfAfterBeingCarriedAway) {
     const bool there = distance_between(tracked.estimate.map_from_robot, drive.truth()) < 1.0;
     EXPECT_TRUE(there || tracked.estimate.belief.verdict != PoseVerdict::kRight) << i;
   }
+  EXPECT_GT(localizer.counts().recoveries + localizer.counts().searches, 0u);
   EXPECT_EQ(tracked.estimate.state, LocalizerState::kTracking);
   EXPECT_LT(distance_between(tracked.estimate.map_from_robot, drive.truth()), 0.2);
 }
