@@ -103,7 +103,7 @@ void remember_stability(const Settings& settings, const mapping::MapStore& store
     return;
   }
   const auto changes = changes_between(store.grid(answer.kept->revision), *options.start.map);
-  options.start.stability = without(answer.kept->record, settings.localizer.stability, changes);
+  options.start.stability = without(answer.kept->record, settings.localizer.judgement.stability, changes);
   options.memory ^= answer.fingerprint;
 }
 
