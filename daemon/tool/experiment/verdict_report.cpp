@@ -91,7 +91,13 @@ Report verdict_report(const std::vector<Outcome>& outcomes) {
   for (const std::string place : {"hall", "depot"}) {
     const VerdictPart part{outcomes, [&](const Outcome& outcome) { return outcome.label("place") == place; }};
     if (part.runs() == 0.0) continue;  // not asked for
+    const VerdictPart undisturbed{outcomes, [&](const Outcome& outcome) {
+                                    return outcome.label("place") == place &&
+                                           outcome.label("event") == name_of(PoseEvent::kNothing);
+                                  }};
     add_figures(report, place, part);
+    report.figures.push_back({place + ": undisturbed runs whose pose became wrong",
+                              share_of(undisturbed.once_wrong(), undisturbed.runs()), ""});
     report.tables.push_back(table_of(outcomes, place));
     const Reliability pose = part.pose();
     const Reliability map = part.map();
