@@ -12,9 +12,9 @@
 namespace deltamap::localization {
 
 struct GlobalSearchParams {
-  int candidates_a_scan = 50000;           ///< poses looked at in one scan; > 0
+  int candidates_a_scan = 100000;          ///< poses looked at in one scan; > 0
   int places = 600;                        ///< candidates that are slid to their best fit; > 0
-  int places_a_scan = 60;                  ///< of these in one scan; > 0
+  int places_a_scan = 200;                 ///< of these in one scan; > 0
   double again_after_m = 0.5;              ///< driven until the whole map is looked at again, m; > 0
   double again_after_rad = radians(30.0);  ///< or turned, rad; > 0
 };

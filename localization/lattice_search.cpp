@@ -78,7 +78,9 @@ std::vector<Candidate> LatticeSearch::best_apart(std::size_t count) {
     if (apart.size() == count) break;
     const Pose2& pose = candidate.map_from_robot;
     const bool known = std::any_of(apart.begin(), apart.end(), [&](const Candidate& other) {
-      return distance_between(pose, other.map_from_robot) < kApartM &&
+      const double x_m = pose.x - other.map_from_robot.x;
+      const double y_m = pose.y - other.map_from_robot.y;
+      return x_m * x_m + y_m * y_m < kApartM * kApartM &&
              std::abs(turn_between(pose.theta, other.map_from_robot.theta)) < apart_rad;
     });
     if (!known) apart.push_back(candidate);

@@ -108,7 +108,7 @@ TEST(GlobalSearch, CarriesWhatItFoundAlongWithTheWheels) {
   const OccupancyGrid map = test::drawn_flat();
   const LikelihoodField field{map, {}};
   const CoarseField coarse{map, field, kBlock_m};
-  GlobalSearch search{{.candidates_a_scan = 8000}, kHeadings};
+  GlobalSearch search{{.candidates_a_scan = 8000, .places_a_scan = 50}, kHeadings};
   Pose2 truth{1.0, 2.0, 0.9};
   Pose2 joined{7.0, 8.0, -2.0};  // odometry starts anywhere
   bool found = false;
