@@ -164,6 +164,7 @@ void LocalizationStage::tell_changes() {
 // --- what outlives the run ---
 
 void LocalizationStage::keep_now_and_then(Timestamp time) {
+  has_tracked_ = has_tracked_ || step_.row().state == LocalizerState::kTracking;
   if (is_due(pose_kept_, time, memory_.pose_period_s)) {
     pose_kept_ = time;
     keep_pose();
@@ -176,7 +177,7 @@ void LocalizationStage::keep_now_and_then(Timestamp time) {
 }
 
 void LocalizationStage::keep_pose() {
-  if (is_kept_) (void)wiring_.recorder.send(std::make_unique<const KeptPose>(pose_to_keep()));
+  if (is_kept_ && has_tracked_) (void)wiring_.recorder.send(std::make_unique<const KeptPose>(pose_to_keep()));
 }
 
 void LocalizationStage::keep_stability() {

@@ -73,6 +73,7 @@ class LocalizationStage {
   bool is_kept_;                        // there is a store to keep it beside
   std::optional<Timestamp> pose_kept_;  // nothing until the first scan
   std::optional<Timestamp> stability_kept_;
+  bool has_tracked_ = false;  // until then what an earlier run has kept is the better answer
   std::optional<LocalizerState> told_state_;
   std::optional<PoseVerdict> told_verdict_;
 };

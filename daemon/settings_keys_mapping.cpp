@@ -5,7 +5,19 @@
 namespace deltamap::daemon {
 namespace {
 
-void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, Keys& keys) {
+/// One range for both: what a beam says nothing about it must not draw.
+SettingKey most_range_key(std::string name, double& judged_m, double& drawn_m) {
+  SettingKey key =
+      number_key(std::move(name), judged_m, "m", 0.1, 100.0, "beyond, a beam neither says nor draws anything");
+  key.assign = [assign = std::move(key.assign), &judged_m, &drawn_m](const SettingValue& value) {
+    const auto needed = assign(value);
+    drawn_m = judged_m;
+    return needed;
+  };
+  return key;
+}
+
+void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, double& longest_drawn_m, Keys& keys) {
   keys.push_back(number_key("mapping.persistence_s", evidence.persistence_s, "s", 0.0, 86400.0,
                             "how long a difference must last to become map"));
   const std::string at = "mapping.evidence.";
@@ -19,8 +31,7 @@ void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, Keys& keys)
   keys.push_back(number_key(at + "settle_s", evidence.settle_s, "s", 0.0, 3600.0,
                             "a region is handed on when it has not grown for so long"));
   keys.push_back(number_key(at + "most_wait_s", evidence.most_wait_s, "s", 0.0, 3600.0, "or has waited so long"));
-  keys.push_back(
-      number_key(at + "most_range_m", evidence.beams.most_range_m, "m", 0.1, 100.0, "a beam says nothing beyond"));
+  keys.push_back(most_range_key(at + "most_range_m", evidence.beams.most_range_m, longest_drawn_m));
   keys.push_back(
       number_key(at + "range_deviation_m", evidence.beams.range_deviation_m, "m", 0.001, 1.0, "of the laser"));
   keys.push_back(number_key(at + "forget_s", evidence.votes.forget_s, "s", 1.0, 86400.0,
@@ -31,8 +42,6 @@ void add_evidence_update(mapping::EvidenceUpdateParams& evidence, Keys& keys) {
   const std::string with_evidence = "mapping.evidence.update.";
   keys.push_back(
       whole_key(with_evidence + "least_scans", evidence.least_scans, "", 1, 1000, "fewer that fit are refused"));
-  keys.push_back(
-      number_key(with_evidence + "longest_m", evidence.longest_m, "m", 0.1, 100.0, "beams beyond do not draw"));
   keys.push_back(number_key(with_evidence + "most_implausible_share", evidence.most_implausible_share, "", 0.0, 1.0,
                             "of the scans that contradict the localizer"));
   keys.push_back(number_key(with_evidence + "occupied_hit_share", evidence.occupied_hit_share, "", 0.0, 1.0,
@@ -75,7 +84,7 @@ void add_mapping_keys(MappingSettings& settings, Keys& keys) {
   keys.push_back(choice_key("mapping.method", store_scan.method,
                             {{"paper", MappingMethod::kPaper}, {"evidence", MappingMethod::kEvidence}},
                             "how changes are found and merged"));
-  add_evidence(store_scan.evidence, keys);
+  add_evidence(store_scan.evidence, settings.update.evidence.longest_m, keys);
   add_evidence_update(settings.update.evidence, keys);
   add_paper(store_scan, keys);
   add_paper_update(settings.update.paper, keys);

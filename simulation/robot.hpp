@@ -8,6 +8,7 @@
 
 #include "core/pose2.hpp"
 #include "core/random.hpp"
+#include "simulation/drive_target.hpp"
 #include "simulation/ray_caster.hpp"
 
 namespace deltamap::simulation {
@@ -22,16 +23,6 @@ struct RobotParams {
   double slips_per_m = 0.02;                ///< how often a wheel begins to slip, >= 0
   double slip_length_m = 0.05;              ///< encoder travel during which it slips, >= 0
   double slip_share = 0.5;                  ///< share of that travel that is lost, [0, 1]
-};
-
-/// What the controller asks of the motors.
-struct DriveTarget {
-  double speed_m_per_s = 0.0;
-  double turn_rate_rad_per_s = 0.0;
-  double acceleration_m_per_s2 = 0.3;
-  double deceleration_m_per_s2 = 0.3;
-  double turn_acceleration_rad_per_s2 = 1.75;
-  double turn_deceleration_rad_per_s2 = 1.75;
 };
 
 struct RobotState {

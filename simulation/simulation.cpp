@@ -47,11 +47,6 @@ devices::Lms200Setup lms200_setup(const LaserSetup& laser) {
   return setup;
 }
 
-DriveTarget target_of(const devices::MotorDemand& demand) {
-  return {demand.speed_m_per_s,         demand.turn_rate_rad_per_s,          demand.acceleration_m_per_s2,
-          demand.deceleration_m_per_s2, demand.turn_acceleration_rad_per_s2, demand.turn_deceleration_rad_per_s2};
-}
-
 /// Where each sonar of the ring sits and looks, robot frame (A7).
 Pose2 robot_from_sonar(int index) {
   constexpr std::array<std::array<double, 3>, 16> kRing{{{69, 136, 90},
@@ -119,7 +114,7 @@ void Simulation::run_devices(Timestamp now) {
 void Simulation::move(Timestamp from) {
   const double dt_s = seconds(kStep);
   const std::vector<Circle> others = people();
-  body_.move(target_of(pioneer_.demand()), dt_s, surfaces_, others);
+  body_.move(pioneer_.demand(), dt_s, surfaces_, others);
   for (Person& person : people_) person.move(dt_s, surfaces_, robot_body());
   const RobotState& state = body_.state();
   travelled_m_ += state.speed_m_per_s * dt_s;

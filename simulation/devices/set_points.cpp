@@ -97,15 +97,15 @@ void SetPoints::take_limit(const Command& command) {
   }
 }
 
-MotorDemand SetPoints::standstill() const {
-  MotorDemand demand = limits_;
+DriveTarget SetPoints::standstill() const {
+  DriveTarget demand = limits_;
   if (emergency_)
     demand.deceleration_m_per_s2 = std::max(kEmergencyDeceleration_m_per_s2, demand.deceleration_m_per_s2);
   return demand;
 }
 
-MotorDemand SetPoints::demand(const WheelMotion& motion) const {
-  MotorDemand demand = standstill();
+DriveTarget SetPoints::demand(const WheelMotion& motion) const {
+  DriveTarget demand = standstill();
   demand.speed_m_per_s = std::clamp(wanted_speed(motion), -max_speed_m_per_s_, max_speed_m_per_s_);
   demand.turn_rate_rad_per_s =
       std::clamp(wanted_turn_rate(motion), -max_turn_rate_rad_per_s_, max_turn_rate_rad_per_s_);

@@ -7,6 +7,7 @@
 
 #include "core/pose2.hpp"
 #include "drivers/pioneer/command.hpp"
+#include "simulation/drive_target.hpp"
 
 namespace deltamap::simulation::devices {
 
@@ -21,24 +22,15 @@ struct WheelMotion {
   std::optional<double> contact_bearing_rad;  ///< where the body touches something, robot frame
 };
 
-struct MotorDemand {
-  double speed_m_per_s = 0.0;
-  double turn_rate_rad_per_s = 0.0;
-  double acceleration_m_per_s2 = 0.3;
-  double deceleration_m_per_s2 = 0.3;
-  double turn_acceleration_rad_per_s2 = 1.75;
-  double turn_deceleration_rad_per_s2 = 1.75;
-};
-
 /// Values as the robot is delivered (A10: TRANSVELMAX 750 mm/s, ROTVELMAX 100 deg/s, TRANSACC 300, ROTACC 100).
 class SetPoints {
  public:
   /// Takes a command of motion; false for any other.
   bool take(const drivers::pioneer::Command& command, const WheelMotion& motion);
 
-  [[nodiscard]] MotorDemand demand(const WheelMotion& motion) const;
+  [[nodiscard]] DriveTarget demand(const WheelMotion& motion) const;
   /// Standing still as fast as the set decelerations allow.
-  [[nodiscard]] MotorDemand standstill() const;
+  [[nodiscard]] DriveTarget standstill() const;
 
   /// The heading that is being held, if one is.
   [[nodiscard]] std::optional<double> heading_rad() const { return heading_rad_; }
@@ -55,7 +47,7 @@ class SetPoints {
   bool emergency_ = false;             // since ESTOP
   double max_speed_m_per_s_ = 0.75;
   double max_turn_rate_rad_per_s_ = 1.745;
-  MotorDemand limits_;
+  DriveTarget limits_;
 };
 
 }  // namespace deltamap::simulation::devices

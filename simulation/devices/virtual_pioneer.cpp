@@ -235,7 +235,7 @@ std::optional<Timestamp> VirtualPioneer::next_event() const {
   return next;
 }
 
-MotorDemand VirtualPioneer::demand() const {
+DriveTarget VirtualPioneer::demand() const {
   const bool may_move = state_ == State::kConnected && motors_enabled_ && !watchdog_fired_;
   return may_move ? set_points_.demand(motion_) : set_points_.standstill();
 }

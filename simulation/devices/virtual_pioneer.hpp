@@ -52,7 +52,7 @@ class VirtualPioneer {
   [[nodiscard]] std::optional<Timestamp> next_event() const;
 
   /// What the motors are asked to do now.
-  [[nodiscard]] MotorDemand demand() const;
+  [[nodiscard]] DriveTarget demand() const;
 
   // What people and power do to a robot.
   void reset(Timestamp now);  ///< power cycle: pose 0, nobody connected, motors off

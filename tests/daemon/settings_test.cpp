@@ -68,6 +68,13 @@ TEST(Settings, DegreesInTheFileAreRadiansBehindIt) {
   EXPECT_DOUBLE_EQ(settings.initial_pose->theta, radians(-90.0));
 }
 
+TEST(Settings, OneKeySaysHowFarABeamSaysAndDrawsSomething) {
+  const Settings settings = parse_settings("", "f", {"mapping.evidence.most_range_m=30"});
+  EXPECT_EQ(settings.mapping.store_scan.evidence.beams.most_range_m, 30.0);
+  EXPECT_EQ(settings.mapping.update.evidence.longest_m, 30.0);
+  EXPECT_EQ(Settings{}.mapping.store_scan.evidence.beams.most_range_m, Settings{}.mapping.update.evidence.longest_m);
+}
+
 TEST(Settings, AnUnknownKeyIsNamedWithFileLineAndTheNearestKnownOne) {
   EXPECT_EQ(error_of("seed: 1\nlaser:\n  prot: /dev/ttyS0\n"),
             "robot.yaml:3: unknown key 'laser.prot'; the nearest known key is 'laser.port'");

@@ -61,5 +61,6 @@ start third --set localization.initial_pose=null
 kill "$daemon" && wait "$daemon" || fail "the third daemon did not end well"
 daemon=
 grep -q 'warning no pose to begin with: .*store.pose.json: holds no pose' "$out/third.log" || fail "no warning"
+[[ $(cat "$out/store.pose.json") == "not a pose" ]] || fail "a pose was kept before the robot was found"
 grep -q 'localizer: global' "$out/third.log" || fail "it does not begin with global localization"
 echo "restart: after kill -9 at most $worst m off"
