@@ -141,6 +141,19 @@ struct Localizer::State {
            ends.size() > 0 && explained_share(field, ends, place.map_from_robot) >= params.fit.found_above;
   }
 
+  [[nodiscard]] bool is_nearby(const Pose2& place, const Pose2& believed) const {
+    return distance_between(place, believed) < params.rivals.nearby_m;
+  }
+
+  /// The robot is not where it was believed to be; before another place is believed, the whole map is searched.
+  RefinedPose doubt(const RefinedPose& believed) {
+    ++counts.searches;
+    rivals.stop_believing();
+    judgement.start(kTrustInNothing);
+    monitor.start(LocalizerState::kGlobal);
+    return believed;
+  }
+
   [[nodiscard]] MotionSince motion_since_update(Timestamp time, const std::optional<OdometryAt>& now) const {
     if (!last_update) return {};
     MotionSince since;
@@ -251,6 +264,7 @@ struct Localizer::State {
                                .map_from_believed = lost ? std::nullopt : std::optional{believed.map_from_robot},
                                .unknown_s = since.unknown_s});
     if (report.listed == 0 || !has_won(report.rivals.front())) return believed;
+    if (!lost && !is_nearby(report.rivals.front().map_from_robot, believed.map_from_robot)) return doubt(believed);
     ++counts.recoveries;
     last_update->time = time;
     last_update->odometry = now;
