@@ -5,7 +5,7 @@ Called by ./dev bench localization.
 
   localization.py [--quick] [--only NAME]...   --quick: few repetitions, seeds and runs; writes into build/ alone
                                                --only: measures these parts anew and keeps what is known of the others"""
-import argparse, json, pathlib, platform, subprocess, sys
+import argparse, json, os, pathlib, platform, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import localizer_cost, on_experiments, on_intel
@@ -42,7 +42,8 @@ def markdown(parts):
              "Written by `./dev bench localization` at %s on %s. Times are CPU time of one thread, medians; peers' figures were"
              % (", ".join(revisions), processor()),
              "measured on one machine on the same logs with 500 particles and 60 beams. Instructions are those that callgrind counts:",
-             "they repeat on any machine.", "",
+             "they repeat on any processor that has AVX2 (32-bit build: on any). Load of the machine at the end: %.1f on %d processors."
+             % (os.getloadavg()[0], os.cpu_count()), "",
              "| figure | peers | ours | at least | |", "|---|---|---|---|---|"]
     for part in parts.values():
         for row in part["rows"]:
