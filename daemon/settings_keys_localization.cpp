@@ -66,6 +66,23 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                             "deviation a second without odometry"));
   keys.push_back(degrees_key("localization.motion.unknown_turn_rate_deg_per_s", motion.unknown_turn_rate_rad_per_s, 0.0,
                              360.0, "deviation a second without odometry"));
+  keys.push_back(number_key("localization.motion.slip_probability", motion.slip_probability, "", 0.0, 0.1,
+                            "that wheels slip or someone pushes, a step; 0: never"));
+  keys.push_back(number_key("localization.motion.slip_m", motion.slip_m, "m", 0.001, 10.0,
+                            "deviation of what is then lost or made up"));
+  keys.push_back(degrees_key("localization.motion.slip_deg", motion.slip_rad, 0.01, 180.0, "likewise of the heading"));
+  auto& wheels = localizer.track.wheels;
+  keys.push_back(number_key("localization.wheels.metre_per_root_metre", wheels.metre_per_root_metre, "m", 0.0001, 10.0,
+                            "deviation of a distance after one metre, before anything was learned"));
+  keys.push_back(degrees_key("localization.wheels.turn_per_root_metre_deg", wheels.turn_per_root_metre_rad, 0.01, 90.0,
+                             "deviation of the heading after one metre, likewise"));
+  keys.push_back(degrees_key("localization.wheels.turn_per_root_turn_deg", wheels.turn_per_root_turn_rad, 0.01, 90.0,
+                             "deviation of the heading after one radian of turn, likewise"));
+  keys.push_back(number_key("localization.wheels.learning_share", wheels.learning_share, "", 0.0, 0.9,
+                            "weight of one stretch in how good the wheels have shown to be; 0: never learn"));
+  keys.push_back(number_key("localization.wheels.stretch_m", wheels.stretch_m, "m", 0.1, 100.0,
+                            "way over which wheels and scans are compared"));
+  keys.push_back(degrees_key("localization.wheels.stretch_deg", wheels.stretch_rad, 1.0, 3600.0, "or turn"));
   auto& odometry = localizer.odometry;
   keys.push_back(number_key("localization.odometry.extrapolation_s", odometry.extrapolation_s, "s", 0.0, 1.0,
                             "longest reach past the newest report"));
@@ -90,6 +107,12 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                             "a pose refined farther is refused"));
   keys.push_back(degrees_key("localization.refinement.largest_turn_deg", refinement.largest_turn_rad, 0.01, 180.0,
                              "a pose refined farther is refused"));
+  keys.push_back(number_key("localization.refinement.range_deviation_m", refinement.range_deviation_m, "m", 0.0001, 1.0,
+                            "of the laser; ends that scatter more show a rough map"));
+  keys.push_back(number_key("localization.refinement.alike_beams", refinement.alike_beams, "", 1.0, 10000.0,
+                            "beams, of this and other scans, that share an error of the map"));
+  keys.push_back(number_key("localization.track.agreement", localizer.track.agreement, "", 0.1, 100.0,
+                            "deviations of the particles within which the estimate goes on from scan to scan"));
 }
 
 void add_states(localization::LocalizerParams& localizer, Keys& keys) {

@@ -31,20 +31,6 @@ struct MotionSince {
   double passed_s = 0.0;
 };
 
-/// A pose and its covariance carried along a motion.
-RefinedPose carried(const RefinedPose& believed, const MotionSince& since, const MotionModelParams& model) {
-  const MotionNoise noise = motion_noise(turn_drive_turn(since.motion), since.unknown_s, model);
-  const Pose2 pose = believed.map_from_robot * since.motion;
-  Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
-  by_start(0, 2) = believed.map_from_robot.y - pose.y;
-  by_start(1, 2) = pose.x - believed.map_from_robot.x;
-  const double sideways_m = std::hypot(noise.sideways_m, noise.rot1_rad * since.motion.position().norm());
-  const double position_m2 = std::max(noise.trans_m * noise.trans_m, sideways_m * sideways_m);
-  const double heading_rad2 = noise.rot1_rad * noise.rot1_rad + noise.rot2_rad * noise.rot2_rad;
-  const Eigen::Matrix3d added = Eigen::Vector3d{position_m2, position_m2, heading_rad2}.asDiagonal();
-  return {pose, by_start * believed.covariance * by_start.transpose() + added};
-}
-
 }  // namespace
 
 struct Localizer::State {
@@ -54,6 +40,7 @@ struct Localizer::State {
         field{*map, given.field},
         odometry{given.odometry},
         filter{given.particles, seed},
+        track{given.track, given.motion},
         hypotheses{given.hypothesis},
         monitor{given.fit},
         judgement{*map, given.judgement},
@@ -67,6 +54,7 @@ struct Localizer::State {
   Point2 robot_from_laser{0.0, 0.0};
   OdometryBuffer odometry;
   ParticleFilter filter;
+  PoseTrack track;
   HypothesisFinder hypotheses;
   FitMonitor monitor;
   Judgement judgement;
@@ -75,6 +63,7 @@ struct Localizer::State {
   LocalizerCounts counts;
   Hypothesis best;
   BeamEnds ends;
+  BeamErrors errors;
   std::optional<LastUpdate> last_update;
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
@@ -95,6 +84,7 @@ struct Localizer::State {
     filter.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
     best = hypotheses.best(filter.particles());
     monitor.start(LocalizerState::kTracking);
+    track.forget();
     rivals.start_believing();
     judgement.start(kTrustAtStart);
     check.end();
@@ -113,6 +103,7 @@ struct Localizer::State {
     judgement.start(kTrustInNothing);
     best = anywhere_in(*map);
     monitor.start(LocalizerState::kGlobal);
+    track.forget();
     last_update.reset();
   }
 
@@ -200,19 +191,26 @@ struct Localizer::State {
 
   /// Moves and weighs the particles; they may be drawn anew afterwards.
   RefinedPose update(Timestamp time, const std::optional<OdometryAt>& now, const MotionSince& since) {
-    if (last_update) filter.move(since.motion, since.unknown_s, params.motion);
+    if (last_update) filter.move(since.motion, since.unknown_s, track.particle_motion());
     std::span<const std::int32_t> misfits;
     if (ends.size() > 0) misfits = weighed();
     const double n_eff = filter.n_eff();
     best = hypotheses.best(filter.particles());
-    RefinedPose believed{best.map_from_robot, best.covariance};
+    RefinedPose believed = track.before_scan(time, now, best);
     if (ends.size() > 0) {
       w_avg = mean_over_members(misfits);
-      believed = refined(field, ends, believed, beam_share(), params.refinement);
+      believed = slid(believed);
       filter.resample_if_needed(hypotheses.cell_count());
     }
     last_update = LastUpdate{time, now, believed, n_eff};
     return believed;
+  }
+
+  /// The pose where the scan fits best.
+  RefinedPose slid(const RefinedPose& prior) {
+    const Refinement found = refined(field, ends, prior, best.covariance, errors, beam_share(), params.refinement);
+    errors = found.errors;
+    return found.pose;
   }
 
   [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits) const {
@@ -222,8 +220,10 @@ struct Localizer::State {
   }
 
   /// Between updates: the particles stay, the answer follows the wheels and the scan.
-  RefinedPose follow(const MotionSince& since) {
-    RefinedPose prior = carried(last_update->believed, since, params.motion);
+  RefinedPose follow(Timestamp time, const std::optional<OdometryAt>& now, const MotionSince& since) {
+    Hypothesis moved = best;
+    moved.map_from_robot = best.map_from_robot * since.motion;
+    const RefinedPose prior = track.before_scan(time, now, moved);
     if (ends.size() == 0) return prior;
     const Hypothesis standing = hypotheses.best(filter.particles());
     double sum = 0.0;
@@ -232,7 +232,7 @@ struct Localizer::State {
     }
     w_avg = sum / static_cast<double>(hypotheses.members().size());
     best.weight = standing.weight;
-    return refined(field, ends, prior, beam_share(), params.refinement);
+    return slid(prior);
   }
 
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
@@ -256,7 +256,8 @@ struct Localizer::State {
   RefinedPose believed(Timestamp time, const std::optional<OdometryAt>& now) {
     if (monitor.state() == LocalizerState::kGlobal && !check.under_way()) return search(time, now);
     const MotionSince since = motion_since_update(time, now);
-    const RefinedPose believed = update_due(since) ? update(time, now, since) : follow(since);
+    const RefinedPose believed = update_due(since) ? update(time, now, since) : follow(time, now, since);
+    track.after_scan(time, now, believed);
     const bool lost = monitor.state() == LocalizerState::kLost;
     const RivalReport& report =
         rivals.observe(field, {.ends = ends,

@@ -14,6 +14,7 @@
 #include "localization/particle_filter.hpp"
 #include "localization/place_bank.hpp"
 #include "localization/pose_refinement.hpp"
+#include "localization/pose_track.hpp"
 #include "localization/rivals.hpp"
 
 namespace deltamap::localization {
@@ -37,6 +38,7 @@ struct LocalizerParams {
   BeamModelParams beam_model;  ///< with kBeam
   HypothesisParams hypothesis;
   RefinementParams refinement;
+  PoseTrackParams track;
   UpdateParams update;
   GlobalSearchParams global;
   RivalsParams rivals;

@@ -19,6 +19,9 @@ struct MotionModelParams {
   double heading_floor_rad = radians(0.172);           ///< deviation that every step gets, rad; > 0
   double unknown_speed_m_per_s = 0.3;                  ///< deviation a second without odometry, m; >= 0
   double unknown_turn_rate_rad_per_s = radians(17.2);  ///< deviation a second without odometry, rad; >= 0
+  double slip_probability = 1e-7;  ///< that wheels slip or someone pushes, a step; 0..0.1, 0 = never
+  double slip_m = 0.2;             ///< deviation of what is then lost or made up, m; > 0
+  double slip_rad = radians(5.0);  ///< likewise of the heading, rad; > 0
 };
 
 /// A motion between two odometry poses: turn, drive, turn.

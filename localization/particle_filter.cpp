@@ -10,6 +10,11 @@
 #include "localization/weighing.hpp"
 
 namespace deltamap::localization {
+namespace {
+
+constexpr std::uint32_t kOneInSlips = 16;  // particles that are drawn as if the wheels had slipped
+
+}  // namespace
 
 ParticleFilter::ParticleFilter(const ParticleFilterParams& params, std::uint64_t seed)
     : params_{params}, random_{seed} {
@@ -37,6 +42,17 @@ void ParticleFilter::move(const Pose2& motion, double unknown_s, const MotionMod
   const MotionNoise noise = motion_noise(turns, unknown_s, model);
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     particles_.set_pose(i, sampled_motion(particles_.pose(i), turns, noise, random_));
+  }
+  if (model.slip_probability > 0.0) let_some_slip(model);
+}
+
+void ParticleFilter::let_some_slip(const MotionModelParams& model) {
+  // More of them than slips are likely, each with the less weight: only one that fits far better is believed.
+  const double log_weight = std::log(model.slip_probability * kOneInSlips);
+  for (std::size_t i = random_.index_below(kOneInSlips); i < particles_.size(); i += kOneInSlips) {
+    const Pose2 slip{random_.normal(model.slip_m), random_.normal(0.25 * model.slip_m), random_.normal(model.slip_rad)};
+    particles_.set_pose(i, particles_.pose(i) * slip);
+    particles_.log_weight[i] += log_weight;
   }
 }
 

@@ -59,6 +59,7 @@ class ParticleFilter {
 
  private:
   void accumulate(std::size_t beams, double evidence_beams);
+  void let_some_slip(const MotionModelParams& model);
   void normalize_weights();
 
   ParticleFilterParams params_;

@@ -77,7 +77,7 @@ void run(const Options& options, const localization::LocalizerParams& params) {
             << std::sqrt(estimate.covariance(2, 2)) << ' '
             << localization::explained_share(field, localization::scoring_ends(tracked.scan, tracked.rays, 0),
                                              estimate.map_from_robot)
-            << '\n';
+            << ' ' << estimate.covariance(0, 1) << '\n';
   }
   const localization::LocalizerCounts& counts = localizer.counts();
   std::cout << "recoveries " << counts.recoveries << ", searches " << counts.searches << ", failed "
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   app.add_option("map", options.map)->required();
   app.add_option("out", options.out, "trajectory, TUM")->required();
   app.add_option("--figures", options.figures,
-                 "state, N_eff, particles, w_avg, deviations and explained share of each scan")
+                 "state, N_eff, particles, w_avg, deviations, explained share and covariance of x and y of each scan")
       ->default_val("/dev/null");
   app.add_option("--laser", options.laser_x_m, "laser ahead of the robot, m");
   app.add_option("--no-return", options.no_return_m, "ranges from here on are no hits, m");
@@ -129,6 +129,7 @@ int main(int argc, char** argv) {
   app.add_option("--block", params.rivals.block_m);
   app.add_option("--refine", params.refinement.steps);
   app.add_option("--prior", params.refinement.prior_share);
+  app.add_option("--alike", params.refinement.alike_beams);
   CLI11_PARSE(app, argc, argv);
   try {
     run(options, params);

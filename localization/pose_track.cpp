@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/pose_track.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::localization {
+namespace {
+
+constexpr double kLeastSpreadM = 0.01;  // of the particles, when the track is held against them
+constexpr double kLeastSpreadRad = 0.003;
+constexpr double kMargin = 1.5;      // of the particles' noise over what the wheels have shown
+constexpr double kLeastNoise = 0.2;  // as a share of what was set
+
+/// Squared deviations between a pose and the particles.
+double disagreement(const Pose2& pose, const Hypothesis& particles) {
+  const Eigen::Vector3d off{pose.x - particles.map_from_robot.x, pose.y - particles.map_from_robot.y,
+                            turn_between(particles.map_from_robot.theta, pose.theta)};
+  const Eigen::Vector3d least{kLeastSpreadM * kLeastSpreadM, kLeastSpreadM * kLeastSpreadM,
+                              kLeastSpreadRad * kLeastSpreadRad};
+  const Eigen::Matrix3d spread = particles.covariance + least.asDiagonal().toDenseMatrix();
+  return off.dot(spread.inverse() * off);
+}
+
+}  // namespace
+
+void PoseTrack::forget() {
+  last_.reset();
+  wheels_.forget_stretch();
+}
+
+PoseTrack::Step PoseTrack::step_to(Timestamp time, const std::optional<OdometryAt>& now) const {
+  const double passed_s = std::max(0.0, seconds(time - last_->time));
+  if (!now || !last_->odometry) return {{}, passed_s};
+  const bool jumped = now->epoch != last_->odometry->epoch;
+  return {motion_between(last_->odometry->joined_from_robot, now->joined_from_robot),
+          jumped ? passed_s : std::min(now->uncovered_s, passed_s)};
+}
+
+RefinedPose PoseTrack::before_scan(Timestamp time, const std::optional<OdometryAt>& now, const Hypothesis& particles) {
+  if (!last_) return {particles.map_from_robot, particles.covariance};
+  const Step step = step_to(time, now);
+  RefinedPose expected = carried(last_->believed, step.motion, wheels_);
+  const double unknown_m = motion_.unknown_speed_m_per_s * step.unknown_s;
+  const double unknown_rad = motion_.unknown_turn_rate_rad_per_s * step.unknown_s;
+  expected.covariance.diagonal() +=
+      Eigen::Vector3d{unknown_m * unknown_m, unknown_m * unknown_m, unknown_rad * unknown_rad};
+  if (disagreement(expected.map_from_robot, particles) <= params_.agreement * params_.agreement) return expected;
+  wheels_.forget_stretch();
+  return {particles.map_from_robot, particles.covariance};
+}
+
+void PoseTrack::after_scan(Timestamp time, const std::optional<OdometryAt>& now, const RefinedPose& believed) {
+  if (last_) wheels_.learn(step_to(time, now).motion, believed);
+  last_ = Last{time, now, believed};
+}
+
+MotionModelParams PoseTrack::particle_motion() const {
+  const double distance = std::clamp(kMargin * wheels_.distance_scale(), kLeastNoise, 1.0);
+  const double turn = std::clamp(kMargin * wheels_.turn_scale(), kLeastNoise, 1.0);
+  MotionModelParams scaled = motion_;
+  scaled.metre_per_metre *= distance;
+  scaled.metre_per_turn_m *= distance;
+  scaled.position_floor_m *= distance;
+  scaled.turn_per_turn *= turn;
+  scaled.turn_per_metre_rad *= turn;
+  scaled.heading_floor_rad *= turn;
+  return scaled;
+}
+
+}  // namespace deltamap::localization

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The estimate from scan to scan: carried along by the wheels, with an error that grows as the wheels have earned,
+// until the next scan corrects it. The particles overrule it where they disagree.
+#pragma once
+
+#include <optional>
+
+#include "localization/hypotheses.hpp"
+#include "localization/motion_model.hpp"
+#include "localization/odometry_buffer.hpp"
+#include "localization/pose_refinement.hpp"
+#include "localization/wheel_trust.hpp"
+
+namespace deltamap::localization {
+
+struct PoseTrackParams {
+  double agreement =
+      3.0;  ///< deviations of the particles within which the track goes on; beyond it they are right; > 0
+  WheelTrustParams wheels;
+};
+
+class PoseTrack {
+ public:
+  PoseTrack(const PoseTrackParams& params, const MotionModelParams& motion)
+      : params_{params}, motion_{motion}, wheels_{params.wheels} {}
+
+  /// The pose was set, not driven to.
+  void forget();
+
+  /// What is known of the pose at a scan before the scan is read: the last estimate, carried by the wheels, or the
+  /// particles' own where they disagree or nothing came before.
+  [[nodiscard]] RefinedPose before_scan(Timestamp time, const std::optional<OdometryAt>& now,
+                                        const Hypothesis& particles);
+
+  /// What the scan made of it.
+  void after_scan(Timestamp time, const std::optional<OdometryAt>& now, const RefinedPose& believed);
+
+  /// The noise for the particles: what the wheels have shown, with a margin; never more than was set.
+  [[nodiscard]] MotionModelParams particle_motion() const;
+
+ private:
+  struct Last {
+    Timestamp time;
+    std::optional<OdometryAt> odometry;
+    RefinedPose believed;
+  };
+  struct Step {
+    Pose2 motion;
+    double unknown_s = 0.0;
+  };
+  [[nodiscard]] Step step_to(Timestamp time, const std::optional<OdometryAt>& now) const;
+
+  PoseTrackParams params_;
+  MotionModelParams motion_;
+  WheelTrust wheels_;
+  std::optional<Last> last_;
+};
+
+}  // namespace deltamap::localization
