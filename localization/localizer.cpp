@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "localization/last_update.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/weighing.hpp"
 
@@ -12,24 +13,8 @@ namespace deltamap::localization {
 namespace {
 
 constexpr std::uint64_t kSeedOfRivals = 0x52697661;
-constexpr double kFarthestGuessS = 3.0;      // of silence: after longer ones particles near the old pose are no guess
-constexpr double kTrustAtStart = 0.9;        // P(pose right) at a pose that a person gave or that has won,
-constexpr double kTrustInNothing = 0.1;      // and before there is any
-constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as silent when its epoch changes
-
-/// The last scan that changed the particles.
-struct LastUpdate {
-  Timestamp time;
-  std::optional<OdometryAt> odometry;
-  RefinedPose believed;
-  double n_eff = 0.0;
-};
-
-struct MotionSince {
-  Pose2 motion;
-  double unknown_s = 0.0;
-  double passed_s = 0.0;
-};
+constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a person gave or that has won,
+constexpr double kTrustInNothing = 0.1;  // and before there is any
 
 }  // namespace
 
@@ -146,21 +131,7 @@ struct Localizer::State {
   }
 
   [[nodiscard]] MotionSince motion_since_update(Timestamp time, const std::optional<OdometryAt>& now) const {
-    if (!last_update) return {};
-    MotionSince since;
-    since.passed_s = std::max(0.0, seconds(time - last_update->time));
-    if (!now || !last_update->odometry) {
-      since.unknown_s = since.passed_s;
-      return since;
-    }
-    since.motion = motion_between(last_update->odometry->joined_from_robot, now->joined_from_robot);
-    since.unknown_s = std::min(now->uncovered_s, since.passed_s);
-    if (now->epoch != last_update->odometry->epoch) {
-      const double silent_s = since.passed_s > 2.0 * params.update.time_s ? since.passed_s : 0.0;
-      since.unknown_s += std::clamp(silent_s, kJumpBetweenEpochsS, kFarthestGuessS);
-    }
-
-    return since;
+    return last_update ? motion_since(*last_update, time, now, params.update.time_s) : MotionSince{};
   }
 
   [[nodiscard]] bool update_due(const MotionSince& since) const {

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/last_update.hpp"
+
+#include <algorithm>
+
+namespace deltamap::localization {
+namespace {
+
+constexpr double kFarthestGuessS = 3.0;      // of silence: after longer ones particles near the old pose are no guess
+constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as silent when its epoch changes
+
+}  // namespace
+
+MotionSince motion_since(const LastUpdate& last, Timestamp time, const std::optional<OdometryAt>& now, double usual_s) {
+  MotionSince since;
+  since.passed_s = std::max(0.0, seconds(time - last.time));
+  if (!now || !last.odometry) {
+    since.unknown_s = since.passed_s;
+    return since;
+  }
+  since.motion = motion_between(last.odometry->joined_from_robot, now->joined_from_robot);
+  since.unknown_s = std::min(now->uncovered_s, since.passed_s);
+  if (now->epoch != last.odometry->epoch) {
+    const double silent_s = since.passed_s > 2.0 * usual_s ? since.passed_s : 0.0;
+    since.unknown_s += std::clamp(silent_s, kJumpBetweenEpochsS, kFarthestGuessS);
+  }
+  return since;
+}
+
+}  // namespace deltamap::localization
