@@ -143,6 +143,10 @@ void add_states(localization::LocalizerParams& localizer, Keys& keys) {
                             "driven before global localization may end"));
   keys.push_back(
       degrees_key("localization.fit.converged_after_deg", fit.converged_after_rad, 0.0, 3600.0, "or turned"));
+  keys.push_back(number_key("localization.fit.lost_by_verdict_s", fit.lost_by_verdict_s, "s", 0.0, 3600.0,
+                            "unbroken verdict wrong until lost"));
+  keys.push_back(number_key("localization.fit.distrusted_after_s", fit.distrusted_after_s, "s", 0.001, 3600.0,
+                            "all beams against the pose, though nothing proven is in view: until lost"));
 }
 
 void add_places(localization::LocalizerParams& localizer, Keys& keys) {
@@ -193,6 +197,29 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(whole_key("localization.rivals.headings", rivals.headings, "", 1, 720, "and headings"));
 }
 
+void add_verdict(localization::LocalizerParams& localizer, Keys& keys) {
+  auto& stability = localizer.judgement.stability;
+  keys.push_back(number_key("localization.stability.apart_s", stability.apart_s, "s", 0.1, 86400.0,
+                            "between two confirmations of a tile that count"));
+  keys.push_back(number_key("localization.stability.apart_m", stability.apart_m, "m", 0.1, 100.0,
+                            "between the places that they are made from"));
+  keys.push_back(whole_key("localization.stability.proven_after", stability.proven_after, "", 1, 60,
+                           "confirmations until a tile has proven to stay"));
+  auto& verdict = localizer.judgement.verdict;
+  keys.push_back(whole_key("localization.verdict.beams", localizer.judgement.beams.beams, "", 8, 1000,
+                           "beams that are held against what the map expects"));
+  keys.push_back(number_key("localization.verdict.right_above", verdict.right_above, "", 0.5, 1.0,
+                            "P(pose right) from which the verdict is right"));
+  keys.push_back(number_key("localization.verdict.wrong_below", verdict.wrong_below, "", 0.0, 0.5,
+                            "P(pose right) up to which it is wrong; between: undecided"));
+  keys.push_back(number_key("localization.verdict.unproven_limit", verdict.unproven_limit, "", 0.5, 1.0,
+                            "P(pose right) at most where nothing in view has proven to stay"));
+  keys.push_back(number_key("localization.verdict.lost_in_a_view", verdict.lost_in_a_view, "", 0.0, 0.1,
+                            "P(the pose has become wrong) from one new view to the next"));
+  keys.push_back(number_key("localization.verdict.changed_above", verdict.changed_above, "", 0.0, 1.0,
+                            "share of beams off the map from which the map is rather wrong here"));
+}
+
 }  // namespace
 
 void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys) {
@@ -200,6 +227,7 @@ void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys)
   add_models(localizer, keys);
   add_states(localizer, keys);
   add_places(localizer, keys);
+  add_verdict(localizer, keys);
 }
 
 }  // namespace deltamap::daemon

@@ -21,8 +21,8 @@ PoseJudge::Shares shares_in(const RivalReport& report) {
 Judgement::Judgement(const OccupancyGrid& map, const JudgementParams& params)
     : params_{params}, stability_{map.geometry(), params.stability}, check_{params.beams}, judge_{params.verdict} {}
 
-void Judgement::start(double pose_right) {
-  judge_.start(pose_right);
+void Judgement::start(double pose_right, bool found) {
+  judge_.start(pose_right, found);
   since_check_.reset();
   belief_ = judge_.belief();
 }

@@ -30,7 +30,7 @@ class Judgement {
   Judgement(const OccupancyGrid& map, const JudgementParams& params);
 
   /// Begins anew at a pose that is right with this probability.
-  void start(double pose_right);
+  void start(double pose_right, bool found = false);
 
   struct View {
     const OccupancyGrid& map;

@@ -13,7 +13,8 @@ namespace deltamap::localization {
 namespace {
 
 constexpr std::uint64_t kSeedOfRivals = 0x52697661;
-constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a person gave or that has won,
+constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a person gave,
+constexpr double kTrustInASearch = 0.5;  // at one that a search has found,
 constexpr double kTrustInNothing = 0.1;  // and before there is any
 
 }  // namespace
@@ -61,6 +62,7 @@ struct Localizer::State {
     counts.poses_refused += start.kind == StartKind::kAnywhere ? 1 : 0;
     if (start.kind == StartKind::kAnywhere) return start_anywhere();
     start_around(start.pose);
+    rivals.start_believing();
     last_update.reset();
     if (start.kind == StartKind::kCheck) check_pose();
   }
@@ -70,7 +72,6 @@ struct Localizer::State {
     best = hypotheses.best(filter.particles());
     monitor.start(LocalizerState::kTracking);
     track.forget();
-    rivals.start_believing();
     judgement.start(kTrustAtStart);
     check.end();
   }
@@ -108,6 +109,8 @@ struct Localizer::State {
   /// The particles start anew around a place that has won.
   void believe_in(const Pose2& place) {
     start_around({place, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0});
+    if (!rivals.is_near_believed(place)) judgement.start(kTrustInASearch, true);
+    rivals.start_believing_in(place);
     last_update->believed = {best.map_from_robot, best.covariance};
   }
 
@@ -275,7 +278,9 @@ struct Localizer::State {
     }
     if (before == after) return;
     if (after == LocalizerState::kLost) rivals.stop_believing();
-    if (before == LocalizerState::kLost && after == LocalizerState::kTracking) rivals.start_believing();
+    if (before == LocalizerState::kLost && after == LocalizerState::kTracking) {
+      rivals.start_believing_in(believed.map_from_robot);
+    }
     if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) ++counts.searches;
     if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) believe_in(believed.map_from_robot);
   }

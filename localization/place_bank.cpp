@@ -54,6 +54,16 @@ void PlaceBank::believe(const Pose2& map_from_robot) {
   places_.front().map_from_robot = map_from_robot;
 }
 
+void PlaceBank::believe_among(const Pose2& map_from_robot) {
+  auto chosen = std::find_if(places_.begin(), places_.end(),
+                             [&](const Place& place) { return same(place.map_from_robot, map_from_robot); });
+  if (chosen == places_.end()) return believe(map_from_robot);
+  std::swap(places_.front(), *chosen);
+  places_.front().map_from_robot = map_from_robot;
+  places_.front().log_prior = 0.0;
+  believing_ = true;
+}
+
 void PlaceBank::stop_believing() {
   believing_ = false;
   for (Place& place : places_) {

@@ -54,6 +54,13 @@ class PlaceBank {
   void clear();
   /// The first place from now on; its pose is given, not followed.
   void believe(const Pose2& map_from_robot);
+  /// The place at this pose is believed from now on; all others stay, with the evidence that they have.
+  void believe_among(const Pose2& map_from_robot);
+  /// Odds before any scan of each place anew, as its pose has them.
+  template <typename PriorOf>
+  void set_priors(PriorOf&& log_prior_of) {
+    for (Place& place : places_) place.log_prior = log_prior_of(place.map_from_robot);
+  }
   /// The believed one becomes a place like all others, and all start with equal odds.
   void stop_believing();
 

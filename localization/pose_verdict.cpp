@@ -10,51 +10,70 @@ namespace {
 
 constexpr double kOtherView = 0.25;    // a hold that has changed so much is a new view, whatever odometry says
 constexpr double kBeamsOfDoubt = 3.0;  // few beams leave a hold near one half
+constexpr double kLeastProven = 0.25;  // what unproven tiles may say against a pose
 constexpr double kMapMemoryViews = 3.0;
-constexpr double kMapSteepness = 25.0;  // log-odds a unit of the share of beams off the map
+constexpr double kMapSteepness = 22.0;  // log-odds a unit of the share of beams off the map
 
 double probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
 
-/// Share of the beams that hold the pose in a direction; nothing where too few tell of it.
-std::optional<double> hold_along(const Support& support, const PoseVerdictParams& params) {
-  const double telling = support.fit + params.short_weight * support.short_of + support.beyond;
-  if (support.expected() < params.least_beams || telling <= 0.0) return std::nullopt;
-  return (support.fit + 0.5 * kBeamsOfDoubt) / (telling + kBeamsOfDoubt);
+double telling(const Support& support, const PoseVerdictParams& params) {
+  return support.fit + params.short_weight * support.short_of + support.beyond;
 }
 
-/// How well the pose is held where it is held worst.
-std::optional<double> weakest_hold(const std::array<Support, 2>& along, const PoseVerdictParams& params) {
-  const std::optional<double> first = hold_along(along[0], params);
-  const std::optional<double> second = hold_along(along[1], params);
-  if (!first || !second) return first ? first : second;
-  return std::min(*first, *second);
+/// Share of the beams that hold the pose in a direction; nothing where too few tell of it.
+std::optional<double> hold_along(const Support& stable, const Support& elsewhere, const PoseVerdictParams& params) {
+  const double others = params.unproven_weight;
+  if (stable.expected() + others * elsewhere.expected() < params.least_beams) return std::nullopt;
+  return (stable.fit + others * elsewhere.fit + 0.5 * kBeamsOfDoubt) /
+         (telling(stable, params) + others * telling(elsewhere, params) + kBeamsOfDoubt);
+}
+
+/// Do proven tiles tell of the pose in both directions?
+bool is_proof(const ViewTally& view, const PoseVerdictParams& params) {
+  return view.stable_along[0].expected() >= params.least_beams && view.stable_along[1].expected() >= params.least_beams;
 }
 
 /// ln p(hold | right) - ln p(hold | wrong) of one new view, halved because views of one drive are alike. From drives
 /// in the paper's hall at right poses (unchanged, 10 %, 50 % changed) and wrong ones; docs/decisions/two_answers.md.
 double evidence_of(double hold) {
-  constexpr std::array<double, 11> kByTenths{-2.6, -2.6, -2.2, -1.4, -0.3, 0.25, 0.5, 0.75, 1.0, 1.2, 1.2};
+  constexpr std::array<double, 11> kByTenths{-2.6, -2.6, -2.0, -1.1, -0.2, 0.25, 0.5, 0.75, 1.0, 1.2, 1.2};
   const double at = 10.0 * std::clamp(hold, 0.0, 1.0);
   const std::size_t below = std::min<std::size_t>(9, static_cast<std::size_t>(at));
   const double share = at - static_cast<double>(below);
   return kByTenths[below] + share * (kByTenths[below + 1] - kByTenths[below]);
 }
 
-std::array<Support, 2> sum_of(const std::array<Support, 2>& a, const std::array<Support, 2>& b) {
-  std::array<Support, 2> sum = a;
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    sum[i].fit += b[i].fit;
-    sum[i].short_of += b[i].short_of;
-    sum[i].beyond += b[i].beyond;
+/// What the weaker direction says, and how well it holds the pose; what has not proven to stay speaks little against
+/// it.
+struct Weakest {
+  double hold = 0.0;
+  double evidence = 0.0;
+};
+std::optional<Weakest> weakest_direction(const ViewTally& view, const PoseVerdictParams& params) {
+  std::optional<Weakest> weakest;
+  for (std::size_t i = 0; i < view.stable_along.size(); ++i) {
+    const Support& stable = view.stable_along[i];
+    const Support& elsewhere = view.elsewhere_along[i];
+    const std::optional<double> hold = hold_along(stable, elsewhere, params);
+    if (!hold) continue;
+    const double proven_share = stable.expected() / (stable.expected() + elsewhere.expected());
+    const double evidence = evidence_of(*hold);
+    const Weakest found{*hold, evidence < 0.0 ? evidence * std::max(kLeastProven, proven_share) : evidence};
+    if (!weakest || found.evidence < weakest->evidence) weakest = found;
   }
-  return sum;
+  return weakest;
 }
 
 }  // namespace
 
-void PoseJudge::start(double pose_right) {
+void PoseJudge::start(double pose_right, bool found) {
+  found_ = found;
   right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
+  proof_ = 0.0;
+  views_ = 0.0;
+  suspicion_views_ = 0.0;
+  share_ = 1.0;
   any_view_ = false;
   last_hold_.reset();
   belief_ = {};
@@ -63,6 +82,7 @@ void PoseJudge::start(double pose_right) {
 
 double PoseJudge::novelty(const Passed& passed, std::optional<double> hold) {
   const bool other = hold && last_hold_ && std::abs(*hold - *last_hold_) > kOtherView;
+  if (other && *hold < *last_hold_) suspicion_views_ = params_.views_of_suspicion;
   last_hold_ = hold;
   if (other || !any_view_) return 1.0;
   return std::min(
@@ -75,15 +95,18 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   belief_.rival_share = shares.best_rival;
   belief_.map_from_rival = shares.map_from_rival;
 
-  std::optional<double> hold = weakest_hold(view.stable_along, params_);
-  const bool proven = hold.has_value();
-  if (!proven) hold = weakest_hold(sum_of(view.stable_along, view.elsewhere_along), params_);
-  const double fresh = novelty(passed, hold);
+  const std::optional<Weakest> weakest = weakest_direction(view, params_);
+  const bool proven = is_proof(view, params_);
+  const double fresh = novelty(passed, weakest ? std::optional{weakest->hold} : std::nullopt);
   const double still_right = probability(right_log_odds_) * (1.0 - fresh * params_.lost_in_a_view);
   right_log_odds_ = log_odds(std::clamp(still_right, params_.least_wrong, 1.0 - params_.least_wrong));
-  if (hold) right_log_odds_ += fresh * evidence_of(*hold);
+  if (weakest) right_log_odds_ += fresh * (weakest->evidence - (found_ ? params_.doubt_after_search : 0.0));
+  views_ += fresh;
+  suspicion_views_ = std::max(0.0, suspicion_views_ - fresh);
+  share_ = std::min(shares.believed, share_ + fresh / params_.ambiguity_memory_views);
   judge_map(view, fresh);
-  decide(proven, shares);
+  proof_ = proven ? 1.0 : proof_ * std::exp(-fresh / params_.proof_memory_views);
+  decide(shares);
 }
 
 void PoseJudge::judge_map(const ViewTally& view, double fresh) {
@@ -96,9 +119,11 @@ void PoseJudge::judge_map(const ViewTally& view, double fresh) {
   any_view_ = true;
 }
 
-void PoseJudge::decide(bool proven, const Shares& shares) {
-  trust_ = probability(right_log_odds_) * shares.believed;
-  belief_.pose_right = proven ? trust_ : std::clamp(trust_, 1.0 - params_.unproven_limit, params_.unproven_limit);
+void PoseJudge::decide(const Shares& shares) {
+  trust_ = probability(right_log_odds_) * share_;
+  const bool unseasoned = (found_ && views_ < params_.views_after_search) || suspicion_views_ > 0.0;
+  const auto limit = [&](double proof) { return 1.0 - (1.0 - proof) * (1.0 - params_.unproven_limit); };
+  belief_.pose_right = std::clamp(trust_, 1.0 - limit(proof_), limit(unseasoned ? 0.0 : proof_));
   const double wrong_if_right = probability(kMapSteepness * (misfit_share_ - params_.changed_above));
   belief_.map_wrong = belief_.pose_right * wrong_if_right + 0.5 * (1.0 - belief_.pose_right);
   if (shares.searching) {

@@ -25,18 +25,32 @@ Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const Gl
       probes_{params.headings, kProbesKept},
       search_{search, params.headings},
       bank_{bank},
-      random_{seed} {}
+      random_{seed},
+      elsewhere_prior_{params.elsewhere_prior} {}
 
 void Rivals::start_believing() {
   believing_ = true;
+  elsewhere_prior_ = params_.elsewhere_prior;
   bank_.clear();
   stack_.clear();
   report_ = {};
 }
 
+void Rivals::start_believing_in(const Pose2& found) {
+  believing_ = true;
+  if (!is_near_believed(found)) {
+    elsewhere_prior_ = params_.prior_after_search;
+    stack_.clear();  // its scans are from before the robot was carried off
+    bank_.set_priors([](const Pose2&) { return 0.0; });
+  }
+  bank_.believe_among(found);
+  write_report();
+}
+
 void Rivals::stop_believing() {
   believing_ = false;
   bank_.stop_believing();
+  bank_.set_priors([&](const Pose2& pose) { return log_prior_unbelieved(pose); });
   stack_.clear();
   search_.start();
   write_report();
@@ -44,7 +58,17 @@ void Rivals::stop_believing() {
 
 void Rivals::start_anywhere() {
   bank_.clear();
+  last_believed_.reset();
   stop_believing();
+}
+
+bool Rivals::is_near_believed(const Pose2& pose) const {
+  return last_believed_ && distance_between(pose, *last_believed_) < params_.nearby_m &&
+         std::abs(turn_between(pose.theta, last_believed_->theta)) < params_.nearby_rad;
+}
+
+double Rivals::log_prior_unbelieved(const Pose2& pose) const {
+  return !last_believed_ || is_near_believed(pose) ? 0.0 : std::log(params_.kidnapped_prior);
 }
 
 std::optional<Place> Rivals::best_place() const {
@@ -79,7 +103,9 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   const Pose2 motion = last_joined_ ? motion_between(*last_joined_, seen.joined_from_robot) : Pose2{};
   last_joined_ = seen.joined_from_robot;
   bank_.carry(motion);
+  if (last_believed_) last_believed_ = *last_believed_ * motion;
   if (believing_ && seen.map_from_believed) bank_.believe(*seen.map_from_believed);
+  if (believing_) last_believed_ = seen.map_from_believed;
   thin(seen);
   if (ends_.size() == 0) return report_;
 
@@ -119,7 +145,7 @@ void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> pose
     const double ahead = bank_.params().evidence_beams * (recent_log_likelihood(field, pose, joined) - its_likelihood);
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + (proven ? std::min(0.0, ahead) : ahead),
-                 .log_prior = proven ? kOverlooked : 0.0});
+                 .log_prior = log_prior_unbelieved(pose) + (proven ? kOverlooked : 0.0)});
   }
 }
 
@@ -170,7 +196,7 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   }
   bank_.admit({.map_from_robot = pose,
                .log_evidence = own.log_evidence + std::clamp(ahead, -kFarthestBehind, 0.0),
-               .log_prior = std::log(nearby ? params_.nearby_prior : params_.elsewhere_prior)});
+               .log_prior = std::log(nearby ? params_.nearby_prior : elsewhere_prior_)});
 }
 
 void Rivals::write_report() {

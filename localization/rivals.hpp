@@ -25,11 +25,14 @@ struct RivalsParams {
   double nearby_rad = radians(20.0);  ///< likewise, rad; > 0
   double nearby_prior = 1e-3;         ///< odds of such a place against the believed one, before any scan; 0..1
   double elsewhere_prior = 1e-6;      ///< odds of any other place: nobody carries robots about; 0..1
-  double winning_share = 0.98;        ///< of the belief at which another place is believed instead; 0.5..1
-  double wins_after_m = 1.0;          ///< driven since it was found before another place may win, m; >= 0
-  int refined_a_scan = 4;             ///< places that are slid to their best fit at a scan while tracking; >= 0
-  double block_m = 0.25;              ///< side of the coarse field's blocks, m; > 0
-  int headings = 48;                  ///< of the lattice of poses; > 0
+  double prior_after_search = 0.3;    ///< the same where the believed place was not given but found; 0..1
+  double kidnapped_prior =
+      0.005;  ///< odds of being elsewhere against near, where the believed place has proven wrong; 0..1
+  double winning_share = 0.98;  ///< of the belief at which another place is believed instead; 0.5..1
+  double wins_after_m = 1.0;    ///< driven since it was found before another place may win, m; >= 0
+  int refined_a_scan = 4;       ///< places that are slid to their best fit at a scan while tracking; >= 0
+  double block_m = 0.25;        ///< side of the coarse field's blocks, m; > 0
+  int headings = 48;            ///< of the lattice of poses; > 0
 };
 
 /// A place that is not believed, with what speaks for it.
@@ -59,6 +62,9 @@ class Rivals {
 
   /// From now on the pose given with each scan is believed; all other places are forgotten.
   void start_believing();
+  /// From now on this place is believed, which was not given but found. After a slip the place is near the one that
+  /// was believed; elsewhere, all others that fit as well stay its rivals.
+  void start_believing_in(const Pose2& found);
   /// From now on nothing is believed: all known places start with equal odds, and the whole map is searched.
   void stop_believing();
   /// As stop_believing(), and forgets all places.
@@ -76,6 +82,8 @@ class Rivals {
   [[nodiscard]] const RivalReport& report() const { return report_; }
   /// The best place of all while nothing is believed; nothing before a scan has found one.
   [[nodiscard]] std::optional<Place> best_place() const;
+  /// Is the pose about where the robot was last believed to be, carried along by odometry?
+  [[nodiscard]] bool is_near_believed(const Pose2& pose) const;
   /// True while a search of the whole map is under way.
   [[nodiscard]] bool searching() const { return search_.under_way(); }
 
@@ -90,6 +98,7 @@ class Rivals {
   [[nodiscard]] std::optional<Pose2> best_nearby(const LikelihoodField& field);
   [[nodiscard]] double recent_log_likelihood(const LikelihoodField& field, const Pose2& pose,
                                              const Pose2& joined) const;
+  [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
 
   RivalsParams params_;
@@ -103,6 +112,8 @@ class Rivals {
   std::vector<float> weights_;
   std::optional<Pose2> last_joined_;
   bool believing_ = false;
+  double elsewhere_prior_;
+  std::optional<Pose2> last_believed_;  // carried along by odometry
   bool probe_nearby_next_ = false;
   double since_step_m_ = 0.0;
   double since_step_rad_ = 0.0;

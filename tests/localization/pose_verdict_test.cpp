@@ -28,7 +28,7 @@ const Belief& after(PoseJudge& judge, double duration_s, const ViewTally& view, 
 
 PoseJudge sure() {
   PoseJudge judge{{}};
-  judge.start(0.9);
+  judge.start(0.9, false);
   (void)after(judge, 20.0, view_of(1.0, 1.0));
   return judge;
 }
@@ -37,7 +37,7 @@ TEST(PoseVerdict, IsRightWhereProvenTilesHoldThePoseBothWays) {
   PoseJudge judge = sure();
   EXPECT_EQ(judge.belief().verdict, PoseVerdict::kRight);
   EXPECT_GT(judge.belief().pose_right, 0.99);
-  EXPECT_LT(judge.belief().map_wrong, 0.1);
+  EXPECT_LT(judge.belief().map_wrong, 0.15);
 }
 
 TEST(PoseVerdict, StaysRightWhereHalfOfTheHallHasChangedAndBlamesTheMap) {
@@ -61,14 +61,14 @@ TEST(PoseVerdict, NoticesAKidnappingWhileItStands) {
 TEST(PoseVerdict, GrowsNoMoreCertainByStandingStillThanByDriving) {
   PoseJudge standing{{}};
   PoseJudge driving{{}};
-  standing.start(0.5);
-  driving.start(0.5);
+  standing.start(0.5, false);
+  driving.start(0.5, false);
   EXPECT_LT(after(standing, 4.0, view_of(0.8, 0.8), 0.0).pose_right, after(driving, 4.0, view_of(0.8, 0.8)).pose_right);
 }
 
 TEST(PoseVerdict, IsUndecidedWhereNothingHasProvenStable) {
   PoseJudge judge{{}};
-  judge.start(0.9);
+  judge.start(0.9, false);
   EXPECT_EQ(after(judge, 60.0, view_of(1.0, 1.0, false)).verdict, PoseVerdict::kUndecided);
   EXPECT_GT(judge.trust(), 0.95) << "enough to earn stability by";
 }
@@ -103,7 +103,7 @@ TEST(PoseVerdict, IsNotShakenByPeopleWhoStandInTheWay) {
 
 TEST(PoseVerdict, SaysNothingNewWithoutBeams) {
   PoseJudge judge{{}};
-  judge.start(0.5);
+  judge.start(0.5, false);
   const Belief& belief = after(judge, 10.0, {});
   EXPECT_NEAR(belief.pose_right, 0.5, 0.05);
   EXPECT_EQ(belief.verdict, PoseVerdict::kUndecided);
