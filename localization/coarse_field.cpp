@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled with -O3: the cells of eight beams are found by one instruction (SSE2).
+// Compiled with -O3: sixteen blocks side by side are summed up by a few instructions (SSE2).
 #include "localization/coarse_field.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace deltamap::localization {
 
@@ -13,7 +14,7 @@ CoarseField::CoarseField(const OccupancyGrid& map, const LikelihoodField& field,
       columns_{(map.width() + cells_a_block_ - 1) / cells_a_block_},
       rows_{(map.height() + cells_a_block_ - 1) / cells_a_block_},
       origin_{map.geometry().origin} {
-  const auto area = static_cast<std::size_t>(columns_ + 2) * static_cast<std::size_t>(rows_ + 2);
+  const auto area = static_cast<std::size_t>(padded_columns()) * static_cast<std::size_t>(rows_ + 2);
   bytes_.assign(area, field.steps_at({-1, -1}));
   free_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false);
   update(map, field, {{0, 0}, {map.width(), map.height()}});
@@ -51,8 +52,8 @@ void CoarseField::look_at(const OccupancyGrid& map, const LikelihoodField& field
     const std::uint8_t* const from = fine.bytes + static_cast<std::ptrdiff_t>(y + 1) * fine.width + first.column + 1;
     best = std::min(best, *std::min_element(from, from + (last.column - first.column)));
   }
-  const auto at = static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(columns_ + 2);
-  bytes_[at + static_cast<std::size_t>(column + 1)] = best;
+  const auto at = static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(padded_columns());
+  bytes_[at + static_cast<std::size_t>(column + kAtOnce)] = best;
   free_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)] =
       is_free(map, column, row);
 }
@@ -91,33 +92,17 @@ TurnedBeams turned_beams(const BeamEnds& ends, double heading_rad, double block_
   return beams;
 }
 
-std::int32_t coarse_misfit(const CoarseField& field, const TurnedBeams& beams, std::uint32_t block,
-                           std::int32_t enough) {
-  constexpr std::size_t kAtOnce = 8;
-  static_assert(TurnedBeams::kMost % kAtOnce == 0);
-  const LikelihoodField::Bordered bordered = field.bordered();
+CoarseMisfits coarse_misfits(const CoarseField& field, const TurnedBeams& beams, std::uint32_t block) {
+  static_assert(TurnedBeams::kMost * 255 <= std::numeric_limits<std::uint16_t>::max());
   const auto columns = static_cast<std::uint32_t>(field.columns());
-  const auto own_column = static_cast<std::int16_t>(block % columns + 1);
-  const auto own_row = static_cast<std::int16_t>(block / columns + 1);
-  const auto last_column = static_cast<std::int16_t>(bordered.width - 1);
-  const auto last_row = static_cast<std::int16_t>(bordered.height - 1);
-  std::int32_t sum = 0;
-  for (std::size_t start = 0; start < beams.count; start += kAtOnce) {
-    std::array<std::int16_t, kAtOnce> column;
-    std::array<std::int16_t, kAtOnce> row;
-    for (std::size_t i = 0; i < kAtOnce; ++i) {
-      const auto x = static_cast<std::int16_t>(own_column + beams.columns[start + i]);
-      const auto y = static_cast<std::int16_t>(own_row + beams.rows[start + i]);
-      column[i] = std::clamp<std::int16_t>(x, 0, last_column);
-      row[i] = std::clamp<std::int16_t>(y, 0, last_row);
-    }
-    const std::size_t count = std::min(kAtOnce, beams.count - start);
-    for (std::size_t i = 0; i < count; ++i) {
-      sum += bordered.bytes[static_cast<std::ptrdiff_t>(row[i]) * bordered.width + column[i]];
-    }
-    if (sum >= enough) break;
+  const auto own_column = static_cast<int>(block % columns);
+  const auto own_row = static_cast<int>(block / columns);
+  CoarseMisfits sums{};
+  for (std::size_t beam = 0; beam < beams.count; ++beam) {
+    const std::uint8_t* const steps = field.from(own_column + beams.columns[beam], own_row + beams.rows[beam]);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = static_cast<std::uint16_t>(sums[i] + steps[i]);
   }
-  return sum;
+  return sums;
 }
 
 }  // namespace deltamap::localization

@@ -4,7 +4,9 @@
 // the places worth a closer look (after Olson, "Real-time correlative scan matching", 2009).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,12 +32,18 @@ class CoarseField {
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
 
-  /// Blocks with a border of one unknown block on each side, as in LikelihoodField::bordered().
-  [[nodiscard]] LikelihoodField::Bordered bordered() const { return {bytes_.data(), columns_ + 2, rows_ + 2}; }
+  static constexpr int kAtOnce = 16;  ///< blocks side by side that are looked at together
+
+  /// The bytes of a block and the kAtOnce - 1 to its right, in steps as in LikelihoodField; unknown outside the map.
+  [[nodiscard]] const std::uint8_t* from(int column, int row) const {
+    return bytes_.data() + static_cast<std::ptrdiff_t>(std::clamp(row, -1, rows_) + 1) * padded_columns() +
+           std::clamp(column, -kAtOnce, columns_) + kAtOnce;
+  }
   [[nodiscard]] Point2 origin() const { return origin_; }
 
  private:
   [[nodiscard]] bool is_free(const OccupancyGrid& map, int column, int row) const;
+  [[nodiscard]] int padded_columns() const { return columns_ + 2 * kAtOnce; }
   void look_at(const OccupancyGrid& map, const LikelihoodField& field, int column, int row);
   void list_free_blocks();
 
@@ -44,7 +52,7 @@ class CoarseField {
   int columns_;
   int rows_;
   Point2 origin_;
-  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint8_t> bytes_;  // rows with one unknown row on each side, and kAtOnce unknown columns
   std::vector<bool> free_;
   std::vector<std::uint32_t> free_blocks_;
 };
@@ -58,9 +66,9 @@ struct TurnedBeams {
 };
 [[nodiscard]] TurnedBeams turned_beams(const BeamEnds& ends, double heading_rad, double block_m);
 
-/// Sum of the field's steps over the beams with the robot in the middle of the block; `enough` ends it early with a
-/// number that is at least as large.
-[[nodiscard]] std::int32_t coarse_misfit(const CoarseField& field, const TurnedBeams& beams, std::uint32_t block,
-                                         std::int32_t enough);
+/// Sums of the field's steps over the beams with the robot in the middle of the block, and of those to its right.
+/// Places beyond the end of the row say nothing.
+using CoarseMisfits = std::array<std::uint16_t, CoarseField::kAtOnce>;
+[[nodiscard]] CoarseMisfits coarse_misfits(const CoarseField& field, const TurnedBeams& beams, std::uint32_t block);
 
 }  // namespace deltamap::localization

@@ -11,6 +11,16 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
+/// std::floor without a call, where the processor has no instruction for it (SSE2).
+int floored(double value) {
+  const int towards_zero = static_cast<int>(value);
+  return towards_zero - (value < towards_zero ? 1 : 0);
+}
+
+Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
+  return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
+}
+
 }  // namespace
 
 int HypothesisFinder::heading_cells() const {
@@ -37,9 +47,10 @@ void HypothesisFinder::sort_into_cells(const ParticleSet& particles) {
   slots_.assign(std::bit_ceil(2 * particles.size() + 1), 0);
   const int headings = heading_cells();
   const double headings_per_rad = headings / (2.0 * std::numbers::pi);
+  const double cells_per_m = 1.0 / params_.cell_m;
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    const int column = static_cast<int>(std::floor(particles.x_m[i] / params_.cell_m));
-    const int row = static_cast<int>(std::floor(particles.y_m[i] / params_.cell_m));
+    const int column = floored(particles.x_m[i] * cells_per_m);
+    const int row = floored(particles.y_m[i] * cells_per_m);
     const int heading =
         std::clamp(static_cast<int>((particles.heading_rad[i] + std::numbers::pi) * headings_per_rad), 0, headings - 1);
     std::uint32_t cell = find_or_none(column, row, heading);
@@ -95,21 +106,21 @@ Hypothesis HypothesisFinder::best(const ParticleSet& particles) {
 
 Hypothesis moments(const ParticleSet& particles, std::span<const std::uint32_t> members) {
   Hypothesis of;
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();
-  Eigen::Vector2d direction = Eigen::Vector2d::Zero();
+  if (members.empty()) return of;
+  const Pose2 first = particles.pose(members.front());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (const std::uint32_t i : members) {
     const double w = particles.weight[i];
+    const Eigen::Vector3d off = difference(first, particles.pose(i));
     of.weight += w;
-    position += w * Eigen::Vector2d{particles.x_m[i], particles.y_m[i]};
-    direction += w * Eigen::Vector2d{std::cos(particles.heading_rad[i]), std::sin(particles.heading_rad[i])};
+    sum += w * off;
+    squares.noalias() += w * off * off.transpose();
   }
   if (of.weight <= 0.0) return of;
-  of.map_from_robot = {position.x() / of.weight, position.y() / of.weight, std::atan2(direction.y(), direction.x())};
-  for (const std::uint32_t i : members) {
-    const Eigen::Vector3d off{particles.x_m[i] - of.map_from_robot.x, particles.y_m[i] - of.map_from_robot.y,
-                              turn_between(of.map_from_robot.theta, particles.heading_rad[i])};
-    of.covariance += particles.weight[i] / of.weight * off * off.transpose();
-  }
+  const Eigen::Vector3d mean = sum / of.weight;
+  of.map_from_robot = {first.x + mean.x(), first.y + mean.y(), wrapped_angle(first.theta + mean.z())};
+  of.covariance = squares / of.weight - mean * mean.transpose();
   return of;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -23,6 +22,12 @@ std::size_t spreading_stride(std::size_t headings) {
   return std::max<std::size_t>(1, stride);
 }
 
+/// The first block of the row after the block's.
+std::uint32_t next_row(std::uint32_t block, int columns) {
+  const auto width = static_cast<std::uint32_t>(columns);
+  return (block / width + 1) * width;
+}
+
 }  // namespace
 
 LatticeSearch::LatticeSearch(int headings, std::size_t most)
@@ -37,6 +42,15 @@ double LatticeSearch::heading_rad(std::size_t nth) const {
   return wrapped_angle(2.0 * std::numbers::pi * static_cast<double>(turned) / static_cast<double>(headings_));
 }
 
+void LatticeSearch::keep(const Candidate& candidate) {
+  if (best_.size() == most_) {
+    std::pop_heap(best_.begin(), best_.end(), fits_better);
+    best_.pop_back();
+  }
+  best_.push_back(candidate);
+  std::push_heap(best_.begin(), best_.end(), fits_better);
+}
+
 bool LatticeSearch::look(const CoarseField& field, const BeamEnds& ends, std::size_t count) {
   const std::span<const std::uint32_t> blocks = field.free_blocks();
   if (blocks.empty() || ends.size() == 0) return true;
@@ -47,19 +61,18 @@ bool LatticeSearch::look(const CoarseField& field, const BeamEnds& ends, std::si
     const TurnedBeams beams = turned_beams(ends, heading, field.block_m());
     const std::size_t until = std::min(blocks.size(), next_block_ + count);
     count -= until - next_block_;
-    for (; next_block_ < until; ++next_block_) {
-      const bool full = best_.size() == most_;
-      const std::int32_t enough = full ? best_.front().misfit : std::numeric_limits<std::int32_t>::max();
-      const std::int32_t misfit = coarse_misfit(field, beams, blocks[next_block_], enough);
-      if (misfit >= enough) continue;
-      if (full) {
-        std::pop_heap(best_.begin(), best_.end(), fits_better);
-        best_.pop_back();
+    while (next_block_ < until) {
+      const std::uint32_t first = blocks[next_block_];
+      const std::uint32_t beyond = std::min(first + CoarseField::kAtOnce, next_row(first, field.columns()));
+      const CoarseMisfits misfits = coarse_misfits(field, beams, first);
+      for (; next_block_ < until && blocks[next_block_] < beyond; ++next_block_) {
+        const std::int32_t misfit = misfits[blocks[next_block_] - first];
+        if (best_.size() == most_ && misfit >= best_.front().misfit) continue;
+        const Point2 at = field.centre_of(blocks[next_block_]);
+        keep({{at.x(), at.y(), heading},
+              misfit,
+              static_cast<std::uint32_t>(next_heading_ * blocks.size() + next_block_)});
       }
-      const Point2 at = field.centre_of(blocks[next_block_]);
-      best_.push_back(
-          {{at.x(), at.y(), heading}, misfit, static_cast<std::uint32_t>(next_heading_ * blocks.size() + next_block_)});
-      std::push_heap(best_.begin(), best_.end(), fits_better);
     }
     if (next_block_ < blocks.size()) continue;
     next_block_ = 0;

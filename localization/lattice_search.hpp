@@ -37,6 +37,7 @@ class LatticeSearch {
 
  private:
   [[nodiscard]] double heading_rad(std::size_t nth) const;
+  void keep(const Candidate& candidate);
 
   std::size_t headings_;
   std::size_t stride_;  // between headings looked at one after the other

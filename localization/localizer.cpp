@@ -53,8 +53,9 @@ struct Localizer::State {
   std::optional<LastUpdate> last_update;
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
-  Pose2 last_joined;   ///< odometry at the last scan
-  double w_avg = 1.0;  ///< before any scan nothing speaks against the pose
+  bool drawn_anew = false;  ///< the particles, since `hypotheses` last looked at them
+  Pose2 last_joined;        ///< odometry at the last scan
+  double w_avg = 1.0;       ///< before any scan nothing speaks against the pose
 
   void start_at(const InitialPose& given) {
     const Start start = usable_start(*map, given);
@@ -174,7 +175,7 @@ struct Localizer::State {
     if (ends.size() > 0) {
       w_avg = mean_over_members(misfits);
       believed = slid(believed);
-      filter.resample_if_needed(hypotheses.cell_count());
+      drawn_anew = filter.resample_if_needed(hypotheses.cell_count());
     }
     last_update = LastUpdate{time, now, believed, n_eff};
     return believed;
@@ -199,14 +200,23 @@ struct Localizer::State {
     moved.map_from_robot = best.map_from_robot * since.motion;
     const RefinedPose prior = track.before_scan(time, now, moved);
     if (ends.size() == 0) return prior;
-    const Hypothesis standing = hypotheses.best(filter.particles());
-    double sum = 0.0;
-    for (const std::uint32_t i : hypotheses.members()) {
-      sum += mean_likelihood(misfit_at(filter.particles().pose(i) * since.motion), ends.size());
-    }
-    w_avg = sum / static_cast<double>(hypotheses.members().size());
-    best.weight = standing.weight;
+    if (drawn_anew) best.weight = hypotheses.best(filter.particles()).weight;
+    drawn_anew = false;
+    w_avg = mean_over_some_members(since.motion);
     return slid(prior);
+  }
+
+  /// Evenly chosen: enough to know the mean over all of them.
+  [[nodiscard]] double mean_over_some_members(const Pose2& motion) const {
+    constexpr std::size_t kEnough = 50;
+    const std::span<const std::uint32_t> members = hypotheses.members();
+    const std::size_t count = std::min(kEnough, members.size());
+    double sum = 0.0;
+    for (std::size_t nth = 0; nth < count; ++nth) {
+      const Pose2 standing = filter.particles().pose(members[nth * members.size() / count]);
+      sum += mean_likelihood(misfit_at(standing * motion), ends.size());
+    }
+    return sum / static_cast<double>(count);
   }
 
   /// Before the scan is used: what is wrong with it, or with the time since the last one.

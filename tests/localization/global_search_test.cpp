@@ -33,8 +33,7 @@ TEST(CoarseField, IsAsGoodInEachBlockAsItsBestCell) {
         const Cell cell{column * cells + i % cells, row * cells + i / cells};
         if (map.geometry().contains(cell)) best = std::min<int>(best, field.steps_at(cell));
       }
-      const auto bordered = coarse.bordered();
-      ASSERT_EQ(bordered.bytes[(row + 1) * bordered.width + column + 1], best) << column << ' ' << row;
+      ASSERT_EQ(*coarse.from(column, row), best) << column << ' ' << row;
     }
   }
 }
@@ -47,8 +46,10 @@ TEST(CoarseField, FollowsAChangeOfTheMapAsIfBuiltAnew) {
   const LikelihoodField field{after, {}};
   patched.update(after, field, field_patch(after, changes_between(before, after), {}).box);
   const CoarseField built{after, field, kBlock_m};
-  const auto size = static_cast<std::size_t>(built.bordered().width * built.bordered().height);
-  EXPECT_TRUE(std::equal(built.bordered().bytes, built.bordered().bytes + size, patched.bordered().bytes));
+  for (int row = -1; row <= built.rows(); ++row) {
+    const std::uint8_t* const expected = built.from(0, row);
+    EXPECT_TRUE(std::equal(expected, expected + built.columns(), patched.from(0, row))) << row;
+  }
   EXPECT_TRUE(std::ranges::equal(built.free_blocks(), patched.free_blocks()));
   EXPECT_LT(patched.free_blocks().size(), CoarseField(before, field, kBlock_m).free_blocks().size());
 }
@@ -58,8 +59,28 @@ TEST(CoarseField, TakesBeamsThatLeaveTheMapAsEndingInTheUnknown) {
   const LikelihoodField field{map, {}};
   const CoarseField coarse{map, field, kBlock_m};
   const BeamEnds far{{1000.0F, 5000.0F, 9e9F}, {0.0F, -3000.0F, 1.0F}};
-  const std::int32_t misfit = coarse_misfit(coarse, turned_beams(far, 1.0, kBlock_m), coarse.free_blocks()[7], 1 << 20);
-  EXPECT_EQ(misfit, 3 * field.steps_at({-1, -1}));
+  const CoarseMisfits misfits = coarse_misfits(coarse, turned_beams(far, 1.0, kBlock_m), coarse.free_blocks()[7]);
+  for (const std::uint16_t misfit : misfits) EXPECT_EQ(misfit, 3 * field.steps_at({-1, -1}));
+}
+
+TEST(CoarseField, AnswersForBlocksSideBySideAsForEachAlone) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  const CoarseField coarse{map, field, kBlock_m};
+  const TurnedBeams beams = turned_beams(seen_from({4.5, 2.0, 1.1}, 3), 0.7, kBlock_m);
+  for (const std::uint32_t first : coarse.free_blocks()) {
+    const CoarseMisfits misfits = coarse_misfits(coarse, beams, first);
+    const int row = static_cast<int>(first) / coarse.columns();
+    for (int i = 0; i < CoarseField::kAtOnce; ++i) {
+      const int column = static_cast<int>(first) % coarse.columns() + i;
+      if (column >= coarse.columns()) break;
+      int sum = 0;
+      for (std::size_t beam = 0; beam < beams.count; ++beam) {
+        sum += *coarse.from(column + beams.columns[beam], row + beams.rows[beam]);
+      }
+      ASSERT_EQ(misfits[static_cast<std::size_t>(i)], sum) << column << ' ' << row;
+    }
+  }
 }
 
 TEST(LatticeSearch, LooksAtEveryPoseOnceHoweverItIsSliced) {
