@@ -35,8 +35,7 @@ std::size_t HypothesisFinder::slot_of(int column, int row, int heading) const {
 
 std::uint32_t HypothesisFinder::find_or_none(int column, int row, int heading) const {
   for (std::size_t slot = slot_of(column, row, heading); slots_[slot] != 0; slot = (slot + 1) & (slots_.size() - 1)) {
-    const CellOfParticles& cell = cells_[slots_[slot] - 1];
-    if (cell.column == column && cell.row == row && cell.heading == heading) return slots_[slot] - 1;
+    if (cells_[slots_[slot] - 1].holds(column, row, heading)) return slots_[slot] - 1;
   }
   return kNone;
 }
@@ -48,12 +47,18 @@ void HypothesisFinder::sort_into_cells(const ParticleSet& particles) {
   const int headings = heading_cells();
   const double headings_per_rad = headings / (2.0 * std::numbers::pi);
   const double cells_per_m = 1.0 / params_.cell_m;
+  std::uint32_t cell = kNone;  // of the particle before
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const int column = floored(particles.x_m[i] * cells_per_m);
     const int row = floored(particles.y_m[i] * cells_per_m);
     const int heading =
         std::clamp(static_cast<int>((particles.heading_rad[i] + std::numbers::pi) * headings_per_rad), 0, headings - 1);
-    std::uint32_t cell = find_or_none(column, row, heading);
+    if (cell != kNone && cells_[cell].holds(column, row, heading)) {  // neighbours in the list often are in space
+      cells_[cell].weight += particles.weight[i];
+      cell_of_particle_[i] = cell;
+      continue;
+    }
+    cell = find_or_none(column, row, heading);
     if (cell == kNone) {
       cell = static_cast<std::uint32_t>(cells_.size());
       cells_.push_back({column, row, heading, cell, 0.0});

@@ -45,6 +45,8 @@ class HypothesisFinder {
     int heading = 0;
     std::uint32_t joined = 0;  ///< the cell that speaks for this one
     double weight = 0.0;
+
+    [[nodiscard]] bool holds(int c, int r, int h) const { return column == c && row == r && heading == h; }
   };
   void sort_into_cells(const ParticleSet& particles);
   void join_neighbours();

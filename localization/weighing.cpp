@@ -32,10 +32,11 @@ template <typename Take>
                                                  const Pose2& map_from_robot, Take&& take) {
   const LikelihoodField::Bordered bordered = field.bordered();
   const double cells_per_m = 1.0 / field.geometry().resolution_m;
+  const auto heading_rad = static_cast<float>(map_from_robot.theta);
   const PoseInCells pose{static_cast<float>((map_from_robot.x - field.geometry().origin.x()) * cells_per_m + 1.0),
                          static_cast<float>((map_from_robot.y - field.geometry().origin.y()) * cells_per_m + 1.0),
-                         static_cast<float>(std::cos(map_from_robot.theta) * cells_per_m),
-                         static_cast<float>(std::sin(map_from_robot.theta) * cells_per_m)};
+                         std::cos(heading_rad) * static_cast<float>(cells_per_m),
+                         std::sin(heading_rad) * static_cast<float>(cells_per_m)};
   const auto last_column = static_cast<float>(bordered.width - 1);
   const auto last_row = static_cast<float>(bordered.height - 1);
 
