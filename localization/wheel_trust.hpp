@@ -19,7 +19,7 @@ struct WheelTrustParams {
   double turn_per_root_metre_rad = radians(1.7);  ///< deviation of the heading after one metre, rad; > 0
   double turn_per_root_turn_rad = radians(2.0);   ///< deviation of the heading after one radian of turn, rad; > 0
   double learning_share = 0.1;                    ///< weight of one stretch in what was learned; 0 = never learn, < 1
-  double stretch_m = 1.0;                         ///< way over which wheels and scans are compared, m; > 0
+  double stretch_m = 1.5;                         ///< way over which wheels and scans are compared, m; > 0
   double stretch_rad = radians(86.0);             ///< or turn, rad; > 0
 };
 
