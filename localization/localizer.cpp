@@ -53,7 +53,7 @@ struct Localizer::State {
   std::optional<LastUpdate> last_update;
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
-  bool drawn_anew = false;  ///< the particles, since `hypotheses` last looked at them
+  bool drawn_anew = false;  ///< the particles, so that `hypotheses` must look at them again
   Pose2 last_joined;        ///< odometry at the last scan
   double w_avg = 1.0;       ///< before any scan nothing speaks against the pose
 
@@ -175,7 +175,10 @@ struct Localizer::State {
     if (ends.size() > 0) {
       w_avg = mean_over_members(misfits);
       believed = slid(believed);
-      drawn_anew = filter.resample_if_needed(hypotheses.cell_count());
+      const std::size_t before = filter.particles().size();
+      const bool drawn = filter.resample_if_needed(hypotheses.cell_count());
+      // Where all belonged to the best hypothesis, all that were drawn from them do.
+      drawn_anew = drawn && (hypotheses.members().size() != before || filter.particles().size() != before);
     }
     last_update = LastUpdate{time, now, believed, n_eff};
     return believed;

@@ -45,8 +45,9 @@ Pose2 sampled_motion(const Pose2& map_from_robot, const TurnDriveTurn& motion, c
   const double sideways_m = random.normal(noise.sideways_m);
   const double rot2_rad = motion.rot2_rad + random.normal(noise.rot2_rad);
   const double direction_rad = map_from_robot.theta + rot1_rad;
-  const double c = std::cos(direction_rad);
-  const double s = std::sin(direction_rad);
+  const auto direction = static_cast<float>(direction_rad);  // far finer than the noise
+  const auto c = static_cast<double>(std::cos(direction));
+  const auto s = static_cast<double>(std::sin(direction));
   return {map_from_robot.x + trans_m * c - sideways_m * s, map_from_robot.y + trans_m * s + sideways_m * c,
           wrapped_angle(direction_rad + rot2_rad)};
 }

@@ -142,6 +142,14 @@ void track(const Job& job) {
   observe(job, params);
 }
 
+/// The same with particles.min 100: what a scan costs where the pose is sure and few particles are asked for.
+void track_few(const Job& job) {
+  localization::LocalizerParams params;
+  params.particles.min = 100;
+  params.beams = job.beams;
+  observe(job, params);
+}
+
 /// The beam model weighs in place of the likelihood field. As `update`, and the weighing of one particle by one beam.
 void beam_model(const Job& job) {
   const std::vector<DriveStep> steps = drive(1);
@@ -205,9 +213,9 @@ void memory(const Job& job) {
 }
 
 int run(int argc, char** argv) {
-  const std::vector<std::pair<std::string, void (*)(const Job&)>> jobs{{"weigh", weigh},   {"update", update},
-                                                                       {"track", track},   {"patch", patch},
-                                                                       {"memory", memory}, {"beam_model", beam_model}};
+  const std::vector<std::pair<std::string, void (*)(const Job&)>> jobs{
+      {"weigh", weigh}, {"update", update}, {"track", track},          {"track_few", track_few},
+      {"patch", patch}, {"memory", memory}, {"beam_model", beam_model}};
   Job job;
   if (argc > 1) job.what = argv[1];
   if (argc > 2) job.beams = std::atoi(argv[2]);
@@ -216,7 +224,8 @@ int run(int argc, char** argv) {
   const auto chosen =
       std::find_if(jobs.begin(), jobs.end(), [&](const auto& known) { return known.first == job.what; });
   if (chosen == jobs.end() || job.repetitions < 1 || job.scans < 1) {
-    std::cerr << "usage: localizer_cost weigh|update|track|patch|memory|beam_model [BEAMS [REPETITIONS [SCANS]]]\n";
+    std::cerr
+        << "usage: localizer_cost weigh|update|track|track_few|patch|memory|beam_model [BEAMS [REPETITIONS [SCANS]]]\n";
     return 2;
   }
   chosen->second(job);
