@@ -11,15 +11,19 @@ std::vector<RayInRobot> deskewed(const Scan& scan, const BodyVelocity& velocity)
     const Beam& beam = scan.beams[i];
     const double turned_rad = velocity.turn_rate_rad_per_s * static_cast<double>(beam.offset_s);
     const double driven_m = velocity.speed_m_per_s * static_cast<double>(beam.offset_s);
-    const Pose2 robot_from_robot_then{driven_m * std::cos(0.5 * turned_rad), driven_m * std::sin(0.5 * turned_rad),
-                                      turned_rad};
-    const Pose2 robot_from_laser_then = robot_from_robot_then * scan.robot_from_laser;
-    rays[i].origin = robot_from_laser_then.position().cast<float>();
+    // An arc: the chord lies along half the turn, and the whole turn's sine and cosine follow from the half's.
+    const double c = std::cos(0.5 * turned_rad);
+    const double s = std::sin(0.5 * turned_rad);
+    const Point2 turned{1.0 - 2.0 * s * s, 2.0 * s * c};
+    const Pose2& laser = scan.robot_from_laser;
+    const Point2 origin{driven_m * c + turned.x() * laser.x - turned.y() * laser.y,
+                        driven_m * s + turned.y() * laser.x + turned.x() * laser.y};
+    rays[i].origin = origin.cast<float>();
     rays[i].end = rays[i].origin;
     if (beam.kind != BeamKind::kRange) continue;
-    const double direction_rad = robot_from_laser_then.theta + scan.bearing_rad(i);
+    const double direction_rad = turned_rad + laser.theta + scan.bearing_rad(i);
     const Point2 along{std::cos(direction_rad), std::sin(direction_rad)};
-    rays[i].end = (robot_from_laser_then.position() + static_cast<double>(beam.range_m) * along).cast<float>();
+    rays[i].end = (origin + static_cast<double>(beam.range_m) * along).cast<float>();
   }
   return rays;
 }
