@@ -51,10 +51,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const Hypothesis& be
       if (fits && converged(best)) enter(LocalizerState::kTracking);
       break;
     case LocalizerState::kTracking:
-      if (misfit_s_ >= params_.lost_after_s || wrong_s_ > params_.lost_by_verdict_s ||
-          distrusted_s_ >= params_.distrusted_after_s) {
-        enter(LocalizerState::kLost);
-      }
+      if (has_failed(scan.beaten)) enter(LocalizerState::kLost);
       break;
     case LocalizerState::kLost:
       if (fits || held) {
@@ -65,6 +62,18 @@ LocalizerState FitMonitor::observe(const Observation& scan, const Hypothesis& be
       break;
   }
   return state_;
+}
+
+bool FitMonitor::has_failed(bool beaten) const {
+  if (wrong_s_ > params_.lost_by_verdict_s) return true;
+  constexpr double kPatience = 4.0;  // a stretch of a stale map fits another place by chance for some seconds
+  if (beaten && misfit_s_ >= kPatience * params_.lost_after_s) return true;
+  if (beaten && distrusted_s_ >= kPatience * params_.distrusted_after_s) return true;
+  return misfit_s_ >= params_.lost_nowhere_after_s;
+}
+
+bool FitMonitor::suspicious() const {
+  return state_ == LocalizerState::kTracking && (misfit_s_ > 0.0 || distrusted_s_ > 0.0);
 }
 
 bool FitMonitor::search_failed() const {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Judges whether the localizer knows where it is: global, tracking or lost. A changed map makes scans fit worse for
-// long, however much worse: a pose that is held by what has proven to stay is not lost. Lost means that the verdict on
-// the pose is wrong, or a long misfit that nothing explains; only a lost robot that has driven on searches the map
-// anew.
+// long, however much worse: what no other place explains better speaks of the map. Lost means that the pose fits badly
+// and another place fits clearly better, or that nothing has fitted anywhere for long; only a lost robot that has
+// driven on searches the map anew.
 #pragma once
 
 #include "core/angle.hpp"
@@ -18,9 +18,10 @@ struct FitParams {
   double memory_s = 3.0;                        ///< time constant of the fit's running mean, s; > 0
   double lost_below = 0.4;                      ///< mean fit that counts as misfit; 0..1
   double found_above = 0.6;                     ///< mean fit that counts as found again; lost_below..1
-  double lost_after_s = 10.0;                   ///< unbroken misfit until lost, s; > 0
+  double lost_after_s = 10.0;                   ///< unbroken misfit that ends a search; lost: 4 times it, s; > 0
+  double lost_nowhere_after_s = 90.0;           ///< likewise where no other place fits better, s; > 0
   double lost_by_verdict_s = 1.5;               ///< unbroken verdict "wrong" until lost, s; >= 0
-  double distrusted_after_s = 25.0;             ///< unbroken trust below `distrust` until lost, s; > 0
+  double distrusted_after_s = 25.0;             ///< a quarter of the distrust until lost, s; > 0
   double distrust = 0.1;                        ///< P(pose right) by all beams, proven or not; 0..0.5
   double search_after_s = 10.0;                 ///< lost until the whole map is searched, s; >= 0
   double search_after_m = 2.0;                  ///< driven while lost until then, m; >= 0: someone may stand in the way
@@ -43,17 +44,21 @@ class FitMonitor {
     double turned_rad = 0.0;
     double fit = 0.0;
     PoseVerdict verdict = PoseVerdict::kUndecided;
-    double trust = 0.5;  ///< P(pose right) by all beams, whether on proven tiles or not
+    double trust = 0.5;   ///< P(pose right) by all beams, whether on proven tiles or not
+    bool beaten = false;  ///< another place explains the recent scans clearly better
   };
   /// The state after this scan. kGlobal after kLost: the whole map is to be searched.
   LocalizerState observe(const Observation& scan, const Hypothesis& best);
 
   [[nodiscard]] LocalizerState state() const { return state_; }
+  /// Nothing speaks for the pose at present: time to look elsewhere, not yet to give it up.
+  [[nodiscard]] bool suspicious() const;
   /// True where a global localization has not come to fit: search anew.
   [[nodiscard]] bool search_failed() const;
 
  private:
   [[nodiscard]] bool converged(const Hypothesis& best) const;
+  [[nodiscard]] bool has_failed(bool beaten) const;
   void enter(LocalizerState state);
   void count(const Observation& scan);
 

@@ -7,13 +7,20 @@ namespace deltamap::localization {
 namespace {
 
 PoseJudge::Shares shares_in(const RivalReport& report) {
-  if (report.places == 0) return {1.0, 0.0, {}, !report.own_known};
+  if (report.places == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
   if (report.own_known) {
     const RivalPlace& rival = report.rivals.front();
-    return {report.own_share, report.listed > 0 ? rival.share : 0.0, rival.map_from_robot, false};
+    return {.believed = report.own_share,
+            .best_rival = report.listed > 0 ? rival.share : 0.0,
+            .map_from_rival = rival.map_from_robot,
+            .beaten = report.beaten,
+            .unique = report.unique};
   }
   const RivalPlace& second = report.rivals[1];
-  return {report.rivals.front().share, report.listed > 1 ? second.share : 0.0, second.map_from_robot, true};
+  return {.believed = report.rivals.front().share,
+          .best_rival = report.listed > 1 ? second.share : 0.0,
+          .map_from_rival = second.map_from_robot,
+          .searching = true};
 }
 
 }  // namespace

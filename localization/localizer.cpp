@@ -284,7 +284,9 @@ struct Localizer::State {
                                               .rivals = rivals.report()});
     seen.verdict = belief.verdict;
     seen.trust = judgement.trust();
+    seen.beaten = rivals.report().beaten;
     const LocalizerState after = monitor.observe(seen, best);
+    rivals.suspect(monitor.suspicious());
     if (monitor.search_failed()) {
       ++counts.searches_failed;
       start_anywhere();

@@ -141,7 +141,7 @@ const Place* PlaceBank::reference() const {
 
 void PlaceBank::admit(const Place& place) {
   if (knows(place.map_from_robot)) return;
-  const auto room = static_cast<std::size_t>(believing_ ? params_.most_while_believing : params_.most);
+  const auto room = static_cast<std::size_t>(believing_ && !roomy_ ? params_.most_while_believing : params_.most);
   const std::size_t first = believing_ ? 1 : 0;
   if (places_.size() < room + first) {
     places_.push_back(place);

@@ -51,6 +51,9 @@ class PlaceBank {
   /// The one that is believed, if any; always the first.
   [[nodiscard]] bool believing() const { return believing_; }
 
+  /// Room for `most` places beside a believed one too, as long as it is wanted.
+  void make_room(bool wanted) { roomy_ = wanted; }
+
   void clear();
   /// The first place from now on; its pose is given, not followed.
   void believe(const Pose2& map_from_robot);
@@ -85,6 +88,7 @@ class PlaceBank {
   PlaceBankParams params_;
   std::vector<Place> places_;
   bool believing_ = false;
+  bool roomy_ = false;
   std::size_t next_to_slide_ = 0;
 };
 

@@ -72,6 +72,7 @@ void PoseJudge::start(double pose_right, bool found) {
   right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
   proof_ = 0.0;
   views_ = 0.0;
+  unique_views_ = 0.0;
   suspicion_views_ = 0.0;
   share_ = 1.0;
   any_view_ = false;
@@ -104,6 +105,7 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   views_ += fresh;
   suspicion_views_ = std::max(0.0, suspicion_views_ - fresh);
   share_ = std::min(shares.believed, share_ + fresh / params_.ambiguity_memory_views);
+  unique_views_ = shares.unique ? unique_views_ + fresh : 0.0;
   judge_map(view, fresh);
   proof_ = proven ? 1.0 : proof_ * std::exp(-fresh / params_.proof_memory_views);
   decide(shares);
@@ -130,9 +132,9 @@ void PoseJudge::decide(const Shares& shares) {
     belief_.verdict = PoseVerdict::kUndecided;
     return;
   }
-  belief_.verdict = belief_.pose_right >= params_.right_above   ? PoseVerdict::kRight
-                    : belief_.pose_right <= params_.wrong_below ? PoseVerdict::kWrong
-                                                                : PoseVerdict::kUndecided;
+  const bool right = belief_.pose_right >= params_.right_above && unique_views_ >= params_.unique_for_views;
+  const bool wrong = belief_.pose_right <= params_.wrong_below && shares.beaten;
+  belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
 }
 
 }  // namespace deltamap::localization

@@ -29,6 +29,7 @@ struct PoseVerdictParams {
   double right_above = 0.9;              ///< P(pose right) from which the verdict is right; 0.5..1
   double wrong_below = 0.1;              ///< P(pose right) below which the verdict is wrong; 0..0.5
   double unproven_limit = 0.85;          ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
+  double unique_for_views = 4.0;         ///< so long no other place may explain the scans before it is right; >= 0
   double proof_memory_views = 4.0;       ///< for so many views it still counts that proven tiles held the pose; > 0
   double changed_above = 0.1;            ///< share of beams off the map from which it is rather wrong than right; 0..1
 };
@@ -52,6 +53,8 @@ class PoseJudge {
     double best_rival = 0.0;
     Pose2 map_from_rival{};
     bool searching = false;  ///< no place is believed yet: `believed` is the best one's
+    bool beaten = true;      ///< another place explains the recent scans clearly better
+    bool unique = true;      ///< no other place explains them about as well
   };
   void observe(const ViewTally& view, const Passed& passed, const Shares& shares);
 
@@ -72,6 +75,7 @@ class PoseJudge {
   double suspicion_views_ = 0.0;  ///< left
   double share_ = 1.0;            ///< of the belief, that the believed place holds; rises slowly
 
+  double unique_views_ = 0.0;  ///< in which no other place explained the scans
   double proof_ = 0.0;         ///< 1 where proven tiles are in view; fades
   double misfit_share_ = 0.0;  ///< running mean over the last views
   bool any_view_ = false;

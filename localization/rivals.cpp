@@ -56,6 +56,12 @@ void Rivals::stop_believing() {
   write_report();
 }
 
+void Rivals::suspect(bool suspicious) {
+  if (suspicious && !suspicious_) search_.start();
+  suspicious_ = suspicious;
+  bank_.make_room(suspicious);
+}
+
 void Rivals::start_anywhere() {
   bank_.clear();
   last_believed_.reset();
@@ -68,6 +74,7 @@ bool Rivals::is_near_believed(const Pose2& pose) const {
 }
 
 double Rivals::log_prior_unbelieved(const Pose2& pose) const {
+  if (believing_) return std::log(elsewhere_prior_);
   return !last_believed_ || is_near_believed(pose) ? 0.0 : std::log(params_.kidnapped_prior);
 }
 
@@ -118,9 +125,8 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
     since_step_m_ = 0.0;
     since_step_rad_ = 0.0;
   }
-  if (believing_) {
-    probe(field, seen.joined_from_robot);
-  } else {
+  if (believing_) probe(field, seen.joined_from_robot);
+  if (!believing_ || suspicious_) {
     const std::span<const Pose2> found = search_.look(coarse_, field, ends_, seen.joined_from_robot);
     if (!found.empty()) admit_all(field, found, seen.joined_from_robot);
   }
@@ -203,6 +209,7 @@ void Rivals::write_report() {
   const std::span<const Place> places = bank_.places();
   report_ = {};
   report_.own_known = bank_.believing();
+  report_.unique = report_.own_known;
   report_.places = places.size();
   double squared_shares = 0.0;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -218,6 +225,11 @@ void Rivals::write_report() {
       if (entry.share > report_.rivals[rank].share) std::swap(entry, report_.rivals[rank]);
     }
     if (report_.listed < RivalReport::kListed) report_.rivals[report_.listed++] = entry;
+  }
+  for (std::size_t i = 1; report_.own_known && i < places.size(); ++i) {
+    const double ahead = places[i].log_evidence - report_.own_log_evidence;
+    if (ahead > params_.beats_by && places[i].followed_m >= params_.wins_after_m) report_.beaten = true;
+    if (ahead > -params_.equal_within) report_.unique = false;
   }
   report_.effective_places = squared_shares > 0.0 ? 1.0 / squared_shares : 1.0;
 }

@@ -30,6 +30,8 @@ struct RivalsParams {
       0.005;  ///< odds of being elsewhere against near, where the believed place has proven wrong; 0..1
   double winning_share = 0.98;  ///< of the belief at which another place is believed instead; 0.5..1
   double wins_after_m = 1.0;    ///< driven since it was found before another place may win, m; >= 0
+  double beats_by = 12.0;       ///< log evidence of clearly better, whatever the odds before; > 0
+  double equal_within = 4.0;    ///< log evidence of about as well; > 0
   int refined_a_scan = 4;       ///< places that are slid to their best fit at a scan while tracking; >= 0
   double block_m = 0.25;        ///< side of the coarse field's blocks, m; > 0
   int headings = 48;            ///< of the lattice of poses; > 0
@@ -53,6 +55,8 @@ struct RivalReport {
   std::size_t listed = 0;                  ///< of them in use
   std::size_t places = 0;                  ///< followed in all, the believed one too
   double effective_places = 1.0;           ///< 1 / Σ share²
+  bool beaten = false;  ///< one of them explains the recent scans clearly better than the believed place
+  bool unique = false;  ///< none of them explains these about as well, and the whole map has been looked through
 };
 
 class Rivals {
@@ -67,6 +71,8 @@ class Rivals {
   void start_believing_in(const Pose2& found);
   /// From now on nothing is believed: all known places start with equal odds, and the whole map is searched.
   void stop_believing();
+  /// While true, the whole map is searched beside the believed pose.
+  void suspect(bool suspicious);
   /// As stop_believing(), and forgets all places.
   void start_anywhere();
 
@@ -112,6 +118,7 @@ class Rivals {
   std::vector<float> weights_;
   std::optional<Pose2> last_joined_;
   bool believing_ = false;
+  bool suspicious_ = false;
   double elsewhere_prior_;
   std::optional<Pose2> last_believed_;  // carried along by odometry
   bool probe_nearby_next_ = false;
