@@ -56,7 +56,7 @@ struct RivalReport {
   std::size_t places = 0;                  ///< followed in all, the believed one too
   double effective_places = 1.0;           ///< 1 / Σ share²
   bool beaten = false;  ///< one of them explains the recent scans clearly better than the believed place
-  bool unique = false;  ///< none of them explains these about as well, and the whole map has been looked through
+  bool unique = false;  ///< no place that is followed explains these about as well
 };
 
 class Rivals {
