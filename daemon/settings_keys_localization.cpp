@@ -126,7 +126,7 @@ void add_states(localization::LocalizerParams& localizer, Keys& keys) {
                             "mean share of beams that the map explains: misfit below"));
   keys.push_back(number_key("localization.fit.found_above", fit.found_above, "", 0.0, 1.0, "and found again above"));
   keys.push_back(number_key("localization.fit.lost_after_s", fit.lost_after_s, "s", 0.001, 3600.0,
-                            "unbroken misfit that ends a search; lost: 4 times it"));
+                            "unbroken misfit, another place fitting better, until lost"));
   keys.push_back(
       number_key("localization.fit.memory_s", fit.memory_s, "s", 0.001, 3600.0, "time constant of that mean"));
   keys.push_back(number_key("localization.fit.search_after_s", fit.search_after_s, "s", 0.0, 86400.0,
@@ -146,7 +146,9 @@ void add_states(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(number_key("localization.fit.lost_by_verdict_s", fit.lost_by_verdict_s, "s", 0.0, 3600.0,
                             "unbroken verdict wrong until lost"));
   keys.push_back(number_key("localization.fit.distrusted_after_s", fit.distrusted_after_s, "s", 0.001, 3600.0,
-                            "all beams against the pose, though nothing proven is in view; lost: after 4 times it"));
+                            "likewise all beams against the pose, though nothing proven is in view"));
+  keys.push_back(number_key("localization.fit.search_fails_after_s", fit.search_fails_after_s, "s", 0.001, 3600.0,
+                            "unbroken misfit of what a search leads with until it begins anew"));
 }
 
 void add_places(localization::LocalizerParams& localizer, Keys& keys) {

@@ -66,9 +66,9 @@ LocalizerState FitMonitor::observe(const Observation& scan, const Hypothesis& be
 
 bool FitMonitor::has_failed(bool beaten) const {
   if (wrong_s_ > params_.lost_by_verdict_s) return true;
-  constexpr double kPatience = 4.0;  // a stretch of a stale map fits another place by chance for some seconds
-  if (beaten && misfit_s_ >= kPatience * params_.lost_after_s) return true;
-  if (beaten && distrusted_s_ >= kPatience * params_.distrusted_after_s) return true;
+  // Long waits: a stretch of a stale map fits another place by chance for some seconds.
+  if (beaten && misfit_s_ >= params_.lost_after_s) return true;
+  if (beaten && distrusted_s_ >= params_.distrusted_after_s) return true;
   return misfit_s_ >= params_.lost_nowhere_after_s;
 }
 
@@ -77,7 +77,7 @@ bool FitMonitor::suspicious() const {
 }
 
 bool FitMonitor::search_failed() const {
-  return state_ == LocalizerState::kGlobal && misfit_s_ >= params_.lost_after_s &&
+  return state_ == LocalizerState::kGlobal && misfit_s_ >= params_.search_fails_after_s &&
          driven_in_state_m_ >= params_.search_after_m;
 }
 

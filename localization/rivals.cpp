@@ -16,6 +16,11 @@ constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that a newcomer may 
 constexpr double kOverlooked = -2.0;        // log odds of a place that earlier looks did not find
 constexpr double kFarthestBehind = 6.0;     // log evidence: the stack may hold scans from before a slip
 
+bool is_near(const Pose2& pose, const Pose2& believed, const RivalsParams& params) {
+  return distance_between(pose, believed) < params.nearby_m &&
+         std::abs(turn_between(pose.theta, believed.theta)) < params.nearby_rad;
+}
+
 }  // namespace
 
 Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const GlobalSearchParams& search,
@@ -69,8 +74,7 @@ void Rivals::start_anywhere() {
 }
 
 bool Rivals::is_near_believed(const Pose2& pose) const {
-  return last_believed_ && distance_between(pose, *last_believed_) < params_.nearby_m &&
-         std::abs(turn_between(pose.theta, last_believed_->theta)) < params_.nearby_rad;
+  return last_believed_ && is_near(pose, *last_believed_, params_);
 }
 
 double Rivals::log_prior_unbelieved(const Pose2& pose) const {
@@ -193,8 +197,7 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   const double gain = mean_log_likelihood(field, ends_, weights_, pose) -
                       mean_log_likelihood(field, ends_, weights_, own.map_from_robot);
   if (gain < -kFitsNearlyAsWell) return;
-  const bool nearby = distance_between(pose, own.map_from_robot) < params_.nearby_m &&
-                      std::abs(turn_between(pose.theta, own.map_from_robot.theta)) < params_.nearby_rad;
+  const bool nearby = is_near(pose, own.map_from_robot, params_);
   double ahead = bank_.params().evidence_beams * gain;
   if (!nearby) {  // a slip lies behind a nearby place: before it, the scans say nothing of it
     ahead = bank_.params().evidence_beams *

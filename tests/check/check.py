@@ -4,10 +4,11 @@
 
   check.py [--quick] [--keep] [--only NAME]     --quick: one short demo, one seed; for trying the check itself
                                                 --keep: do not play demos again that the last check has played"""
-import argparse, concurrent.futures, filecmp, json, lzma, os, pathlib, platform, shutil, subprocess, sys
+import argparse, concurrent.futures, filecmp, json, os, pathlib, platform, shutil, sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-DATA = pathlib.Path(os.environ.get("DELTAMAP_DATA", ROOT.parent / "shared" / "data"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from project import DATA, ROOT, run, unpacked
+
 TOOLS = DATA.parent / "tools"
 BIN = ROOT / "build/release/bin"
 OUT = ROOT / "build/check"
@@ -29,40 +30,23 @@ class Table:
         return "\n".join(lines + ["| %s | %s | %s | %s | %s |" % (*row[:4], "✓" if row[4] else "**missed**") for row in self.rows])
 
 
-def run(*command, **options):
-    done = subprocess.run([str(c) for c in command], cwd=ROOT, text=True, capture_output=True, **options)
-    if done.returncode:
-        raise SystemExit("%s\nfailed with %d:\n%s%s" % (" ".join(map(str, command)), done.returncode, done.stdout, done.stderr))
-    return done.stdout
-
-
 def score(script, *arguments):
     return json.loads(run(sys.executable, TOOLS / script, *arguments))
 
 
-def unpacked(name):
-    """A data file without its .xz, in build/check/data."""
-    target = OUT / "data" / name
-    if not target.exists():
-        target.parent.mkdir(parents=True, exist_ok=True)
-        packed = DATA / (str(name) + ".xz")
-        if packed.exists():
-            with lzma.open(packed) as source, open(target, "wb") as out:
-                shutil.copyfileobj(source, out)
-        else:
-            shutil.copy(DATA / name, target)
-    return target
+def data_file(name):
+    return unpacked(name, OUT / "data")
 
 
 def map_file(name):
-    unpacked("maps/%s.pgm" % name)
-    return unpacked("maps/%s.yaml" % name)
+    data_file("maps/%s.pgm" % name)
+    return data_file("maps/%s.yaml" % name)
 
 
 def recording(log):
     target = OUT / (log + ".pcapng")
     if not target.exists():
-        run(BIN / "deltamap", "import", "carmen", unpacked("logs/%s.log" % log), target)
+        run(BIN / "deltamap", "import", "carmen", data_file("logs/%s.log" % log), target)
     return target
 
 

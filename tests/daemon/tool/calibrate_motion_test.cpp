@@ -5,32 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "core/grid_file.hpp"
-#include "daemon/tool/run_tool.hpp"
 #include "tests/support/cast_scan.hpp"
 #include "tests/support/drawn_hall.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/tool_run.hpp"
 
 namespace deltamap::daemon::tool {
 namespace {
 
-struct ToolRun {
-  int exit_code = 0;
-  std::string output;
-  std::string errors;
-};
-
-ToolRun run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "deltamap");
-  std::vector<const char*> argv;
-  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  ToolRun result;
-  result.exit_code = run_tool(static_cast<int>(argv.size()), argv.data());
-  result.output = testing::internal::GetCapturedStdout();
-  result.errors = testing::internal::GetCapturedStderr();
-  return result;
-}
+using test::ToolRun;
 
 class CalibrateMotion : public testing::Test {
  protected:
@@ -59,13 +42,14 @@ class CalibrateMotion : public testing::Test {
       write_line(log, test::cast_scan(hall, truth, time, {.noise_m = 0.005, .beams = 181}, random), odom, 0.1 * i);
     }
     log.close();
-    const ToolRun imported = run({"import", "carmen", file("drive.log"), file("drive.pcapng"), "--no-return", "80"});
+    const ToolRun imported =
+        test::run_deltamap({"import", "carmen", file("drive.log"), file("drive.pcapng"), "--no-return", "80"});
     ASSERT_EQ(imported.exit_code, 0) << imported.errors;
   }
 
   ToolRun calibrate() {
-    return run({"calibrate", "motion", file("drive.pcapng"), "--map", file("hall.yaml"), "--initial-pose", "1.5,1.5,0",
-                "--set", "laser.variant=180/1", "--json"});
+    return test::run_deltamap({"calibrate", "motion", file("drive.pcapng"), "--map", file("hall.yaml"),
+                               "--initial-pose", "1.5,1.5,0", "--set", "laser.variant=180/1", "--json"});
   }
 
   test::TemporaryFolder folder_;

@@ -14,8 +14,8 @@
 #include "daemon/tool/experiment/result_files.hpp"
 #include "daemon/tool/experiment/svg_chart.hpp"
 #include "daemon/tool/experiment/weakest_axis.hpp"
-#include "daemon/tool/run_tool.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/tool_run.hpp"
 
 namespace deltamap::daemon::tool {
 namespace {
@@ -24,27 +24,14 @@ namespace fs = std::filesystem;
 
 const std::string kScenarios = DELTAMAP_SOURCE_DIR "/config/scenarios";
 
-struct Answer {
-  int code = 0;
-  std::string out;
-  std::string errors;
-};
+using test::run_deltamap;
+using test::ToolRun;
 
-Answer deltamap(std::vector<std::string> words) {
-  words.insert(words.begin(), "deltamap");
-  std::vector<const char*> arguments;
-  for (const std::string& word : words) arguments.push_back(word.c_str());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  const int code = run_tool(static_cast<int>(arguments.size()), arguments.data());
-  return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
-}
-
-Answer experiment(const std::string& name, const fs::path& out, const std::vector<std::string>& more = {}) {
+ToolRun experiment(const std::string& name, const fs::path& out, const std::vector<std::string>& more = {}) {
   std::vector<std::string> words{"experiment", name,        "--out", out.string(), "--scenarios",
                                  kScenarios,   "--minutes", "0.1",   "--repeats",  "1"};
   words.insert(words.end(), more.begin(), more.end());
-  return deltamap(words);
+  return run_deltamap(words);
 }
 
 std::string content_of(const fs::path& file) {
@@ -62,13 +49,13 @@ std::vector<std::string> names_in(const fs::path& folder) {
 TEST(Experiment, EachLeavesATableASummaryAndAPage) {
   for (const auto& known : experiment::experiments()) {
     const test::TemporaryFolder folder;
-    const Answer answer = experiment(known->name(), folder.path(), {"--json"});
-    ASSERT_EQ(answer.code, 0) << answer.errors;
+    const ToolRun answer = experiment(known->name(), folder.path(), {"--json"});
+    ASSERT_EQ(answer.exit_code, 0) << answer.errors;
     std::vector<std::string> expected{known->name() + ".csv", "index.html", "summary.json"};
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(names_in(folder.path()), expected);
-    EXPECT_EQ(answer.out, content_of(folder.path() / "summary.json"));
-    const auto summary = nlohmann::json::parse(answer.out);
+    EXPECT_EQ(answer.output, content_of(folder.path() / "summary.json"));
+    const auto summary = nlohmann::json::parse(answer.output);
     EXPECT_EQ(summary["experiment"], known->name());
     EXPECT_GT(summary["runs"], 0);
     EXPECT_GT(summary["figures"].size(), 3u);
@@ -84,8 +71,8 @@ TEST(Experiment, GivesTheSameFilesHoweverManyRunsGoOnAtOnce) {
   for (const auto& known : experiment::experiments()) {
     const test::TemporaryFolder one;
     const test::TemporaryFolder three;
-    ASSERT_EQ(experiment(known->name(), one.path(), {"--jobs", "1"}).code, 0);
-    ASSERT_EQ(experiment(known->name(), three.path(), {"--jobs", "3"}).code, 0);
+    ASSERT_EQ(experiment(known->name(), one.path(), {"--jobs", "1"}).exit_code, 0);
+    ASSERT_EQ(experiment(known->name(), three.path(), {"--jobs", "3"}).exit_code, 0);
     for (const std::string& name : names_in(one.path())) {
       EXPECT_EQ(content_of(one.path() / name), content_of(three.path() / name)) << name;
     }
@@ -94,7 +81,7 @@ TEST(Experiment, GivesTheSameFilesHoweverManyRunsGoOnAtOnce) {
 
 TEST(Experiment, WritesEveryScanOnRequest) {
   const test::TemporaryFolder folder;
-  ASSERT_EQ(experiment("hall", folder.path(), {"--scans"}).code, 0);
+  ASSERT_EQ(experiment("hall", folder.path(), {"--scans"}).exit_code, 0);
   const auto files = names_in(folder.path() / "scans");
   ASSERT_EQ(files.size(), 4u);
   const std::string scans = content_of(folder.path() / "scans" / files.front());
@@ -104,8 +91,8 @@ TEST(Experiment, WritesEveryScanOnRequest) {
 
 TEST(Experiment, RefusesAnUnknownNameAndListsThoseThatThereAre) {
   const test::TemporaryFolder folder;
-  const Answer answer = experiment("hal", folder.path() / "new");
-  EXPECT_EQ(answer.code, 2);
+  const ToolRun answer = experiment("hal", folder.path() / "new");
+  EXPECT_EQ(answer.exit_code, 2);
   EXPECT_NE(answer.errors.find("'hal'"), std::string::npos) << answer.errors;
   for (const auto& known : experiment::experiments()) {
     EXPECT_NE(answer.errors.find(known->name()), std::string::npos) << answer.errors;
@@ -115,25 +102,25 @@ TEST(Experiment, RefusesAnUnknownNameAndListsThoseThatThereAre) {
 
 TEST(Experiment, RefusesAFolderThatCannotBeWrittenInOneLine) {
   const test::TemporaryFolder folder;
-  const Answer answer = experiment("hall", folder.write("file", "x") / "below");
-  EXPECT_EQ(answer.code, 1);
+  const ToolRun answer = experiment("hall", folder.write("file", "x") / "below");
+  EXPECT_EQ(answer.exit_code, 1);
   EXPECT_EQ(std::count(answer.errors.begin(), answer.errors.end(), '\n'), 1) << answer.errors;
   EXPECT_NE(answer.errors.find("below"), std::string::npos) << answer.errors;
 }
 
 TEST(Experiment, RefusesAFolderWithoutScenariosInOneLine) {
   const test::TemporaryFolder folder;
-  const Answer answer = deltamap(
+  const ToolRun answer = run_deltamap(
       {"experiment", "hall", "--out", (folder.path() / "out").string(), "--scenarios", folder.path().string()});
-  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.exit_code, 1);
   EXPECT_NE(answer.errors.find("hall.yaml"), std::string::npos) << answer.errors;
 }
 
 TEST(Experiment, RefusesASettingThatThereIsNot) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--set", "localization.no_such_key=1"}).code, 2);
-  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--jobs", "0"}).code, 2);
-  EXPECT_EQ(deltamap({"experiment", "hall", "--out", folder.path().string(), "--minutes", "-1"}).code, 2);
+  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--set", "localization.no_such_key=1"}).exit_code, 2);
+  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--jobs", "0"}).exit_code, 2);
+  EXPECT_EQ(run_deltamap({"experiment", "hall", "--out", folder.path().string(), "--minutes", "-1"}).exit_code, 2);
 }
 
 TEST(Experiment, TriesTheFolderWithoutLeavingATrace) {
@@ -145,10 +132,10 @@ TEST(Experiment, TriesTheFolderWithoutLeavingATrace) {
 
 TEST(Experiment, DoesOnlyTheRunsThatAreAskedFor) {
   const test::TemporaryFolder folder;
-  const Answer answer = experiment("hall", folder.path(), {"--only", "500x60-8m", "--json"});
-  ASSERT_EQ(answer.code, 0) << answer.errors;
-  EXPECT_EQ(nlohmann::json::parse(answer.out)["runs"], 1);
-  EXPECT_EQ(experiment("hall", folder.path(), {"--only", "no such run"}).code, 2);
+  const ToolRun answer = experiment("hall", folder.path(), {"--only", "500x60-8m", "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.errors;
+  EXPECT_EQ(nlohmann::json::parse(answer.output)["runs"], 1);
+  EXPECT_EQ(experiment("hall", folder.path(), {"--only", "no such run"}).exit_code, 2);
 }
 
 TEST(Target, IsMetOnlyByAMeasuredFigureWithinItsLimits) {

@@ -7,30 +7,19 @@
 #include <sstream>
 
 #include "core/grid_file.hpp"
-#include "daemon/tool/run_tool.hpp"
 #include "mapping/map_store.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/tool_run.hpp"
 
 namespace deltamap::daemon::tool {
 namespace {
 
-struct ToolRun {
-  int code = 0;
-  std::string out;
-  std::string err;
-};
+using test::ToolRun;
 
 /// `deltamap map history WORDS…`
 ToolRun history(std::vector<std::string> words) {
-  std::vector<const char*> arguments{"deltamap", "map", "history"};
-  for (const std::string& word : words) arguments.push_back(word.c_str());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  ToolRun run;
-  run.code = run_tool(static_cast<int>(arguments.size()), arguments.data());
-  run.out = testing::internal::GetCapturedStdout();
-  run.err = testing::internal::GetCapturedStderr();
-  return run;
+  words.insert(words.begin(), {"map", "history"});
+  return test::run_deltamap(words);
 }
 
 class MapHistory : public testing::Test {
@@ -56,8 +45,8 @@ class MapHistory : public testing::Test {
 
 TEST_F(MapHistory, ListsRevisionsAndRefusalsAsJsonLines) {
   const ToolRun run = history({file, "list", "--json"});
-  ASSERT_EQ(run.code, 0) << run.err;
-  std::istringstream lines{run.out};
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  std::istringstream lines{run.output};
   std::string line;
   std::vector<nlohmann::json> rows;
   while (std::getline(lines, line)) rows.push_back(nlohmann::json::parse(line));
@@ -72,20 +61,20 @@ TEST_F(MapHistory, ListsRevisionsAndRefusalsAsJsonLines) {
 
 TEST_F(MapHistory, ListsForPeopleToo) {
   const ToolRun run = history({file, "list"});
-  EXPECT_EQ(run.code, 0);
-  EXPECT_NE(run.out.find("refused: low acceptance"), std::string::npos);
-  EXPECT_NE(run.out.find("1970-01-01 00:00:01"), std::string::npos);
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_NE(run.output.find("refused: low acceptance"), std::string::npos);
+  EXPECT_NE(run.output.find("1970-01-01 00:00:01"), std::string::npos);
 }
 
 TEST_F(MapHistory, WritesARevisionAsAMap) {
   const std::string out = (folder.path() / "one.yaml").string();
-  EXPECT_EQ(history({file, "export", "1", out}).code, 0);
+  EXPECT_EQ(history({file, "export", "1", out}).exit_code, 0);
   EXPECT_EQ(read_grid(out), second);
 }
 
 TEST_F(MapHistory, TellsWhatChangedBetweenTwo) {
   const ToolRun run = history({file, "diff", "0", "1", "--json"});
-  const auto result = nlohmann::json::parse(run.out);
+  const auto result = nlohmann::json::parse(run.output);
   EXPECT_EQ(result["cells"], 2);
   EXPECT_EQ(result["occupied"], 1);
   EXPECT_EQ(result["freed"], 1);
@@ -93,7 +82,7 @@ TEST_F(MapHistory, TellsWhatChangedBetweenTwo) {
 
 TEST_F(MapHistory, GoesBackToAnEarlierMap) {
   const ToolRun run = history({file, "rollback", "0", "--json"});
-  EXPECT_EQ(nlohmann::json::parse(run.out)["number"], 2);
+  EXPECT_EQ(nlohmann::json::parse(run.output)["number"], 2);
   EXPECT_EQ((mapping::MapStore{file, first}.grid(2)), first);
 }
 
@@ -103,13 +92,13 @@ TEST_F(MapHistory, AnswersInOneLineWhatItCannotDo) {
   for (const auto& words : std::vector<std::vector<std::string>>{
            {file, "export", "9", out}, {text, "list"}, {folder.path() / "none.sqlite", "list"}}) {
     const ToolRun run = history(words);
-    EXPECT_EQ(run.code, 1);
-    EXPECT_NE(run.err.find(words[0] + ": "), std::string::npos) << run.err;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.errors.find(words[0] + ": "), std::string::npos) << run.errors;
+    EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
   }
   EXPECT_FALSE(std::filesystem::exists(out));
-  EXPECT_EQ(history({file, "explode"}).code, 2);
-  EXPECT_EQ(history({file, "export", "one", out}).code, 2);
+  EXPECT_EQ(history({file, "explode"}).exit_code, 2);
+  EXPECT_EQ(history({file, "export", "one", out}).exit_code, 2);
 }
 
 }  // namespace

@@ -4,32 +4,20 @@
 #include <nlohmann/json.hpp>
 
 #include "core/grid_file.hpp"
-#include "daemon/tool/run_tool.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/drawn_hall.hpp"
 #include "tests/support/merge_trial.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/tool_run.hpp"
 
 namespace deltamap::daemon::tool {
 namespace {
 
-struct ToolRun {
-  int exit_code = 0;
-  std::string output;
-  std::string errors;
-};
+using test::ToolRun;
 
-ToolRun run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {"deltamap", "map"});
-  std::vector<const char*> argv;
-  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  ToolRun result;
-  result.exit_code = run_tool(static_cast<int>(argv.size()), argv.data());
-  result.output = testing::internal::GetCapturedStdout();
-  result.errors = testing::internal::GetCapturedStderr();
-  return result;
+ToolRun run(std::vector<std::string> words) {
+  words.insert(words.begin(), "map");
+  return test::run_deltamap(words);
 }
 
 class MapTool : public testing::Test {
