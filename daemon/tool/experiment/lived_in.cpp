@@ -23,6 +23,11 @@ const localization::StabilityRecord& LivedIn::stability() {
   return stability_;
 }
 
+std::size_t LivedIn::proven_tiles() {
+  localization::Stability learned{map_->geometry(), localizer_.judgement.stability};
+  return learned.restore(stability()) ? learned.proven_tiles() : 0;
+}
+
 void LivedIn::drive() {
   simulation::VirtualDriveParams drive;
   drive.seed = params_.seed;

@@ -11,8 +11,8 @@ namespace deltamap::daemon::tool::experiment {
 
 struct LivedInParams {
   std::uint64_t seed = 1;
-  double minutes = 15.0;         ///< of driving, > 0
-  double change_every_s = 20.0;  ///< of the fork-lift, > 0
+  double minutes = 60.0;         ///< of driving, > 0
+  double change_every_s = 60.0;  ///< of the fork-lift, > 0; the paper's (§4)
   double max_range_m = 80.0;
 };
 
@@ -26,6 +26,8 @@ class LivedIn {
           const LivedInParams& params);
 
   [[nodiscard]] const localization::StabilityRecord& stability();
+  /// Tiles of the map that have proven to stay.
+  [[nodiscard]] std::size_t proven_tiles();
 
  private:
   void drive();

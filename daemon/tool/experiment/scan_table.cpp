@@ -67,6 +67,14 @@ double share_above(const std::vector<double>& values, double limit) {
   return static_cast<double>(above) / static_cast<double>(values.size());
 }
 
+double wilson_upper(double hits, double all) {
+  constexpr double kZ = 1.959964;  // two-sided 95 %
+  if (all <= 0.0) return kNothing;
+  const double share = hits / all;
+  const double spread = kZ * std::sqrt((share * (1.0 - share) + kZ * kZ / (4.0 * all)) / all);
+  return (share + kZ * kZ / (2.0 * all) + spread) / (1.0 + kZ * kZ / all);
+}
+
 void append(std::vector<double>& values, const std::vector<double>& more) {
   values.insert(values.end(), more.begin(), more.end());
 }

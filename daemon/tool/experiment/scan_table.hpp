@@ -37,6 +37,9 @@ class ScanTable {
 /// Share of the values above a limit.
 [[nodiscard]] double share_above(const std::vector<double>& values, double limit);
 
+/// The most that the true share may be where `hits` of `all` were seen: upper end of Wilson's interval of 95 %.
+[[nodiscard]] double wilson_upper(double hits, double all);
+
 void append(std::vector<double>& values, const std::vector<double>& more);
 
 }  // namespace deltamap::daemon::tool::experiment

@@ -38,7 +38,7 @@ std::shared_ptr<const Place> place_of(const std::string& name, const Options& op
   place.localizer = options.localizer;
   LivedInParams lived_in;
   lived_in.seed = options.seed;
-  lived_in.minutes = options.minutes.value_or(options.quick ? 6.0 : 15.0);
+  lived_in.minutes = options.minutes.value_or(options.quick ? 15.0 : 60.0);
   for (std::size_t i = 0; i < kVerdictRanges_m.size(); ++i) {
     lived_in.max_range_m = kVerdictRanges_m[i];
     made->lived_in[i] = std::make_shared<LivedIn>(place.scenario, place.people, place.localizer, place.map, lived_in);
@@ -55,6 +55,7 @@ Outcome outcome_of(const Place& place, const VerdictRun& run, std::size_t range)
                     {"range_m", text_of(run.max_range_m)},
                     {"seed", std::to_string(run.seed)}};
   outcome.numbers = verdict_numbers(outcome.scans);
+  outcome.numbers.emplace_back("proven_tiles", static_cast<double>(place.lived_in[range]->proven_tiles()));
   return outcome;
 }
 
@@ -84,7 +85,7 @@ std::vector<Run> Verdict::runs(const Options& options) const {
           run.changed_share = changed;
           run.max_range_m = kVerdictRanges_m[range];
           if (options.minutes) run.before_s = std::min(run.before_s, 60.0 * *options.minutes / 7.0);
-          if (options.minutes) run.after_s = std::min(run.after_s, 6.0 * run.before_s);
+          if (options.minutes) run.after_driving_s = std::min(run.after_driving_s, 6.0 * run.before_s);
           runs.push_back({name + "-" + std::string{name_of(event)} + "-changed" + text_of(100.0 * changed) + "-" +
                               std::to_string(i),
                           [=] { return outcome_of(*place, run, range); }});

@@ -29,14 +29,21 @@ double VerdictPart::right_called_lost() const {
   return count(chosen_, [](const Outcome& run) { return run.number("right_called_lost_s") > 0.0; });
 }
 
-double VerdictPart::recovered_in(double limit_s) const {
-  return count(chosen_, [&](const Outcome& run) { return was_wrong(run) && run.number("recovered_s") <= limit_s; });
+double VerdictPart::recovered_in(double driving_s) const {
+  return count(chosen_,
+               [&](const Outcome& run) { return was_wrong(run) && run.number("recovered_driving_s") <= driving_s; });
+}
+
+double VerdictPart::called_right_again_in(double driving_s) const {
+  return count(chosen_, [&](const Outcome& run) {
+    return was_wrong(run) && run.number("recovered_called_right_s") <= driving_s;
+  });
 }
 
 double VerdictPart::recovery_quantile_s(double share) const {
   std::vector<double> times_s;
   for (const Outcome* run : chosen_) {
-    const double time_s = run->number("recovered_s");
+    const double time_s = run->number("recovered_driving_s");
     if (was_wrong(*run)) times_s.push_back(std::isnan(time_s) ? HUGE_VAL : time_s);
   }
   const double answer_s = quantile(times_s, share);

@@ -23,11 +23,12 @@ class VerdictPart {
   // Counts of runs.
   [[nodiscard]] double runs() const { return static_cast<double>(chosen_.size()); }
   [[nodiscard]] double once_wrong() const;
-  [[nodiscard]] double wrong_called_right() const;  ///< for more than 5 s unbroken
-  [[nodiscard]] double right_called_lost() const;   ///< of those that never were wrong
-  [[nodiscard]] double recovered_in(double limit_s) const;
+  [[nodiscard]] double wrong_called_right() const;                     ///< for more than 5 s unbroken
+  [[nodiscard]] double right_called_lost() const;                      ///< of those that never were wrong
+  [[nodiscard]] double recovered_in(double driving_s) const;           ///< of the once wrong
+  [[nodiscard]] double called_right_again_in(double driving_s) const;  ///< likewise, and called right
 
-  /// Until right again and called so, s; those that never are, are as late as can be: NaN.
+  /// Driving until a wrong pose has recovered, s; those that never do are as late as can be: NaN.
   [[nodiscard]] double recovery_quantile_s(double share) const;
   /// Until a wrong pose was not called right, s.
   [[nodiscard]] double mean_noticed_s() const;

@@ -16,11 +16,22 @@ double share_of(double part, double whole) { return whole > 0.0 ? part / whole :
 
 std::string of(double part, double whole) { return text_of(part) + " of " + text_of(whole); }
 
+/// Over all runs of a part: the tiles that its robots had learned before. NaN where there are none.
+double mean_tiles(const std::vector<Outcome>& outcomes, const std::string& place, double range_m) {
+  std::vector<double> tiles;
+  for (const Outcome& outcome : outcomes) {
+    if (outcome.label("place") == place && outcome.label("range_m") == text_of(range_m)) {
+      tiles.push_back(outcome.number("proven_tiles"));
+    }
+  }
+  return mean_of(tiles);
+}
+
 TextTable table_of(const std::vector<Outcome>& outcomes, const std::string& place) {
   TextTable table{
       place,
       {"event", "changed", "range, m", "runs", "once wrong", "wrong called right > 5 s", "right called lost",
-       "recovered in 30 s", "recovered in 60 s", "noticed after, mean s", "Brier pose", "Brier map"},
+       "recovered in 30 s", "recovered", "called right again", "noticed after, mean s", "Brier pose", "Brier map"},
       {}};
   for (const PoseEvent event : kPoseEvents) {
     for (const double changed : kVerdictChangedShares) {
@@ -32,11 +43,12 @@ TextTable table_of(const std::vector<Outcome>& outcomes, const std::string& plac
                                }};
         if (part.runs() == 0.0) continue;
         const double wrong = part.once_wrong();
-        table.rows.push_back(
-            {std::string{name_of(event)}, text_of(100.0 * changed) + " %", text_of(range_m), text_of(part.runs()),
-             text_of(wrong), text_of(part.wrong_called_right()), of(part.right_called_lost(), part.runs() - wrong),
-             of(part.recovered_in(kRecovery_s), wrong), of(part.recovered_in(HUGE_VAL), wrong),
-             text_of(part.mean_noticed_s()), text_of(part.pose().brier()), text_of(part.map().brier())});
+        table.rows.push_back({std::string{name_of(event)}, text_of(100.0 * changed) + " %", text_of(range_m),
+                              text_of(part.runs()), text_of(wrong), text_of(part.wrong_called_right()),
+                              of(part.right_called_lost(), part.runs() - wrong),
+                              of(part.recovered_in(kRecovery_s), wrong), of(part.recovered_in(HUGE_VAL), wrong),
+                              of(part.called_right_again_in(HUGE_VAL), wrong), text_of(part.mean_noticed_s()),
+                              text_of(part.pose().brier()), text_of(part.map().brier())});
       }
     }
   }
@@ -70,15 +82,19 @@ void add_figures(Report& report, const std::string& place, const VerdictPart& pa
   };
   add("wrong poses called right for more than 5 s", share_of(part.wrong_called_right(), wrong), "",
       Target{.most = 0.01});
+  add("wrong poses called right for more than 5 s, 95 % upper bound", wilson_upper(part.wrong_called_right(), wrong),
+      "", std::nullopt);
   add("right poses called lost", share_of(part.right_called_lost(), right), "", Target{.most = 0.02});
+  add("right poses called lost, 95 % upper bound", wilson_upper(part.right_called_lost(), right), "", std::nullopt);
   add("Brier score of P(pose right)", part.pose().brier(), "", std::nullopt);
   add("Brier score of P(map wrong)", part.map().brier(), "", std::nullopt);
   // In the hall other places look the same: to come right again is luck.
   const auto recovery = place == "hall" ? std::nullopt : std::optional{Target{.least = 0.95}};
-  add("wrong poses right again, and called so, within 30 s", share_of(part.recovered_in(kRecovery_s), wrong), "",
-      recovery);
-  add("wrong poses right again, and called so, at all", share_of(part.recovered_in(HUGE_VAL), wrong), "", std::nullopt);
-  add("half of the wrong poses right again after", part.recovery_quantile_s(0.5), "s", std::nullopt);
+  add("wrong poses recovered within 30 s of driving", share_of(part.recovered_in(kRecovery_s), wrong), "", recovery);
+  add("wrong poses recovered at all", share_of(part.recovered_in(HUGE_VAL), wrong), "", std::nullopt);
+  add("wrong poses right again, and called so, within 30 s of driving",
+      share_of(part.called_right_again_in(kRecovery_s), wrong), "", std::nullopt);
+  add("half of the wrong poses recovered after driving", part.recovery_quantile_s(0.5), "s", std::nullopt);
   add("runs once wrong", wrong, "", std::nullopt);
   add("runs never wrong", right, "", std::nullopt);
   add("time called right in runs never wrong", part.called_right_when_right(), "", std::nullopt);
@@ -98,6 +114,10 @@ Report verdict_report(const std::vector<Outcome>& outcomes) {
     add_figures(report, place, part);
     report.figures.push_back({place + ": undisturbed runs whose pose became wrong",
                               share_of(undisturbed.once_wrong(), undisturbed.runs()), ""});
+    for (const double range_m : kVerdictRanges_m) {
+      report.figures.push_back({place + ": tiles proven when lived in, " + text_of(range_m) + " m",
+                                mean_tiles(outcomes, place, range_m), ""});
+    }
     report.tables.push_back(table_of(outcomes, place));
     const Reliability pose = part.pose();
     const Reliability map = part.map();

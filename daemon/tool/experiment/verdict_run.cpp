@@ -14,6 +14,10 @@ constexpr double kSlipMost_m = 1.0;
 constexpr double kSlipTurn_rad = radians(10.0);
 constexpr int kTries = 1000;
 
+constexpr double kDriving_m_per_s = 0.05;
+constexpr double kTurning_rad_per_s = radians(3.0);
+constexpr double kMostWaiting = 2.0;  // times the driving that is wanted: then the run ends all the same
+
 constexpr double kOtherEnd_m = 0.25;     // between two ranges of one beam that end on different things
 constexpr double kOtherEndShare = 0.05;  // of the beams: the map is wrong here
 
@@ -72,6 +76,12 @@ void befall(simulation::VirtualDrive& drive, PoseEvent event, Random& random) {
   }
 }
 
+/// Whether the robot moved or turned between two scans.
+bool has_driven(const Pose2& before, const Pose2& now, double dt_s) {
+  return distance_between(before, now) > kDriving_m_per_s * dt_s ||
+         std::abs(turn_between(before.theta, now.theta)) > kTurning_rad_per_s * dt_s;
+}
+
 /// Where this run's robot begins: on the free floor of the place as M_0 shows it.
 Pose2 beginning_of(const VerdictPlace& place, const VerdictRun& run) {
   const simulation::VirtualDrive drive{place.scenario, {.seed = run.seed, .people = place.people}};
@@ -104,10 +114,14 @@ ScanTable verdict_scans(const VerdictPlace& place, const localization::Stability
   (void)pair.localizer().restore(lived_in);
   const simulation::RayCaster as_mapped{place.scenario.world};
   Random random{run.seed + 104729};
-  ScanTable scans{{"since_event_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state", "pose_right",
-                   "map_wrong", "verdict", "map_is_wrong", "stable_expected", "stable_fit", "rival_share"}};
+  ScanTable scans{{"since_event_s", "driven_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state",
+                   "pose_right", "map_wrong", "verdict", "map_is_wrong", "stable_expected", "stable_fit",
+                   "rival_share"}};
   std::optional<double> event_s;
-  for (double passed_s = 0.0; passed_s < run.before_s + run.after_s;) {
+  std::optional<Followed> last;  // since the event
+  double driven_s = 0.0;
+  const double end_s = run.before_s + kMostWaiting * run.after_driving_s;
+  for (double passed_s = 0.0; passed_s < end_s && driven_s < run.after_driving_s;) {
     if (!event_s && passed_s >= run.before_s) {
       event_s = passed_s;
       if (run.changed_share > 0.0) (void)pair.drive().change_many(run.changed_share, busy_forklift(1.0));
@@ -115,14 +129,18 @@ ScanTable verdict_scans(const VerdictPlace& place, const localization::Stability
     }
     const Followed scan = pair.next();
     passed_s = scan.passed_s;
+    if (event_s && last && has_driven(last->map_from_robot, scan.map_from_robot, passed_s - last->passed_s)) {
+      driven_s += passed_s - last->passed_s;
+    }
+    if (event_s) last = scan;
     const PoseError error = error_of(scan);
     const Belief& belief = scan.estimate.belief;
     const bool differs =
         event_s && run.changed_share > 0.0 &&
         view_differs(pair.drive().surfaces(), as_mapped,
                      scan.map_from_robot * place.scenario.laser.optics.robot_from_laser, run.max_range_m);
-    scans.add({event_s ? passed_s - *event_s : passed_s - run.before_s, scan.map_from_robot.x, scan.map_from_robot.y,
-               scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
+    scans.add({event_s ? passed_s - *event_s : passed_s - run.before_s, driven_s, scan.map_from_robot.x,
+               scan.map_from_robot.y, scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
                static_cast<double>(scan.estimate.state), belief.pose_right, belief.map_wrong,
                static_cast<double>(belief.verdict), differs ? 1.0 : 0.0, static_cast<double>(belief.stable.expected),
                static_cast<double>(belief.stable.fit), belief.rival_share});

@@ -25,8 +25,8 @@ struct VerdictRun {
   PoseEvent event = PoseEvent::kNothing;
   double changed_share = 0.0;  ///< of the containers, at the moment of the event
   double max_range_m = 80.0;
-  double before_s = 10.0;  ///< of driving
-  double after_s = 60.0;   ///< likewise
+  double before_s = 10.0;
+  double after_driving_s = 60.0;  ///< of driving: in which the robot moves or turns
 };
 
 struct VerdictPlace {
@@ -36,7 +36,9 @@ struct VerdictPlace {
   localization::LocalizerParams localizer;
 };
 
-/// A row for every scan; `since_event_s` is negative before it. `map_is_wrong`: more than 5 % of the beams truly end
+/// A row for every scan; `since_event_s` is negative before it. The run ends after so much driving since the event, or
+/// after twice that time. `driven_s`: seconds since the event in which the robot went faster than 0.05 m/s or turned
+/// faster than 3°/s. `map_is_wrong`: more than 5 % of the beams truly end
 /// where M_0's world would not have ended them, people left aside.
 [[nodiscard]] ScanTable verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
                                       const VerdictRun& run);

@@ -16,11 +16,13 @@ constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = radians(6.0);
 constexpr double kWrong_m = 0.5;
 constexpr double kWrong_rad = radians(10.0);
+constexpr double kStays_s = 5.0;  // right and tracked, until it counts as recovered
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// One scan since the event.
 struct Judged {
   double since_s;
+  double driven_s;
   PoseTruth truth;
   bool called_right;
   bool called_lost;
@@ -29,6 +31,7 @@ struct Judged {
 
 std::vector<Judged> judged(const ScanTable& scans) {
   const std::vector<double> since_s = scans.column("since_event_s");
+  const std::vector<double> driven_s = scans.column("driven_s");
   const std::vector<double> error_m = scans.column("error_m");
   const std::vector<double> heading_rad = scans.column("heading_error_rad");
   const std::vector<double> state = scans.column("state");
@@ -38,7 +41,7 @@ std::vector<Judged> judged(const ScanTable& scans) {
     if (since_s[i] < 0.0) continue;
     const auto is_state = [&](LocalizerState one) { return state[i] == static_cast<double>(one); };
     const auto is_verdict = [&](PoseVerdict one) { return verdict[i] == static_cast<double>(one); };
-    all.push_back({since_s[i], pose_truth(error_m[i], heading_rad[i]), is_verdict(PoseVerdict::kRight),
+    all.push_back({since_s[i], driven_s[i], pose_truth(error_m[i], heading_rad[i]), is_verdict(PoseVerdict::kRight),
                    is_state(LocalizerState::kLost) || is_verdict(PoseVerdict::kWrong),
                    is_state(LocalizerState::kTracking)});
   }
@@ -73,6 +76,21 @@ double spent_s(const std::vector<Judged>& scans, Claim&& claim) {
 
 bool is_wrong(const Judged& scan) { return scan.truth == PoseTruth::kWrong; }
 
+/// The scan with which a pose begins to stay right; none where it does not.
+std::vector<Judged>::const_iterator recovery_of(const std::vector<Judged>& scans) {
+  const auto last_wrong = std::find_if(scans.rbegin(), scans.rend(), is_wrong);
+  auto began = scans.end();
+  for (auto scan = last_wrong.base(); scan != scans.end(); ++scan) {
+    if (scan->truth != PoseTruth::kRight || !scan->tracking) {
+      began = scans.end();
+      continue;
+    }
+    if (began == scans.end()) began = scan;
+    if (scan->since_s - began->since_s >= kStays_s) return began;
+  }
+  return scans.end();
+}
+
 }  // namespace
 
 PoseTruth pose_truth(double error_m, double heading_error_rad) {
@@ -85,7 +103,8 @@ std::vector<std::pair<std::string, double>> verdict_numbers(const ScanTable& tab
   const std::vector<Judged> scans = judged(table);
   const auto first_wrong = std::find_if(scans.begin(), scans.end(), is_wrong);
   const bool was_wrong = first_wrong != scans.end();
-  const auto found = std::find_if(first_wrong, scans.end(), [](const Judged& scan) {
+  const auto recovered = was_wrong ? recovery_of(scans) : scans.end();
+  const auto called = std::find_if(first_wrong, scans.end(), [](const Judged& scan) {
     return scan.truth == PoseTruth::kRight && scan.called_right && scan.tracking;
   });
   const auto noticed =
@@ -100,7 +119,10 @@ std::vector<std::pair<std::string, double>> verdict_numbers(const ScanTable& tab
           {"wrong_called_right_s", longest_s(scans, [](const Judged& s) { return is_wrong(s) && s.called_right; })},
           {"right_called_lost_s", lost_s},
           {"noticed_s", noticed == scans.end() ? kNothing : noticed->since_s},
-          {"recovered_s", found == scans.end() ? kNothing : found->since_s},
+          {"recovered_s", recovered == scans.end() ? kNothing : recovered->since_s - first_wrong->since_s},
+          {"recovered_driving_s", recovered == scans.end() ? kNothing : recovered->driven_s - first_wrong->driven_s},
+          {"recovered_called_right_s", called == scans.end() ? kNothing : called->driven_s - first_wrong->driven_s},
+          {"driven_s", scans.empty() ? 0.0 : scans.back().driven_s},
           {"ends_wrong", !scans.empty() && is_wrong(scans.back()) ? 1.0 : 0.0},
           {"ends_called_right", !scans.empty() && scans.back().called_right ? 1.0 : 0.0},
           {"called_right_share", spent_s(scans, [](const Judged& s) { return s.called_right; }) /

@@ -14,10 +14,12 @@ namespace deltamap::daemon::tool::experiment {
 enum class PoseTruth { kRight, kBetween, kWrong };
 [[nodiscard]] PoseTruth pose_truth(double error_m, double heading_error_rad);
 
-/// Numbers of one run, of the scans since the event:
+/// Numbers of one run, of the scans since the event (`driven_s`: driving since the event):
 /// was_wrong, wrong_called_right_s (longest unbroken), right_called_lost_s (of a pose that never was wrong),
 /// noticed_s (until a wrong pose was not called right; NaN: never wrong, or never noticed),
-/// recovered_s (until the pose was right and called right again; NaN: never wrong, or not recovered),
+/// recovered_s (from the first wrong scan to the first scan after the last wrong one with which 5 s unbroken begin of
+/// a right pose that is tracked; NaN: never wrong, or not recovered) and recovered_driving_s (the driving within that),
+/// recovered_called_right_s (likewise of driving, until right, tracked and called right; NaN: never),
 /// ends_wrong, ends_called_right, pose_brier and map_brier with their scans.
 [[nodiscard]] std::vector<std::pair<std::string, double>> verdict_numbers(const ScanTable& scans);
 

@@ -18,6 +18,7 @@ struct Seen {
   PoseVerdict verdict = PoseVerdict::kRight;
   double pose_right = 1.0;
   LocalizerState state = LocalizerState::kTracking;
+  bool drives = true;
 };
 
 /// Scans of 1 s, the first ten of them right and before the event.
@@ -26,7 +27,8 @@ class DrawnRun {
   DrawnRun() { then(10, {}); }
   DrawnRun& then(int scans, const Seen& seen) {
     for (int i = 0; i < scans; ++i) {
-      table_.add({since_s_, seen.error_m, 0.0, static_cast<double>(seen.state), seen.pose_right, 0.0,
+      if (seen.drives && since_s_ > 0.0) driven_s_ += 1.0;
+      table_.add({since_s_, driven_s_, seen.error_m, 0.0, static_cast<double>(seen.state), seen.pose_right, 0.0,
                   static_cast<double>(seen.verdict), 0.0});
       since_s_ += 1.0;
     }
@@ -42,9 +44,10 @@ class DrawnRun {
   [[nodiscard]] const ScanTable& table() const { return table_; }
 
  private:
-  ScanTable table_{
-      {"since_event_s", "error_m", "heading_error_rad", "state", "pose_right", "map_wrong", "verdict", "map_is_wrong"}};
+  ScanTable table_{{"since_event_s", "driven_s", "error_m", "heading_error_rad", "state", "pose_right", "map_wrong",
+                    "verdict", "map_is_wrong"}};
   double since_s_ = -10.0;
+  double driven_s_ = 0.0;
 };
 
 constexpr Seen kWrongCalledRight{.error_m = 2.0};
@@ -75,13 +78,36 @@ TEST(VerdictScore, BlamesARightPoseCalledLostOnlyWhereItNeverWasWrong) {
   EXPECT_EQ(DrawnRun{}.then(20, {}).number("right_called_lost_s"), 0.0);
 }
 
-TEST(VerdictScore, CountsRecoveryUntilThePoseIsRightAndCalledRight) {
+TEST(VerdictScore, CountsRecoveryFromTheFirstScanOnFromWhichThePoseStaysRight) {
   const Seen right_undecided{.verdict = PoseVerdict::kUndecided};
   DrawnRun run;
   run.then(6, kWrongUndecided).then(4, right_undecided).then(5, {});
-  EXPECT_DOUBLE_EQ(run.number("recovered_s"), 10.0);
+  EXPECT_DOUBLE_EQ(run.number("recovered_s"), 6.0);
+  EXPECT_DOUBLE_EQ(run.number("recovered_driving_s"), 6.0);
+  EXPECT_DOUBLE_EQ(run.number("recovered_called_right_s"), 10.0);
   EXPECT_TRUE(std::isnan(DrawnRun{}.then(20, kWrongUndecided).number("recovered_s")));
   EXPECT_TRUE(std::isnan(DrawnRun{}.then(20, {}).number("recovered_s"))) << "it never was wrong";
+}
+
+TEST(VerdictScore, CallsNothingRecoveredThatIsWrongAgainOrLostOrRightForAMomentOnly) {
+  const Seen lost{.state = LocalizerState::kLost};
+  EXPECT_TRUE(std::isnan(DrawnRun{}.then(3, kWrongUndecided).then(5, {}).number("recovered_s"))) << "ends too early";
+  EXPECT_DOUBLE_EQ(DrawnRun{}.then(3, kWrongUndecided).then(6, {}).number("recovered_s"), 3.0);
+  EXPECT_DOUBLE_EQ(DrawnRun{}.then(3, kWrongUndecided).then(3, lost).then(6, {}).number("recovered_s"), 6.0);
+  DrawnRun relapse;
+  relapse.then(3, kWrongUndecided).then(10, {}).then(1, kWrongUndecided).then(9, {});
+  EXPECT_DOUBLE_EQ(relapse.number("recovered_s"), 14.0);
+  EXPECT_TRUE(std::isnan(relapse.then(1, kWrongUndecided).number("recovered_s")));
+}
+
+TEST(VerdictScore, CountsOnlyTheTimeInWhichTheRobotDrives) {
+  Seen standing = kWrongUndecided;
+  standing.drives = false;
+  DrawnRun run;
+  run.then(4, kWrongUndecided).then(20, standing).then(3, kWrongUndecided).then(10, {});
+  EXPECT_DOUBLE_EQ(run.number("recovered_s"), 27.0);
+  EXPECT_DOUBLE_EQ(run.number("recovered_driving_s"), 7.0);
+  EXPECT_DOUBLE_EQ(run.number("recovered_called_right_s"), 7.0);
 }
 
 TEST(VerdictScore, ScoresProbabilitiesAfterBrier) {
@@ -93,6 +119,13 @@ TEST(VerdictScore, ScoresProbabilitiesAfterBrier) {
   EXPECT_DOUBLE_EQ(pose.scans, 20.0);
   EXPECT_DOUBLE_EQ(pose.bins[9].came / pose.bins[9].scans, 1.0);
   EXPECT_DOUBLE_EQ(pose.bins[2].came / pose.bins[2].scans, 0.0);
+}
+
+TEST(VerdictScore, BoundsAShareAfterWilson) {
+  EXPECT_NEAR(wilson_upper(0.0, 100.0), 0.03699, 1e-4);
+  EXPECT_NEAR(wilson_upper(5.0, 100.0), 0.1118, 1e-4);
+  EXPECT_NEAR(wilson_upper(10.0, 10.0), 1.0, 1e-9);
+  EXPECT_TRUE(std::isnan(wilson_upper(0.0, 0.0)));
 }
 
 TEST(VerdictScore, SumsUpRuns) {
@@ -111,6 +144,7 @@ TEST(VerdictScore, SumsUpRuns) {
   EXPECT_DOUBLE_EQ(all.wrong_called_right(), 1.0);
   EXPECT_DOUBLE_EQ(all.recovered_in(30.0), 1.0);
   EXPECT_DOUBLE_EQ(all.recovered_in(5.0), 0.0);
+  EXPECT_DOUBLE_EQ(all.called_right_again_in(30.0), 1.0);
   EXPECT_DOUBLE_EQ(all.recovery_quantile_s(0.5), 10.0);
   EXPECT_TRUE(std::isnan(all.recovery_quantile_s(0.95))) << "one never recovered";
 }
