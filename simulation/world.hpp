@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The things that stand in a simulated world. Walls, panes and posts stay; containers come, go and are pushed about.
+// The things that stand in a simulated world. Walls and posts stay; containers come, go and are shifted by the
+// fork-lift.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +12,10 @@ namespace deltamap::simulation {
 
 enum class ObjectKind : std::uint8_t { kWall, kContainer, kPost };
 
-/// What a beam meets (surface_optics.hpp).
-enum class Material : std::uint8_t { kSolid, kGlass, kWrap };
-
 struct Object {
   int id = 0;  ///< unique in the world; a container that comes anew has a new one
   ObjectKind kind = ObjectKind::kWall;
   Shape shape;
-  Material material = Material::kSolid;
-  bool is_drawn = true;  ///< in the map of the start
 };
 
 struct Bounds {

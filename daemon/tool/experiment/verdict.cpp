@@ -35,6 +35,7 @@ std::shared_ptr<const Place> place_of(const std::string& name, const Options& op
   place.scenario = simulation::read_scenario(options.scenarios / (name + ".yaml"));
   place.people = place.scenario.people.empty() ? walkers() : std::vector<simulation::PersonParams>{};
   place.map = first_map(place.scenario);
+  place.oracle = std::make_shared<const AmbiguityOracle>(*place.map, AmbiguityParams{});
   place.localizer = options.localizer;
   LivedInParams lived_in;
   lived_in.seed = options.seed;
@@ -48,14 +49,27 @@ std::shared_ptr<const Place> place_of(const std::string& name, const Options& op
 
 Outcome outcome_of(const Place& place, const VerdictRun& run, std::size_t range) {
   Outcome outcome;
-  outcome.scans = verdict_scans(place.place, place.lived_in[range]->stability(), run);
+  VerdictScans seen = verdict_scans(place.place, place.lived_in[range]->stability(), run);
+  outcome.scans = std::move(seen.scans);
   outcome.labels = {{"place", place.name},
                     {"event", std::string{name_of(run.event)}},
                     {"changed", text_of(run.changed_share)},
                     {"range_m", text_of(run.max_range_m)},
                     {"seed", std::to_string(run.seed)}};
   outcome.numbers = verdict_numbers(outcome.scans);
-  outcome.numbers.emplace_back("proven_tiles", static_cast<double>(place.lived_in[range]->proven_tiles()));
+  const std::vector<std::pair<std::string, double>> more{
+      {"ambiguous", seen.path.ambiguous ? 1.0 : 0.0},
+      {"oracle_log_odds", seen.path.log_odds},
+      {"oracle_pieces", seen.path.pieces},
+      {"oracle_unexplained", seen.path.unexplained},
+      {"oracle_changed_at_once", seen.path.changed_at_once},
+      {"oracle_judged", static_cast<double>(seen.path.judged_poses)},
+      {"rival_x_m", seen.path.map_from_rival.x},
+      {"rival_y_m", seen.path.map_from_rival.y},
+      {"rival_theta_rad", seen.path.map_from_rival.theta},
+      {"unique_after_s", seen.unique_after_s},
+      {"proven_tiles", static_cast<double>(place.lived_in[range]->proven_tiles())}};
+  outcome.numbers.insert(outcome.numbers.end(), more.begin(), more.end());
   return outcome;
 }
 

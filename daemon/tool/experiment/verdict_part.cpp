@@ -21,6 +21,8 @@ double count(const std::vector<const Outcome*>& outcomes, Claim&& claim) {
 
 double VerdictPart::once_wrong() const { return count(chosen_, was_wrong); }
 
+double VerdictPart::ambiguous() const { return count(chosen_, is_ambiguous); }
+
 double VerdictPart::wrong_called_right() const {
   return count(chosen_, [](const Outcome& run) { return run.number("wrong_called_right_s") > kCalledTooLong_s; });
 }
@@ -37,6 +39,12 @@ double VerdictPart::recovered_in(double driving_s) const {
 double VerdictPart::called_right_again_in(double driving_s) const {
   return count(chosen_, [&](const Outcome& run) {
     return was_wrong(run) && run.number("recovered_called_right_s") <= driving_s;
+  });
+}
+
+double VerdictPart::recovered_in_after_unique(double driving_s) const {
+  return count(chosen_, [&](const Outcome& run) {
+    return was_wrong(run) && run.number("recovered_driving_s") - run.number("unique_after_s") <= driving_s;
   });
 }
 

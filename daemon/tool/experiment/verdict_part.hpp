@@ -10,6 +10,9 @@
 
 namespace deltamap::daemon::tool::experiment {
 
+/// Whether another place of the map fits the run's path as well.
+[[nodiscard]] inline bool is_ambiguous(const Outcome& run) { return run.number("ambiguous") > 0.5; }
+
 class VerdictPart {
  public:
   /// The runs that belong, by a claim about an Outcome. They must outlive this.
@@ -23,10 +26,14 @@ class VerdictPart {
   // Counts of runs.
   [[nodiscard]] double runs() const { return static_cast<double>(chosen_.size()); }
   [[nodiscard]] double once_wrong() const;
+  [[nodiscard]] double ambiguous() const;
   [[nodiscard]] double wrong_called_right() const;                     ///< for more than 5 s unbroken
   [[nodiscard]] double right_called_lost() const;                      ///< of those that never were wrong
   [[nodiscard]] double recovered_in(double driving_s) const;           ///< of the once wrong
   [[nodiscard]] double called_right_again_in(double driving_s) const;  ///< likewise, and called right
+
+  /// Likewise, counted from when the path had become unambiguous.
+  [[nodiscard]] double recovered_in_after_unique(double driving_s) const;
 
   /// Driving until a wrong pose has recovered, s; those that never do are as late as can be: NaN.
   [[nodiscard]] double recovery_quantile_s(double share) const;

@@ -18,6 +18,9 @@ constexpr double kDriving_m_per_s = 0.05;
 constexpr double kTurning_rad_per_s = radians(3.0);
 constexpr double kMostWaiting = 2.0;  // times the driving that is wanted: then the run ends all the same
 
+constexpr double kOracle_s = 30.0;  // of driving: the path that the oracle sees
+constexpr double kViewEvery_s = 2.5;
+
 constexpr double kOtherEnd_m = 0.25;     // between two ranges of one beam that end on different things
 constexpr double kOtherEndShare = 0.05;  // of the beams: the map is wrong here
 
@@ -105,8 +108,8 @@ std::string_view name_of(PoseEvent event) {
   return "elsewhere";
 }
 
-ScanTable verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
-                        const VerdictRun& run) {
+VerdictScans verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
+                           const VerdictRun& run) {
   const Pose2 begin = beginning_of(place, run);
   simulation::VirtualDriveParams drive{.seed = run.seed, .map_from_start = begin, .max_range_m = run.max_range_m};
   drive.people = place.people;
@@ -119,6 +122,7 @@ ScanTable verdict_scans(const VerdictPlace& place, const localization::Stability
                    "rival_share"}};
   std::optional<double> event_s;
   std::optional<Followed> last;  // since the event
+  std::vector<Pose2> views;      // map_from_laser, one now and then while driving
   double driven_s = 0.0;
   const double end_s = run.before_s + kMostWaiting * run.after_driving_s;
   for (double passed_s = 0.0; passed_s < end_s && driven_s < run.after_driving_s;) {
@@ -133,19 +137,24 @@ ScanTable verdict_scans(const VerdictPlace& place, const localization::Stability
       driven_s += passed_s - last->passed_s;
     }
     if (event_s) last = scan;
+    const Pose2 map_from_laser = scan.map_from_robot * place.scenario.laser.optics.robot_from_laser;
+    if (event_s && driven_s <= kOracle_s && driven_s >= kViewEvery_s * static_cast<double>(views.size())) {
+      views.push_back(map_from_laser);
+    }
     const PoseError error = error_of(scan);
     const Belief& belief = scan.estimate.belief;
-    const bool differs =
-        event_s && run.changed_share > 0.0 &&
-        view_differs(pair.drive().surfaces(), as_mapped,
-                     scan.map_from_robot * place.scenario.laser.optics.robot_from_laser, run.max_range_m);
+    const bool differs = event_s && run.changed_share > 0.0 &&
+                         view_differs(pair.drive().surfaces(), as_mapped, map_from_laser, run.max_range_m);
     scans.add({event_s ? passed_s - *event_s : passed_s - run.before_s, driven_s, scan.map_from_robot.x,
                scan.map_from_robot.y, scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
                static_cast<double>(scan.estimate.state), belief.pose_right, belief.map_wrong,
                static_cast<double>(belief.verdict), differs ? 1.0 : 0.0, static_cast<double>(belief.stable.expected),
                static_cast<double>(belief.stable.fit), belief.rival_share});
   }
-  return scans;
+  VerdictScans answer{std::move(scans), place.oracle->ambiguity(views, pair.drive().surfaces(), run.max_range_m)};
+  const std::size_t needed = place.oracle->views_needed(views, pair.drive().surfaces(), run.max_range_m, answer.path);
+  answer.unique_after_s = needed > 0 ? kViewEvery_s * static_cast<double>(needed - 1) : std::nan("");
+  return answer;
 }
 
 }  // namespace deltamap::daemon::tool::experiment

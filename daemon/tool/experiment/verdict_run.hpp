@@ -6,6 +6,7 @@
 #include <array>
 #include <string_view>
 
+#include "daemon/tool/experiment/ambiguity.hpp"
 #include "daemon/tool/experiment/lived_in.hpp"
 #include "daemon/tool/experiment/scan_table.hpp"
 
@@ -34,13 +35,20 @@ struct VerdictPlace {
   std::vector<simulation::PersonParams> people;
   std::shared_ptr<const OccupancyGrid> map;  ///< M_0
   localization::LocalizerParams localizer;
+  std::shared_ptr<const AmbiguityOracle> oracle;  ///< of that map
+};
+
+struct VerdictScans {
+  ScanTable scans;
+  Ambiguity path;               ///< of the first 30 s of driving after the event
+  double unique_after_s = 0.0;  ///< of them, from which on it is unambiguous; NaN where it is not
 };
 
 /// A row for every scan; `since_event_s` is negative before it. The run ends after so much driving since the event, or
 /// after twice that time. `driven_s`: seconds since the event in which the robot went faster than 0.05 m/s or turned
 /// faster than 3°/s. `map_is_wrong`: more than 5 % of the beams truly end
 /// where M_0's world would not have ended them, people left aside.
-[[nodiscard]] ScanTable verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
-                                      const VerdictRun& run);
+[[nodiscard]] VerdictScans verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
+                                         const VerdictRun& run);
 
 }  // namespace deltamap::daemon::tool::experiment

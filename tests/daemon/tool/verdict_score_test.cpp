@@ -129,15 +129,17 @@ TEST(VerdictScore, BoundsAShareAfterWilson) {
 }
 
 TEST(VerdictScore, SumsUpRuns) {
-  const auto outcome = [](const DrawnRun& run) {
+  const auto outcome = [](const DrawnRun& run, bool ambiguous = false) {
     Outcome made;
     made.numbers = verdict_numbers(run.table());
+    made.numbers.emplace_back("ambiguous", ambiguous ? 1.0 : 0.0);
+    made.numbers.emplace_back("unique_after_s", ambiguous ? std::nan("") : 6.0);
     made.scans = run.table();
     return made;
   };
   const std::vector<Outcome> outcomes{outcome(DrawnRun{}.then(30, {})),
                                       outcome(DrawnRun{}.then(10, kWrongCalledRight).then(20, {})),
-                                      outcome(DrawnRun{}.then(30, kWrongUndecided))};
+                                      outcome(DrawnRun{}.then(30, kWrongUndecided), true)};
   const VerdictPart all{outcomes, [](const Outcome&) { return true; }};
   EXPECT_DOUBLE_EQ(all.runs(), 3.0);
   EXPECT_DOUBLE_EQ(all.once_wrong(), 2.0);
@@ -145,6 +147,8 @@ TEST(VerdictScore, SumsUpRuns) {
   EXPECT_DOUBLE_EQ(all.recovered_in(30.0), 1.0);
   EXPECT_DOUBLE_EQ(all.recovered_in(5.0), 0.0);
   EXPECT_DOUBLE_EQ(all.called_right_again_in(30.0), 1.0);
+  EXPECT_DOUBLE_EQ(all.recovered_in_after_unique(5.0), 1.0);
+  EXPECT_DOUBLE_EQ(all.ambiguous(), 1.0);
   EXPECT_DOUBLE_EQ(all.recovery_quantile_s(0.5), 10.0);
   EXPECT_TRUE(std::isnan(all.recovery_quantile_s(0.95))) << "one never recovered";
 }

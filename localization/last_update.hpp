@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a scan was taken and where the wheels say the robot was; and what has moved between two such instants.
+// The last scan that changed the particles, and what has moved since.
 #pragma once
 
 #include <optional>
 
 #include "core/time.hpp"
 #include "localization/odometry_buffer.hpp"
+#include "localization/pose_refinement.hpp"
 
 namespace deltamap::localization {
 
-struct ScanInstant {
+struct LastUpdate {
   Timestamp time;
   std::optional<OdometryAt> odometry;
+  RefinedPose believed;
+  double n_eff = 0.0;
 };
 
 struct MotionSince {
@@ -22,6 +25,7 @@ struct MotionSince {
 
 /// `usual_s`: between two updates; more than twice that is a silence, in which the wheels may have turned unseen where
 /// the epoch has changed too.
-[[nodiscard]] MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double usual_s);
+[[nodiscard]] MotionSince motion_since(const LastUpdate& last, Timestamp time, const std::optional<OdometryAt>& now,
+                                       double usual_s);
 
 }  // namespace deltamap::localization
