@@ -16,16 +16,9 @@
 #include "localization/pose_refinement.hpp"
 #include "localization/pose_track.hpp"
 #include "localization/rivals.hpp"
+#include "localization/tracker.hpp"
 
 namespace deltamap::localization {
-
-/// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
-/// robot that stands still does not talk itself into certainty.
-struct UpdateParams {
-  double distance_m = 0.05;        ///< driven since the last update, m; >= 0
-  double turn_rad = radians(2.0);  ///< turned since the last update, rad; >= 0
-  double time_s = 1.0;             ///< passed since the last update, s; > 0
-};
 
 struct LocalizerParams {
   double gap_s = 20.0;  ///< without a scan, after which the pose must prove itself again, s; > 0

@@ -30,17 +30,18 @@ void PoseTrack::forget() {
   wheels_.forget_stretch();
 }
 
-PoseTrack::Step PoseTrack::step_to(Timestamp time, const std::optional<OdometryAt>& now) const {
-  const double passed_s = std::max(0.0, seconds(time - last_->time));
-  if (!now || !last_->odometry) return {{}, passed_s};
-  const bool jumped = now->epoch != last_->odometry->epoch;
-  return {motion_between(last_->odometry->joined_from_robot, now->joined_from_robot),
-          jumped ? passed_s : std::min(now->uncovered_s, passed_s)};
+PoseTrack::Step PoseTrack::step_to(const ScanInstant& now) const {
+  const ScanInstant& before = last_->instant;
+  const double passed_s = std::max(0.0, seconds(now.time - before.time));
+  if (!now.odometry || !before.odometry) return {{}, passed_s};
+  const bool jumped = now.odometry->epoch != before.odometry->epoch;
+  return {motion_between(before.odometry->joined_from_robot, now.odometry->joined_from_robot),
+          jumped ? passed_s : std::min(now.odometry->uncovered_s, passed_s)};
 }
 
-RefinedPose PoseTrack::before_scan(Timestamp time, const std::optional<OdometryAt>& now, const Hypothesis& particles) {
+RefinedPose PoseTrack::before_scan(const ScanInstant& now, const Hypothesis& particles) {
   if (!last_) return {particles.map_from_robot, particles.covariance};
-  const Step step = step_to(time, now);
+  const Step step = step_to(now);
   RefinedPose expected = carried(last_->believed, step.motion, wheels_);
   const double unknown_m = motion_.unknown_speed_m_per_s * step.unknown_s;
   const double unknown_rad = motion_.unknown_turn_rate_rad_per_s * step.unknown_s;
@@ -51,9 +52,9 @@ RefinedPose PoseTrack::before_scan(Timestamp time, const std::optional<OdometryA
   return {particles.map_from_robot, particles.covariance};
 }
 
-void PoseTrack::after_scan(Timestamp time, const std::optional<OdometryAt>& now, const RefinedPose& believed) {
-  if (last_) wheels_.learn(step_to(time, now).motion, believed);
-  last_ = Last{time, now, believed};
+void PoseTrack::after_scan(const ScanInstant& now, const RefinedPose& believed) {
+  if (last_) wheels_.learn(step_to(now).motion, believed);
+  last_ = Last{now, believed};
 }
 
 MotionModelParams PoseTrack::particle_motion() const {

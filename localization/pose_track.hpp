@@ -7,8 +7,8 @@
 
 #include "localization/hypotheses.hpp"
 #include "localization/motion_model.hpp"
-#include "localization/odometry_buffer.hpp"
 #include "localization/pose_refinement.hpp"
+#include "localization/scan_instant.hpp"
 #include "localization/wheel_trust.hpp"
 
 namespace deltamap::localization {
@@ -29,26 +29,24 @@ class PoseTrack {
 
   /// What is known of the pose at a scan before the scan is read: the last estimate, carried by the wheels, or the
   /// particles' own where they disagree or nothing came before.
-  [[nodiscard]] RefinedPose before_scan(Timestamp time, const std::optional<OdometryAt>& now,
-                                        const Hypothesis& particles);
+  [[nodiscard]] RefinedPose before_scan(const ScanInstant& now, const Hypothesis& particles);
 
   /// What the scan made of it.
-  void after_scan(Timestamp time, const std::optional<OdometryAt>& now, const RefinedPose& believed);
+  void after_scan(const ScanInstant& now, const RefinedPose& believed);
 
   /// The noise for the particles: what the wheels have shown, with a margin; never more than was set.
   [[nodiscard]] MotionModelParams particle_motion() const;
 
  private:
   struct Last {
-    Timestamp time;
-    std::optional<OdometryAt> odometry;
+    ScanInstant instant;
     RefinedPose believed;
   };
   struct Step {
     Pose2 motion;
     double unknown_s = 0.0;
   };
-  [[nodiscard]] Step step_to(Timestamp time, const std::optional<OdometryAt>& now) const;
+  [[nodiscard]] Step step_to(const ScanInstant& now) const;
 
   PoseTrackParams params_;
   MotionModelParams motion_;

@@ -223,18 +223,21 @@ void Rivals::write_report() {
       report_.own_share = place.share;
       continue;
     }
-    RivalPlace entry{place.map_from_robot, place.log_evidence, place.share, place.followed_m};
-    for (std::size_t rank = 0; rank < report_.listed; ++rank) {
-      if (entry.share > report_.rivals[rank].share) std::swap(entry, report_.rivals[rank]);
-    }
-    if (report_.listed < RivalReport::kListed) report_.rivals[report_.listed++] = entry;
-  }
-  for (std::size_t i = 1; report_.own_known && i < places.size(); ++i) {
-    const double ahead = places[i].log_evidence - report_.own_log_evidence;
-    if (ahead > params_.beats_by && places[i].followed_m >= params_.wins_after_m) report_.beaten = true;
-    if (ahead > -params_.equal_within) report_.unique = false;
+    list(place);
+    const double ahead = place.log_evidence - report_.own_log_evidence;
+    report_.beaten |= report_.own_known && ahead > params_.beats_by && place.followed_m >= params_.wins_after_m;
+    report_.unique &= ahead <= -params_.equal_within;
   }
   report_.effective_places = squared_shares > 0.0 ? 1.0 / squared_shares : 1.0;
+}
+
+/// Among the best others, where it belongs there.
+void Rivals::list(const Place& place) {
+  RivalPlace entry{place.map_from_robot, place.log_evidence, place.share, place.followed_m};
+  for (std::size_t rank = 0; rank < report_.listed; ++rank) {
+    if (entry.share > report_.rivals[rank].share) std::swap(entry, report_.rivals[rank]);
+  }
+  if (report_.listed < RivalReport::kListed) report_.rivals[report_.listed++] = entry;
 }
 
 }  // namespace deltamap::localization

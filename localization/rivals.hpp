@@ -106,6 +106,7 @@ class Rivals {
                                              const Pose2& joined) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
+  void list(const Place& place);
 
   RivalsParams params_;
   CoarseField coarse_;

@@ -24,7 +24,10 @@ std::optional<ChangeKind> change_kind_named(std::string_view name) {
 
 World changed(const World& world, const Change& change) {
   if (change.kind == ChangeKind::kRemoved) return world.without(change.id);
-  return world.with({change.id, ObjectKind::kContainer, change.box});
+  const Object* former = world.find(change.id);
+  Object container = former != nullptr ? *former : Object{change.id, ObjectKind::kContainer, change.box};
+  container.shape = change.box;
+  return world.with(container);
 }
 
 }  // namespace deltamap::simulation

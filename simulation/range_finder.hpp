@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an LMS200 measures in the simulated world: each beam at its own time from the moving robot, with noise, dropouts
-// and the mixed readings of a beam that is split by an edge. Ranges in metres; the virtual device turns them into
-// words.
+// the mixed readings of a beam that is split by an edge, and what glass and stretch wrap do. Ranges in metres; the
+// virtual device turns them into words.
 #pragma once
 
 #include <functional>
@@ -11,6 +11,7 @@
 #include "core/messages.hpp"
 #include "core/random.hpp"
 #include "simulation/ray_caster.hpp"
+#include "simulation/surface_optics.hpp"
 
 namespace deltamap::simulation {
 
@@ -23,6 +24,7 @@ struct RangeFinderParams {
   double footprint_rad = 0.0044;            ///< full angle of the beam's cone, >= 0 (0.25°)
   double mixed_share = 0.5;                 ///< beams split by an edge that read something in between, [0, 1]
   double mixed_step_m = 0.15;               ///< least step in depth that counts as an edge, > 0
+  SurfaceOptics surfaces{};
 };
 
 /// What one beam brought back.
@@ -51,6 +53,9 @@ class RangeFinder {
  private:
   [[nodiscard]] Reading measure_beam(const Pose2& map_from_laser, double bearing_rad, double max_range_m,
                                      const RayCaster& world, std::span<const Circle> people);
+  template <typename HitTowards>
+  [[nodiscard]] std::optional<RayHit> nearest_thin(double bearing_in_map, std::optional<RayHit> middle,
+                                                   const HitTowards& hit_towards) const;
 
   RangeFinderParams params_;
   Random random_;

@@ -36,6 +36,12 @@ double range_to(const Circle& circle, const Point2& from, const Point2& directio
   return nearest + half_chord >= 0.0 ? nearest + half_chord : kNever;  // from inside
 }
 
+bool is_thin(const Shape& shape) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) return 2.0 * circle->radius_m < kThin_m;
+  const auto* box = std::get_if<Box>(&shape);
+  return box != nullptr && std::hypot(box->width_m, box->height_m) < kThin_m;
+}
+
 Point2 nearest_point(const Segment& segment, const Point2& point) {
   const Point2 along = segment.to - segment.from;
   const double length2 = along.squaredNorm();
@@ -52,11 +58,15 @@ RayCaster::RayCaster(const World& world) {
               kBucketSide_m, bounds.low - Point2::Constant(kBucketSide_m)};
   contents_.resize(buckets_.cell_count());
   for (const Object& object : world.objects) {
+    const bool thin = is_thin(object.shape);
+    has_thin_objects_ = has_thin_objects_ || thin;
     if (const auto* circle = std::get_if<Circle>(&object.shape)) {
-      surfaces_.push_back({{circle->centre, circle->centre}, circle->radius_m, object.id, 0});
+      surfaces_.push_back({{circle->centre, circle->centre}, circle->radius_m, object.id, 0, object.material, thin});
     }
-    int face = 0;
-    for (const Segment& segment : segments_of(object.shape)) surfaces_.push_back({segment, 0.0, object.id, face++});
+    std::uint16_t face = 0;
+    for (const Segment& segment : segments_of(object.shape)) {
+      surfaces_.push_back({segment, 0.0, object.id, face++, object.material, thin});
+    }
   }
   for (std::size_t i = 0; i < surfaces_.size(); ++i) enter(i);
 }
@@ -85,10 +95,20 @@ std::span<const std::uint32_t> RayCaster::bucket(Cell cell) const {
   return contents_[buckets_.index_of(cell)];
 }
 
+RayHit RayCaster::hit_on(const Surface& surface, double range_m, const Point2& direction) {
+  RayHit hit{range_m, surface.object, surface.face, surface.material, 1.0, surface.is_thin};
+  if (surface.material != Material::kSolid && surface.radius_m == 0.0) {
+    const Point2 along = surface.segment.to - surface.segment.from;
+    hit.incidence_cosine = std::abs(cross(direction, along)) / along.norm();
+  }
+  return hit;
+}
+
 std::optional<RayHit> RayCaster::cast(const Point2& from, double bearing_rad, double max_range_m,
                                       std::span<const Circle> people) const {
   const Point2 direction{std::cos(bearing_rad), std::sin(bearing_rad)};
   RayHit best{kNever, 0, 0};
+  const Surface* met = nullptr;
   for (const Circle& person : people) {
     const double range_m = range_to(person, from, direction);
     if (range_m < best.range_m) best = {range_m, kPersonId, 0};
@@ -100,12 +120,14 @@ std::optional<RayHit> RayCaster::cast(const Point2& from, double bearing_rad, do
       const double range_m = surface.radius_m > 0.0
                                  ? range_to(Circle{surface.segment.from, surface.radius_m}, from, direction)
                                  : range_to(surface.segment, from, direction);
-      if (range_m < best.range_m) best = {range_m, surface.object, surface.face};
+      if (range_m >= best.range_m) continue;
+      best.range_m = range_m;
+      met = &surface;
     }
     return true;
   });
   if (best.range_m > max_range_m) return std::nullopt;
-  return best;
+  return met == nullptr ? best : hit_on(*met, best.range_m, direction);
 }
 
 std::optional<RayCaster::Nearest> RayCaster::nearest_surface(const Point2& point, double within_m) const {

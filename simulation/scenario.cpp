@@ -10,94 +10,14 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "simulation/scenario_actors.hpp"
+#include "simulation/scenario_world.hpp"
 #include "simulation/yaml_section.hpp"
 
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kLargest_m = 1000.0;  // of any length in a scenario
 constexpr double kSmallest_m = 0.01;
-
-Point2 point_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1]}; }
-
-Box box_of(const YAML::Node& node, const std::string& file) {
-  const auto n = numbers_of(node, 5, file, "box");
-  if (n[2] < kSmallest_m || n[3] < kSmallest_m) refuse_at(node, file, "box", "needs a width and a height");
-  return {{n[0], n[1]}, n[2], n[3], radians(n[4])};
-}
-
-/// Gives the world's things their numbers in the order of the file.
-class WorldReader {
- public:
-  explicit WorldReader(YamlSection& top) : top_{top} {}
-
-  void read(Scenario& scenario) {
-    for (const YAML::Node& wall : top_.items("walls")) add(scenario, ObjectKind::kWall, wall_of(wall));
-    for (const YAML::Node& block : top_.items("blocks")) read_block(block, scenario);
-    for (const YAML::Node& container : top_.items("containers")) {
-      const Box box = box_of(container, top_.file());
-      add(scenario, ObjectKind::kContainer, box);
-      scenario.slots.push_back(box);
-    }
-    for (const YAML::Node& post : top_.items("posts")) add(scenario, ObjectKind::kPost, post_of(post));
-    if (scenario.world.objects.empty()) top_.refuse("walls", "is missing: there is nothing in this world");
-  }
-
- private:
-  void add(Scenario& scenario, ObjectKind kind, Shape shape) {
-    scenario.world.objects.push_back({next_id_++, kind, std::move(shape)});
-  }
-
-  [[nodiscard]] Polyline wall_of(const YAML::Node& wall) const {
-    if (!wall.IsSequence() || wall.size() < 2)
-      refuse_at(wall, top_.file(), "walls", "must be lists of at least two points");
-    Polyline line;
-    for (const YAML::Node& point : wall) line.points.push_back(point_of(numbers_of(point, 2, top_.file(), "walls")));
-    return line;
-  }
-
-  [[nodiscard]] Shape post_of(const YAML::Node& node) const {
-    YamlSection post{node, top_.file(), "posts"};
-    Shape shape;
-    if (post.has("box")) {
-      shape = box_of(node["box"], top_.file());
-    } else {
-      const auto n = post.numbers("circle", 3);
-      if (n[2] < kSmallest_m) post.refuse("circle", "needs a radius");
-      shape = Circle{{n[0], n[1]}, n[2]};
-    }
-    post.expect_no_more();
-    return shape;
-  }
-
-  /// A block of equal containers in columns and rows, some of whose slots may be empty at the start.
-  void read_block(const YAML::Node& node, Scenario& scenario) {
-    YamlSection block{node, top_.file(), "blocks"};
-    const Point2 corner = point_of(block.numbers("corner", 2));
-    const Point2 size = point_of(block.numbers("size", 2));
-    if (size.minCoeff() < kSmallest_m) block.refuse("size", "must be positive");
-    const int columns = block.whole_number("columns", 1, 1, 1000);
-    const int rows = block.whole_number("rows", 1, 1, 1000);
-    std::vector<Cell> empty;
-    for (const YAML::Node& slot : block.items("empty")) {
-      const auto n = numbers_of(slot, 2, top_.file(), "empty");
-      empty.push_back({static_cast<int>(n[0]), static_cast<int>(n[1])});
-    }
-    block.expect_no_more();
-    for (int row = 0; row < rows; ++row) {
-      for (int column = 0; column < columns; ++column) {
-        const Box box{corner + Point2{(column + 0.5) * size.x(), (row + 0.5) * size.y()}, size.x(), size.y(), 0.0};
-        scenario.slots.push_back(box);
-        if (std::find(empty.begin(), empty.end(), Cell{column, row}) == empty.end()) {
-          add(scenario, ObjectKind::kContainer, box);
-        }
-      }
-    }
-  }
-
-  YamlSection& top_;
-  int next_id_ = 1;
-};
 
 template <typename Number, std::size_t kCount>
 void expect_one_of(const YamlSection& section, const std::string& key, Number value,
@@ -139,6 +59,21 @@ RobotSetup robot_of(YamlSection robot) {
   return setup;
 }
 
+SurfaceOptics surface_optics_of(YamlSection& laser) {
+  SurfaceOptics optics;
+  optics.glass_within_rad = radians(laser.number("glass_within_deg", degrees(optics.glass_within_rad), 0.0, 90.0));
+  optics.wrap_no_return_share = laser.number("wrap_no_return_share", optics.wrap_no_return_share, 0.0, 1.0);
+  optics.wrap_through_share = laser.number("wrap_through_share", optics.wrap_through_share, 0.0, 1.0);
+  optics.wrap_dazzle_share = laser.number("wrap_dazzle_share", optics.wrap_dazzle_share, 0.0, 1.0);
+  optics.wrap_short_share = laser.number("wrap_short_share", optics.wrap_short_share, 0.0, 1.0);
+  optics.wrap_short_m = laser.number("wrap_short_m", optics.wrap_short_m, 0.0, 10.0);
+  const double others = optics.wrap_no_return_share + optics.wrap_through_share + optics.wrap_dazzle_share;
+  if (others + optics.wrap_short_share > 1.0) {
+    laser.refuse("wrap_no_return_share", "and the other shares of wrap are more than 1 together");
+  }
+  return optics;
+}
+
 RangeFinderParams optics_of(YamlSection& laser) {
   RangeFinderParams optics;
   if (laser.has("mount")) {
@@ -152,6 +87,7 @@ RangeFinderParams optics_of(YamlSection& laser) {
   optics.footprint_rad = radians(laser.number("footprint_deg", degrees(optics.footprint_rad), 0.0, 2.0));
   optics.mixed_share = laser.number("mixed_share", optics.mixed_share, 0.0, 1.0);
   optics.mixed_step_m = laser.number("mixed_step_m", optics.mixed_step_m, kSmallest_m, 10.0);
+  optics.surfaces = surface_optics_of(laser);
   return optics;
 }
 
@@ -176,49 +112,11 @@ LaserSetup laser_of(YamlSection laser) {
   return setup;
 }
 
-ForkliftParams forklift_of(YamlSection lift) {
-  ForkliftParams params;
-  params.change_every_s = lift.number("change_every_s", params.change_every_s, 0.1, 1e6);
-  if (lift.has("changes")) params.kinds.clear();
-  for (const YAML::Node& item : lift.items("changes")) {
-    const auto kind = change_kind_named(item.IsScalar() ? item.Scalar() : "");
-    if (!kind) refuse_at(item, lift.file(), "changes", "must list removed, added or shifted");
-    params.kinds.push_back(*kind);
-  }
-  params.smallest_shift_m = lift.number("smallest_shift_m", params.smallest_shift_m, kSmallest_m, kLargest_m);
-  params.largest_shift_m = lift.number("largest_shift_m", params.largest_shift_m, params.smallest_shift_m, kLargest_m);
-  params.robot_margin_m = lift.number("robot_margin_m", params.robot_margin_m, 0.0, kLargest_m);
-  params.people_margin_m = lift.number("people_margin_m", params.people_margin_m, 0.0, kLargest_m);
-  params.passage_m = lift.number("passage_m", params.passage_m, 0.1, kLargest_m);
-  params.least_filled = lift.number("least_filled", params.least_filled, 0.0, 1.0);
-  lift.expect_no_more();
-  return params;
-}
-
-PersonParams person_of(YamlSection person) {
-  PersonParams params;
-  for (const YAML::Node& corner : person.items("path")) {
-    params.path.push_back(point_of(numbers_of(corner, 2, person.file(), "path")));
-  }
-  if (params.path.size() < 2) person.refuse("path", "must have at least two points");
-  params.closed = person.flag("closed", params.closed);
-  params.speed_m_per_s = person.number("speed_m_per_s", params.speed_m_per_s, 0.05, 5.0);
-  params.radius_m = person.number("radius_m", params.radius_m, 0.03, 1.0);
-  params.walk_least_s = person.number("walk_least_s", params.walk_least_s, 0.1, 1e6);
-  params.walk_most_s =
-      person.number("walk_most_s", std::max(params.walk_most_s, params.walk_least_s), params.walk_least_s, 1e6);
-  params.stand_least_s = person.number("stand_least_s", params.stand_least_s, 0.0, 1e6);
-  params.stand_most_s =
-      person.number("stand_most_s", std::max(params.stand_most_s, params.stand_least_s), params.stand_least_s, 1e6);
-  person.expect_no_more();
-  return params;
-}
-
 Scenario scenario_of(const YAML::Node& root, const std::string& name) {
   YamlSection top{root, name, "the scenario"};
   Scenario scenario;
   scenario.file = name;
-  WorldReader{top}.read(scenario);
+  read_world(top, scenario);
   scenario.robot = robot_of(top.section("robot"));
   if (top.has("laser")) scenario.laser = laser_of(top.section("laser"));
   if (top.has("forklift")) scenario.forklift = forklift_of(top.section("forklift"));

@@ -80,10 +80,15 @@ OccupancyGrid start_map(const World& world, const Point2& robot_start, double re
 
 OccupancyGrid surveyed_map(const World& world, const Point2& robot_start, const GridGeometry& geometry) {
   OccupancyGrid grid{geometry};
-  for (const Object& object : world.objects) {
-    for (const Cell cell : surface_cells(object.shape, grid.geometry())) grid.set(cell, CellState::kOccupied);
-  }
+  const auto draw = [&](bool glass) {
+    for (const Object& object : world.objects) {
+      if (!object.is_drawn || (object.material == Material::kGlass) != glass) continue;
+      for (const Cell cell : surface_cells(object.shape, grid.geometry())) grid.set(cell, CellState::kOccupied);
+    }
+  };
+  draw(false);
   flood(grid, grid.geometry().cell_at(robot_start));
+  draw(true);  // the floor behind a pane is seen
   OccupancyGrid seen = grid;
   for (std::size_t i = 0; i < grid.geometry().cell_count(); ++i) {
     const Cell cell = grid.geometry().cell_of(i);

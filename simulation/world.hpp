@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The things that stand in a simulated world. Walls and posts stay; containers come, go and are shifted by the
-// fork-lift.
+// The things that stand in a simulated world. Walls, panes and posts stay; containers come, go and are pushed about.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +11,15 @@ namespace deltamap::simulation {
 
 enum class ObjectKind : std::uint8_t { kWall, kContainer, kPost };
 
+/// What a beam meets (surface_optics.hpp).
+enum class Material : std::uint8_t { kSolid, kGlass, kWrap };
+
 struct Object {
   int id = 0;  ///< unique in the world; a container that comes anew has a new one
   ObjectKind kind = ObjectKind::kWall;
   Shape shape;
+  Material material = Material::kSolid;
+  bool is_drawn = true;  ///< in the map of the start
 };
 
 struct Bounds {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -54,7 +55,50 @@ TEST(Scenario, RefusesWrongTypesAndRangesWithTheirLine) {
   EXPECT_EQ(complaint_of("walls: [\n"), "world.yaml: line 2: end of sequence flow not found");
 }
 
+TEST(Scenario, ReadsRacksGlassAndWrappedPallets) {
+  const Scenario scenario =
+      parse_scenario(kRoom +
+                         "racks:\n  - {corner: [3, 1, 90], pitch: [1, 0.5], columns: 2, rows: 3}\n"
+                         "  - {corner: [8, 1, 0], pitch: [1, 1], columns: 2, round: true}\n"
+                         "glass:\n  - {line: [[5, 0], [5, 4]], drawn: false}\n"
+                         "wrapped:\n  - [6.5, 2, 1.2, 0.8, 0]\n",
+                     "world.yaml");
+  const auto& objects = scenario.world.objects;
+  ASSERT_EQ(objects.size(), 1u + 6u + 2u + 1u + 1u);
+  const Box last_of_first_rack = std::get<Box>(objects[6].shape);
+  EXPECT_NEAR(last_of_first_rack.centre.x(), 3.0 - 2 * 0.5, 1e-12);
+  EXPECT_NEAR(last_of_first_rack.centre.y(), 1.0 + 1.0, 1e-12);
+  EXPECT_EQ(last_of_first_rack.width_m, 0.08);
+  EXPECT_EQ(std::get<Circle>(objects[7].shape).radius_m, 0.04);
+  EXPECT_EQ(objects[9].material, Material::kGlass);
+  EXPECT_FALSE(objects[9].is_drawn);
+  EXPECT_EQ(objects[10].material, Material::kWrap);
+  EXPECT_TRUE(scenario.slots.empty()) << "no fork-lift takes what is wrapped";
+}
+
+TEST(Scenario, RefusesWrongRacksGlassAndWrapWithTheirLine) {
+  EXPECT_EQ(complaint_of(kRoom + "racks:\n  - {corner: [3, 1, 0], pitch: [0.08, 1]}\n"),
+            "world.yaml: line 6: 'pitch' must be more than a post's width");
+  EXPECT_EQ(complaint_of(kRoom + "racks:\n  - {corner: [3, 1, 0]}\n"),
+            "world.yaml: line 6: 'pitch' is missing in 'racks'");
+  EXPECT_EQ(complaint_of(kRoom + "glass:\n  - {line: [[1, 1]]}\n"),
+            "world.yaml: line 6: 'line' must be a list of at least two points");
+  EXPECT_EQ(complaint_of(kRoom + "glass:\n  - {drawn: true}\n"), "world.yaml: line 6: 'line' is missing in 'glass'");
+  EXPECT_EQ(complaint_of(kRoom + "wrapped:\n  - [1, 1, 1, 0, 0]\n"),
+            "world.yaml: line 6: 'box' needs a width and a height");
+  EXPECT_EQ(complaint_of(kRoom + "laser:\n  glass_within_deg: 91\n"),
+            "world.yaml: line 6: 'glass_within_deg' must lie from 0 to 90");
+  EXPECT_EQ(complaint_of(kRoom + "laser:\n  wrap_no_return_share: 0.6\n  wrap_through_share: 0.6\n"),
+            "world.yaml: line 6: 'wrap_no_return_share' and the other shares of wrap are more than 1 together");
+}
+
 TEST(Scenario, EveryDeliveredScenarioCanBeRead) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(DELTAMAP_SOURCE_DIR "/config/scenarios")) {
+    EXPECT_FALSE(read_scenario(entry.path()).world.objects.empty()) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 6);
   for (const char* name : {"hall", "hall_shifts", "room", "demo"}) {
     const Scenario scenario = read_scenario(std::string(DELTAMAP_SOURCE_DIR "/config/scenarios/") + name + ".yaml");
     EXPECT_TRUE(scenario.forklift) << name;

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last scan that changed the particles, and what has moved since.
+// When a scan was taken and where the wheels say the robot was; and what has moved between two such instants.
 #pragma once
 
 #include <optional>
 
 #include "core/time.hpp"
 #include "localization/odometry_buffer.hpp"
-#include "localization/pose_refinement.hpp"
 
 namespace deltamap::localization {
 
-struct LastUpdate {
+struct ScanInstant {
   Timestamp time;
   std::optional<OdometryAt> odometry;
-  RefinedPose believed;
-  double n_eff = 0.0;
 };
 
 struct MotionSince {
@@ -25,7 +22,6 @@ struct MotionSince {
 
 /// `usual_s`: between two updates; more than twice that is a silence, in which the wheels may have turned unseen where
 /// the epoch has changed too.
-[[nodiscard]] MotionSince motion_since(const LastUpdate& last, Timestamp time, const std::optional<OdometryAt>& now,
-                                       double usual_s);
+[[nodiscard]] MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double usual_s);
 
 }  // namespace deltamap::localization

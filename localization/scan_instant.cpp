@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/last_update.hpp"
+#include "localization/scan_instant.hpp"
 
 #include <algorithm>
 
@@ -11,16 +11,16 @@ constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as sile
 
 }  // namespace
 
-MotionSince motion_since(const LastUpdate& last, Timestamp time, const std::optional<OdometryAt>& now, double usual_s) {
+MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double usual_s) {
   MotionSince since;
-  since.passed_s = std::max(0.0, seconds(time - last.time));
-  if (!now || !last.odometry) {
+  since.passed_s = std::max(0.0, seconds(now.time - last.time));
+  if (!now.odometry || !last.odometry) {
     since.unknown_s = since.passed_s;
     return since;
   }
-  since.motion = motion_between(last.odometry->joined_from_robot, now->joined_from_robot);
-  since.unknown_s = std::min(now->uncovered_s, since.passed_s);
-  if (now->epoch != last.odometry->epoch) {
+  since.motion = motion_between(last.odometry->joined_from_robot, now.odometry->joined_from_robot);
+  since.unknown_s = std::min(now.odometry->uncovered_s, since.passed_s);
+  if (now.odometry->epoch != last.odometry->epoch) {
     const double silent_s = since.passed_s > 2.0 * usual_s ? since.passed_s : 0.0;
     since.unknown_s += std::clamp(silent_s, kJumpBetweenEpochsS, kFarthestGuessS);
   }

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/localizer_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "localization/weighing.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+constexpr std::uint64_t kSeedOfRivals = 0x52697661;
+constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a person gave,
+constexpr double kTrustInASearch = 0.5;  // at one that a search has found,
+constexpr double kTrustInNothing = 0.1;  // and before there is any
+
+TrackerParams tracker_params(const LocalizerParams& given) {
+  return {.particles = given.particles,
+          .motion = given.motion,
+          .hypothesis = given.hypothesis,
+          .refinement = given.refinement,
+          .track = given.track,
+          .update = given.update};
+}
+
+}  // namespace
+
+Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const OccupancyGrid> first_map,
+                        std::uint64_t seed)
+    : params{given},
+      map{with_free_space(std::move(first_map))},
+      field{*map, given.field},
+      odometry{given.odometry},
+      tracker{tracker_params(given), seed},
+      monitor{given.fit},
+      judgement{*map, given.judgement},
+      rivals{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfRivals} {}
+
+void Localizer::State::start_at(const InitialPose& given) {
+  const Start start = usable_start(*map, given);
+  counts.poses_in_obstacle += start.kind == StartKind::kCheck && !given.remembered ? 1 : 0;
+  counts.poses_refused += start.kind == StartKind::kAnywhere ? 1 : 0;
+  if (start.kind == StartKind::kAnywhere) return start_anywhere();
+  (void)tracker.start_around(start.pose);
+  start_tracking();
+  rivals.start_believing();
+  if (start.kind == StartKind::kCheck) check_pose();
+}
+
+void Localizer::State::start_tracking() {
+  monitor.start(LocalizerState::kTracking);
+  judgement.start(kTrustAtStart);
+  check.end();
+}
+
+void Localizer::State::check_pose() {
+  monitor.start(LocalizerState::kGlobal);
+  check.start();
+}
+
+void Localizer::State::start_anywhere() {
+  ++counts.searches;
+  check.end();
+  rivals.start_anywhere();
+  judgement.start(kTrustInNothing);
+  best = anywhere_in(*map);
+  monitor.start(LocalizerState::kGlobal);
+}
+
+RefinedPose Localizer::State::believe_in(const Pose2& place, const ScanInstant& now) {
+  const InitialPose around{place, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0};
+  const RefinedPose believed = tracker.start_around(around, now);
+  start_tracking();
+  if (!rivals.is_near_believed(place)) judgement.start(kTrustInASearch, true);
+  rivals.start_believing_in(place);
+  return believed;
+}
+
+void Localizer::State::doubt() {
+  ++counts.searches;
+  rivals.stop_believing();
+  judgement.start(kTrustInNothing);
+  monitor.start(LocalizerState::kGlobal);
+}
+
+void Localizer::State::note_oddities(const ScanInstant& now) {
+  ++counts.scans;
+  counts.scans_without_return += ends.size() == 0 ? 1 : 0;
+  counts.scans_without_odometry += now.odometry ? 0 : 1;
+  counts.odometry_epochs += now.odometry && last_epoch && now.odometry->epoch != *last_epoch ? 1 : 0;
+  if (now.odometry) last_epoch = now.odometry->epoch;
+  if (!last_scan) return;
+  const double passed_s = seconds(now.time - *last_scan);
+  if (passed_s < 0.0) {
+    ++counts.clock_fell_back;
+    tracker.restart_clock(now.time);
+  }
+  if (passed_s < params.gap_s || monitor.state() != LocalizerState::kTracking) return;
+  ++counts.gaps;
+  check_pose();
+}
+
+RefinedPose Localizer::State::believed(const ScanInstant& now, const Point2& robot_from_laser) {
+  const bool searching = monitor.state() == LocalizerState::kGlobal && !check.under_way();
+  return searching ? search(now) : track(now, robot_from_laser);
+}
+
+RefinedPose Localizer::State::search(const ScanInstant& now) {
+  const RivalReport& report = rivals.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
+  if (const std::optional<Place> place = rivals.best_place()) {
+    best = {place->map_from_robot, place->covariance, place->share};
+    if (ends.size() > 0) w_avg = mean_likelihood(misfit_steps(field, ends, best.map_from_robot), ends.size());
+  }
+  n_eff = report.effective_places;
+  return {best.map_from_robot, best.covariance};
+}
+
+RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_from_laser) {
+  const Tracker::Answer tracked = tracker.observe({.now = now,
+                                                   .ends = ends,
+                                                   .field = field,
+                                                   .beam_model = beam_model ? &*beam_model : nullptr,
+                                                   .robot_from_laser = robot_from_laser});
+  best = tracker.best();
+  w_avg = tracked.w_avg.value_or(w_avg);
+  n_eff = tracked.n_eff.value_or(n_eff);
+  const bool lost = monitor.state() == LocalizerState::kLost;
+  const RivalReport& report =
+      rivals.observe(field, {.ends = ends,
+                             .joined_from_robot = joined_at(now),
+                             .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
+                             .unknown_s = tracked.unknown_s});
+  if (report.listed == 0 || !has_won(report.rivals.front())) return tracked.believed;
+  const Pose2 winner = report.rivals.front().map_from_robot;
+  if (lost || distance_between(winner, tracked.believed.map_from_robot) < params.rivals.nearby_m) {
+    ++counts.recoveries;
+    return believe_in(winner, now);
+  }
+  doubt();
+  return tracked.believed;
+}
+
+bool Localizer::State::has_won(const RivalPlace& place) const {
+  return place.share >= params.rivals.winning_share && place.followed_m >= params.rivals.wins_after_m &&
+         ends.size() > 0 && explained_share(field, ends, place.map_from_robot) >= params.fit.found_above;
+}
+
+void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays, const ScanInstant& now,
+                             const RefinedPose& believed) {
+  FitMonitor::Observation seen = passed_since_last_scan(now);
+  last_joined = joined_at(now);
+  last_scan = now.time;
+  if (ends.size() == 0) return;  // a scan that saw nothing says nothing
+  seen.fit = explained_share(field, ends, believed.map_from_robot);
+  if (check.under_way()) return judge_start(seen.fit);
+  const LocalizerState before = monitor.state();
+  const Belief& belief = judgement.observe({.map = *map,
+                                            .scan = scan,
+                                            .rays = rays,
+                                            .believed = believed,
+                                            .state = before,
+                                            .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
+                                            .rivals = rivals.report()});
+  seen.verdict = belief.verdict;
+  seen.trust = judgement.trust();
+  seen.beaten = rivals.report().beaten;
+  const LocalizerState after = monitor.observe(seen, best);
+  rivals.suspect(monitor.suspicious());
+  if (monitor.search_failed()) {
+    ++counts.searches_failed;
+    start_anywhere();
+  }
+  if (before != after) enter(after, before, believed.map_from_robot, now);
+}
+
+FitMonitor::Observation Localizer::State::passed_since_last_scan(const ScanInstant& now) const {
+  if (!last_scan) return {};
+  FitMonitor::Observation seen{.passed_s = std::max(0.0, seconds(now.time - *last_scan))};
+  const Pose2 motion = motion_between(last_joined, joined_at(now));
+  seen.driven_m = motion.position().norm();
+  seen.turned_rad = std::abs(motion.theta);
+  return seen;
+}
+
+void Localizer::State::judge_start(double fit) {
+  const PoseCheck::Answer answer = check.observe(fit, params.fit.found_above);
+  counts.poses_confirmed += answer == PoseCheck::Answer::kFits ? 1 : 0;
+  counts.poses_refuted += answer == PoseCheck::Answer::kDoesNotFit ? 1 : 0;
+  if (answer == PoseCheck::Answer::kFits) monitor.start(LocalizerState::kTracking);
+  if (answer == PoseCheck::Answer::kDoesNotFit) start_anywhere();
+}
+
+void Localizer::State::enter(LocalizerState after, LocalizerState before, const Pose2& believed,
+                             const ScanInstant& now) {
+  if (after == LocalizerState::kLost) rivals.stop_believing();
+  if (before == LocalizerState::kLost && after == LocalizerState::kTracking) rivals.start_believing_in(believed);
+  if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) ++counts.searches;
+  if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) (void)believe_in(believed, now);
+}
+
+Pose2 Localizer::State::joined_at(const ScanInstant& now) const {
+  return now.odometry ? now.odometry->joined_from_robot : last_joined;
+}
+
+Estimate Localizer::State::estimate(Timestamp time, const RefinedPose& believed) const {
+  return {.time = time,
+          .map_from_robot = believed.map_from_robot,
+          .covariance = believed.covariance,
+          .state = monitor.state(),
+          .n_eff = n_eff,
+          .particles = static_cast<std::uint32_t>(
+              monitor.state() == LocalizerState::kGlobal ? rivals.report().places : tracker.particle_count()),
+          .belief = judgement.belief(),
+          .w_avg = w_avg,
+          .revision = revision,
+          .map = map};
+}
+
+}  // namespace deltamap::localization

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inside of the localizer: which pose is believed, by a state machine of global, tracking and lost. A scan is
+// followed by the particles (tracker.hpp) or searched for in the whole map (rivals.hpp), then judged (judgement.hpp,
+// fit_monitor.hpp); what wins is believed, what is judged wrong is given up.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "localization/localizer.hpp"
+#include "localization/localizer_params.hpp"
+
+namespace deltamap::localization {
+
+struct Localizer::State {
+  State(const LocalizerParams& given, std::shared_ptr<const OccupancyGrid> first_map, std::uint64_t seed);
+
+  LocalizerParams params;
+  std::shared_ptr<const OccupancyGrid> map;
+  std::uint32_t revision = 0;
+  LikelihoodField field;
+  std::optional<BeamModel> beam_model;  ///< only where it is chosen
+  OdometryBuffer odometry;
+  Tracker tracker;
+  FitMonitor monitor;
+  Judgement judgement;
+  Rivals rivals;
+  PoseCheck check;  ///< under way: particles around a pose that is not yet believed
+  LocalizerCounts counts;
+  BeamEnds ends;
+  std::optional<Timestamp> last_scan;
+  std::optional<std::uint32_t> last_epoch;
+  Pose2 last_joined;   ///< odometry at the last scan
+  Hypothesis best;     ///< of the particles, or the place that leads a search
+  double w_avg = 1.0;  ///< of that; before any scan nothing speaks against the pose
+  double n_eff = 0.0;  ///< of the particles, or of a search's places
+
+  // How a pose comes to be believed, and ceases to be.
+  void start_at(const InitialPose& given);
+  void start_anywhere();
+  /// The particles stay where they are, but must prove themselves.
+  void check_pose();
+  /// The particles start anew around a place that has won.
+  RefinedPose believe_in(const Pose2& place, const ScanInstant& now);
+  /// The robot is not where it was believed to be; before another place is believed, the whole map is searched.
+  void doubt();
+
+  // One scan, in this order.
+  /// Before the scan is used: what is wrong with it, or with the time since the last one.
+  void note_oddities(const ScanInstant& now);
+  RefinedPose believed(const ScanInstant& now, const Point2& robot_from_laser);
+  void judge(const Scan& scan, std::span<const RayInRobot> rays, const ScanInstant& now, const RefinedPose& believed);
+  [[nodiscard]] Estimate estimate(Timestamp time, const RefinedPose& believed) const;
+
+  // What these are made of.
+  void start_tracking();
+  /// The best place that has come to mind leads, until it is believed.
+  RefinedPose search(const ScanInstant& now);
+  RefinedPose track(const ScanInstant& now, const Point2& robot_from_laser);
+  /// A place that holds nearly all belief, for long enough, and that the map explains now.
+  [[nodiscard]] bool has_won(const RivalPlace& place) const;
+  [[nodiscard]] FitMonitor::Observation passed_since_last_scan(const ScanInstant& now) const;
+  void judge_start(double fit);
+  /// The monitor has changed its mind.
+  void enter(LocalizerState after, LocalizerState before, const Pose2& believed, const ScanInstant& now);
+  [[nodiscard]] Pose2 joined_at(const ScanInstant& now) const;
+};
+
+}  // namespace deltamap::localization

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "localization/weighing.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+std::int32_t misfit_at(const Pose2& map_from_robot, const Tracker::Seen& seen) {
+  return seen.beam_model != nullptr ? seen.beam_model->misfit_steps(seen.ends, seen.robot_from_laser, map_from_robot)
+                                    : misfit_steps(seen.field, seen.ends, map_from_robot);
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackerParams& params, std::uint64_t seed)
+    : params_{params},
+      filter_{params.particles, seed},
+      track_{params.track, params.motion},
+      hypotheses_{params.hypothesis} {}
+
+RefinedPose Tracker::start_around(const InitialPose& pose) {
+  filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
+  best_ = hypotheses_.best(filter_.particles());
+  drawn_anew_ = false;
+  track_.forget();
+  last_update_.reset();
+  return {best_.map_from_robot, best_.covariance};
+}
+
+RefinedPose Tracker::start_around(const InitialPose& pose, const ScanInstant& now) {
+  const RefinedPose believed = start_around(pose);
+  last_update_ = now;
+  return believed;
+}
+
+void Tracker::restart_clock(Timestamp time) {
+  if (last_update_) last_update_->time = time;
+}
+
+Tracker::Answer Tracker::observe(const Seen& seen) {
+  const MotionSince since = last_update_ ? motion_since(*last_update_, seen.now, params_.update.time_s) : MotionSince{};
+  Answer answer = update_due(since) ? update(seen, since) : follow(seen, since);
+  answer.unknown_s = since.unknown_s;
+  track_.after_scan(seen.now, answer.believed);
+  return answer;
+}
+
+bool Tracker::update_due(const MotionSince& since) const {
+  return !last_update_ || since.motion.position().norm() >= params_.update.distance_m ||
+         std::abs(since.motion.theta) >= params_.update.turn_rad || since.passed_s >= params_.update.time_s;
+}
+
+/// Moves and weighs the particles; they may be drawn anew afterwards.
+Tracker::Answer Tracker::update(const Seen& seen, const MotionSince& since) {
+  const bool sees = seen.ends.size() > 0;
+  if (last_update_) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
+  last_update_ = seen.now;
+  const std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};
+  Answer answer;
+  answer.n_eff = filter_.n_eff();
+  best_ = hypotheses_.best(filter_.particles());
+  answer.believed = track_.before_scan(seen.now, best_);
+  if (!sees) return answer;
+  answer.w_avg = mean_over_members(misfits, seen.ends.size());
+  answer.believed = slid(seen, answer.believed);
+  draw_anew_if_needed();
+  return answer;
+}
+
+/// Between updates: the particles stay, the answer follows the wheels and the scan.
+Tracker::Answer Tracker::follow(const Seen& seen, const MotionSince& since) {
+  Hypothesis moved = best_;
+  moved.map_from_robot = best_.map_from_robot * since.motion;
+  Answer answer;
+  answer.believed = track_.before_scan(seen.now, moved);
+  if (seen.ends.size() == 0) return answer;
+  if (drawn_anew_) best_.weight = hypotheses_.best(filter_.particles()).weight;
+  drawn_anew_ = false;
+  answer.w_avg = mean_over_some_members(seen, since.motion);
+  answer.believed = slid(seen, answer.believed);
+  return answer;
+}
+
+std::span<const std::int32_t> Tracker::weighed(const Seen& seen) {
+  const double evidence_beams = params_.particles.evidence_beams;
+  if (seen.beam_model == nullptr) return filter_.weigh(seen.field, seen.ends, evidence_beams);
+  return filter_.weigh_by([&](const Pose2& pose) { return misfit_at(pose, seen); }, seen.ends.size(), evidence_beams);
+}
+
+double Tracker::mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const {
+  double sum = 0.0;
+  for (const std::uint32_t i : hypotheses_.members()) sum += mean_likelihood(misfits[i], beams);
+  return sum / static_cast<double>(hypotheses_.members().size());
+}
+
+/// Evenly chosen: enough to know the mean over all of them.
+double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) const {
+  constexpr std::size_t kEnough = 50;
+  const std::span<const std::uint32_t> members = hypotheses_.members();
+  const std::size_t count = std::min(kEnough, members.size());
+  double sum = 0.0;
+  for (std::size_t nth = 0; nth < count; ++nth) {
+    const Pose2 standing = filter_.particles().pose(members[nth * members.size() / count]);
+    sum += mean_likelihood(misfit_at(standing * motion, seen), seen.ends.size());
+  }
+  return sum / static_cast<double>(count);
+}
+
+/// The pose where the scan fits best.
+RefinedPose Tracker::slid(const Seen& seen, const RefinedPose& prior) {
+  const double beam_share = std::min(1.0, params_.particles.evidence_beams / static_cast<double>(seen.ends.size()));
+  const Refinement found =
+      refined(seen.field, seen.ends, prior, best_.covariance, errors_, beam_share, params_.refinement);
+  errors_ = found.errors;
+  return found.pose;
+}
+
+void Tracker::draw_anew_if_needed() {
+  const std::size_t before = filter_.particles().size();
+  const bool drawn = filter_.resample_if_needed(hypotheses_.cell_count());
+  // Where all belonged to the best hypothesis, all that were drawn from them do.
+  drawn_anew_ = drawn && (hypotheses_.members().size() != before || filter_.particles().size() != before);
+}
+
+}  // namespace deltamap::localization

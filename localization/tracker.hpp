@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Follows one believed place from scan to scan: the particles are moved, weighed and drawn anew at an update, carried
+// along by the wheels in between, and the scan slides the answer to where it fits best. Knows nothing of other places
+// and never asks whether the pose is right (rivals.hpp, judgement.hpp).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/angle.hpp"
+#include "localization/beam_model.hpp"
+#include "localization/hypotheses.hpp"
+#include "localization/particle_filter.hpp"
+#include "localization/pose_refinement.hpp"
+#include "localization/pose_track.hpp"
+#include "localization/scan_instant.hpp"
+#include "localization/start_pose.hpp"
+
+namespace deltamap::localization {
+
+/// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
+/// robot that stands still does not talk itself into certainty.
+struct UpdateParams {
+  double distance_m = 0.05;        ///< driven since the last update, m; >= 0
+  double turn_rad = radians(2.0);  ///< turned since the last update, rad; >= 0
+  double time_s = 1.0;             ///< passed since the last update, s; > 0
+};
+
+struct TrackerParams {
+  ParticleFilterParams particles;
+  MotionModelParams motion;
+  HypothesisParams hypothesis;
+  RefinementParams refinement;
+  PoseTrackParams track;
+  UpdateParams update;
+};
+
+class Tracker {
+ public:
+  Tracker(const TrackerParams& params, std::uint64_t seed);
+
+  /// All that came before is forgotten. Answers what is believed before a scan is read.
+  RefinedPose start_around(const InitialPose& pose);
+  /// As start_around(), at a scan: the motion from there on counts.
+  RefinedPose start_around(const InitialPose& pose, const ScanInstant& now);
+  /// The clock of the scans has fallen back to this time.
+  void restart_clock(Timestamp time);
+
+  struct Seen {
+    const ScanInstant& now;
+    const BeamEnds& ends;  ///< robot frame; may be empty
+    const LikelihoodField& field;
+    const BeamModel* beam_model = nullptr;  ///< where chosen, it weighs the particles in place of the field
+    Point2 robot_from_laser{0.0, 0.0};
+  };
+  struct Answer {
+    RefinedPose believed;
+    std::optional<double> w_avg;  ///< mean likelihood over the believed particles (paper §3.1); none without a return
+    std::optional<double> n_eff;  ///< where the scan was an update
+    double unknown_s = 0.0;       ///< since the last update, not covered by odometry
+  };
+  Answer observe(const Seen& seen);
+
+  /// The heaviest hypothesis at the last update.
+  [[nodiscard]] const Hypothesis& best() const { return best_; }
+  [[nodiscard]] std::size_t particle_count() const { return filter_.particles().size(); }
+
+ private:
+  Answer update(const Seen& seen, const MotionSince& since);
+  Answer follow(const Seen& seen, const MotionSince& since);
+  [[nodiscard]] bool update_due(const MotionSince& since) const;
+  [[nodiscard]] std::span<const std::int32_t> weighed(const Seen& seen);
+  [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const;
+  [[nodiscard]] double mean_over_some_members(const Seen& seen, const Pose2& motion) const;
+  [[nodiscard]] RefinedPose slid(const Seen& seen, const RefinedPose& prior);
+  void draw_anew_if_needed();
+
+  TrackerParams params_;
+  ParticleFilter filter_;
+  PoseTrack track_;
+  HypothesisFinder hypotheses_;
+  Hypothesis best_;
+  BeamErrors errors_;
+  std::optional<ScanInstant> last_update_;
+  bool drawn_anew_ = false;  ///< the particles, so that `hypotheses_` must look at them again
+};
+
+}  // namespace deltamap::localization

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads who moves and changes things in a scenario: the fork-lift's work and the people.
+#pragma once
+
+#include "simulation/scenario.hpp"
+#include "simulation/yaml_section.hpp"
+
+namespace deltamap::simulation {
+
+// They throw std::runtime_error naming file, line and key.
+[[nodiscard]] ForkliftParams forklift_of(YamlSection lift);
+[[nodiscard]] PersonParams person_of(YamlSection person);
+
+}  // namespace deltamap::simulation
