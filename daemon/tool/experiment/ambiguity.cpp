@@ -13,6 +13,7 @@ namespace deltamap::daemon::tool::experiment {
 namespace {
 
 constexpr double kTellUpTo = 1.5;      // times the log odds that are asked for
+constexpr double kAnyRival = 0.99;     // likewise: a rival that makes the path ambiguous, rounding aside
 constexpr std::size_t kStride = 61;    // a prime: neighbours of the path lie far apart in the order of judging
 constexpr double kMostChanged = 0.45;  // of the pieces: beyond this a misfit would hardly speak against a pose
 
@@ -110,11 +111,11 @@ SeenPath seen_path(const std::vector<Pose2>& map_from_laser, const simulation::R
 
 Ambiguity AmbiguityOracle::ambiguity(const std::vector<Pose2>& map_from_laser, const simulation::RayCaster& world,
                                      double max_range_m) const {
-  return ambiguity(map_from_laser, world, max_range_m, kTellUpTo);
+  return ambiguity(map_from_laser, world, max_range_m, Wanted::kBestRival);
 }
 
 Ambiguity AmbiguityOracle::ambiguity(const std::vector<Pose2>& map_from_laser, const simulation::RayCaster& world,
-                                     double max_range_m, double tell_up_to) const {
+                                     double max_range_m, Wanted wanted) const {
   const SeenPath path = seen_path(map_from_laser, world, max_range_m, params_);
   Ambiguity answer;
   answer.map_from_rival = path.map_from_middle;
@@ -124,12 +125,13 @@ Ambiguity AmbiguityOracle::ambiguity(const std::vector<Pose2>& map_from_laser, c
   answer.unexplained = search.unexplained(path.map_from_middle);
   answer.changed_at_once = pieces_at_once(path, search);
   const double a_piece = log_odds_a_piece(answer.unexplained, answer.pieces) / answer.changed_at_once;
-  const double wanted = std::log(params_.odds);
-  const double most = answer.unexplained + tell_up_to * wanted / a_piece;
-  const PathSearch::Rival rival = search.best_rival(most, tell_up_to > 1.0 ? answer.unexplained : 0.999 * most);
+  const double surely = std::log(params_.odds);
+  const double most = answer.unexplained + kTellUpTo * surely / a_piece;
+  const double any = answer.unexplained + kAnyRival * surely / a_piece;
+  const PathSearch::Rival rival = search.best_rival(most, wanted == Wanted::kAnyRival ? any : answer.unexplained);
   answer.map_from_rival = rival.map_from_middle;
   answer.log_odds = std::max(0.0, (rival.unexplained - answer.unexplained) * a_piece);
-  answer.ambiguous = answer.log_odds < wanted;
+  answer.ambiguous = answer.log_odds < surely;
   answer.judged_poses = search.judged_poses();
   return answer;
 }
@@ -142,7 +144,7 @@ std::size_t AmbiguityOracle::views_needed(const std::vector<Pose2>& map_from_las
   while (enough - too_few > 1) {
     const std::size_t views = (too_few + enough) / 2;
     const std::vector<Pose2> part(map_from_laser.begin(), map_from_laser.begin() + static_cast<std::ptrdiff_t>(views));
-    (ambiguity(part, world, max_range_m, 1.0).ambiguous ? too_few : enough) = views;
+    (ambiguity(part, world, max_range_m, Wanted::kAnyRival).ambiguous ? too_few : enough) = views;
   }
   return enough;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -62,8 +63,9 @@ class AmbiguityOracle {
                                          double max_range_m, const Ambiguity& whole) const;
 
  private:
+  enum class Wanted : std::uint8_t { kBestRival, kAnyRival };
   [[nodiscard]] Ambiguity ambiguity(const std::vector<Pose2>& map_from_laser, const simulation::RayCaster& world,
-                                    double max_range_m, double tell_up_to) const;
+                                    double max_range_m, Wanted wanted) const;
 
   MapDistances map_;
   AmbiguityParams params_;

@@ -77,6 +77,15 @@ TEST(Ambiguity, EndsWithOnePostInView) {
   EXPECT_LT(needed, path.size());
 }
 
+TEST(Ambiguity, NeedsOneViewOfAPlaceThatIsLikeNoOther) {
+  const World room{{{1, ObjectKind::kWall, Polyline{{{0, 0}, {7, 0}, {7, 2}, {5, 5}, {2, 6}, {0, 4}, {0, 0}}}}}};
+  const std::vector<Pose2> path = way({1.0, 2.0, 0.3}, 4);
+  const AmbiguityOracle oracle = oracle_of(room, {1.0, 2.0});
+  const Ambiguity whole = oracle.ambiguity(path, RayCaster{room}, kRange_m);
+  EXPECT_FALSE(whole.ambiguous) << whole.log_odds;
+  EXPECT_EQ(oracle.views_needed(path, RayCaster{room}, kRange_m, whole), 1u);
+}
+
 TEST(Ambiguity, RemainsWhereTheOnlyPostIsNotSeen) {
   const World marked = with(hall(), Circle{{18.5, 10.5}, 0.25});
   EXPECT_TRUE(in(marked, marked, way({2.0, 2.0, 0.0}, 2)).ambiguous);
