@@ -2,36 +2,98 @@
 #include "mapping/merge/global_merge.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mapping/alignment/registration.hpp"
+#include "mapping/merge/edge_registration.hpp"
 #include "mapping/merge/hough_spectrum.hpp"
 #include "mapping/merge/shift_correlation.hpp"
 
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::size_t kLeastContour = 20;     // cells; fewer make no line
-constexpr std::size_t kMostPoints = 1200;     // of the local contour, to be brought onto the map's
-constexpr std::size_t kCoarseCells = 3000;    // of the local map, to sort out hopeless candidates
-constexpr std::size_t kFinalCandidates = 12;  // brought to the end
+constexpr std::size_t kLeastContour = 20;       // cells; fewer make no line
+constexpr std::size_t kSpectrumPoints = 2000;   // of a contour, for its Hough spectrum
+constexpr std::size_t kRegisteredPoints = 600;  // of the local contour, to be brought onto the map's
+constexpr std::size_t kSampleCells = 3000;      // of the local map, to sort out hopeless candidates
+constexpr std::size_t kRegistered = 24;         // candidates brought onto the map's lines
+constexpr std::size_t kFinal = 4;               // brought to the end, scored with every cell
+constexpr std::size_t kRoughEdgeCells = 3000;
+constexpr std::size_t kEveryEdgeCell = 100000;
+constexpr double kNearbyStep_cells = 0.02;
+constexpr int kNearbyRounds = 3;
 
-std::vector<Point2> contour_in_metres(const LocalCells& local, double resolution_m) {
-  const std::size_t stride = local.contour().size() / kMostPoints + 1;
-  std::vector<Point2> points;
-  for (std::size_t i = 0; i < local.contour().size(); i += stride) {
-    points.push_back(resolution_m * Point2{local.contour()[i].x, local.contour()[i].y});
-  }
-  return points;
+template <typename T>
+std::vector<T> thinned_to(const std::vector<T>& all, std::size_t most) {
+  const std::size_t stride = all.size() / most + 1;
+  std::vector<T> left;
+  for (std::size_t i = 0; i < all.size(); i += stride) left.push_back(all[i]);
+  return left;
 }
 
-std::vector<PointInCells> contour_about_centre(const OccupancyGrid& map) {
+std::vector<PointInCells> about_centre(const std::vector<Cell>& contour, const OccupancyGrid& map) {
   std::vector<PointInCells> points;
-  for (const Cell& cell : contour_cells(map)) {
+  for (const Cell& cell : contour) {
     points.push_back(
         {static_cast<float>(cell.column - 0.5 * map.width()), static_cast<float>(cell.row - 0.5 * map.height())});
   }
   return points;
 }
+
+void sort_best_first(std::vector<ScoredMotion>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const ScoredMotion& a, const ScoredMotion& b) {
+    return a.score.acceptance() * a.score.surface_found > b.score.acceptance() * b.score.surface_found;
+  });
+}
+
+/// The n best, none beside a better one.
+std::vector<ScoredMotion> best_apart(std::vector<ScoredMotion> candidates, std::size_t n) {
+  constexpr double kApart_cells = 2.0;
+  constexpr double kApart_rad = 0.02;
+  sort_best_first(candidates);
+  std::vector<ScoredMotion> best;
+  for (const ScoredMotion& candidate : candidates) {
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const ScoredMotion& better) {
+      return std::hypot(better.motion.column - candidate.motion.column, better.motion.row - candidate.motion.row) <
+                 kApart_cells &&
+             std::abs(turn_between(better.motion.turn_rad, candidate.motion.turn_rad)) < kApart_rad;
+    });
+    if (is_new) best.push_back(candidate);
+    if (best.size() == n) break;
+  }
+  return best;
+}
+
+/// Closest lines from where the search left it.
+class LineRegistration {
+ public:
+  LineRegistration(const OccupancyGrid& map, const LocalCells& local, double pixel_m)
+      : geometry_{map.geometry()},
+        reach_m_{pixel_m + 3.0 * map.resolution_m()},
+        surface_{alignment::contour_of(map, {{0, 0}, {map.width(), map.height()}}), map.resolution_m(), reach_m_} {
+    for (const PointInCells& point : thinned_to(local.contour(), kRegisteredPoints)) {
+      points_.push_back(geometry_.resolution_m * Point2{point.x, point.y});
+    }
+  }
+
+  [[nodiscard]] CellMotion registered(const CellMotion& motion) const {
+    const double resolution_m = geometry_.resolution_m;
+    const Point2 middle = geometry_.origin + resolution_m * Point2{motion.column, motion.row};
+    const alignment::Registration end =
+        alignment::registration(points_, surface_, {middle.x(), middle.y(), motion.turn_rad}, {},
+                                {.first_reach_m = reach_m_,
+                                 .last_reach_m = std::min(reach_m_, 2.0 * resolution_m),
+                                 .point_deviation_m = 0.3 * resolution_m});
+    const Pose2& pose = end.reference_from_moving;
+    return {pose.theta, (pose.x - geometry_.origin.x()) / resolution_m, (pose.y - geometry_.origin.y()) / resolution_m};
+  }
+
+ private:
+  GridGeometry geometry_;
+  double reach_m_;
+  alignment::NearestSurface surface_;
+  std::vector<Point2> points_;
+};
 
 }  // namespace
 
@@ -43,42 +105,38 @@ MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local, cons
     refused.refusal = MergeRefusal::kTooFewPoints;
     return refused;
   }
-  const OverlayMap overlay{map};
-  const LocalCells sample = cells.thinned(kCoarseCells);
-  const ShiftCorrelation correlation{map, cells, params.most_pixels};
-  std::vector<ScoredMotion> coarse;
-  const auto turns = best_turns(hough_spectrum(contour_about_centre(map), params.hough_bins),
-                                hough_spectrum(cells.contour(), params.hough_bins), params.rotations, true);
-  for (const TurnCandidate& turn : turns) {
-    for (const CellMotion& motion : correlation.best_shifts(turn.turn_rad, params.shifts)) {
-      coarse.push_back({motion, overlay.score(sample, motion)});
+  const std::vector<Cell> contour = contour_cells(map);
+  const OverlayMap overlay{map, contour};
+  const LocalCells sample = cells.thinned(kSampleCells);
+  const int cells_per_pixel = std::max(1, static_cast<int>(std::lround(params.pixel_m / map.resolution_m())));
+  const ShiftCorrelation correlation{map, contour, cells, cells_per_pixel, params.most_pixels};
+  const std::vector<TurnCandidate> turns = best_turns(
+      hough_spectrum(about_centre(thinned_to(contour, kSpectrumPoints), map), params.hough_bins),
+      hough_spectrum(thinned_to(cells.contour(), kSpectrumPoints), params.hough_bins), params.rotations, true);
+  std::vector<ScoredMotion> candidates;
+  for (std::size_t i = 0; i < turns.size(); i += 2) {  // the half turns come with them
+    for (const CellMotion& motion : correlation.best_shifts(turns[i].turn_rad, params.shifts)) {
+      candidates.push_back({motion, overlay.score(sample, motion)});
     }
   }
+  sort_best_first(candidates);
+  if (candidates.size() > kRegistered) candidates.resize(kRegistered);
 
-  // Closest lines from every coarse place, over the whole reach that a pixel leaves open.
-  const double resolution_m = map.resolution_m();
-  const double reach_m = resolution_m * (3.0 + correlation.cells_per_pixel());
-  const alignment::NearestSurface surface{alignment::contour_of(map, {{0, 0}, {map.width(), map.height()}}),
-                                          resolution_m, reach_m};
-  const std::vector<Point2> points = contour_in_metres(cells, resolution_m);
-  for (ScoredMotion& candidate : coarse) {
-    const Point2 middle = map.geometry().origin + resolution_m * Point2{candidate.motion.column, candidate.motion.row};
-    const alignment::Registration end =
-        alignment::registration(points, surface, {middle.x(), middle.y(), candidate.motion.turn_rad}, {},
-                                {.first_reach_m = reach_m,
-                                 .last_reach_m = std::min(reach_m, 2.0 * resolution_m),
-                                 .point_deviation_m = 0.3 * resolution_m});
-    const Pose2& pose = end.reference_from_moving;
-    candidate.motion = {pose.theta, (pose.x - map.geometry().origin.x()) / resolution_m,
-                        (pose.y - map.geometry().origin.y()) / resolution_m};
+  const LineRegistration lines{map, cells, map.resolution_m() * correlation.cells_per_pixel()};
+  for (ScoredMotion& candidate : candidates) {
+    candidate.motion = lines.registered(candidate.motion);
     candidate.score = overlay.score(sample, candidate.motion);
   }
-  std::stable_sort(coarse.begin(), coarse.end(), [](const ScoredMotion& a, const ScoredMotion& b) {
-    return a.score.acceptance() * a.score.surface_found > b.score.acceptance() * b.score.surface_found;
-  });
-  if (coarse.size() > kFinalCandidates) coarse.resize(kFinalCandidates);
-  for (ScoredMotion& candidate : coarse) candidate.score = overlay.score(cells, candidate.motion);
-  return chosen(coarse, map, cells, params.choice);
+  candidates = best_apart(std::move(candidates), kFinal);
+  const std::vector<EdgeCell> few_edges = edge_cells(local, cells, kRoughEdgeCells);
+  const std::vector<EdgeCell> edges = edge_cells(local, cells, kEveryEdgeCell);
+  for (ScoredMotion& candidate : candidates) {
+    candidate.motion = edge_registration(map, few_edges, candidate.motion, {});
+    candidate.motion = edge_registration(map, edges, candidate.motion, {});
+    candidate.motion = best_nearby(overlay, edges, candidate.motion, kNearbyStep_cells, kNearbyRounds);
+    candidate.score = overlay.score(cells, candidate.motion);
+  }
+  return chosen(candidates, map, cells, params.choice);
 }
 
 }  // namespace deltamap::mapping::merge

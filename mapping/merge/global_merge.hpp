@@ -18,10 +18,11 @@ namespace deltamap::mapping::merge {
 }
 
 struct GlobalMergeParams {
-  int hough_bins = 720;   ///< over a turn; even
+  int hough_bins = 360;   ///< over a turn; even
   int rotations = 6;      ///< maxima of Eq. 6; each is also tried half a turn on
   int shifts = 4;         ///< best shifts for each rotation
-  int most_pixels = 512;  ///< side of the correlated pictures; larger maps are shrunk for the search
+  double pixel_m = 0.4;   ///< of the correlated pictures, at least; > 0
+  int most_pixels = 320;  ///< along a side of the correlated pictures; larger maps are shrunk further
   ChoiceParams choice = stricter_choice();
 };
 

@@ -11,8 +11,13 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::size_t kLeastContour = 20;     // cells; fewer make no line
-constexpr std::size_t kCoarseCells = 3000;    // of the local map, to sort out hopeless candidates
+constexpr std::size_t kLeastContour = 20;  // cells; fewer make no line
+// Hopeless candidates are sorted out by few of the local map's cells, then by more.
+constexpr std::size_t kFewCells = 400;
+constexpr std::size_t kHopefulByFew = 200;
+constexpr std::size_t kMoreCells = 3000;
+constexpr int kMaximumWidth_cells = 3;        // a wall a few cells thick makes one maximum
+constexpr std::size_t kMostRanks = 120;       // ranks of a column's and a row's maximum, multiplied: 1 is the best
 constexpr std::size_t kFinalCandidates = 16;  // scored with every cell
 constexpr double kQuarterDegree_rad = 0.25 * 0.017453292519943295;
 
@@ -25,29 +30,32 @@ std::vector<PointInCells> contour_about_centre(const OccupancyGrid& map) {
   return points;
 }
 
-/// Every rotation with every pair of shifts.
+/// Every rotation with the pairs of shifts of which one at least stands out.
 std::vector<CellMotion> spectral_candidates(const OccupancyGrid& map, const LocalCells& local,
                                             const MapMergeParams& params) {
   const std::vector<double> map_spectrum = hough_spectrum(contour_about_centre(map), params.hough_bins);
   const std::vector<double> local_spectrum = hough_spectrum(local.contour(), params.hough_bins);
-  const AxisSpectra map_axes = axis_spectra(map);
+  const int pixels_per_cell = params.pixels_per_cell;
+  const int apart = kMaximumWidth_cells * pixels_per_cell;
+  const AxisSpectra map_axes = axis_spectra(map, pixels_per_cell);
   std::vector<CellMotion> candidates;
   for (const TurnCandidate& turn : best_turns(map_spectrum, local_spectrum, params.rotations, params.between_bins)) {
-    const AxisSpectra turned = axis_spectra(local.contour(), turn.turn_rad);
-    const std::vector<int> rows = best_shifts(map_axes.y, turned.y, params.shifts);
-    for (const int column : best_shifts(map_axes.x, turned.x, params.shifts)) {
-      for (const int row : rows) {
-        candidates.push_back({turn.turn_rad, static_cast<double>(column), static_cast<double>(row)});
+    const AxisSpectra turned = axis_spectra(local.contour(), turn.turn_rad, pixels_per_cell);
+    const std::vector<int> columns = best_shifts(map_axes.x, turned.x, params.shifts, apart);
+    const std::vector<int> rows = best_shifts(map_axes.y, turned.y, params.shifts, apart);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      for (std::size_t k = 0; k < rows.size() && (i + 1) * (k + 1) <= kMostRanks; ++k) {
+        candidates.push_back({turn.turn_rad, static_cast<double>(columns[i]) / pixels_per_cell,
+                              static_cast<double>(rows[k]) / pixels_per_cell});
       }
     }
   }
   return candidates;
 }
 
-/// The candidates worth a full count, by a sample of the cells.
-std::vector<CellMotion> hopeful(const std::vector<CellMotion>& candidates, const OverlayMap& map,
-                                const LocalCells& local) {
-  const LocalCells sample = local.thinned(kCoarseCells);
+/// The n best candidates by a sample of the local map's cells.
+std::vector<CellMotion> best_by_sample(const std::vector<CellMotion>& candidates, std::size_t n, const OverlayMap& map,
+                                       const LocalCells& sample) {
   struct Rated {
     CellMotion motion;
     double rating;
@@ -59,10 +67,17 @@ std::vector<CellMotion> hopeful(const std::vector<CellMotion>& candidates, const
     rated.push_back({motion, score.acceptance() * score.surface_found});
   }
   std::stable_sort(rated.begin(), rated.end(), [](const Rated& a, const Rated& b) { return a.rating > b.rating; });
-  if (rated.size() > kFinalCandidates) rated.resize(kFinalCandidates);
+  if (rated.size() > n) rated.resize(n);
   std::vector<CellMotion> left;
   for (const Rated& candidate : rated) left.push_back(candidate.motion);
   return left;
+}
+
+/// The candidates worth a full count.
+std::vector<CellMotion> hopeful(const std::vector<CellMotion>& candidates, const OverlayMap& map,
+                                const LocalCells& local) {
+  const auto by_few = best_by_sample(candidates, kHopefulByFew, map, local.thinned(kFewCells));
+  return best_by_sample(by_few, kFinalCandidates, map, local.thinned(kMoreCells));
 }
 
 /// The candidate and its neighbours, as the method asks (§3.4.2).

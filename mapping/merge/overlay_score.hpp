@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
@@ -16,6 +17,7 @@ struct CellMotion {
   double turn_rad = 0.0;
   double column = 0.0;  ///< where the middle comes to lie, in columns of the map (centre of cell 0 at 0.5)
   double row = 0.0;
+  friend bool operator==(const CellMotion&, const CellMotion&) = default;
 };
 
 struct PointInCells {
@@ -65,18 +67,23 @@ struct OverlayScore {
 class OverlayMap {
  public:
   explicit OverlayMap(const OccupancyGrid& map);
+  /// With its contour, where it is known already.
+  OverlayMap(const OccupancyGrid& map, std::span<const Cell> contour);
   [[nodiscard]] OverlayScore score(const LocalCells& local, const CellMotion& motion) const;
+  /// Eq. 11 of some of a local map's cells.
+  [[nodiscard]] Acceptance counted(std::span<const PointInCells> occupied, std::span<const PointInCells> free,
+                                   const CellMotion& motion) const;
 
  private:
   struct Counts {
-    std::uint32_t on_free = 0;
-    std::uint32_t on_occupied = 0;
-    std::uint32_t near_contour = 0;
-    std::uint32_t near_or_known = 0;
+    std::uint64_t on_free = 0;
+    std::uint64_t on_occupied = 0;
+    std::uint64_t near_contour = 0;
+    std::uint64_t near_or_known = 0;
   };
-  [[nodiscard]] Counts counts(const std::vector<PointInCells>& points, const CellMotion& motion) const;
-  [[nodiscard]] std::uint8_t label(float column, float row) const;
+  [[nodiscard]] Counts counts(std::span<const PointInCells> points, const CellMotion& motion) const;
 
+  // With a border of one cell that knows nothing; its first cell answers for all that lies outside.
   int width_ = 0;
   int height_ = 0;
   std::vector<std::uint8_t> labels_;

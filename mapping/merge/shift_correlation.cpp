@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/core.hpp>
 
 namespace deltamap::mapping::merge {
 namespace {
 
 constexpr int kApart_pixels = 3;
+constexpr std::size_t kFreeCellsPerPixel = 2;  // of the local map's, enough to tell how free a pixel is
 
 float radius_of(const LocalCells& local) {
   float most2 = 0.0F;
@@ -18,93 +20,128 @@ float radius_of(const LocalCells& local) {
   return std::sqrt(most2);
 }
 
-/// Contour pixels count 1, free ones together as much as these with the opposite sign: a picture without a mean, on
-/// which contour on contour and free on free gain, contour on free loses, and unknown is silent.
-void balance(cv::Mat& picture) {
-  const double contour = cv::countNonZero(picture > 0.0F);
-  const double free = cv::countNonZero(picture < 0.0F);
-  if (free > 0.0) picture.setTo(-contour / free, picture < 0.0F);
+/// Where the parabola through a maximum and its neighbours has its top.
+double between_pixels(double before, double top, double after) {
+  const double bend = before - 2.0 * top + after;
+  return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
 }
 
 }  // namespace
 
+/// Pictures are sums over the cells of a pixel: contour cells count +1, free ones together as much with the opposite
+/// sign. A picture without a mean, on which contour on contour and free on free gain, contour on free loses, and
+/// unknown is silent.
 struct ShiftCorrelation::State {
   const LocalCells& local;
   int cells_per_pixel = 1;
-  int margin = 0;  // pixels around the map: the local map's middle may lie outside
-  int size = 0;    // of the square pictures
+  int columns = 0;
+  int rows = 0;
+  int last_column = 0;  // shifts are circular: those beyond lie left of the map …
+  int last_row = 0;     // … or below it
+  std::vector<PointInCells> free;
   cv::Mat map_transform;
-  std::vector<PointInCells> free;  // thinned to about one a pixel
 
   explicit State(const LocalCells& local_cells) : local{local_cells} {}
 
-  void draw(cv::Mat& picture, float column, float row, float value) const {
-    const int x = static_cast<int>(std::floor(column / static_cast<float>(cells_per_pixel)));
-    const int y = static_cast<int>(std::floor(row / static_cast<float>(cells_per_pixel)));
-    picture.at<float>((y + size) % size, (x + size) % size) = value;
-  }
+  void place_best(const cv::Mat& scores, double turn_rad, int offset, int n, std::vector<CellMotion>& best) const;
 };
 
-ShiftCorrelation::ShiftCorrelation(const OccupancyGrid& map, const LocalCells& local, int most_pixels)
+ShiftCorrelation::ShiftCorrelation(const OccupancyGrid& map, std::span<const Cell> map_contour, const LocalCells& local,
+                                   int least_cells_per_pixel, int most_pixels)
     : state_{std::make_unique<State>(local)} {
   State& s = *state_;
   const int radius_cells = static_cast<int>(std::ceil(radius_of(local))) + 1;
-  const int cells = std::max(map.width(), map.height()) + 2 * radius_cells;
-  s.cells_per_pixel = std::max(1, (cells + most_pixels - 1) / most_pixels);
-  s.size = cv::getOptimalDFTSize(cells / s.cells_per_pixel + 2);
+  const int most_cells = std::max({map.width(), map.height(), radius_cells}) + radius_cells;
+  s.cells_per_pixel = std::max(least_cells_per_pixel, (most_cells + most_pixels - 1) / most_pixels);
+  const auto side = [&](int map_cells) {
+    return cv::getOptimalDFTSize((std::max(map_cells, radius_cells) + radius_cells) / s.cells_per_pixel + 2);
+  };
+  s.columns = side(map.width());
+  s.rows = side(map.height());
+  s.last_column = (s.columns + map.width() / s.cells_per_pixel) / 2;
+  s.last_row = (s.rows + map.height() / s.cells_per_pixel) / 2;
 
-  cv::Mat picture = cv::Mat::zeros(s.size, s.size, CV_32F);
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
-    if (map.cells()[i] != CellState::kFree) continue;
-    const Cell cell = map.geometry().cell_of(i);
-    s.draw(picture, static_cast<float>(cell.column) + 0.5F, static_cast<float>(cell.row) + 0.5F, -1.0F);
+  cv::Mat picture = cv::Mat::zeros(s.rows, s.columns, CV_32F);
+  const auto free_cells = static_cast<float>(std::count(map.cells().begin(), map.cells().end(), CellState::kFree));
+  const float free_value = -static_cast<float>(map_contour.size()) / std::max(1.0F, free_cells);
+  for (int row = 0; row < map.height(); ++row) {
+    auto* pixels = picture.ptr<float>(row / s.cells_per_pixel);
+    const CellState* cells = &map.cells()[map.geometry().index_of({0, row})];
+    for (int column = 0, pixel = 0, part = 0; column < map.width(); ++column) {
+      pixels[pixel] += cells[column] == CellState::kFree ? free_value : 0.0F;
+      if (++part == s.cells_per_pixel) part = 0, ++pixel;
+    }
   }
-  for (const Cell& cell : contour_cells(map)) {
-    s.draw(picture, static_cast<float>(cell.column) + 0.5F, static_cast<float>(cell.row) + 0.5F, 1.0F);
+  for (const Cell& cell : map_contour) {
+    picture.at<float>(cell.row / s.cells_per_pixel, cell.column / s.cells_per_pixel) += 1.0F;
   }
-  balance(picture);
   cv::dft(picture, s.map_transform);
+
+  const auto per_pixel = static_cast<std::size_t>(s.cells_per_pixel) * static_cast<std::size_t>(s.cells_per_pixel);
+  const std::size_t stride = std::max<std::size_t>(1, per_pixel / kFreeCellsPerPixel);
+  for (std::size_t i = 0; i < local.free().size(); i += stride) s.free.push_back(local.free()[i]);
 }
 
 ShiftCorrelation::~ShiftCorrelation() = default;
 
 int ShiftCorrelation::cells_per_pixel() const { return state_->cells_per_pixel; }
 
-std::vector<CellMotion> ShiftCorrelation::best_shifts(double turn_rad, int n) const {
-  const State& s = *state_;
-  const auto cosine = static_cast<float>(std::cos(turn_rad));
-  const auto sine = static_cast<float>(std::sin(turn_rad));
-  cv::Mat picture = cv::Mat::zeros(s.size, s.size, CV_32F);
-  const auto draw_all = [&](const std::vector<PointInCells>& points, float value) {
-    for (const PointInCells& p : points) s.draw(picture, cosine * p.x - sine * p.y, sine * p.x + cosine * p.y, value);
-  };
-  draw_all(s.local.free(), -1.0F);
-  draw_all(s.local.contour(), 1.0F);
-  balance(picture);
-
-  cv::Mat transform;
-  cv::dft(picture, transform);
-  cv::mulSpectrums(s.map_transform, transform, transform, 0, true);
-  cv::Mat scores;
-  cv::dft(transform, scores, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT);
-
-  std::vector<CellMotion> best;
+void ShiftCorrelation::State::place_best(const cv::Mat& scores, double turn_rad, int offset, int n,
+                                         std::vector<CellMotion>& best) const {
+  cv::Mat left = scores.clone();
   for (int i = 0; i < n; ++i) {
     double score = 0.0;
     cv::Point at;
-    cv::minMaxLoc(scores, nullptr, &score, nullptr, &at);
+    cv::minMaxLoc(left, nullptr, &score, nullptr, &at);
     if (score <= 0.0) break;
-    // Shifts are circular: those in the upper part of the picture lie left of or below the map.
-    const int map_side = s.size * 3 / 4;
-    const int x = at.x > map_side ? at.x - s.size : at.x;
-    const int y = at.y > map_side ? at.y - s.size : at.y;
-    best.push_back({turn_rad, (x + 0.0) * s.cells_per_pixel, (y + 0.0) * s.cells_per_pixel});
+    const auto score_at = [&](int dx, int dy) {
+      return static_cast<double>(scores.at<float>((at.y + dy + rows) % rows, (at.x + dx + columns) % columns));
+    };
+    const double x =
+        (at.x > last_column ? at.x - columns : at.x) + offset + between_pixels(score_at(-1, 0), score, score_at(1, 0));
+    const double y =
+        (at.y > last_row ? at.y - rows : at.y) + offset + between_pixels(score_at(0, -1), score, score_at(0, 1));
+    best.push_back({turn_rad, x * cells_per_pixel, y * cells_per_pixel});
     for (int dy = -kApart_pixels; dy <= kApart_pixels; ++dy) {
       for (int dx = -kApart_pixels; dx <= kApart_pixels; ++dx) {
-        scores.at<float>((at.y + dy + s.size) % s.size, (at.x + dx + s.size) % s.size) = 0.0F;
+        left.at<float>((at.y + dy + rows) % rows, (at.x + dx + columns) % columns) = 0.0F;
       }
     }
   }
+}
+
+std::vector<CellMotion> ShiftCorrelation::best_shifts(double turn_rad, int n) const {
+  const State& s = *state_;
+  const float to_pixels = 1.0F / static_cast<float>(s.cells_per_pixel);
+  const float cosine = to_pixels * static_cast<float>(std::cos(turn_rad));
+  const float sine = to_pixels * static_cast<float>(std::sin(turn_rad));
+  cv::Mat picture = cv::Mat::zeros(s.rows, s.columns, CV_32F);
+  const auto draw = [&](const std::vector<PointInCells>& points, float value) {
+    for (const PointInCells& p : points) {
+      int x = static_cast<int>(std::floor(cosine * p.x - sine * p.y));
+      int y = static_cast<int>(std::floor(sine * p.x + cosine * p.y));
+      x += x < 0 ? s.columns : 0;
+      y += y < 0 ? s.rows : 0;
+      // Of a local map much larger than the map, what lies farther than the picture fits nowhere.
+      if (x >= 0 && y >= 0 && x < s.columns && y < s.rows) picture.at<float>(y, x) += value;
+    }
+  };
+  const auto contour_count = static_cast<float>(s.local.contour().size());
+  draw(s.free, -contour_count / std::max(1.0F, static_cast<float>(s.free.size())));
+  draw(s.local.contour(), 1.0F);
+
+  cv::Mat transform;
+  cv::Mat product;
+  cv::Mat scores;
+  std::vector<CellMotion> best;
+  cv::dft(picture, transform);
+  cv::mulSpectrums(s.map_transform, transform, product, 0, true);
+  cv::dft(product, scores, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT);
+  s.place_best(scores, turn_rad, 0, n, best);
+  // Half a turn takes pixel i to -1 - i: the correlation becomes a convolution, one pixel on.
+  cv::mulSpectrums(s.map_transform, transform, product, 0, false);
+  cv::dft(product, scores, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT);
+  s.place_best(scores, turn_rad + std::numbers::pi, 1, n, best);
   return best;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "mapping/merge/overlay_score.hpp"
@@ -12,13 +13,16 @@ namespace deltamap::mapping::merge {
 
 class ShiftCorrelation {
  public:
-  /// `most_pixels` bounds the side of the pictures: larger maps are shrunk by whole factors.
-  ShiftCorrelation(const OccupancyGrid& map, const LocalCells& local, int most_pixels);
+  /// `map_contour`: of the map. `most_pixels` bounds the sides of the pictures: larger maps are shrunk by whole
+  /// factors.
+  ShiftCorrelation(const OccupancyGrid& map, std::span<const Cell> map_contour, const LocalCells& local,
+                   int least_cells_per_pixel, int most_pixels);
   ~ShiftCorrelation();
   ShiftCorrelation(const ShiftCorrelation&) = delete;
   ShiftCorrelation& operator=(const ShiftCorrelation&) = delete;
 
-  /// The n best places for the local map's middle when turned so, best first, apart from each other.
+  /// The n best places for the local map's middle when turned so, best first, apart from each other; then the n best
+  /// when turned half a turn farther, which cost little more.
   [[nodiscard]] std::vector<CellMotion> best_shifts(double turn_rad, int n) const;
   /// Cells of the map that one pixel covers along each axis.
   [[nodiscard]] int cells_per_pixel() const;

@@ -10,6 +10,14 @@ namespace deltamap::mapping::merge {
 [[nodiscard]] OccupancyGrid transformed_grid(const OccupancyGrid& source, const Pose2& target_from_source,
                                              const GridGeometry& target);
 
+/// The grid turned and shifted and read at another resolution, on cells that hold all of it; cells lie at whole
+/// multiples of the resolution.
+[[nodiscard]] OccupancyGrid moved_grid(const OccupancyGrid& source, const Pose2& moved_from_source,
+                                       double resolution_m);
+
+/// The columns of a grid from one share of its width to another; 0 <= from_share < to_share <= 1.
+[[nodiscard]] OccupancyGrid part_of(const OccupancyGrid& grid, double from_share, double to_share);
+
 /// The map with every cell that `local` knows, on the same geometry, taken from it.
 [[nodiscard]] OccupancyGrid overridden(OccupancyGrid map, const OccupancyGrid& local);
 

@@ -27,8 +27,8 @@ TEST(GlobalMerge, RecoversTurnsAndShiftsToAFractionOfACell) {
     test::print("global hall", tally);
     EXPECT_EQ(tally.wrong_accepted, 0);
     EXPECT_GE(tally.right, 0.96 * trials);
-    EXPECT_GE(tally.acceptance, 0.995);
-    EXPECT_LE(tally.error_cells, 0.2);
+    EXPECT_GE(tally.acceptance, 0.9995);
+    EXPECT_LE(tally.error_cells, 0.05);
   }
 }
 

@@ -3,8 +3,6 @@
 // merge on (§3.4.2, Figures 7 and 8).
 #pragma once
 
-#include <algorithm>
-
 #include "core/angle.hpp"
 #include "core/occupancy_grid.hpp"
 #include "core/random.hpp"
@@ -33,32 +31,7 @@ inline OccupancyGrid drawn_warehouse(std::uint64_t seed) {
   return hall;
 }
 
-/// The columns of a grid from one share of its width to another.
-inline OccupancyGrid part_of(const OccupancyGrid& grid, double from_share, double to_share) {
-  const int first = static_cast<int>(from_share * grid.width());
-  const int last = static_cast<int>(to_share * grid.width());
-  GridGeometry geometry = grid.geometry();
-  geometry.origin.x() += first * geometry.resolution_m;
-  geometry.width = last - first;
-  return mapping::merge::transformed_grid(grid, {}, geometry);
-}
-
-/// The grid at another resolution, turned about its middle and shifted, on cells that hold all of it.
-inline OccupancyGrid moved_grid(const OccupancyGrid& grid, const Pose2& moved_from_grid, double resolution_m) {
-  const GridGeometry& g = grid.geometry();
-  Point2 low{1e9, 1e9};
-  Point2 high{-1e9, -1e9};
-  for (const double x : {0.0, g.width * g.resolution_m}) {
-    for (const double y : {0.0, g.height * g.resolution_m}) {
-      const Point2 corner = moved_from_grid * Point2{g.origin + Point2{x, y}};
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
-  }
-  const auto cells = [&](double length_m) { return static_cast<int>(std::ceil(length_m / resolution_m)); };
-  const Point2 origin = (low / resolution_m).array().floor() * resolution_m;
-  return mapping::merge::transformed_grid(
-      grid, moved_from_grid, {cells(high.x() - origin.x()), cells(high.y() - origin.y()), resolution_m, origin});
-}
+using mapping::merge::moved_grid;
+using mapping::merge::part_of;
 
 }  // namespace deltamap::test

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The last fraction of a cell of a merge: shifts and turns the cells along a local map's edges until free lies on free
+// and occupied on occupied, by Gauss–Newton on the map read between its cells (Lucas and Kanade, "An iterative image
+// registration technique", 1981). Both sides of an edge count, so that half cells of surface cancel.
+#pragma once
+
+#include <vector>
+
+#include "core/occupancy_grid.hpp"
+#include "mapping/merge/overlay_score.hpp"
+
+namespace deltamap::mapping::merge {
+
+struct EdgeRegistrationParams {
+  int most_iterations = 10;
+  double settled_cells = 0.003;        ///< a step below this (at the lever arm, if a turn) ends the iteration; > 0
+  double most_correction_cells = 2.0;  ///< farther than this from where it began the answer is not trusted; > 0
+  double least_observed = 0.002;       ///< axes with less than this share of the best one's curvature stay as they are
+};
+
+/// A known cell within 2 cells of an edge, about the local map's middle.
+struct EdgeCell {
+  PointInCells at;
+  float value = 0.0F;  ///< +1 occupied, -1 free
+};
+/// At most about `most_cells`, evenly thinned.
+[[nodiscard]] std::vector<EdgeCell> edge_cells(const OccupancyGrid& local, const LocalCells& cells,
+                                               std::size_t most_cells);
+
+/// `start` within about a cell of the answer; `start` itself where the edges do not hold it.
+[[nodiscard]] CellMotion edge_registration(const OccupancyGrid& map, const std::vector<EdgeCell>& edges,
+                                           const CellMotion& start, const EdgeRegistrationParams& params);
+
+/// Tries neighbours of a pose, by Eq. 11 over the cells along the edges, and takes what is better: the edges of two
+/// lattices do not average out everywhere. `rounds` of 6 neighbours, `step_cells` away at first.
+[[nodiscard]] CellMotion best_nearby(const OverlayMap& map, const std::vector<EdgeCell>& edges, const CellMotion& start,
+                                     double step_cells, int rounds);
+
+}  // namespace deltamap::mapping::merge
