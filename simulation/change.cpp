@@ -10,13 +10,15 @@ std::string_view name_of(ChangeKind kind) {
     case ChangeKind::kAdded:
       return "added";
     case ChangeKind::kShifted:
+      return "shifted";
+    case ChangeKind::kCrept:
       break;
   }
-  return "shifted";
+  return "crept";
 }
 
 std::optional<ChangeKind> change_kind_named(std::string_view name) {
-  for (const ChangeKind kind : {ChangeKind::kRemoved, ChangeKind::kAdded, ChangeKind::kShifted}) {
+  for (const ChangeKind kind : {ChangeKind::kRemoved, ChangeKind::kAdded, ChangeKind::kShifted, ChangeKind::kCrept}) {
     if (name == name_of(kind)) return kind;
   }
   return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One act of the fork-lift: what the map has to follow.
+// One act of the fork-lift, or one push of a container that creeps: what the map has to follow.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace deltamap::simulation {
 
-enum class ChangeKind : std::uint8_t { kRemoved, kAdded, kShifted };
+enum class ChangeKind : std::uint8_t { kRemoved, kAdded, kShifted, kCrept };
 
 struct Change {
   ChangeKind kind = ChangeKind::kRemoved;
   int id = 0;               ///< of the container
   Box box;                  ///< where it stands now; removed: where it stood
-  std::optional<Box> from;  ///< shifted: where it stood
+  std::optional<Box> from;  ///< shifted, crept: where it stood
 };
 
 [[nodiscard]] std::string_view name_of(ChangeKind kind);

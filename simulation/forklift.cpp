@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/standing_room.hpp"
+
 namespace deltamap::simulation {
 namespace {
 
@@ -24,16 +26,6 @@ int container_at(const Box& slot, const World& world) {
     if (box != nullptr && (box->centre - slot.centre).norm() < kNeighbourGap_m) return object.id;
   }
   return 0;
-}
-
-bool stands_free(const Box& box, int own_id, const World& world) {
-  const Box body = grown(box, -kNeighbourGap_m);
-  return std::none_of(world.objects.begin(), world.objects.end(),
-                      [&](const Object& object) { return object.id != own_id && overlap(body, object.shape); });
-}
-
-bool keeps_away(const Box& box, const Circle& body, double margin_m) {
-  return distance_between(body.centre, box) >= body.radius_m + margin_m;
 }
 
 }  // namespace
@@ -96,9 +88,7 @@ Box Forklift::shifted(const Box& box, const Box& home) {
 bool Forklift::is_harmless(const Change& change, const World& world, const ReachableFloor& floor, const Circle& robot,
                            std::span<const Circle> people) const {
   const auto keeps_away_from_all = [&](const Box& box) {
-    return keeps_away(box, robot, params_.robot_margin_m) &&
-           std::all_of(people.begin(), people.end(),
-                       [&](const Circle& person) { return keeps_away(box, person, params_.people_margin_m); });
+    return keeps_away(box, robot, params_.robot_margin_m) && keeps_away(box, people, params_.people_margin_m);
   };
   if (!keeps_away_from_all(change.box) || (change.from && !keeps_away_from_all(*change.from))) return false;
   const double clearance_m = 0.5 * params_.passage_m;
@@ -112,6 +102,23 @@ bool Forklift::is_harmless(const Change& change, const World& world, const Reach
   }
   const ReachableFloor after = reachable_floor(changed(world, change), robot.centre, clearance_m);
   return is_exposed(change.box, after, clearance_m) && share_still_reached(lanes_, after) >= kLanesKept;
+}
+
+void Forklift::learn(const Change& change) {
+  next_id_ = std::max(next_id_, change.id + 1);
+  const auto same = [&](const Slot& slot) { return slot.container == change.id; };
+  const auto own = std::find_if(slots_.begin(), slots_.end(), same);
+  if (change.kind == ChangeKind::kRemoved && own != slots_.end()) own->container = 0;
+  if (change.kind != ChangeKind::kAdded) return;
+  Slot* nearest = nullptr;
+  double nearest_m = params_.largest_shift_m;
+  for (Slot& slot : slots_) {
+    const double away_m = (slot.home.centre - change.box.centre).norm();
+    if (slot.container != 0 || away_m > nearest_m) continue;
+    nearest = &slot;
+    nearest_m = away_m;
+  }
+  if (nearest != nullptr) nearest->container = change.id;
 }
 
 void Forklift::note(const Change& change, Slot& slot) {

@@ -35,6 +35,9 @@ class Forklift {
   [[nodiscard]] std::optional<Change> next_change(const World& world, const Circle& robot,
                                                   std::span<const Circle> people);
 
+  /// Another has done this.
+  void learn(const Change& change);
+
   [[nodiscard]] const ForkliftParams& params() const { return params_; }
 
  private:

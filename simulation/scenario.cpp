@@ -120,6 +120,8 @@ Scenario scenario_of(const YAML::Node& root, const std::string& name) {
   scenario.robot = robot_of(top.section("robot"));
   if (top.has("laser")) scenario.laser = laser_of(top.section("laser"));
   if (top.has("forklift")) scenario.forklift = forklift_of(top.section("forklift"));
+  if (top.has("creep")) scenario.creep = creep_of(top.section("creep"));
+  if (top.has("changed_at_start")) scenario.changed_at_start = changed_start_of(top.section("changed_at_start"));
   for (const YAML::Node& person : top.items("people"))
     scenario.people.push_back(person_of(YamlSection{person, name, "people"}));
   top.expect_no_more();

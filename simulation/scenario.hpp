@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "simulation/changed_hall.hpp"
+#include "simulation/creep.hpp"
 #include "simulation/forklift.hpp"
 #include "simulation/person.hpp"
 #include "simulation/range_finder.hpp"
@@ -48,6 +50,8 @@ struct Scenario {
   LaserSetup laser;
   std::optional<ForkliftParams> forklift;
   std::vector<PersonParams> people;
+  std::optional<CreepParams> creep;
+  std::optional<ChangedStartParams> changed_at_start;  ///< the world above is that of M_0
 };
 
 /// Throws std::runtime_error: one line that names file, line and key.

@@ -11,17 +11,25 @@ namespace {
 constexpr double kLargest_m = 1000.0;  // of any length in a scenario
 constexpr double kSmallest_m = 0.01;
 
+std::vector<ChangeKind> kinds_of(YamlSection& section, const std::vector<ChangeKind>& otherwise) {
+  if (!section.has("changes")) return otherwise;
+  std::vector<ChangeKind> kinds;
+  for (const YAML::Node& item : section.items("changes")) {
+    const auto kind = change_kind_named(item.IsScalar() ? item.Scalar() : "");
+    if (!kind || *kind == ChangeKind::kCrept) {
+      refuse_at(item, section.file(), "changes", "must list removed, added or shifted");
+    }
+    kinds.push_back(*kind);
+  }
+  return kinds;
+}
+
 }  // namespace
 
 ForkliftParams forklift_of(YamlSection lift) {
   ForkliftParams params;
   params.change_every_s = lift.number("change_every_s", params.change_every_s, 0.1, 1e6);
-  if (lift.has("changes")) params.kinds.clear();
-  for (const YAML::Node& item : lift.items("changes")) {
-    const auto kind = change_kind_named(item.IsScalar() ? item.Scalar() : "");
-    if (!kind) refuse_at(item, lift.file(), "changes", "must list removed, added or shifted");
-    params.kinds.push_back(*kind);
-  }
+  params.kinds = kinds_of(lift, params.kinds);
   params.smallest_shift_m = lift.number("smallest_shift_m", params.smallest_shift_m, kSmallest_m, kLargest_m);
   params.largest_shift_m = lift.number("largest_shift_m", params.largest_shift_m, params.smallest_shift_m, kLargest_m);
   params.robot_margin_m = lift.number("robot_margin_m", params.robot_margin_m, 0.0, kLargest_m);
@@ -29,6 +37,31 @@ ForkliftParams forklift_of(YamlSection lift) {
   params.passage_m = lift.number("passage_m", params.passage_m, 0.1, kLargest_m);
   params.least_filled = lift.number("least_filled", params.least_filled, 0.0, 1.0);
   lift.expect_no_more();
+  return params;
+}
+
+CreepParams creep_of(YamlSection creep) {
+  CreepParams params;
+  params.containers = creep.whole_number("containers", params.containers, 1, 1000);
+  params.step_m = creep.number("step_m", params.step_m, 0.001, 1.0);
+  params.times = creep.whole_number("times", params.times, 1, 10'000);
+  params.every_s = creep.number("every_s", params.every_s, 0.1, 1e6);
+  if (creep.has("direction_deg")) params.direction_rad = radians(creep.number("direction_deg", 0.0, -360.0, 360.0));
+  params.robot_margin_m = creep.number("robot_margin_m", params.robot_margin_m, 0.0, kLargest_m);
+  params.people_margin_m = creep.number("people_margin_m", params.people_margin_m, 0.0, kLargest_m);
+  params.passage_m = creep.number("passage_m", params.passage_m, 0.1, kLargest_m);
+  creep.expect_no_more();
+  return params;
+}
+
+ChangedStartParams changed_start_of(YamlSection start) {
+  ChangedStartParams params;
+  params.share = start.number("share", params.share, 0.0, 1.0);
+  params.kinds = kinds_of(start, params.kinds);
+  params.smallest_shift_m = start.number("smallest_shift_m", params.smallest_shift_m, kSmallest_m, kLargest_m);
+  params.largest_shift_m = start.number("largest_shift_m", params.largest_shift_m, params.smallest_shift_m, kLargest_m);
+  params.least_filled = start.number("least_filled", params.least_filled, 0.0, 1.0);
+  start.expect_no_more();
   return params;
 }
 

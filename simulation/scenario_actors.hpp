@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads who moves and changes things in a scenario: the fork-lift's work and the people.
+// Reads who moves and changes things in a scenario: the fork-lift's work, containers that creep, and the people.
 #pragma once
 
 #include "simulation/scenario.hpp"
@@ -9,6 +9,8 @@ namespace deltamap::simulation {
 
 // They throw std::runtime_error naming file, line and key.
 [[nodiscard]] ForkliftParams forklift_of(YamlSection lift);
+[[nodiscard]] CreepParams creep_of(YamlSection creep);
+[[nodiscard]] ChangedStartParams changed_start_of(YamlSection start);
 [[nodiscard]] PersonParams person_of(YamlSection person);
 
 }  // namespace deltamap::simulation

@@ -17,7 +17,7 @@ constexpr Duration kTruthEvery = std::chrono::milliseconds{100};
 constexpr Duration kForkliftPatience = std::chrono::seconds{1};  // until it looks again where nothing could be done
 
 /// Each has its own chance, so that a change to one does not touch what befalls the others.
-enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPioneer, kLms200, kPeople };
+enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPioneer, kLms200, kPeople, kCreep, kChangedStart };
 
 Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
   constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
@@ -90,6 +90,19 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
     change_every_ = duration_from_seconds(params.change_every_s.value_or(scenario.forklift->change_every_s));
     next_change_ = params.start + change_every_;
   }
+  if (scenario.changed_at_start) {
+    ChangedHall hall = changed_start(*scenario.changed_at_start, scenario.slots, world_, robot_body(), people(),
+                                     random_for(params.seed, Stream::kChangedStart));
+    take_place(hall.changes, params.start);
+    for (const Change& change : hall.changes) {
+      if (forklift_) forklift_->learn(change);
+    }
+  }
+  if (scenario.creep) {
+    creep_.emplace(*scenario.creep, world_, scenario.robot.map_from_start.position(),
+                   random_for(params.seed, Stream::kCreep));
+    next_push_ = params.start + duration_from_seconds(scenario.creep->every_s);
+  }
   history_.add({params.start, body_.state().map_from_robot, {}, people()});
 }
 
@@ -126,22 +139,36 @@ void Simulation::move(Timestamp from) {
                 people()});
 }
 
-/// What happens at the beginning of a step: the fork-lift's work, and a line of truth now and then.
+/// What happens at the beginning of a step: what changes the world, and a line of truth now and then.
 void Simulation::work(Timestamp now) {
   if (now >= next_truth_) {
     next_truth_ = now + kTruthEvery;
     truth_.push_back(TruthPose{now, body_.state().map_from_robot, body_.state().speed_m_per_s, false});
   }
+  let_forklift_work(now);
+  let_containers_creep(now);
+}
+
+void Simulation::let_forklift_work(Timestamp now) {
   if (!forklift_ || now < next_change_) return;
   const auto change = forklift_->next_change(world_, robot_body(), people());
-  if (!change) {
-    next_change_ = now + kForkliftPatience;
-    return;
+  next_change_ = now + (change ? change_every_ : kForkliftPatience);
+  if (change) take_place({*change}, now);
+}
+
+void Simulation::let_containers_creep(Timestamp now) {
+  if (!creep_ || now < next_push_) return;
+  next_push_ = now + duration_from_seconds(scenario_.creep->every_s);
+  take_place(creep_->pushes(world_, robot_body(), people()), now);
+}
+
+void Simulation::take_place(const std::vector<Change>& changes, Timestamp now) {
+  if (changes.empty()) return;
+  for (const Change& change : changes) {
+    world_ = changed(world_, change);
+    truth_.push_back(TruthChange{now, change});
   }
-  next_change_ = now + change_every_;
-  world_ = changed(world_, *change);
   surfaces_ = RayCaster{world_};
-  truth_.push_back(TruthChange{now, *change});
 }
 
 std::vector<Beam> Simulation::measure(const devices::SweepRequest& request) {

@@ -54,6 +54,9 @@ class Simulation {
   void run_devices(Timestamp now);
   void move(Timestamp from);
   void work(Timestamp now);
+  void let_forklift_work(Timestamp now);
+  void let_containers_creep(Timestamp now);
+  void take_place(const std::vector<Change>& changes, Timestamp now);
   [[nodiscard]] std::vector<Beam> measure(const devices::SweepRequest& request);
   [[nodiscard]] std::optional<double> sonar_range_m(int index, Timestamp now) const;
   [[nodiscard]] Circle robot_body() const;
@@ -66,8 +69,10 @@ class Simulation {
   RangeFinder range_finder_;
   std::vector<Person> people_;
   std::optional<Forklift> forklift_;
+  std::optional<Creep> creep_;
   Duration change_every_{};
   Timestamp next_change_{};
+  Timestamp next_push_{};
   devices::VirtualPioneer pioneer_;
   devices::VirtualLms200 lms200_;
   MotionHistory history_;

@@ -28,12 +28,13 @@ Box box_of(const Json& json) {
 Change change_of(const Json& json) {
   Change change;
   const auto kind = change_kind_named(json.at("kind").get<std::string>());
-  if (!kind) throw std::runtime_error("'kind' must be removed, added or shifted");
+  if (!kind) throw std::runtime_error("'kind' must be removed, added, shifted or crept");
   change.kind = *kind;
   change.id = json.at("id").get<int>();
   change.box = box_of(json.at("box"));
   if (json.contains("from")) change.from = box_of(json["from"]);
-  if (change.kind == ChangeKind::kShifted && !change.from) throw std::runtime_error("a shift needs 'from'");
+  const bool is_moved = change.kind == ChangeKind::kShifted || change.kind == ChangeKind::kCrept;
+  if (is_moved && !change.from) throw std::runtime_error("a shift needs 'from'");
   return change;
 }
 

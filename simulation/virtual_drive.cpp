@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "drivers/lms200/measurement.hpp"
+#include "simulation/changed_hall.hpp"
 
 namespace deltamap::simulation {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kHeadingUnit_rad = 0.001534;     // A6
 constexpr double kLongestInMillimetres_m = 32.0;  // B4
 
 /// Each has its own chance, so that a change to one does not touch what befalls the others.
-enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPilot, kPeople, kMany };
+enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPilot, kPeople, kMany, kCreep, kChangedStart };
 
 Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
   constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
@@ -59,6 +60,7 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
       now_{kStart},
       next_odometry_{kStart},
       next_change_{kStart},
+      next_push_{kStart},
       fan_{fan()} {
   scenario_.people.insert(scenario_.people.end(), params.people.begin(), params.people.end());
   for (const PersonParams& person : scenario_.people) {
@@ -69,11 +71,31 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
                       random_for(params.seed, Stream::kForklift));
     next_change_ = kStart + duration_from_seconds(params.forklift->change_every_s);
   }
+  const auto& start = params.changed_at_start ? params.changed_at_start : scenario.changed_at_start;
+  if (start) begin_changed(*start);
+  if (params.creep) {
+    creep_.emplace(*params.creep, world_, scenario_.robot.map_from_start.position(),
+                   random_for(params.seed, Stream::kCreep));
+    next_push_ = kStart + duration_from_seconds(params.creep->every_s);
+  }
+}
+
+void VirtualDrive::begin_changed(const ChangedStartParams& start) {
+  ChangedHall hall = changed_start(start, scenario_.slots, world_, robot_body(), people(),
+                                   random_for(params_.seed, Stream::kChangedStart));
+  world_ = std::move(hall.world);
+  unseen_ = std::move(hall.changes);
+  for (const Change& change : unseen_) {
+    if (forklift_) forklift_->learn(change);
+  }
+  see_changes();
 }
 
 DriveStep VirtualDrive::next() {
   step_ = {};
+  step_.changes = std::exchange(unseen_, {});
   let_forklift_work();
+  let_containers_creep();
   target_ = pilot_.target(body_.state(), people(), params_.scan_period_s);
   const Timestamp end = now_ + duration_from_seconds(params_.scan_period_s);
   step_.map_from_robot = body_.state().map_from_robot;
@@ -113,7 +135,7 @@ void VirtualDrive::advance(double dt_s) {
   const RobotState before = body_.state();
   const Timestamp from = now_;
   body_.move(target_, dt_s, surfaces_, people());
-  const Circle robot{body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
+  const Circle robot = robot_body();
   for (Person& person : people_) person.move(dt_s, surfaces_, robot);
   now_ = now_ + duration_from_seconds(dt_s);
   report_odometry(before, from);
@@ -144,50 +166,45 @@ void VirtualDrive::report_odometry(const RobotState& before, Timestamp from) {
 
 void VirtualDrive::let_forklift_work() {
   if (!forklift_ || now_ < next_change_) return;
-  const Circle robot{body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
-  const auto done = forklift_->next_change(world_, robot, people());
+  const auto done = forklift_->next_change(world_, robot_body(), people());
   next_change_ = now_ + duration_from_seconds(done ? params_.forklift->change_every_s : kForkliftPatience_s);
   if (!done) return;
   change(*done);
   step_.changes.push_back(*done);
 }
 
+void VirtualDrive::let_containers_creep() {
+  if (!creep_ || now_ < next_push_) return;
+  next_push_ = now_ + duration_from_seconds(params_.creep->every_s);
+  const std::vector<Change> pushes = creep_->pushes(world_, robot_body(), people());
+  if (pushes.empty()) return;
+  for (const Change& push : pushes) world_ = changed(world_, push);
+  see_changes();
+  step_.changes.insert(step_.changes.end(), pushes.begin(), pushes.end());
+}
+
 void VirtualDrive::kidnap(const Pose2& map_from_robot) { body_.carry_to(map_from_robot); }
 
 void VirtualDrive::change(const Change& change) {
   world_ = changed(world_, change);
+  see_changes();
+}
+
+void VirtualDrive::see_changes() {
   surfaces_ = RayCaster{world_};
   pilot_.see(world_, body_.state().map_from_robot.position());
 }
 
 std::vector<Change> VirtualDrive::change_many(double share, const ForkliftParams& params) {
-  Forklift forklift{params, scenario_.slots, world_, body_.state().map_from_robot.position(),
-                    random_for(params_.seed, Stream::kMany, many_++)};
-  const auto stands_at = [](const World& world, const Box& slot) {
-    return std::any_of(world.objects.begin(), world.objects.end(), [&](const Object& object) {
-      const Box* box = std::get_if<Box>(&object.shape);
-      return box != nullptr && (box->centre - slot.centre).norm() < 0.01;
-    });
-  };
-  const auto differing = [&](const World& world) {
-    return std::count_if(scenario_.slots.begin(), scenario_.slots.end(),
-                         [&](const Box& slot) { return stands_at(world, slot) != stands_at(scenario_.world, slot); });
-  };
-  const double wanted = share * static_cast<double>(scenario_.slots.size());
-  const Circle robot{body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
-  std::vector<Change> changes;
-  World world = world_;
-  const std::size_t most = 4 * scenario_.slots.size();
-  while (static_cast<double>(differing(world)) < wanted && changes.size() < most) {
-    const auto done = forklift.next_change(world, robot, people());
-    if (!done) break;
-    world = changed(world, *done);
-    changes.push_back(*done);
-  }
-  world_ = std::move(world);
-  surfaces_ = RayCaster{world_};
-  pilot_.see(world_, robot.centre);
-  return changes;
+  ChangedHall hall = changed_hall({.share = share}, params, scenario_.slots, scenario_.world, world_, robot_body(),
+                                  people(), random_for(params_.seed, Stream::kMany, many_++));
+  world_ = std::move(hall.world);
+  see_changes();
+  return hall.changes;
+}
+
+Circle VirtualDrive::robot_body() const {
+  return {body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
 }
 
 std::vector<Circle> VirtualDrive::people() const {

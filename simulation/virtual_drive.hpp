@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
+#include "simulation/creep.hpp"
 #include "simulation/forklift.hpp"
 #include "simulation/person.hpp"
 #include "simulation/range_finder.hpp"
@@ -26,15 +27,17 @@ struct VirtualDriveParams {
   double max_range_m = 80.0;              ///< longer readings are kBeyondMaximum; up to 32 in mm, above in cm (B4)
   double odometry_period_s = 0.1;         ///< between SIPs (A6), > 0
   RoutePilotParams route{};
-  std::vector<PersonParams> people{};        ///< besides the scenario's
-  std::optional<ForkliftParams> forklift{};  ///< none: nothing changes by itself
+  std::vector<PersonParams> people{};                    ///< besides the scenario's
+  std::optional<ForkliftParams> forklift{};              ///< none: nothing changes by itself
+  std::optional<CreepParams> creep{};                    ///< none: nothing creeps
+  std::optional<ChangedStartParams> changed_at_start{};  ///< in place of the scenario's
 };
 
 struct DriveStep {
   std::vector<Odometry> odometry;  ///< what arrived before the scan, in order
   Scan scan;
   Pose2 map_from_robot;         ///< the truth at Scan::time
-  std::vector<Change> changes;  ///< of the fork-lift since the last scan; the scan shows them
+  std::vector<Change> changes;  ///< since the last scan, or before the first; the scan shows them
 };
 
 class VirtualDrive {
@@ -68,9 +71,13 @@ class VirtualDrive {
   [[nodiscard]] Pose2 place_anywhere(Random& random) const;
 
  private:
+  [[nodiscard]] Circle robot_body() const;
   void advance(double dt_s);
   void report_odometry(const RobotState& before, Timestamp from);
+  void begin_changed(const ChangedStartParams& start);
   void let_forklift_work();
+  void let_containers_creep();
+  void see_changes();
   [[nodiscard]] Scan sweep();
 
   Scenario scenario_;
@@ -82,10 +89,13 @@ class VirtualDrive {
   RoutePilot pilot_;
   std::vector<Person> people_;
   std::optional<Forklift> forklift_;
-  std::uint64_t many_ = 0;  // calls of change_many
+  std::optional<Creep> creep_;
+  std::vector<Change> unseen_;  // from before the first scan
+  std::uint64_t many_ = 0;      // calls of change_many
   Timestamp now_;
   Timestamp next_odometry_;
   Timestamp next_change_;
+  Timestamp next_push_;
   DriveTarget target_;
   DriveStep step_;
   std::uint32_t scans_ = 0;

@@ -92,6 +92,22 @@ TEST(Scenario, RefusesWrongRacksGlassAndWrapWithTheirLine) {
             "world.yaml: line 6: 'wrap_no_return_share' and the other shares of wrap are more than 1 together");
 }
 
+TEST(Scenario, ReadsContainersThatCreepAndAStartInAChangedHall) {
+  const Scenario scenario = parse_scenario(kRoom +
+                                               "creep: {containers: 2, step_m: 0.02, times: 5, direction_deg: 90}\n"
+                                               "changed_at_start: {share: 0.75, changes: [removed]}\n",
+                                           "world.yaml");
+  EXPECT_EQ(scenario.creep->containers, 2);
+  EXPECT_NEAR(*scenario.creep->direction_rad, radians(90), 1e-12);
+  EXPECT_EQ(scenario.changed_at_start->share, 0.75);
+  EXPECT_EQ(scenario.changed_at_start->kinds, std::vector{ChangeKind::kRemoved});
+  EXPECT_EQ(complaint_of(kRoom + "creep:\n  times: 0\n"), "world.yaml: line 6: 'times' must lie from 1 to 10000");
+  EXPECT_EQ(complaint_of(kRoom + "changed_at_start:\n  share: 1.5\n"),
+            "world.yaml: line 6: 'share' must lie from 0 to 1");
+  EXPECT_EQ(complaint_of(kRoom + "forklift:\n  changes: [crept]\n"),
+            "world.yaml: line 6: 'changes' must list removed, added or shifted");
+}
+
 TEST(Scenario, EveryDeliveredScenarioCanBeRead) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(DELTAMAP_SOURCE_DIR "/config/scenarios")) {

@@ -180,6 +180,14 @@ TEST(Truth, ReadsBackWhatWasWritten) {
   EXPECT_EQ(truth.changes[0].change.from->centre.x(), 1.5);
 }
 
+TEST(Truth, ReadsBackAPushOfAContainerThatCreeps) {
+  const test::TemporaryFolder folder;
+  const Change push{ChangeKind::kCrept, 7, {{1.05, 2}, 3, 4, 0}, Box{{1, 2}, 3, 4, 0}};
+  const auto file = folder.write("truth.jsonl", truth_line(TruthPose{after(0.0), {}, 0.0, false}) + "\n" +
+                                                    truth_line(TruthChange{after(1.0), push}) + "\n");
+  EXPECT_EQ(read_truth(file).changes.at(0).change.kind, ChangeKind::kCrept);
+}
+
 TEST(Truth, NamesFileAndLineOfWhatItCannotRead) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("truth.jsonl", "{\"world\": \"a\"}\n{\"t_ns\": 1, \"pose\": [1, 2]}\n{}\n");
