@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/random.hpp"
 
-#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -26,20 +25,6 @@ Random::Random(std::uint64_t seed) : state_{} {
     state_[i + 1] = static_cast<std::uint32_t>(word >> 32);
   }
 }
-
-Random::result_type Random::operator()() {
-  const std::uint32_t result = std::rotl(state_[0] + state_[3], 7) + state_[0];
-  const std::uint32_t t = state_[1] << 9;
-  state_[2] ^= state_[0];
-  state_[3] ^= state_[1];
-  state_[1] ^= state_[2];
-  state_[0] ^= state_[3];
-  state_[2] ^= t;
-  state_[3] = std::rotl(state_[3], 11);
-  return result;
-}
-
-double Random::uniform() { return (*this)() * 0x1p-32; }
 
 std::uint32_t Random::index_below(std::uint32_t count) {
   assert(count > 0 && "there must be something to choose from");

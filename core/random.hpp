@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace deltamap {
@@ -15,12 +16,22 @@ class Random {
 
   explicit Random(std::uint64_t seed);
 
-  result_type operator()();
+  result_type operator()() {
+    const std::uint32_t result = std::rotl(state_[0] + state_[3], 7) + state_[0];
+    const std::uint32_t t = state_[1] << 9;
+    state_[2] ^= state_[0];
+    state_[3] ^= state_[1];
+    state_[1] ^= state_[2];
+    state_[0] ^= state_[3];
+    state_[2] ^= t;
+    state_[3] = std::rotl(state_[3], 11);
+    return result;
+  }
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return 0xFFFFFFFFu; }
 
   /// Uniform in [0, 1).
-  [[nodiscard]] double uniform();
+  [[nodiscard]] double uniform() { return (*this)() * 0x1p-32; }
   /// Uniform in [low, high).
   [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform whole number in [0, count). count > 0.

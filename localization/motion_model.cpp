@@ -39,11 +39,11 @@ MotionNoise motion_noise(const TurnDriveTurn& motion, double unknown_s, const Mo
 }
 
 Pose2 sampled_motion(const Pose2& map_from_robot, const TurnDriveTurn& motion, const MotionNoise& noise,
-                     Random& random) {
-  const double rot1_rad = motion.rot1_rad + random.normal(noise.rot1_rad);
-  const double trans_m = motion.trans_m + random.normal(noise.trans_m);
-  const double sideways_m = random.normal(noise.sideways_m);
-  const double rot2_rad = motion.rot2_rad + random.normal(noise.rot2_rad);
+                     const Ziggurat& ziggurat, Random& random) {
+  const double rot1_rad = motion.rot1_rad + noise.rot1_rad * ziggurat.normal(random);
+  const double trans_m = motion.trans_m + noise.trans_m * ziggurat.normal(random);
+  const double sideways_m = noise.sideways_m * ziggurat.normal(random);
+  const double rot2_rad = motion.rot2_rad + noise.rot2_rad * ziggurat.normal(random);
   const double direction_rad = map_from_robot.theta + rot1_rad;
   const auto direction = static_cast<float>(direction_rad);  // far finer than the noise
   const auto c = static_cast<double>(std::cos(direction));

@@ -6,6 +6,7 @@
 #include "core/angle.hpp"
 #include "core/pose2.hpp"
 #include "core/random.hpp"
+#include "core/ziggurat.hpp"
 
 namespace deltamap::localization {
 
@@ -47,6 +48,6 @@ struct MotionNoise {
 
 /// Where a robot may be after the motion: one draw.
 [[nodiscard]] Pose2 sampled_motion(const Pose2& map_from_robot, const TurnDriveTurn& motion, const MotionNoise& noise,
-                                   Random& random);
+                                   const Ziggurat& ziggurat, Random& random);
 
 }  // namespace deltamap::localization

@@ -41,7 +41,7 @@ void ParticleFilter::move(const Pose2& motion, double unknown_s, const MotionMod
   const TurnDriveTurn turns = turn_drive_turn(motion);
   const MotionNoise noise = motion_noise(turns, unknown_s, model);
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    particles_.set_pose(i, sampled_motion(particles_.pose(i), turns, noise, random_));
+    particles_.set_pose(i, sampled_motion(particles_.pose(i), turns, noise, ziggurat_, random_));
   }
   if (model.slip_probability > 0.0) let_some_slip(model);
 }

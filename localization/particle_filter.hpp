@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "core/ziggurat.hpp"
 #include "localization/deskew.hpp"
 #include "localization/likelihood_field.hpp"
 #include "localization/motion_model.hpp"
@@ -64,6 +65,7 @@ class ParticleFilter {
 
   ParticleFilterParams params_;
   Random random_;
+  Ziggurat ziggurat_;
   ParticleSet particles_;
   ParticleSet drawn_;
   std::vector<std::uint32_t> choice_;

@@ -23,14 +23,6 @@ struct RefinedPose {
   PoseCovariance covariance = PoseCovariance::Zero();
 };
 
-/// Distance of a point of the map frame from the contour, bilinear between the cells' centres, with its slope;
-/// flat outside the map.
-struct FieldDistance {
-  double distance_m = 0.0;
-  Eigen::Vector2d slope{0.0, 0.0};  ///< ∂distance/∂x, ∂distance/∂y
-};
-[[nodiscard]] FieldDistance distance_at(const LikelihoodField& field, double x_m, double y_m);
-
 /// What the beams themselves tell of their errors, as running means over scans: how far their ends lie from the contour
 /// where the map explains them.
 struct BeamErrors {

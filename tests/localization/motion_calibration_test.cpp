@@ -32,6 +32,7 @@ std::vector<MotionSegment> driven(const Wheels& wheels, const Drive& drive, std:
   Random random{seed};
   MotionSegments segments{{}};
   Pose2 odom;
+  const Ziggurat ziggurat;
   Pose2 truth;
   double since_slip_m = 0.0;
   for (double metres = 0.0; metres < drive.metres;) {
@@ -45,7 +46,7 @@ std::vector<MotionSegment> driven(const Wheels& wheels, const Drive& drive, std:
       const Pose2 meant{(1.0 + wheels.wheel_scale) * motion.x, 0.0, turn_rad};
       const TurnDriveTurn turns = turn_drive_turn(motion);
       const MotionNoise noise = motion_noise(turns, 0.0, wheels.model);
-      truth = sampled_motion(truth, turn_drive_turn(meant), noise, random);
+      truth = sampled_motion(truth, turn_drive_turn(meant), noise, ziggurat, random);
       metres += motion.x + 0.01;
       since_slip_m += motion.x;
       if (wheels.slip_every_m > 0.0 && since_slip_m > wheels.slip_every_m) {

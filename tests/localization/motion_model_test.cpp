@@ -55,11 +55,12 @@ TEST(MotionModel, DrawsWithTheMomentsItStates) {
   const Pose2 start{2.0, -1.0, 0.7};
   const TurnDriveTurn motion = turn_drive_turn({0.4, 0.1, 0.3});
   const MotionNoise noise{.rot1_rad = 0.02, .trans_m = 0.05, .sideways_m = 0.01, .rot2_rad = 0.04};
+  const Ziggurat ziggurat;
   Random random{5};
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   Eigen::Array3d squares = Eigen::Array3d::Zero();
   for (int i = 0; i < kDraws; ++i) {
-    const Pose2 end = sampled_motion(start, motion, noise, random);
+    const Pose2 end = sampled_motion(start, motion, noise, ziggurat, random);
     // along and across the direction of the drive, and the turn
     const double direction_rad = start.theta + motion.rot1_rad;
     const double dx = end.x - start.x;

@@ -25,34 +25,6 @@ BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
   return scoring_ends(scan, deskewed(scan, {}), 0);
 }
 
-TEST(FieldDistance, HasTheSlopeOfItsOwnNumericDifferences) {
-  const LikelihoodField field{room(), {}};
-  Random random{8};
-  constexpr double kStepM = 1e-6;
-  for (int i = 0; i < 200; ++i) {
-    const double x_m = random.uniform(-0.5, 6.5);
-    const double y_m = random.uniform(-0.5, 4.5);
-    const FieldDistance at = distance_at(field, x_m, y_m);
-    const double ahead = distance_at(field, x_m + kStepM, y_m).distance_m;
-    const double above = distance_at(field, x_m, y_m + kStepM).distance_m;
-    EXPECT_NEAR(at.slope.x(), (ahead - at.distance_m) / kStepM, 1e-4);
-    EXPECT_NEAR(at.slope.y(), (above - at.distance_m) / kStepM, 1e-4);
-  }
-}
-
-TEST(FieldDistance, IsZeroOnAContourAndGrowsAwayFromIt) {
-  const LikelihoodField field{room(), {}};
-  EXPECT_NEAR(distance_at(field, -0.025, 1.975).distance_m, 0.0, 1e-9);
-  EXPECT_NEAR(distance_at(field, 0.025, 1.975).distance_m, 0.05, 1e-6);
-  EXPECT_NEAR(distance_at(field, 0.050, 1.975).distance_m, 0.075, 1e-6);
-}
-
-TEST(FieldDistance, IsDefinedFarOutsideTheMap) {
-  const LikelihoodField field{room(), {}};
-  EXPECT_TRUE(std::isfinite(distance_at(field, 1e9, -1e9).distance_m));
-  EXPECT_EQ(distance_at(field, 1e9, -1e9).slope, Eigen::Vector2d(0.0, 0.0));
-}
-
 TEST(Refinement, SlidesAPoseToWhereTheScanFits) {
   const OccupancyGrid map = room();
   const LikelihoodField field{map, {}};
