@@ -149,6 +149,7 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   keys.push_back(pose_key("localization.initial_pose", settings.initial_pose,
                           "robot in the map at the first scan; null: where the store keeps it, or found by itself"));
   add_localization_keys(settings.localizer, keys);
+  add_belief_keys(settings.localizer, keys);
   add_memory(settings.memory, keys);
   add_mapping_keys(settings.mapping, keys);
   add_navigation(settings.navigation, keys);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of keys: localization.
+// The table of keys: localization, as far as it follows a pose. What is believed of it: settings_keys_belief.cpp.
 #include "daemon/settings_keys.hpp"
 
 namespace deltamap::daemon {
@@ -115,121 +115,11 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                             "deviations of the particles within which the estimate goes on from scan to scan"));
 }
 
-void add_states(localization::LocalizerParams& localizer, Keys& keys) {
-  auto& hypothesis = localizer.hypothesis;
-  keys.push_back(number_key("localization.hypothesis.cell_m", hypothesis.cell_m, "m", 0.01, 10.0,
-                            "particles in neighbouring cells belong together"));
-  keys.push_back(degrees_key("localization.hypothesis.heading_cell_deg", hypothesis.heading_cell_rad, 1.0, 90.0,
-                             "height of such a cell"));
-  auto& fit = localizer.fit;
-  keys.push_back(number_key("localization.fit.lost_below", fit.lost_below, "", 0.0, 1.0,
-                            "mean share of beams that the map explains: misfit below"));
-  keys.push_back(number_key("localization.fit.found_above", fit.found_above, "", 0.0, 1.0, "and found again above"));
-  keys.push_back(number_key("localization.fit.lost_after_s", fit.lost_after_s, "s", 0.001, 3600.0,
-                            "unbroken misfit, another place fitting better, until lost"));
-  keys.push_back(
-      number_key("localization.fit.memory_s", fit.memory_s, "s", 0.001, 3600.0, "time constant of that mean"));
-  keys.push_back(number_key("localization.fit.search_after_s", fit.search_after_s, "s", 0.0, 86400.0,
-                            "lost until the whole map is searched"));
-  keys.push_back(
-      number_key("localization.fit.search_after_m", fit.search_after_m, "m", 0.0, 1000.0, "and driven since"));
-  keys.push_back(number_key("localization.fit.converged_share", fit.converged_share, "", 0.5, 1.0,
-                            "weight of the best hypothesis that ends global localization"));
-  keys.push_back(number_key("localization.fit.converged_m", fit.converged_m, "m", 0.001, 10.0,
-                            "its deviation that ends global localization"));
-  keys.push_back(degrees_key("localization.fit.converged_deg", fit.converged_rad, 0.1, 180.0,
-                             "its deviation that ends global localization"));
-  keys.push_back(number_key("localization.fit.converged_after_m", fit.converged_after_m, "m", 0.0, 1000.0,
-                            "driven before global localization may end"));
-  keys.push_back(
-      degrees_key("localization.fit.converged_after_deg", fit.converged_after_rad, 0.0, 3600.0, "or turned"));
-  keys.push_back(number_key("localization.fit.lost_by_verdict_s", fit.lost_by_verdict_s, "s", 0.0, 3600.0,
-                            "unbroken verdict wrong until lost"));
-  keys.push_back(number_key("localization.fit.distrusted_after_s", fit.distrusted_after_s, "s", 0.001, 3600.0,
-                            "likewise all beams against the pose, though nothing proven is in view"));
-  keys.push_back(number_key("localization.fit.search_fails_after_s", fit.search_fails_after_s, "s", 0.001, 3600.0,
-                            "unbroken misfit of what a search leads with until it begins anew"));
-}
-
-void add_places(localization::LocalizerParams& localizer, Keys& keys) {
-  auto& global = localizer.global;
-  keys.push_back(whole_key("localization.global.candidates_a_scan", global.candidates_a_scan, "", 100, 100000000,
-                           "poses of the whole map that are looked at in one scan while the pose is unknown"));
-  keys.push_back(
-      whole_key("localization.global.places", global.places, "", 1, 100000, "of these, slid to their best fit"));
-  keys.push_back(
-      whole_key("localization.global.places_a_scan", global.places_a_scan, "", 1, 100000, "of these, in one scan"));
-  keys.push_back(number_key("localization.global.again_after_m", global.again_after_m, "m", 0.01, 1000.0,
-                            "driven until the whole map is looked at again"));
-  keys.push_back(degrees_key("localization.global.again_after_deg", global.again_after_rad, 0.1, 3600.0, "or turned"));
-  auto& places = localizer.places;
-  keys.push_back(
-      whole_key("localization.places.most", places.most, "", 1, 1000, "places followed while the pose is unknown"));
-  keys.push_back(whole_key("localization.places.most_while_believing", places.most_while_believing, "", 1, 1000,
-                           "and beside a believed pose"));
-  keys.push_back(whole_key("localization.places.beams", places.beams, "", 1, 1000, "of a scan that judge a place"));
-  keys.push_back(number_key("localization.places.evidence_beams", places.evidence_beams, "", 0.1, 1000.0,
-                            "independent beams that a scan counts as between places"));
-  keys.push_back(number_key("localization.places.step_m", places.step_m, "m", 0.001, 100.0,
-                            "driven until a scan tells something new"));
-  keys.push_back(degrees_key("localization.places.step_deg", places.step_rad, 0.1, 360.0, "or turned"));
-  keys.push_back(number_key("localization.places.memory_steps", places.memory_steps, "", 1.001, 1e6,
-                            "such scans until their evidence has faded to 1/e"));
-  keys.push_back(number_key("localization.places.hopeless", places.hopeless, "", 0.1, 1000.0,
-                            "log evidence behind the best at which a place is given up"));
-  auto& rivals = localizer.rivals;
-  keys.push_back(whole_key("localization.rivals.probes", rivals.probes, "", 0, 100000000,
-                           "poses of the whole map that are looked at in one scan while tracking"));
-  keys.push_back(whole_key("localization.rivals.probes_nearby", rivals.probes_nearby, "", 0, 1000000,
-                           "and around the believed pose"));
-  keys.push_back(number_key("localization.rivals.nearby_m", rivals.nearby_m, "m", 0.01, 100.0, "how far around"));
-  keys.push_back(degrees_key("localization.rivals.nearby_deg", rivals.nearby_rad, 0.1, 180.0, "likewise"));
-  keys.push_back(number_key("localization.rivals.nearby_prior", rivals.nearby_prior, "", 1e-30, 1.0,
-                            "odds of a place nearby against the believed one, before any scan"));
-  keys.push_back(number_key("localization.rivals.elsewhere_prior", rivals.elsewhere_prior, "", 1e-30, 1.0,
-                            "odds of any other place: how rarely somebody carries the robot away"));
-  keys.push_back(whole_key("localization.rivals.refined_a_scan", rivals.refined_a_scan, "", 0, 1000,
-                           "places slid to their best fit at a scan"));
-  keys.push_back(number_key("localization.rivals.winning_share", rivals.winning_share, "", 0.5, 1.0,
-                            "of the belief at which another place is believed instead"));
-  keys.push_back(number_key("localization.rivals.wins_after_m", rivals.wins_after_m, "m", 0.0, 1000.0,
-                            "driven since it was found before another place may win"));
-  keys.push_back(number_key("localization.rivals.block_m", rivals.block_m, "m", 0.01, 10.0,
-                            "lattice of poses: between two positions"));
-  keys.push_back(whole_key("localization.rivals.headings", rivals.headings, "", 1, 720, "and headings"));
-}
-
-void add_verdict(localization::LocalizerParams& localizer, Keys& keys) {
-  auto& stability = localizer.judgement.stability;
-  keys.push_back(number_key("localization.stability.apart_s", stability.apart_s, "s", 0.1, 86400.0,
-                            "between two confirmations of a tile that count"));
-  keys.push_back(number_key("localization.stability.apart_m", stability.apart_m, "m", 0.1, 100.0,
-                            "between the places that they are made from"));
-  keys.push_back(whole_key("localization.stability.proven_after", stability.proven_after, "", 1, 60,
-                           "confirmations until a tile has proven to stay"));
-  auto& verdict = localizer.judgement.verdict;
-  keys.push_back(whole_key("localization.verdict.beams", localizer.judgement.beams.beams, "", 8, 1000,
-                           "beams that are held against what the map expects"));
-  keys.push_back(number_key("localization.verdict.right_above", verdict.right_above, "", 0.5, 1.0,
-                            "P(pose right) from which the verdict is right"));
-  keys.push_back(number_key("localization.verdict.wrong_below", verdict.wrong_below, "", 0.0, 0.5,
-                            "P(pose right) up to which it is wrong; between: undecided"));
-  keys.push_back(number_key("localization.verdict.unproven_limit", verdict.unproven_limit, "", 0.5, 1.0,
-                            "P(pose right) at most where nothing in view has proven to stay"));
-  keys.push_back(number_key("localization.verdict.lost_in_a_view", verdict.lost_in_a_view, "", 0.0, 0.1,
-                            "P(the pose has become wrong) from one new view to the next"));
-  keys.push_back(number_key("localization.verdict.changed_above", verdict.changed_above, "", 0.0, 1.0,
-                            "share of beams off the map from which the map is rather wrong here"));
-}
-
 }  // namespace
 
 void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys) {
   add_particles(localizer, keys);
   add_models(localizer, keys);
-  add_states(localizer, keys);
-  add_places(localizer, keys);
-  add_verdict(localizer, keys);
 }
 
 }  // namespace deltamap::daemon
