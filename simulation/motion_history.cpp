@@ -39,6 +39,6 @@ devices::WheelMotion MotionHistory::wheels_at(Timestamp time) const {
   return wheels;
 }
 
-const std::vector<Circle>& MotionHistory::people_at(Timestamp time) const { return around(time).after->people; }
+const Bodies& MotionHistory::bodies_at(Timestamp time) const { return around(time).after->bodies; }
 
 }  // namespace deltamap::simulation

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot's and the people's last half second, so that a beam can be cast from where the robot was at its time.
+// The last half second of the robot and of all that moves, so that a beam can be cast from where the robot was at its
+// time.
 #pragma once
 
 #include <deque>
-#include <vector>
 
 #include "core/time.hpp"
+#include "simulation/bodies.hpp"
 #include "simulation/devices/set_points.hpp"
-#include "simulation/shapes.hpp"
 
 namespace deltamap::simulation {
 
@@ -15,7 +15,7 @@ struct Moment {
   Timestamp time;
   Pose2 map_from_robot;
   devices::WheelMotion wheels;
-  std::vector<Circle> people;
+  Bodies bodies;
 };
 
 class MotionHistory {
@@ -27,8 +27,8 @@ class MotionHistory {
   [[nodiscard]] Pose2 map_from_robot_at(Timestamp time) const;
   /// The wheels' pose between the two nearest moments, all else of the later one.
   [[nodiscard]] devices::WheelMotion wheels_at(Timestamp time) const;
-  /// The people at the nearest later moment.
-  [[nodiscard]] const std::vector<Circle>& people_at(Timestamp time) const;
+  /// All that moves, at the nearest later moment.
+  [[nodiscard]] const Bodies& bodies_at(Timestamp time) const;
 
  private:
   struct Between {

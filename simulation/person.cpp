@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/person.hpp"
 
-#include <cassert>
+#include <algorithm>
 
 namespace deltamap::simulation {
 namespace {
@@ -13,12 +13,14 @@ constexpr double kPatience_s = 4.0;        // before turning back
 }  // namespace
 
 Person::Person(PersonParams params, Random random)
-    : params_{std::move(params)}, random_{random}, position_{params_.path.front()} {
-  assert(params_.path.size() >= 2 && "a path has at least two corners");
+    : params_{std::move(params)},
+      random_{random},
+      beat_{params_.path, params_.closed},
+      position_{params_.path.front()} {
   phase_left_s_ = random_.uniform(params_.walk_least_s, params_.walk_most_s);
 }
 
-void Person::move(double dt_s, const RayCaster& world, const Circle& robot) {
+void Person::move(double dt_s, const RayCaster& world, const Circle& robot, std::span<const Segment> leaves) {
   phase_left_s_ -= dt_s;
   if (phase_left_s_ <= 0.0) {
     standing_ = !standing_;
@@ -29,16 +31,20 @@ void Person::move(double dt_s, const RayCaster& world, const Circle& robot) {
   if (standing_) return;
 
   const double step_m = params_.speed_m_per_s * dt_s;
-  const Point2 way = params_.path[corner_] - position_;
+  const Point2 way = beat_.aim() - position_;
   if (way.norm() <= step_m) {
-    aim_at_next_corner();
+    beat_.reach();
+    blocked_s_ = 0.0;
     return;
   }
   const Point2 direction = way.normalized();
   const Point2 next = position_ + step_m * direction;
-  if (is_blocked(next, direction, world, robot)) {
+  if (is_blocked(next, direction, world, robot, leaves)) {
     blocked_s_ += dt_s;
-    if (blocked_s_ > kPatience_s) turn_back();
+    if (blocked_s_ > kPatience_s) {
+      blocked_s_ = 0.0;
+      beat_.turn_back();
+    }
     return;
   }
   blocked_s_ = 0.0;
@@ -46,33 +52,18 @@ void Person::move(double dt_s, const RayCaster& world, const Circle& robot) {
   position_ = next;
 }
 
-bool Person::is_blocked(const Point2& next, const Point2& direction, const RayCaster& world,
-                        const Circle& robot) const {
+bool Person::is_blocked(const Point2& next, const Point2& direction, const RayCaster& world, const Circle& robot,
+                        std::span<const Segment> leaves) const {
   const Point2 to_robot = robot.centre - next;
   if (to_robot.norm() < params_.radius_m + robot.radius_m + kRoomToRobot_m && to_robot.dot(direction) > 0.0)
     return true;
+  const auto closes_in = [&](const Segment& leaf) {
+    const double gap_m = distance_between(next, leaf);
+    return gap_m < params_.radius_m + kRoomToSurface_m && gap_m < distance_between(position_, leaf);
+  };
+  if (std::any_of(leaves.begin(), leaves.end(), closes_in)) return true;
   const auto nearest = world.nearest_surface(next, params_.radius_m + kRoomToSurface_m);
   return nearest && nearest->direction.dot(direction) > 0.0;
-}
-
-void Person::aim_at_next_corner() {
-  const std::size_t last = params_.path.size() - 1;
-  if (!params_.closed && corner_ == (backwards_ ? 0 : last)) {
-    turn_back();
-  } else {
-    corner_ = corner_beyond(corner_, backwards_);
-  }
-}
-
-void Person::turn_back() {
-  blocked_s_ = 0.0;
-  backwards_ = !backwards_;
-  corner_ = corner_beyond(corner_, backwards_);  // where one came from
-}
-
-std::size_t Person::corner_beyond(std::size_t corner, bool backwards) const {
-  const std::size_t count = params_.path.size();
-  return (corner + (backwards ? count - 1 : 1)) % count;
 }
 
 }  // namespace deltamap::simulation

@@ -2,9 +2,11 @@
 // Someone who walks along a path, stops, and walks on; waits for the robot, and turns back where the way is blocked.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/random.hpp"
+#include "simulation/beat.hpp"
 #include "simulation/ray_caster.hpp"
 
 namespace deltamap::simulation {
@@ -24,7 +26,8 @@ class Person {
  public:
   Person(PersonParams params, Random random);
 
-  void move(double dt_s, const RayCaster& world, const Circle& robot);
+  /// `leaves` are those of doors.
+  void move(double dt_s, const RayCaster& world, const Circle& robot, std::span<const Segment> leaves = {});
 
   [[nodiscard]] Circle body() const { return {position_, params_.radius_m}; }
   /// Where the body is so many seconds from now; negative: was.
@@ -32,17 +35,13 @@ class Person {
 
  private:
   [[nodiscard]] bool is_blocked(const Point2& next, const Point2& direction, const RayCaster& world,
-                                const Circle& robot) const;
-  void aim_at_next_corner();
-  void turn_back();
-  [[nodiscard]] std::size_t corner_beyond(std::size_t corner, bool backwards) const;
+                                const Circle& robot, std::span<const Segment> leaves) const;
 
   PersonParams params_;
   Random random_;
+  Beat beat_;
   Point2 position_;
   Point2 velocity_{0.0, 0.0};
-  std::size_t corner_ = 1;  // walked to
-  bool backwards_ = false;
   bool standing_ = false;
   double phase_left_s_ = 0.0;
   double blocked_s_ = 0.0;

@@ -8,14 +8,14 @@
 namespace deltamap::simulation {
 
 std::vector<Reading> RangeFinder::measure(const Sweep& sweep, double max_range_m, const RayCaster& world,
-                                          const RobotAt& map_from_robot_at, const PeopleAt& people_at) {
+                                          const RobotAt& map_from_robot_at, const MovingAt& moving_at) {
   assert(sweep.bearings_rad.size() == sweep.offsets_s.size() && "every beam has a bearing and a time");
   std::vector<Reading> readings;
   readings.reserve(sweep.bearings_rad.size());
   for (std::size_t beam = 0; beam < sweep.bearings_rad.size(); ++beam) {
     const double offset_s = sweep.offsets_s[beam];
     const Pose2 map_from_laser = map_from_robot_at(offset_s) * params_.robot_from_laser;
-    readings.push_back(measure_beam(map_from_laser, sweep.bearings_rad[beam], max_range_m, world, people_at(offset_s)));
+    readings.push_back(measure_beam(map_from_laser, sweep.bearings_rad[beam], max_range_m, world, moving_at(offset_s)));
   }
   return readings;
 }
@@ -34,7 +34,7 @@ std::optional<RayHit> RangeFinder::nearest_thin(double bearing_in_map, std::opti
 }
 
 Reading RangeFinder::measure_beam(const Pose2& map_from_laser, double bearing_rad, double max_range_m,
-                                  const RayCaster& world, std::span<const Circle> people) {
+                                  const RayCaster& world, const MovingSurfaces& moving) {
   // Both numbers are drawn for every beam, so that one beam's fate does not shift the chances of all that follow.
   const double fate = random_.uniform();
   const double noise_m = random_.normal(params_.range_noise_m);
@@ -49,7 +49,7 @@ Reading RangeFinder::measure_beam(const Pose2& map_from_laser, double bearing_ra
     return *wrap == WrapEcho::kThrough;
   };
   const auto hit_towards = [&](double bearing_in_map) {
-    return cast_through(world, origin, bearing_in_map, 2.0 * max_range_m, people, passes);
+    return cast_through(world, origin, bearing_in_map, 2.0 * max_range_m, moving, passes);
   };
   const auto range_of = [&](const std::optional<RayHit>& hit) { return hit ? hit->range_m : 2.0 * max_range_m; };
   // The cone's rims tell whether an edge splits the beam; then the light of both depths may blend to one between.

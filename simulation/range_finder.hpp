@@ -43,16 +43,16 @@ class RangeFinder {
  public:
   RangeFinder(const RangeFinderParams& params, Random random) : params_{params}, random_{random} {}
 
-  /// Where the robot and the people are so many seconds after the sweep's first beam.
+  /// Where the robot and all that moves are so many seconds after the sweep's first beam.
   using RobotAt = std::function<Pose2(double offset_s)>;
-  using PeopleAt = std::function<std::span<const Circle>(double offset_s)>;
+  using MovingAt = std::function<MovingSurfaces(double offset_s)>;
 
   [[nodiscard]] std::vector<Reading> measure(const Sweep& sweep, double max_range_m, const RayCaster& world,
-                                             const RobotAt& map_from_robot_at, const PeopleAt& people_at);
+                                             const RobotAt& map_from_robot_at, const MovingAt& moving_at);
 
  private:
   [[nodiscard]] Reading measure_beam(const Pose2& map_from_laser, double bearing_rad, double max_range_m,
-                                     const RayCaster& world, std::span<const Circle> people);
+                                     const RayCaster& world, const MovingSurfaces& moving);
   template <typename HitTowards>
   [[nodiscard]] std::optional<RayHit> nearest_thin(double bearing_in_map, std::optional<RayHit> middle,
                                                    const HitTowards& hit_towards) const;

@@ -16,7 +16,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Distance along the unit direction to the segment; infinite where it is not met.
-double range_to(const Segment& segment, const Point2& from, const Point2& direction) {
+inline double range_to(const Segment& segment, const Point2& from, const Point2& direction) {
   const Point2 along = segment.to - segment.from;
   const double sine = cross(direction, along);
   if (sine == 0.0) return kNever;  // parallel: a surface seen edge-on has no face
@@ -26,7 +26,7 @@ double range_to(const Segment& segment, const Point2& from, const Point2& direct
   return range_m >= 0.0 && share >= 0.0 && share <= 1.0 ? range_m : kNever;
 }
 
-double range_to(const Circle& circle, const Point2& from, const Point2& direction) {
+inline double range_to(const Circle& circle, const Point2& from, const Point2& direction) {
   const Point2 to_centre = circle.centre - from;
   const double nearest = to_centre.dot(direction);
   const double half_chord2 = circle.radius_m * circle.radius_m - (to_centre.squaredNorm() - nearest * nearest);
@@ -90,7 +90,7 @@ void RayCaster::enter(std::size_t surface) {
   }
 }
 
-std::span<const std::uint32_t> RayCaster::bucket(Cell cell) const {
+inline std::span<const std::uint32_t> RayCaster::bucket(Cell cell) const {
   if (!buckets_.contains(cell)) return {};
   return contents_[buckets_.index_of(cell)];
 }
@@ -105,29 +105,33 @@ RayHit RayCaster::hit_on(const Surface& surface, double range_m, const Point2& d
 }
 
 std::optional<RayHit> RayCaster::cast(const Point2& from, double bearing_rad, double max_range_m,
-                                      std::span<const Circle> people) const {
+                                      const MovingSurfaces& moving) const {
   const Point2 direction{std::cos(bearing_rad), std::sin(bearing_rad)};
-  RayHit best{kNever, 0, 0};
-  const Surface* met = nullptr;
-  for (const Circle& person : people) {
+  double nearest_m = kNever;
+  const Surface* met = nullptr;  // none while a mover is nearest
+  for (const Circle& person : moving.round) {
     const double range_m = range_to(person, from, direction);
-    if (range_m < best.range_m) best = {range_m, kPersonId, 0};
+    nearest_m = std::min(nearest_m, range_m);
+  }
+  for (const Segment& edge : moving.straight) {
+    const double range_m = range_to(edge, from, direction);
+    nearest_m = std::min(nearest_m, range_m);
   }
   walk_ray(buckets_, from, from + max_range_m * direction, [&](Cell cell, double entered_m) {
-    if (best.range_m < entered_m) return false;
+    if (nearest_m < entered_m) return false;
     for (const std::uint32_t index : bucket(cell)) {
       const Surface& surface = surfaces_[index];
       const double range_m = surface.radius_m > 0.0
                                  ? range_to(Circle{surface.segment.from, surface.radius_m}, from, direction)
                                  : range_to(surface.segment, from, direction);
-      if (range_m >= best.range_m) continue;
-      best.range_m = range_m;
+      if (range_m >= nearest_m) continue;
+      nearest_m = range_m;
       met = &surface;
     }
     return true;
   });
-  if (best.range_m > max_range_m) return std::nullopt;
-  return met == nullptr ? best : hit_on(*met, best.range_m, direction);
+  if (nearest_m > max_range_m) return std::nullopt;
+  return met == nullptr ? RayHit{nearest_m, kMoverId, 0} : hit_on(*met, nearest_m, direction);
 }
 
 std::optional<RayCaster::Nearest> RayCaster::nearest_surface(const Point2& point, double within_m) const {

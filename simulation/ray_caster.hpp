@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a ray first meets the world. Surfaces lie in buckets of a uniform grid, so that a ray asks only those near it.
-// Built anew when the world changes; people, who move all the time, are handed in with each ray.
+// Built anew when the world changes; people, fork-lifts and doors, which move all the time, are handed in with each
+// ray.
 #pragma once
 
 #include <optional>
@@ -8,11 +9,12 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
+#include "simulation/bodies.hpp"
 #include "simulation/world.hpp"
 
 namespace deltamap::simulation {
 
-inline constexpr int kPersonId = -1;  ///< what a ray has hit where it has hit none of the world's objects
+inline constexpr int kMoverId = -1;  ///< what a ray has hit where it has hit none of the world's objects
 
 /// Objects narrower than this may stand between the middle and the rim of a laser's beam.
 inline constexpr double kThin_m = 0.15;
@@ -32,7 +34,7 @@ class RayCaster {
 
   /// The first surface from `from` towards `bearing_rad` (map frame) no farther than max_range_m.
   [[nodiscard]] std::optional<RayHit> cast(const Point2& from, double bearing_rad, double max_range_m,
-                                           std::span<const Circle> people = {}) const;
+                                           const MovingSurfaces& moving = {}) const;
 
   /// Whether any object is narrower than kThin_m.
   [[nodiscard]] bool has_thin_objects() const { return has_thin_objects_; }

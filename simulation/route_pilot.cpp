@@ -12,11 +12,13 @@
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kNarrowCost = 6.0;  // of a metre with clearance only, against one with comfort
-constexpr double kAvoided_m = 0.8;   // floor around a person in the way, to the robot's centre
-constexpr double kCarrot_m = 2.0;    // how far ahead of itself it looks along the way
-constexpr double kArrived_m = 0.5;   // from the goal
-constexpr double kStrayed_m = 1.5;   // from the way: it was carried off
+constexpr double kNarrowCost = 6.0;      // of a metre with clearance only, against one with comfort
+constexpr double kAvoided_m = 0.8;       // floor around a person in the way, to the robot's centre
+constexpr double kAvoidedRoom_m = 0.45;  // the same beside something larger than a person
+constexpr double kLeafRoom_m = 0.3;      // of the robot's middle from a door's leaf: its body passes
+constexpr double kCarrot_m = 2.0;        // how far ahead of itself it looks along the way
+constexpr double kArrived_m = 0.5;       // from the goal
+constexpr double kStrayed_m = 1.5;       // from the way: it was carried off
 constexpr double kBacking_m_per_s = 0.15;
 constexpr double kBacking_s = 2.0;
 constexpr double kAheadCosine = 0.5;  // within 60° of its nose
@@ -110,8 +112,9 @@ class WaySearch {
   [[nodiscard]] bool is_passable(Cell cell) const {
     if (!floor_.geometry.contains(cell) || !floor_.reached[floor_.geometry.index_of(cell)]) return false;
     const Point2 centre = floor_.geometry.centre_of(cell);
-    return std::none_of(avoided_.begin(), avoided_.end(),
-                        [&](const Circle& person) { return (person.centre - centre).norm() < kAvoided_m; });
+    return std::none_of(avoided_.begin(), avoided_.end(), [&](const Circle& body) {
+      return (body.centre - centre).norm() < std::max(kAvoided_m, body.radius_m + kAvoidedRoom_m);
+    });
   }
 
   const ReachableFloor& floor_;
@@ -134,15 +137,15 @@ void RoutePilot::see(const World& world, const Point2& from) {
   forget_way();
 }
 
-DriveTarget RoutePilot::target(const RobotState& robot, std::span<const Circle> people, double dt_s) {
+DriveTarget RoutePilot::target(const RobotState& robot, const Bodies& bodies, double dt_s) {
   const Pose2& at = robot.map_from_robot;
   if (backing_left_s_ > 0.0) {
     backing_left_s_ -= dt_s;
     if (!robot.stalled) return {.speed_m_per_s = -kBacking_m_per_s};
     backing_left_s_ = 0.0;
   }
-  const bool person = someone_ahead(at, people);
-  waited_s_ = person || robot.stalled ? waited_s_ + dt_s : 0.0;
+  const bool held_up = someone_ahead(at, bodies.walkers()) || leaf_ahead(at, bodies.leaves());
+  waited_s_ = held_up || robot.stalled ? waited_s_ + dt_s : 0.0;
   if (robot.stalled && waited_s_ > 1.0) {
     waited_s_ = 0.0;
     backing_left_s_ = kBacking_s;
@@ -151,16 +154,16 @@ DriveTarget RoutePilot::target(const RobotState& robot, std::span<const Circle> 
   }
   if (waited_s_ > params_.patience_s) {
     waited_s_ = 0.0;
-    plan(at.position(), people);
+    plan(at.position(), bodies.obstacles());
     // Off the person's direction first: a turn on the spot brings it out of sight.
   }
   const bool arrived = way_.empty() || (way_.back() - at.position()).norm() < kArrived_m;
   if (arrived || (way_[std::min(next_, way_.size() - 1)] - at.position()).norm() > kStrayed_m) {
-    plan(at.position(), {});
+    plan(at.position());
   }
   if (way_.empty()) return {.turn_rate_rad_per_s = 0.5 * params_.turn_rate_rad_per_s};
   DriveTarget wanted = towards(carrot(at.position()), at);
-  if (person) wanted.speed_m_per_s = 0.0;
+  if (held_up) wanted.speed_m_per_s = 0.0;
   return wanted;
 }
 
@@ -170,6 +173,16 @@ bool RoutePilot::someone_ahead(const Pose2& map_from_robot, std::span<const Circ
     const Point2 to_person = person.centre - map_from_robot.position();
     const double distance_m = to_person.norm();
     return distance_m - person.radius_m < params_.sight_m && to_person.dot(nose) > kAheadCosine * distance_m;
+  });
+}
+
+/// Whether a door's leaf crosses the next metre of the way.
+bool RoutePilot::leaf_ahead(const Pose2& map_from_robot, std::span<const Segment> leaves) const {
+  return std::any_of(leaves.begin(), leaves.end(), [&](const Segment& leaf) {
+    for (double ahead_m = 0.2; ahead_m < params_.sight_m; ahead_m += 0.2) {
+      if (distance_between(map_from_robot * Point2{ahead_m, 0.0}, leaf) < kLeafRoom_m) return true;
+    }
+    return false;
   });
 }
 

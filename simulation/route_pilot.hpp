@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drives a simulated robot about by where it truly is: from one place of the free floor to another, drawn by chance.
-// It keeps to the middle of corridors, waits for people, and looks for another way where it is held up.
+// It keeps to the middle of corridors, waits for people and doors, and looks for another way where it is held up.
 #pragma once
 
 #include <optional>
@@ -31,7 +31,7 @@ class RoutePilot {
   void see(const World& world, const Point2& from);
 
   /// What to drive for the next dt_s seconds.
-  [[nodiscard]] DriveTarget target(const RobotState& robot, std::span<const Circle> people, double dt_s);
+  [[nodiscard]] DriveTarget target(const RobotState& robot, const Bodies& bodies, double dt_s);
 
   [[nodiscard]] bool reaches(const Point2& place) const { return floor_.contains(place); }
   /// A place on the floor with room around it, and any heading.
@@ -40,9 +40,10 @@ class RoutePilot {
  private:
   [[nodiscard]] DriveTarget towards(const Point2& place, const Pose2& map_from_robot) const;
   [[nodiscard]] bool someone_ahead(const Pose2& map_from_robot, std::span<const Circle> people) const;
+  [[nodiscard]] bool leaf_ahead(const Pose2& map_from_robot, std::span<const Segment> leaves) const;
   [[nodiscard]] bool is_open(const Point2& from, const Point2& to, const ReachableFloor& floor) const;
   [[nodiscard]] Point2 carrot(const Point2& from);
-  void plan(const Point2& from, std::span<const Circle> avoided);
+  void plan(const Point2& from, std::span<const Circle> avoided = {});
   void forget_way() { way_.clear(); }
 
   RoutePilotParams params_;

@@ -124,6 +124,9 @@ Scenario scenario_of(const YAML::Node& root, const std::string& name) {
   if (top.has("changed_at_start")) scenario.changed_at_start = changed_start_of(top.section("changed_at_start"));
   for (const YAML::Node& person : top.items("people"))
     scenario.people.push_back(person_of(YamlSection{person, name, "people"}));
+  for (const YAML::Node& actor : top.items("actors"))
+    scenario.actors.push_back(actor_of(YamlSection{actor, name, "actors"}));
+  for (const YAML::Node& door : top.items("doors")) scenario.doors.push_back(door_of(YamlSection{door, name, "doors"}));
   top.expect_no_more();
 
   const Point2 start = scenario.robot.map_from_start.position();

@@ -12,7 +12,7 @@
 #include "simulation/changed_hall.hpp"
 #include "simulation/creep.hpp"
 #include "simulation/forklift.hpp"
-#include "simulation/person.hpp"
+#include "simulation/movers.hpp"
 #include "simulation/range_finder.hpp"
 #include "simulation/robot.hpp"
 #include "simulation/world.hpp"
@@ -50,6 +50,8 @@ struct Scenario {
   LaserSetup laser;
   std::optional<ForkliftParams> forklift;
   std::vector<PersonParams> people;
+  std::vector<ActorParams> actors;
+  std::vector<DoorParams> doors;
   std::optional<CreepParams> creep;
   std::optional<ChangedStartParams> changed_at_start;  ///< the world above is that of M_0
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads who moves and changes things in a scenario: the fork-lift's work, containers that creep, and the people.
+// Reads who moves and changes things in a scenario: the fork-lift's work, containers that creep, people, actors and
+// doors.
 #pragma once
 
 #include "simulation/scenario.hpp"
@@ -12,5 +13,7 @@ namespace deltamap::simulation {
 [[nodiscard]] CreepParams creep_of(YamlSection creep);
 [[nodiscard]] ChangedStartParams changed_start_of(YamlSection start);
 [[nodiscard]] PersonParams person_of(YamlSection person);
+[[nodiscard]] ActorParams actor_of(YamlSection actor);
+[[nodiscard]] DoorParams door_of(YamlSection door);
 
 }  // namespace deltamap::simulation

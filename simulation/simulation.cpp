@@ -17,11 +17,34 @@ constexpr Duration kTruthEvery = std::chrono::milliseconds{100};
 constexpr Duration kForkliftPatience = std::chrono::seconds{1};  // until it looks again where nothing could be done
 
 /// Each has its own chance, so that a change to one does not touch what befalls the others.
-enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPioneer, kLms200, kPeople, kCreep, kChangedStart };
+enum class Stream : std::uint64_t {
+  kRobot,
+  kLaser,
+  kForklift,
+  kPioneer,
+  kLms200,
+  kPeople,
+  kCreep,
+  kChangedStart,
+  kActor,
+  kDoor
+};
 
 Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
   constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
   return Random{seed * kSpread + 64 * (index + 1) + static_cast<std::uint64_t>(stream)};
+}
+
+Stream stream_of(Movers::Kind kind) {
+  switch (kind) {
+    case Movers::Kind::kActor:
+      return Stream::kActor;
+    case Movers::Kind::kDoor:
+      return Stream::kDoor;
+    case Movers::Kind::kPerson:
+      break;
+  }
+  return Stream::kPeople;
 }
 
 devices::PioneerSetup pioneer_setup(const RobotSetup& robot) {
@@ -77,13 +100,12 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
       surfaces_{scenario.world},
       body_{scenario.robot.body, scenario.robot.map_from_start, random_for(params.seed, Stream::kRobot)},
       range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
+      movers_{{scenario.people, scenario.actors, scenario.doors},
+              [&](Movers::Kind kind, std::size_t index) { return random_for(params.seed, stream_of(kind), index); }},
       pioneer_{pioneer_setup(scenario.robot), random_for(params.seed, Stream::kPioneer)},
       lms200_{lms200_setup(scenario.laser), params.start, random_for(params.seed, Stream::kLms200)},
       now_{params.start},
       next_truth_{params.start} {
-  for (const PersonParams& person : scenario.people) {
-    people_.emplace_back(person, random_for(params.seed, Stream::kPeople, people_.size()));
-  }
   if (scenario.forklift) {
     forklift_.emplace(*scenario.forklift, scenario.slots, scenario.world, scenario.robot.map_from_start.position(),
                       random_for(params.seed, Stream::kForklift));
@@ -91,8 +113,8 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
     next_change_ = params.start + change_every_;
   }
   if (scenario.changed_at_start) {
-    ChangedHall hall = changed_start(*scenario.changed_at_start, scenario.slots, world_, robot_body(), people(),
-                                     random_for(params.seed, Stream::kChangedStart));
+    ChangedHall hall = changed_start(*scenario.changed_at_start, scenario.slots, world_, robot_body(),
+                                     movers_.bodies().obstacles(), random_for(params.seed, Stream::kChangedStart));
     take_place(hall.changes, params.start);
     for (const Change& change : hall.changes) {
       if (forklift_) forklift_->learn(change);
@@ -103,7 +125,7 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
                    random_for(params.seed, Stream::kCreep));
     next_push_ = params.start + duration_from_seconds(scenario.creep->every_s);
   }
-  history_.add({params.start, body_.state().map_from_robot, {}, people()});
+  history_.add({params.start, body_.state().map_from_robot, {}, movers_.bodies()});
 }
 
 void Simulation::advance_to(Timestamp now) {
@@ -126,9 +148,8 @@ void Simulation::run_devices(Timestamp now) {
 
 void Simulation::move(Timestamp from) {
   const double dt_s = seconds(kStep);
-  const std::vector<Circle> others = people();
-  body_.move(pioneer_.demand(), dt_s, surfaces_, others);
-  for (Person& person : people_) person.move(dt_s, surfaces_, robot_body());
+  body_.move(pioneer_.demand(), dt_s, surfaces_, movers_.bodies().obstacles());
+  movers_.move(dt_s, surfaces_, robot_body());
   const RobotState& state = body_.state();
   travelled_m_ += state.speed_m_per_s * dt_s;
   turned_rad_ += state.turn_rate_rad_per_s * dt_s;
@@ -136,7 +157,7 @@ void Simulation::move(Timestamp from) {
                 state.map_from_robot,
                 {state.odom_from_robot, state.speed_m_per_s, state.turn_rate_rad_per_s, travelled_m_, turned_rad_,
                  state.stalled, state.contact_bearing_rad},
-                people()});
+                movers_.bodies()});
 }
 
 /// What happens at the beginning of a step: what changes the world, and a line of truth now and then.
@@ -151,7 +172,7 @@ void Simulation::work(Timestamp now) {
 
 void Simulation::let_forklift_work(Timestamp now) {
   if (!forklift_ || now < next_change_) return;
-  const auto change = forklift_->next_change(world_, robot_body(), people());
+  const auto change = forklift_->next_change(world_, robot_body(), movers_.bodies().obstacles());
   next_change_ = now + (change ? change_every_ : kForkliftPatience);
   if (change) take_place({*change}, now);
 }
@@ -159,7 +180,7 @@ void Simulation::let_forklift_work(Timestamp now) {
 void Simulation::let_containers_creep(Timestamp now) {
   if (!creep_ || now < next_push_) return;
   next_push_ = now + duration_from_seconds(scenario_.creep->every_s);
-  take_place(creep_->pushes(world_, robot_body(), people()), now);
+  take_place(creep_->pushes(world_, robot_body(), movers_.bodies().obstacles()), now);
 }
 
 void Simulation::take_place(const std::vector<Change>& changes, Timestamp now) {
@@ -181,7 +202,7 @@ std::vector<Beam> Simulation::measure(const devices::SweepRequest& request) {
   const auto at = [&](double offset_s) { return request.begin + duration_from_seconds(offset_s); };
   const auto readings = range_finder_.measure(
       sweep, request.max_range_m, surfaces_, [&](double offset_s) { return history_.map_from_robot_at(at(offset_s)); },
-      [&](double offset_s) -> std::span<const Circle> { return history_.people_at(at(offset_s)); });
+      [&](double offset_s) { return history_.bodies_at(at(offset_s)).surfaces(); });
   const devices::WheelMotion wheels = history_.wheels_at(request.begin);
   truth_.push_back(TruthPose{request.begin, history_.map_from_robot_at(request.begin), wheels.speed_m_per_s, true});
   std::vector<Beam> beams;
@@ -199,7 +220,7 @@ std::optional<double> Simulation::sonar_range_m(int index, Timestamp now) const 
   std::optional<double> nearest;
   for (const double off_deg : {-7.5, 0.0, 7.5}) {
     const auto hit = surfaces_.cast(map_from_sonar.position(), map_from_sonar.theta + radians(off_deg), kReach_m,
-                                    history_.people_at(now));
+                                    history_.bodies_at(now).surfaces());
     if (hit && (!nearest || hit->range_m < *nearest)) nearest = hit->range_m;
   }
   return nearest;
@@ -207,12 +228,6 @@ std::optional<double> Simulation::sonar_range_m(int index, Timestamp now) const 
 
 Circle Simulation::robot_body() const {
   return {body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
-}
-
-std::vector<Circle> Simulation::people() const {
-  std::vector<Circle> bodies;
-  for (const Person& person : people_) bodies.push_back(person.body());
-  return bodies;
 }
 
 Timestamp Simulation::next_event() const {

@@ -60,14 +60,13 @@ class Simulation {
   [[nodiscard]] std::vector<Beam> measure(const devices::SweepRequest& request);
   [[nodiscard]] std::optional<double> sonar_range_m(int index, Timestamp now) const;
   [[nodiscard]] Circle robot_body() const;
-  [[nodiscard]] std::vector<Circle> people() const;
 
   Scenario scenario_;
   World world_;
   RayCaster surfaces_;
   Robot body_;
   RangeFinder range_finder_;
-  std::vector<Person> people_;
+  Movers movers_;
   std::optional<Forklift> forklift_;
   std::optional<Creep> creep_;
   Duration change_every_{};

@@ -78,17 +78,30 @@ OccupancyGrid start_map(const World& world, const Point2& robot_start, double re
   return surveyed_map(world, robot_start, map_geometry(world, resolution_m));
 }
 
+OccupancyGrid start_map(const Scenario& scenario, double resolution_m) {
+  World world = scenario.world;
+  int id = world.largest_id();
+  for (const DoorParams& door : scenario.doors) {
+    const auto leaf = leaf_of(door, door.is_drawn_open ? 1.0 : 0.0);
+    if (leaf) world.objects.push_back({++id, ObjectKind::kDoor, Polyline{{leaf->from, leaf->to}}});
+  }
+  return start_map(world, scenario.robot.map_from_start.position(), resolution_m);
+}
+
 OccupancyGrid surveyed_map(const World& world, const Point2& robot_start, const GridGeometry& geometry) {
   OccupancyGrid grid{geometry};
-  const auto draw = [&](bool glass) {
+  const auto hides_floor = [](const Object& object) {
+    return object.material != Material::kGlass && object.kind != ObjectKind::kDoor;
+  };
+  const auto draw = [&](bool hiding) {
     for (const Object& object : world.objects) {
-      if (!object.is_drawn || (object.material == Material::kGlass) != glass) continue;
+      if (!object.is_drawn || hides_floor(object) != hiding) continue;
       for (const Cell cell : surface_cells(object.shape, grid.geometry())) grid.set(cell, CellState::kOccupied);
     }
   };
-  draw(false);
+  draw(true);
   flood(grid, grid.geometry().cell_at(robot_start));
-  draw(true);  // the floor behind a pane is seen
+  draw(false);  // the floor behind a pane or a door is known
   OccupancyGrid seen = grid;
   for (std::size_t i = 0; i < grid.geometry().cell_count(); ++i) {
     const Cell cell = grid.geometry().cell_of(i);

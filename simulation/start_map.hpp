@@ -12,6 +12,10 @@ namespace deltamap::simulation {
 /// in the middle of a cell, so that noise does not scatter them over two.
 [[nodiscard]] OccupancyGrid start_map(const World& world, const Point2& robot_start, double resolution_m);
 
+/// The same of a scenario's world, its doors drawn shut or open as it says; who surveyed has been on both sides of
+/// them.
+[[nodiscard]] OccupancyGrid start_map(const Scenario& scenario, double resolution_m);
+
 /// The same on a given grid.
 [[nodiscard]] OccupancyGrid surveyed_map(const World& world, const Point2& robot_start, const GridGeometry& geometry);
 

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <optional>
-#include <span>
 
 #include "core/angle.hpp"
 #include "simulation/ray_caster.hpp"
@@ -36,16 +35,17 @@ enum class WrapEcho : std::uint8_t { kReturned, kNone, kThrough, kDazzled, kShor
 /// The first hit of a ray that goes on behind every surface of glass or wrap of which passes(hit) holds.
 template <typename Passes>
 [[nodiscard]] std::optional<RayHit> cast_through(const RayCaster& world, const Point2& from, double bearing_rad,
-                                                 double max_range_m, std::span<const Circle> people,
+                                                 double max_range_m, const MovingSurfaces& moving,
                                                  const Passes& passes) {
   constexpr double kBehind_m = 1e-6;
+  std::optional<RayHit> hit = world.cast(from, bearing_rad, max_range_m, moving);
+  if (!hit || hit->material == Material::kSolid) return hit;
+  const Point2 direction{std::cos(bearing_rad), std::sin(bearing_rad)};
   double passed_m = 0.0;
-  auto hit = world.cast(from, bearing_rad, max_range_m, people);
   while (hit && hit->material != Material::kSolid && passes(*hit)) {
     passed_m += hit->range_m + kBehind_m;
     if (passed_m >= max_range_m) return std::nullopt;
-    const Point2 direction{std::cos(bearing_rad), std::sin(bearing_rad)};
-    hit = world.cast(from + passed_m * direction, bearing_rad, max_range_m - passed_m, people);
+    hit = world.cast(from + passed_m * direction, bearing_rad, max_range_m - passed_m, moving);
   }
   if (hit) hit->range_m += passed_m;
   return hit;

@@ -23,7 +23,18 @@ constexpr double kHeadingUnit_rad = 0.001534;     // A6
 constexpr double kLongestInMillimetres_m = 32.0;  // B4
 
 /// Each has its own chance, so that a change to one does not touch what befalls the others.
-enum class Stream : std::uint64_t { kRobot, kLaser, kForklift, kPilot, kPeople, kMany, kCreep, kChangedStart };
+enum class Stream : std::uint64_t {
+  kRobot,
+  kLaser,
+  kForklift,
+  kPilot,
+  kPeople,
+  kMany,
+  kCreep,
+  kChangedStart,
+  kActor,
+  kDoor
+};
 
 Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
   constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
@@ -35,6 +46,24 @@ double rounded_to(double value, double unit) { return unit * std::round(value / 
 Scenario started_at(Scenario scenario, const std::optional<Pose2>& map_from_start) {
   if (map_from_start) scenario.robot.map_from_start = *map_from_start;
   return scenario;
+}
+
+Stream stream_of(Movers::Kind kind) {
+  switch (kind) {
+    case Movers::Kind::kActor:
+      return Stream::kActor;
+    case Movers::Kind::kDoor:
+      return Stream::kDoor;
+    case Movers::Kind::kPerson:
+      break;
+  }
+  return Stream::kPeople;
+}
+
+MoverParams movers_of(const Scenario& scenario, const std::vector<PersonParams>& more_people) {
+  MoverParams movers{scenario.people, scenario.actors, scenario.doors};
+  movers.people.insert(movers.people.end(), more_people.begin(), more_people.end());
+  return movers;
 }
 
 Sweep fan() {
@@ -57,15 +86,13 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
       range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
       pilot_{params.route, scenario.world, scenario_.robot.map_from_start.position(),
              random_for(params.seed, Stream::kPilot)},
+      movers_{movers_of(scenario, params.people),
+              [&](Movers::Kind kind, std::size_t index) { return random_for(params.seed, stream_of(kind), index); }},
       now_{kStart},
       next_odometry_{kStart},
       next_change_{kStart},
       next_push_{kStart},
       fan_{fan()} {
-  scenario_.people.insert(scenario_.people.end(), params.people.begin(), params.people.end());
-  for (const PersonParams& person : scenario_.people) {
-    people_.emplace_back(person, random_for(params.seed, Stream::kPeople, people_.size()));
-  }
   if (params.forklift) {
     forklift_.emplace(*params.forklift, scenario.slots, scenario.world, scenario_.robot.map_from_start.position(),
                       random_for(params.seed, Stream::kForklift));
@@ -81,7 +108,7 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
 }
 
 void VirtualDrive::begin_changed(const ChangedStartParams& start) {
-  ChangedHall hall = changed_start(start, scenario_.slots, world_, robot_body(), people(),
+  ChangedHall hall = changed_start(start, scenario_.slots, world_, robot_body(), movers_.bodies().obstacles(),
                                    random_for(params_.seed, Stream::kChangedStart));
   world_ = std::move(hall.world);
   unseen_ = std::move(hall.changes);
@@ -96,12 +123,13 @@ DriveStep VirtualDrive::next() {
   step_.changes = std::exchange(unseen_, {});
   let_forklift_work();
   let_containers_creep();
-  target_ = pilot_.target(body_.state(), people(), params_.scan_period_s);
+  target_ = pilot_.target(body_.state(), movers_.bodies(), params_.scan_period_s);
   const Timestamp end = now_ + duration_from_seconds(params_.scan_period_s);
   step_.map_from_robot = body_.state().map_from_robot;
   step_.scan = sweep();
   while (now_ < end) advance(std::min(kStep_s, seconds(end - now_)));
   step_.scan.received = now_;
+  step_.events = movers_.take_events();
   return std::move(step_);
 }
 
@@ -114,14 +142,14 @@ Scan VirtualDrive::sweep() {
   scan.bearing_step_rad = radians(1.0);
   scan.max_range_m = params_.max_range_m;
   scan.robot_from_laser = scenario_.laser.optics.robot_from_laser;
-  const std::vector<Circle> standing = people();
+  const Bodies standing = movers_.bodies();
   const Pose2 begin = body_.state().map_from_robot;
   advance(kSweep_s);
   const Pose2 end = body_.state().map_from_robot;
   const auto readings = range_finder_.measure(
       fan_, params_.max_range_m, surfaces_,
       [&](double offset_s) { return interpolated(begin, end, offset_s / kSweep_s); },
-      [&](double) -> std::span<const Circle> { return standing; });
+      [&](double) { return standing.surfaces(); });
   const double unit_m = params_.max_range_m > kLongestInMillimetres_m ? 0.01 : 0.001;
   scan.beams.reserve(readings.size());
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -134,9 +162,8 @@ Scan VirtualDrive::sweep() {
 void VirtualDrive::advance(double dt_s) {
   const RobotState before = body_.state();
   const Timestamp from = now_;
-  body_.move(target_, dt_s, surfaces_, people());
-  const Circle robot = robot_body();
-  for (Person& person : people_) person.move(dt_s, surfaces_, robot);
+  body_.move(target_, dt_s, surfaces_, movers_.bodies().obstacles());
+  movers_.move(dt_s, surfaces_, robot_body());
   now_ = now_ + duration_from_seconds(dt_s);
   report_odometry(before, from);
 }
@@ -166,7 +193,7 @@ void VirtualDrive::report_odometry(const RobotState& before, Timestamp from) {
 
 void VirtualDrive::let_forklift_work() {
   if (!forklift_ || now_ < next_change_) return;
-  const auto done = forklift_->next_change(world_, robot_body(), people());
+  const auto done = forklift_->next_change(world_, robot_body(), movers_.bodies().obstacles());
   next_change_ = now_ + duration_from_seconds(done ? params_.forklift->change_every_s : kForkliftPatience_s);
   if (!done) return;
   change(*done);
@@ -176,7 +203,7 @@ void VirtualDrive::let_forklift_work() {
 void VirtualDrive::let_containers_creep() {
   if (!creep_ || now_ < next_push_) return;
   next_push_ = now_ + duration_from_seconds(params_.creep->every_s);
-  const std::vector<Change> pushes = creep_->pushes(world_, robot_body(), people());
+  const std::vector<Change> pushes = creep_->pushes(world_, robot_body(), movers_.bodies().obstacles());
   if (pushes.empty()) return;
   for (const Change& push : pushes) world_ = changed(world_, push);
   see_changes();
@@ -197,7 +224,7 @@ void VirtualDrive::see_changes() {
 
 std::vector<Change> VirtualDrive::change_many(double share, const ForkliftParams& params) {
   ChangedHall hall = changed_hall({.share = share}, params, scenario_.slots, scenario_.world, world_, robot_body(),
-                                  people(), random_for(params_.seed, Stream::kMany, many_++));
+                                  movers_.bodies().obstacles(), random_for(params_.seed, Stream::kMany, many_++));
   world_ = std::move(hall.world);
   see_changes();
   return hall.changes;
@@ -207,18 +234,12 @@ Circle VirtualDrive::robot_body() const {
   return {body_.state().map_from_robot.position(), scenario_.robot.body.radius_m};
 }
 
-std::vector<Circle> VirtualDrive::people() const {
-  std::vector<Circle> bodies;
-  for (const Person& person : people_) bodies.push_back(person.body());
-  return bodies;
-}
-
 bool VirtualDrive::is_free(const Point2& place) const {
   const double room_m = scenario_.robot.body.radius_m + kBodyRoom_m;
   if (surfaces_.nearest_surface(place, room_m)) return false;
   const auto inside = [&](const Object& object) { return distance_between(place, object.shape) < room_m; };
   if (std::any_of(world_.objects.begin(), world_.objects.end(), inside)) return false;
-  const std::vector<Circle> standing = people();
+  const auto standing = movers_.bodies().obstacles();
   return std::none_of(standing.begin(), standing.end(),
                       [&](const Circle& person) { return (person.centre - place).norm() < room_m + person.radius_m; });
 }

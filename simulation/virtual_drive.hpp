@@ -11,7 +11,7 @@
 #include "core/messages.hpp"
 #include "simulation/creep.hpp"
 #include "simulation/forklift.hpp"
-#include "simulation/person.hpp"
+#include "simulation/movers.hpp"
 #include "simulation/range_finder.hpp"
 #include "simulation/route_pilot.hpp"
 #include "simulation/scenario.hpp"
@@ -36,8 +36,9 @@ struct VirtualDriveParams {
 struct DriveStep {
   std::vector<Odometry> odometry;  ///< what arrived before the scan, in order
   Scan scan;
-  Pose2 map_from_robot;         ///< the truth at Scan::time
-  std::vector<Change> changes;  ///< since the last scan, or before the first; the scan shows them
+  Pose2 map_from_robot;            ///< the truth at Scan::time
+  std::vector<MoverEvent> events;  ///< since the last scan: no changes of the map
+  std::vector<Change> changes;     ///< since the last scan, or before the first; the scan shows them
 };
 
 class VirtualDrive {
@@ -62,7 +63,9 @@ class VirtualDrive {
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const RayCaster& surfaces() const { return surfaces_; }
   [[nodiscard]] Pose2 map_from_robot() const { return body_.state().map_from_robot; }
-  [[nodiscard]] std::vector<Circle> people() const;
+  [[nodiscard]] double robot_radius_m() const { return scenario_.robot.body.radius_m; }
+  /// People, actors and doors.
+  [[nodiscard]] const Movers& movers() const { return movers_; }
   /// Room for a body around it and around everyone.
   [[nodiscard]] bool is_free(const Point2& place) const;
   /// Free, and a robot could drive there from where this one is.
@@ -87,7 +90,7 @@ class VirtualDrive {
   Robot body_;
   RangeFinder range_finder_;
   RoutePilot pilot_;
-  std::vector<Person> people_;
+  Movers movers_;
   std::optional<Forklift> forklift_;
   std::optional<Creep> creep_;
   std::vector<Change> unseen_;  // from before the first scan

@@ -9,7 +9,7 @@
 
 namespace deltamap::simulation {
 
-enum class ObjectKind : std::uint8_t { kWall, kContainer, kPost };
+enum class ObjectKind : std::uint8_t { kWall, kContainer, kPost, kDoor };
 
 /// What a beam meets (surface_optics.hpp).
 enum class Material : std::uint8_t { kSolid, kGlass, kWrap };

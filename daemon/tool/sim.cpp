@@ -21,8 +21,7 @@ struct SimOptions {
 void simulate(const SimOptions& options) {
   const simulation::Scenario scenario = simulation::read_scenario(options.world);
   if (options.write_map.empty()) return run_live(scenario, options.live);
-  const Point2 start = scenario.robot.map_from_start.position();
-  write_grid(simulation::start_map(scenario.world, start, options.resolution_m), options.write_map);
+  write_grid(simulation::start_map(scenario, options.resolution_m), options.write_map);
 }
 
 }  // namespace

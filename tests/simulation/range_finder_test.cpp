@@ -21,7 +21,7 @@ RangeFinderParams perfect() {
   return params;
 }
 
-std::span<const Circle> nobody(double) { return {}; }
+MovingSurfaces nobody(double) { return {}; }
 
 Sweep same_beam(std::size_t count, double bearing_rad, double step_s) {
   Sweep sweep;

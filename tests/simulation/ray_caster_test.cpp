@@ -62,9 +62,9 @@ TEST(RayCaster, SeesNothingBeyondItsRangeAndPeopleBeforeWalls) {
   EXPECT_FALSE(caster.cast({10, 5}, 0.0, 9.9));
   EXPECT_TRUE(caster.cast({10, 5}, 0.0, 10.1));
   const std::vector<Circle> people{{{15, 5}, 0.25}};
-  const auto hit = caster.cast({10, 5}, 0.0, 80.0, people);
+  const auto hit = caster.cast({10, 5}, 0.0, 80.0, {.round = people});
   ASSERT_TRUE(hit);
-  EXPECT_EQ(hit->object, kPersonId);
+  EXPECT_EQ(hit->object, kMoverId);
   EXPECT_NEAR(hit->range_m, 4.75, kExact);
 }
 

@@ -108,6 +108,31 @@ TEST(Scenario, ReadsContainersThatCreepAndAStartInAChangedHall) {
             "world.yaml: line 6: 'changes' must list removed, added or shifted");
 }
 
+TEST(Scenario, ReadsActorsAndDoors) {
+  const Scenario scenario =
+      parse_scenario(kRoom +
+                         "actors:\n  - {path: [[2, 1], [3, 1]], body: forklift, gate: [-1, 1], stop_most_s: 60}\n"
+                         "doors:\n  - {leaf: [5, 0, 5, 1], swing_deg: 90, open_share: 0.5, drawn: open}\n",
+                     "world.yaml");
+  EXPECT_TRUE(scenario.actors.at(0).is_forklift);
+  EXPECT_EQ(scenario.actors.at(0).gate->x(), -1.0);
+  EXPECT_EQ(scenario.actors.at(0).stop_most_s, 60.0);
+  EXPECT_NEAR(scenario.doors.at(0).swing_rad, radians(90), 1e-12);
+  EXPECT_TRUE(scenario.doors.at(0).is_drawn_open);
+  EXPECT_EQ(complaint_of(kRoom + "actors:\n  - {path: [[2, 1]]}\n"),
+            "world.yaml: line 6: 'path' must have at least two points");
+  EXPECT_EQ(complaint_of(kRoom + "actors:\n  - path: [[2, 1], [3, 1]]\n    body: horse\n"),
+            "world.yaml: line 7: 'body' must be person or forklift");
+  EXPECT_EQ(complaint_of(kRoom + "actors:\n  - path: [[2, 1], [3, 1]]\n    stop_least_s: 0\n"),
+            "world.yaml: line 7: 'stop_least_s' must lie from 0.1 to 1e+06");
+  EXPECT_EQ(complaint_of(kRoom + "doors:\n  - {leaf: [5, 0, 5]}\n"),
+            "world.yaml: line 6: 'leaf' must be a list of 4 numbers");
+  EXPECT_EQ(complaint_of(kRoom + "doors:\n  - {leaf: [5, 0, 5, 0]}\n"),
+            "world.yaml: line 6: 'leaf' must have a length");
+  EXPECT_EQ(complaint_of(kRoom + "doors:\n  - {leaf: [5, 0, 5, 1], drawn: ajar}\n"),
+            "world.yaml: line 6: 'drawn' must be closed or open");
+}
+
 TEST(Scenario, EveryDeliveredScenarioCanBeRead) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(DELTAMAP_SOURCE_DIR "/config/scenarios")) {

@@ -29,7 +29,7 @@ std::vector<Reading> measured(const World& world, const RangeFinderParams& param
   const RayCaster surfaces{world};
   const Sweep sweep{bearings_rad, std::vector<double>(bearings_rad.size(), 0.0)};
   return laser.measure(
-      sweep, 80.0, surfaces, [&](double) { return map_from_robot; }, [](double) { return std::span<const Circle>{}; });
+      sweep, 80.0, surfaces, [&](double) { return map_from_robot; }, [](double) { return MovingSurfaces{}; });
 }
 
 World with_pane() { return {{kHall, {2, ObjectKind::kWall, Polyline{{{10, 0}, {10, 20}}}, Material::kGlass}}}; }

@@ -111,7 +111,7 @@ TEST(VirtualDrive, GetsAlongWithPeopleAndAForkLift) {
   for (int scan = 0; scan < 5600; ++scan) {
     const DriveStep step = drive.next();
     changes += step.changes.size();
-    for (const Circle& person : drive.people()) {
+    for (const Circle& person : drive.movers().bodies().walkers()) {
       least_room_m = std::min(least_room_m, (person.centre - step.map_from_robot.position()).norm());
     }
     driven_m += distance_between(last, step.map_from_robot);

@@ -22,8 +22,7 @@ Followed LocalizerDrive::next() {
 
 std::shared_ptr<const OccupancyGrid> first_map(const simulation::Scenario& scenario) {
   constexpr double kResolution_m = 0.05;
-  return std::make_shared<const OccupancyGrid>(
-      simulation::start_map(scenario.world, scenario.robot.map_from_start.position(), kResolution_m));
+  return std::make_shared<const OccupancyGrid>(simulation::start_map(scenario, kResolution_m));
 }
 
 PoseError error_of(const Followed& scan) {
