@@ -2,10 +2,11 @@
 #include "simulation/simulation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "drivers/lms200/measurement.hpp"
+#include "simulation/chance.hpp"
+#include "simulation/sonar_ring.hpp"
 
 namespace deltamap::simulation {
 namespace {
@@ -29,11 +30,6 @@ enum class Stream : std::uint64_t {
   kActor,
   kDoor
 };
-
-Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
-  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
-  return Random{seed * kSpread + 64 * (index + 1) + static_cast<std::uint64_t>(stream)};
-}
 
 Stream stream_of(Movers::Kind kind) {
   switch (kind) {
@@ -68,28 +64,6 @@ devices::Lms200Setup lms200_setup(const LaserSetup& laser) {
   const double reach_words = laser.max_range_m / laser.resolution_m;  // B4: 13, 14 or 15 bits
   setup.measuring_mode = reach_words > 16'000 ? 0x06 : reach_words > 8'000 ? 0x04 : 0x00;
   return setup;
-}
-
-/// Where each sonar of the ring sits and looks, robot frame (A7).
-Pose2 robot_from_sonar(int index) {
-  constexpr std::array<std::array<double, 3>, 16> kRing{{{69, 136, 90},
-                                                         {114, 119, 50},
-                                                         {148, 78, 30},
-                                                         {166, 27, 10},
-                                                         {166, -27, -10},
-                                                         {148, -78, -30},
-                                                         {114, -119, -50},
-                                                         {69, -136, -90},
-                                                         {-157, -136, -90},
-                                                         {-203, -119, -130},
-                                                         {-237, -78, -150},
-                                                         {-255, -27, -170},
-                                                         {-255, 27, 170},
-                                                         {-237, 78, 150},
-                                                         {-203, 119, 130},
-                                                         {-157, 136, 90}}};
-  const auto& [x_mm, y_mm, bearing_deg] = kRing.at(static_cast<std::size_t>(index));
-  return {0.001 * x_mm, 0.001 * y_mm, radians(bearing_deg)};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "drivers/lms200/measurement.hpp"
+#include "simulation/chance.hpp"
 #include "simulation/changed_hall.hpp"
 
 namespace deltamap::simulation {
@@ -35,11 +36,6 @@ enum class Stream : std::uint64_t {
   kActor,
   kDoor
 };
-
-Random random_for(std::uint64_t seed, Stream stream, std::size_t index = 0) {
-  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15u;
-  return Random{seed * kSpread + 64 * (index + 1) + static_cast<std::uint64_t>(stream)};
-}
 
 double rounded_to(double value, double unit) { return unit * std::round(value / unit); }
 
