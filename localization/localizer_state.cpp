@@ -70,7 +70,7 @@ void Localizer::State::start_anywhere() {
 
 RefinedPose Localizer::State::believe_in(const Pose2& place, const ScanInstant& now) {
   const InitialPose around{place, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0};
-  const RefinedPose believed = tracker.start_around(around, now);
+  RefinedPose believed = tracker.start_around(around, now);
   start_tracking();
   if (!rivals.is_near_believed(place)) judgement.start(kTrustInASearch, true);
   rivals.start_believing_in(place);

@@ -32,7 +32,7 @@ RefinedPose Tracker::start_around(const InitialPose& pose) {
 }
 
 RefinedPose Tracker::start_around(const InitialPose& pose, const ScanInstant& now) {
-  const RefinedPose believed = start_around(pose);
+  RefinedPose believed = start_around(pose);
   last_update_ = now;
   return believed;
 }

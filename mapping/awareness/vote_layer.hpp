@@ -77,7 +77,8 @@ class VoteLayer {
            static_cast<std::size_t>(block.column / kTileSide);
   }
   [[nodiscard]] static std::size_t slot_of(Cell block) {
-    return static_cast<std::size_t>(block.row % kTileSide * kTileSide + block.column % kTileSide);
+    return static_cast<std::size_t>(block.row % kTileSide) * kTileSide +
+           static_cast<std::size_t>(block.column % kTileSide);
   }
   [[nodiscard]] Tile& tile_for(Cell block, std::uint32_t now_ms);
   void empty_tile(Tile& tile);

@@ -190,7 +190,8 @@ Report HallAccuracy::report(const std::vector<Outcome>& outcomes) const {
       Outcome all;
       all.numbers = numbers_of(scans);
       add_figures(report, setting, range, all);
-      Chart chart{setting + ", " + range + " m", "time, s", "error of position, m", {}};
+      const std::string title = std::string{setting}.append(", ").append(range).append(" m");
+      Chart chart{title, "time, s", "error of position, m", {}};
       for (const Outcome& outcome : outcomes) {
         if (outcome.label("setting") != setting || outcome.label("range_m") != range) continue;
         chart.series.push_back(errors_over_time(outcome, "seed " + outcome.label("seed")));
