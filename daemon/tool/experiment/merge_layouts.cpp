@@ -85,10 +85,12 @@ void draw_rack(OccupancyGrid& grid, const Point2& low, double length_m) {
   constexpr double kDepth_m = 1.1;
   constexpr double kBay_m = 2.7;
   constexpr double kPost_m = 0.15;
-  for (double x = 0.0; x <= length_m; x += kBay_m) {
+  double x = 0.0;
+  while (x <= length_m) {
     for (const double y : {0.0, kDepth_m - kPost_m}) {
       fill_box(grid, low + Point2{x, y}, low + Point2{x + kPost_m, y + kPost_m}, CellState::kOccupied);
     }
+    x += kBay_m;
   }
 }
 
@@ -102,7 +104,8 @@ OccupancyGrid drawn_warehouse(std::uint64_t seed) {
     for (const double y : {5.0, 20.0}) {
       for (int i = 0; i < 16; ++i) {
         if (random.uniform() < 0.3) continue;
-        const Point2 low{x + 2.5 * (i % 4), y + 2.5 * (i / 4)};
+        const int row = i / 4;
+        const Point2 low{x + 2.5 * (i % 4), y + 2.5 * row};
         fill_box(hall, low, low + Point2{2.5, 2.5}, CellState::kOccupied);
       }
     }
@@ -127,10 +130,12 @@ OccupancyGrid drawn_racks(std::uint64_t seed) {
   Random random{seed};
   OccupancyGrid store = unknown_place(40.0, 26.0);
   enclose(store, 40.0, 26.0, 0.2);
-  for (double y = 2.5; y < 23.0; y += random.uniform(3.4, 4.6)) {
+  double y = 2.5;
+  while (y < 23.0) {
     const double cross_aisle_m = random.uniform(14.0, 26.0);
     draw_rack(store, {random.uniform(2.5, 6.0), y}, cross_aisle_m - random.uniform(6.5, 9.0));
     draw_rack(store, {cross_aisle_m + 1.5, y}, random.uniform(6.0, 35.5 - cross_aisle_m));
+    y += random.uniform(3.4, 4.6);
   }
   for (int i = 0; i < 14; ++i) {  // pallets
     const Point2 middle{random.uniform(1.5, 38.5), random.uniform(1.0, 25.0)};

@@ -158,8 +158,9 @@ Report StaleMap::report(const std::vector<Outcome>& outcomes) const {
       const Pooled pooled{outcomes, variant, range};
       if (pooled.outcomes().empty()) continue;  // not asked for
       add_figures(report, variant, range, pooled);
-      Chart errors{variant + ", " + range + " m", "time, min", "error of position, mean of a minute, m", {}};
-      Chart belief{variant + ", " + range + " m: belief", "time, min", "probability, mean of a minute", {}};
+      const std::string title = std::string{variant}.append(", ").append(range).append(" m");
+      Chart errors{title, "time, min", "error of position, mean of a minute, m", {}};
+      Chart belief{title + ": belief", "time, min", "probability, mean of a minute", {}};
       for (const Outcome* outcome : pooled.outcomes()) {
         const std::string seed = "seed " + outcome->label("seed");
         errors.series.push_back(minute_by_minute(outcome->scans, "error_m", seed));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace deltamap::daemon::tool::experiment {
 namespace {
@@ -40,6 +41,15 @@ double tick_step(const Extent& extent) {
   return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);
 }
 
+std::vector<double> ticks(const Extent& extent) {
+  const double step = tick_step(extent);
+  const double first = std::ceil(extent.low / step);
+  const int more = static_cast<int>(std::floor(extent.high / step + 1e-9) - first);
+  std::vector<double> at;
+  for (int i = 0; i <= more; ++i) at.push_back((first + i) * step);
+  return at;
+}
+
 class Frame {
  public:
   Frame(const Extent& x, const Extent& y) : x_{x}, y_{y} {}
@@ -51,12 +61,10 @@ class Frame {
   }
   [[nodiscard]] std::string axes() const {
     std::string svg;
-    const double step_x = tick_step(x_);
-    for (double x = std::ceil(x_.low / step_x) * step_x; x <= x_.high + 1e-9 * step_x; x += step_x) {
+    for (const double x : ticks(x_)) {
       svg += line(x, y_.low, x, y_.high) + label(across(x), kHeight - kBottom + 16.0, "middle", text_of(cleaned(x)));
     }
-    const double step_y = tick_step(y_);
-    for (double y = std::ceil(y_.low / step_y) * step_y; y <= y_.high + 1e-9 * step_y; y += step_y) {
+    for (const double y : ticks(y_)) {
       svg += line(x_.low, y, x_.high, y) + label(kLeft - 6.0, down(y) + 4.0, "end", text_of(cleaned(y)));
     }
     return svg;
