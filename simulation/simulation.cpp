@@ -140,6 +140,7 @@ void Simulation::work(Timestamp now) {
     next_truth_ = now + kTruthEvery;
     truth_.push_back(TruthPose{now, body_.state().map_from_robot, body_.state().speed_m_per_s, false});
   }
+  for (const MoverEvent& event : movers_.take_events()) truth_.push_back(TruthEvent{now, event});
   let_forklift_work(now);
   let_containers_creep(now);
 }

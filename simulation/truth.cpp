@@ -2,10 +2,12 @@
 #include "simulation/truth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 namespace deltamap::simulation {
 namespace {
@@ -38,6 +40,31 @@ Change change_of(const Json& json) {
   return change;
 }
 
+constexpr std::array<std::pair<MoverEvent::Kind, const char*>, 4> kEventNames{{{MoverEvent::Kind::kStopped, "stopped"},
+                                                                               {MoverEvent::Kind::kWent, "went"},
+                                                                               {MoverEvent::Kind::kOpened, "opened"},
+                                                                               {MoverEvent::Kind::kShut, "shut"}}};
+
+OrderedJson json_of(const MoverEvent& event) {
+  OrderedJson json;
+  for (const auto& [kind, name] : kEventNames) {
+    if (kind == event.kind) json["kind"] = name;
+  }
+  json["index"] = event.index;
+  if (event.kind == MoverEvent::Kind::kStopped) json["box"] = json_of(event.box);
+  return json;
+}
+
+MoverEvent event_of(const Json& json) {
+  const auto name = json.at("kind").get<std::string>();
+  const auto known =
+      std::find_if(kEventNames.begin(), kEventNames.end(), [&](const auto& entry) { return name == entry.second; });
+  if (known == kEventNames.end()) throw std::runtime_error("'kind' must be stopped, went, opened or shut");
+  MoverEvent event{known->first, json.at("index").get<int>(), {}};
+  if (event.kind == MoverEvent::Kind::kStopped) event.box = box_of(json.at("box"));
+  return event;
+}
+
 void take_line(const Json& line, Truth& truth) {
   if (line.contains("world")) {
     truth.world = line["world"].get<std::string>();
@@ -47,6 +74,10 @@ void take_line(const Json& line, Truth& truth) {
   const Timestamp time = timestamp_from_ns(line.at("t_ns").get<std::int64_t>());
   if (line.contains("change")) {
     truth.changes.push_back({time, change_of(line["change"])});
+    return;
+  }
+  if (line.contains("mover")) {
+    truth.events.push_back({time, event_of(line["mover"])});
     return;
   }
   const Json& pose = line.at("pose");
@@ -69,6 +100,11 @@ std::string truth_line(const TruthRecord& record) {
     line["pose"] = {pose->map_from_robot.x, pose->map_from_robot.y, pose->map_from_robot.theta};
     line["odom_v"] = pose->odom_speed_m_per_s;
     if (pose->at_scan) line["scan"] = true;
+    return line.dump();
+  }
+  if (const auto* moved = std::get_if<TruthEvent>(&record)) {
+    line["t_ns"] = unix_ns(moved->time);
+    line["mover"] = json_of(moved->event);
     return line.dump();
   }
   const auto& [time, change] = std::get<TruthChange>(record);
@@ -97,6 +133,7 @@ Truth read_truth(const std::filesystem::path& file) {
   const auto by_time = [](const auto& a, const auto& b) { return a.time < b.time; };
   std::stable_sort(truth.poses.begin(), truth.poses.end(), by_time);
   std::stable_sort(truth.changes.begin(), truth.changes.end(), by_time);
+  std::stable_sort(truth.events.begin(), truth.events.end(), by_time);
   return truth;
 }
 

@@ -12,6 +12,7 @@
 #include "core/pose2.hpp"
 #include "core/time.hpp"
 #include "simulation/change.hpp"
+#include "simulation/movers.hpp"
 
 namespace deltamap::simulation {
 
@@ -27,19 +28,27 @@ struct TruthChange {
   Change change;
 };
 
-using TruthRecord = std::variant<TruthPose, TruthChange>;
+/// No change of the map: an actor that stands or has gone on, a door that is shut or no longer is.
+struct TruthEvent {
+  Timestamp time;
+  MoverEvent event;
+};
+
+using TruthRecord = std::variant<TruthPose, TruthChange, TruthEvent>;
 
 struct Truth {
   std::string world;  ///< the scenario's file
   std::uint64_t seed = 0;
   std::vector<TruthPose> poses;      ///< in order of time
   std::vector<TruthChange> changes;  ///< in order of time
+  std::vector<TruthEvent> events;    ///< in order of time
 };
 
 /// The first line: {"world": ..., "seed": ...}.
 [[nodiscard]] std::string truth_header(const std::string& world, std::uint64_t seed);
 /// {"t_ns": ..., "pose": [x, y, theta], "odom_v": ...} or {"t_ns": ..., "change": {"kind", "id", "box", "from"}}; a box
-/// is [centre x, centre y, width, height, theta], radians. Without the line's end.
+/// is [centre x, centre y, width, height, theta], radians. Or {"t_ns": ..., "mover": {"kind", "index", "box"}}, its
+/// kind stopped, went, opened or shut. Without the line's end.
 [[nodiscard]] std::string truth_line(const TruthRecord& record);
 
 /// A last line that was cut short is left out. Throws std::runtime_error naming file and line.

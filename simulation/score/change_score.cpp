@@ -6,8 +6,10 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "simulation/score/standing.hpp"
 #include "simulation/score/witness.hpp"
 #include "simulation/start_map.hpp"
+#include "simulation/surface_optics.hpp"
 
 namespace deltamap::simulation::score {
 namespace {
@@ -23,7 +25,10 @@ struct Watched {
 /// The true world at a moment of the rebuilt past, and everything that has changed until then.
 class Retrospect {
  public:
-  Retrospect(const World& initial_world, const GridGeometry& geometry) : geometry_{geometry}, world_{initial_world} {}
+  Retrospect(const Scenario& scenario, const GridGeometry& geometry)
+      : geometry_{geometry}, optics_{scenario.laser.optics.surfaces}, world_{scenario.world}, standing_{scenario} {}
+
+  void apply(const TruthEvent& truth) { standing_.apply(truth.event); }
 
   void apply(const TruthChange& truth, const Point2& robot) {
     const Change& change = truth.change;
@@ -42,9 +47,13 @@ class Retrospect {
 
   void look(const Pose2& map_from_laser, double seconds, const ChangeScoreParams& params) {
     const double step_rad = std::numbers::pi / (params.beams - 1);
+    const auto sees_through = [&](const RayHit& met) {
+      return met.material == Material::kGlass && passes_glass(met, optics_);
+    };
     for (int i = 0; i < params.beams; ++i) {
       const double bearing_rad = map_from_laser.theta - 0.5 * std::numbers::pi + i * step_rad;
-      const auto hit = surfaces_.cast(map_from_laser.position(), bearing_rad, params.range_m);
+      const auto hit = cast_through(surfaces_, map_from_laser.position(), bearing_rad, params.range_m,
+                                    standing_.surfaces(), sees_through);
       const TrueBeam beam{map_from_laser.position(), bearing_rad, hit ? hit->range_m : params.range_m, hit};
       for (Watched& watched : watched_) {
         if (!watched.change.is_overtaken) watched.witness.look(beam);
@@ -53,8 +62,8 @@ class Retrospect {
     for (Watched& watched : watched_) watched.witness.end_look(seconds, params.face_beams);
   }
 
-  [[nodiscard]] const World& world() const { return world_; }
-  [[nodiscard]] const RayCaster& surfaces() const { return surfaces_; }
+  /// With what stands about now.
+  [[nodiscard]] World world() const { return standing_.drawn_into(world_); }
   [[nodiscard]] std::vector<Watched>& watched() { return watched_; }
 
  private:
@@ -78,7 +87,9 @@ class Retrospect {
   }
 
   GridGeometry geometry_;
+  SurfaceOptics optics_;
   World world_;
+  Standing standing_;
   RayCaster surfaces_{world_};
   std::vector<Watched> watched_;
 };
@@ -137,27 +148,31 @@ ChangeScore change_score(const Scenario& scenario, const Truth& truth, const Occ
   if (!(start_map.geometry() == final_map.geometry())) {
     throw std::runtime_error("the start map and the final map differ in size, resolution or origin");
   }
-  Retrospect past{scenario.world, final_map.geometry()};
+  Retrospect past{scenario, final_map.geometry()};
+  auto event = truth.events.begin();
   auto change = truth.changes.begin();
   for (auto pose = truth.poses.begin(); pose != truth.poses.end(); ++pose) {
     for (; change != truth.changes.end() && change->time <= pose->time; ++change)
       past.apply(*change, pose->map_from_robot.position());
+    for (; event != truth.events.end() && event->time <= pose->time; ++event) past.apply(*event);
     const auto next = std::next(pose);
     if (next == truth.poses.end() || past.watched().empty()) continue;
     const double lasts_s = std::min(params.longest_look_s, seconds(next->time - pose->time));
     past.look(pose->map_from_robot * scenario.laser.optics.robot_from_laser, lasts_s, params);
   }
   for (; change != truth.changes.end(); ++change) past.apply(*change, truth.poses.back().map_from_robot.position());
+  for (; event != truth.events.end(); ++event) past.apply(*event);
 
   ChangeScore score;
-  const OccupancyGrid final_surfaces = drawn_surfaces(past.world(), final_map.geometry());
+  const World world_at_end = past.world();
+  const OccupancyGrid final_surfaces = drawn_surfaces(world_at_end, final_map.geometry());
   for (Watched& watched : past.watched()) {
     judge(watched, final_map, final_surfaces, params);
     score.eligible += watched.change.is_eligible ? 1 : 0;
     score.found += watched.change.is_found ? 1 : 0;
     score.changes.push_back(watched.change);
   }
-  count_ghosts(past.surfaces(), start_map, final_map, score);
+  count_ghosts(RayCaster{world_at_end}, start_map, final_map, score);
   return score;
 }
 

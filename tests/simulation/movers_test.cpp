@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 
+#include "simulation/simulation.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::simulation {
@@ -70,6 +71,25 @@ TEST(Movers, ShowAStandingForkLiftInTheScans) {
   VirtualDrive drive{scenario, {}};
   // Across the robot's way: half its width before its middle.
   EXPECT_NEAR(drive.next().scan.beams[90].range_m, 8.0 - 0.6 - 2.5 - 0.021, 0.02);
+}
+
+TEST(Movers, TellTheTruthOfTheLiveSimulatorWhatIsNoChange) {
+  Scenario scenario = endurance();
+  scenario.forklift.reset();
+  for (ActorParams& actor : scenario.actors) actor.stop_most_s = 10.0;
+  for (DoorParams& door : scenario.doors) door.period_s = 20.0;
+  const Timestamp start = timestamp_from_ns(1'700'000'000'000'000'000);
+  Simulation live{scenario, {4, start, std::nullopt}};
+  std::map<MoverEvent::Kind, int> told;
+  live.advance_to(start + std::chrono::seconds{90});
+  for (const TruthRecord& record : live.take_truth()) {
+    EXPECT_FALSE(std::holds_alternative<TruthChange>(record));
+    if (const auto* event = std::get_if<TruthEvent>(&record)) ++told[event->event.kind];
+  }
+  EXPECT_GE(told[MoverEvent::Kind::kStopped], 10);
+  EXPECT_GE(told[MoverEvent::Kind::kWent], 5);
+  EXPECT_GE(told[MoverEvent::Kind::kOpened], 4);
+  EXPECT_GE(told[MoverEvent::Kind::kShut], 4);
 }
 
 }  // namespace

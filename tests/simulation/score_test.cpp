@@ -180,6 +180,63 @@ TEST(Truth, ReadsBackWhatWasWritten) {
   EXPECT_EQ(truth.changes[0].change.from->centre.x(), 1.5);
 }
 
+TEST(ChangeScore, CountsNothingAsSeenBehindAnActorThatStands) {
+  const Fixture given;
+  Truth truth = standing_for(30.0, {{after(5.0), given.arrival}});
+  const Box forklift{{6, 2.5}, 2.4, 11.0, radians(90)};  // right across the room
+  const auto seen_s = [&] {
+    return change_score(given.scenario, truth, given.before, given.before, {}).changes.at(0).seen_s;
+  };
+  EXPECT_GT(seen_s(), 20.0);
+  truth.events = {{after(1.0), {MoverEvent::Kind::kStopped, 0, forklift}}};
+  EXPECT_EQ(seen_s(), 0.0);
+  truth.events.push_back({after(20.0), {MoverEvent::Kind::kWent, 0, {}}});
+  EXPECT_NEAR(seen_s(), 10.0, 0.5);
+}
+
+TEST(ChangeScore, SeesThroughGlassAndNotThroughAShutDoor) {
+  const std::string room = "walls:\n  - [[0, 0], [12, 0], [12, 10], [0, 10], [0, 0]]\nrobot:\n  start: [6, 1, 90]\n";
+  const Truth truth = standing_for(30.0, {{after(5.0), {ChangeKind::kAdded, 50, kRight, std::nullopt}}});
+  const auto seen_s = [&](const std::string& between) {
+    const Scenario scenario = parse_scenario(room + between, "room.yaml");
+    const OccupancyGrid before = survey(scenario.world);
+    return change_score(scenario, truth, before, before, {}).changes.at(0).seen_s;
+  };
+  EXPECT_GT(seen_s("glass:\n  - line: [[0, 2], [12, 2]]\n"), 20.0);
+  EXPECT_EQ(seen_s("doors:\n  - leaf: [0, 2, 12, 2]\n"), 0.0);
+}
+
+TEST(ChangeScore, CallsAStandingActorAndADoorNoGhosts) {
+  Scenario scenario = room();
+  scenario.doors.push_back({.closed = {{9, 0}, {9, 3}}});
+  const OccupancyGrid before = survey(scenario.world);
+  const Box forklift{{2, 2}, 2.4, 1.2, 0.0};
+  World drawn = scenario.world.with({90, ObjectKind::kPost, forklift});
+  drawn = drawn.with({91, ObjectKind::kDoor, Polyline{{{9, 0}, {9, 3}}}});
+  Truth truth = standing_for(5.0, {});
+  truth.events = {{after(1.0), {MoverEvent::Kind::kStopped, 0, forklift}},
+                  {after(2.0), {MoverEvent::Kind::kOpened, 0, {}}}};
+  EXPECT_EQ(change_score(scenario, truth, before, survey(drawn), {}).ghosts_m2, 0.0);
+  truth.events.push_back({after(3.0), {MoverEvent::Kind::kWent, 0, {}}});
+  EXPECT_GT(change_score(scenario, truth, before, survey(drawn), {}).ghosts_m2, 0.2) << "the actor's outline stayed";
+}
+
+TEST(Truth, ReadsBackWhatActorsAndDoorsDid) {
+  const test::TemporaryFolder folder;
+  const std::string pose = truth_line(TruthPose{after(0.0), {}, 0.0, false}) + "\n";
+  const auto written = [&](const MoverEvent& event) { return truth_line(TruthEvent{after(1.0), event}) + "\n"; };
+  const Truth truth = read_truth(folder.write(
+      "truth.jsonl", pose + written({MoverEvent::Kind::kStopped, 3, {{1, 2}, 2.4, 1.2, 0.5}}) +
+                         written({MoverEvent::Kind::kWent, 3, {}}) + written({MoverEvent::Kind::kShut, 1, {}})));
+  ASSERT_EQ(truth.events.size(), 3u);
+  EXPECT_EQ(truth.events[0].event.box.theta_rad, 0.5);
+  EXPECT_EQ(truth.events[1].event.kind, MoverEvent::Kind::kWent);
+  EXPECT_EQ(truth.events[2].event.index, 1);
+  const auto bad =
+      folder.write("bad.jsonl", pose + "{\"t_ns\": 1, \"mover\": {\"kind\": \"flew\", \"index\": 1}}\n{}\n");
+  EXPECT_THROW((void)read_truth(bad), std::runtime_error);
+}
+
 TEST(Truth, ReadsBackAPushOfAContainerThatCreeps) {
   const test::TemporaryFolder folder;
   const Change push{ChangeKind::kCrept, 7, {{1.05, 2}, 3, 4, 0}, Box{{1, 2}, 3, 4, 0}};
