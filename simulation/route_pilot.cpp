@@ -179,10 +179,9 @@ bool RoutePilot::someone_ahead(const Pose2& map_from_robot, std::span<const Circ
 /// Whether a door's leaf crosses the next metre of the way.
 bool RoutePilot::leaf_ahead(const Pose2& map_from_robot, std::span<const Segment> leaves) const {
   return std::any_of(leaves.begin(), leaves.end(), [&](const Segment& leaf) {
-    for (double ahead_m = 0.2; ahead_m < params_.sight_m; ahead_m += 0.2) {
-      if (distance_between(map_from_robot * Point2{ahead_m, 0.0}, leaf) < kLeafRoom_m) return true;
-    }
-    return false;
+    const Point2 begin = map_from_robot * Point2{kLeafRoom_m, 0.0};
+    const Point2 end = map_from_robot * Point2{params_.sight_m, 0.0};
+    return distance_between(Segment{begin, end}, leaf) < kLeafRoom_m;
   });
 }
 

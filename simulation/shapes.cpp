@@ -91,6 +91,18 @@ double distance_between(const Point2& point, const Segment& segment) {
   return (point - (segment.from + share * along)).norm();
 }
 
+double distance_between(const Segment& a, const Segment& b) {
+  const auto side = [](const Segment& line, const Point2& point) {
+    const Point2 along = line.to - line.from;
+    const Point2 offset = point - line.from;
+    return along.x() * offset.y() - along.y() * offset.x();
+  };
+  const bool cross = side(a, b.from) * side(a, b.to) < 0.0 && side(b, a.from) * side(b, a.to) < 0.0;
+  if (cross) return 0.0;
+  return std::min(
+      {distance_between(a.from, b), distance_between(a.to, b), distance_between(b.from, a), distance_between(b.to, a)});
+}
+
 double distance_between(const Point2& point, const Box& box) {
   const Point2 point_in_box = inverse(box.map_from_box()) * point;
   return std::hypot(std::max(0.0, std::abs(point_in_box.x()) - 0.5 * box.width_m),

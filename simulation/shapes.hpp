@@ -49,6 +49,8 @@ using Shape = std::variant<Polyline, Box, Circle>;
 [[nodiscard]] Box grown(const Box& box, double margin_m);
 
 [[nodiscard]] double distance_between(const Point2& point, const Segment& segment);
+/// 0 where they cross.
+[[nodiscard]] double distance_between(const Segment& a, const Segment& b);
 /// 0 inside the box.
 [[nodiscard]] double distance_between(const Point2& point, const Box& box);
 /// To the shape's area (box, circle) or line (polyline); 0 inside.
