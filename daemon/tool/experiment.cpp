@@ -103,6 +103,8 @@ void add_experiment(CLI::App& app) {
       ->check(CLI::Range(1, 10000));
   command.add_option("--only", given->only, "only runs with this in their name, for example depot-bay");
   command.add_option("--scenarios", given->options.scenarios, "folder of the scenarios (default config/scenarios)");
+  command.add_option("--data", given->options.data, "folder of recorded maps (default: DELTAMAP_DATA)")
+      ->envname("DELTAMAP_DATA");
   command.add_option("--config", given->config, "settings of the localizer, YAML (default: as delivered)");
   command.add_option("--set", given->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   command.add_flag("--scans", given->with_scans, "write scans/RUN.csv too: every scan of every run");

@@ -49,8 +49,7 @@ Pose2 prior_pose(const Options& options) {
 /// Lays B's contour where the prior says and searches around it, the heading about the contour's middle.
 Result merged_with_prior(const OccupancyGrid& map, const OccupancyGrid& local, const Pose2& map_from_local) {
   std::vector<Point2> points;
-  for (const Cell& cell : merge::contour_cells(local))
-    points.emplace_back(map_from_local * local.geometry().centre_of(cell));
+  for (const Cell& cell : contour_cells(local)) points.emplace_back(map_from_local * local.geometry().centre_of(cell));
   const double heading_deviation_rad = radians(kPriorDeviation_deg);
   merge::PosePrior prior;
   prior.position_in_map = map_from_local * merge::LocalCells{local}.middle_in_local();

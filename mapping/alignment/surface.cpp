@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/grid_contour.hpp"
+
 namespace deltamap::mapping::alignment {
 namespace {
 
@@ -38,14 +40,6 @@ std::optional<Point2> normal_of(const PlaceSums& sums) {
   if (larger <= 0.0 || smaller > kMostRoundness * larger) return std::nullopt;
   const double along_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
   return Point2{-std::sin(along_rad), std::cos(along_rad)};
-}
-
-bool is_contour(const OccupancyGrid& map, Cell cell) {
-  if (map[cell] != CellState::kOccupied) return false;
-  return map.at({cell.column + 1, cell.row}) == CellState::kFree ||
-         map.at({cell.column - 1, cell.row}) == CellState::kFree ||
-         map.at({cell.column, cell.row + 1}) == CellState::kFree ||
-         map.at({cell.column, cell.row - 1}) == CellState::kFree;
 }
 
 GridGeometry table_around(std::span<const SurfacePoint> points, double cell_m, double reach_m) {
@@ -103,52 +97,61 @@ std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& bo
   constexpr int kAround = 2;  // cells; the line is laid through the contour in 5 × 5 cells
   const CellBox wide = grown(box, kAround, map.geometry());
   if (wide.empty()) return {};
-  const int width = wide.width();
-  std::vector<char> contour(static_cast<std::size_t>(width) * static_cast<std::size_t>(wide.height()), 0);
-  const auto index_of = [&](int column, int row) {
-    return static_cast<std::size_t>(row - wide.first.row) * static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(column - wide.first.column);
-  };
-  for (int row = wide.first.row; row < wide.last.row; ++row) {
-    for (int column = wide.first.column; column < wide.last.column; ++column) {
-      contour[index_of(column, row)] = is_contour(map, {column, row}) ? 1 : 0;
-    }
+  const auto width = static_cast<std::size_t>(wide.width());
+  std::vector<char> is_on_contour(width * static_cast<std::size_t>(wide.height()), 0);
+  const std::vector<Cell> contour = contour_cells(map, wide);
+  for (const Cell& cell : contour) {
+    is_on_contour[static_cast<std::size_t>(cell.row - wide.first.row) * width +
+                  static_cast<std::size_t>(cell.column - wide.first.column)] = 1;
   }
   std::vector<SurfacePoint> surface;
-  for (int row = wide.first.row; row < wide.last.row; ++row) {
-    for (int column = wide.first.column; column < wide.last.column; ++column) {
-      if (contour[index_of(column, row)] == 0) continue;
-      PlaceSums sums;
-      for (int y = std::max(row - kAround, wide.first.row); y <= std::min(row + kAround, wide.last.row - 1); ++y) {
-        for (int x = std::max(column - kAround, wide.first.column);
-             x <= std::min(column + kAround, wide.last.column - 1); ++x) {
-          if (contour[index_of(x, y)] != 0) sums.add(Point2{x - column, y - row});
-        }
+  surface.reserve(contour.size());
+  for (const Cell& cell : contour) {
+    PlaceSums sums;
+    const int first = std::max(cell.column - kAround, wide.first.column);
+    const int last = std::min(cell.column + kAround, wide.last.column - 1);
+    for (int y = std::max(cell.row - kAround, wide.first.row); y <= std::min(cell.row + kAround, wide.last.row - 1);
+         ++y) {
+      const char* const marks = is_on_contour.data() + static_cast<std::size_t>(y - wide.first.row) * width;
+      for (int x = first; x <= last; ++x) {
+        if (marks[x - wide.first.column] != 0) sums.add(Point2{x - cell.column, y - cell.row});
       }
-      if (const auto normal = normal_of(sums)) surface.push_back({map.geometry().centre_of({column, row}), *normal});
     }
+    if (const auto normal = normal_of(sums)) surface.push_back({map.geometry().centre_of(cell), *normal});
   }
   return surface;
 }
 
 NearestSurface::NearestSurface(std::vector<SurfacePoint> points, double table_cell_m, double reach_m)
-    : points_{std::move(points)}, table_{table_around(points_, table_cell_m, reach_m)} {
-  nearest_.assign(table_.cell_count(), -1);
-  std::vector<float> distance2(table_.cell_count(), std::numeric_limits<float>::max());
+    : points_{std::move(points)},
+      table_{table_around(points_, table_cell_m, reach_m)},
+      nearest_(table_.cell_count(), -1),
+      distance2_(table_.cell_count(), std::nextafter(static_cast<float>(reach_m * reach_m), 1e9F)),
+      reach2_{static_cast<float>(reach_m * reach_m)},
+      cells_per_metre_{static_cast<float>(1.0 / table_cell_m)},
+      low_x_{static_cast<float>(table_.origin.x())},
+      low_y_{static_cast<float>(table_.origin.y())} {
   const int reach_cells = static_cast<int>(std::ceil(reach_m / table_cell_m));
-  const auto reach2 = static_cast<float>(reach_m * reach_m);
+  std::vector<double> across2(2 * static_cast<std::size_t>(reach_cells) + 1);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point2& position = points_[i].position;
     const Cell middle = table_.cell_at(position);
+    const int first = std::max(0, middle.column - reach_cells);
+    const int last = std::min(table_.width - 1, middle.column + reach_cells);
+    for (int column = first; column <= last; ++column) {
+      const double dx = table_.centre_of({column, 0}).x() - position.x();
+      across2[static_cast<std::size_t>(column - first)] = dx * dx;
+    }
     for (int row = std::max(0, middle.row - reach_cells); row <= std::min(table_.height - 1, middle.row + reach_cells);
          ++row) {
-      for (int column = std::max(0, middle.column - reach_cells);
-           column <= std::min(table_.width - 1, middle.column + reach_cells); ++column) {
-        const std::size_t index = table_.index_of({column, row});
-        const auto d2 = static_cast<float>((table_.centre_of({column, row}) - position).squaredNorm());
-        if (d2 > reach2 || d2 >= distance2[index]) continue;
-        distance2[index] = d2;
-        nearest_[index] = static_cast<std::int32_t>(i);
+      const double dy = table_.centre_of({0, row}).y() - position.y();
+      const double up2 = dy * dy;
+      const std::size_t start = table_.index_of({first, row});
+      for (std::size_t k = 0; k <= static_cast<std::size_t>(last - first); ++k) {
+        const auto d2 = static_cast<float>(across2[k] + up2);
+        if (d2 >= distance2_[start + k]) continue;
+        distance2_[start + k] = d2;
+        nearest_[start + k] = static_cast<std::int32_t>(i);
       }
     }
   }

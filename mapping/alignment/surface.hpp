@@ -42,12 +42,30 @@ class NearestSurface {
     const std::int32_t index = nearest_[table_.index_of(cell)];
     return index < 0 ? nullptr : &points_[static_cast<std::size_t>(index)];
   }
+  /// Square of the distance to the nearest point, m², from the middle of the table cell that holds the place; the
+  /// reach's where none is in reach.
+  [[nodiscard]] float rough_distance2(float x, float y) const {
+    const auto column = static_cast<std::int32_t>((x - low_x_) * cells_per_metre_);
+    const auto row = static_cast<std::int32_t>((y - low_y_) * cells_per_metre_);
+    // The table has a margin of the reach: what truncation puts into its first row or column is far from any point.
+    if (static_cast<std::uint32_t>(column) >= static_cast<std::uint32_t>(table_.width) ||
+        static_cast<std::uint32_t>(row) >= static_cast<std::uint32_t>(table_.height)) {
+      return reach2_;
+    }
+    return distance2_[static_cast<std::size_t>(row) * static_cast<std::size_t>(table_.width) +
+                      static_cast<std::size_t>(column)];
+  }
   [[nodiscard]] const std::vector<SurfacePoint>& points() const { return points_; }
 
  private:
   std::vector<SurfacePoint> points_;
   GridGeometry table_;
   std::vector<std::int32_t> nearest_;  // index into points_, -1 = none in reach
+  std::vector<float> distance2_;       // m², from the cell's middle; the reach's where none is in reach
+  float reach2_ = 0.0F;
+  float cells_per_metre_ = 1.0F;
+  float low_x_ = 0.0F;
+  float low_y_ = 0.0F;
 };
 
 }  // namespace deltamap::mapping::alignment

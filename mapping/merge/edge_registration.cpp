@@ -4,14 +4,20 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr int kReach_cells = 2;
+constexpr int kReach_cells = 1;
 constexpr int kLeastPaired = 20;
+
+// By the local map's state and the map's: agreeing cells in the lower half, disagreeing ones in the upper.
+constexpr std::uint64_t kAgrees = 1;
+constexpr std::uint64_t kDisagrees = 1ULL << 32U;
+constexpr std::array<std::uint64_t, 6> kPackedCounts{kAgrees, kDisagrees, 0, kDisagrees, kAgrees, 0};
 
 struct NormalEquations {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
@@ -20,7 +26,7 @@ struct NormalEquations {
 };
 
 /// The turn counts as what it moves a point at the lever arm, so that all three unknowns are cells.
-NormalEquations normal_equations(const OccupancyGrid& map, const std::vector<EdgeCell>& edges, const CellMotion& motion,
+NormalEquations normal_equations(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& motion,
                                  double lever_cells) {
   constexpr float kValue[3] = {-1.0F, 1.0F, 0.0F};  // by CellState
   const auto c = static_cast<float>(std::cos(motion.turn_rad));
@@ -60,7 +66,7 @@ NormalEquations normal_equations(const OccupancyGrid& map, const std::vector<Edg
     const float gx = right - left;
     const float gy = high_left - low_left + u * (high_right - low_right - high_left + low_left);
     const float gt = (gy * arm_x - gx * arm_y) * per_lever;
-    const float rest = edge.value - (left + u * gx);
+    const float rest = kValue[static_cast<int>(edge.state)] - (left + u * gx);
     xx += gx * gx, xy += gx * gy, xt += gx * gt, yy += gy * gy, yt += gy * gt, tt += gt * gt;
     bx += gx * rest, by += gy * rest, bt += gt * rest;
   }
@@ -83,39 +89,106 @@ Eigen::Vector3d observed_step(const NormalEquations& sums, double least_observed
 }
 
 /// How far a turn of 1 rad moves the edges, root mean square.
-double lever_of(const std::vector<EdgeCell>& edges) {
+double lever_of(std::span<const EdgeCell> edges) {
   double squares = 0.0;
   for (const EdgeCell& edge : edges) squares += edge.at.x * edge.at.x + edge.at.y * edge.at.y;
   return std::max(1.0, std::sqrt(squares / std::max(1.0, static_cast<double>(edges.size()))));
 }
 
-}  // namespace
-
-std::vector<EdgeCell> edge_cells(const OccupancyGrid& local, const LocalCells& cells, std::size_t most_cells) {
-  const Point2 middle = (cells.middle_in_local() - local.geometry().origin) / local.resolution_m();
-  std::vector<std::uint8_t> taken(local.geometry().cell_count(), 0);
-  std::vector<EdgeCell> edges;
-  for (const PointInCells& at : cells.contour()) {
-    const int column = static_cast<int>(std::lround(at.x + middle.x() - 0.5));
-    const int row = static_cast<int>(std::lround(at.y + middle.y() - 0.5));
-    for (int y = std::max(0, row - kReach_cells); y <= std::min(local.height() - 1, row + kReach_cells); ++y) {
-      for (int x = std::max(0, column - kReach_cells); x <= std::min(local.width() - 1, column + kReach_cells); ++x) {
-        const std::size_t index = local.geometry().index_of({x, y});
-        if (taken[index] != 0 || local.cells()[index] == CellState::kUnknown) continue;
-        taken[index] = 1;
-        edges.push_back({{static_cast<float>(x + 0.5 - middle.x()), static_cast<float>(y + 0.5 - middle.y())},
-                         local.cells()[index] == CellState::kOccupied ? 1.0F : -1.0F});
+/// Eq. 11 of the cells along the edges near a pose. A cell that meets the same state wherever the pose may move is
+/// counted once; only the others are looked at again.
+class NearbyAcceptance {
+ public:
+  /// The cells move by less than `margin_cells` (< 0.5).
+  NearbyAcceptance(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& motion,
+                   float margin_cells)
+      : map_{map} {
+    const Placing place{motion};
+    for (const EdgeCell& edge : edges) {
+      const PointInCells at = place(edge.at);
+      const CellState state = state_at(at.x - margin_cells, at.y - margin_cells);
+      const bool is_settled = state == state_at(at.x + margin_cells, at.y - margin_cells) &&
+                              state == state_at(at.x - margin_cells, at.y + margin_cells) &&
+                              state == state_at(at.x + margin_cells, at.y + margin_cells);
+      if (is_settled) {
+        settled_ += packed(edge.state, state);
+      } else {
+        left_.push_back(edge);
       }
     }
   }
-  const std::size_t stride = edges.size() / std::max<std::size_t>(1, most_cells) + 1;
-  if (stride == 1) return edges;
-  std::vector<EdgeCell> thinned;
-  for (std::size_t i = 0; i < edges.size(); i += stride) thinned.push_back(edges[i]);
-  return thinned;
+
+  [[nodiscard]] double at(const CellMotion& motion) const {
+    const Placing place{motion};
+    std::uint64_t sum = settled_;
+    for (const EdgeCell& edge : left_) {
+      const PointInCells at = place(edge.at);
+      sum += packed(edge.state, state_at(at.x, at.y));
+    }
+    return Acceptance{sum & 0xFFFFFFFFU, sum >> 32U}.value();
+  }
+
+ private:
+  struct Placing {
+    float c, s, tx, ty;
+    explicit Placing(const CellMotion& motion)
+        : c{static_cast<float>(std::cos(motion.turn_rad))},
+          s{static_cast<float>(std::sin(motion.turn_rad))},
+          tx{static_cast<float>(motion.column + 1.0)},  // truncation is floor from one cell left of the map on
+          ty{static_cast<float>(motion.row + 1.0)} {}
+    PointInCells operator()(const PointInCells& at) const {
+      return {c * at.x - s * at.y + tx, s * at.x + c * at.y + ty};
+    }
+  };
+  static std::uint64_t packed(CellState local, CellState map) {
+    return kPackedCounts[3 * static_cast<std::size_t>(local) + static_cast<std::size_t>(map)];
+  }
+  [[nodiscard]] CellState state_at(float x_after_border, float y_after_border) const {
+    const auto x = static_cast<std::uint32_t>(static_cast<std::int32_t>(x_after_border)) - 1U;
+    const auto y = static_cast<std::uint32_t>(static_cast<std::int32_t>(y_after_border)) - 1U;
+    const auto width = static_cast<std::uint32_t>(map_.width());
+    if (x >= width || y >= static_cast<std::uint32_t>(map_.height())) return CellState::kUnknown;
+    return map_.cells()[std::size_t{y} * width + x];
+  }
+
+  const OccupancyGrid& map_;
+  std::vector<EdgeCell> left_;
+  std::uint64_t settled_ = 0;
+};
+
+}  // namespace
+
+std::vector<EdgeCell> edge_cells(const OccupancyGrid& local, std::span<const Cell> contour, const Point2& middle) {
+  std::vector<std::uint8_t> taken(local.geometry().cell_count(), 0);
+  std::vector<EdgeCell> edges;
+  edges.reserve(6 * contour.size());
+  const auto width = static_cast<std::size_t>(local.width());
+  const auto to_x = static_cast<float>(0.5 - middle.x());
+  const auto to_y = static_cast<float>(0.5 - middle.y());
+  for (const Cell& cell : contour) {
+    const int first = std::max(0, cell.column - kReach_cells);
+    const int last = std::min(local.width() - 1, cell.column + kReach_cells);
+    for (int y = std::max(0, cell.row - kReach_cells); y <= std::min(local.height() - 1, cell.row + kReach_cells);
+         ++y) {
+      const std::size_t row = static_cast<std::size_t>(y) * width;
+      for (int x = first; x <= last; ++x) {
+        std::uint8_t& is_taken = taken[row + static_cast<std::size_t>(x)];
+        const CellState state = local.cells()[row + static_cast<std::size_t>(x)];
+        if (is_taken != 0 || state == CellState::kUnknown) continue;
+        is_taken = 1;
+        edges.push_back({{static_cast<float>(x) + to_x, static_cast<float>(y) + to_y}, state});
+      }
+    }
+  }
+  return edges;
 }
 
-CellMotion edge_registration(const OccupancyGrid& map, const std::vector<EdgeCell>& edges, const CellMotion& start,
+std::vector<EdgeCell> edge_cells(const OccupancyGrid& local) {
+  const std::vector<Cell> contour = contour_cells(local);
+  return edge_cells(local, contour, middle_of(contour, local));
+}
+
+CellMotion edge_registration(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
                              const EdgeRegistrationParams& params) {
   const double lever_cells = lever_of(edges);
   CellMotion motion = start;
@@ -132,23 +205,23 @@ CellMotion edge_registration(const OccupancyGrid& map, const std::vector<EdgeCel
   return motion;
 }
 
-CellMotion best_nearby(const OverlayMap& map, const std::vector<EdgeCell>& edges, const CellMotion& start,
+CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
                        double step_cells, int rounds) {
-  std::vector<PointInCells> occupied;
-  std::vector<PointInCells> free;
-  for (const EdgeCell& edge : edges) (edge.value > 0.0F ? occupied : free).push_back(edge.at);
   const double lever_cells = lever_of(edges);
   CellMotion best = start;
-  Acceptance best_counts = map.counted(occupied, free, best);
+  // A turn moves the farthest cells by about twice what it moves those at the lever arm.
+  const double most_step_cells = 2.0 * rounds * step_cells;
+  const NearbyAcceptance acceptance_at{map, edges, start, static_cast<float>(std::min(0.49, most_step_cells))};
+  double best_acceptance = acceptance_at.at(best);
   for (int round = 0; round < rounds; ++round) {
     const CellMotion centre = best;
     for (const double step : {step_cells, -step_cells}) {
       for (const CellMotion& motion : {CellMotion{centre.turn_rad, centre.column + step, centre.row},
                                        CellMotion{centre.turn_rad, centre.column, centre.row + step},
                                        CellMotion{centre.turn_rad + step / lever_cells, centre.column, centre.row}}) {
-        const Acceptance counts = map.counted(occupied, free, motion);
-        if (counts.value() <= best_counts.value()) continue;
-        best_counts = counts;
+        const double acceptance = acceptance_at.at(motion);
+        if (acceptance <= best_acceptance) continue;
+        best_acceptance = acceptance;
         best = motion;
       }
     }

@@ -4,6 +4,7 @@
 // registration technique", 1981). Both sides of an edge count, so that half cells of surface cancel.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
@@ -18,22 +19,24 @@ struct EdgeRegistrationParams {
   double least_observed = 0.002;       ///< axes with less than this share of the best one's curvature stay as they are
 };
 
-/// A known cell within 2 cells of an edge, about the local map's middle.
+/// A known cell on or beside the contour, about the local map's middle.
 struct EdgeCell {
   PointInCells at;
-  float value = 0.0F;  ///< +1 occupied, -1 free
+  CellState state = CellState::kFree;  ///< never unknown
 };
-/// At most about `most_cells`, evenly thinned.
-[[nodiscard]] std::vector<EdgeCell> edge_cells(const OccupancyGrid& local, const LocalCells& cells,
-                                               std::size_t most_cells);
+/// Of the local map's contour; its middle in cells from the corner.
+[[nodiscard]] std::vector<EdgeCell> edge_cells(const OccupancyGrid& local, std::span<const Cell> contour,
+                                               const Point2& middle);
+/// The same of the contour of all of it.
+[[nodiscard]] std::vector<EdgeCell> edge_cells(const OccupancyGrid& local);
 
 /// `start` within about a cell of the answer; `start` itself where the edges do not hold it.
-[[nodiscard]] CellMotion edge_registration(const OccupancyGrid& map, const std::vector<EdgeCell>& edges,
+[[nodiscard]] CellMotion edge_registration(const OccupancyGrid& map, std::span<const EdgeCell> edges,
                                            const CellMotion& start, const EdgeRegistrationParams& params);
 
 /// Tries neighbours of a pose, by Eq. 11 over the cells along the edges, and takes what is better: the edges of two
 /// lattices do not average out everywhere. `rounds` of 6 neighbours, `step_cells` away at first.
-[[nodiscard]] CellMotion best_nearby(const OverlayMap& map, const std::vector<EdgeCell>& edges, const CellMotion& start,
+[[nodiscard]] CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
                                      double step_cells, int rounds);
 
 }  // namespace deltamap::mapping::merge

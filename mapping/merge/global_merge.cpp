@@ -19,9 +19,8 @@ constexpr std::size_t kSampleCells = 3000;      // of the local map, to sort out
 constexpr std::size_t kRegistered = 24;         // candidates brought onto the map's lines
 constexpr std::size_t kFinal = 4;               // brought to the end, scored with every cell
 constexpr std::size_t kRoughEdgeCells = 3000;
-constexpr std::size_t kEveryEdgeCell = 100000;
 constexpr double kNearbyStep_cells = 0.02;
-constexpr int kNearbyRounds = 3;
+constexpr int kNearbyRounds = 4;
 
 template <typename T>
 std::vector<T> thinned_to(const std::vector<T>& all, std::size_t most) {
@@ -128,15 +127,21 @@ MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local, cons
     candidate.score = overlay.score(sample, candidate.motion);
   }
   candidates = best_apart(std::move(candidates), kFinal);
-  const std::vector<EdgeCell> few_edges = edge_cells(local, cells, kRoughEdgeCells);
-  const std::vector<EdgeCell> edges = edge_cells(local, cells, kEveryEdgeCell);
+  const std::vector<EdgeCell> edges = edge_cells(local);
+  const std::vector<EdgeCell> few_edges = thinned_to(edges, kRoughEdgeCells);
   for (ScoredMotion& candidate : candidates) {
     candidate.motion = edge_registration(map, few_edges, candidate.motion, {});
     candidate.motion = edge_registration(map, edges, candidate.motion, {});
-    candidate.motion = best_nearby(overlay, edges, candidate.motion, kNearbyStep_cells, kNearbyRounds);
     candidate.score = overlay.score(cells, candidate.motion);
   }
-  return chosen(candidates, map, cells, params.choice);
+  MapMerge merge = chosen(candidates, map, cells, params.choice);
+  if (merge.score.agreeing > 0.0) {
+    const CellMotion best = best_nearby(map, edges, cell_motion(merge.map_from_local, map.geometry(), cells),
+                                        kNearbyStep_cells, kNearbyRounds);
+    merge.map_from_local = map_from_local(best, map.geometry(), cells);
+    merge.score = overlay.score(cells, best);
+  }
+  return merge;
 }
 
 }  // namespace deltamap::mapping::merge

@@ -36,28 +36,16 @@ double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 
 }  // namespace
 
-std::vector<Cell> contour_cells(const OccupancyGrid& map) {
-  std::vector<Cell> contour;
-  for (int row = 0; row < map.height(); ++row) {
-    for (int column = 0; column < map.width(); ++column) {
-      if (map[{column, row}] != CellState::kOccupied) continue;
-      if (map.at({column + 1, row}) == CellState::kFree || map.at({column - 1, row}) == CellState::kFree ||
-          map.at({column, row + 1}) == CellState::kFree || map.at({column, row - 1}) == CellState::kFree) {
-        contour.push_back({column, row});
-      }
-    }
-  }
-  return contour;
+Point2 middle_of(std::span<const Cell> contour, const OccupancyGrid& grid) {
+  if (contour.empty()) return {0.5 * grid.width(), 0.5 * grid.height()};
+  Point2 sum = Point2::Zero();
+  for (const Cell& cell : contour) sum += Point2{cell.column + 0.5, cell.row + 0.5};
+  return sum / static_cast<double>(contour.size());
 }
 
 LocalCells::LocalCells(const OccupancyGrid& local) {
   const std::vector<Cell> contour = contour_cells(local);
-  Point2 middle{0.5 * local.width(), 0.5 * local.height()};
-  if (!contour.empty()) {
-    middle.setZero();
-    for (const Cell& cell : contour) middle += Point2{cell.column + 0.5, cell.row + 0.5};
-    middle /= static_cast<double>(contour.size());
-  }
+  const Point2 middle = middle_of(contour, local);
   middle_in_local_ = local.geometry().origin + local.resolution_m() * middle;
   const auto about_middle = [&](Cell cell) {
     return PointInCells{static_cast<float>(cell.column + 0.5 - middle.x()),
@@ -132,13 +120,6 @@ OverlayMap::Counts OverlayMap::counts(std::span<const PointInCells> points, cons
     counts.near_or_known += packed >> 48U;
   }
   return counts;
-}
-
-Acceptance OverlayMap::counted(std::span<const PointInCells> occupied, std::span<const PointInCells> free,
-                               const CellMotion& motion) const {
-  const Counts of_occupied = counts(occupied, motion);
-  const Counts of_free = counts(free, motion);
-  return {of_occupied.on_occupied + of_free.on_free, of_occupied.on_free + of_free.on_occupied};
 }
 
 OverlayScore OverlayMap::score(const LocalCells& local, const CellMotion& motion) const {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/grid_contour.hpp"
 #include "core/occupancy_grid.hpp"
 #include "mapping/merge/acceptance.hpp"
 
@@ -25,9 +26,8 @@ struct PointInCells {
   float y = 0.0F;
 };
 
-/// Occupied cells with a free neighbour (of 4): the surface that a laser sees. The inside of a solid block is left out,
-/// which would drown the walls in every spectrum.
-[[nodiscard]] std::vector<Cell> contour_cells(const OccupancyGrid& map);
+/// Mean of the cells, in cells from the grid's corner; the grid's own middle where there are none.
+[[nodiscard]] Point2 middle_of(std::span<const Cell> contour, const OccupancyGrid& grid);
 
 /// The known cells of a local map about its middle (the mean of its contour), in cells.
 class LocalCells {
@@ -70,9 +70,6 @@ class OverlayMap {
   /// With its contour, where it is known already.
   OverlayMap(const OccupancyGrid& map, std::span<const Cell> contour);
   [[nodiscard]] OverlayScore score(const LocalCells& local, const CellMotion& motion) const;
-  /// Eq. 11 of some of a local map's cells.
-  [[nodiscard]] Acceptance counted(std::span<const PointInCells> occupied, std::span<const PointInCells> free,
-                                   const CellMotion& motion) const;
 
  private:
   struct Counts {

@@ -13,9 +13,9 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr double kSearchStep_m = 0.1;        // well inside the reach of the closest lines
+constexpr double kSearchStep_m = 0.15;       // well inside the reach of the closest lines
 constexpr double kMostSearchPoses = 3000.0;  // coarser steps above
-constexpr std::size_t kMostSearchPoints = 150;
+constexpr std::size_t kMostSearchPoints = 80;
 constexpr std::size_t kStarts = 4;  // poses of the search that are brought to the end
 constexpr double kApart_m = 0.15;   // starts and answers nearer than this are the same
 
@@ -54,19 +54,38 @@ CellBox box_around(const GridGeometry& geometry, std::span<const Point2> points,
   return grown(box, static_cast<int>(std::ceil(margin_m / geometry.resolution_m)), geometry);
 }
 
+struct PointInMetres {
+  float x = 0.0F;
+  float y = 0.0F;
+};
+
 /// Squared distances to the surface, bounded by the reach, in deviations: -2 ln p of the points at a pose.
-double misfit(std::span<const Point2> points, std::size_t stride, const alignment::NearestSurface& surface,
-              const Pose2& pose, const PriorMergeParams& params) {
+double misfit(std::span<const Point2> points, const alignment::NearestSurface& surface, const Pose2& pose,
+              const PriorMergeParams& params) {
   const double most2 = params.reach_m * params.reach_m;
   const double c = std::cos(pose.theta);
   const double s = std::sin(pose.theta);
   double sum = 0.0;
-  for (std::size_t i = 0; i < points.size(); i += stride) {
-    const Point2 place{pose.x + c * points[i].x() - s * points[i].y(), pose.y + s * points[i].x() + c * points[i].y()};
+  for (const Point2& point : points) {
+    const Point2 place{pose.x + c * point.x() - s * point.y(), pose.y + s * point.x() + c * point.y()};
     const alignment::SurfacePoint* nearest = surface.nearest(place);
     sum += nearest == nullptr ? most2 : std::min(most2, (place - nearest->position).squaredNorm());
   }
   return sum / (params.surface_deviation_m * params.surface_deviation_m);
+}
+
+/// The same of a sample, from the middles of the surface's table: quick, and good enough to choose starts.
+double rough_misfit(std::span<const PointInMetres> sample, const alignment::NearestSurface& surface, const Pose2& pose,
+                    double surface_deviation_m) {
+  const auto c = static_cast<float>(std::cos(pose.theta));
+  const auto s = static_cast<float>(std::sin(pose.theta));
+  const auto x = static_cast<float>(pose.x);
+  const auto y = static_cast<float>(pose.y);
+  float sum = 0.0F;
+  for (const PointInMetres& point : sample) {
+    sum += surface.rough_distance2(x + c * point.x - s * point.y, y + s * point.x + c * point.y);
+  }
+  return static_cast<double>(sum) / (surface_deviation_m * surface_deviation_m);
 }
 
 struct Start {
@@ -90,19 +109,23 @@ std::vector<Start> search(std::span<const Point2> points, const alignment::Neare
   while (lattice_poses(half_width_m, step_m) > kMostSearchPoses) step_m *= 1.25;
   const Eigen::Vector3i steps = (half_width_m / step_m).array().floor().cast<int>();
 
-  const std::size_t stride = points.size() / kMostSearchPoints + 1;
-  const double shared = std::min(1.0, params.independent_points / static_cast<double>(points.size() / stride + 1));
+  std::vector<PointInMetres> sample;
+  for (std::size_t i = 0; i < points.size(); i += points.size() / kMostSearchPoints + 1)
+    sample.push_back({static_cast<float>(points[i].x()), static_cast<float>(points[i].y())});
+  const double shared = std::min(1.0, params.independent_points / static_cast<double>(sample.size()));
+  const double most_chi2 = 1.8 * params.search_deviations * params.search_deviations;
   std::vector<Start> found;
   for (int i = -steps.x(); i <= steps.x(); ++i) {
     for (int j = -steps.y(); j <= steps.y(); ++j) {
       for (int k = -steps.z(); k <= steps.z(); ++k) {
         const Eigen::Vector3d along = step_m * Eigen::Vector3i{i, j, k}.cast<double>();
+        const double chi2 = along.cwiseAbs2().cwiseQuotient(axes.eigenvalues().cwiseMax(1e-12)).sum();
+        if (chi2 > most_chi2) continue;  // a corner of the lattice
         const Eigen::Vector3d offset = axes.eigenvectors() * along;
         const double turn_rad = offset.z() / lever_m;
         if (offset.head<2>().norm() > params.most_search_m || std::abs(turn_rad) > params.most_search_rad) continue;
         const Pose2 pose{prior.position_in_map.x() + offset.x(), prior.position_in_map.y() + offset.y(), turn_rad};
-        const double chi2 = along.cwiseAbs2().cwiseQuotient(axes.eigenvalues().cwiseMax(1e-12)).sum();
-        found.push_back({pose, shared * misfit(points, stride, surface, pose, params) + chi2});
+        found.push_back({pose, shared * rough_misfit(sample, surface, pose, params.surface_deviation_m) + chi2});
       }
     }
   }
@@ -177,7 +200,7 @@ PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface
     const Eigen::Vector3d moved{pose.x - guess.x, pose.y - guess.y, pose.theta};
     const double chi2 = moved.dot(belief.information * moved);
     answers.push_back({pose, end.information + belief.information,
-                       shared * misfit(points, 1, surface, pose, params) + chi2, agreement(map, points, pose), chi2});
+                       shared * misfit(points, surface, pose, params) + chi2, agreement(map, points, pose), chi2});
   }
   std::stable_sort(answers.begin(), answers.end(), [](const Answer& a, const Answer& b) { return a.cost < b.cost; });
 

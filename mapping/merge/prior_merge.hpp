@@ -48,4 +48,11 @@ struct PriorMerge {
 [[nodiscard]] PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
                                      const PosePrior& prior, const PriorMergeParams& params);
 
+/// The same for a local map: its contour is brought onto the map, then the cells along its edges to a fraction of a
+/// cell. `covariance`: of the place and turn of its middle (the mean of its contour). Both grids must have the same
+/// resolution.
+[[nodiscard]] PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local,
+                                     const Pose2& map_from_local_guess, const PoseCovariance& covariance,
+                                     const PriorMergeParams& params);
+
 }  // namespace deltamap::mapping::merge

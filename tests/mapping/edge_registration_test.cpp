@@ -19,7 +19,7 @@ TEST(EdgeRegistration, FindsTheLastFractionOfACell) {
     const CellMotion truth = cell_motion(inverse(local_from_map), map.geometry(), cells);
     const CellMotion start{truth.turn_rad + radians(random.uniform(-0.2, 0.2)),
                            truth.column + random.uniform(-0.7, 0.7), truth.row + random.uniform(-0.7, 0.7)};
-    const CellMotion found = edge_registration(map, edge_cells(local, cells, 100000), start, {});
+    const CellMotion found = edge_registration(map, edge_cells(local), start, {});
     EXPECT_NEAR(found.column, truth.column, 0.05) << trial;
     EXPECT_NEAR(found.row, truth.row, 0.05) << trial;
     EXPECT_NEAR(degrees(turn_between(truth.turn_rad, found.turn_rad)), 0.0, 0.05) << trial;
@@ -33,7 +33,7 @@ TEST(EdgeRegistration, LeavesTheLengthOfACorridorAlone) {
   const LocalCells cells{corridor};
   const CellMotion truth = cell_motion({}, corridor.geometry(), cells);
   const CellMotion start{truth.turn_rad, truth.column + 1.5, truth.row + 0.4};
-  const CellMotion found = edge_registration(corridor, edge_cells(corridor, cells, 100000), start, {});
+  const CellMotion found = edge_registration(corridor, edge_cells(corridor), start, {});
   EXPECT_NEAR(found.row, truth.row, 0.02);
   EXPECT_NEAR(found.column, start.column, 0.02);
 }
@@ -42,18 +42,18 @@ TEST(EdgeRegistration, KeepsAPoseThatNoEdgeHolds) {
   const OccupancyGrid hall = test::drawn_hall();
   const LocalCells cells{hall};
   const CellMotion far{0.3, 5000.0, -5000.0};
-  EXPECT_EQ(edge_registration(hall, edge_cells(hall, cells, 100000), far, {}), far);
+  EXPECT_EQ(edge_registration(hall, edge_cells(hall), far, {}), far);
 }
 
 TEST(BestNearby, NeverTakesAWorsePose) {
   const OccupancyGrid hall = test::drawn_hall();
   const LocalCells cells{hall};
   const OverlayMap map{hall};
-  const auto edges = edge_cells(hall, cells, 100000);
+  const auto edges = edge_cells(hall);
   const CellMotion truth = cell_motion({}, hall.geometry(), cells);
-  EXPECT_EQ(best_nearby(map, edges, truth, 0.02, 3), truth) << "nothing fits better than a map on itself";
+  EXPECT_EQ(best_nearby(hall, edges, truth, 0.02, 3), truth) << "nothing fits better than a map on itself";
   const CellMotion start{truth.turn_rad, truth.column + 0.6, truth.row};
-  EXPECT_GT(map.score(cells, best_nearby(map, edges, start, 0.2, 6)).acceptance(),
+  EXPECT_GT(map.score(cells, best_nearby(hall, edges, start, 0.2, 6)).acceptance(),
             map.score(cells, start).acceptance());
 }
 

@@ -20,6 +20,7 @@ namespace deltamap::daemon::tool::experiment {
 
 struct Options {
   std::filesystem::path scenarios = "config/scenarios";
+  std::optional<std::filesystem::path> data{};  ///< recorded maps
   std::uint64_t seed = 1;
   bool quick = false;                         ///< fewer runs, shorter drives: to see that it works
   std::optional<double> minutes{};            ///< of one drive, in place of the experiment's, > 0
@@ -77,10 +78,16 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;
 };
 
+struct Picture {
+  std::string title;
+  std::string svg;
+};
+
 struct Report {
   std::vector<Figure> figures;
   std::vector<Chart> charts;
   std::vector<TextTable> tables;
+  std::vector<Picture> pictures{};
 };
 
 class Experiment {
@@ -88,6 +95,8 @@ class Experiment {
   virtual ~Experiment() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string what() const = 0;  ///< one line
+  /// Numbers that end in _ms are then the machine's, and differ from one time to the next.
+  [[nodiscard]] virtual bool measures_time() const { return false; }
   /// Throws std::runtime_error where a scenario cannot be read.
   [[nodiscard]] virtual std::vector<Run> runs(const Options& options) const = 0;
   /// `outcomes` in the order of the runs.

@@ -13,6 +13,8 @@ namespace deltamap::daemon::tool::experiment {
 [[nodiscard]] std::unique_ptr<Experiment> hall_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> stale_map_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> verdict_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> table1_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> merge_experiment();
 
 /// All, by name.
 [[nodiscard]] std::vector<std::unique_ptr<Experiment>> experiments();

@@ -72,6 +72,8 @@ std::string page_html(const Results& results) {
   html += figures_html(results.report);
   for (const TextTable& table : results.report.tables) html += table_html(table);
   for (const Chart& chart : results.report.charts) html += "<h2>" + escaped(chart.title) + "</h2>\n" + svg_of(chart);
+  for (const Picture& picture : results.report.pictures)
+    html += "<h2>" + escaped(picture.title) + "</h2>\n" + picture.svg;
   return html + "</body></html>\n";
 }
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Maps as SVG text, one laid over another.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+
+/// The map's occupied cells in grey, known floor light; over it the other's contour in colour, placed by
+/// `map_from_local`.
+[[nodiscard]] std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local,
+                                       const Pose2& map_from_local);
+
+}  // namespace deltamap::daemon::tool::experiment
