@@ -209,9 +209,14 @@ CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges
                        double step_cells, int rounds) {
   const double lever_cells = lever_of(edges);
   CellMotion best = start;
-  // A turn moves the farthest cells by about twice what it moves those at the lever arm.
-  const double most_step_cells = 2.0 * rounds * step_cells;
-  const NearbyAcceptance acceptance_at{map, edges, start, static_cast<float>(std::min(0.49, most_step_cells))};
+  const double most_moved_cells = 2.0 * step_cells;
+  // A turn moves the farthest cells by about twice what it moves those at the lever arm; not all axes move at once.
+  const NearbyAcceptance acceptance_at{map, edges, start, static_cast<float>(std::min(0.49, 4.0 * step_cells))};
+  const auto is_near = [&](const CellMotion& motion) {
+    return std::abs(motion.column - start.column) <= most_moved_cells &&
+           std::abs(motion.row - start.row) <= most_moved_cells &&
+           lever_cells * std::abs(motion.turn_rad - start.turn_rad) <= most_moved_cells;
+  };
   double best_acceptance = acceptance_at.at(best);
   for (int round = 0; round < rounds; ++round) {
     const CellMotion centre = best;
@@ -219,6 +224,7 @@ CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges
       for (const CellMotion& motion : {CellMotion{centre.turn_rad, centre.column + step, centre.row},
                                        CellMotion{centre.turn_rad, centre.column, centre.row + step},
                                        CellMotion{centre.turn_rad + step / lever_cells, centre.column, centre.row}}) {
+        if (!is_near(motion)) continue;
         const double acceptance = acceptance_at.at(motion);
         if (acceptance <= best_acceptance) continue;
         best_acceptance = acceptance;

@@ -35,7 +35,8 @@ struct EdgeCell {
                                            const CellMotion& start, const EdgeRegistrationParams& params);
 
 /// Tries neighbours of a pose, by Eq. 11 over the cells along the edges, and takes what is better: the edges of two
-/// lattices do not average out everywhere. `rounds` of 6 neighbours, `step_cells` away at first.
+/// lattices do not average out everywhere. `rounds` of 6 neighbours, `step_cells` away at first; never
+/// farther than two steps along any axis.
 [[nodiscard]] CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
                                      double step_cells, int rounds);
 

@@ -19,8 +19,8 @@ constexpr std::size_t kSampleCells = 3000;      // of the local map, to sort out
 constexpr std::size_t kRegistered = 24;         // candidates brought onto the map's lines
 constexpr std::size_t kFinal = 4;               // brought to the end, scored with every cell
 constexpr std::size_t kRoughEdgeCells = 3000;
-constexpr double kNearbyStep_cells = 0.02;
-constexpr int kNearbyRounds = 4;
+constexpr double kNearbyStep_cells = 0.04;
+constexpr int kNearbyRounds = 6;
 
 template <typename T>
 std::vector<T> thinned_to(const std::vector<T>& all, std::size_t most) {

@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t kContourPoints = 400;    // of the local contour, to be brought onto the map's
 constexpr std::size_t kRoughEdgeCells = 2500;  // to come near, before more of them count
 constexpr std::size_t kMostEdgeCells = 12000;
-constexpr double kNearbyStep_cells = 0.02;
-constexpr int kNearbyRounds = 4;
+constexpr double kNearbyStep_cells = 0.04;
+constexpr int kNearbyRounds = 6;
 
 template <typename T>
 std::vector<T> thinned_to(std::span<const T> all, std::size_t most) {
