@@ -68,7 +68,6 @@ std::map<std::string, std::uint64_t> LocalizationStep::counts() const {
           {"poses_confirmed", c.poses_confirmed},
           {"poses_refuted", c.poses_refuted},
           {"searches", c.searches},
-          {"searches_failed", c.searches_failed},
           {"recoveries", c.recoveries}};
 }
 

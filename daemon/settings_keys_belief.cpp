@@ -41,8 +41,10 @@ void add_states(localization::LocalizerParams& localizer, Keys& keys) {
                             "likewise all beams against the pose, though nothing proven is in view"));
   keys.push_back(number_key("localization.fit.distrust", fit.distrust, "", 0.0, 0.5,
                             "P(pose right) by all beams, proven or not, up to which they are against it"));
-  keys.push_back(number_key("localization.fit.search_fails_after_s", fit.search_fails_after_s, "s", 0.001, 3600.0,
-                            "unbroken misfit of what a search leads with until it begins anew"));
+  keys.push_back(number_key("localization.fit.suspicious_below", fit.suspicious_below, "", 0.0, 1.0,
+                            "mean share of explained beams that is a reason to look elsewhere too"));
+  keys.push_back(number_key("localization.fit.converged_unfit_after_m", fit.converged_unfit_after_m, "m", 0.0, 1000.0,
+                            "driven before global localization may end where the map explains little"));
 }
 
 void add_places(localization::LocalizerParams& localizer, Keys& keys) {
@@ -101,6 +103,10 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
                             "log evidence of fitting about as well"));
   keys.push_back(number_key("localization.rivals.block_m", rivals.block_m, "m", 0.01, 10.0,
                             "lattice of poses: between two positions"));
+  keys.push_back(number_key("localization.rivals.most_ahead", rivals.most_ahead, "", 0.0, 1000.0,
+                            "log evidence that a place may be found with ahead of the believed one"));
+  keys.push_back(number_key("localization.rivals.suspicious_pace", rivals.suspicious_pace, "", 0.001, 1.0,
+                            "pace of a search of the whole map while a pose is believed"));
   keys.push_back(whole_key("localization.rivals.headings", rivals.headings, "", 1, 720, "and headings"));
 }
 

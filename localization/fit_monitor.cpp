@@ -48,15 +48,18 @@ LocalizerState FitMonitor::observe(const Observation& scan, const Hypothesis& be
   const bool held = scan.verdict == PoseVerdict::kRight || scan.trust >= 1.0 - params_.distrust;
   switch (state_) {
     case LocalizerState::kGlobal:
-      if (fits && converged(best)) enter(LocalizerState::kTracking);
+      if (converged(best) && (fits || driven_in_state_m_ >= params_.converged_unfit_after_m)) {
+        start(LocalizerState::kTracking);
+      }
       break;
     case LocalizerState::kTracking:
       if (has_failed(scan.beaten)) enter(LocalizerState::kLost);
+      beaten_ = scan.beaten;
       break;
     case LocalizerState::kLost:
       if (fits || held) {
         enter(LocalizerState::kTracking);
-      } else if (in_state_s_ >= params_.search_after_s && driven_in_state_m_ >= params_.search_after_m) {
+      } else if (beaten_ || (in_state_s_ >= params_.search_after_s && driven_in_state_m_ >= params_.search_after_m)) {
         start(LocalizerState::kGlobal);
       }
       break;
@@ -73,12 +76,7 @@ bool FitMonitor::has_failed(bool beaten) const {
 }
 
 bool FitMonitor::suspicious() const {
-  return state_ == LocalizerState::kTracking && (misfit_s_ > 0.0 || distrusted_s_ > 0.0);
-}
-
-bool FitMonitor::search_failed() const {
-  return state_ == LocalizerState::kGlobal && misfit_s_ >= params_.search_fails_after_s &&
-         driven_in_state_m_ >= params_.search_after_m;
+  return state_ == LocalizerState::kTracking && (mean_fit_ < params_.suspicious_below || distrusted_s_ > 0.0);
 }
 
 }  // namespace deltamap::localization

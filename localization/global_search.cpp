@@ -49,20 +49,21 @@ bool GlobalSearch::due_again(const Pose2& joined_from_robot) const {
   return since.position().norm() >= params_.again_after_m || std::abs(since.theta) >= params_.again_after_rad;
 }
 
-std::span<const Pose2> GlobalSearch::look(const CoarseField& coarse, const LikelihoodField& field, const BeamEnds& ends,
-                                          const Pose2& joined_from_robot) {
+std::span<const Pose2> GlobalSearch::look(const CoarseField& coarse, const LikelihoodField& field, const Ends& ends,
+                                          const Pose2& joined_from_robot, double pace) {
+  const auto share_of = [pace](int count) { return static_cast<std::size_t>(std::max(1.0, pace * count)); };
   places_.clear();
   if (stage_ == Stage::kDone && due_again(joined_from_robot)) stage_ = Stage::kBegin;
-  if (ends.size() == 0 || stage_ == Stage::kDone) return places_;
+  if (ends.all.size() == 0 || stage_ == Stage::kDone) return places_;
   if (stage_ == Stage::kBegin) {
-    ends_ = ends;
+    ends_ = ends.near;
     joined_from_robot_ = joined_from_robot;
     left_ = lattice_.poses(coarse);
     lattice_.clear();
     stage_ = Stage::kLooking;
   }
   if (stage_ == Stage::kLooking) {
-    const std::size_t now = std::min(left_, static_cast<std::size_t>(params_.candidates_a_scan));
+    const std::size_t now = std::min(left_, share_of(params_.candidates_a_scan));
     (void)lattice_.look(coarse, ends_, now);
     left_ -= now;
     if (left_ > 0) return places_;
@@ -73,9 +74,9 @@ std::span<const Pose2> GlobalSearch::look(const CoarseField& coarse, const Likel
   }
   // Carried along by the wheels since the scan that found them, and slid to where the newest scan fits.
   const Pose2 motion = motion_between(joined_from_robot_, joined_from_robot);
-  const std::size_t until = std::min(candidates_.size(), next_ + static_cast<std::size_t>(params_.places_a_scan));
+  const std::size_t until = std::min(candidates_.size(), next_ + share_of(params_.places_a_scan));
   for (; next_ < until; ++next_) {
-    places_.push_back(settled(field, ends, candidates_[next_].map_from_robot * motion));
+    places_.push_back(settled(field, ends.all, candidates_[next_].map_from_robot * motion));
   }
   if (next_ == candidates_.size()) stage_ = Stage::kDone;
   return places_;

@@ -30,9 +30,16 @@ class GlobalSearch {
   void start();
   [[nodiscard]] bool under_way() const { return stage_ != Stage::kDone; }
 
+  /// Of one scan, robot frame.
+  struct Ends {
+    const BeamEnds& all;
+    const BeamEnds& near;  ///< that a coarse lattice of headings can place; may be all
+  };
+
   /// One scan's share of the work. Answers places where this scan fits; valid until the next call.
-  [[nodiscard]] std::span<const Pose2> look(const CoarseField& coarse, const LikelihoodField& field,
-                                            const BeamEnds& ends, const Pose2& joined_from_robot);
+  /// `pace`: how much of a full share, (0, 1].
+  [[nodiscard]] std::span<const Pose2> look(const CoarseField& coarse, const LikelihoodField& field, const Ends& ends,
+                                            const Pose2& joined_from_robot, double pace = 1.0);
 
  private:
   enum class Stage : std::uint8_t { kBegin, kLooking, kSliding, kDone };

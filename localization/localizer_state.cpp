@@ -131,7 +131,7 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
                              .joined_from_robot = joined_at(now),
                              .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
                              .unknown_s = tracked.unknown_s});
-  if (report.listed == 0 || !has_won(report.rivals.front())) return tracked.believed;
+  if (report.listed == 0 || !has_won(report.rivals.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.rivals.front().map_from_robot;
   if (lost || distance_between(winner, tracked.believed.map_from_robot) < params.rivals.nearby_m) {
     ++counts.recoveries;
@@ -141,9 +141,12 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
   return tracked.believed;
 }
 
-bool Localizer::State::has_won(const RivalPlace& place) const {
-  return place.share >= params.rivals.winning_share && place.followed_m >= params.rivals.wins_after_m &&
-         ends.size() > 0 && explained_share(field, ends, place.map_from_robot) >= params.fit.found_above;
+bool Localizer::State::has_won(const RivalPlace& place, const Pose2& believed) const {
+  constexpr double kClearlyBetter = 0.15;
+  if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
+  if (ends.size() == 0) return false;
+  const double fit = explained_share(field, ends, place.map_from_robot);
+  return fit >= params.fit.found_above || fit >= explained_share(field, ends, believed) + kClearlyBetter;
 }
 
 void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays, const ScanInstant& now,
@@ -167,10 +170,6 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.beaten = rivals.report().beaten;
   const LocalizerState after = monitor.observe(seen, best);
   rivals.suspect(monitor.suspicious());
-  if (monitor.search_failed()) {
-    ++counts.searches_failed;
-    start_anywhere();
-  }
   if (before != after) enter(after, before, believed.map_from_robot, now);
 }
 

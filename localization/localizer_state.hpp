@@ -59,8 +59,8 @@ struct Localizer::State {
   /// The best place that has come to mind leads, until it is believed.
   RefinedPose search(const ScanInstant& now);
   RefinedPose track(const ScanInstant& now, const Point2& robot_from_laser);
-  /// A place that holds nearly all belief, for long enough, and that the map explains now.
-  [[nodiscard]] bool has_won(const RivalPlace& place) const;
+  /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
+  [[nodiscard]] bool has_won(const RivalPlace& place, const Pose2& believed) const;
   [[nodiscard]] FitMonitor::Observation passed_since_last_scan(const ScanInstant& now) const;
   void judge_start(double fit);
   /// The monitor has changed its mind.

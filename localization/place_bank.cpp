@@ -16,15 +16,13 @@ double weighted_mean(const LikelihoodField& field, const BeamEnds& ends, std::sp
   const double c = std::cos(pose.theta);
   const double s = std::sin(pose.theta);
   double sum = 0.0;
-  double weight = 0.0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const auto x_m = static_cast<double>(ends.x_m[i]);
     const auto y_m = static_cast<double>(ends.y_m[i]);
     const Point2 end{pose.x + c * x_m - s * y_m, pose.y + s * x_m + c * y_m};
     sum += static_cast<double>(weights[i]) * field.steps_at(field.geometry().cell_at(end));
-    weight += static_cast<double>(weights[i]);
   }
-  return weight > 0.0 ? -LikelihoodField::kStep * sum / weight : 0.0;
+  return -LikelihoodField::kStep * sum / static_cast<double>(ends.size());
 }
 
 }  // namespace
@@ -62,16 +60,6 @@ void PlaceBank::believe_among(const Pose2& map_from_robot) {
   places_.front().map_from_robot = map_from_robot;
   places_.front().log_prior = 0.0;
   believing_ = true;
-}
-
-void PlaceBank::stop_believing() {
-  believing_ = false;
-  for (Place& place : places_) {
-    place.log_evidence = 0.0;
-    place.log_prior = 0.0;
-    place.followed_m = 0.0;
-    place.followed_rad = 0.0;
-  }
 }
 
 void PlaceBank::carry(const Pose2& motion) {

@@ -19,7 +19,7 @@ struct PlaceBankParams {
   int most = 200;                   ///< places while nothing is believed; 1..1000
   int most_while_believing = 24;    ///< and beside a believed pose; 1..most
   int beams = 60;                   ///< of a scan that judge a place; > 0
-  double evidence_beams = 2.5;      ///< independent beams that a scan counts as; > 0: neighbours see the same things
+  double evidence_beams = 12.0;     ///< independent beams that a scan of nothing but new surfaces counts as; > 0
   double step_m = 0.2;              ///< driven until a scan tells something new, m; > 0
   double step_rad = radians(15.0);  ///< or turned, rad; > 0
   double memory_steps = 40.0;       ///< scans that count until their evidence has faded to 1/e; > 1
@@ -38,7 +38,7 @@ struct Place {
   double followed_rad = 0.0;
 };
 
-/// Mean over the beams of ln p(z) with the robot at the pose; weights may be empty. 0 without beams.
+/// Mean over the beams of weight · ln p(z) with the robot at the pose; no weights: all 1. 0 without beams.
 [[nodiscard]] double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends,
                                          std::span<const float> weights, const Pose2& pose);
 
@@ -64,8 +64,8 @@ class PlaceBank {
   void set_priors(PriorOf&& log_prior_of) {
     for (Place& place : places_) place.log_prior = log_prior_of(place.map_from_robot);
   }
-  /// The believed one becomes a place like all others, and all start with equal odds.
-  void stop_believing();
+  /// The believed one becomes a place like all others, with the evidence that it has.
+  void stop_believing() { believing_ = false; }
 
   void carry(const Pose2& motion);
   /// Slides `count` places, a round after the other, those that come close to the best one always.

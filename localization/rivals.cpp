@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kProbesKept = 8;
 constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that a newcomer may fit worse by
 constexpr double kOverlooked = -2.0;        // log odds of a place that earlier looks did not find
+constexpr double kAroundM = 0.6;            // places that the next scans may join
 constexpr double kFarthestBehind = 6.0;     // log evidence: the stack may hold scans from before a slip
 
 bool is_near(const Pose2& pose, const Pose2& believed, const RivalsParams& params) {
@@ -38,6 +39,7 @@ void Rivals::start_believing() {
   elsewhere_prior_ = params_.elsewhere_prior;
   bank_.clear();
   stack_.clear();
+  novelty_.clear();
   report_ = {};
 }
 
@@ -56,8 +58,8 @@ void Rivals::stop_believing() {
   believing_ = false;
   bank_.stop_believing();
   bank_.set_priors([&](const Pose2& pose) { return log_prior_unbelieved(pose); });
-  stack_.clear();
-  search_.start();
+  if (!search_.under_way()) search_.start();
+  if (report_.beaten && report_.listed > 0) stack_.keep_last(report_.rivals.front().followed_m);
   write_report();
 }
 
@@ -69,8 +71,20 @@ void Rivals::suspect(bool suspicious) {
 
 void Rivals::start_anywhere() {
   bank_.clear();
+  stack_.clear();
+  novelty_.clear();
   last_believed_.reset();
   stop_believing();
+}
+
+double Rivals::share_around(const Pose2& pose) const {
+  double share = 0.0;
+  for (const Place& place : bank_.places().subspan(bank_.believing() ? 1 : 0)) {
+    const bool around = distance_between(place.map_from_robot, pose) < kAroundM &&
+                        std::abs(turn_between(place.map_from_robot.theta, pose.theta)) < params_.nearby_rad;
+    if (around) share += place.share;
+  }
+  return share;
 }
 
 bool Rivals::is_near_believed(const Pose2& pose) const {
@@ -84,7 +98,10 @@ double Rivals::log_prior_unbelieved(const Pose2& pose) const {
 
 std::optional<Place> Rivals::best_place() const {
   const Place* const best = bank_.reference();
-  return best != nullptr ? std::optional{*best} : std::nullopt;
+  if (best == nullptr) return std::nullopt;
+  Place found = *best;
+  found.share = share_around(best->map_from_robot);
+  return found;
 }
 
 void Rivals::apply(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed) {
@@ -101,13 +118,26 @@ void Rivals::thin(const Seen& seen) {
   const std::size_t count = std::min(most, seen.ends.size());
   ends_.x_m.resize(count);
   ends_.y_m.resize(count);
-  weights_.resize(seen.beam_weights.empty() ? 0 : count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t from = i * seen.ends.size() / count;
     ends_.x_m[i] = seen.ends.x_m[from];
     ends_.y_m[i] = seen.ends.y_m[from];
-    if (!weights_.empty()) weights_[i] = seen.beam_weights[from];
   }
+  keep_near_ends();
+}
+
+/// All where only few are near.
+void Rivals::keep_near_ends() {
+  constexpr float kNear_m = 10.0F;  // half a step of the lattice's headings turns an end by a block there
+  constexpr std::size_t kEnough = 12;
+  near_ends_.x_m.clear();
+  near_ends_.y_m.clear();
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    if (std::hypot(ends_.x_m[i], ends_.y_m[i]) > kNear_m) continue;
+    near_ends_.x_m.push_back(ends_.x_m[i]);
+    near_ends_.y_m.push_back(ends_.y_m[i]);
+  }
+  if (near_ends_.size() < kEnough) near_ends_ = ends_;
 }
 
 const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& seen) {
@@ -125,13 +155,14 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
   if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
-    bank_.weigh(field, ends_, weights_);
+    bank_.weigh(field, ends_, novelty_.weights(ends_, seen.joined_from_robot));
     since_step_m_ = 0.0;
     since_step_rad_ = 0.0;
   }
   if (believing_) probe(field, seen.joined_from_robot);
   if (!believing_ || suspicious_) {
-    const std::span<const Pose2> found = search_.look(coarse_, field, ends_, seen.joined_from_robot);
+    const std::span<const Pose2> found = search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot,
+                                                      believing_ ? params_.suspicious_pace : 1.0);
     if (!found.empty()) admit_all(field, found, seen.joined_from_robot);
   }
   bank_.settle();
@@ -140,28 +171,37 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   return report_;
 }
 
-double Rivals::recent_log_likelihood(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
-  return mean_log_likelihood(field, ends_, weights_, pose) + stack_.log_likelihood(field, pose, joined);
+double Rivals::ahead_of(const LikelihoodField& field, const Pose2& pose, const Pose2& other,
+                        const Pose2& joined) const {
+  const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
+  const ScanStack::Sums others = stack_.log_likelihoods(field, other, joined);
+  double ahead = 0.0;
+  for (std::size_t k = 0; k < stack_.size(); ++k) {
+    const double since_then = its[k] - others[k];
+    ahead = believing_ ? std::max(ahead, since_then) : since_then;
+  }
+  return bank_.params().evidence_beams * ahead;
 }
 
 void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined) {
   constexpr double kJustFoundM = 0.5;
   const Place* const best = bank_.reference();
   const bool proven = best != nullptr && best->followed_m > kJustFoundM;  // then no newcomer starts ahead of it
-  const std::optional<Pose2> held_against = best != nullptr ? std::optional{best->map_from_robot} : std::nullopt;
-  const double its_likelihood = recent_log_likelihood(field, held_against.value_or(poses.front()), joined);
+  const Pose2 held_against = best != nullptr ? best->map_from_robot : poses.front();
   const double base = best != nullptr ? best->log_evidence : 0.0;
   for (const Pose2& pose : poses) {
-    const double ahead = bank_.params().evidence_beams * (recent_log_likelihood(field, pose, joined) - its_likelihood);
+    if (bank_.knows(pose)) continue;
+    double ahead = ahead_of(field, pose, held_against, joined);
+    if (believing_) ahead = std::clamp(ahead, -kFarthestBehind, params_.most_ahead);
     bank_.admit({.map_from_robot = pose,
-                 .log_evidence = base + (proven ? std::min(0.0, ahead) : ahead),
+                 .log_evidence = base + (proven && !believing_ ? std::min(0.0, ahead) : ahead),
                  .log_prior = log_prior_unbelieved(pose) + (proven ? kOverlooked : 0.0)});
   }
 }
 
 void Rivals::probe(const LikelihoodField& field, const Pose2& joined) {
   if (bank_.places().empty()) return;
-  (void)probes_.look(coarse_, ends_, static_cast<std::size_t>(params_.probes));
+  (void)probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
   probe_nearby_next_ = !probe_nearby_next_;
   if (probe_nearby_next_) {
     const std::optional<Pose2> nearby = best_nearby(field);
@@ -194,18 +234,17 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   const Place& own = bank_.places().front();
   const Pose2 pose = settled(field, ends_, rough);
   if (bank_.knows(pose)) return;
-  const double gain = mean_log_likelihood(field, ends_, weights_, pose) -
-                      mean_log_likelihood(field, ends_, weights_, own.map_from_robot);
+  const double gain =
+      mean_log_likelihood(field, ends_, {}, pose) - mean_log_likelihood(field, ends_, {}, own.map_from_robot);
   if (gain < -kFitsNearlyAsWell) return;
   const bool nearby = is_near(pose, own.map_from_robot, params_);
   double ahead = bank_.params().evidence_beams * gain;
-  if (!nearby) {  // a slip lies behind a nearby place: before it, the scans say nothing of it
-    ahead = bank_.params().evidence_beams *
-            (recent_log_likelihood(field, pose, joined) - recent_log_likelihood(field, own.map_from_robot, joined));
-  }
-  bank_.admit({.map_from_robot = pose,
-               .log_evidence = own.log_evidence + std::clamp(ahead, -kFarthestBehind, 0.0),
-               .log_prior = std::log(nearby ? params_.nearby_prior : elsewhere_prior_)});
+  // A slip lies behind a nearby place: before it, the scans say nothing of it.
+  if (!nearby) ahead = ahead_of(field, pose, own.map_from_robot, joined);
+  bank_.admit(
+      {.map_from_robot = pose,
+       .log_evidence = own.log_evidence + std::clamp(ahead, -kFarthestBehind, nearby ? 0.0 : params_.most_ahead),
+       .log_prior = std::log(nearby ? params_.nearby_prior : elsewhere_prior_)});
 }
 
 void Rivals::write_report() {
@@ -228,12 +267,15 @@ void Rivals::write_report() {
     report_.beaten |= report_.own_known && ahead > params_.beats_by && place.followed_m >= params_.wins_after_m;
     report_.unique &= ahead <= -params_.equal_within;
   }
+  for (std::size_t i = 0; i < report_.listed; ++i) {
+    report_.rivals[i].share_around = share_around(report_.rivals[i].map_from_robot);
+  }
   report_.effective_places = squared_shares > 0.0 ? 1.0 / squared_shares : 1.0;
 }
 
 /// Among the best others, where it belongs there.
 void Rivals::list(const Place& place) {
-  RivalPlace entry{place.map_from_robot, place.log_evidence, place.share, place.followed_m};
+  RivalPlace entry{place.map_from_robot, place.log_evidence, place.share, 0.0, place.followed_m};
   for (std::size_t rank = 0; rank < report_.listed; ++rank) {
     if (entry.share > report_.rivals[rank].share) std::swap(entry, report_.rivals[rank]);
   }

@@ -15,6 +15,7 @@
 #include "localization/lattice_search.hpp"
 #include "localization/place_bank.hpp"
 #include "localization/scan_stack.hpp"
+#include "localization/surface_novelty.hpp"
 
 namespace deltamap::localization {
 
@@ -24,17 +25,19 @@ struct RivalsParams {
   double nearby_m = 1.5;              ///< how far "around" is, m; > 0
   double nearby_rad = radians(20.0);  ///< likewise, rad; > 0
   double nearby_prior = 1e-3;         ///< odds of such a place against the believed one, before any scan; 0..1
-  double elsewhere_prior = 1e-6;      ///< odds of any other place: nobody carries robots about; 0..1
+  double elsewhere_prior = 1e-5;      ///< odds of any other place: nobody carries robots about; 0..1
   double prior_after_search = 0.3;    ///< the same where the believed place was not given but found; 0..1
   double kidnapped_prior =
-      0.005;  ///< odds of being elsewhere against near, where the believed place has proven wrong; 0..1
-  double winning_share = 0.98;  ///< of the belief at which another place is believed instead; 0.5..1
-  double wins_after_m = 1.0;    ///< driven since it was found before another place may win, m; >= 0
-  double beats_by = 12.0;       ///< log evidence of clearly better, whatever the odds before; > 0
-  double equal_within = 4.0;    ///< log evidence of about as well; > 0
-  int refined_a_scan = 4;       ///< places that are slid to their best fit at a scan while tracking; >= 0
-  double block_m = 0.25;        ///< side of the coarse field's blocks, m; > 0
-  int headings = 48;            ///< of the lattice of poses; > 0
+      0.001;  ///< odds of being elsewhere against near, where the believed place has proven wrong; 0..1
+  double winning_share = 0.98;   ///< of the belief at which another place is believed instead; 0.5..1
+  double wins_after_m = 1.0;     ///< driven since it was found before another place may win, m; >= 0
+  double beats_by = 12.0;        ///< log evidence of clearly better, whatever the odds before; > 0
+  double most_ahead = 10.0;      ///< log evidence that a place may be found with ahead of the believed one; >= 0
+  double equal_within = 4.0;     ///< log evidence of about as well; > 0
+  int refined_a_scan = 4;        ///< places that are slid to their best fit at a scan while tracking; >= 0
+  double block_m = 0.25;         ///< side of the coarse field's blocks, m; > 0
+  int headings = 96;             ///< of the lattice of poses; > 0
+  double suspicious_pace = 0.2;  ///< of a search of the whole map while a pose is believed; (0, 1]
 };
 
 /// A place that is not believed, with what speaks for it.
@@ -42,6 +45,7 @@ struct RivalPlace {
   Pose2 map_from_robot;
   double log_evidence = 0.0;  ///< ln p(recent scans | there), from independent beams; <= 0
   double share = 0.0;         ///< of the belief, [0, 1]
+  double share_around = 0.0;  ///< the same of all places within some decimetres of it together
   double followed_m = 0.0;    ///< driven since it was found
 };
 
@@ -69,7 +73,7 @@ class Rivals {
   /// From now on this place is believed, which was not given but found. After a slip the place is near the one that
   /// was believed; elsewhere, all others that fit as well stay its rivals.
   void start_believing_in(const Pose2& found);
-  /// From now on nothing is believed: all known places start with equal odds, and the whole map is searched.
+  /// From now on nothing is believed and the whole map is searched; known places keep what speaks for them.
   void stop_believing();
   /// While true, the whole map is searched beside the believed pose.
   void suspect(bool suspicious);
@@ -78,7 +82,6 @@ class Rivals {
 
   struct Seen {
     const BeamEnds& ends;                      ///< robot frame; may be empty
-    std::span<const float> beam_weights{};     ///< what each beam counts, >= 0; empty: all alike
     Pose2 joined_from_robot;                   ///< by odometry (OdometryAt)
     std::optional<Pose2> map_from_believed{};  ///< where the robot is believed to be, if anywhere
     double unknown_s = 0.0;                    ///< seconds since the last scan that odometry does not cover
@@ -86,7 +89,8 @@ class Rivals {
   const RivalReport& observe(const LikelihoodField& field, const Seen& seen);
 
   [[nodiscard]] const RivalReport& report() const { return report_; }
-  /// The best place of all while nothing is believed; nothing before a scan has found one.
+  /// The best place of all while nothing is believed, with the share of all close to it; nothing before a scan has
+  /// found one.
   [[nodiscard]] std::optional<Place> best_place() const;
   /// Is the pose about where the robot was last believed to be, carried along by odometry?
   [[nodiscard]] bool is_near_believed(const Pose2& pose) const;
@@ -98,12 +102,16 @@ class Rivals {
 
  private:
   void thin(const Seen& seen);
+  void keep_near_ends();
   void probe(const LikelihoodField& field, const Pose2& joined);
   void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined);
   void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
   [[nodiscard]] std::optional<Pose2> best_nearby(const LikelihoodField& field);
-  [[nodiscard]] double recent_log_likelihood(const LikelihoodField& field, const Pose2& pose,
-                                             const Pose2& joined) const;
+  /// By how much log evidence the scans of the last metres speak for a pose against another. While a pose is believed,
+  /// only those since the robot may have been carried off: since when they speak for it most.
+  [[nodiscard]] double ahead_of(const LikelihoodField& field, const Pose2& pose, const Pose2& other,
+                                const Pose2& joined) const;
+  [[nodiscard]] double share_around(const Pose2& pose) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
   void list(const Place& place);
@@ -115,8 +123,9 @@ class Rivals {
   PlaceBank bank_;
   ScanStack stack_;
   Random random_;
-  BeamEnds ends_;  // thinned
-  std::vector<float> weights_;
+  BeamEnds ends_;       // thinned
+  BeamEnds near_ends_;  // of these, those that a coarse lattice of headings can place
+  SurfaceNovelty novelty_;
   std::optional<Pose2> last_joined_;
   bool believing_ = false;
   bool suspicious_ = false;

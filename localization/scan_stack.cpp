@@ -10,28 +10,40 @@
 namespace deltamap::localization {
 
 void ScanStack::add(const BeamEnds& ends, const Pose2& joined_from_robot) {
-  constexpr double kApartM = 0.5;
   const double apart_rad = radians(30.0);
   if (ends.size() == 0) return;
+  double since_last_m = 0.0;
   if (count_ > 0) {
     const Pose2 since = motion_between(kept_[newest_].joined_from_robot, joined_from_robot);
-    if (since.position().norm() < kApartM && std::abs(since.theta) < apart_rad) return;
+    since_last_m = since.position().norm();
+    if (since_last_m < kApartM && std::abs(since.theta) < apart_rad) return;
   }
   newest_ = (newest_ + 1) % kScans;
   count_ = std::min(count_ + 1, kScans);
   kept_[newest_].ends = ends;
+  const std::span<const float> weights = novelty_.weights(ends, joined_from_robot);
+  kept_[newest_].weights.assign(weights.begin(), weights.end());
   kept_[newest_].joined_from_robot = joined_from_robot;
+  kept_[newest_].since_last_m = since_last_m;
 }
 
-double ScanStack::log_likelihood(const LikelihoodField& field, const Pose2& map_from_robot,
-                                 const Pose2& joined_from_robot) const {
+void ScanStack::keep_last(double driven_m) {
+  std::size_t kept = 0;
+  for (double back_m = 0.0; kept < count_ && back_m <= driven_m; ++kept) back_m += newest_but(kept).since_last_m;
+  count_ = kept;
+}
+
+ScanStack::Sums ScanStack::log_likelihoods(const LikelihoodField& field, const Pose2& map_from_robot,
+                                           const Pose2& joined_from_robot) const {
+  Sums sums{};
   double sum = 0.0;
   for (std::size_t back = 0; back < count_; ++back) {
-    const Kept& kept = kept_[(newest_ + kScans - back) % kScans];
+    const Kept& kept = newest_but(back);
     const Pose2 now_from_then = motion_between(joined_from_robot, kept.joined_from_robot);
-    sum += mean_log_likelihood(field, kept.ends, {}, map_from_robot * now_from_then);
+    sum += mean_log_likelihood(field, kept.ends, kept.weights, map_from_robot * now_from_then);
+    sums[back] = sum;
   }
-  return sum;
+  return sums;
 }
 
 }  // namespace deltamap::localization

@@ -6,30 +6,47 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "localization/deskew.hpp"
 #include "localization/likelihood_field.hpp"
+#include "localization/surface_novelty.hpp"
 
 namespace deltamap::localization {
 
 class ScanStack {
  public:
-  static constexpr std::size_t kScans = 4;
+  static constexpr std::size_t kScans = 24;
+  static constexpr double kApartM = 0.5;  ///< between two kept scans, m, where the robot drives straight on
 
-  void clear() { count_ = 0; }
+  void clear() {
+    count_ = 0;
+    novelty_.clear();
+  }
+  /// Forgets all but the scans of the last metres of driving.
+  void keep_last(double driven_m);
 
   /// Keeps the scan when the robot has moved half a metre or turned 30° since the last kept one.
   void add(const BeamEnds& ends, const Pose2& joined_from_robot);
 
-  /// Sum over the kept scans of the mean ln p(z) had the robot now been at the pose; <= 0.
-  [[nodiscard]] double log_likelihood(const LikelihoodField& field, const Pose2& map_from_robot,
-                                      const Pose2& joined_from_robot) const;
+  [[nodiscard]] std::size_t size() const { return count_; }
+
+  /// Element k: the sum over the k + 1 newest scans of the mean ln p(z), surfaces counted once, had the robot now been
+  /// at the pose, <= 0.
+  using Sums = std::array<double, kScans>;
+  [[nodiscard]] Sums log_likelihoods(const LikelihoodField& field, const Pose2& map_from_robot,
+                                     const Pose2& joined_from_robot) const;
 
  private:
   struct Kept {
     BeamEnds ends;
+    std::vector<float> weights;
     Pose2 joined_from_robot;
+    double since_last_m = 0.0;  ///< driven between the scan kept before and this one
   };
+  [[nodiscard]] const Kept& newest_but(std::size_t back) const { return kept_[(newest_ + kScans - back) % kScans]; }
+
+  SurfaceNovelty novelty_;
   std::array<Kept, kScans> kept_;
   std::size_t count_ = 0;
   std::size_t newest_ = 0;

@@ -39,9 +39,9 @@ TEST(FitMonitor, TakesAMuchChangedViewForNoLoss) {
 
 TEST(FitMonitor, IsLostAfterALongStrongMisfitAndSearchesOnlyAfterDrivingOn) {
   FitMonitor monitor = tracking();
-  EXPECT_EQ(after(monitor, 45.0, 0.15), LocalizerState::kLost);
-  EXPECT_EQ(after(monitor, 60.0, 0.15, 0.0), LocalizerState::kLost);
-  EXPECT_EQ(after(monitor, 20.0, 0.15), LocalizerState::kGlobal);
+  EXPECT_EQ(after(monitor, 95.0, 0.15, 0.4, false), LocalizerState::kLost);
+  EXPECT_EQ(after(monitor, 60.0, 0.15, 0.0, false), LocalizerState::kLost);
+  EXPECT_EQ(after(monitor, 20.0, 0.15, 0.4, false), LocalizerState::kGlobal);
 }
 
 TEST(FitMonitor, BlamesTheMapForAMisfitThatNoOtherPlaceExplainsBetter) {
@@ -53,8 +53,8 @@ TEST(FitMonitor, BlamesTheMapForAMisfitThatNoOtherPlaceExplainsBetter) {
 
 TEST(FitMonitor, TracksAgainWhereTheViewFitsAgain) {
   FitMonitor monitor = tracking();
-  EXPECT_EQ(after(monitor, 45.0, 0.1), LocalizerState::kLost);
-  EXPECT_EQ(after(monitor, 10.0, 0.9), LocalizerState::kTracking);
+  EXPECT_EQ(after(monitor, 95.0, 0.1, 0.0, false), LocalizerState::kLost);
+  EXPECT_EQ(after(monitor, 10.0, 0.9, 0.4, false), LocalizerState::kTracking);
 }
 
 TEST(FitMonitor, EndsAGlobalSearchOnlyAfterSeeingEnough) {
@@ -72,14 +72,24 @@ TEST(FitMonitor, DoesNotEndAGlobalSearchWithTwoPlacesLeft) {
   LocalizerState state{};
   for (int i = 0; i < 100; ++i) state = monitor.observe({0.2, 0.1, 0.0, 0.9}, torn);
   EXPECT_EQ(state, LocalizerState::kGlobal);
-  EXPECT_FALSE(monitor.search_failed());
 }
 
-TEST(FitMonitor, NoticesASearchThatFoundNothing) {
+TEST(FitMonitor, EndsASearchWhereLittleFitsOnlyAfterALongDrive) {
   FitMonitor monitor{{}};
   monitor.start(LocalizerState::kGlobal);
-  EXPECT_EQ(after(monitor, 30.0, 0.2), LocalizerState::kGlobal);
-  EXPECT_TRUE(monitor.search_failed());
+  EXPECT_EQ(after(monitor, 15.0, 0.2), LocalizerState::kGlobal) << "6 m";
+  EXPECT_EQ(after(monitor, 10.0, 0.2), LocalizerState::kTracking) << "10 m: one place alone is left, the map is old";
+}
+
+TEST(FitMonitor, SearchesAtOnceWhereAnotherPlaceHasBeatenTheBelievedOne) {
+  FitMonitor monitor = tracking();
+  const FitMonitor::Observation wrong{
+      .passed_s = 0.2, .driven_m = 0.1, .fit = 0.3, .verdict = PoseVerdict::kWrong, .beaten = true};
+  int scans = 0;
+  while (monitor.observe(wrong, certain()) == LocalizerState::kTracking) ++scans;
+  EXPECT_NEAR(0.2 * scans, 1.5, 0.3) << "s";
+  EXPECT_EQ(monitor.state(), LocalizerState::kLost);
+  EXPECT_EQ(monitor.observe(wrong, certain()), LocalizerState::kGlobal);
 }
 
 TEST(FitMonitor, TracksOnWhereLittleFitsButProvenTilesHoldThePose) {
@@ -108,7 +118,7 @@ TEST(FitMonitor, IsLostAfterLongDistrustThatNothingProvenConfirms) {
   LocalizerState state{};
   for (int i = 0; i < 100; ++i) state = monitor.observe(odd, certain());
   EXPECT_EQ(state, LocalizerState::kTracking);
-  for (int i = 0; i < 420; ++i) state = monitor.observe(odd, certain());
+  for (int i = 0; i < 420 && state == LocalizerState::kTracking; ++i) state = monitor.observe(odd, certain());
   EXPECT_EQ(state, LocalizerState::kLost);
 }
 

@@ -116,7 +116,7 @@ TEST(GlobalSearch, FindsTheRobotFromManyPlacesInItsFirstLook) {
     GlobalSearch search{{}, kHeadings};
     bool seen = false;
     for (int scan = 0; scan < 20 && search.under_way(); ++scan) {
-      for (const Pose2& place : search.look(coarse, field, ends, {})) seen = seen || near(place, truth);
+      for (const Pose2& place : search.look(coarse, field, {ends, ends}, {})) seen = seen || near(place, truth);
     }
     found += seen ? 1 : 0;
     ++tried;
@@ -135,7 +135,8 @@ TEST(GlobalSearch, CarriesWhatItFoundAlongWithTheWheels) {
   bool found = false;
   int scans = 0;
   for (; scans < 40 && search.under_way(); ++scans) {
-    for (const Pose2& place : search.look(coarse, field, seen_from(truth, 1), joined)) {
+    const BeamEnds seen = seen_from(truth, 1);
+    for (const Pose2& place : search.look(coarse, field, {seen, seen}, joined)) {
       found = found || near(place, truth);
     }
     const Pose2 motion{0.03, 0.0, 0.02};
@@ -152,10 +153,10 @@ TEST(GlobalSearch, RestsUntilTheRobotHasMovedOn) {
   const CoarseField coarse{map, field, kBlock_m};
   const BeamEnds ends = seen_from({4.5, 2.0, 1.1}, 3);
   GlobalSearch search{{}, kHeadings};
-  while (search.under_way()) (void)search.look(coarse, field, ends, {});
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(search.look(coarse, field, ends, {0.1, 0.0, 0.1}).empty());
+  while (search.under_way()) (void)search.look(coarse, field, {ends, ends}, {});
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(search.look(coarse, field, {ends, ends}, {0.1, 0.0, 0.1}).empty());
   EXPECT_FALSE(search.under_way());
-  (void)search.look(coarse, field, ends, {0.6, 0.0, 0.1});
+  (void)search.look(coarse, field, {ends, ends}, {0.6, 0.0, 0.1});
   EXPECT_TRUE(search.under_way());
 }
 

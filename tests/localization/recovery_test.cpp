@@ -217,7 +217,7 @@ TEST(BadInput, ARobotCarriedOffInAMinuteOfSilenceIsSearchedForAtOnce) {
   EXPECT_EQ(localizer.counts().poses_refuted, 1u);
 }
 
-TEST(BadInput, AMapOnWhichNothingFitsIsSearchedAnewOnlyAsTheRobotDrives) {
+TEST(BadInput, NothingIsBelievedOnAMapOnWhichNothingFits) {
   OccupancyGrid other{{200, 200, 0.1, {0.0, 0.0}}, CellState::kFree};
   test::fill_box(other, {3.0, 3.0}, {3.2, 3.2}, CellState::kOccupied);
   Tour tour{7};
@@ -225,8 +225,6 @@ TEST(BadInput, AMapOnWhichNothingFitsIsSearchedAnewOnlyAsTheRobotDrives) {
   for (int i = 0; i < 600; ++i) {
     ASSERT_NE(tour.next(localizer).estimate.state, LocalizerState::kTracking) << i;
   }
-  EXPECT_GT(localizer.counts().searches_failed, 0u);
-  EXPECT_LT(localizer.counts().searches_failed, 20u);
 }
 
 }  // namespace
