@@ -67,7 +67,9 @@ void CoarseField::list_free_blocks() {
 
 Point2 CoarseField::centre_of(std::uint32_t block) const {
   const auto columns = static_cast<std::uint32_t>(columns_);
-  return {origin_.x() + (block % columns + 0.5) * block_m_, origin_.y() + (block / columns + 0.5) * block_m_};
+  const std::uint32_t column = block % columns;
+  const std::uint32_t row = block / columns;
+  return {origin_.x() + (column + 0.5) * block_m_, origin_.y() + (row + 0.5) * block_m_};
 }
 
 TurnedBeams turned_beams(const BeamEnds& ends, double heading_rad, double block_m) {

@@ -92,7 +92,8 @@ class WindowBuilder {
     return column_distance_.data() + static_cast<std::size_t>(row - window_.first.row) * width_;
   }
   [[nodiscard]] std::size_t entry_of(int column) const {
-    return static_cast<std::size_t>(column - window_.first.column + table_.reach_cells);
+    const int entry = column - window_.first.column + table_.reach_cells;
+    return static_cast<std::size_t>(entry);
   }
 
   void measure_columns_upwards() {

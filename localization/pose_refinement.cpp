@@ -37,7 +37,7 @@ double BeamErrors::variance_m2(const RefinementParams& params) const {
 
 Refinement refined(const LikelihoodField& field, const BeamEnds& ends, const RefinedPose& prior,
                    const PoseCovariance& hold, BeamErrors known, double beam_share, const RefinementParams& params) {
-  const Refinement unchanged{prior, known};
+  Refinement unchanged{prior, known};
   if (params.steps <= 0 || ends.size() == 0) return unchanged;
   // A floor keeps the prior invertible when all particles have come to lie on one point.
   const Eigen::Matrix3d spread = hold + Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix();
