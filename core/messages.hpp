@@ -62,7 +62,7 @@ struct Scan {
 using SensorMessage = std::variant<Odometry, Scan>;
 
 enum class LocalizerState : std::uint8_t {
-  kGlobal,    ///< pose unknown: particles over all free space
+  kGlobal,    ///< pose unknown: the whole map is searched, or a start pose is being checked
   kTracking,  ///< one hypothesis, fitting: what the paper requires for Δ-mapping
   kLost       ///< scans have stopped fitting and no change of the map explains it
 };

@@ -65,7 +65,7 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
                            "and beside a believed pose"));
   keys.push_back(whole_key("localization.places.beams", places.beams, "", 1, 1000, "of a scan that judge a place"));
   keys.push_back(number_key("localization.places.evidence_beams", places.evidence_beams, "", 0.1, 1000.0,
-                            "independent beams that a scan counts as between places"));
+                            "independent beams of a scan if each met a new surface; a quarter of it at most counts"));
   keys.push_back(number_key("localization.places.step_m", places.step_m, "m", 0.001, 100.0,
                             "driven until a scan tells something new"));
   keys.push_back(degrees_key("localization.places.step_deg", places.step_rad, 0.1, 360.0, "or turned"));

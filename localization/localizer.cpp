@@ -26,6 +26,7 @@ void Localizer::observe(const Odometry& odometry) { state_->odometry.add(odometr
 TrackedScan Localizer::observe(Scan scan) {
   State& state = *state_;
   TrackedScan tracked;
+  if (state.last_scan && scan.time < *state.last_scan) state.odometry.clock_fell_back(*state.last_scan);
   const ScanInstant now{scan.time, state.odometry.at(scan.time)};
   const BodyVelocity velocity = state.odometry.velocity_at(scan.time);
   tracked.rays = deskewed(scan, velocity);

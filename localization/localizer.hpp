@@ -20,7 +20,7 @@ struct LocalizerParams;
 
 class Localizer {
  public:
-  /// Without an initial pose the particles start all over the free space (global localization).
+  /// Without an initial pose the whole map is searched (global localization).
   /// Throws std::runtime_error where the map has no free cell.
   Localizer(const LocalizerParams& params, std::shared_ptr<const OccupancyGrid> map,
             std::optional<InitialPose> initial_pose, std::uint64_t seed);

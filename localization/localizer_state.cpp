@@ -56,6 +56,7 @@ void Localizer::State::start_tracking() {
 
 void Localizer::State::check_pose() {
   monitor.start(LocalizerState::kGlobal);
+  judgement.start(kTrustInASearch);
   check.start();
 }
 
@@ -78,6 +79,7 @@ RefinedPose Localizer::State::believe_in(const Pose2& place, const ScanInstant& 
 }
 
 void Localizer::State::doubt() {
+  check.end();
   ++counts.searches;
   rivals.stop_believing();
   judgement.start(kTrustInNothing);
@@ -154,9 +156,9 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   FitMonitor::Observation seen = passed_since_last_scan(now);
   last_joined = joined_at(now);
   last_scan = now.time;
-  if (ends.size() == 0) return;  // a scan that saw nothing says nothing
   seen.fit = explained_share(field, ends, believed.map_from_robot);
-  if (check.under_way()) return judge_start(seen.fit);
+  const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
+  if (check.under_way()) return blind ? void() : judge_start(seen.fit);
   const LocalizerState before = monitor.state();
   const Belief& belief = judgement.observe({.map = *map,
                                             .scan = scan,
@@ -165,6 +167,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .state = before,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
                                             .rivals = rivals.report()});
+  if (blind) return;
   seen.verdict = belief.verdict;
   seen.trust = judgement.trust();
   seen.beaten = rivals.report().beaten;

@@ -17,6 +17,12 @@ BodyVelocity velocity_of(const Pose2& motion, double duration_s) {
   return {forward / duration_s, motion.theta / duration_s};
 }
 
+bool is_finite(const Odometry& odometry) {
+  const Pose2& pose = odometry.odom_from_robot;
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.theta) &&
+         std::isfinite(odometry.speed_m_per_s) && std::isfinite(odometry.turn_rate_rad_per_s);
+}
+
 /// Constant speed and turn rate: along the chord of the arc.
 Pose2 motion_at(const BodyVelocity& velocity, double duration_s) {
   const double turn_rad = velocity.turn_rate_rad_per_s * duration_s;
@@ -35,18 +41,24 @@ void OdometryBuffer::add(const Odometry& odometry) {
                odometry.odom_from_robot,
                odometry.epoch,
                {odometry.speed_m_per_s, odometry.turn_rate_rad_per_s}};
+  if (!is_finite(odometry)) return;
+  const auto join_to = [&fresh](const Report& last) {
+    const bool same_frame = fresh.epoch == last.epoch;
+    const Pose2 motion = same_frame ? motion_between(last.odom_from_robot, fresh.odom_from_robot) : Pose2{};
+    fresh.joined_from_robot = last.joined_from_robot * motion;
+  };
+  if (count_ == 0 && before_restart_) join_to(*before_restart_);
+  before_restart_.reset();
   if (count_ > 0) {
     const Report& last = newest();
     if (seconds(last.time - fresh.time) > kClockFellBackS) {
-      fresh.joined_from_robot = last.joined_from_robot;
+      join_to(last);
       count_ = 0;
     } else if (fresh.time <= last.time && fresh.epoch == last.epoch) {
       return;
-    } else if (fresh.epoch == last.epoch) {
-      fresh.joined_from_robot = last.joined_from_robot * motion_between(last.odom_from_robot, fresh.odom_from_robot);
     } else {
-      fresh.joined_from_robot = last.joined_from_robot;
-      fresh.time = std::max(fresh.time, last.time);
+      join_to(last);
+      if (fresh.epoch != last.epoch) fresh.time = std::max(fresh.time, last.time);
     }
   }
   if (count_ == ring_.size()) {
@@ -56,6 +68,13 @@ void OdometryBuffer::add(const Odometry& odometry) {
     ring_[(first_ + count_) % ring_.size()] = fresh;
     ++count_;
   }
+}
+
+void OdometryBuffer::clock_fell_back(Timestamp last_scan) {
+  constexpr double kScansLagS = 0.3;
+  if (count_ == 0 || seconds(last_scan - newest().time) > kScansLagS) return;  // it has fallen back here, too
+  before_restart_ = newest();
+  count_ = 0;
 }
 
 std::size_t OdometryBuffer::first_not_before(Timestamp time) const {

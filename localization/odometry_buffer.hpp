@@ -38,8 +38,12 @@ class OdometryBuffer {
   explicit OdometryBuffer(const OdometryBufferParams& params);
 
   /// Reports must come in order of time; one that is not newer than the last is left out, unless the clock fell back by
-  /// more than a second: then the past is forgotten.
+  /// more than a second: then the past is forgotten. One that is no number is left out.
   void add(const Odometry& odometry);
+
+  /// A scan is older than the one before it: unless the reports have fallen back already, nothing is known until the
+  /// next one comes, which goes on from where the last one was.
+  void clock_fell_back(Timestamp last_scan);
 
   /// Nothing before the first report.
   [[nodiscard]] std::optional<OdometryAt> at(Timestamp time) const;
@@ -69,6 +73,7 @@ class OdometryBuffer {
   std::vector<Report> ring_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;
+  std::optional<Report> before_restart_;
 };
 
 }  // namespace deltamap::localization

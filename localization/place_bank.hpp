@@ -19,7 +19,8 @@ struct PlaceBankParams {
   int most = 200;                   ///< places while nothing is believed; 1..1000
   int most_while_believing = 24;    ///< and beside a believed pose; 1..most
   int beams = 60;                   ///< of a scan that judge a place; > 0
-  double evidence_beams = 12.0;     ///< independent beams that a scan of nothing but new surfaces counts as; > 0
+  double evidence_beams = 12.0;     ///< independent beams that a scan would count as if each hit a new surface; no scan
+                                    ///< counts as more than a quarter; > 0
   double step_m = 0.2;              ///< driven until a scan tells something new, m; > 0
   double step_rad = radians(15.0);  ///< or turned, rad; > 0
   double memory_steps = 40.0;       ///< scans that count until their evidence has faded to 1/e; > 1

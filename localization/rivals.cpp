@@ -58,13 +58,13 @@ void Rivals::stop_believing() {
   believing_ = false;
   bank_.stop_believing();
   bank_.set_priors([&](const Pose2& pose) { return log_prior_unbelieved(pose); });
-  if (!search_.under_way()) search_.start();
-  if (report_.beaten && report_.listed > 0) stack_.keep_last(report_.rivals.front().followed_m);
+  search_.start();
+  if (report_.beaten) stack_.keep_last(beaten_for_m_);
   write_report();
 }
 
 void Rivals::suspect(bool suspicious) {
-  if (suspicious && !suspicious_) search_.start();
+  if (suspicious && !suspicious_ && !search_.under_way()) search_.start();
   suspicious_ = suspicious;
   bank_.make_room(suspicious);
 }
@@ -264,7 +264,10 @@ void Rivals::write_report() {
     }
     list(place);
     const double ahead = place.log_evidence - report_.own_log_evidence;
-    report_.beaten |= report_.own_known && ahead > params_.beats_by && place.followed_m >= params_.wins_after_m;
+    if (report_.own_known && ahead > params_.beats_by && place.followed_m >= params_.wins_after_m) {
+      beaten_for_m_ = report_.beaten ? std::max(beaten_for_m_, place.followed_m) : place.followed_m;
+      report_.beaten = true;
+    }
     report_.unique &= ahead <= -params_.equal_within;
   }
   for (std::size_t i = 0; i < report_.listed; ++i) {

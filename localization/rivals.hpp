@@ -135,6 +135,7 @@ class Rivals {
   double since_step_m_ = 0.0;
   double since_step_rad_ = 0.0;
   RivalReport report_;
+  double beaten_for_m_ = 0.0;  // so long the place that has beaten the believed one has been followed
 };
 
 }  // namespace deltamap::localization

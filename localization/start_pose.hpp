@@ -31,7 +31,7 @@ struct Start {
 };
 
 /// A pose inside an obstacle is moved to the nearest free cell within a metre, and checked; where there is none, and
-/// outside the map, the robot may be anywhere.
+/// farther outside the map, the robot may be anywhere.
 [[nodiscard]] Start usable_start(const OccupancyGrid& map, const InitialPose& given);
 
 /// What is known before the first scan: the middle of the map, give or take all of it; weight 0.

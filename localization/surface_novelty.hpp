@@ -27,13 +27,13 @@ class SurfaceNovelty {
   struct Patch {
     std::int32_t column = 0;
     std::int32_t row = 0;
-    std::uint16_t beams = 0;
-    std::uint16_t met_at = 0;  ///< scan that met it last
+    std::uint32_t beams = 0;
+    std::uint32_t met_at = 0;  ///< scan that met it last
   };
   [[nodiscard]] Patch& patch_at(double x_m, double y_m);
 
   std::vector<Patch> patches_;  // a torus: far places share an entry, the later one takes it
-  std::uint16_t scan_ = 0;
+  std::uint32_t scan_ = 0;
   std::vector<float> weights_;
 };
 

@@ -94,7 +94,22 @@ TEST(OdometryBuffer, StartsAgainWhereTheClockFellBack) {
   buffer.add(report(10.0, {5.0, 0.0, 0.0}));
   buffer.add(report(10.1, {5.1, 0.0, 0.0}));
   EXPECT_NEAR(buffer.at(at_s(10.1))->odom_from_robot.x, 5.1, kSame);
-  EXPECT_NEAR(buffer.at(at_s(10.1))->joined_from_robot.x, 1.1, kSame);
+  EXPECT_NEAR(buffer.at(at_s(10.1))->joined_from_robot.x, 5.1, kSame) << "the wheels have counted on";
+}
+
+TEST(OdometryBuffer, KnowsNothingFromAScanThatFellBackUntilTheNextReportWhichGoesOn) {
+  OdometryBuffer buffer{{}};
+  buffer.add(report(100.0, {1.0, 0.0, 0.0}));
+  buffer.clock_fell_back(at_s(100.05));
+  EXPECT_FALSE(buffer.at(at_s(99.5)));
+  buffer.add(report(99.6, {1.3, 0.0, 0.0}));
+  EXPECT_NEAR(buffer.at(at_s(99.6))->joined_from_robot.x, 1.3, kSame);
+}
+
+TEST(OdometryBuffer, LeavesOutWhatIsNoNumber) {
+  OdometryBuffer buffer{{}};
+  buffer.add(report(1.0, {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}));
+  EXPECT_FALSE(buffer.at(at_s(1.0)));
 }
 
 TEST(OdometryBuffer, ForgetsTheOldestWhenItIsFull) {

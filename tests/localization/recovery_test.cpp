@@ -192,6 +192,31 @@ TEST(BadInput, AClockThatFallsBackIsCountedAndThePoseKept) {
   EXPECT_EQ(localizer.counts().clock_fell_back, 1u);
 }
 
+TEST(BadInput, AScanThatFallsBackBeforeOdometryDoesNeitherMovesNorLosesThePose) {
+  for (const double back_s : {0.5, 1.0, 20.0, 3600.0}) {
+    Tour tour{4};
+    Localizer localizer = localizer_at(InitialPose{tour.truth()}, 4);
+    for (int i = 0; i < 120; ++i) (void)tour.next(localizer);
+    tour.wait(-back_s);
+    ASSERT_TRUE(right(localizer.observe(tour.scan()), tour)) << back_s;
+    for (int i = 0; i < 50; ++i) ASSERT_TRUE(right(tour.next(localizer), tour)) << back_s << " s, scan " << i;
+  }
+}
+
+TEST(BadInput, BlindScansLeaveThePoseUndecided) {
+  Tour tour{8};
+  Localizer localizer = localizer_at(InitialPose{tour.truth()}, 8);
+  for (int i = 0; i < 200; ++i) (void)tour.next(localizer);
+  PoseVerdict verdict = PoseVerdict::kRight;
+  for (int i = 0; i < 300; ++i) {
+    tour.step();
+    Scan empty = tour.scan();
+    for (Beam& beam : empty.beams) beam = Beam{};
+    verdict = localizer.observe(std::move(empty)).estimate.belief.verdict;
+  }
+  EXPECT_EQ(verdict, PoseVerdict::kUndecided);
+}
+
 TEST(BadInput, AMinuteOfSilenceMakesThePoseProveItself) {
   Tour tour{5};
   Localizer localizer = localizer_at(InitialPose{tour.truth()}, 5);
