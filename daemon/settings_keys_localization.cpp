@@ -8,8 +8,7 @@ namespace {
 void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
   auto& particles = localizer.particles;
   keys.push_back(whole_key("localization.particles.min", particles.min, "", 10, 200000, "fewest particles"));
-  keys.push_back(whole_key("localization.particles.max", particles.max, "", 10, 200000,
-                           "most particles"));
+  keys.push_back(whole_key("localization.particles.max", particles.max, "", 10, 200000, "most particles"));
   keys.push_back(number_key("localization.particles.resample_below", particles.resample_below, "", 0.0, 1.0,
                             "share of the particles below which N_eff (Eq. 5) calls for resampling"));
   keys.push_back(number_key("localization.particles.evidence_beams", particles.evidence_beams, "", 0.1, 1000.0,

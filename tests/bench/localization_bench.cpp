@@ -80,8 +80,8 @@ void run(const Options& options, const localization::LocalizerParams& params) {
             << ' ' << estimate.covariance(0, 1) << '\n';
   }
   const localization::LocalizerCounts& counts = localizer.counts();
-  std::cout << "recoveries " << counts.recoveries << ", searches " << counts.searches
-            << ", gaps " << counts.gaps << '\n';
+  std::cout << "recoveries " << counts.recoveries << ", searches " << counts.searches << ", gaps " << counts.gaps
+            << '\n';
   std::sort(cpu_s.begin(), cpu_s.end());
   double sum_s = 0.0;
   for (const double s : cpu_s) sum_s += s;
