@@ -15,6 +15,10 @@ constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a perso
 constexpr double kTrustInASearch = 0.5;  // at one that a search has found,
 constexpr double kTrustInNothing = 0.1;  // and before there is any
 
+// A search has only begun: the whole map has been looked at twice at most.
+constexpr double kSearchBeginsM = 1.0;
+const double kSearchBeginsRad = radians(90.0);
+
 TrackerParams tracker_params(const LocalizerParams& given) {
   return {.particles = given.particles,
           .motion = given.motion,
@@ -49,6 +53,7 @@ void Localizer::State::start_at(const InitialPose& given) {
 }
 
 void Localizer::State::start_tracking() {
+  given_up.reset();
   monitor.start(LocalizerState::kTracking);
   judgement.start(kTrustAtStart);
   check.end();
@@ -61,6 +66,7 @@ void Localizer::State::check_pose() {
 }
 
 void Localizer::State::start_anywhere() {
+  given_up.reset();
   ++counts.searches;
   check.end();
   rivals.start_anywhere();
@@ -78,7 +84,8 @@ RefinedPose Localizer::State::believe_in(const Pose2& place, const ScanInstant& 
   return believed;
 }
 
-void Localizer::State::doubt() {
+void Localizer::State::doubt(const Pose2& map_from_believed, const ScanInstant& now) {
+  given_up = GivenUp{map_from_believed, joined_at(now)};
   check.end();
   ++counts.searches;
   rivals.stop_believing();
@@ -115,6 +122,12 @@ RefinedPose Localizer::State::search(const ScanInstant& now) {
     if (ends.size() > 0) w_avg = mean_likelihood(misfit_steps(field, ends, best.map_from_robot), ends.size());
   }
   n_eff = report.effective_places;
+  if (given_up) {
+    const Pose2 motion = motion_between(given_up->joined_from_robot, joined_at(now));
+    const bool only_begun = motion.position().norm() < kSearchBeginsM && std::abs(motion.theta) < kSearchBeginsRad;
+    if (only_begun) return {given_up->map_from_robot * motion, best.covariance};
+    given_up.reset();
+  }
   return {best.map_from_robot, best.covariance};
 }
 
@@ -139,7 +152,7 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
     ++counts.recoveries;
     return believe_in(winner, now);
   }
-  doubt();
+  doubt(tracked.believed.map_from_robot, now);
   return tracked.believed;
 }
 
@@ -197,7 +210,10 @@ void Localizer::State::enter(LocalizerState after, LocalizerState before, const 
                              const ScanInstant& now) {
   if (after == LocalizerState::kLost) rivals.stop_believing();
   if (before == LocalizerState::kLost && after == LocalizerState::kTracking) rivals.start_believing_in(believed);
-  if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) ++counts.searches;
+  if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) {
+    ++counts.searches;
+    given_up = GivenUp{believed, joined_at(now)};
+  }
   if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) (void)believe_in(believed, now);
 }
 

@@ -32,10 +32,15 @@ struct Localizer::State {
   BeamEnds ends;
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
-  Pose2 last_joined;   ///< odometry at the last scan
-  Hypothesis best;     ///< of the particles, or the place that leads a search
-  double w_avg = 1.0;  ///< of that; before any scan nothing speaks against the pose
-  double n_eff = 0.0;  ///< of the particles, or of a search's places
+  Pose2 last_joined;  ///< odometry at the last scan
+  struct GivenUp {
+    Pose2 map_from_robot;
+    Pose2 joined_from_robot;
+  };
+  std::optional<GivenUp> given_up;  ///< where the robot was last believed to be, while a search has only begun
+  Hypothesis best;                  ///< of the particles, or the place that leads a search
+  double w_avg = 1.0;               ///< of that; before any scan nothing speaks against the pose
+  double n_eff = 0.0;               ///< of the particles, or of a search's places
 
   // How a pose comes to be believed, and ceases to be.
   void start_at(const InitialPose& given);
@@ -45,7 +50,7 @@ struct Localizer::State {
   /// The particles start anew around a place that has won.
   RefinedPose believe_in(const Pose2& place, const ScanInstant& now);
   /// The robot is not where it was believed to be; before another place is believed, the whole map is searched.
-  void doubt();
+  void doubt(const Pose2& map_from_believed, const ScanInstant& now);
 
   // One scan, in this order.
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
@@ -56,7 +61,8 @@ struct Localizer::State {
 
   // What these are made of.
   void start_tracking();
-  /// The best place that has come to mind leads, until it is believed.
+  /// The best place that has come to mind leads, until it is believed; at first, what has been given up: the place that
+  /// has beaten it may be the image of one that nobody has looked at yet.
   RefinedPose search(const ScanInstant& now);
   RefinedPose track(const ScanInstant& now, const Point2& robot_from_laser);
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
