@@ -17,9 +17,8 @@ constexpr double kOverlooked = -2.0;        // log odds of a place that earlier 
 constexpr double kAroundM = 0.6;            // places that the next scans may join
 constexpr double kFarthestBehind = 6.0;     // log evidence: the stack may hold scans from before a slip
 
-bool is_near(const Pose2& pose, const Pose2& believed, const RivalsParams& params) {
-  return distance_between(pose, believed) < params.nearby_m &&
-         std::abs(turn_between(pose.theta, believed.theta)) < params.nearby_rad;
+bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad) {
+  return distance_between(pose, other) < distance_m && std::abs(turn_between(pose.theta, other.theta)) < turn_rad;
 }
 
 }  // namespace
@@ -37,10 +36,15 @@ Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const Gl
 void Rivals::start_believing() {
   believing_ = true;
   elsewhere_prior_ = params_.elsewhere_prior;
+  forget_places();
+  report_ = {};
+}
+
+/// And all that was seen.
+void Rivals::forget_places() {
   bank_.clear();
   stack_.clear();
   novelty_.clear();
-  report_ = {};
 }
 
 void Rivals::start_believing_in(const Pose2& found) {
@@ -70,9 +74,7 @@ void Rivals::suspect(bool suspicious) {
 }
 
 void Rivals::start_anywhere() {
-  bank_.clear();
-  stack_.clear();
-  novelty_.clear();
+  forget_places();
   last_believed_.reset();
   stop_believing();
 }
@@ -80,15 +82,13 @@ void Rivals::start_anywhere() {
 double Rivals::share_around(const Pose2& pose) const {
   double share = 0.0;
   for (const Place& place : bank_.places().subspan(bank_.believing() ? 1 : 0)) {
-    const bool around = distance_between(place.map_from_robot, pose) < kAroundM &&
-                        std::abs(turn_between(place.map_from_robot.theta, pose.theta)) < params_.nearby_rad;
-    if (around) share += place.share;
+    if (is_within(place.map_from_robot, pose, kAroundM, params_.nearby_rad)) share += place.share;
   }
   return share;
 }
 
 bool Rivals::is_near_believed(const Pose2& pose) const {
-  return last_believed_ && is_near(pose, *last_believed_, params_);
+  return last_believed_ && is_within(pose, *last_believed_, params_.nearby_m, params_.nearby_rad);
 }
 
 double Rivals::log_prior_unbelieved(const Pose2& pose) const {
@@ -171,10 +171,9 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   return report_;
 }
 
-double Rivals::ahead_of(const LikelihoodField& field, const Pose2& pose, const Pose2& other,
+double Rivals::ahead_of(const ScanStack::Sums& others, const LikelihoodField& field, const Pose2& pose,
                         const Pose2& joined) const {
   const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
-  const ScanStack::Sums others = stack_.log_likelihoods(field, other, joined);
   double ahead = 0.0;
   for (std::size_t k = 0; k < stack_.size(); ++k) {
     const double since_then = its[k] - others[k];
@@ -188,10 +187,11 @@ void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> pose
   const Place* const best = bank_.reference();
   const bool proven = best != nullptr && best->followed_m > kJustFoundM;  // then no newcomer starts ahead of it
   const Pose2 held_against = best != nullptr ? best->map_from_robot : poses.front();
+  const ScanStack::Sums its = stack_.log_likelihoods(field, held_against, joined);
   const double base = best != nullptr ? best->log_evidence : 0.0;
   for (const Pose2& pose : poses) {
     if (bank_.knows(pose)) continue;
-    double ahead = ahead_of(field, pose, held_against, joined);
+    double ahead = ahead_of(its, field, pose, joined);
     if (believing_) ahead = std::clamp(ahead, -kFarthestBehind, params_.most_ahead);
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + (proven && !believing_ ? std::min(0.0, ahead) : ahead),
@@ -237,10 +237,10 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   const double gain =
       mean_log_likelihood(field, ends_, {}, pose) - mean_log_likelihood(field, ends_, {}, own.map_from_robot);
   if (gain < -kFitsNearlyAsWell) return;
-  const bool nearby = is_near(pose, own.map_from_robot, params_);
+  const bool nearby = is_within(pose, own.map_from_robot, params_.nearby_m, params_.nearby_rad);
   double ahead = bank_.params().evidence_beams * gain;
   // A slip lies behind a nearby place: before it, the scans say nothing of it.
-  if (!nearby) ahead = ahead_of(field, pose, own.map_from_robot, joined);
+  if (!nearby) ahead = ahead_of(stack_.log_likelihoods(field, own.map_from_robot, joined), field, pose, joined);
   bank_.admit(
       {.map_from_robot = pose,
        .log_evidence = own.log_evidence + std::clamp(ahead, -kFarthestBehind, nearby ? 0.0 : params_.most_ahead),

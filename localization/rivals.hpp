@@ -101,15 +101,17 @@ class Rivals {
   void apply(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed);
 
  private:
+  void forget_places();
   void thin(const Seen& seen);
   void keep_near_ends();
   void probe(const LikelihoodField& field, const Pose2& joined);
   void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined);
   void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
   [[nodiscard]] std::optional<Pose2> best_nearby(const LikelihoodField& field);
-  /// By how much log evidence the scans of the last metres speak for a pose against another. While a pose is believed,
-  /// only those since the robot may have been carried off: since when they speak for it most.
-  [[nodiscard]] double ahead_of(const LikelihoodField& field, const Pose2& pose, const Pose2& other,
+  /// By how much log evidence the scans of the last metres speak for a pose against another, of which they say
+  /// `others`. While a pose is believed, only those since the robot may have been carried off: since when they speak
+  /// for it most.
+  [[nodiscard]] double ahead_of(const ScanStack::Sums& others, const LikelihoodField& field, const Pose2& pose,
                                 const Pose2& joined) const;
   [[nodiscard]] double share_around(const Pose2& pose) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
