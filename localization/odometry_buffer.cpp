@@ -47,19 +47,14 @@ void OdometryBuffer::add(const Odometry& odometry) {
     const Pose2 motion = same_frame ? motion_between(last.odom_from_robot, fresh.odom_from_robot) : Pose2{};
     fresh.joined_from_robot = last.joined_from_robot * motion;
   };
-  if (count_ == 0 && before_restart_) join_to(*before_restart_);
-  before_restart_.reset();
+  if (count_ > 0 && seconds(newest().time - fresh.time) > kClockFellBackS) begin_anew();
   if (count_ > 0) {
     const Report& last = newest();
-    if (seconds(last.time - fresh.time) > kClockFellBackS) {
-      join_to(last);
-      count_ = 0;
-    } else if (fresh.time <= last.time && fresh.epoch == last.epoch) {
-      return;
-    } else {
-      join_to(last);
-      if (fresh.epoch != last.epoch) fresh.time = std::max(fresh.time, last.time);
-    }
+    if (fresh.time <= last.time && fresh.epoch == last.epoch) return;
+    join_to(last);
+    if (fresh.epoch != last.epoch) fresh.time = std::max(fresh.time, last.time);
+  } else if (before_restart_) {
+    join_to(*before_restart_);
   }
   if (count_ == ring_.size()) {
     ring_[first_] = fresh;
@@ -73,6 +68,10 @@ void OdometryBuffer::add(const Odometry& odometry) {
 void OdometryBuffer::clock_fell_back(Timestamp last_scan) {
   constexpr double kScansLagS = 0.3;
   if (count_ == 0 || seconds(last_scan - newest().time) > kScansLagS) return;  // it has fallen back here, too
+  begin_anew();
+}
+
+void OdometryBuffer::begin_anew() {
   before_restart_ = newest();
   count_ = 0;
 }

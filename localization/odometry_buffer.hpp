@@ -64,6 +64,7 @@ class OdometryBuffer {
   /// 0 is the oldest.
   [[nodiscard]] const Report& report(std::size_t age_order) const { return ring_[(first_ + age_order) % ring_.size()]; }
   [[nodiscard]] const Report& newest() const { return report(count_ - 1); }
+  void begin_anew();
   [[nodiscard]] std::size_t first_not_before(Timestamp time) const;
   [[nodiscard]] OdometryAt extrapolated(const Report& last, double ahead_s) const;
   [[nodiscard]] BodyVelocity newest_velocity() const;
@@ -73,7 +74,7 @@ class OdometryBuffer {
   std::vector<Report> ring_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;
-  std::optional<Report> before_restart_;
+  std::optional<Report> before_restart_;  ///< the newest when the past was forgotten
 };
 
 }  // namespace deltamap::localization
