@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "simulation/actor.hpp"
+#include "simulation/chance.hpp"
 #include "simulation/door.hpp"
 #include "simulation/person.hpp"
 
@@ -53,5 +54,16 @@ class Movers {
   Bodies bodies_;
   std::vector<MoverEvent> events_;
 };
+
+/// `Stream` has kPeople, kActor and kDoor among others (chance.hpp).
+template <typename Stream>
+[[nodiscard]] Movers::Chance chance_of_movers(std::uint64_t seed) {
+  return [seed](Movers::Kind kind, std::size_t index) {
+    const Stream stream = kind == Movers::Kind::kActor  ? Stream::kActor
+                          : kind == Movers::Kind::kDoor ? Stream::kDoor
+                                                        : Stream::kPeople;
+    return random_for(seed, stream, index);
+  };
+}
 
 }  // namespace deltamap::simulation

@@ -31,18 +31,6 @@ enum class Stream : std::uint64_t {
   kDoor
 };
 
-Stream stream_of(Movers::Kind kind) {
-  switch (kind) {
-    case Movers::Kind::kActor:
-      return Stream::kActor;
-    case Movers::Kind::kDoor:
-      return Stream::kDoor;
-    case Movers::Kind::kPerson:
-      break;
-  }
-  return Stream::kPeople;
-}
-
 devices::PioneerSetup pioneer_setup(const RobotSetup& robot) {
   devices::PioneerSetup setup;
   setup.model = robot.model;
@@ -74,8 +62,7 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
       surfaces_{scenario.world},
       body_{scenario.robot.body, scenario.robot.map_from_start, random_for(params.seed, Stream::kRobot)},
       range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
-      movers_{{scenario.people, scenario.actors, scenario.doors},
-              [&](Movers::Kind kind, std::size_t index) { return random_for(params.seed, stream_of(kind), index); }},
+      movers_{{scenario.people, scenario.actors, scenario.doors}, chance_of_movers<Stream>(params.seed)},
       pioneer_{pioneer_setup(scenario.robot), random_for(params.seed, Stream::kPioneer)},
       lms200_{lms200_setup(scenario.laser), params.start, random_for(params.seed, Stream::kLms200)},
       now_{params.start},

@@ -44,18 +44,6 @@ Scenario started_at(Scenario scenario, const std::optional<Pose2>& map_from_star
   return scenario;
 }
 
-Stream stream_of(Movers::Kind kind) {
-  switch (kind) {
-    case Movers::Kind::kActor:
-      return Stream::kActor;
-    case Movers::Kind::kDoor:
-      return Stream::kDoor;
-    case Movers::Kind::kPerson:
-      break;
-  }
-  return Stream::kPeople;
-}
-
 MoverParams movers_of(const Scenario& scenario, const std::vector<PersonParams>& more_people) {
   MoverParams movers{scenario.people, scenario.actors, scenario.doors};
   movers.people.insert(movers.people.end(), more_people.begin(), more_people.end());
@@ -82,8 +70,7 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
       range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
       pilot_{params.route, scenario.world, scenario_.robot.map_from_start.position(),
              random_for(params.seed, Stream::kPilot)},
-      movers_{movers_of(scenario, params.people),
-              [&](Movers::Kind kind, std::size_t index) { return random_for(params.seed, stream_of(kind), index); }},
+      movers_{movers_of(scenario, params.people), chance_of_movers<Stream>(params.seed)},
       now_{kStart},
       next_odometry_{kStart},
       next_change_{kStart},
