@@ -38,6 +38,6 @@ struct EdgeCell {
 /// lattices do not average out everywhere. `rounds` of 6 neighbours, `step_cells` away at first; never
 /// farther than two steps along any axis.
 [[nodiscard]] CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
-                                     double step_cells, int rounds);
+                                     double step_cells = 0.04, int rounds = 6);
 
 }  // namespace deltamap::mapping::merge

@@ -8,6 +8,7 @@
 #include "mapping/merge/edge_registration.hpp"
 #include "mapping/merge/hough_spectrum.hpp"
 #include "mapping/merge/shift_correlation.hpp"
+#include "mapping/merge/thinned.hpp"
 
 namespace deltamap::mapping::merge {
 namespace {
@@ -19,25 +20,6 @@ constexpr std::size_t kSampleCells = 3000;      // of the local map, to sort out
 constexpr std::size_t kRegistered = 24;         // candidates brought onto the map's lines
 constexpr std::size_t kFinal = 4;               // brought to the end, scored with every cell
 constexpr std::size_t kRoughEdgeCells = 3000;
-constexpr double kNearbyStep_cells = 0.04;
-constexpr int kNearbyRounds = 6;
-
-template <typename T>
-std::vector<T> thinned_to(const std::vector<T>& all, std::size_t most) {
-  const std::size_t stride = all.size() / most + 1;
-  std::vector<T> left;
-  for (std::size_t i = 0; i < all.size(); i += stride) left.push_back(all[i]);
-  return left;
-}
-
-std::vector<PointInCells> about_centre(const std::vector<Cell>& contour, const OccupancyGrid& map) {
-  std::vector<PointInCells> points;
-  for (const Cell& cell : contour) {
-    points.push_back(
-        {static_cast<float>(cell.column - 0.5 * map.width()), static_cast<float>(cell.row - 0.5 * map.height())});
-  }
-  return points;
-}
 
 void sort_best_first(std::vector<ScoredMotion>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), [](const ScoredMotion& a, const ScoredMotion& b) {
@@ -98,7 +80,8 @@ class LineRegistration {
 
 MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local, const GlobalMergeParams& params) {
   assert(map.resolution_m() == local.resolution_m() && "both maps must have the same resolution");
-  const LocalCells cells{local};
+  const std::vector<Cell> local_contour = contour_cells(local);
+  const LocalCells cells{local, local_contour};
   if (cells.contour().size() < kLeastContour) {
     MapMerge refused;
     refused.refusal = MergeRefusal::kTooFewPoints;
@@ -127,7 +110,7 @@ MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local, cons
     candidate.score = overlay.score(sample, candidate.motion);
   }
   candidates = best_apart(std::move(candidates), kFinal);
-  const std::vector<EdgeCell> edges = edge_cells(local);
+  const std::vector<EdgeCell> edges = edge_cells(local, local_contour, middle_of(local_contour, local));
   const std::vector<EdgeCell> few_edges = thinned_to(edges, kRoughEdgeCells);
   for (ScoredMotion& candidate : candidates) {
     candidate.motion = edge_registration(map, few_edges, candidate.motion, {});
@@ -136,8 +119,7 @@ MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local, cons
   }
   MapMerge merge = chosen(candidates, map, cells, params.choice);
   if (merge.score.agreeing > 0.0) {
-    const CellMotion best = best_nearby(map, edges, cell_motion(merge.map_from_local, map.geometry(), cells),
-                                        kNearbyStep_cells, kNearbyRounds);
+    const CellMotion best = best_nearby(map, edges, cell_motion(merge.map_from_local, map.geometry(), cells));
     merge.map_from_local = map_from_local(best, map.geometry(), cells);
     merge.score = overlay.score(cells, best);
   }

@@ -21,19 +21,10 @@ constexpr std::size_t kMostRanks = 120;       // ranks of a column's and a row's
 constexpr std::size_t kFinalCandidates = 16;  // scored with every cell
 constexpr double kQuarterDegree_rad = 0.25 * 0.017453292519943295;
 
-std::vector<PointInCells> contour_about_centre(const OccupancyGrid& map) {
-  std::vector<PointInCells> points;
-  for (const Cell& cell : contour_cells(map)) {
-    points.push_back(
-        {static_cast<float>(cell.column - 0.5 * map.width()), static_cast<float>(cell.row - 0.5 * map.height())});
-  }
-  return points;
-}
-
 /// Every rotation with the pairs of shifts of which one at least stands out.
 std::vector<CellMotion> spectral_candidates(const OccupancyGrid& map, const LocalCells& local,
                                             const MapMergeParams& params) {
-  const std::vector<double> map_spectrum = hough_spectrum(contour_about_centre(map), params.hough_bins);
+  const std::vector<double> map_spectrum = hough_spectrum(about_centre(contour_cells(map), map), params.hough_bins);
   const std::vector<double> local_spectrum = hough_spectrum(local.contour(), params.hough_bins);
   const int pixels_per_cell = params.pixels_per_cell;
   const int apart = kMaximumWidth_cells * pixels_per_cell;

@@ -5,19 +5,14 @@
 #include <array>
 #include <cmath>
 
+#include "mapping/merge/thinned.hpp"
+
 namespace deltamap::mapping::merge {
 namespace {
 
 constexpr std::uint8_t kFreeLabel = 1;
 constexpr std::uint8_t kOccupiedLabel = 2;
 constexpr std::uint8_t kNearContour = 4;
-
-std::vector<PointInCells> every(const std::vector<PointInCells>& points, std::size_t stride) {
-  std::vector<PointInCells> left;
-  left.reserve(points.size() / stride + 1);
-  for (std::size_t i = 0; i < points.size(); i += stride) left.push_back(points[i]);
-  return left;
-}
 
 constexpr std::size_t kMostPacked = 0xFFFF;  // points before a field of 16 bits may overflow
 
@@ -43,8 +38,9 @@ Point2 middle_of(std::span<const Cell> contour, const OccupancyGrid& grid) {
   return sum / static_cast<double>(contour.size());
 }
 
-LocalCells::LocalCells(const OccupancyGrid& local) {
-  const std::vector<Cell> contour = contour_cells(local);
+LocalCells::LocalCells(const OccupancyGrid& local) : LocalCells{local, contour_cells(local)} {}
+
+LocalCells::LocalCells(const OccupancyGrid& local, std::span<const Cell> contour) {
   const Point2 middle = middle_of(contour, local);
   middle_in_local_ = local.geometry().origin + local.resolution_m() * middle;
   const auto about_middle = [&](Cell cell) {
@@ -142,15 +138,23 @@ OverlayScore OverlayMap::score(const LocalCells& local, const CellMotion& motion
   return score;
 }
 
-Pose2 map_from_local(const CellMotion& motion, const GridGeometry& map, const LocalCells& local) {
-  const Point2 middle_in_map = map.origin + map.resolution_m * Point2{motion.column, motion.row};
-  const Point2& middle = local.middle_in_local();
-  return Pose2{middle_in_map.x(), middle_in_map.y(), wrapped_angle(motion.turn_rad)} *
-         inverse(Pose2{middle.x(), middle.y(), 0.0});
+std::vector<PointInCells> about_centre(std::span<const Cell> contour, const OccupancyGrid& grid) {
+  std::vector<PointInCells> points;
+  for (const Cell& cell : contour) {
+    points.push_back(
+        {static_cast<float>(cell.column - 0.5 * grid.width()), static_cast<float>(cell.row - 0.5 * grid.height())});
+  }
+  return points;
 }
 
-CellMotion cell_motion(const Pose2& map_from_local, const GridGeometry& map, const LocalCells& local) {
-  const Point2 middle = (map_from_local * local.middle_in_local() - map.origin) / map.resolution_m;
+Pose2 map_from_local(const CellMotion& motion, const GridGeometry& map, const Point2& middle_in_local) {
+  const Point2 middle_in_map = map.origin + map.resolution_m * Point2{motion.column, motion.row};
+  return Pose2{middle_in_map.x(), middle_in_map.y(), wrapped_angle(motion.turn_rad)} *
+         inverse(Pose2{middle_in_local.x(), middle_in_local.y(), 0.0});
+}
+
+CellMotion cell_motion(const Pose2& map_from_local, const GridGeometry& map, const Point2& middle_in_local) {
+  const Point2 middle = (map_from_local * middle_in_local - map.origin) / map.resolution_m;
   return {map_from_local.theta, middle.x(), middle.y()};
 }
 

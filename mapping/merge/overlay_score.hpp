@@ -33,6 +33,8 @@ struct PointInCells {
 class LocalCells {
  public:
   explicit LocalCells(const OccupancyGrid& local);
+  /// With its contour, where it is known already.
+  LocalCells(const OccupancyGrid& local, std::span<const Cell> contour);
   /// Every n-th cell of each kind, so that at most about `most_cells` are left.
   [[nodiscard]] LocalCells thinned(std::size_t most_cells) const;
 
@@ -86,7 +88,19 @@ class OverlayMap {
   std::vector<std::uint8_t> labels_;
 };
 
-[[nodiscard]] Pose2 map_from_local(const CellMotion& motion, const GridGeometry& map, const LocalCells& local);
-[[nodiscard]] CellMotion cell_motion(const Pose2& map_from_local, const GridGeometry& map, const LocalCells& local);
+/// A contour about the middle of the whole grid, as Hough spectra are taken.
+[[nodiscard]] std::vector<PointInCells> about_centre(std::span<const Cell> contour, const OccupancyGrid& grid);
+
+/// A motion turns the local map about its middle.
+[[nodiscard]] Pose2 map_from_local(const CellMotion& motion, const GridGeometry& map, const Point2& middle_in_local);
+[[nodiscard]] CellMotion cell_motion(const Pose2& map_from_local, const GridGeometry& map,
+                                     const Point2& middle_in_local);
+[[nodiscard]] inline Pose2 map_from_local(const CellMotion& motion, const GridGeometry& map, const LocalCells& local) {
+  return map_from_local(motion, map, local.middle_in_local());
+}
+[[nodiscard]] inline CellMotion cell_motion(const Pose2& map_from_local, const GridGeometry& map,
+                                            const LocalCells& local) {
+  return cell_motion(map_from_local, map, local.middle_in_local());
+}
 
 }  // namespace deltamap::mapping::merge
