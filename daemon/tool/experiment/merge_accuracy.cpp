@@ -135,8 +135,7 @@ std::vector<Run> MergeAccuracy::runs(const Options& options) const {
 void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std::string& prior, double most_ms) {
   const ScanTable merges = merges_of(outcomes, {{"prior", prior}});
   if (merges.rows() == 0) return;  // not asked for
-  Outcome all;
-  all.numbers = merge_numbers(merges);
+  const Outcome all = together(merges);
   const std::string what = prior + (prior == "with" ? " prior: " : " a prior: ");
   const auto add = [&](const std::string& name, const char* number, const char* unit, std::optional<Target> target,
                        const std::string& peers = "") {
@@ -178,8 +177,7 @@ Report MergeAccuracy::report(const std::vector<Outcome>& outcomes) const {
     for (const std::string& place : places_in(outcomes)) {
       const ScanTable merges = merges_of(outcomes, {{"prior", prior}, {"place", place}});
       if (merges.rows() == 0) continue;
-      Outcome all;
-      all.numbers = merge_numbers(merges);
+      const Outcome all = together(merges);
       std::vector<std::string> row{prior, place};
       for (const char* number :
            {"transforms", "acceptance", "true_acceptance", "short_of_truth", "most_short_of_truth", "off_cells",
@@ -187,12 +185,7 @@ Report MergeAccuracy::report(const std::vector<Outcome>& outcomes) const {
         row.push_back(text_of(all.number(number)));
       }
       table.rows.push_back(std::move(row));
-      std::vector<double> shortfall;
-      for (std::size_t i = 0; i < merges.rows(); ++i) {
-        if (merges.at(i, merges.index_of("refused")) > 0.5) continue;
-        shortfall.push_back(merges.at(i, merges.index_of("true_acceptance")) -
-                            merges.at(i, merges.index_of("acceptance")));
-      }
+      const std::vector<double> shortfall = shortfalls(merges);
       Series series{place + ", " + prior, {}};
       for (int percent = 1; percent <= 99; ++percent)
         series.points.emplace_back(0.01 * percent, quantile(shortfall, 0.01 * percent));

@@ -28,6 +28,17 @@ void add_merge(ScanTable& merges, double true_turn_deg, const MergeMeasure& meas
               is_refused ? 1.0 : 0.0, taken_ms});
 }
 
+std::vector<double> shortfalls(const ScanTable& merges) {
+  const std::vector<double> acceptance = merges.column("acceptance");
+  const std::vector<double> true_acceptance = merges.column("true_acceptance");
+  const std::vector<double> refused = merges.column("refused");
+  std::vector<double> all;
+  for (std::size_t i = 0; i < merges.rows(); ++i) {
+    if (refused[i] <= 0.5) all.push_back(true_acceptance[i] - acceptance[i]);
+  }
+  return all;
+}
+
 std::vector<std::pair<std::string, double>> merge_numbers(const ScanTable& merges) {
   const std::vector<double> acceptance = merges.column("acceptance");
   const std::vector<double> true_acceptance = merges.column("true_acceptance");
@@ -35,7 +46,7 @@ std::vector<std::pair<std::string, double>> merge_numbers(const ScanTable& merge
   const std::vector<double> turn_deg = merges.column("turn_error_deg");
   const std::vector<double> refused = merges.column("refused");
   const std::vector<double> taken_ms = merges.column("taken_ms");
-  std::vector<double> shortfall;
+  const std::vector<double> shortfall = shortfalls(merges);
   std::vector<double> accepted_off;
   std::vector<double> accepted_turn;
   double right = 0.0;
@@ -44,7 +55,6 @@ std::vector<std::pair<std::string, double>> merge_numbers(const ScanTable& merge
     right += off_cells[i] <= kRight_cells && turn_deg[i] <= kRight_deg ? 1.0 : 0.0;
     if (refused[i] > 0.5) continue;
     wrong += off_cells[i] > kWrong_cells || turn_deg[i] > kWrong_deg ? 1.0 : 0.0;
-    shortfall.push_back(true_acceptance[i] - acceptance[i]);
     accepted_off.push_back(off_cells[i]);
     accepted_turn.push_back(turn_deg[i]);
   }
@@ -63,6 +73,12 @@ std::vector<std::pair<std::string, double>> merge_numbers(const ScanTable& merge
           {"turn_error_deg", mean_of(accepted_turn)},
           {"mean_ms", mean_of(taken_ms)},
           {"p99_ms", quantile(taken_ms, 0.99)}};
+}
+
+Outcome together(const ScanTable& merges) {
+  Outcome all;
+  all.numbers = merge_numbers(merges);
+  return all;
 }
 
 ScanTable merges_of(const std::vector<Outcome>& outcomes,

@@ -18,6 +18,12 @@ void add_merge(ScanTable& merges, double true_turn_deg, const MergeMeasure& meas
 /// Acceptance, right and time are of all transforms; errors and shortfalls of those that were not refused.
 [[nodiscard]] std::vector<std::pair<std::string, double>> merge_numbers(const ScanTable& merges);
 
+/// By how much the acceptance of each merge that was not refused falls short of the true pose's own.
+[[nodiscard]] std::vector<double> shortfalls(const ScanTable& merges);
+
+/// The numbers of these merges, as one outcome.
+[[nodiscard]] Outcome together(const ScanTable& merges);
+
 /// The merges of all outcomes whose labels are these.
 [[nodiscard]] ScanTable merges_of(const std::vector<Outcome>& outcomes,
                                   const std::vector<std::pair<std::string, std::string>>& labels);

@@ -84,41 +84,39 @@ std::vector<Run> Table1::runs(const Options& options) const {
   return runs;
 }
 
-/// Mean acceptance by the part of the turn that whole degrees leave over.
-Series by_rest_of_a_degree(const ScanTable& merges, const std::string& name) {
-  constexpr int kParts = 10;
+/// Mean acceptance by parts: `part_of` answers which one a turn in degrees lies in, `place_of` where it is drawn.
+template <typename PartOf, typename PlaceOf>
+Series mean_acceptance_by(const ScanTable& merges, const std::string& name, PartOf&& part_of, PlaceOf&& place_of) {
   std::map<int, std::vector<double>> parts;
   for (std::size_t row = 0; row < merges.rows(); ++row) {
     const double turn_deg = merges.at(row, merges.index_of("true_turn_deg"));
-    const double rest = turn_deg - std::floor(turn_deg);
-    parts[std::min(kParts - 1, static_cast<int>(kParts * rest))].push_back(
-        merges.at(row, merges.index_of("acceptance")));
+    parts[part_of(turn_deg)].push_back(merges.at(row, merges.index_of("acceptance")));
   }
   Series series{name, {}};
-  for (const auto& [part, values] : parts) series.points.emplace_back((part + 0.5) / kParts, mean_of(values));
+  for (const auto& [part, values] : parts) series.points.emplace_back(place_of(part), mean_of(values));
   return series;
 }
 
-/// Mean acceptance by tens of degrees.
+/// By what whole degrees leave over of the turn.
+Series by_rest_of_a_degree(const ScanTable& merges, const std::string& name) {
+  constexpr int kParts = 10;
+  const auto part_of = [](double turn_deg) {
+    return std::min(kParts - 1, static_cast<int>(kParts * (turn_deg - std::floor(turn_deg))));
+  };
+  return mean_acceptance_by(merges, name, part_of, [](int part) { return (part + 0.5) / kParts; });
+}
+
+/// By tens of degrees.
 Series by_turn(const ScanTable& merges, const std::string& name) {
   constexpr double kPart_deg = 10.0;
-  std::map<int, std::vector<double>> parts;
-  for (std::size_t row = 0; row < merges.rows(); ++row) {
-    const double turn_deg = merges.at(row, merges.index_of("true_turn_deg"));
-    parts[static_cast<int>(std::floor((turn_deg + 180.0) / kPart_deg))].push_back(
-        merges.at(row, merges.index_of("acceptance")));
-  }
-  Series series{name, {}};
-  for (const auto& [part, values] : parts) series.points.emplace_back((part + 0.5) * kPart_deg, mean_of(values));
-  return series;
+  const auto part_of = [](double turn_deg) { return static_cast<int>(std::floor((turn_deg + 180.0) / kPart_deg)); };
+  return mean_acceptance_by(merges, name, part_of, [](int part) { return (part + 0.5) * kPart_deg; });
 }
 
 void add_targets(Report& report, const std::vector<Outcome>& outcomes) {
-  Outcome hall;
-  hall.numbers =
-      merge_numbers(merges_of(outcomes, {{"place", kPaperHall}, {"angles", "continuous"}, {"method", "MA1"}}));
-  Outcome all;
-  all.numbers = merge_numbers(merges_of(outcomes, {{"angles", "continuous"}, {"method", "MA1"}}));
+  const Outcome hall =
+      together(merges_of(outcomes, {{"place", kPaperHall}, {"angles", "continuous"}, {"method", "MA1"}}));
+  const Outcome all = together(merges_of(outcomes, {{"angles", "continuous"}, {"method", "MA1"}}));
   const std::string in_hall = "MA1, the paper's hall, continuous angles: ";
   report.figures = {
       {in_hall + "mean acceptance", hall.number("acceptance"), "", Target{.least = 0.992},
@@ -136,8 +134,7 @@ std::vector<std::string> table_row(const std::vector<Outcome>& outcomes, const s
                                    const std::string& angles, const Method& method) {
   const ScanTable merges = merges_of(outcomes, {{"place", place}, {"angles", angles}, {"method", method.name}});
   if (merges.rows() == 0) return {};
-  Outcome all;
-  all.numbers = merge_numbers(merges);
+  const Outcome all = together(merges);
   const auto of = [&](const char* number) { return text_of(all.number(number)); };
   const bool is_published = place == kPaperHall;
   return {place,
