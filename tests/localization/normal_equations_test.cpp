@@ -8,17 +8,10 @@
 
 #include "core/random.hpp"
 #include "tests/support/cast_scan.hpp"
+#include "tests/support/pillar_room.hpp"
 
 namespace deltamap::localization {
 namespace {
-
-/// A room of 6 × 4 m with a pillar.
-OccupancyGrid room() {
-  OccupancyGrid map{{140, 100, 0.05, {-0.5, -0.5}}, CellState::kOccupied};
-  test::fill_box(map, {0.0, 0.0}, {6.0, 4.0}, CellState::kFree);
-  test::fill_box(map, {4.0, 2.0}, {4.4, 2.6}, CellState::kOccupied);
-  return map;
-}
 
 BeamEnds end_at(double x_m, double y_m) { return {{static_cast<float>(x_m)}, {static_cast<float>(y_m)}}; }
 
@@ -35,7 +28,7 @@ OneEnd one_end(const LikelihoodField& field, const BeamEnds& ends, const Pose2& 
 }
 
 TEST(NormalEquations, KnowHowADistanceChangesWithThePose) {
-  const LikelihoodField field{room(), {}};
+  const LikelihoodField field{test::pillar_room(), {}};
   Random random{8};
   constexpr double kStep = 1e-3;
   int looked_at = 0;
@@ -60,14 +53,14 @@ TEST(NormalEquations, KnowHowADistanceChangesWithThePose) {
 }
 
 TEST(NormalEquations, FindNoDistanceOnAContourAndTheRightOneBesideIt) {
-  const LikelihoodField field{room(), {}};
+  const LikelihoodField field{test::pillar_room(), {}};
   EXPECT_NEAR(normal_equations(field, end_at(0.0, 0.0), {-0.025, 1.975, 0.0}).squares_m2, 0.0, 1e-9);
   EXPECT_NEAR(one_end(field, end_at(0.0, 0.0), {0.025, 1.975, 0.0}).distance_m, 0.05, 1e-5);
   EXPECT_NEAR(one_end(field, end_at(0.0, 0.0), {0.050, 1.975, 0.0}).distance_m, 0.075, 1e-5);
 }
 
 TEST(NormalEquations, AreTheSumOverTheEndsHoweverManyThereAre) {
-  const LikelihoodField field{room(), {}};
+  const LikelihoodField field{test::pillar_room(), {}};
   const Pose2 pose{1.5, 1.2, 0.4};
   Random random{3};
   BeamEnds all;
@@ -91,7 +84,7 @@ TEST(NormalEquations, AreTheSumOverTheEndsHoweverManyThereAre) {
 }
 
 TEST(NormalEquations, WeighAnEndByHowProbablyTheMapExplainsIt) {
-  const LikelihoodField field{room(), {}};
+  const LikelihoodField field{test::pillar_room(), {}};
   const double random_share = field.params().random_share;
   for (const double away_m : {0.01, 0.04, 0.09, 0.13}) {
     const Pose2 pose{away_m - 0.025, 1.975, 0.0};
@@ -104,7 +97,7 @@ TEST(NormalEquations, WeighAnEndByHowProbablyTheMapExplainsIt) {
 }
 
 TEST(NormalEquations, SayNothingFarOutsideTheMapAndWithoutEnds) {
-  const LikelihoodField field{room(), {}};
+  const LikelihoodField field{test::pillar_room(), {}};
   for (const BeamEnds& ends : {BeamEnds{}, end_at(1e9, -1e9), end_at(-3.0, 0.0)}) {
     const NormalEquations of = normal_equations(field, ends, {});
     EXPECT_TRUE(of.information.isZero(0.0));

@@ -7,17 +7,10 @@
 
 #include "core/random.hpp"
 #include "tests/support/cast_scan.hpp"
+#include "tests/support/pillar_room.hpp"
 
 namespace deltamap::localization {
 namespace {
-
-/// A room of 6 × 4 m with a pillar.
-OccupancyGrid room() {
-  OccupancyGrid map{{140, 100, 0.05, {-0.5, -0.5}}, CellState::kOccupied};
-  test::fill_box(map, {0.0, 0.0}, {6.0, 4.0}, CellState::kFree);
-  test::fill_box(map, {4.0, 2.0}, {4.4, 2.6}, CellState::kOccupied);
-  return map;
-}
 
 BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
   Random random{4};
@@ -26,7 +19,7 @@ BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
 }
 
 TEST(Refinement, SlidesAPoseToWhereTheScanFits) {
-  const OccupancyGrid map = room();
+  const OccupancyGrid map = test::pillar_room();
   const LikelihoodField field{map, {}};
   const PoseCovariance loose = Eigen::Vector3d{0.04, 0.04, 0.01}.asDiagonal();
   for (const Pose2& truth : {Pose2{1.5, 1.2, 0.4}, Pose2{3.0, 3.1, -1.9}, Pose2{5.2, 1.0, 2.7}}) {
@@ -56,7 +49,7 @@ TEST(Refinement, DoesNotSlideAlongACorridorThatShowsNoEnd) {
 }
 
 TEST(Refinement, RefusesToGoFarFromWhatTheParticlesSay) {
-  const OccupancyGrid map = room();
+  const OccupancyGrid map = test::pillar_room();
   const RefinedPose prior{{1.65, 1.2, 0.4}, Eigen::Vector3d{0.1, 0.1, 0.1}.asDiagonal()};
   const RefinedPose found = refined(LikelihoodField{map, {}}, ends_from(map, {1.5, 1.2, 0.4}), prior, 1.0,
                                     {.steps = 20, .longest_shift_m = 0.05});
@@ -64,7 +57,7 @@ TEST(Refinement, RefusesToGoFarFromWhatTheParticlesSay) {
 }
 
 TEST(Refinement, LeavesThePoseWithoutEndsOrSteps) {
-  const OccupancyGrid map = room();
+  const OccupancyGrid map = test::pillar_room();
   const LikelihoodField field{map, {}};
   const RefinedPose prior{{1.55, 1.2, 0.4}, PoseCovariance::Zero()};
   EXPECT_EQ(refined(field, {}, prior, 1.0, {}).map_from_robot, prior.map_from_robot);
