@@ -63,6 +63,7 @@ void run(const ExperimentOptions& given) {
   const Settings settings = given.config.empty() ? parse_settings("", "--set", given.overrides)
                                                  : read_settings(given.config, given.overrides);
   options.localizer = settings.localizer;
+  options.mapping = settings.mapping;
   experiment::expect_writable(given.out);
   experiment::Results results{
       chosen->name(), chosen->what(), options.seed, options.quick, chosen->runs(options), {}, {}};

@@ -35,6 +35,10 @@ struct ScoredChange {
   std::size_t right_cells = 0;    ///< of those: occupied in the map, or a neighbour is; for the other kind: free
   bool is_eligible = false;       ///< seen long enough and not overtaken
   bool is_found = false;          ///< eligible, and enough cells are right
+
+  [[nodiscard]] bool is_followed(double found_share) const {
+    return visible_cells > 0 && static_cast<double>(right_cells) >= found_share * static_cast<double>(visible_cells);
+  }
 };
 
 struct ChangeScore {

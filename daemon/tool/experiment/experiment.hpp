@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/settings.hpp"
 #include "daemon/tool/experiment/scan_table.hpp"
 #include "localization/localizer_params.hpp"
 
@@ -26,6 +27,7 @@ struct Options {
   std::optional<double> minutes{};            ///< of one drive, in place of the experiment's, > 0
   std::optional<int> repeats{};               ///< seeds or runs a cell, in place of the experiment's, > 0
   localization::LocalizerParams localizer{};  ///< as the daemon would have it
+  MappingSettings mapping{};                  ///< the same
 };
 
 /// What one run has to show: a line of NAME.csv, and its scans.

@@ -19,6 +19,9 @@ struct LivedInParams {
 /// What a fork-lift does where it must be ready for anything.
 [[nodiscard]] simulation::ForkliftParams busy_forklift(double change_every_s);
 
+/// Three who walk about the corridors of a hall that has nobody in it.
+[[nodiscard]] std::vector<simulation::PersonParams> walkers();
+
 class LivedIn {
  public:
   LivedIn(const simulation::Scenario& scenario, std::vector<simulation::PersonParams> people,

@@ -13,6 +13,7 @@ std::vector<std::unique_ptr<Experiment>> experiments() {
   all.push_back(verdict_experiment());
   all.push_back(table1_experiment());
   all.push_back(merge_experiment());
+  for (auto& one : changing_world_experiments()) all.push_back(std::move(one));
   return all;
 }
 

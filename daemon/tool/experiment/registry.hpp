@@ -15,6 +15,8 @@ namespace deltamap::daemon::tool::experiment {
 [[nodiscard]] std::unique_ptr<Experiment> verdict_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> table1_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> merge_experiment();
+/// table2, fig10-12, endurance, and others of their kind.
+[[nodiscard]] std::vector<std::unique_ptr<Experiment>> changing_world_experiments();
 
 /// All, by name.
 [[nodiscard]] std::vector<std::unique_ptr<Experiment>> experiments();

@@ -13,15 +13,6 @@
 namespace deltamap::daemon::tool::experiment {
 namespace {
 
-/// Three who walk about the corridors.
-std::vector<simulation::PersonParams> walkers() {
-  simulation::PersonParams upright{.path = {{16.2, 2.0}, {16.2, 33.0}}, .speed_m_per_s = 1.2};
-  simulation::PersonParams level{.path = {{2.0, 18.8}, {33.0, 18.8}}, .speed_m_per_s = 1.0};
-  simulation::PersonParams round{
-      .path = {{3.6, 3.6}, {31.4, 3.6}, {31.4, 30.0}, {3.6, 31.4}}, .closed = true, .speed_m_per_s = 1.3};
-  return {upright, level, round};
-}
-
 struct Place {
   std::string name;
   VerdictPlace place;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/experiment/mapping_drive.hpp"
+
+#include <utility>
+
+namespace deltamap::daemon::tool::experiment {
+
+MappingDrive::MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
+                           const Settings& settings, std::shared_ptr<const OccupancyGrid> first_map)
+    : settings_{settings}, drive_{scenario, drive}, last_pose_{drive_.map_from_robot()} {
+  settings_.seed = drive.seed;
+  localizer_.emplace(settings_.localizer, first_map, localization::InitialPose{last_pose_}, settings_.seed);
+  store_scan_.emplace(settings_.mapping.store_scan, settings_.seed);
+  map_.emplace(settings_, StartMap{.map = std::move(first_map)});
+}
+
+Mapped MappingDrive::next() {
+  simulation::DriveStep step = drive_.next();
+  if (!first_) first_ = step.scan.time;
+  Mapped mapped;
+  mapped.map_from_robot = step.map_from_robot;
+  mapped.changes = std::move(step.changes);
+  mapped.events = std::move(step.events);
+  mapped.time = step.scan.time;
+  mapped.passed_s = seconds(step.scan.time - *first_);
+  for (const Odometry& odometry : step.odometry) localizer_->observe(odometry);
+  const TrackedScan tracked = localizer_->observe(std::move(step.scan));
+  mapped.estimate = tracked.estimate;
+  last_pose_ = tracked.estimate.map_from_robot;
+  const auto set = settings_.mapping.enabled ? store_scan_->observe(tracked) : std::nullopt;
+  mapped.awareness = store_scan_->awareness();
+  if (!set) return mapped;
+  mapped.update = map_->update(*set);
+  if (mapped.update->revision) localizer_->apply(*mapped.update->revision);
+  return mapped;
+}
+
+void MappingDrive::restart() {
+  const localization::StabilityRecord stability = localizer_->stability();
+  const localization::InitialPose kept{last_pose_, settings_.memory.position_deviation_m,
+                                       settings_.memory.heading_deviation_rad, true};
+  const std::uint64_t seed = settings_.seed + ++starts_;
+  localizer_.emplace(settings_.localizer, map_->map(), kept, seed);
+  (void)localizer_->restore(stability);
+  store_scan_.emplace(settings_.mapping.store_scan, seed);
+  map_.emplace(settings_, StartMap{.map = map_->map(), .revision = map_->revision()});
+}
+
+}  // namespace deltamap::daemon::tool::experiment

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A simulated robot, the localizer that follows it and the mapper that follows the world, in step as in a replay: a
+// revision reaches the localizer before the next scan. And what of all that is true.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "daemon/map_step.hpp"
+#include "daemon/settings.hpp"
+#include "localization/localizer.hpp"
+#include "mapping/store_scan.hpp"
+#include "simulation/virtual_drive.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+
+/// One scan of a drive.
+struct Mapped {
+  Pose2 map_from_robot;  ///< the truth
+  Estimate estimate;
+  mapping::Awareness awareness;
+  std::optional<MapStep::Result> update;    ///< what became of the Δ-phase that this scan closed
+  std::vector<simulation::Change> changes;  ///< since the last scan
+  std::vector<simulation::MoverEvent> events;
+  Timestamp time;
+  double passed_s = 0.0;  ///< since the drive began
+};
+
+class MappingDrive {
+ public:
+  /// Localizer and mapping of the settings; the robot knows where it starts.
+  MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
+               const Settings& settings, std::shared_ptr<const OccupancyGrid> first_map);
+
+  [[nodiscard]] Mapped next();
+  /// The daemon ends and begins again where it stands: pose, stability and map are kept, all else is forgotten.
+  void restart();
+
+  [[nodiscard]] simulation::VirtualDrive& drive() { return drive_; }
+  [[nodiscard]] const OccupancyGrid& map() const { return *map_->map(); }
+
+ private:
+  Settings settings_;
+  std::uint64_t starts_ = 0;
+  simulation::VirtualDrive drive_;
+  std::optional<localization::Localizer> localizer_;
+  std::optional<mapping::StoreScan> store_scan_;
+  std::optional<MapStep> map_;
+  std::optional<Timestamp> first_;
+  Pose2 last_pose_;
+};
+
+}  // namespace deltamap::daemon::tool::experiment

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/experiment/mapping_watch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace deltamap::daemon::tool::experiment {
+namespace {
+
+namespace score = simulation::score;
+
+constexpr int kViewBeams = 181;
+constexpr int kFaceBeams = 3;        // of one view make a face seen
+constexpr double kFoundShare = 0.5;  // of a change's visible cells must be right
+constexpr double kSeenLeast_s = 10.0;
+constexpr int kRegionReach = 2;    // cells; written cells so near are one thing
+constexpr std::size_t kSpeck = 3;  // smaller regions are not counted as things
+constexpr int kGhostReach = 2;     // cells from anything that stands
+
+bool has_occupied_within(const OccupancyGrid& map, Cell cell, int reach) {
+  for (int row = cell.row - reach; row <= cell.row + reach; ++row) {
+    for (int column = cell.column - reach; column <= cell.column + reach; ++column) {
+      if (map.at({column, row}) == CellState::kOccupied) return true;
+    }
+  }
+  return false;
+}
+
+/// Written cells that are near each other, whatever they became.
+std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {
+  std::vector<std::vector<CellChange>> things;
+  while (!left.empty()) {
+    std::vector<CellChange> thing{left.back()};
+    left.pop_back();
+    for (std::size_t next = 0; next < thing.size(); ++next) {
+      const Cell middle = thing[next].cell;
+      const auto is_near = [&](const CellChange& other) {
+        return std::abs(other.cell.column - middle.column) <= kRegionReach &&
+               std::abs(other.cell.row - middle.row) <= kRegionReach;
+      };
+      const auto first = std::partition(left.begin(), left.end(), [&](const CellChange& c) { return !is_near(c); });
+      thing.insert(thing.end(), first, left.end());
+      left.erase(first, left.end());
+    }
+    things.push_back(std::move(thing));
+  }
+  return things;
+}
+
+}  // namespace
+
+MappingWatch::MappingWatch(const simulation::Scenario& scenario, std::shared_ptr<const OccupancyGrid> first_map,
+                           const MappingWatchParams& params)
+    : params_{params},
+      robot_from_laser_{scenario.laser.optics.robot_from_laser},
+      first_{std::move(first_map)},
+      changes_{scenario, first_->geometry()},
+      truth_{scenario, *first_},
+      course_{{"t_s", "error_mean_m", "error_most_m", "acceptance", "acceptance_stale", "acceptance_perfect",
+               "acceptance_solid", "f1", "f1_stale", "f1_perfect", "wrong_m2", "ghost_cells", "revisions"}},
+      next_row_s_{params.score_every_s},
+      writes_(first_->geometry().cell_count(), 0) {
+  refresh_surfaces();
+}
+
+void MappingWatch::refresh_surfaces() {
+  surfaces_ = score::drawn_surfaces(changes_.world_and_standing(), first_->geometry());
+}
+
+void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
+  now_s_ = scan.passed_s;
+  for (const simulation::Change& change : scan.changes)
+    changes_.apply(change, scan.time, scan.map_from_robot.position());
+  for (const simulation::MoverEvent& event : scan.events) changes_.apply(event);
+  if (!scan.changes.empty()) truth_.see(changes_.world());
+  if (!scan.changes.empty() || !scan.events.empty()) refresh_surfaces();
+  fates_.resize(changes_.watched().size());
+
+  ++scans_;
+  scans_lost_ += scan.estimate.state == LocalizerState::kTracking ? 0 : 1;
+  errors_m_.push_back(distance_between(scan.map_from_robot, scan.estimate.map_from_robot));
+  errors_since_row_m_.push_back(errors_m_.back());
+  if (scan.update) judge_writing(scan);
+  if (now_s_ >= next_look_s_) look(scan);
+  if (now_s_ >= next_judgement_s_) {
+    next_judgement_s_ += params_.judge_every_s;
+    judge_changes(map);
+    count_ghosts(map);
+  }
+  if (now_s_ >= next_row_s_) add_course_row(map);
+}
+
+void MappingWatch::look(const Mapped& scan) {
+  next_look_s_ += params_.look_every_s;
+  const auto view = changes_.view_from(scan.map_from_robot * robot_from_laser_, params_.range_m, kViewBeams);
+  changes_.look(view, params_.look_every_s, kFaceBeams);
+  truth_.touch(view);
+}
+
+void MappingWatch::judge_changes(const OccupancyGrid& map) {
+  score::ChangeScoreParams params;
+  params.found_share = kFoundShare;
+  params.seen_least_s = kSeenLeast_s;
+  for (std::size_t i = 0; i < fates_.size(); ++i) {
+    Fate& fate = fates_[i];
+    if (fate.is_settled || fate.followed_after_s >= 0.0) continue;
+    score::Watched& watched = changes_.watched()[i];
+    changes_.judge(watched, map, surfaces_, params);
+    const score::ScoredChange& change = watched.change;
+    if (fate.first_seen_s < 0.0 && change.seen_s > 0.0) fate.first_seen_s = now_s_;
+    if (change.is_overtaken)
+      fate.is_settled = true;
+    else if (change.seen_s > 0.0 && change.is_followed(kFoundShare)) {
+      fate.followed_after_s = change.seen_s;
+      fate.followed_after_clock_s = now_s_ - fate.first_seen_s;
+    }
+  }
+}
+
+/// Occupied in the map, nothing stands there, and a beam has gone through since.
+void MappingWatch::count_ghosts(const OccupancyGrid& map) {
+  ghosts_now_ = 0;
+  const score::CellMask& passed = truth_.last_passed();
+  for (std::size_t i = 0; i < passed.size(); ++i) {
+    if (passed[i] == 0 || map.cells()[i] != CellState::kOccupied) continue;
+    if (!has_occupied_within(surfaces_, map.geometry().cell_of(i), kGhostReach)) ++ghosts_now_;
+  }
+  ghost_cell_minutes_ += static_cast<double>(ghosts_now_) * params_.judge_every_s / 60.0;
+}
+
+void MappingWatch::judge_writing(const Mapped& scan) {
+  if (!scan.update->revision) {
+    ++refused_;
+    return;
+  }
+  ++revisions_;
+  const std::vector<CellChange>& changes = scan.update->revision->changes;
+  cells_written_ += changes.size();
+  if (errors_m_.back() > params_.wrong_pose_m) cells_written_astray_ += changes.size();
+  const auto is_right = [&](const CellChange& change) {
+    const bool stands = has_occupied_within(surfaces_, change.cell, 1);
+    if (change.after == CellState::kOccupied) return stands;
+    if (change.after == CellState::kUnknown) return truth_.visible()[change.cell] != CellState::kFree || stands;
+    return surfaces_[change.cell] != CellState::kOccupied || change.before != CellState::kOccupied;
+  };
+  for (const CellChange& change : changes) {
+    ++writes_[first_->geometry().index_of(change.cell)];
+    cells_wrong_ += is_right(change) ? 0 : 1;
+  }
+  for (const std::vector<CellChange>& thing : things_of(changes)) {
+    if (thing.size() < kSpeck) continue;
+    ++regions_;
+    const auto right = std::count_if(thing.begin(), thing.end(), is_right);
+    regions_wrong_ += 2 * right < static_cast<std::ptrdiff_t>(thing.size()) ? 1 : 0;
+  }
+}
+
+void MappingWatch::add_course_row(const OccupancyGrid& map) {
+  next_row_s_ += params_.score_every_s;
+  const score::CellMask seen = truth_.seen();
+  const score::MapScore ours = score::map_score(truth_.visible(), map, seen);
+  const score::MapScore stale = score::map_score(truth_.visible(), *first_, seen);
+  const score::MapScore perfect = score::map_score(truth_.visible(), truth_.perfect(), seen);
+  const score::MapScore solid = score::map_score(truth_.solid(), map, seen);
+  course_.add({now_s_, mean_of(errors_since_row_m_), quantile(errors_since_row_m_, 1.0), ours.acceptance,
+               stale.acceptance, perfect.acceptance, solid.acceptance, ours.contour_f1, stale.contour_f1,
+               perfect.contour_f1, ours.wrong_m2, static_cast<double>(ghosts_now_), static_cast<double>(revisions_)});
+  errors_since_row_m_.clear();
+}
+
+std::vector<std::pair<std::string, double>> MappingWatch::numbers(const OccupancyGrid& map) {
+  judge_changes(map);
+  std::vector<double> in_view_s;
+  std::vector<double> clock_s;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < fates_.size(); ++i) {
+    const score::ScoredChange& change = changes_.watched()[i].change;
+    if (changes_.watched()[i].witness.longest_seen_s() < kSeenLeast_s || change.visible_cells == 0) continue;
+    const bool is_found = fates_[i].followed_after_s >= 0.0;
+    found += is_found ? 1 : 0;
+    in_view_s.push_back(is_found ? fates_[i].followed_after_s : std::numeric_limits<double>::infinity());
+    clock_s.push_back(is_found ? fates_[i].followed_after_clock_s : std::numeric_limits<double>::infinity());
+  }
+  const score::CellMask seen = truth_.seen();
+  const score::MapScore ours = score::map_score(truth_.visible(), map, seen);
+  const score::MapScore stale = score::map_score(truth_.visible(), *first_, seen);
+  const score::MapScore perfect = score::map_score(truth_.visible(), truth_.perfect(), seen);
+  const score::MapScore solid = score::map_score(truth_.solid(), map, seen);
+  const score::MapScore solid_perfect = score::map_score(truth_.solid(), truth_.perfect(), seen);
+  double drift_m = 0.0;
+  for (const double wall_m : truth_.wall_drift(*first_, map))
+    if (std::isfinite(wall_m)) drift_m = std::max(drift_m, std::abs(wall_m));
+  std::size_t seen_cells = 0;
+  std::uint16_t most_writes = 0;
+  std::size_t writes = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] == 0) continue;
+    ++seen_cells;
+    writes += writes_[i];
+    most_writes = std::max(most_writes, writes_[i]);
+  }
+  const double hours = std::max(now_s_, 1.0) / 3600.0;
+  const auto whole = [](std::size_t number) { return static_cast<double>(number); };
+  const auto share = [&](std::size_t part, std::size_t all) {
+    return all == 0 ? std::numeric_limits<double>::quiet_NaN() : whole(part) / whole(all);
+  };
+  return {{"minutes", now_s_ / 60.0},
+          {"error_mean_m", mean_of(errors_m_)},
+          {"error_rms_m", root_mean_square(errors_m_)},
+          {"error_p99_m", quantile(errors_m_, 0.99)},
+          {"error_most_m", quantile(errors_m_, 1.0)},
+          {"not_tracking", share(scans_lost_, scans_)},
+          {"changes_seen_10s", whole(in_view_s.size())},
+          {"changes_found", whole(found)},
+          {"recall", share(found, in_view_s.size())},
+          {"follow_median_s", quantile(in_view_s, 0.5)},
+          {"follow_p90_s", quantile(in_view_s, 0.9)},
+          {"follow_clock_median_s", quantile(clock_s, 0.5)},
+          {"things_written", whole(regions_)},
+          {"precision", 1.0 - share(regions_wrong_, regions_)},
+          {"cells_written", whole(cells_written_)},
+          {"cells_wrong", share(cells_wrong_, cells_written_)},
+          {"cells_written_astray", whole(cells_written_astray_)},
+          {"revisions", whole(revisions_)},
+          {"refused", whole(refused_)},
+          {"acceptance", ours.acceptance},
+          {"acceptance_stale", stale.acceptance},
+          {"acceptance_perfect", perfect.acceptance},
+          {"acceptance_solid", solid.acceptance},
+          {"acceptance_solid_perfect", solid_perfect.acceptance},
+          {"f1", ours.contour_f1},
+          {"f1_stale", stale.contour_f1},
+          {"f1_perfect", perfect.contour_f1},
+          {"skill", score::skill(ours.contour_f1, stale.contour_f1, perfect.contour_f1)},
+          {"wrong_m2", ours.wrong_m2},
+          {"walls_kept", score::share_kept(*first_, map, truth_.lasting())},
+          {"wall_drift_m", drift_m},
+          {"writes_per_cell_hour", share(writes, seen_cells) / hours},
+          {"most_writes_of_a_cell", static_cast<double>(most_writes)},
+          {"ghost_cells_at_end", whole(ghosts_now_)},
+          {"ghost_cell_minutes", ghost_cell_minutes_}};
+}
+
+}  // namespace deltamap::daemon::tool::experiment

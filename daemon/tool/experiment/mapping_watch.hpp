@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks at a mapping drive from the truth's side: what the robot could have seen, how soon the map followed each
+// change, what was written wrongly, and how good the map is beside one that is never updated and one that is perfect.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/tool/experiment/mapping_drive.hpp"
+#include "daemon/tool/experiment/scan_table.hpp"
+#include "simulation/score/change_watch.hpp"
+#include "simulation/score/map_truth.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+
+struct MappingWatchParams {
+  double range_m = 80.0;       ///< as far as the robot sees
+  double look_every_s = 0.5;   ///< what is in view, > 0
+  double judge_every_s = 1.0;  ///< whether the map has followed, and ghosts, > 0
+  double score_every_s = 300.0;
+  double wrong_pose_m = 0.3;  ///< cells written while the pose is farther off are counted apart
+};
+
+class MappingWatch {
+ public:
+  MappingWatch(const simulation::Scenario& scenario, std::shared_ptr<const OccupancyGrid> first_map,
+               const MappingWatchParams& params);
+
+  void observe(const Mapped& scan, const OccupancyGrid& map);
+
+  /// Everything that is a number at the end of the drive. `map`: the last.
+  [[nodiscard]] std::vector<std::pair<std::string, double>> numbers(const OccupancyGrid& map);
+  /// A row every `score_every_s`.
+  [[nodiscard]] const ScanTable& course() const { return course_; }
+  [[nodiscard]] const OccupancyGrid& truth() const { return truth_.visible(); }
+
+ private:
+  /// How a change has fared so far.
+  struct Fate {
+    double followed_after_s = -1.0;       ///< seconds in view until the map had followed; negative: not yet
+    double followed_after_clock_s = 0.0;  ///< since it was first in view
+    double first_seen_s = -1.0;
+    bool is_settled = false;  ///< overtaken, and counted
+  };
+
+  void look(const Mapped& scan);
+  void judge_changes(const OccupancyGrid& map);
+  void count_ghosts(const OccupancyGrid& map);
+  void judge_writing(const Mapped& scan);
+  void add_course_row(const OccupancyGrid& map);
+  void refresh_surfaces();
+
+  MappingWatchParams params_;
+  Pose2 robot_from_laser_;
+  std::shared_ptr<const OccupancyGrid> first_;
+  simulation::score::ChangeWatch changes_;
+  simulation::score::MapTruth truth_;
+  OccupancyGrid surfaces_;  // all that stands now, passing things too
+  std::vector<Fate> fates_;
+  ScanTable course_;
+  std::vector<double> errors_m_;
+  std::vector<double> errors_since_row_m_;
+  double now_s_ = 0.0;
+  double next_look_s_ = 0.0;
+  double next_judgement_s_ = 0.0;
+  double next_row_s_ = 0.0;
+  std::size_t scans_ = 0;
+  std::size_t scans_lost_ = 0;
+  std::size_t cells_written_ = 0;
+  std::size_t cells_written_astray_ = 0;
+  std::size_t cells_wrong_ = 0;
+  std::size_t regions_ = 0;
+  std::size_t regions_wrong_ = 0;
+  std::size_t revisions_ = 0;
+  std::size_t refused_ = 0;
+  std::vector<std::uint16_t> writes_;  // of each cell
+  std::size_t ghosts_now_ = 0;
+  double ghost_cell_minutes_ = 0.0;
+};
+
+}  // namespace deltamap::daemon::tool::experiment

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/score/change_watch.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "simulation/start_map.hpp"
+#include "simulation/surface_optics.hpp"
+
+namespace deltamap::simulation::score {
+namespace {
+
+constexpr double kSamePlace_m = 0.05;  // places this near to each other count as one
+
+bool has_occupied_neighbour(const OccupancyGrid& map, Cell cell) {
+  for (int row = -1; row <= 1; ++row) {
+    for (int column = -1; column <= 1; ++column) {
+      if (map.at({cell.column + column, cell.row + row}) == CellState::kOccupied) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+ChangeWatch::ChangeWatch(const Scenario& scenario, const GridGeometry& geometry)
+    : geometry_{geometry},
+      optics_{scenario.laser.optics.surfaces},
+      world_{scenario.world},
+      standing_{scenario},
+      surfaces_{world_} {}
+
+void ChangeWatch::apply(const Change& change, Timestamp time, const Point2& robot) {
+  if (change.kind != ChangeKind::kAdded) {
+    const Box& left = change.from.value_or(change.box);
+    add({time, change.kind, false, change.id, left},
+        Witness::of_disappearance(left, geometry_, visible_surface(left, robot)));
+  }
+  world_ = changed(world_, change);
+  surfaces_ = RayCaster{world_};
+  if (change.kind != ChangeKind::kRemoved) {
+    add({time, change.kind, true, change.id, change.box}, Witness::of_appearance(change.id, change.box, geometry_));
+  }
+}
+
+void ChangeWatch::add(const ScoredChange& change, Witness witness) {
+  for (Watched& earlier : watched_) {
+    if (earlier.change.time < change.time && overlap(grown(earlier.change.box, kSamePlace_m), change.box)) {
+      earlier.change.is_overtaken = true;
+    }
+  }
+  watched_.push_back({change, std::move(witness)});
+}
+
+/// The cells of a box's surface that could be seen from the floor on which the robot stands.
+std::unordered_set<std::size_t> ChangeWatch::visible_surface(const Box& box, const Point2& robot) const {
+  const OccupancyGrid seen = surveyed_map(world_, robot, geometry_);
+  std::unordered_set<std::size_t> cells;
+  for (const Cell cell : surface_cells(box, geometry_)) {
+    if (seen.at(cell) == CellState::kOccupied) cells.insert(geometry_.index_of(cell));
+  }
+  return cells;
+}
+
+std::vector<TrueBeam> ChangeWatch::view_from(const Pose2& map_from_laser, double range_m, int beams) const {
+  const double step_rad = std::numbers::pi / (beams - 1);
+  const auto sees_through = [&](const RayHit& met) {
+    return met.material == Material::kGlass && passes_glass(met, optics_);
+  };
+  std::vector<TrueBeam> view;
+  for (int i = 0; i < beams; ++i) {
+    const double bearing_rad = map_from_laser.theta - 0.5 * std::numbers::pi + i * step_rad;
+    const auto hit =
+        cast_through(surfaces_, map_from_laser.position(), bearing_rad, range_m, standing_.surfaces(), sees_through);
+    view.push_back({map_from_laser.position(), bearing_rad, hit ? hit->range_m : range_m, hit});
+  }
+  return view;
+}
+
+void ChangeWatch::look(std::span<const TrueBeam> view, double seconds, int face_beams) {
+  for (Watched& watched : watched_) {
+    if (watched.change.is_overtaken) continue;
+    for (const TrueBeam& beam : view) watched.witness.look(beam);
+    watched.witness.end_look(seconds, face_beams);
+  }
+}
+
+void ChangeWatch::judge(const OccupancyGrid& map, const OccupancyGrid& surfaces, const ChangeScoreParams& params) {
+  for (Watched& watched : watched_) judge(watched, map, surfaces, params);
+}
+
+void ChangeWatch::judge(Watched& watched, const OccupancyGrid& map, const OccupancyGrid& surfaces,
+                        const ChangeScoreParams& params) const {
+  ScoredChange& change = watched.change;
+  change.visible_cells = 0;
+  change.right_cells = 0;
+  for (const std::size_t index : watched.witness.touched()) {
+    const Cell cell = geometry_.cell_of(index);
+    // A cell beside something else that stands there now says nothing about what has gone.
+    if (!change.appears && has_occupied_neighbour(surfaces, cell)) continue;
+    ++change.visible_cells;
+    const bool is_right = change.appears ? has_occupied_neighbour(map, cell) : map[cell] == CellState::kFree;
+    if (is_right) ++change.right_cells;
+  }
+  change.seen_s = watched.witness.longest_seen_s();
+  change.is_eligible = !change.is_overtaken && change.seen_s >= params.seen_least_s && change.visible_cells > 0;
+  change.is_found = change.is_eligible && change.is_followed(params.found_share);
+}
+
+OccupancyGrid drawn_surfaces(const World& world, const GridGeometry& geometry) {
+  OccupancyGrid grid{geometry};
+  for (const Object& object : world.objects) {
+    for (const Cell cell : surface_cells(object.shape, geometry)) grid.set(cell, CellState::kOccupied);
+  }
+  return grid;
+}
+
+}  // namespace deltamap::simulation::score

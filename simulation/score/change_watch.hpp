@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The changes of a simulated world under observation: how long each has been in the robot's view, and whether a map has
+// followed it. Told of everything that happens, in order of time.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simulation/movers.hpp"
+#include "simulation/scenario.hpp"
+#include "simulation/score/change_score.hpp"
+#include "simulation/score/standing.hpp"
+#include "simulation/score/witness.hpp"
+
+namespace deltamap::simulation::score {
+
+/// A change under observation.
+struct Watched {
+  ScoredChange change;
+  Witness witness;
+};
+
+class ChangeWatch {
+ public:
+  ChangeWatch(const Scenario& scenario, const GridGeometry& geometry);
+
+  void apply(const MoverEvent& event) { standing_.apply(event); }
+  void apply(const Change& change, Timestamp time, const Point2& robot);
+
+  /// What a perfect laser sees from there, over the half circle ahead.
+  [[nodiscard]] std::vector<TrueBeam> view_from(const Pose2& map_from_laser, double range_m, int beams) const;
+  /// The view stood for so long.
+  void look(std::span<const TrueBeam> view, double seconds, int face_beams);
+
+  /// Counts the visible cells of each change and those that the map has right. `surfaces`: all that stands in the map
+  /// now (drawn_surfaces).
+  void judge(const OccupancyGrid& map, const OccupancyGrid& surfaces, const ChangeScoreParams& params);
+  /// The same of one change.
+  void judge(Watched& watched, const OccupancyGrid& map, const OccupancyGrid& surfaces,
+             const ChangeScoreParams& params) const;
+
+  /// Without what stands about.
+  [[nodiscard]] const World& world() const { return world_; }
+  /// With what stands about now.
+  [[nodiscard]] World world_and_standing() const { return standing_.drawn_into(world_); }
+  [[nodiscard]] std::vector<Watched>& watched() { return watched_; }
+
+ private:
+  void add(const ScoredChange& change, Witness witness);
+  [[nodiscard]] std::unordered_set<std::size_t> visible_surface(const Box& box, const Point2& robot) const;
+
+  GridGeometry geometry_;
+  SurfaceOptics optics_;
+  World world_;
+  Standing standing_;
+  RayCaster surfaces_;
+  std::vector<Watched> watched_;
+};
+
+/// The cells that any surface of the world passes through are occupied, all others unknown.
+[[nodiscard]] OccupancyGrid drawn_surfaces(const World& world, const GridGeometry& geometry);
+
+}  // namespace deltamap::simulation::score

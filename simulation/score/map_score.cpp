@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/score/map_score.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace deltamap::simulation::score {
+namespace {
+
+constexpr std::array<Cell, 8> kAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}};
+
+struct Pairs {
+  CellMask of_truth;
+  CellMask of_map;
+  std::size_t count = 0;
+  std::size_t truth_cells = 0;
+  std::size_t map_cells = 0;
+};
+
+Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where) {
+  const GridGeometry& geometry = truth.geometry();
+  const std::size_t cells = geometry.cell_count();
+  Pairs pairs{CellMask(cells, 0), CellMask(cells, 0)};
+  const auto is_occupied = [](const OccupancyGrid& grid, std::size_t i) {
+    return grid.cells()[i] == CellState::kOccupied;
+  };
+  const auto pair = [&](std::size_t of_truth, std::size_t of_map) {
+    pairs.of_truth[of_truth] = pairs.of_map[of_map] = 1;
+    ++pairs.count;
+  };
+  for (std::size_t i = 0; i < cells; ++i) {
+    if (where[i] == 0) continue;
+    pairs.truth_cells += is_occupied(truth, i) ? 1 : 0;
+    pairs.map_cells += is_occupied(map, i) ? 1 : 0;
+    if (is_occupied(truth, i) && is_occupied(map, i)) pair(i, i);
+  }
+  for (std::size_t i = 0; i < cells; ++i) {
+    if (where[i] == 0 || !is_occupied(truth, i) || pairs.of_truth[i] != 0) continue;
+    const Cell cell = geometry.cell_of(i);
+    for (const Cell& step : kAround) {
+      const Cell beside{cell.column + step.column, cell.row + step.row};
+      if (!geometry.contains(beside)) continue;
+      const std::size_t j = geometry.index_of(beside);
+      if (where[j] == 0 || !is_occupied(map, j) || pairs.of_map[j] != 0) continue;
+      pair(i, j);
+      break;
+    }
+  }
+  return pairs;
+}
+
+bool is_near_occupied(const OccupancyGrid& map, Cell cell) {
+  return map.at(cell) == CellState::kOccupied || std::any_of(kAround.begin(), kAround.end(), [&](const Cell& step) {
+           return map.at({cell.column + step.column, cell.row + step.row}) == CellState::kOccupied;
+         });
+}
+
+}  // namespace
+
+MapScore map_score(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where) {
+  const Pairs pairs = paired(truth, map, where);
+  MapScore score;
+  const auto both = static_cast<double>(pairs.truth_cells + pairs.map_cells);
+  score.contour_f1 = both == 0.0 ? 1.0 : 2.0 * static_cast<double>(pairs.count) / both;
+  std::size_t agreeing = 0;
+  std::size_t disagreeing = 0;
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    const CellState is = truth.cells()[i];
+    const CellState said = map.cells()[i];
+    if (where[i] == 0 || is == CellState::kUnknown || said == CellState::kUnknown) continue;
+    ++(is == said ? agreeing : disagreeing);
+    if (is == said) continue;
+    const bool explained = is == CellState::kOccupied ? pairs.of_truth[i] != 0 : pairs.of_map[i] != 0;
+    wrong += explained ? 0 : 1;
+  }
+  if (agreeing > 0) score.acceptance = static_cast<double>(agreeing) / static_cast<double>(agreeing + disagreeing);
+  score.wrong_m2 = static_cast<double>(wrong) * truth.resolution_m() * truth.resolution_m();
+  return score;
+}
+
+double skill(double ours, double stale, double perfect) {
+  if (perfect <= stale) return std::numeric_limits<double>::quiet_NaN();
+  return (ours - stale) / (perfect - stale);
+}
+
+double share_kept(const OccupancyGrid& first, const OccupancyGrid& map, const CellMask& these) {
+  std::size_t all = 0;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < these.size(); ++i) {
+    if (these[i] == 0 || first.cells()[i] != CellState::kOccupied) continue;
+    ++all;
+    kept += is_near_occupied(map, map.geometry().cell_of(i)) ? 1 : 0;
+  }
+  return all == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(kept) / static_cast<double>(all);
+}
+
+CellMask grown(const CellMask& mask, const GridGeometry& geometry) {
+  CellMask wide = mask;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == 0) continue;
+    const Cell cell = geometry.cell_of(i);
+    for (const Cell& step : kAround) {
+      const Cell beside{cell.column + step.column, cell.row + step.row};
+      if (geometry.contains(beside)) wide[geometry.index_of(beside)] = 1;
+    }
+  }
+  return wide;
+}
+
+}  // namespace deltamap::simulation::score

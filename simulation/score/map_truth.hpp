@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a map could know at best. Follows the true world and what the robot's beams have touched of it: the perfect
+// mapper has every touched cell right as of its last touch, and M_0 everywhere else.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "simulation/scenario.hpp"
+#include "simulation/score/map_score.hpp"
+#include "simulation/score/witness.hpp"
+
+namespace deltamap::simulation::score {
+
+class MapTruth {
+ public:
+  MapTruth(const Scenario& scenario, const OccupancyGrid& first_map);
+
+  /// The world has become so. Whatever stands about in passing is not part of it.
+  void see(const World& world);
+  void touch(std::span<const TrueBeam> view);
+
+  /// What a laser can see of the world: surfaces, floor; the inside of things and what lies behind walls is unknown.
+  [[nodiscard]] const OccupancyGrid& visible() const { return visible_; }
+  /// The same, the inside of containers and posts occupied.
+  [[nodiscard]] OccupancyGrid solid() const;
+  [[nodiscard]] const OccupancyGrid& perfect() const { return perfect_; }
+  /// Cells that a beam has ever touched and their neighbours, the sweep of doors left out.
+  [[nodiscard]] CellMask seen() const;
+  /// Cells that the last beam which touched them went through.
+  [[nodiscard]] const CellMask& last_passed() const { return last_passed_; }
+  /// Surfaces of M_0 that never move, those of doors left out.
+  [[nodiscard]] CellMask lasting() const;
+  /// The four outer walls in the map: mean distance by which they have moved outwards, m; NaN where a wall is not
+  /// drawn. Left, right, lower, upper.
+  [[nodiscard]] std::array<double, 4> wall_drift(const OccupancyGrid& first, const OccupancyGrid& map) const;
+
+ private:
+  Point2 floor_;  // where the robot started
+  World world_;
+  Bounds outer_;
+  std::vector<DoorParams> doors_;
+  OccupancyGrid visible_;
+  OccupancyGrid perfect_;
+  CellMask touched_;
+  CellMask last_passed_;
+  CellMask of_doors_;
+};
+
+}  // namespace deltamap::simulation::score
