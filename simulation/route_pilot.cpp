@@ -223,11 +223,26 @@ void RoutePilot::plan(const Point2& from, std::span<const Circle> avoided) {
   if (!start || places_.empty()) return;
   const WaySearch search{floor_, roomy_, avoided};
   for (int attempt = 0; attempt < kTries && way_.empty(); ++attempt) {
-    const Cell goal = places_[random_.index_below(static_cast<std::uint32_t>(places_.size()))];
-    const double way_m = (floor_.geometry.centre_of(goal) - from).norm();
-    if (way_m < params_.least_way_m && attempt + 1 < kTries) continue;
-    way_ = search.way(*start, goal);
+    const auto goal = params_.round.empty() ? drawn_goal(from, attempt + 1 == kTries) : goal_of_round(from);
+    if (goal) way_ = search.way(*start, *goal);
+    if (way_.empty()) ++place_;  // cannot be reached now
   }
+}
+
+std::optional<Cell> RoutePilot::drawn_goal(const Point2& from, bool however_near) {
+  const Cell goal = places_[random_.index_below(static_cast<std::uint32_t>(places_.size()))];
+  const double way_m = (floor_.geometry.centre_of(goal) - from).norm();
+  if (way_m < params_.least_way_m && !however_near) return std::nullopt;
+  return goal;
+}
+
+/// The next place of the round, or the floor nearest to it.
+std::optional<Cell> RoutePilot::goal_of_round(const Point2& from) {
+  const auto goal = [&] { return nearest_reached(floor_, params_.round[place_ % params_.round.size()]); };
+  const auto present = goal();
+  if (!present || (floor_.geometry.centre_of(*present) - from).norm() > kArrived_m) return present;
+  ++place_;
+  return goal();
 }
 
 Pose2 RoutePilot::place_anywhere(Random& random) const {

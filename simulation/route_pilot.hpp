@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drives a simulated robot about by where it truly is: from one place of the free floor to another, drawn by chance.
+// Drives a simulated robot about by where it truly is: from one place of the free floor to another, drawn by chance or
+// in a given round.
 // It keeps to the middle of corridors, waits for people and doors, and looks for another way where it is held up.
 #pragma once
 
@@ -21,6 +22,7 @@ struct RoutePilotParams {
   double least_way_m = 6.0;          ///< from where it is to the next place, >= 0
   double sight_m = 1.0;              ///< in which it stops for a person ahead, > 0
   double patience_s = 4.0;           ///< before it looks for another way, > 0
+  std::vector<Point2> round{};       ///< places that it drives to in turn, again and again; none: drawn by chance
 };
 
 class RoutePilot {
@@ -43,6 +45,8 @@ class RoutePilot {
   [[nodiscard]] bool leaf_ahead(const Pose2& map_from_robot, std::span<const Segment> leaves) const;
   [[nodiscard]] bool is_open(const Point2& from, const Point2& to, const ReachableFloor& floor) const;
   [[nodiscard]] Point2 carrot(const Point2& from);
+  [[nodiscard]] std::optional<Cell> drawn_goal(const Point2& from, bool however_near);
+  [[nodiscard]] std::optional<Cell> goal_of_round(const Point2& from);
   void plan(const Point2& from, std::span<const Circle> avoided = {});
   void forget_way() { way_.clear(); }
 
@@ -53,6 +57,7 @@ class RoutePilot {
   Random random_;
   std::vector<Point2> way_;  // to the goal, a floor cell apart
   std::size_t next_ = 0;     // of the way
+  std::size_t place_ = 0;    // of the round
   double waited_s_ = 0.0;
   double backing_left_s_ = 0.0;
 };

@@ -106,7 +106,7 @@ DriveStep VirtualDrive::next() {
   step_.changes = std::exchange(unseen_, {});
   let_forklift_work();
   let_containers_creep();
-  target_ = pilot_.target(body_.state(), movers_.bodies(), params_.scan_period_s);
+  target_ = held_ ? *held_ : pilot_.target(body_.state(), movers_.bodies(), params_.scan_period_s);
   const Timestamp end = now_ + duration_from_seconds(params_.scan_period_s);
   step_.map_from_robot = body_.state().map_from_robot;
   step_.scan = sweep();

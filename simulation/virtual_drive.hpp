@@ -56,6 +56,8 @@ class VirtualDrive {
   /// The wheels turn that far and the body stands.
   void spin(const Pose2& robot_from_moved) { body_.spin_wheels(robot_from_moved); }
   void change(const Change& change);
+  /// From now on it drives this, wherever that leads, and not where its pilot would.
+  void hold(const DriveTarget& target) { held_ = target; }
   /// Many acts of a fork-lift at once, until that share of the slots is not as in the scenario. Fewer where no more can
   /// be done without harm.
   std::vector<Change> change_many(double share, const ForkliftParams& forklift);
@@ -100,6 +102,7 @@ class VirtualDrive {
   Timestamp next_change_;
   Timestamp next_push_;
   DriveTarget target_;
+  std::optional<DriveTarget> held_;
   DriveStep step_;
   std::uint32_t scans_ = 0;
   Sweep fan_;

@@ -179,5 +179,36 @@ TEST(VirtualDrive, ChangesTheWantedShareOfTheSlotsAtOnce) {
   EXPECT_EQ(kept, 32);
 }
 
+TEST(VirtualDrive, GoesItsRoundAgainAndAgain) {
+  VirtualDriveParams params;
+  params.route.round = {{10.0, 2.5}, {2.5, 2.5}};
+  VirtualDrive drive{hall(), params};
+  constexpr double kNear_m = 0.8;
+  std::vector<std::size_t> visited;
+  for (int scan = 0; scan < 900; ++scan) {
+    const Point2 at = drive.next().map_from_robot.position();
+    EXPECT_NEAR(at.y(), 2.5, kNear_m);
+    for (std::size_t i = 0; i < params.route.round.size(); ++i) {
+      const bool is_there = (at - params.route.round[i]).norm() < kNear_m;
+      if (is_there && (visited.empty() || visited.back() != i)) visited.push_back(i);
+    }
+  }
+  EXPECT_EQ(visited, (std::vector<std::size_t>{1, 0, 1, 0, 1, 0}));
+}
+
+TEST(VirtualDrive, DrivesWhatItIsHeldTo) {
+  VirtualDrive drive{hall(), {}};
+  drive.hold({.turn_rate_rad_per_s = 0.5});
+  double turned_rad = 0.0;
+  double heading_rad = drive.map_from_robot().theta;
+  for (int scan = 0; scan < 100; ++scan) {
+    (void)drive.next();
+    turned_rad += turn_between(heading_rad, drive.map_from_robot().theta);
+    heading_rad = drive.map_from_robot().theta;
+  }
+  EXPECT_NEAR(turned_rad, 0.5 * 100 * VirtualDriveParams{}.scan_period_s, 0.3);
+  EXPECT_NEAR((drive.map_from_robot().position() - hall().robot.map_from_start.position()).norm(), 0.0, 0.05);
+}
+
 }  // namespace
 }  // namespace deltamap::simulation

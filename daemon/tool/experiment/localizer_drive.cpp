@@ -17,7 +17,8 @@ Followed LocalizerDrive::next() {
   if (!first_) first_ = step.scan.time;
   const double passed_s = seconds(step.scan.time - *first_);
   for (const Odometry& odometry : step.odometry) localizer_.observe(odometry);
-  return {step.map_from_robot, localizer_.observe(std::move(step.scan)).estimate, std::move(step.changes), passed_s};
+  tracked_ = localizer_.observe(std::move(step.scan));
+  return {step.map_from_robot, tracked_.estimate, std::move(step.changes), passed_s};
 }
 
 std::shared_ptr<const OccupancyGrid> first_map(const simulation::Scenario& scenario) {

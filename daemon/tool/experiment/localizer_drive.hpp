@@ -27,6 +27,8 @@ class LocalizerDrive {
                  std::optional<localization::InitialPose> initial_pose);
 
   [[nodiscard]] Followed next();
+  /// The last scan as the localizer handed it on.
+  [[nodiscard]] const TrackedScan& tracked() const { return tracked_; }
   [[nodiscard]] simulation::VirtualDrive& drive() { return drive_; }
   [[nodiscard]] localization::Localizer& localizer() { return localizer_; }
 
@@ -34,6 +36,7 @@ class LocalizerDrive {
   simulation::VirtualDrive drive_;
   localization::Localizer localizer_;
   std::optional<Timestamp> first_;
+  TrackedScan tracked_;
 };
 
 /// M_0 of a scenario as the experiments use it, 0.05 m a cell.

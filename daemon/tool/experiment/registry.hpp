@@ -13,6 +13,8 @@ namespace deltamap::daemon::tool::experiment {
 [[nodiscard]] std::unique_ptr<Experiment> hall_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> stale_map_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> verdict_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> fig2_4_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> fig6_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> table1_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> merge_experiment();
 /// table2, fig10-12, endurance, and others of their kind.
