@@ -139,6 +139,11 @@ struct ScanSet {
   Timestamp ended;
   std::vector<TrackedScan> scans;     ///< in order of time; all of one odometry epoch
   std::vector<CellVerdict> verdicts;  ///< evidence: the cells to write, judged at the localizer's poses; paper: empty
+  PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the set ended
+  bool pose_in_doubt = false;        ///< the pose did not hold over the whole set: nothing of it may be written
+  std::optional<Timestamp> settled;  ///< what was written up to then is provisional no longer
+  /// An order in place of a set: what was written from then on, and is still provisional, is taken back.
+  std::optional<Timestamp> withdraw_from;
 };
 
 /// M_k: the map after a Δ.

@@ -12,6 +12,7 @@ ChangeNote note_of(const ScanSet& set, const mapping::MapUpdate& update, const G
   note.phase = set.phase;
   note.scans = static_cast<std::uint32_t>(set.scans.size());
   note.acceptance = update.acceptance;
+  note.covariance = set.covariance;
   if (!update.accepted()) {
     note.reason = mapping::name_of(update.refusal);
     return note;

@@ -36,8 +36,9 @@ struct ChangeNote {
   std::uint32_t forgotten = 0;            ///< cells that became unknown
   Point2 box_low{0.0, 0.0};               ///< bounding box of the changed cells in the map, m
   Point2 box_high{0.0, 0.0};
-  double acceptance = 0.0;  ///< Eq. 11
-  std::string reason;       ///< empty where accepted
+  double acceptance = 0.0;                             ///< Eq. 11
+  std::string reason;                                  ///< empty where accepted
+  PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the phase ended
 };
 
 /// One line of changes.jsonl with its line end.

@@ -56,6 +56,7 @@ class Statement {
   /// Is there a (further) row?
   bool step();
 
+  [[nodiscard]] bool is_null(int column) const;
   [[nodiscard]] std::int64_t number(int column) const;
   [[nodiscard]] double real(int column) const;
   [[nodiscard]] std::string text(int column) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/map_store.hpp"
 
+#include <array>
 #include <bit>
 #include <optional>
 #include <stdexcept>
@@ -8,12 +9,13 @@
 
 #include "mapping/database.hpp"
 #include "mapping/map_codec.hpp"
+#include "mapping/taken_back.hpp"
 
 namespace deltamap::mapping {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x444D4150;  // "DMAP"
-constexpr std::int64_t kSchemaVersion = 1;
+constexpr std::int64_t kSchemaVersion = 2;
 constexpr std::uint32_t kGridEvery = 64;  // revisions between whole grids
 
 constexpr const char* kSchema = R"(
@@ -23,9 +25,24 @@ CREATE TABLE revision (id INTEGER PRIMARY KEY, map INTEGER NOT NULL, number INTE
                        time_ns INTEGER, phase INTEGER, acceptance REAL, cause TEXT,
                        occupied INTEGER, freed INTEGER, unknown INTEGER,
                        first_column INTEGER, first_row INTEGER, last_column INTEGER, last_row INTEGER,
-                       grid_hash INTEGER, changes BLOB, grid BLOB);
+                       grid_hash INTEGER, changes BLOB, grid BLOB,
+                       xx_m2 REAL, xy_m2 REAL, xh_m_rad REAL, yy_m2 REAL, yh_m_rad REAL, hh_rad2 REAL);
 CREATE UNIQUE INDEX accepted ON revision (map, number) WHERE refused = 0;
 )";
+
+/// Version 1 kept no pose covariance.
+constexpr const char* kFromVersion1 = R"(
+ALTER TABLE revision ADD COLUMN xx_m2 REAL;
+ALTER TABLE revision ADD COLUMN xy_m2 REAL;
+ALTER TABLE revision ADD COLUMN xh_m_rad REAL;
+ALTER TABLE revision ADD COLUMN yy_m2 REAL;
+ALTER TABLE revision ADD COLUMN yh_m_rad REAL;
+ALTER TABLE revision ADD COLUMN hh_rad2 REAL;
+PRAGMA user_version = 2;
+)";
+
+/// In the order of the columns.
+constexpr std::array<std::pair<int, int>, 6> kUpperTriangle{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
 
 std::int64_t signed_hash(const OccupancyGrid& grid) { return std::bit_cast<std::int64_t>(grid_hash(grid)); }
 
@@ -34,9 +51,18 @@ void check(Database& database) {
   const std::int64_t id = database.number("PRAGMA application_id");
   if (id != kApplicationId) database.fail("not a map store");
   const std::int64_t version = database.number("PRAGMA user_version");
-  if (version != kSchemaVersion) database.fail("map store of version " + std::to_string(version) + ", not 1");
+  if (version < 1 || version > kSchemaVersion) {
+    database.fail("map store of version " + std::to_string(version) + ", not 1 to " + std::to_string(kSchemaVersion));
+  }
   const std::string sound = database.text("PRAGMA quick_check(1)");
   if (sound != "ok") database.fail("damaged: " + sound.substr(0, sound.find('\n')));
+}
+
+void bring_up_to_date(Database& database) {
+  if (database.number("PRAGMA user_version") == kSchemaVersion) return;
+  Transaction all{database};
+  if (database.number("PRAGMA user_version") == 1) database.run(kFromVersion1);  // nobody else was faster
+  all.commit();
 }
 
 Database opened(const std::filesystem::path& file, bool create) {
@@ -55,9 +81,20 @@ Database opened(const std::filesystem::path& file, bool create) {
     all.commit();
   }
   check(database);
+  bring_up_to_date(database);
   database.run("PRAGMA journal_mode = WAL");
   database.run("PRAGMA synchronous = FULL");
   return database;
+}
+
+/// Nothing where the columns are empty.
+std::optional<PoseCovariance> covariance_in(const Statement& row, int first_column) {
+  if (row.is_null(first_column)) return std::nullopt;
+  PoseCovariance covariance;
+  for (const auto& [one, other] : kUpperTriangle) {
+    covariance(one, other) = covariance(other, one) = row.real(first_column++);
+  }
+  return covariance;
 }
 
 StoredRevision summary_of(std::uint32_t number, Timestamp time, const RevisionNote& note,
@@ -102,8 +139,9 @@ struct MapStore::State {
              std::span<const std::uint8_t> grid) {
     Statement row{database,
                   "INSERT INTO revision (map, number, refused, time_ns, phase, acceptance, cause, occupied, freed, "
-                  "unknown, first_column, first_row, last_column, last_row, grid_hash, changes, grid) "
-                  "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"};
+                  "unknown, first_column, first_row, last_column, last_row, grid_hash, changes, grid, xx_m2, xy_m2, "
+                  "xh_m_rad, yy_m2, yh_m_rad, hh_rad2) "
+                  "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"};
     row.bind(map).bind(std::int64_t{summary.number}).bind(std::int64_t{summary.refused});
     row.bind(unix_ns(summary.time)).bind(std::int64_t{summary.note.phase}).bind(summary.note.acceptance);
     row.bind(summary.note.cause).bind(std::int64_t{summary.occupied}).bind(std::int64_t{summary.freed});
@@ -113,7 +151,22 @@ struct MapStore::State {
       row.bind(std::int64_t{side});
     }
     row.bind(hash).bind(changes).bind(grid);
+    if (const auto& covariance = summary.note.covariance) {
+      for (const auto& [one, other] : kUpperTriangle) row.bind((*covariance)(one, other));
+    }  // else NULL: what is not bound
     row.step();
+  }
+
+  [[noreturn]] void fail_as_missing(std::uint32_t number) const {
+    database.fail("no revision " + std::to_string(number) + " (newest: " + std::to_string(newest) + ")");
+  }
+
+  [[nodiscard]] std::vector<CellChange> changes_of(std::uint32_t number) {
+    Statement row{database, "SELECT changes FROM revision WHERE map = ? AND refused = 0 AND number = ?"};
+    row.bind(map).bind(std::int64_t{number});
+    auto changes = row.step() ? decoded_changes(row.blob(0), geometry) : std::nullopt;
+    if (!changes) database.fail("damaged: revision " + std::to_string(number) + " cannot be restored");
+    return *std::move(changes);
   }
 
   /// M_k from the whole grid at or before it; nothing where something in between is missing or damaged.
@@ -206,10 +259,7 @@ std::uint32_t MapStore::newest() const { return state_->newest; }
 std::uint32_t MapStore::dropped() const { return state_->dropped; }
 
 OccupancyGrid MapStore::grid(std::uint32_t number) const {
-  if (number > state_->newest) {
-    state_->database.fail("no revision " + std::to_string(number) + " (newest: " + std::to_string(state_->newest) +
-                          ")");
-  }
+  if (number > state_->newest) state_->fail_as_missing(number);
   auto grid = state_->restored(number);
   if (!grid) state_->database.fail("damaged: revision " + std::to_string(number) + " cannot be restored");
   return *std::move(grid);
@@ -218,7 +268,8 @@ OccupancyGrid MapStore::grid(std::uint32_t number) const {
 std::vector<StoredRevision> MapStore::history() const {
   Statement rows{state_->database,
                  "SELECT number, refused, time_ns, phase, acceptance, cause, occupied, freed, unknown, first_column, "
-                 "first_row, last_column, last_row FROM revision WHERE map = ? ORDER BY id"};
+                 "first_row, last_column, last_row, xx_m2, xy_m2, xh_m_rad, yy_m2, yh_m_rad, hh_rad2 FROM revision "
+                 "WHERE map = ? ORDER BY id"};
   rows.bind(state_->map);
   std::vector<StoredRevision> all;
   const auto whole = [&](int column) { return static_cast<std::uint32_t>(rows.number(column)); };
@@ -230,7 +281,7 @@ std::vector<StoredRevision> MapStore::history() const {
     revision.number = whole(0);
     revision.refused = rows.number(1) != 0;
     revision.time = timestamp_from_ns(rows.number(2));
-    revision.note = {whole(3), rows.real(4), rows.text(5)};
+    revision.note = {whole(3), rows.real(4), rows.text(5), covariance_in(rows, 13)};
     revision.occupied = whole(6);
     revision.freed = whole(7);
     revision.unknown = whole(8);
@@ -271,6 +322,34 @@ std::uint32_t MapStore::roll_back(std::uint32_t number, Timestamp time) {
   revision.map = std::make_shared<const OccupancyGrid>(grid(number));
   revision.changes = changes_between(grid(state_->newest), *revision.map);
   append(revision, {.cause = "rolled back to " + std::to_string(number)});
+  return revision.number;
+}
+
+std::vector<CellChange> MapStore::changes(std::uint32_t number) const {
+  if (number > state_->newest) state_->fail_as_missing(number);
+  return number == 0 ? std::vector<CellChange>{} : state_->changes_of(number);
+}
+
+std::uint32_t MapStore::undo(std::uint32_t number, Timestamp time) {
+  State& s = *state_;
+  if (number == 0) s.database.fail("revision 0 is the first map: there is nothing to undo");
+  std::vector<CellChange> delta = changes(number);
+  OccupancyGrid map = grid(s.newest);
+  std::vector<bool> changed_later(s.geometry.cell_count(), false);
+  for (std::uint32_t later = number + 1; later <= s.newest; ++later) {
+    for (const CellChange& change : s.changes_of(later)) changed_later[s.geometry.index_of(change.cell)] = true;
+  }
+  std::erase_if(delta, [&](const CellChange& change) { return changed_later[s.geometry.index_of(change.cell)]; });
+
+  MapRevision revision;
+  revision.number = s.newest + 1;
+  revision.time = time;
+  revision.changes = taken_back(map, delta);
+  if (revision.changes.empty()) {
+    s.database.fail("nothing of revision " + std::to_string(number) + " is left to undo");
+  }
+  revision.map = std::make_shared<const OccupancyGrid>(patched(std::move(map), revision.changes));
+  append(revision, {.cause = "undo of " + std::to_string(number)});
   return revision.number;
 }
 

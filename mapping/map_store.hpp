@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every revision M_k on disk (SQLite, write-ahead log): the changes of each, a whole grid now and then, and what was
-// refused. Histories are told apart by the hash of M_0, so that another map never finds old revisions. Used by one
-// thread.
+// The journal of the map on disk (SQLite, write-ahead log): every Δ with its cells before and after, time, pose
+// covariance, acceptance and cause, a whole grid every 64, and what was refused. Histories are told apart by the hash
+// of M_0, so that another map never finds old revisions. Used by one thread.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,9 @@ namespace deltamap::mapping {
 struct RevisionNote {
   std::uint32_t phase = 0;  ///< number of the Δ-phase
   double acceptance = 0.0;  ///< Eq. 11
-  std::string cause;        ///< method, or the reason of the refusal
+  std::string cause;        ///< method, "withdrawn", "undo of K", or the reason of the refusal
+  /// Of the localizer's pose when the Δ-phase ended; nothing where no localizer had a part in it.
+  std::optional<PoseCovariance> covariance{};
 };
 
 struct StoredRevision {
@@ -55,8 +58,14 @@ class MapStore {
   /// The revision must follow the newest one.
   void append(const MapRevision& revision, const RevisionNote& note);
   void append_refusal(Timestamp time, const RevisionNote& note);
+  /// What led from M_{k-1} to M_k. Throws as grid() does; M_0 has no changes.
+  [[nodiscard]] std::vector<CellChange> changes(std::uint32_t number) const;
   /// Writes M_k once more as the newest revision (nothing is lost), and returns its number.
   std::uint32_t roll_back(std::uint32_t number, Timestamp time);
+  /// Takes Δ k back and leaves what came later as it is: its cells that no later revision has changed take the states
+  /// they had before it. Writes that as the newest revision and returns its number. Throws std::runtime_error where
+  /// there is no such Δ, or nothing of it is left.
+  std::uint32_t undo(std::uint32_t number, Timestamp time);
 
  private:
   struct State;

@@ -39,6 +39,7 @@ std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {
     s.awareness.short_beams = s.evidence.short_beams();
     s.awareness.through_beams = s.evidence.through_beams();
   }
+  if (set) set->covariance = tracked.estimate.covariance;
   s.awareness.w_fast = s.ratio.w_fast();
   s.awareness.w_slow = s.ratio.w_slow();
   s.awareness.r_d = s.ratio.value();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `deltamap map history STORE …`: what the map store remembers: list it, take out a revision, compare two, go back to
-// one.
+// one, take one back and keep what came later.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -8,8 +8,10 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/grid_file.hpp"
 #include "daemon/tool/subcommands.hpp"
@@ -28,6 +30,7 @@ struct Options {
   std::uint32_t other = 0;
   std::string out;
   bool json = false;
+  bool cells = false;
 };
 
 std::string utc(Timestamp time) {
@@ -46,6 +49,25 @@ nlohmann::json box_as_json(const CellBox& box) {
   return {box.first.column, box.first.row, box.last.column - 1, box.last.row - 1};
 }
 
+nlohmann::json covariance_as_json(const std::optional<PoseCovariance>& covariance) {
+  if (!covariance) return nullptr;
+  const auto& c = *covariance;
+  return {{"xx_m2", c(0, 0)}, {"xy_m2", c(0, 1)},    {"xh_m_rad", c(0, 2)},
+          {"yy_m2", c(1, 1)}, {"yh_m_rad", c(1, 2)}, {"hh_rad2", c(2, 2)}};
+}
+
+const char* name_of(CellState state) {
+  switch (state) {
+    case CellState::kFree:
+      return "free";
+    case CellState::kOccupied:
+      return "occupied";
+    case CellState::kUnknown:
+      return "unknown";
+  }
+  return "?";
+}
+
 void list(const Options& options) {
   const MapStore store{options.store};
   if (!options.json)
@@ -59,6 +81,7 @@ void list(const Options& options) {
                                 {"phase", revision.note.phase},
                                 {"acceptance", revision.note.acceptance},
                                 {"cause", revision.note.cause},
+                                {"covariance", covariance_as_json(revision.note.covariance)},
                                 {"occupied", revision.occupied},
                                 {"freed", revision.freed},
                                 {"unknown", revision.unknown},
@@ -78,6 +101,20 @@ void write_revision(const Options& options) {
   if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
 }
 
+nlohmann::json changes_as_json(const std::vector<CellChange>& changes) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const CellChange& change : changes) {
+    list.push_back({change.cell.column, change.cell.row, name_of(change.before), name_of(change.after)});
+  }
+  return list;
+}
+
+void print(const std::vector<CellChange>& changes) {
+  for (const CellChange& change : changes) {
+    std::printf("%d %d %s %s\n", change.cell.column, change.cell.row, name_of(change.before), name_of(change.after));
+  }
+}
+
 void compare(const Options& options) {
   const MapStore store{options.store};
   const OccupancyGrid before = store.grid(options.number);
@@ -86,15 +123,17 @@ void compare(const Options& options) {
   std::size_t became[3] = {};
   for (const CellChange& change : changes) ++became[static_cast<std::size_t>(change.after)];
   const double acceptance = mapping::merge::acceptance(before, after).value();
-  const nlohmann::json result{{"from", options.number},   {"to", options.other},
-                              {"cells", changes.size()},  {"freed", became[0]},
-                              {"occupied", became[1]},    {"unknown", became[2]},
-                              {"acceptance", acceptance}, {"box", box_as_json(bounding_box(changes))}};
+  nlohmann::json result{{"from", options.number},   {"to", options.other},
+                        {"cells", changes.size()},  {"freed", became[0]},
+                        {"occupied", became[1]},    {"unknown", became[2]},
+                        {"acceptance", acceptance}, {"box", box_as_json(bounding_box(changes))}};
   if (options.json) {
+    if (options.cells) result["changes"] = changes_as_json(changes);
     std::cout << result.dump() << '\n';
   } else {
     std::printf("%zu cells differ: %zu became occupied, %zu free, %zu unknown; acceptance %.4f\n", changes.size(),
                 became[1], became[0], became[2], acceptance);
+    if (options.cells) print(changes);
   }
 }
 
@@ -108,11 +147,22 @@ void roll_back(const Options& options) {
   }
 }
 
+void undo(const Options& options) {
+  MapStore store{options.store};
+  const std::uint32_t number = store.undo(options.number, std::chrono::system_clock::now());
+  const std::size_t cells = store.changes(number).size();
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", number}, {"undone", options.number}, {"cells", cells}}.dump() << '\n';
+  } else {
+    std::printf("revision %u takes revision %u back: %zu cells\n", number, options.number, cells);
+  }
+}
+
 }  // namespace
 
 void add_map_history(CLI::App& map) {
   auto options = std::make_shared<Options>();
-  CLI::App* history = map.add_subcommand("history", "the revisions of a map: list, export, diff, rollback");
+  CLI::App* history = map.add_subcommand("history", "the revisions of a map: list, export, diff, rollback, undo");
   history->require_subcommand(1);
   history->fallthrough();
   history->add_option("STORE", options->store, "map store (SQLite)")->required();
@@ -129,11 +179,16 @@ void add_map_history(CLI::App& map) {
   CLI::App* differ = history->add_subcommand("diff", "what changed from revision J to K");
   differ->add_option("J", options->number)->required();
   differ->add_option("K", options->other)->required();
+  differ->add_flag("--cells", options->cells, "each cell: column, row, before, after");
   differ->fallthrough()->callback([options] { compare(*options); });
 
   CLI::App* roller = history->add_subcommand("rollback", "make revision K the newest again; nothing is lost");
   roller->add_option("K", options->number)->required();
   roller->fallthrough()->callback([options] { roll_back(*options); });
+
+  CLI::App* undoer = history->add_subcommand("undo", "take revision K back and keep what came later; nothing is lost");
+  undoer->add_option("K", options->number)->required();
+  undoer->fallthrough()->callback([options] { undo(*options); });
 }
 
 }  // namespace deltamap::daemon::tool

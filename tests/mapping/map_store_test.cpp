@@ -11,6 +11,7 @@
 
 #include "core/random.hpp"
 #include "mapping/map_codec.hpp"
+#include "mapping/taken_back.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -124,6 +125,124 @@ TEST_F(Store, GoesBackWithoutLosingAnything) {
   EXPECT_EQ(store.grid(6), maps[2]);
   EXPECT_EQ(store.grid(5), maps[5]);
   EXPECT_EQ(store.history().back().note.cause, "rolled back to 2");
+}
+
+/// Appends what turns these cells of the newest map into that state.
+void write(MapStore& store, const std::vector<Cell>& cells, CellState state) {
+  const OccupancyGrid before = store.grid(store.newest());
+  OccupancyGrid after = before;
+  for (const Cell cell : cells) after.set(cell, state);
+  MapRevision revision;
+  revision.number = store.newest() + 1;
+  revision.changes = changes_between(before, after);
+  revision.map = std::make_shared<const OccupancyGrid>(std::move(after));
+  store.append(revision, {.cause = "evidence"});
+}
+
+TEST_F(Store, TakesADeltaBackAndKeepsWhatCameLater) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}, {2, 1}, {3, 1}}, CellState::kOccupied);
+  write(store, {{20, 20}}, CellState::kOccupied);
+  write(store, {{3, 1}}, CellState::kUnknown);  // changed again: no longer what Δ 1 wrote
+  OccupancyGrid wanted = store.grid(3);
+  wanted.set({1, 1}, CellState::kFree);
+  wanted.set({2, 1}, CellState::kFree);
+  EXPECT_EQ(store.undo(1, timestamp_from_ns(9)), 4u);
+  EXPECT_EQ(store.grid(4), wanted);
+  EXPECT_EQ(store.history().back().note.cause, "undo of 1");
+  EXPECT_EQ(unix_ns(store.history().back().time), 9);
+  EXPECT_EQ((MapStore{file, first_map()}.grid(4)), wanted);
+}
+
+TEST_F(Store, LeavesACellThatALaterDeltaFoundAgain) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}, {2, 1}}, CellState::kOccupied);
+  write(store, {{1, 1}}, CellState::kFree);
+  write(store, {{1, 1}}, CellState::kOccupied);  // the same state, by another Δ
+  (void)store.undo(1, {});
+  EXPECT_EQ((store.grid(4)[{1, 1}]), CellState::kOccupied);
+  EXPECT_EQ((store.grid(4)[{2, 1}]), CellState::kFree);
+}
+
+TEST_F(Store, TakesAnUndoBack) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}, {2, 1}}, CellState::kOccupied);
+  (void)store.undo(1, {});
+  EXPECT_EQ(store.undo(2, {}), 3u);
+  EXPECT_EQ(store.grid(3), store.grid(1));
+  EXPECT_EQ(store.history().back().note.cause, "undo of 2");
+}
+
+TEST_F(Store, UndoesAcrossWholeGrids) {
+  MapStore store{file, first_map()};
+  write(store, {{39, 29}}, CellState::kOccupied);
+  for (int i = 0; i < 130; ++i) write(store, {{i % 30, i / 30}}, CellState::kOccupied);
+  OccupancyGrid wanted = store.grid(131);
+  wanted.set({39, 29}, CellState::kFree);
+  EXPECT_EQ(store.undo(1, {}), 132u);
+  EXPECT_EQ(store.grid(132), wanted);
+}
+
+TEST_F(Store, TellsInOneLineWhatCannotBeUndone) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}}, CellState::kOccupied);
+  (void)store.undo(1, {});
+  store.append_refusal(timestamp_from_ns(7), {2, 0.4, "low acceptance"});
+  const std::string at = file.string() + ": ";
+  EXPECT_EQ(complaint([&] { store.undo(0, {}); }), at + "revision 0 is the first map: there is nothing to undo");
+  EXPECT_EQ(complaint([&] { store.undo(3, {}); }), at + "no revision 3 (newest: 2)");
+  EXPECT_EQ(complaint([&] { store.undo(1, {}); }), at + "nothing of revision 1 is left to undo");
+  EXPECT_EQ(store.newest(), 2u);
+}
+
+TEST_F(Store, KeepsThePoseCovariance) {
+  PoseCovariance covariance;
+  covariance << 1, 2, 3, 2, 4, 5, 3, 5, 6;
+  {
+    MapStore store{file, first_map()};
+    store.append(revision_after(first_map(), 1), {1, 0.97, "evidence", covariance});
+  }
+  const auto history = MapStore{file}.history();
+  EXPECT_FALSE(history[0].note.covariance);
+  EXPECT_EQ(history[1].note.covariance, covariance);
+}
+
+TEST_F(Store, GoesOnWithAFileOfVersion1) {
+  std::vector<OccupancyGrid> maps;
+  {
+    MapStore store{file, first_map()};
+    maps = fill(store, 70);
+    store.append_refusal(timestamp_from_ns(7), {2, 0.4, "low acceptance"});
+  }
+  for (const char* column : {"xx_m2", "xy_m2", "xh_m_rad", "yy_m2", "yh_m_rad", "hh_rad2"}) {
+    run_sql(file, std::string("ALTER TABLE revision DROP COLUMN ") + column);
+  }
+  run_sql(file, "PRAGMA user_version = 1");
+  {
+    const MapStore read{file};
+    EXPECT_EQ(read.grid(70), maps[70]);
+    EXPECT_FALSE(read.history()[70].note.covariance);
+  }
+  MapStore store{file, first_map()};
+  EXPECT_EQ(store.dropped(), 0u);
+  for (std::uint32_t number = 0; number <= 70; ++number) EXPECT_EQ(store.grid(number), maps[number]) << number;
+  store.append(revision_after(maps[70], 71), {3, 0.9, "evidence", PoseCovariance::Identity()});
+  EXPECT_EQ(store.history().back().note.covariance, PoseCovariance::Identity());
+}
+
+TEST_F(Store, RefusesAFileOfALaterVersion) {
+  { const MapStore store{file, first_map()}; }
+  run_sql(file, "PRAGMA user_version = 3");
+  EXPECT_EQ(complaint([&] { MapStore store{file}; }), file.string() + ": map store of version 3, not 1 to 2");
+}
+
+TEST(TakenBack, LeavesCellsThatHoldSomethingElse) {
+  const OccupancyGrid before = test::drawn_grid({"....", "...."});
+  const OccupancyGrid after = test::drawn_grid({"##..", "...."});
+  const OccupancyGrid today = test::drawn_grid({"# ..", "...#"});
+  const auto back = taken_back(today, changes_between(before, after));
+  EXPECT_EQ(patched(today, back), test::drawn_grid({". ..", "...#"}));
+  EXPECT_EQ(back.size(), 1u);
 }
 
 TEST_F(Store, RefusesARevisionThatDoesNotFollow) {

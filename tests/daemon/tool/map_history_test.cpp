@@ -86,11 +86,45 @@ TEST_F(MapHistory, GoesBackToAnEarlierMap) {
   EXPECT_EQ((mapping::MapStore{file, first}.grid(2)), first);
 }
 
+TEST_F(MapHistory, TellsEachCellThatChanged) {
+  const ToolRun run = history({file, "diff", "0", "1", "--cells", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(run.output)["changes"],
+            (nlohmann::json{{2, 3, "unknown", "occupied"}, {4, 3, "unknown", "free"}}));
+  EXPECT_NE(history({file, "diff", "0", "1", "--cells"}).output.find("\n2 3 unknown occupied\n4 3 unknown free\n"),
+            std::string::npos);
+}
+
+TEST_F(MapHistory, TakesARevisionBack) {
+  const ToolRun run = history({file, "undo", "1", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_EQ(nlohmann::json::parse(run.output), (nlohmann::json{{"number", 2}, {"undone", 1}, {"cells", 2}}));
+  EXPECT_EQ((mapping::MapStore{file, first}.grid(2)), first);
+  const ToolRun difference = history({file, "diff", "1", "2", "--cells", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(difference.output)["changes"],
+            (nlohmann::json{{2, 3, "occupied", "unknown"}, {4, 3, "free", "unknown"}}));
+}
+
+TEST_F(MapHistory, TellsThePoseCovarianceOfEachRevision) {
+  PoseCovariance covariance;
+  covariance << 1, 2, 3, 2, 4, 5, 3, 5, 6;
+  mapping::MapStore store{file, first};
+  store.append_refusal(timestamp_from_ns(7), {3, 0.2, "implausible", covariance});
+  std::istringstream lines{history({file, "list", "--json"}).output};
+  std::vector<nlohmann::json> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(nlohmann::json::parse(line));
+  EXPECT_EQ(rows.back()["covariance"]["xh_m_rad"], 3.0);
+  EXPECT_EQ(rows.back()["covariance"]["hh_rad2"], 6.0);
+  EXPECT_TRUE(rows.front()["covariance"].is_null());
+}
+
 TEST_F(MapHistory, AnswersInOneLineWhatItCannotDo) {
   const std::string out = (folder.path() / "nine.yaml").string();
   const std::string text = folder.write("notes.txt", "no store").string();
-  for (const auto& words : std::vector<std::vector<std::string>>{
-           {file, "export", "9", out}, {text, "list"}, {folder.path() / "none.sqlite", "list"}}) {
+  for (const auto& words : std::vector<std::vector<std::string>>{{file, "export", "9", out},
+                                                                 {file, "undo", "0"},
+                                                                 {file, "undo", "9"},
+                                                                 {text, "list"},
+                                                                 {folder.path() / "none.sqlite", "list"}}) {
     const ToolRun run = history(words);
     EXPECT_EQ(run.exit_code, 1);
     EXPECT_NE(run.errors.find(words[0] + ": "), std::string::npos) << run.errors;
