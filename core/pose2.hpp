@@ -52,6 +52,11 @@ using PoseCovariance = Eigen::Matrix3d;
           wrapped_angle(from.theta + share * turn_between(from.theta, to.theta))};
 }
 
+/// Coordinate by coordinate; heading the short way round.
+[[nodiscard]] inline Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
+  return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
+}
+
 [[nodiscard]] inline double distance_between(const Pose2& a, const Pose2& b) {
   return std::hypot(b.x - a.x, b.y - a.y);
 }

@@ -17,10 +17,6 @@ int floored(double value) {
   return towards_zero - (value < towards_zero ? 1 : 0);
 }
 
-Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
-  return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
-}
-
 }  // namespace
 
 int HypothesisFinder::heading_cells() const {

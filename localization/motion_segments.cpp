@@ -48,8 +48,7 @@ MotionSegment motion_segment(const std::vector<Pose2>& first_from_step, const Po
   segment.covariance.fill(Eigen::Matrix3d::Zero());
   if (first_from_step.empty()) return segment;
   const Pose2& end = first_from_step.back();
-  segment.disagreement = {first_from_end.x - end.x, first_from_end.y - end.y,
-                          turn_between(end.theta, first_from_end.theta)};
+  segment.disagreement = difference(end, first_from_end);
   Pose2 from;
   for (const Pose2& to : first_from_step) {
     const Pose2 motion = motion_between(from, to);

@@ -16,10 +16,6 @@ constexpr double kSettledRad = 2e-4;
 constexpr double kUnknowns = 3.0;       // of a pose
 constexpr double kNewestErrors = 0.05;  // share of one scan in the running means
 
-Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
-  return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
-}
-
 }  // namespace
 
 void BeamErrors::blend_in(const BeamErrors& scan, double share) {

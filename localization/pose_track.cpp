@@ -15,8 +15,7 @@ constexpr double kLeastNoise = 0.2;  // as a share of what was set
 
 /// Squared deviations between a pose and the particles.
 double disagreement(const Pose2& pose, const Hypothesis& particles) {
-  const Eigen::Vector3d off{pose.x - particles.map_from_robot.x, pose.y - particles.map_from_robot.y,
-                            turn_between(particles.map_from_robot.theta, pose.theta)};
+  const Eigen::Vector3d off = difference(particles.map_from_robot, pose);
   const Eigen::Vector3d least{kLeastSpreadM * kLeastSpreadM, kLeastSpreadM * kLeastSpreadM,
                               kLeastSpreadRad * kLeastSpreadRad};
   const Eigen::Matrix3d spread = particles.covariance + least.asDiagonal().toDenseMatrix();

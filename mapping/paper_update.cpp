@@ -29,7 +29,7 @@ double chi2_of(const Pose2& map_from_local, const alignment::ScanAlignment& alig
       aligned.covariances[middle] +
       PoseCovariance{
           Eigen::Vector3d{shift2, shift2, params.merge_deviation_rad * params.merge_deviation_rad}.asDiagonal()};
-  const Eigen::Vector3d moved{after.x - before.x, after.y - before.y, turn_between(before.theta, after.theta)};
+  const Eigen::Vector3d moved = difference(before, after);
   return moved.dot(covariance.inverse() * moved);
 }
 

@@ -68,8 +68,7 @@ Placement placed_scans(const OccupancyGrid& map, const std::vector<TrackedScan>&
       placement.scans.push_back(guess);
       continue;
     }
-    const Eigen::Vector3d moved{pose.x - guess.map_from_robot.x, pose.y - guess.map_from_robot.y,
-                                turn_between(guess.map_from_robot.theta, pose.theta)};
+    const Eigen::Vector3d moved = difference(guess.map_from_robot, pose);
     if (moved.dot(belief.information * moved) > params.most_chi2 ||
         static_cast<double>(found.paired) < params.least_agreement * static_cast<double>(near)) {
       ++placement.implausible;

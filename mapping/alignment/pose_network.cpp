@@ -12,8 +12,7 @@ namespace deltamap::mapping::alignment {
 namespace {
 
 Eigen::Vector3d anchor_error(const Pose2& pose, const PoseAnchor& anchor) {
-  return {pose.x - anchor.frame_from_pose.x, pose.y - anchor.frame_from_pose.y,
-          turn_between(anchor.frame_from_pose.theta, pose.theta)};
+  return difference(anchor.frame_from_pose, pose);
 }
 
 double mahalanobis2(const Eigen::Vector3d& error, const PoseCovariance& covariance) {

@@ -59,10 +59,6 @@ Eigen::Matrix3d without_normal_noise(const Eigen::Matrix3d& information) {
   return scale * information * scale;
 }
 
-Eigen::Vector3d difference(const Pose2& from, const Pose2& to) {
-  return {to.x - from.x, to.y - from.y, turn_between(from.theta, to.theta)};
-}
-
 }  // namespace
 
 LineResidual line_residual(const Pose2& reference_from_moving, const Point2& point_in_moving,
