@@ -30,11 +30,17 @@ struct Options {
   MappingSettings mapping{};                  ///< the same
 };
 
+struct Picture {
+  std::string title;
+  std::string svg;
+};
+
 /// What one run has to show: a line of NAME.csv, and its scans.
 struct Outcome {
   std::vector<std::pair<std::string, std::string>> labels;  ///< what was done
   std::vector<std::pair<std::string, double>> numbers;      ///< what came out
   ScanTable scans;
+  std::vector<Picture> pictures{};  ///< for the report to choose from
 
   [[nodiscard]] const std::string& label(std::string_view name) const;
   [[nodiscard]] double number(std::string_view name) const;
@@ -80,11 +86,6 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-struct Picture {
-  std::string title;
-  std::string svg;
-};
-
 struct Report {
   std::vector<Figure> figures;
   std::vector<Chart> charts;
@@ -97,7 +98,7 @@ class Experiment {
   virtual ~Experiment() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string what() const = 0;  ///< one line
-  /// Numbers that end in _ms are then the machine's, and differ from one time to the next.
+  /// Numbers that end in _ms or _mb are then the machine's, and differ from one time to the next.
   [[nodiscard]] virtual bool measures_time() const { return false; }
   /// Throws std::runtime_error where a scenario cannot be read.
   [[nodiscard]] virtual std::vector<Run> runs(const Options& options) const = 0;

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "daemon/stage.hpp"
+
 namespace deltamap::daemon::tool::experiment {
 
 MappingDrive::MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
@@ -23,15 +25,21 @@ Mapped MappingDrive::next() {
   mapped.events = std::move(step.events);
   mapped.time = step.scan.time;
   mapped.passed_s = seconds(step.scan.time - *first_);
+  const double began_s = thread_cpu_s();
   for (const Odometry& odometry : step.odometry) localizer_->observe(odometry);
   const TrackedScan tracked = localizer_->observe(std::move(step.scan));
+  const double localized_s = thread_cpu_s();
+  mapped.costs.localizer_s = localized_s - began_s;
   mapped.estimate = tracked.estimate;
   last_pose_ = tracked.estimate.map_from_robot;
   const auto set = settings_.mapping.enabled ? store_scan_->observe(tracked) : std::nullopt;
   mapped.awareness = store_scan_->awareness();
+  const double aware_s = thread_cpu_s();
+  mapped.costs.awareness_s = aware_s - localized_s;
   if (!set) return mapped;
   mapped.update = map_->update(*set);
   if (mapped.update->revision) localizer_->apply(*mapped.update->revision);
+  mapped.costs.update_s = thread_cpu_s() - aware_s;
   return mapped;
 }
 

@@ -15,6 +15,13 @@
 
 namespace deltamap::daemon::tool::experiment {
 
+/// CPU time that one scan took, s.
+struct StageCosts {
+  double localizer_s = 0.0;
+  double awareness_s = 0.0;
+  double update_s = 0.0;  ///< of the map, and of the localizer's copy
+};
+
 /// One scan of a drive.
 struct Mapped {
   Pose2 map_from_robot;  ///< the truth
@@ -25,6 +32,7 @@ struct Mapped {
   std::vector<simulation::MoverEvent> events;
   Timestamp time;
   double passed_s = 0.0;  ///< since the drive began
+  StageCosts costs;
 };
 
 class MappingDrive {

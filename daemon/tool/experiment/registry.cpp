@@ -13,6 +13,8 @@ std::vector<std::unique_ptr<Experiment>> experiments() {
   all.push_back(verdict_experiment());
   all.push_back(fig2_4_experiment());
   all.push_back(fig6_experiment());
+  all.push_back(fig13_experiment());
+  all.push_back(fig14_experiment());
   all.push_back(table1_experiment());
   all.push_back(merge_experiment());
   for (auto& one : changing_world_experiments()) all.push_back(std::move(one));

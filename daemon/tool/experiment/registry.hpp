@@ -15,6 +15,8 @@ namespace deltamap::daemon::tool::experiment {
 [[nodiscard]] std::unique_ptr<Experiment> verdict_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> fig2_4_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> fig6_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> fig13_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> fig14_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> table1_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> merge_experiment();
 /// table2, fig10-12, endurance, and others of their kind.

@@ -25,7 +25,19 @@ std::string path_of_runs(const GridGeometry& geometry, const std::string& colour
   return path + "\"/>";
 }
 
+std::string opened_svg(const GridGeometry& frame) {
+  return "<svg viewBox=\"0 0 " + number(frame.width) + " " + number(frame.height) +
+         "\" style=\"max-width:34rem\" shape-rendering=\"crispEdges\">";
+}
+
+std::string paths_of_map(const OccupancyGrid& map) {
+  return path_of_runs(map.geometry(), "#eeeeee", [&](Cell cell) { return map[cell] == CellState::kFree; }) +
+         path_of_runs(map.geometry(), "#888888", [&](Cell cell) { return map[cell] == CellState::kOccupied; });
+}
+
 }  // namespace
+
+std::string svg_of_map(const OccupancyGrid& map) { return opened_svg(map.geometry()) + paths_of_map(map) + "</svg>\n"; }
 
 std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local, const Pose2& map_from_local) {
   // A frame that holds both.
@@ -43,10 +55,7 @@ std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local, c
     const Cell there = frame.cell_at(map_from_local * local.geometry().centre_of(cell));
     if (frame.contains(there)) above.set(there, CellState::kOccupied);
   }
-  return "<svg viewBox=\"0 0 " + number(frame.width) + " " + number(frame.height) +
-         "\" style=\"max-width:34rem\" shape-rendering=\"crispEdges\">" +
-         path_of_runs(frame, "#eeeeee", [&](Cell cell) { return below[cell] == CellState::kFree; }) +
-         path_of_runs(frame, "#888888", [&](Cell cell) { return below[cell] == CellState::kOccupied; }) +
+  return opened_svg(frame) + paths_of_map(below) +
          path_of_runs(frame, "#c4531c", [&](Cell cell) { return above[cell] == CellState::kOccupied; }) + "</svg>\n";
 }
 

@@ -9,6 +9,9 @@
 
 namespace deltamap::daemon::tool::experiment {
 
+/// Occupied cells in grey, known floor light.
+[[nodiscard]] std::string svg_of_map(const OccupancyGrid& map);
+
 /// The map's occupied cells in grey, known floor light; over it the other's contour in colour, placed by
 /// `map_from_local`.
 [[nodiscard]] std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local,

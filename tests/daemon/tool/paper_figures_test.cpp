@@ -64,5 +64,30 @@ TEST(Figure6, FallsTheFasterTheRobotTurnsAndNotByAChange) {
   EXPECT_LT(rejected("past-changes"), 0.5);
 }
 
+TEST(Figure13, BoxesThatAreTakenAwayLeaveTheMapAndComeBackToWhereTheyWere) {
+  const Report report = small_report("fig13", 14.0, 21);
+  EXPECT_GT(figure(report, "evidence: boxes gone, skill: 0 is the first map, 1 the truth; mean"), 0.4);
+  EXPECT_GT(figure(report, "evidence: boxes back, contour F1 against the first map, mean"), 0.97);
+  EXPECT_GT(figure(report, "evidence: boxes back, acceptance against the first map, worst"), 0.99);
+  EXPECT_LT(figure(report, "evidence: error of position, mean"), 0.02);
+  EXPECT_EQ(report.pictures.size(), 5u) << "the first map, and two of each method";
+}
+
+TEST(Figure14, MemoryIsThatOfAProcessAndPhasesCostMoreThanTheRest) {
+  const Report report = small_report("fig14", 4.0, 21);
+  for (const std::string method : {"evidence", "paper"}) {
+    const double peak_mb = figure(report, method + ": resident memory, simulator and all, peak");
+    EXPECT_GT(peak_mb, 4.0);
+    EXPECT_LT(peak_mb, 500.0);
+    EXPECT_GT(figure(report, method + ": map updates"), 0.0);
+    const double inside = figure(report, method + ": scans inside Δ-phases");
+    EXPECT_GT(inside, 0.0);
+    EXPECT_LT(inside, 1.0);
+    EXPECT_GT(figure(report, method + ": awareness and map update a scan inside, mean"),
+              figure(report, method + ": awareness and map update a scan outside, mean"));
+    EXPECT_GT(figure(report, method + ": localizer a scan, mean"), 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace deltamap::daemon::tool::experiment
