@@ -39,6 +39,13 @@ std::unique_ptr<experiment::Experiment> experiment_named(const std::string& name
   throw CLI::ValidationError{"there is no experiment '" + name + "'; there are " + names};
 }
 
+/// A line each: its name, whether it measures the machine, and what it is.
+void list_experiments() {
+  for (const auto& known : experiment::experiments()) {
+    std::cout << known->name() << '\t' << (known->measures_time() ? "times" : "") << '\t' << known->what() << '\n';
+  }
+}
+
 void print(const experiment::Results& results) {
   for (const experiment::Figure& figure : results.report.figures) {
     std::cout << std::left << std::setw(64) << figure.name << ' ' << std::setw(10) << experiment::text_of(figure.value)
@@ -109,6 +116,13 @@ void add_experiment(CLI::App& app) {
   command.add_option("--config", given->config, "settings of the localizer, YAML (default: as delivered)");
   command.add_option("--set", given->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   command.add_flag("--scans", given->with_scans, "write scans/RUN.csv too: every scan of every run");
+  command.add_flag_callback(
+      "--list",
+      [] {
+        list_experiments();
+        throw CLI::Success{};
+      },
+      "name, 'times' where it measures the machine, and meaning of every experiment, separated by tabs");
   command.add_flag("--json", given->as_json, "print the summary as JSON");
   command.callback([given] { run(*given); });
 }

@@ -5,11 +5,11 @@ Called by ./dev bench localization.
 
   localization.py [--quick] [--only NAME]...   --quick: few repetitions, seeds and runs; writes into build/ alone
                                                --only: measures these parts anew and keeps what is known of the others"""
-import argparse, json, os, pathlib, platform, sys
+import argparse, json, os, pathlib, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import localizer_cost, on_experiments, on_intel
-from measuring import OUT, ROOT, run
+from measuring import OUT, ROOT, mark, processor, run, table_lines
 
 # In the order of the table. Each answers a list of rows.
 PARTS = {
@@ -25,17 +25,6 @@ PARTS = {
 }
 
 
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()
-
-
-def mark(row):
-    return {True: "met", False: "**missed**", None: ""}[row["met"]]
-
-
 def markdown(parts):
     revisions = sorted({part["revision"] for part in parts.values()})
     lines = ["# The localizer, measured", "",
@@ -43,11 +32,8 @@ def markdown(parts):
              % (", ".join(revisions), processor()),
              "measured on one machine on the same logs with 500 particles and 60 beams. Instructions are those that callgrind counts:",
              "they repeat on any processor that has AVX2 (32-bit build: on any). Load of the machine at the end: %.1f on %d processors."
-             % (os.getloadavg()[0], os.cpu_count()), "",
-             "| figure | peers | ours | at least | |", "|---|---|---|---|---|"]
-    for part in parts.values():
-        for row in part["rows"]:
-            lines.append("| %s | %s | %s | %s | %s |" % (row["figure"], row["peers"], row["ours"], row["target"], mark(row)))
+             % (os.getloadavg()[0], os.cpu_count()), ""]
+    lines += table_lines([row for part in parts.values() for row in part["rows"]])
     judged = [row["met"] for part in parts.values() for row in part["rows"] if row["met"] is not None]
     lines += ["", "%d of %d met." % (sum(judged), len(judged)), ""]
     return "\n".join(lines)

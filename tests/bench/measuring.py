@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all parts of ./dev bench localization use: programs run, data unpacked, rows of the table."""
-import pathlib, sys
+"""What the programs that measure and write tables share: programs run, data unpacked, rows and tables."""
+import pathlib, platform, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import project
@@ -20,3 +20,46 @@ def unpacked(name):
 
 def median(values):
     return sorted(values)[len(values) // 2]
+
+
+def number(value):
+    return "nothing to measure" if value is None else "%.4g" % value
+
+
+def with_unit(value, unit):
+    return ("%s %s" % (number(value), unit)).strip()
+
+
+def target_of(figure):
+    """What a figure of a summary.json is to reach."""
+    bounds = figure.get("target", {})
+    return ", ".join("%s %s" % (sign, with_unit(bounds[side], figure["unit"]))
+                     for side, sign in (("least", "≥"), ("most", "≤")) if side in bounds)
+
+
+def row_of_figure(figure, prefix=""):
+    return row(prefix + figure["name"], with_unit(figure["value"], figure["unit"]), target_of(figure), figure.get("met"),
+               figure.get("peers", ""))
+
+
+def mark(row):
+    return {True: "met", False: "**missed**", None: ""}[row["met"]]
+
+
+def in_a_cell(text):
+    return text.replace("|", "\\|")
+
+
+def table_lines(rows, others="peers"):
+    lines = ["| figure | %s | ours | at least | |" % others, "|---|---|---|---|---|"]
+    for row in rows:
+        texts = [in_a_cell(row[name]) for name in ("figure", "peers", "ours", "target")]
+        lines.append("| %s | %s |" % (" | ".join(texts), mark(row)))
+    return lines
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()

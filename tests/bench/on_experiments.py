@@ -3,25 +3,14 @@
 something to reach."""
 import json
 
-from measuring import OUT, TOOL, row, run
-
-
-def number(value):
-    return "nothing to measure" if value is None else "%.4g" % value
-
-
-def target_of(figure):
-    bounds, unit = figure["target"], " " + figure["unit"] if figure["unit"] else ""
-    return ", ".join(sign + " " + number(bounds[side]) + unit for side, sign in (("least", "≥"), ("most", "≤")) if side in bounds)
+from measuring import OUT, TOOL, row_of_figure, run
 
 
 def experiment_rows(name, quick):
     folder = OUT / "runs" / ("experiment-" + name)
     run(TOOL, "experiment", name, "--out", folder, *(["--quick"] if quick else []))
     summary = json.loads((folder / "summary.json").read_text())
-    return [row("%s: %s" % (name, figure["name"]), ("%s %s" % (number(figure["value"]), figure["unit"])).strip(),
-                target_of(figure), figure["met"], figure.get("peers", ""))
-            for figure in summary["figures"] if figure.get("target")]
+    return [row_of_figure(figure, name + ": ") for figure in summary["figures"] if figure.get("target")]
 
 
 def hall_rows(quick):

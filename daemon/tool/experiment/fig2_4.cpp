@@ -148,7 +148,7 @@ std::vector<Run> Figures2To4::runs(const Options& options) const {
       std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
   const localization::LocalizerParams localizer = localizer_variants(options.localizer).front().params;
   const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
-  const double minutes = options.minutes.value_or(options.quick ? 1.0 : kLap_min);
+  const double minutes = options.minutes.value_or(kLap_min);
   std::vector<Run> runs;
   for (int i = 0; i < seeds; ++i) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);

@@ -123,6 +123,18 @@ TEST(Experiment, RefusesAnUnknownNameAndListsThoseThatThereAre) {
   EXPECT_FALSE(fs::exists(folder.path() / "new"));
 }
 
+TEST(Experiment, ListsThoseThatThereAreALineEach) {
+  const ToolRun answer = run_deltamap({"experiment", "--list"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.errors;
+  std::istringstream lines{answer.output};
+  for (const auto& known : experiment::experiments()) {
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(line, known->name() + "\t" + (known->measures_time() ? "times" : "") + "\t" + known->what());
+  }
+  EXPECT_EQ(lines.peek(), EOF);
+}
+
 TEST(Experiment, RefusesAFolderThatCannotBeWrittenInOneLine) {
   const test::TemporaryFolder folder;
   const ToolRun answer = experiment("hall", folder.write("file", "x") / "below");

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Does every experiment and writes docs/results/experiments.md from what each leaves in its summary.json; what was
+measured and at which revision is kept in experiments.json beside it. Called by ./dev experiments.
+
+  experiments.py [--quick] [--only NAME]... [--seed N] [--jobs N]
+      --quick: short drives, few seeds; writes into build/ alone
+      --only: does these anew and keeps what is known of the others
+      --jobs: drives at once; experiments that measure the machine do one"""
+import argparse, json, os, pathlib, subprocess, sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from measuring import DATA, ROOT, TOOL, processor, row_of_figure, run, table_lines
+
+OUT = ROOT / "build/experiments"
+OF_THE_LOCALIZER = {"hall", "stale-map", "verdict"}  # ./dev bench localization
+
+
+def experiments():
+    """Name, and whether it measures the machine."""
+    listed = [line.split("\t") for line in run(TOOL, "experiment", "--list").splitlines()]
+    return {name: (times == "times", what) for name, times, what in listed if name not in OF_THE_LOCALIZER}
+
+
+def revision():
+    """What is measured; results that are written on the way do not count as changes."""
+    changed = run("git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/results").strip()
+    return run("git", "describe", "--always").strip() + ("-dirty" if changed else "")
+
+
+def section(part):
+    """One experiment in the report."""
+    summary = part["summary"]
+    rows = [row_of_figure(figure) for figure in summary["figures"]]
+    judged = [row["met"] for row in rows if row["met"] is not None]
+    met = " %d of %d met." % (sum(judged), len(judged)) if judged else ""
+    lines = ["## " + summary["experiment"], "",
+             "%s. %d runs from seed %d%s, at %s.%s" % (part["what"], summary["runs"], summary["seed"],
+                                                        ", quick" if summary["quick"] else "", part["revision"], met), ""]
+    return lines + table_lines(rows, "paper, others")
+
+
+def markdown(parts):
+    judged = [figure["met"] for part in parts for figure in part["summary"]["figures"] if "met" in figure]
+    lines = ["# The experiments, measured", "",
+             "Written by `./dev experiments` on %s. What each experiment does stands in `docs/experiments.md`. %d of %d figures met."
+             % (processor(), sum(judged), len(judged)), ""]
+    for part in parts:
+        lines += section(part) + [""]
+    return "\n".join(lines)
+
+
+def done(name, measures_machine, arguments, folder):
+    """Does one experiment, its progress on this terminal, and answers its summary."""
+    command = [TOOL, "experiment", name, "--out", folder / name, "--seed", arguments.seed]
+    command += ["--quick"] if arguments.quick else []
+    jobs = 1 if measures_machine else arguments.jobs
+    command += ["--jobs", jobs] if jobs else []
+    print("%s …" % name, file=sys.stderr, flush=True)
+    environment = dict(os.environ)
+    if DATA.is_dir():
+        environment["DELTAMAP_DATA"] = str(DATA)
+    if subprocess.run([str(word) for word in command], cwd=ROOT, stdout=subprocess.DEVNULL, env=environment).returncode:
+        raise SystemExit("experiment %s failed" % name)
+    return json.loads((folder / name / "summary.json").read_text())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", action="append")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int)
+    arguments = parser.parse_args()
+    known = experiments()
+    unknown = sorted(set(arguments.only or []) - set(known))
+    if unknown:
+        parser.error("no experiment %s; there are %s" % (", ".join(unknown), ", ".join(known)))
+    folder = OUT / ("quick" if arguments.quick else "full")
+    folder.mkdir(parents=True, exist_ok=True)
+    report = folder / "experiments.md" if arguments.quick else ROOT / "docs/results/experiments.md"
+    kept = report.with_suffix(".json")
+    at = revision()
+    parts = json.loads(kept.read_text()) if kept.exists() else {}
+    for name, (measures_machine, what) in known.items():
+        if name not in (arguments.only or known):
+            continue
+        summary = done(name, measures_machine, arguments, folder)
+        parts[name] = {"revision": at, "what": what, "summary": summary}
+        parts = {one: parts[one] for one in known if one in parts}
+        # At once: who interrupts a long run keeps what was done.
+        kept.write_text(json.dumps(parts, indent=1, ensure_ascii=False) + "\n")
+        report.write_text(markdown(list(parts.values())))
+    print("written: %s; pages in %s" % (report.relative_to(ROOT), folder.relative_to(ROOT)))
+    raise SystemExit(0 if all(part["summary"]["met"] for part in parts.values()) else 1)
+
+
+if __name__ == "__main__":
+    main()
