@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the map thread does with each S(k), and what a replay does in its place: updates the newest map, prepares the
-// localizer's patch, and says what became of the Δ-phase. The revision goes to the localizer, the note to
-// changes.jsonl.
+// localizer's patch, and says what became of the Δ-phase. What it writes is provisional until a later set says that it
+// is settled; an order takes it back. The revision goes to the localizer, the note to changes.jsonl.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/messages.hpp"
 #include "daemon/localization_step.hpp"
@@ -22,6 +24,7 @@ class MapStep {
     std::optional<MapRevision> revision;
     ChangeNote note;
   };
+  /// A set, or an order to withdraw.
   [[nodiscard]] Result update(const ScanSet& set);
 
   /// "paper" or "evidence": kept with each revision.
@@ -31,10 +34,21 @@ class MapStep {
   [[nodiscard]] std::uint32_t revision() const { return newest_.revision; }
 
  private:
+  struct Provisional {
+    std::uint32_t number = 0;
+    Timestamp time;
+    std::vector<CellChange> changes;
+  };
+
+  [[nodiscard]] Result withdraw(const ScanSet& order);
+  void settle(const std::optional<Timestamp>& before);
+  [[nodiscard]] MapRevision publish(Timestamp time, std::vector<CellChange> changes);
+
   std::string_view method_;
   mapping::MapUpdateParams update_;
   localization::LocalizerParams localizer_;
   StartMap newest_;
+  std::deque<Provisional> provisional_;  // oldest first
 };
 
 }  // namespace deltamap::daemon

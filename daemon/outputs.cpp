@@ -30,6 +30,7 @@ Json as_json(const ChangeNote& change) {
   json["box_m"] = {change.box_low.x(), change.box_low.y(), change.box_high.x(), change.box_high.y()};
   json["acceptance"] = change.acceptance;
   json["reason"] = change.reason;
+  if (!change.withdraws.empty()) json["withdraws"] = change.withdraws;
   return json;
 }
 
@@ -96,6 +97,9 @@ std::string json_text(const RunReport& report) {
   json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
                           {"undecided_s", report.verdict_times.undecided_s},
                           {"wrong_s", report.verdict_times.wrong_s}};
+  json["write_gate"] = {{"observed_s", mapping::observed_s(report.gate_times)},
+                        {"shut_s", mapping::shut_s(report.gate_times)},
+                        {"shut_by_reason_s", mapping::shut_by_reason(report.gate_times)}};
   json["localizer"] = report.localizer;
   json["recorded_s"] = report.recorded_s;
   const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));

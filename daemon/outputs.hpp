@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
+#include "mapping/write_gate.hpp"
 
 namespace deltamap::daemon {
 
@@ -36,8 +37,9 @@ struct ChangeNote {
   std::uint32_t forgotten = 0;            ///< cells that became unknown
   Point2 box_low{0.0, 0.0};               ///< bounding box of the changed cells in the map, m
   Point2 box_high{0.0, 0.0};
-  double acceptance = 0.0;                             ///< Eq. 11
-  std::string reason;                                  ///< empty where accepted
+  double acceptance = 0.0;               ///< Eq. 11
+  std::string reason;                    ///< of a refusal; "withdrawn" of a revision that takes others back; else empty
+  std::vector<std::uint32_t> withdraws;  ///< the revisions that this one takes back
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the phase ended
 };
 
@@ -93,6 +95,7 @@ struct RunReport {
   double time_lost_s = 0.0;
   double time_global_s = 0.0;
   VerdictTimes verdict_times;
+  mapping::GateTimes gate_times{};                 ///< how long the write gate was open, and shut by reason
   std::map<std::string, std::uint64_t> localizer;  ///< what befell it, by name
   double recorded_s = 0.0;                         ///< from the first scan to the last
   StageCpu cpu;

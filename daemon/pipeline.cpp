@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pipeline.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <deque>
 #include <vector>
 
 #include "core/channel.hpp"
 #include "core/grid_file.hpp"
 #include "daemon/control_desk.hpp"
+#include "daemon/gate_watch.hpp"
 #include "daemon/localization_stage.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recorder.hpp"
@@ -81,7 +84,8 @@ struct Pipeline::State {
   // --- what each thread owns ---
 
   mapping::StoreScan store_scan;
-  std::optional<ScanSet> waiting_set;  // the map thread was busy: offered again at the next scan
+  GateWatch gate_watch;
+  std::deque<ScanSet> waiting_sets;  // the map thread was busy: offered again at the next scan; one set, and orders
   MapStep map_step;
   mapping::MapStore* store;                    // of the settings; null after it has failed
   std::optional<mapping::MapStore> out_store;  // of --out: begins with this run
@@ -92,6 +96,8 @@ struct Pipeline::State {
     if (control) control->tell(outcome);
   }
   void hand_over(ScanSet set);
+  void offer_waiting_sets();
+  void tell_of_gate(const mapping::Awareness& awareness);
   void update_map(const ScanSet& set);
   void save(const MapStep::Result& result);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
@@ -173,27 +179,44 @@ Pipeline::State::State(const Settings& given, Options wanted)
 void Pipeline::State::look_for_changes() {
   while (const auto tracked = tracked_scans.receive()) {
     const Workload::Item item{awareness_work};
-    if (waiting_set && sets.try_send(std::move(*waiting_set))) waiting_set.reset();
+    offer_waiting_sets();
     auto set = store_scan.observe(*tracked);
     const mapping::Awareness& awareness = store_scan.awareness();
     telemetry.r_d.set(awareness.r_d);
     telemetry.in_phase.set(awareness.in_phase);
     telemetry.phase.set(awareness.phase);
     telemetry.stored_scans.set(awareness.stored_scans);
+    tell_of_gate(awareness);
     if (!set) continue;
-    telemetry.phases_closed.add(1);
-    note(recorder.from_awareness(), {Kind::kPhaseClosed, tracked->scan.number, set->phase});
+    if (!set->withdraw_from) {
+      telemetry.phases_closed.add(1);
+      note(recorder.from_awareness(), {Kind::kPhaseClosed, tracked->scan.number, set->phase});
+    }
     hand_over(std::move(*set));
   }
 }
 
+void Pipeline::State::offer_waiting_sets() {
+  while (!waiting_sets.empty() && sets.try_send(std::move(waiting_sets.front()))) waiting_sets.pop_front();
+}
+
+void Pipeline::State::tell_of_gate(const mapping::Awareness& awareness) {
+  telemetry.gate.set(awareness.gate, awareness.gate_times);
+  const std::string line = gate_watch.observe(awareness);
+  if (!line.empty()) options.log(line);
+}
+
+/// An order is never lost: there are no more of them than sets that were handed over before.
 void Pipeline::State::hand_over(ScanSet set) {
-  if (waiting_set) {
+  const bool set_waits = std::any_of(waiting_sets.begin(), waiting_sets.end(),
+                                     [](const ScanSet& waiting) { return !waiting.withdraw_from; });
+  if (set_waits && !set.withdraw_from) {
     telemetry.sets_lost.add(1);
     note(recorder.from_awareness(), {Kind::kSetLost, 0, set.phase});
-  } else if (!sets.try_send(std::move(set))) {
-    waiting_set = std::move(set);
+    return;
   }
+  waiting_sets.push_back(std::move(set));
+  offer_waiting_sets();
 }
 
 // --- map thread ---
@@ -201,7 +224,7 @@ void Pipeline::State::hand_over(ScanSet set) {
 void Pipeline::State::update_maps() {
   while (const auto set = sets.receive()) update_map(*set);
   // The delta thread has ended: what it could not hand over is worked off too.
-  if (waiting_set) update_map(*waiting_set);
+  for (const ScanSet& set : waiting_sets) update_map(set);
 }
 
 void Pipeline::State::update_map(const ScanSet& set) {
@@ -218,6 +241,9 @@ void Pipeline::State::update_map(const ScanSet& set) {
     return save(result);
   }
   telemetry.newest_revision.set(result.revision->number);
+  if (!result.note.withdraws.empty()) {
+    options.log("pose proved wrong: withdrawn=" + std::to_string(result.note.withdraws.size()) + " revisions");
+  }
   options.log("map changed: revision=" + std::to_string(result.revision->number) +
               " phase=" + std::to_string(set.phase) + " added=" + std::to_string(result.note.added) +
               " freed=" + std::to_string(result.note.freed));
@@ -286,6 +312,7 @@ RunReport Pipeline::stop() {
   report.verdict_times = localization.verdict_times();
   report.localizer = localization.counts();
   report.recorded_s = localization.covered_s();
+  report.gate_times = s.store_scan.awareness().gate_times;
   report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.awareness_thread->cpu_s(),
                 s.map_thread->cpu_s(), s.recorder_thread->cpu_s()};
   report.cpu_total_s = process_cpu_s();

@@ -192,6 +192,7 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
     set = store_scan_.observe(tracked);
   }
   if (!set) return;
+  if (set->withdraw_from) return update_map(*set);
   ++report_.phases;
   if (obeys_ && journal_.closing_scan(set->phase) != tracked.scan.number) ++report_.journal_differences;
   if (obeys_ && journal_.set_was_lost(set->phase)) {
@@ -224,6 +225,7 @@ RunReport Replay::finish(const std::filesystem::path& out) {
   report_.verdict_times = localization_.verdict_times();
   report_.localizer = localization_.counts();
   report_.recorded_s = localization_.covered_s();
+  report_.gate_times = store_scan_.awareness().gate_times;
   report_.latency_of = "localizing one scan, CPU time";
   report_.latency_p50_s = step_times_.quantile_s(0.5);
   report_.latency_p99_s = step_times_.quantile_s(0.99);

@@ -14,7 +14,7 @@ namespace deltamap::daemon {
 inline void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_view method,
                  std::uint32_t numbers_before = 0) {
   const ChangeNote& note = result.note;
-  const std::string cause = result.revision ? std::string(method) : note.reason;
+  const std::string cause = result.revision && note.reason.empty() ? std::string(method) : note.reason;
   const mapping::RevisionNote kept{note.phase, note.acceptance, cause, note.covariance};
   if (!result.revision) return store.append_refusal(note.time, kept);
   MapRevision revision = *result.revision;

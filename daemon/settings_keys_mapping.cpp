@@ -76,6 +76,29 @@ void add_paper_update(mapping::PaperUpdateParams& paper, Keys& keys) {
   keys.push_back(number_key(as_published + "most_chi2", paper.most_chi2, "", 0.0, 1000.0, "where it contradicts"));
 }
 
+void add_gate(mapping::WriteGateParams& gate, Keys& keys) {
+  const std::string at = "mapping.gate.";
+  keys.push_back(flag_key(at + "enabled", gate.enabled, "write only while the pose is sure (method evidence)"));
+  keys.push_back(number_key(at + "least_pose_right", gate.least_pose_right, "", 0.0, 1.0,
+                            "P(pose right) below which nothing is written"));
+  keys.push_back(number_key(at + "disbelieved_below", gate.disbelieved_below, "", 0.0, 1.0,
+                            "P(pose right) below which the pose counts as proven wrong"));
+  keys.push_back(number_key(at + "most_rival_share", gate.most_rival_share, "", 0.0, 1.0,
+                            "of the belief, that another place may hold"));
+  keys.push_back(
+      number_key(at + "most_deviation_m", gate.most_deviation_m, "m", 0.01, 10.0, "of the position, worst axis"));
+  keys.push_back(number_key(at + "jump_m", gate.jump.least_m, "m", 0.01, 10.0,
+                            "off odometry within 3 s, besides the deviations, that proves a pose wrong"));
+  keys.push_back(
+      number_key(at + "confirm_s", gate.confirm_s, "s", 0.0, 3600.0, "so long the pose must hold after it was wrong"));
+  keys.push_back(number_key(at + "hold_s", gate.hold_s, "s", 0.0, 60.0,
+                            "a finished set waits so long for a sign that the pose was wrong"));
+  keys.push_back(number_key(at + "provisional_m", gate.provisional.way_m, "m", 0.0, 1000.0,
+                            "the robot must have driven until what was written is settled, …"));
+  keys.push_back(number_key(at + "provisional_s", gate.provisional.time_s, "s", 0.0, 3600.0,
+                            "… and so much time have passed; until then it is withdrawn where the pose proves wrong"));
+}
+
 }  // namespace
 
 void add_mapping_keys(MappingSettings& settings, Keys& keys) {
@@ -86,6 +109,7 @@ void add_mapping_keys(MappingSettings& settings, Keys& keys) {
                             "how changes are found and merged"));
   add_evidence(store_scan.evidence, settings.update.evidence.longest_m, keys);
   add_evidence_update(settings.update.evidence, keys);
+  add_gate(store_scan.gate, keys);
   add_paper(store_scan, keys);
   add_paper_update(settings.update.paper, keys);
 }

@@ -57,6 +57,17 @@ Json drops_json(const Telemetry& t) {
           {"sets_lost", t.sets_lost.value()},         {"recording_lost", t.recording_lost.value()}};
 }
 
+Json gate_json(const GateGauges& gate) {
+  const auto now = static_cast<mapping::GateReason>(gate.reason.value());
+  const mapping::GateTimes times = gate.times();
+  Json json;
+  json["open"] = now == mapping::GateReason::kOpen;
+  json["reason"] = now == mapping::GateReason::kOpen ? Json(nullptr) : Json(mapping::name_of(now));
+  json["observed_s"] = mapping::observed_s(times);
+  json["shut_s"] = mapping::shut_by_reason(times);
+  return json;
+}
+
 const char* mapping_word(const Telemetry& t, const Settings& settings) {
   if (!settings.mapping.enabled) return "off";
   return t.paused.value() ? "paused" : "on";
@@ -80,6 +91,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                    {"open", t.in_phase.value()},
                    {"stored_scans", t.stored_scans.value()},
                    {"r_d", t.r_d.value()}};
+  json["gate"] = gate_json(t.gate);
   json["scans"] = t.scans.value();
   json["localized"] = t.localized.value();
   json["odometry"] = t.odometry.value();

@@ -75,6 +75,17 @@ void EstimateGauges::set(const Estimate& estimate) {
   rival_heading_rad.set(belief.map_from_rival.theta);
 }
 
+void GateGauges::set(mapping::GateReason now, const mapping::GateTimes& times) {
+  reason.set(static_cast<std::uint8_t>(now));
+  for (std::size_t i = 0; i < times.size(); ++i) times_s[i].set(times[i]);
+}
+
+mapping::GateTimes GateGauges::times() const {
+  mapping::GateTimes times{};
+  for (std::size_t i = 0; i < times.size(); ++i) times[i] = times_s[i].value();
+  return times;
+}
+
 std::string status_line(const Telemetry& t) {
   const EstimateGauges& e = t.estimate;
   const auto state = name_of(static_cast<LocalizerState>(e.state.value()));

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/messages.hpp"
+#include "mapping/write_gate.hpp"
 
 namespace deltamap::daemon {
 
@@ -44,6 +45,13 @@ struct EstimateGauges {
   void set(const Estimate& estimate);
 };
 
+struct GateGauges {
+  Gauge<std::uint8_t> reason;  ///< mapping::GateReason
+  std::array<Gauge<double>, mapping::kGateReasons> times_s;
+  void set(mapping::GateReason now, const mapping::GateTimes& times);
+  [[nodiscard]] mapping::GateTimes times() const;
+};
+
 struct Telemetry {
   // io thread
   Gauge<bool> robot_up, laser_up;
@@ -63,6 +71,7 @@ struct Telemetry {
   Gauge<double> r_d;
   Gauge<bool> in_phase;
   Gauge<std::uint32_t> phase, stored_scans, phases_closed, sets_lost;
+  GateGauges gate;
   // map thread
   Gauge<std::uint32_t> newest_revision, refused;
 };

@@ -21,11 +21,18 @@ std::string_view name_of(Refusal refusal) {
       return "implausible";
     case Refusal::kNothingChanged:
       return "nothing changed";
+    case Refusal::kPoseInDoubt:
+      return "pose in doubt";
   }
   return "?";
 }
 
 MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params) {
+  if (set.pose_in_doubt) {
+    MapUpdate update;
+    update.refusal = Refusal::kPoseInDoubt;
+    return update;
+  }
   return set.method == MappingMethod::kPaper ? paper_update(map, set, params.paper)
                                              : evidence_update(map, set, params.evidence);
 }

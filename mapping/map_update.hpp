@@ -19,7 +19,8 @@ enum class Refusal : std::uint8_t {
   kNoMerge,        ///< no rigid motion brings the local map onto the map
   kLowAcceptance,  ///< Eq. 11 below its threshold
   kImplausible,    ///< the merge contradicts the localizer's pose by more than its covariance allows (χ²)
-  kNothingChanged
+  kNothingChanged,
+  kPoseInDoubt  ///< the set rests on a pose that has proven wrong, or may have been (write gate)
 };
 [[nodiscard]] std::string_view name_of(Refusal refusal);
 

@@ -5,12 +5,17 @@ namespace deltamap::mapping {
 
 struct StoreScan::State {
   State(const StoreScanParams& params, std::uint64_t seed)
-      : method{params.method}, ratio{params.divergence}, paper{params.delta_phase, seed}, evidence{params.evidence} {}
+      : method{params.method},
+        ratio{params.divergence},
+        paper{params.delta_phase, seed},
+        evidence{params.evidence},
+        gate{params.gate} {}
 
   MappingMethod method;
   awareness::DivergenceRatio ratio;
   awareness::DeltaPhase paper;
   awareness::EvidencePhase evidence;
+  GatedSets gate;
   Awareness awareness;
 };
 
@@ -33,16 +38,21 @@ std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {
     s.awareness.phase = s.paper.number();
     s.awareness.stored_scans = s.paper.kept();
   } else {
-    set = s.evidence.observe(tracked);
+    s.gate.observe(tracked);
+    if (s.gate.lets_vote()) s.gate.take(s.evidence.observe(tracked), tracked);
+    set = s.gate.next();
     s.awareness.in_phase = s.evidence.waiting() > 0;
     s.awareness.phase = s.evidence.number();
     s.awareness.short_beams = s.evidence.short_beams();
     s.awareness.through_beams = s.evidence.through_beams();
   }
-  if (set) set->covariance = tracked.estimate.covariance;
+  if (set && s.method == MappingMethod::kPaper) set->covariance = tracked.estimate.covariance;
   s.awareness.w_fast = s.ratio.w_fast();
   s.awareness.w_slow = s.ratio.w_slow();
   s.awareness.r_d = s.ratio.value();
+  s.awareness.gate = s.gate.gate().reason();
+  s.awareness.gate_shut_for_s = s.gate.gate().shut_for_s();
+  s.awareness.gate_times = s.gate.gate().times();
   return set;
 }
 

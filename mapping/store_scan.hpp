@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Front door 1 of mapping: TrackedScan in, S(k) out when a Δ-phase ends (paper §3.1–3.2). Two methods behind one door:
-// `paper` closes a phase when r_d falls below zero, `evidence` when a region has proven persistently different.
+// `paper` closes a phase when r_d falls below zero, `evidence` when a region has proven persistently different. With
+// evidence the write gate stands before the phase: scans of a doubtful pose do not vote.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "mapping/awareness/delta_phase.hpp"
 #include "mapping/awareness/divergence_ratio.hpp"
 #include "mapping/awareness/evidence_phase.hpp"
+#include "mapping/gated_sets.hpp"
 
 namespace deltamap::mapping {
 
@@ -19,6 +21,7 @@ struct StoreScanParams {
   awareness::DivergenceRatioParams divergence;  ///< w_fast, w_slow and r_d: kept with both methods
   awareness::DeltaPhaseParams delta_phase;      ///< paper
   awareness::EvidencePhaseParams evidence;      ///< evidence
+  WriteGateParams gate;                         ///< evidence: when the pose is sure enough to write by
 };
 
 /// What Δ-awareness thought of the last scan, for telemetry and the paper's Figures 2 to 4.
@@ -31,6 +34,9 @@ struct Awareness {
   std::uint32_t stored_scans = 0;   ///< in the present phase
   std::uint32_t short_beams = 0;    ///< evidence: beams of this scan that ended before the map says
   std::uint32_t through_beams = 0;  ///< evidence: beams of this scan that went through what the map says
+  GateReason gate = GateReason::kOpen;
+  double gate_shut_for_s = 0.0;  ///< since it was open last
+  GateTimes gate_times{};
 };
 
 class StoreScan {
@@ -40,7 +46,8 @@ class StoreScan {
   StoreScan(StoreScan&&) noexcept;
   StoreScan& operator=(StoreScan&&) noexcept;
 
-  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update().
+  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update(), or an order to take back
+  /// what was written (ScanSet::withdraw_from).
   [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
 
   [[nodiscard]] const Awareness& awareness() const;

@@ -54,6 +54,22 @@ std::string map_line(const Json& s) {
               number(s, "/phase/number"), s.value("/phase/open"_json_pointer, false) ? " open" : "");
 }
 
+/// How long nothing could be written, and why.
+std::string gate_line(const Json& s) {
+  std::string why;
+  double shut_s = 0.0;
+  if (const auto at = "/gate/shut_s"_json_pointer; s.contains(at) && s[at].is_object()) {
+    for (const auto& [reason, time_s] : s[at].items()) {
+      const double reason_s = time_s.is_number() ? time_s.get<double>() : 0.0;
+      shut_s += reason_s;
+      why += (why.empty() ? ": " : ", ") + reason + " " + std::to_string(std::lround(reason_s)) + " s";
+    }
+  }
+  const bool open = s.value("/gate/open"_json_pointer, false);
+  return line("write gate", "%s, shut %.0f of %.0f s%s", open ? "open" : ("shut, " + word(s, "/gate/reason")).c_str(),
+              shut_s, number(s, "/gate/observed_s"), why.c_str());
+}
+
 std::string scans_line(const Json& s) {
   double drops = 0.0;
   if (s.contains("drops") && s["drops"].is_object()) {
@@ -73,6 +89,7 @@ std::string status_table(const std::string& reply_line) {
   text += line("filter", "%.0f particles, n_eff %.0f, w_avg %.3f", number(s, "/particles"), number(s, "/n_eff"),
                number(s, "/w_avg"));
   text += map_line(s);
+  text += gate_line(s);
   text += scans_line(s);
   text += line("ports", "robot %s (%.1f V), laser %s", word(s, "/ports/robot").c_str(), number(s, "/battery_v"),
                word(s, "/ports/laser").c_str());

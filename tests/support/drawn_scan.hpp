@@ -62,6 +62,7 @@ inline TrackedScan drawn_scan(const OccupancyGrid& world, std::shared_ptr<const 
   estimate.particles = 500;
   estimate.n_eff = 400.0;
   estimate.w_avg = 0.5;
+  estimate.belief.pose_right = 0.95;
   estimate.map = std::move(map);
   tracked.odom_from_robot = true_pose;
   return tracked;

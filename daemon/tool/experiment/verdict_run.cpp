@@ -2,19 +2,9 @@
 #include "daemon/tool/experiment/verdict_run.hpp"
 
 #include <cmath>
-#include <numbers>
-
-#include "daemon/tool/experiment/view_difference.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 namespace {
-
-constexpr double kContainer_m = 2.5;
-constexpr double kBlock_m = 15.0;
-constexpr double kSlipLeast_m = 0.3;
-constexpr double kSlipMost_m = 1.0;
-constexpr double kSlipTurn_rad = radians(10.0);
-constexpr int kTries = 1000;
 
 constexpr double kDriving_m_per_s = 0.05;
 constexpr double kTurning_rad_per_s = radians(3.0);
@@ -23,45 +13,23 @@ constexpr double kMostWaiting = 2.0;  // times the driving that is wanted: then 
 constexpr double kOracle_s = 30.0;  // of driving: the path that the oracle sees
 constexpr double kViewEvery_s = 2.5;
 
+constexpr double kOtherEnd_m = 0.25;     // between two ranges of one beam that end on different things
 constexpr double kOtherEndShare = 0.05;  // of the beams: the map is wrong here
 
-Pose2 bay_away(const Pose2& from, const simulation::VirtualDrive& drive, Random& random) {
-  for (int attempt = 0; attempt < kTries; ++attempt) {
-    const double way_m = random.uniform() < 0.5 ? kContainer_m : kBlock_m;
-    const double direction_rad = 0.5 * std::numbers::pi * random.index_below(4);
-    const Pose2 there{from.x + way_m * std::cos(direction_rad), from.y + way_m * std::sin(direction_rad), from.theta};
-    if (drive.is_on_floor(there.position())) return there;
+/// Whether what can be seen from a pose differs between two worlds.
+bool view_differs(const simulation::RayCaster& one, const simulation::RayCaster& other, const Pose2& map_from_laser,
+                  double max_range_m) {
+  constexpr int kBeams = 181;
+  int differing = 0;
+  for (int beam = 0; beam < kBeams; ++beam) {
+    const double bearing_rad = map_from_laser.theta + radians(beam - 90.0);
+    const auto range_m = [&](const simulation::RayCaster& surfaces) {
+      const auto hit = surfaces.cast(map_from_laser.position(), bearing_rad, max_range_m);
+      return hit ? hit->range_m : max_range_m;
+    };
+    if (std::abs(range_m(one) - range_m(other)) > kOtherEnd_m) ++differing;
   }
-  return from;
-}
-
-Pose2 slipped(const Pose2& from, const simulation::VirtualDrive& drive, Random& random) {
-  for (int attempt = 0; attempt < kTries; ++attempt) {
-    const double way_m = random.uniform(kSlipLeast_m, kSlipMost_m);
-    const double direction_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
-    const double turn_rad = random.uniform(-kSlipTurn_rad, kSlipTurn_rad);
-    const Pose2 there{from.x + way_m * std::cos(direction_rad), from.y + way_m * std::sin(direction_rad),
-                      wrapped_angle(from.theta + turn_rad)};
-    if (drive.is_on_floor(there.position())) return there;
-  }
-  return from;
-}
-
-void befall(simulation::VirtualDrive& drive, PoseEvent event, Random& random) {
-  const Pose2 from = drive.map_from_robot();
-  switch (event) {
-    case PoseEvent::kNothing:
-      break;
-    case PoseEvent::kBay:
-      drive.kidnap(bay_away(from, drive, random));
-      break;
-    case PoseEvent::kSlip:
-      drive.kidnap(slipped(from, drive, random));
-      break;
-    case PoseEvent::kElsewhere:
-      drive.kidnap(drive.place_anywhere(random));
-      break;
-  }
+  return differing > kOtherEndShare * kBeams;
 }
 
 /// Whether the robot moved or turned between two scans.
@@ -78,20 +46,6 @@ Pose2 beginning_of(const VerdictPlace& place, const VerdictRun& run) {
 }
 
 }  // namespace
-
-std::string_view name_of(PoseEvent event) {
-  switch (event) {
-    case PoseEvent::kNothing:
-      return "right";
-    case PoseEvent::kBay:
-      return "bay";
-    case PoseEvent::kSlip:
-      return "slipped";
-    case PoseEvent::kElsewhere:
-      break;
-  }
-  return "elsewhere";
-}
 
 VerdictScans verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
                            const VerdictRun& run) {
@@ -128,9 +82,8 @@ VerdictScans verdict_scans(const VerdictPlace& place, const localization::Stabil
     }
     const PoseError error = error_of(scan);
     const Belief& belief = scan.estimate.belief;
-    const bool differs =
-        event_s && run.changed_share > 0.0 &&
-        differing_share(pair.drive().surfaces(), as_mapped, map_from_laser, run.max_range_m) > kOtherEndShare;
+    const bool differs = event_s && run.changed_share > 0.0 &&
+                         view_differs(pair.drive().surfaces(), as_mapped, map_from_laser, run.max_range_m);
     scans.add({event_s ? passed_s - *event_s : passed_s - run.before_s, driven_s, scan.map_from_robot.x,
                scan.map_from_robot.y, scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
                static_cast<double>(scan.estimate.state), belief.pose_right, belief.map_wrong,

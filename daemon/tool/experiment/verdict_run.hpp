@@ -3,23 +3,12 @@
 // befalls it; then it drives on. Does it notice, and does it say so?
 #pragma once
 
-#include <array>
-#include <string_view>
-
 #include "daemon/tool/experiment/ambiguity.hpp"
 #include "daemon/tool/experiment/lived_in.hpp"
+#include "daemon/tool/experiment/pose_event.hpp"
 #include "daemon/tool/experiment/scan_table.hpp"
 
 namespace deltamap::daemon::tool::experiment {
-
-enum class PoseEvent : std::uint8_t {
-  kNothing,   ///< the pose stays right
-  kBay,       ///< carried exactly one container (2.5 m) or one block (15 m) on, heading kept
-  kSlip,      ///< 0.3 to 1 m anywhere, 10° at most
-  kElsewhere  ///< carried to any free place and heading
-};
-inline constexpr std::array kPoseEvents{PoseEvent::kNothing, PoseEvent::kBay, PoseEvent::kSlip, PoseEvent::kElsewhere};
-[[nodiscard]] std::string_view name_of(PoseEvent event);
 
 struct VerdictRun {
   std::uint64_t seed = 1;

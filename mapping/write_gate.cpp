@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/write_gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace deltamap::mapping {
+namespace {
+
+/// σ along the longest axis of the ellipse.
+double widest_deviation_m(const PoseCovariance& covariance) {
+  const double middle = 0.5 * (covariance(0, 0) + covariance(1, 1));
+  const double half = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
+  return std::sqrt(std::max(0.0, middle + half));
+}
+
+}  // namespace
+
+std::string_view name_of(GateReason reason) {
+  switch (reason) {
+    case GateReason::kOpen:
+      return "open";
+    case GateReason::kSearching:
+      return "searching";
+    case GateReason::kLost:
+      return "lost";
+    case GateReason::kWrong:
+      return "wrong";
+    case GateReason::kJumped:
+      return "jumped";
+    case GateReason::kDisbelieved:
+      return "disbelieved";
+    case GateReason::kConfirming:
+      return "confirming";
+    case GateReason::kDoubtful:
+      return "doubtful";
+    case GateReason::kRival:
+      return "rival";
+    case GateReason::kSpread:
+      return "spread";
+  }
+  return "?";
+}
+
+bool proves_wrong(GateReason reason) {
+  return reason == GateReason::kSearching || reason == GateReason::kLost || reason == GateReason::kWrong ||
+         reason == GateReason::kJumped || reason == GateReason::kDisbelieved;
+}
+
+double observed_s(const GateTimes& times) { return std::accumulate(times.begin(), times.end(), 0.0); }
+double shut_s(const GateTimes& times) { return observed_s(times) - times[static_cast<std::size_t>(GateReason::kOpen)]; }
+
+std::map<std::string, double> shut_by_reason(const GateTimes& times) {
+  std::map<std::string, double> shut;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto reason = static_cast<GateReason>(i);
+    if (reason != GateReason::kOpen && times[i] > 0.0) shut[std::string{name_of(reason)}] = times[i];
+  }
+  return shut;
+}
+
+GateReason WriteGate::judged(const TrackedScan& tracked) {
+  const Estimate& estimate = tracked.estimate;
+  const bool jumped = jump_.observe(tracked);
+  if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
+  if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
+  if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
+  if (jumped) return GateReason::kJumped;
+  if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
+  if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
+  if (estimate.belief.rival_share > params_.most_rival_share) return GateReason::kRival;
+  if (widest_deviation_m(estimate.covariance) > params_.most_deviation_m) return GateReason::kSpread;
+  return GateReason::kOpen;
+}
+
+void WriteGate::observe(const TrackedScan& tracked) {
+  const Timestamp time = tracked.scan.time;
+  if (last_) {
+    const double passed_s = std::max(0.0, seconds(time - *last_));
+    times_[static_cast<std::size_t>(reason_)] += passed_s;
+    shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
+  }
+  last_ = time;
+  const GateReason judgement = judged(tracked);
+  has_proven_wrong_ = proves_wrong(judgement) && was_tracking_ && !is_confirming_;
+  if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
+  if (proves_wrong(judgement)) is_confirming_ = was_tracking_;
+  if (judgement != GateReason::kOpen) holds_since_ = time;
+  const bool confirmed = judgement == GateReason::kOpen && seconds(time - holds_since_) >= params_.confirm_s;
+  if (is_confirming_ && confirmed) {
+    is_confirming_ = false;
+    trusted_since_ = time;
+  }
+  reason_ = is_confirming_ && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
+  if (is_open()) shut_for_s_ = 0.0;
+  provisional_.observe(tracked, is_open());
+}
+
+}  // namespace deltamap::mapping

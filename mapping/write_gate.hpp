@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// May M_k be written? Only while the localizer's belief has one mode and P(pose right) holds. Looks at every tracked
+// scan; says open or shut and why, notices when the pose proves to have been wrong, and counts the time shut by reason:
+// a gate that stays shut is a failure too.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/messages.hpp"
+#include "mapping/pose_jump.hpp"
+#include "mapping/provisional_window.hpp"
+
+namespace deltamap::mapping {
+
+enum class GateReason : std::uint8_t {
+  kOpen,
+  kSearching,    ///< the localizer does not know where the robot is
+  kLost,         ///< it has lost its way
+  kWrong,        ///< it calls its own pose wrong
+  kJumped,       ///< the estimate has moved otherwise than odometry, farther than its covariance explains
+  kDisbelieved,  ///< P(pose right) is so low that it is rather wrong
+  kConfirming,   ///< the pose was wrong a moment ago and has to hold for a while
+  kDoubtful,     ///< P(pose right) is low
+  kRival,        ///< another place holds too much of the belief: two modes
+  kSpread        ///< the best place is spread too wide
+};
+inline constexpr std::size_t kGateReasons = 10;
+/// For status, report and log: "open", "searching", "lost", …
+[[nodiscard]] std::string_view name_of(GateReason reason);
+/// Does it say that the pose was wrong, and not only that it may be?
+[[nodiscard]] bool proves_wrong(GateReason reason);
+
+struct WriteGateParams {
+  bool enabled = true;             ///< false: everything is written, as the paper does (mapping.gate.enabled)
+  double least_pose_right = 0.75;  ///< P(pose right) below which it is shut; [0, 1]
+  double disbelieved_below = 0.3;  ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
+  double most_rival_share = 0.3;   ///< of the belief, that another place may hold; [0, 1]
+  double most_deviation_m = 0.3;   ///< σ of the position along its worst axis; > 0
+  double confirm_s = 5.0;          ///< so long all must hold again after the pose was wrong; >= 0
+  double hold_s = 1.5;             ///< a set waits so long for a sign that its last scans were wrong; >= 0
+  PoseJumpParams jump;
+  ProvisionalParams provisional;
+};
+
+/// Seconds by reason; those under kOpen are the time open.
+using GateTimes = std::array<double, kGateReasons>;
+[[nodiscard]] double observed_s(const GateTimes& times);
+[[nodiscard]] double shut_s(const GateTimes& times);
+/// By name, without those that never were.
+[[nodiscard]] std::map<std::string, double> shut_by_reason(const GateTimes& times);
+
+class WriteGate {
+ public:
+  explicit WriteGate(const WriteGateParams& params)
+      : params_{params}, jump_{params.jump}, provisional_{params.provisional} {}
+
+  /// Every tracked scan in order.
+  void observe(const TrackedScan& tracked);
+
+  [[nodiscard]] bool is_open() const { return reason_ == GateReason::kOpen; }
+  [[nodiscard]] GateReason reason() const { return reason_; }
+  /// Did this scan prove the pose wrong that was believed before it?
+  [[nodiscard]] bool has_proven_wrong() const { return has_proven_wrong_; }
+  /// Since when the pose has not been wrong, as far as is known; nothing where it never was.
+  [[nodiscard]] const std::optional<Timestamp>& trusted_since() const { return trusted_since_; }
+  /// What was written before is no longer provisional.
+  [[nodiscard]] std::optional<Timestamp> settled() const { return provisional_.settled(); }
+  [[nodiscard]] const GateTimes& times() const { return times_; }
+  /// Since it was open last.
+  [[nodiscard]] double shut_for_s() const { return shut_for_s_; }
+
+ private:
+  [[nodiscard]] GateReason judged(const TrackedScan& tracked);
+
+  WriteGateParams params_;
+  PoseJump jump_;
+  ProvisionalWindow provisional_;
+  GateReason reason_ = GateReason::kSearching;
+  bool was_tracking_ = false;
+  bool has_proven_wrong_ = false;
+  bool is_confirming_ = false;
+  Timestamp holds_since_;
+  std::optional<Timestamp> trusted_since_;
+  std::optional<Timestamp> last_;
+  GateTimes times_{};
+  double shut_for_s_ = 0.0;
+};
+
+}  // namespace deltamap::mapping
