@@ -27,7 +27,7 @@ def number(value):
 
 
 def with_unit(value, unit):
-    return ("%s %s" % (number(value), unit)).strip()
+    return number(value) if value is None else ("%s %s" % (number(value), unit)).strip()
 
 
 def target_of(figure):

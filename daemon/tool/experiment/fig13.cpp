@@ -19,9 +19,12 @@ namespace {
 namespace score = simulation::score;
 
 constexpr double kWhole_min = 14.0;  // of the schedule as it stands in RoomChangesParams
-constexpr double kLeastWay_m = 3.0;  // to the robot's next place: the room is small
+constexpr double kComfort_m = 0.55;  // the room's passages are 1.4 m wide
 constexpr double kMaxRange_m = 32.0;
 constexpr std::uint64_t kBoxes = 311;  // whose chance draws them
+
+/// From corner to corner, past every obstacle.
+std::vector<Point2> round_of_the_room() { return {{9.2, 3.2}, {9.2, 0.8}, {0.8, 0.8}, {0.8, 3.2}}; }
 
 RoomChangesParams schedule(double minutes) {
   RoomChangesParams params;
@@ -89,7 +92,8 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const Settin
   simulation::VirtualDriveParams params;
   params.seed = seed;
   params.max_range_m = kMaxRange_m;
-  params.route.least_way_m = kLeastWay_m;
+  params.route.round = round_of_the_room();
+  params.route.comfort_m = kComfort_m;
   MappingDrive drive{scenario, params, settings, first};
   MappingWatch watch{scenario, first, {.range_m = kMaxRange_m}};
   RoomChanges changes{schedule(minutes), scenario, Random{kBoxes + seed}};
