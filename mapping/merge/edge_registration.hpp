@@ -34,10 +34,4 @@ struct EdgeCell {
 [[nodiscard]] CellMotion edge_registration(const OccupancyGrid& map, std::span<const EdgeCell> edges,
                                            const CellMotion& start, const EdgeRegistrationParams& params);
 
-/// Tries neighbours of a pose, by Eq. 11 over the cells along the edges, and takes what is better: the edges of two
-/// lattices do not average out everywhere. `rounds` of 6 neighbours, `step_cells` away at first; never
-/// farther than two steps along any axis.
-[[nodiscard]] CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
-                                     double step_cells = 0.04, int rounds = 6);
-
 }  // namespace deltamap::mapping::merge

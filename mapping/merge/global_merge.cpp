@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "mapping/alignment/registration.hpp"
+#include "mapping/merge/best_nearby.hpp"
+#include "mapping/merge/border_registration.hpp"
 #include "mapping/merge/edge_registration.hpp"
 #include "mapping/merge/hough_spectrum.hpp"
 #include "mapping/merge/shift_correlation.hpp"
@@ -119,7 +121,9 @@ MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local, cons
   }
   MapMerge merge = chosen(candidates, map, cells, params.choice);
   if (merge.score.agreeing > 0.0) {
-    const CellMotion best = best_nearby(map, edges, cell_motion(merge.map_from_local, map.geometry(), cells));
+    CellMotion best = cell_motion(merge.map_from_local, map.geometry(), cells);
+    best = border_registration(map, edges, best, {});
+    best = best_nearby(map, edges, best);
     merge.map_from_local = map_from_local(best, map.geometry(), cells);
     merge.score = overlay.score(cells, best);
   }

@@ -2,6 +2,8 @@
 // The merge of two grids with a prior.
 #include <cassert>
 
+#include "mapping/merge/best_nearby.hpp"
+#include "mapping/merge/border_registration.hpp"
 #include "mapping/merge/edge_registration.hpp"
 #include "mapping/merge/prior_merge.hpp"
 #include "mapping/merge/thinned.hpp"
@@ -9,8 +11,9 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::size_t kContourPoints = 400;    // of the local contour, to be brought onto the map's
+constexpr std::size_t kContourPoints = 300;    // of the local contour, to be brought onto the map's
 constexpr std::size_t kRoughEdgeCells = 2500;  // to come near, before more of them count
+constexpr std::size_t kBorderEdgeCells = 8000;
 constexpr std::size_t kMostEdgeCells = 12000;
 
 }  // namespace
@@ -32,7 +35,7 @@ PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local, con
   const std::vector<EdgeCell> edges = thinned_to(edge_cells(local, contour, middle), kMostEdgeCells);
   CellMotion motion = cell_motion(rough, map.geometry(), middle_in_local);
   motion = edge_registration(map, thinned_to(edges, kRoughEdgeCells), motion, {});
-  motion = edge_registration(map, edges, motion, {});
+  motion = border_registration(map, thinned_to(edges, kBorderEdgeCells), motion, {});
   motion = best_nearby(map, edges, motion);
   merge.map_from_guess = map_from_local(motion, map.geometry(), middle_in_local) * inverse(map_from_local_guess);
   return merge;

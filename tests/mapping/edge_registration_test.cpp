@@ -45,17 +45,5 @@ TEST(EdgeRegistration, KeepsAPoseThatNoEdgeHolds) {
   EXPECT_EQ(edge_registration(hall, edge_cells(hall), far, {}), far);
 }
 
-TEST(BestNearby, NeverTakesAWorsePose) {
-  const OccupancyGrid hall = test::drawn_hall();
-  const LocalCells cells{hall};
-  const OverlayMap map{hall};
-  const auto edges = edge_cells(hall);
-  const CellMotion truth = cell_motion({}, hall.geometry(), cells);
-  EXPECT_EQ(best_nearby(hall, edges, truth, 0.02, 3), truth) << "nothing fits better than a map on itself";
-  const CellMotion start{truth.turn_rad, truth.column + 0.6, truth.row};
-  EXPECT_GT(map.score(cells, best_nearby(hall, edges, start, 0.2, 6)).acceptance(),
-            map.score(cells, start).acceptance());
-}
-
 }  // namespace
 }  // namespace deltamap::mapping::merge

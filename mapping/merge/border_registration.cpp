@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/merge/border_registration.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+#include "mapping/merge/acceptance.hpp"
+#include "mapping/merge/motion_equations.hpp"
+
+namespace deltamap::mapping::merge {
+namespace {
+
+constexpr int kLeastPaired = 20;
+
+struct BorderSums {
+  MotionEquations equations;
+  Acceptance acceptance;
+};
+
+BorderSums border_sums(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& motion,
+                       double lever_cells, float margin_cells) {
+  const auto c = static_cast<float>(std::cos(motion.turn_rad));
+  const auto s = static_cast<float>(std::sin(motion.turn_rad));
+  const auto tx = static_cast<float>(motion.column);
+  const auto ty = static_cast<float>(motion.row);
+  const auto per_lever = static_cast<float>(1.0 / lever_cells);
+  const auto width = static_cast<std::ptrdiff_t>(map.width());
+  const CellState* const cells = map.cells().data();
+  float xx = 0.0F, xt = 0.0F, yy = 0.0F, yt = 0.0F, tt = 0.0F, bx = 0.0F, by = 0.0F, bt = 0.0F;
+  BorderSums sums;
+  for (const EdgeCell& edge : edges) {
+    const float arm_x = c * edge.at.x - s * edge.at.y;
+    const float arm_y = s * edge.at.x + c * edge.at.y;
+    const float x = arm_x + tx;
+    const float y = arm_y + ty;
+    if (!(x >= 1.0F && y >= 1.0F)) continue;
+    const int column = static_cast<int>(x);
+    const int row = static_cast<int>(y);
+    if (column + 1 >= map.width() || row + 1 >= map.height()) continue;
+    const CellState* const here = cells + row * width + column;
+    if (*here == CellState::kUnknown) continue;
+    const bool agrees = *here == edge.state;
+    ++(agrees ? sums.acceptance.agreeing : sums.acceptance.disagreeing);
+    const float u = x - static_cast<float>(column);
+    const float v = y - static_cast<float>(row);
+    const CellState beside = u < 0.5F ? here[-1] : here[1];
+    const CellState above = v < 0.5F ? here[-width] : here[width];
+    const bool is_border_x = beside != *here && beside != CellState::kUnknown;
+    const bool is_border_y = above != *here && above != CellState::kUnknown;
+    if (!is_border_x && !is_border_y) continue;
+    const float to_x = std::min(u, 1.0F - u);
+    const float to_y = std::min(v, 1.0F - v);
+    const bool along_x = is_border_x && (!is_border_y || to_x < to_y);
+    const float to_border = along_x ? to_x : to_y;
+    if (agrees && to_border >= margin_cells) continue;
+    // Towards the border, and beyond it by the margin; or away from it, until the margin is reached.
+    const float rest = to_border + (agrees ? -margin_cells : margin_cells);
+    ++sums.equations.paired;
+    if (along_x) {
+      const float g = u < 0.5F ? -1.0F : 1.0F;
+      const float gt = -g * arm_y * per_lever;
+      xx += 1.0F, xt += g * gt, tt += gt * gt, bx += g * rest, bt += gt * rest;
+    } else {
+      const float g = v < 0.5F ? -1.0F : 1.0F;
+      const float gt = g * arm_x * per_lever;
+      yy += 1.0F, yt += g * gt, tt += gt * gt, by += g * rest, bt += gt * rest;
+    }
+  }
+  sums.equations.matrix << xx, 0.0F, xt, 0.0F, yy, yt, xt, yt, tt;
+  sums.equations.right_side << bx, by, bt;
+  return sums;
+}
+
+}  // namespace
+
+CellMotion border_registration(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
+                               const BorderRegistrationParams& params) {
+  const double lever_cells = lever_of(edges);
+  CellMotion motion = start;
+  CellMotion best = start;
+  double best_acceptance = -1.0;
+  for (int i = 0; i <= params.most_iterations; ++i) {
+    const BorderSums sums = border_sums(map, edges, motion, lever_cells, static_cast<float>(params.margin_cells));
+    const double acceptance = sums.acceptance.value();
+    if (acceptance > best_acceptance) best_acceptance = acceptance, best = motion;
+    if (sums.acceptance.disagreeing == 0 || sums.equations.paired < kLeastPaired) break;
+    const Eigen::Vector3d step = observed_step(sums.equations, params.least_observed);
+    if (step.cwiseAbs().maxCoeff() < params.settled_cells) break;
+    motion = moved(motion, step, lever_cells);
+  }
+  return best;
+}
+
+}  // namespace deltamap::mapping::merge

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Merges that once went wrong in `deltamap experiment merge`.
+#include <gtest/gtest.h>
+
+#include "core/angle.hpp"
+#include "daemon/tool/experiment/merge_places.hpp"
+#include "mapping/merge/prior_merge.hpp"
+#include "mapping/merge/transformed_grid.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+namespace {
+
+TEST(PriorMerge, EndsAsWellAsTheTruePoseNearTheLatticesOwnTurns) {
+  const MergePlace place = drawn_place("offices", 2000);
+  const PoseCovariance covariance = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
+  for (const double turn_deg : {-179.62, -90.12, 179.25, 0.7, 134.86}) {
+    const Pose2 local_from_map{0.43, -0.27, radians(turn_deg)};
+    const OccupancyGrid local = mapping::merge::moved_grid(place.map, local_from_map, place.map.resolution_m());
+    const mapping::merge::LocalCells cells{local};
+    const auto merge = mapping::merge::prior_merge(place.map, local, inverse(local_from_map), covariance, {});
+    ASSERT_TRUE(merge.accepted()) << turn_deg;
+    const Pose2 found = merge.map_from_guess * inverse(local_from_map);
+    const auto motion = mapping::merge::cell_motion(found, place.map.geometry(), cells);
+    EXPECT_GE(place.overlay.score(cells, motion).acceptance(), 0.999) << turn_deg;
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::daemon::tool::experiment
