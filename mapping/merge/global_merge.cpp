@@ -17,8 +17,10 @@ namespace {
 
 constexpr std::size_t kLeastContour = 20;       // cells; fewer make no line
 constexpr std::size_t kSpectrumPoints = 2000;   // of a contour, for its Hough spectrum
+constexpr std::size_t kSortedPoints = 300;      // of the local contour, to sort out hopeless candidates
 constexpr std::size_t kRegisteredPoints = 600;  // of the local contour, to be brought onto the map's
-constexpr std::size_t kSampleCells = 3000;      // of the local map, to sort out hopeless candidates
+constexpr std::size_t kFewCells = 1000;         // of the local map, to sort out hopeless candidates
+constexpr std::size_t kSampleCells = 3000;      // of the local map, to choose among registered ones
 constexpr std::size_t kRegistered = 24;         // candidates brought onto the map's lines
 constexpr std::size_t kFinal = 4;               // brought to the end, scored with every cell
 constexpr std::size_t kRoughEdgeCells = 3000;
@@ -29,11 +31,18 @@ void sort_best_first(std::vector<ScoredMotion>& candidates) {
   });
 }
 
-/// The n best, none beside a better one.
-std::vector<ScoredMotion> best_apart(std::vector<ScoredMotion> candidates, std::size_t n) {
+/// The n best, none beside a better one: by Eq. 11 among those that find the surface, as the choice will be.
+std::vector<ScoredMotion> best_apart(std::vector<ScoredMotion> candidates, std::size_t n, double surface_margin) {
   constexpr double kApart_cells = 2.0;
   constexpr double kApart_rad = 0.02;
-  sort_best_first(candidates);
+  double best_surface = 0.0;
+  for (const ScoredMotion& candidate : candidates) best_surface = std::max(best_surface, candidate.score.surface_found);
+  std::erase_if(candidates, [&](const ScoredMotion& candidate) {
+    return candidate.score.surface_found < surface_margin * best_surface;
+  });
+  std::stable_sort(candidates.begin(), candidates.end(), [](const ScoredMotion& a, const ScoredMotion& b) {
+    return a.score.acceptance() > b.score.acceptance();
+  });
   std::vector<ScoredMotion> best;
   for (const ScoredMotion& candidate : candidates) {
     const bool is_new = std::none_of(best.begin(), best.end(), [&](const ScoredMotion& better) {
@@ -57,6 +66,22 @@ class LineRegistration {
     for (const PointInCells& point : thinned_to(local.contour(), kRegisteredPoints)) {
       points_.push_back(geometry_.resolution_m * Point2{point.x, point.y});
     }
+    const auto resolution_m = static_cast<float>(geometry_.resolution_m);
+    for (const PointInCells& point : thinned_to(local.contour(), kSortedPoints))
+      sample_m_.push_back({resolution_m * point.x, resolution_m * point.y});
+  }
+
+  /// How much of the contour lies near a surface, less the farther it is: of candidates that are some cells off.
+  [[nodiscard]] double nearness(const CellMotion& motion) const {
+    const double resolution_m = geometry_.resolution_m;
+    const auto c = static_cast<float>(std::cos(motion.turn_rad));
+    const auto s = static_cast<float>(std::sin(motion.turn_rad));
+    const auto x_m = static_cast<float>(geometry_.origin.x() + resolution_m * motion.column);
+    const auto y_m = static_cast<float>(geometry_.origin.y() + resolution_m * motion.row);
+    float sum_m2 = 0.0F;
+    for (const PointInCells& point : sample_m_)
+      sum_m2 += surface_.rough_distance2(x_m + c * point.x - s * point.y, y_m + s * point.x + c * point.y);
+    return 1.0 - static_cast<double>(sum_m2) / (reach_m_ * reach_m_ * static_cast<double>(sample_m_.size()));
   }
 
   [[nodiscard]] CellMotion registered(const CellMotion& motion) const {
@@ -76,6 +101,7 @@ class LineRegistration {
   double reach_m_;
   alignment::NearestSurface surface_;
   std::vector<Point2> points_;
+  std::vector<PointInCells> sample_m_;
 };
 
 }  // namespace
@@ -91,27 +117,30 @@ MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local, cons
   }
   const std::vector<Cell> contour = contour_cells(map);
   const OverlayMap overlay{map, contour};
+  const LocalCells few = cells.thinned(kFewCells);
   const LocalCells sample = cells.thinned(kSampleCells);
   const int cells_per_pixel = std::max(1, static_cast<int>(std::lround(params.pixel_m / map.resolution_m())));
   const ShiftCorrelation correlation{map, contour, cells, cells_per_pixel, params.most_pixels};
   const std::vector<TurnCandidate> turns = best_turns(
       hough_spectrum(about_centre(thinned_to(contour, kSpectrumPoints), map), params.hough_bins),
       hough_spectrum(thinned_to(cells.contour(), kSpectrumPoints), params.hough_bins), params.rotations, true);
+  const LineRegistration lines{map, cells, map.resolution_m() * correlation.cells_per_pixel()};
   std::vector<ScoredMotion> candidates;
   for (std::size_t i = 0; i < turns.size(); i += 2) {  // the half turns come with them
     for (const CellMotion& motion : correlation.best_shifts(turns[i].turn_rad, params.shifts)) {
-      candidates.push_back({motion, overlay.score(sample, motion)});
+      candidates.push_back({motion, overlay.score(few, motion)});
+      // Surfaces within a cell tell nothing of candidates that are half a pixel off.
+      candidates.back().score.surface_found = lines.nearness(motion);
     }
   }
   sort_best_first(candidates);
   if (candidates.size() > kRegistered) candidates.resize(kRegistered);
 
-  const LineRegistration lines{map, cells, map.resolution_m() * correlation.cells_per_pixel()};
   for (ScoredMotion& candidate : candidates) {
     candidate.motion = lines.registered(candidate.motion);
     candidate.score = overlay.score(sample, candidate.motion);
   }
-  candidates = best_apart(std::move(candidates), kFinal);
+  candidates = best_apart(std::move(candidates), kFinal, params.choice.surface_margin);
   const std::vector<EdgeCell> edges = edge_cells(local, local_contour, middle_of(local_contour, local));
   const std::vector<EdgeCell> few_edges = thinned_to(edges, kRoughEdgeCells);
   for (ScoredMotion& candidate : candidates) {

@@ -4,11 +4,26 @@
 
 #include "core/angle.hpp"
 #include "daemon/tool/experiment/merge_places.hpp"
+#include "mapping/merge/global_merge.hpp"
 #include "mapping/merge/prior_merge.hpp"
 #include "mapping/merge/transformed_grid.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 namespace {
+
+constexpr double kRight_cells = 0.5;
+
+TEST(GlobalMerge, FindsTheTruePlaceAmongRacksThatRepeat) {
+  const MergePlace place = drawn_place("racks", 2000);
+  Random random{2000};
+  for (int i = 0; i < 7; ++i) {
+    const LocalMap local = turned_local(place, false, random);
+    if (i != 0 && i != 6) continue;
+    const mapping::merge::MapMerge merge = mapping::merge::global_merge(place.map, local.grid, {});
+    EXPECT_TRUE(merge.accepted()) << i;
+    EXPECT_LT(measured(place, local, merge.map_from_local).off_cells, kRight_cells) << i;
+  }
+}
 
 TEST(PriorMerge, EndsAsWellAsTheTruePoseNearTheLatticesOwnTurns) {
   const MergePlace place = drawn_place("offices", 2000);
