@@ -43,9 +43,10 @@ score::CellMask known_cells(const OccupancyGrid& map) {
 }
 
 struct Likeness {
-  double same = 0.0;     ///< share of the cells known in the first that are the same
-  double differing = 0;  ///< cells known in the first that are not the same
-  double inside = 0;     ///< cells unknown in the first that are occupied
+  double same = 0.0;       ///< share of the cells known in the first that are the same
+  double differing = 0;    ///< cells known in the first that are not the same
+  double inside = 0;       ///< cells unknown in the first that are occupied
+  double free_inside = 0;  ///< the same that are free
   score::MapScore score;
 };
 
@@ -57,6 +58,7 @@ Likeness likeness(const OccupancyGrid& first, const OccupancyGrid& map) {
     const CellState now = map.cells()[i];
     if (before == CellState::kUnknown) {
       like.inside += now == CellState::kOccupied ? 1.0 : 0.0;
+      like.free_inside += now == CellState::kFree ? 1.0 : 0.0;
       continue;
     }
     known += 1.0;
@@ -78,11 +80,13 @@ std::vector<Picture> pictures_of(const std::string& method, const OccupancyGrid&
   std::vector<Picture> pictures;
   pictures.push_back({"The first map", svg_of_map(first)});
   if (emptied) {
-    pictures.push_back({method + ": the map without the boxes; in colour what truly stood there",
-                        svg_of_merge(emptied->map, emptied->truth, {})});
+    pictures.push_back(
+        {method + ": the map without the boxes; blue: in it and not in the room, orange: in the room alone",
+         svg_of_difference(emptied->map, emptied->truth)});
   }
   pictures.push_back(
-      {method + ": the map with the boxes back; in colour the first map's contour", svg_of_merge(restored, first, {})});
+      {method + ": the map with the boxes back; blue: not in the first map, orange: in the first map alone",
+       svg_of_difference(restored, first)});
   return pictures;
 }
 
@@ -124,6 +128,7 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const Settin
                      {"restored_same", back.same},
                      {"restored_differing_cells", back.differing},
                      {"restored_cells_inside", back.inside},
+                     {"restored_free_inside", back.free_inside},
                      {"restored_f1", back.score.contour_f1},
                      {"restored_acceptance", back.score.acceptance},
                      {"restored_wrong_m2", back.score.wrong_m2}};
@@ -190,6 +195,7 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
   add("boxes back, cells that are not, mean", "restored_differing_cells", kMean, "", std::nullopt);
   add("boxes back, wrong beside no neighbour, most", "restored_wrong_m2", kMost, "m²", Target{.most = 0.05});
   add("boxes back, occupied where nobody can see, mean", "restored_cells_inside", kMean, "", std::nullopt);
+  add("boxes back, free where nobody can see, mean", "restored_free_inside", kMean, "", std::nullopt);
   add("changes seen for 10 s that were followed", "recall", kMean, "", Target{.least = 0.98});
   add("until followed, median, of being in view", "follow_median_s", kMean, "s", Target{.most = 8.0});
   add("error of position, mean", "error_mean_m", kMean, "m", std::nullopt);

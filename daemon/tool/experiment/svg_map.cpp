@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/tool/experiment/svg_map.hpp"
 
+#include <cassert>
+
 #include "mapping/merge/overlay_score.hpp"
 #include "mapping/merge/transformed_grid.hpp"
 
@@ -38,6 +40,20 @@ std::string paths_of_map(const OccupancyGrid& map) {
 }  // namespace
 
 std::string svg_of_map(const OccupancyGrid& map) { return opened_svg(map.geometry()) + paths_of_map(map) + "</svg>\n"; }
+
+std::string svg_of_difference(const OccupancyGrid& map, const OccupancyGrid& other) {
+  assert(map.geometry() == other.geometry() && "both maps must have the same cells");
+  const auto surface = [](bool in_map, bool in_other, const OccupancyGrid& one, const OccupancyGrid& two) {
+    return [=, &one, &two](Cell cell) {
+      return (one[cell] == CellState::kOccupied) == in_map && (two[cell] == CellState::kOccupied) == in_other;
+    };
+  };
+  return opened_svg(map.geometry()) +
+         path_of_runs(map.geometry(), "#eeeeee", [&](Cell cell) { return map[cell] == CellState::kFree; }) +
+         path_of_runs(map.geometry(), "#444444", surface(true, true, map, other)) +
+         path_of_runs(map.geometry(), "#1f5fa8", surface(true, false, map, other)) +
+         path_of_runs(map.geometry(), "#c4531c", surface(false, true, map, other)) + "</svg>\n";
+}
 
 std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local, const Pose2& map_from_local) {
   // A frame that holds both.
