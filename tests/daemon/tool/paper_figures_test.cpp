@@ -6,6 +6,8 @@
 #include <string>
 
 #include "daemon/tool/experiment/registry.hpp"
+#include "daemon/tool/experiment/room_changes.hpp"
+#include "daemon/tool/experiment/svg_map.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 namespace {
@@ -88,6 +90,55 @@ TEST(Figure14, MemoryIsThatOfAProcessAndPhasesCostMoreThanTheRest) {
               figure(report, method + ": awareness and map update a scan outside, mean"));
     EXPECT_GT(figure(report, method + ": localizer a scan, mean"), 0.0);
   }
+}
+
+std::vector<Point2> containers_in(const simulation::World& world) {
+  std::vector<Point2> places;
+  for (const simulation::Object& object : world.objects) {
+    if (object.kind != simulation::ObjectKind::kContainer) continue;
+    places.push_back(std::get<simulation::Box>(object.shape).centre);
+  }
+  std::sort(places.begin(), places.end(), [](const Point2& a, const Point2& b) {
+    return std::pair{a.x(), a.y()} < std::pair{b.x(), b.y()};
+  });
+  return places;
+}
+
+TEST(RoomChanges, TakeBoxesOutOfOneObstacleAndPutThemBackToWhereTheyWere) {
+  constexpr double kOneObstacle_m = 1.3;
+  const auto scenario = simulation::read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/room.yaml");
+  simulation::VirtualDrive drive{scenario, {.seed = 5}};
+  RoomChanges changes{{.settle_s = 1.0, .every_s = 1.0, .look_s = 5.0}, scenario, Random{5}};
+  bool was_emptied = false;
+  double passed_s = 0.0;
+  for (; !changes.is_over(passed_s) && passed_s < 300.0; passed_s += 0.1) {
+    if (!was_emptied && changes.is_emptied(passed_s)) {
+      was_emptied = true;
+      EXPECT_EQ(containers_in(drive.world()).size(), containers_in(scenario.world).size() - 4);
+    }
+    if (const auto change = changes.due(passed_s, drive)) drive.change(*change);
+    (void)drive.next();
+  }
+  EXPECT_TRUE(was_emptied);
+  EXPECT_TRUE(changes.is_over(passed_s)) << "the robot stood in the way for good";
+  EXPECT_EQ(containers_in(drive.world()), containers_in(scenario.world));
+  for (const simulation::Object& box : changes.boxes()) {
+    EXPECT_LT(distance_between(std::get<simulation::Box>(changes.boxes().front().shape).centre, box.shape),
+              kOneObstacle_m);
+  }
+}
+
+TEST(MapPicture, TellsTheSurfacesOfTwoMapsApart) {
+  OccupancyGrid one{GridGeometry{3, 1, 0.1, {0.0, 0.0}}};
+  OccupancyGrid other = one;
+  one.set({0, 0}, CellState::kOccupied);
+  one.set({1, 0}, CellState::kOccupied);
+  other.set({1, 0}, CellState::kOccupied);
+  other.set({2, 0}, CellState::kOccupied);
+  const std::string svg = svg_of_difference(one, other);
+  EXPECT_NE(svg.find("<path fill=\"#1f5fa8\" d=\"M0 0h1v1h-1z\"/>"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("<path fill=\"#444444\" d=\"M1 0h1v1h-1z\"/>"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("<path fill=\"#c4531c\" d=\"M2 0h1v1h-1z\"/>"), std::string::npos) << svg;
 }
 
 }  // namespace
