@@ -8,9 +8,9 @@
 
 namespace deltamap::mapping::merge {
 
-/// Tries neighbours of a pose, by Eq. 11 over the cells along the edges, and takes what is better: the edges of two
-/// lattices do not average out everywhere. `rounds` of 6 neighbours, `step_cells` away at first; never
-/// farther than two steps along any axis.
+/// Tries neighbours of a pose, by Eq. 11 over the cells along the edges, and moves to what is better: the edges of two
+/// lattices do not average out everywhere. Each of `rounds` tries a step along each axis, `step_cells` at first and
+/// half as far once none is better; never farther than two of the first along any axis.
 [[nodiscard]] CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
                                      double step_cells = 0.06, int rounds = 6);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/merge/border_registration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,6 +12,26 @@ namespace deltamap::mapping::merge {
 namespace {
 
 constexpr int kLeastPaired = 20;
+
+/// The nearest side of a cell beyond which the map has the other state.
+struct Border {
+  float distance_cells = 1.0F;  // 1: none on the half of the cell that was asked for
+  float side = 0.0F;            // -1 or 1
+  bool along_x = false;
+};
+
+/// `here`: a known cell of a map that is `width` cells wide; asked for at (u, v) in it.
+Border nearest_border(const CellState* here, std::ptrdiff_t width, float u, float v) {
+  const CellState beside = u < 0.5F ? here[-1] : here[1];
+  const CellState above = v < 0.5F ? here[-width] : here[width];
+  const bool is_border_x = beside != *here && beside != CellState::kUnknown;
+  const bool is_border_y = above != *here && above != CellState::kUnknown;
+  if (!is_border_x && !is_border_y) return {};
+  const float to_x = std::min(u, 1.0F - u);
+  const float to_y = std::min(v, 1.0F - v);
+  if (is_border_x && (!is_border_y || to_x < to_y)) return {to_x, u < 0.5F ? -1.0F : 1.0F, true};
+  return {to_y, v < 0.5F ? -1.0F : 1.0F, false};
+}
 
 struct BorderSums {
   MotionEquations equations;
@@ -41,30 +62,16 @@ BorderSums border_sums(const OccupancyGrid& map, std::span<const EdgeCell> edges
     if (*here == CellState::kUnknown) continue;
     const bool agrees = *here == edge.state;
     ++(agrees ? sums.acceptance.agreeing : sums.acceptance.disagreeing);
-    const float u = x - static_cast<float>(column);
-    const float v = y - static_cast<float>(row);
-    const CellState beside = u < 0.5F ? here[-1] : here[1];
-    const CellState above = v < 0.5F ? here[-width] : here[width];
-    const bool is_border_x = beside != *here && beside != CellState::kUnknown;
-    const bool is_border_y = above != *here && above != CellState::kUnknown;
-    if (!is_border_x && !is_border_y) continue;
-    const float to_x = std::min(u, 1.0F - u);
-    const float to_y = std::min(v, 1.0F - v);
-    const bool along_x = is_border_x && (!is_border_y || to_x < to_y);
-    const float to_border = along_x ? to_x : to_y;
-    if (agrees && to_border >= margin_cells) continue;
+    const Border border = nearest_border(here, width, x - static_cast<float>(column), y - static_cast<float>(row));
+    if (border.distance_cells >= (agrees ? margin_cells : 1.0F)) continue;
     // Towards the border, and beyond it by the margin; or away from it, until the margin is reached.
-    const float rest = to_border + (agrees ? -margin_cells : margin_cells);
+    const float rest = border.distance_cells + (agrees ? -margin_cells : margin_cells);
+    const float gt = border.side * (border.along_x ? -arm_y : arm_x) * per_lever;
     ++sums.equations.paired;
-    if (along_x) {
-      const float g = u < 0.5F ? -1.0F : 1.0F;
-      const float gt = -g * arm_y * per_lever;
-      xx += 1.0F, xt += g * gt, tt += gt * gt, bx += g * rest, bt += gt * rest;
-    } else {
-      const float g = v < 0.5F ? -1.0F : 1.0F;
-      const float gt = g * arm_x * per_lever;
-      yy += 1.0F, yt += g * gt, tt += gt * gt, by += g * rest, bt += gt * rest;
-    }
+    (border.along_x ? xx : yy) += 1.0F;
+    (border.along_x ? xt : yt) += border.side * gt;
+    (border.along_x ? bx : by) += border.side * rest;
+    tt += gt * gt, bt += gt * rest;
   }
   sums.equations.matrix << xx, 0.0F, xt, 0.0F, yy, yt, xt, yt, tt;
   sums.equations.right_side << bx, by, bt;

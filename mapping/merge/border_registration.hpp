@@ -13,7 +13,7 @@ namespace deltamap::mapping::merge {
 
 struct BorderRegistrationParams {
   int most_iterations = 8;
-  double margin_cells = 0.1;      ///< agreeing cells nearer than this to the other state are pushed inwards; [0, 0.5)
+  double margin_cells = 0.15;     ///< agreeing cells nearer than this to the other state are pushed inwards; [0, 0.5)
   double settled_cells = 0.01;    ///< a step below this (at the lever arm, if a turn) ends the iteration; > 0
   double least_observed = 0.002;  ///< axes with less than this share of the best one's curvature stay as they are
 };

@@ -143,8 +143,11 @@ std::vector<Start> search(std::span<const Point2> points, const alignment::Neare
   return best;
 }
 
-double agreement(const OccupancyGrid& map, std::span<const Point2> points, const Pose2& pose) {
+/// Of the points that lie on known cells; 0 where fewer than `least_points` do.
+double agreement(const OccupancyGrid& map, std::span<const Point2> points, const Pose2& pose,
+                 std::size_t least_points) {
   std::size_t found = 0;
+  std::size_t known = 0;
   for (const Point2& point : points) {
     const Cell cell = map.geometry().cell_at(pose * point);
     bool near = false;
@@ -154,8 +157,9 @@ double agreement(const OccupancyGrid& map, std::span<const Point2> points, const
       }
     }
     found += near ? 1 : 0;
+    known += near || map.at(cell) != CellState::kUnknown ? 1 : 0;
   }
-  return static_cast<double>(found) / static_cast<double>(points.size());
+  return known < least_points ? 0.0 : static_cast<double>(found) / static_cast<double>(known);
 }
 
 }  // namespace
@@ -200,7 +204,8 @@ PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface
     const Eigen::Vector3d moved{pose.x - guess.x, pose.y - guess.y, pose.theta};
     const double chi2 = moved.dot(belief.information * moved);
     answers.push_back({pose, end.information + belief.information,
-                       shared * misfit(points, surface, pose, params) + chi2, agreement(map, points, pose), chi2});
+                       shared * misfit(points, surface, pose, params) + chi2,
+                       agreement(map, points, pose, std::max(1U, params.least_points)), chi2});
   }
   std::stable_sort(answers.begin(), answers.end(), [](const Answer& a, const Answer& b) { return a.cost < b.cost; });
 

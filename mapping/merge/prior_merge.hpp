@@ -27,17 +27,18 @@ struct PriorMergeParams {
   double reach_m = 0.3;                         ///< points farther from every surface do not count
   double surface_deviation_m = 0.04;            ///< spread of a hit around a surface of the map; > 0
   double independent_points = 60.0;  ///< at most so many points' worth of information: cell noise is shared; > 0
-  std::uint32_t least_points = 20;   ///< fewer are refused
-  double least_agreement = 0.5;      ///< share of points within 1 cell of an occupied one; [0, 1]
-  double most_chi2 = 16.27;          ///< 3 degrees of freedom, 99.9 %
-  double ambiguity_margin = 0.03;    ///< a second pose whose agreement comes this near is one too many; [0, 1]
+  std::uint32_t least_points = 20;   ///< fewer, or fewer on known cells, are refused
+  double least_agreement = 0.5;  ///< share of points within 1 cell of an occupied one, of those on known cells; [0, 1]
+  double most_chi2 = 16.27;      ///< 3 degrees of freedom, 99.9 %
+  double ambiguity_margin = 0.03;  ///< a second pose whose agreement comes this near is one too many; [0, 1]
 };
 
 struct PriorMerge {
   MergeRefusal refusal = MergeRefusal::kNone;
   Pose2 map_from_guess;  ///< the correction: moves the points onto the map; identity where refused
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the corrected robot's (x, y, θ), prior included
-  double agreement = 0.0;  ///< share of the points within 1 cell of an occupied cell, after the correction
+  double agreement = 0.0;  ///< share of the points within 1 cell of an occupied one after the correction, of those on
+                           ///< known cells
   double chi2 = 0.0;       ///< of the correction under the prior
 
   [[nodiscard]] bool accepted() const { return refusal == MergeRefusal::kNone; }

@@ -25,6 +25,20 @@ TEST(GlobalMerge, FindsTheTruePlaceAmongRacksThatRepeat) {
   }
 }
 
+TEST(PriorMerge, DoesNotAskForSurfacesWhereTheMapKnowsNothing) {
+  const MergePlace place =
+      drawn_place("racks", 11001);  // more than half of the local map's posts stand outside the map
+  Random random{11004};
+  const PoseCovariance covariance = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
+  for (int i = 0; i < 3; ++i) {
+    const LocalMap local = turned_local(place, false, random);
+    const Pose2 truth = place.map_from_other * inverse(local.local_from_other);
+    const auto merge = mapping::merge::prior_merge(place.map, local.grid, truth, covariance, {});
+    EXPECT_TRUE(merge.accepted()) << i;
+    EXPECT_LT(measured(place, local, merge.map_from_guess * truth).off_cells, kRight_cells) << i;
+  }
+}
+
 TEST(PriorMerge, EndsAsWellAsTheTruePoseNearTheLatticesOwnTurns) {
   const MergePlace place = drawn_place("offices", 2000);
   const PoseCovariance covariance = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
