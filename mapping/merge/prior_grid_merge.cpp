@@ -11,8 +11,9 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::size_t kContourPoints = 300;    // of the local contour, to be brought onto the map's
+constexpr std::size_t kContourPoints = 250;    // of the local contour, to be brought onto the map's
 constexpr std::size_t kRoughEdgeCells = 2500;  // to come near, before more of them count
+constexpr double kRoughlySettled_cells = 0.02;
 constexpr std::size_t kMostEdgeCells = 12000;  // at the end
 
 }  // namespace
@@ -33,7 +34,7 @@ PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local, con
   const Pose2 rough = merge.map_from_guess * map_from_local_guess;
   const std::vector<EdgeCell> edges = thinned_to(edge_cells(local, contour, middle), kMostEdgeCells);
   CellMotion motion = cell_motion(rough, map.geometry(), middle_in_local);
-  motion = edge_registration(map, thinned_to(edges, kRoughEdgeCells), motion, {});
+  motion = edge_registration(map, thinned_to(edges, kRoughEdgeCells), motion, {.settled_cells = kRoughlySettled_cells});
   motion = border_registration(map, edges, motion, {});
   motion = best_nearby(map, edges, motion);
   merge.map_from_guess = map_from_local(motion, map.geometry(), middle_in_local) * inverse(map_from_local_guess);
