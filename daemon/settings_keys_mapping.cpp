@@ -91,6 +91,11 @@ void add_gate(mapping::WriteGateParams& gate, Keys& keys) {
                             "off odometry within 3 s, besides the deviations, that proves a pose wrong"));
   keys.push_back(
       number_key(at + "confirm_s", gate.confirm_s, "s", 0.0, 3600.0, "so long the pose must hold after it was wrong"));
+  keys.push_back(number_key(at + "confirm_m", gate.confirm_m, "m", 0.0, 1000.0, "and must have driven meanwhile"));
+  keys.push_back(
+      number_key(at + "most_misfit", gate.misfit.most_drop, "", 0.0, 1.0, "of the beams, that suddenly stop fitting"));
+  keys.push_back(number_key(at + "most_doubt_s", gate.most_doubt_s, "s", 0.1, 3600.0,
+                            "of doubt without a proof, until what is provisional is withdrawn"));
   keys.push_back(number_key(at + "hold_s", gate.hold_s, "s", 0.0, 60.0,
                             "a finished set waits so long for a sign that the pose was wrong"));
   keys.push_back(number_key(at + "provisional_m", gate.provisional.way_m, "m", 0.0, 1000.0,

@@ -35,6 +35,8 @@ std::string_view name_of(GateReason reason) {
       return "confirming";
     case GateReason::kDoubtful:
       return "doubtful";
+    case GateReason::kMisfit:
+      return "misfit";
     case GateReason::kRival:
       return "rival";
     case GateReason::kSpread:
@@ -63,15 +65,28 @@ std::map<std::string, double> shut_by_reason(const GateTimes& times) {
 GateReason WriteGate::judged(const TrackedScan& tracked) {
   const Estimate& estimate = tracked.estimate;
   const bool jumped = jump_.observe(tracked);
+  misfit_.observe(tracked);
   if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
   if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
   if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
   if (jumped) return GateReason::kJumped;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
+  if (misfit_.is_sudden()) return GateReason::kMisfit;
   if (estimate.belief.rival_share > params_.most_rival_share) return GateReason::kRival;
   if (widest_deviation_m(estimate.covariance) > params_.most_deviation_m) return GateReason::kSpread;
   return GateReason::kOpen;
+}
+
+/// Has the pose held for long and far enough?
+bool WriteGate::holds(GateReason judgement, const TrackedScan& tracked) {
+  if (judgement != GateReason::kOpen) {
+    holds_since_ = tracked.scan.time;
+    held_m_ = 0.0;
+  } else if (last_odom_from_robot_) {
+    held_m_ += distance_between(*last_odom_from_robot_, tracked.odom_from_robot);
+  }
+  return seconds(tracked.scan.time - holds_since_) >= params_.confirm_s && held_m_ >= params_.confirm_m;
 }
 
 void WriteGate::observe(const TrackedScan& tracked) {
@@ -83,18 +98,21 @@ void WriteGate::observe(const TrackedScan& tracked) {
   }
   last_ = time;
   const GateReason judgement = judged(tracked);
-  has_proven_wrong_ = proves_wrong(judgement) && was_tracking_ && !is_confirming_;
+  const bool is_proof = proves_wrong(judgement);
+  const bool doubts_long = judgement != GateReason::kOpen && shut_for_s_ >= params_.most_doubt_s;
+  has_proven_wrong_ = was_tracking_ && !is_distrusted_ && (is_proof || doubts_long);
+  if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
-  if (proves_wrong(judgement)) is_confirming_ = was_tracking_;
-  if (judgement != GateReason::kOpen) holds_since_ = time;
-  const bool confirmed = judgement == GateReason::kOpen && seconds(time - holds_since_) >= params_.confirm_s;
-  if (is_confirming_ && confirmed) {
-    is_confirming_ = false;
+  if (was_tracking_ && (is_proof || misfit_.is_both_ways())) is_confirming_ = true;
+  if (is_confirming_ && holds(judgement, tracked)) is_confirming_ = false;
+  reason_ = is_confirming_ && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
+  if (is_open() && is_distrusted_) {
+    is_distrusted_ = false;
     trusted_since_ = time;
   }
-  reason_ = is_confirming_ && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
   if (is_open()) shut_for_s_ = 0.0;
   provisional_.observe(tracked, is_open());
+  last_odom_from_robot_ = tracked.odom_from_robot;
 }
 
 }  // namespace deltamap::mapping

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/messages.hpp"
+#include "mapping/misfit.hpp"
 #include "mapping/pose_jump.hpp"
 #include "mapping/provisional_window.hpp"
 
@@ -24,12 +25,13 @@ enum class GateReason : std::uint8_t {
   kWrong,        ///< it calls its own pose wrong
   kJumped,       ///< the estimate has moved otherwise than odometry, farther than its covariance explains
   kDisbelieved,  ///< P(pose right) is so low that it is rather wrong
-  kConfirming,   ///< the pose was wrong a moment ago and has to hold for a while
+  kConfirming,   ///< the pose was wrong a moment ago, or the whole view another one, and has to hold for a while
   kDoubtful,     ///< P(pose right) is low
+  kMisfit,       ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
   kRival,        ///< another place holds too much of the belief: two modes
   kSpread        ///< the best place is spread too wide
 };
-inline constexpr std::size_t kGateReasons = 10;
+inline constexpr std::size_t kGateReasons = 11;
 /// For status, report and log: "open", "searching", "lost", …
 [[nodiscard]] std::string_view name_of(GateReason reason);
 /// Does it say that the pose was wrong, and not only that it may be?
@@ -41,9 +43,12 @@ struct WriteGateParams {
   double disbelieved_below = 0.3;  ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
   double most_rival_share = 0.3;   ///< of the belief, that another place may hold; [0, 1]
   double most_deviation_m = 0.3;   ///< σ of the position along its worst axis; > 0
-  double confirm_s = 5.0;          ///< so long all must hold again after the pose was wrong; >= 0
+  double confirm_s = 20.0;         ///< so long all must hold again after the pose was wrong; >= 0
+  double confirm_m = 10.0;         ///< and so far it must have driven meanwhile; >= 0
+  double most_doubt_s = 10.0;      ///< shut for so long without a proof, what is provisional is withdrawn; > 0
   double hold_s = 1.5;             ///< a set waits so long for a sign that its last scans were wrong; >= 0
   PoseJumpParams jump;
+  MisfitParams misfit;
   ProvisionalParams provisional;
 };
 
@@ -57,14 +62,14 @@ using GateTimes = std::array<double, kGateReasons>;
 class WriteGate {
  public:
   explicit WriteGate(const WriteGateParams& params)
-      : params_{params}, jump_{params.jump}, provisional_{params.provisional} {}
+      : params_{params}, jump_{params.jump}, misfit_{params.misfit}, provisional_{params.provisional} {}
 
   /// Every tracked scan in order.
   void observe(const TrackedScan& tracked);
 
   [[nodiscard]] bool is_open() const { return reason_ == GateReason::kOpen; }
   [[nodiscard]] GateReason reason() const { return reason_; }
-  /// Did this scan prove the pose wrong that was believed before it?
+  /// Did this scan prove the pose wrong that was believed before it, or is it in doubt for too long?
   [[nodiscard]] bool has_proven_wrong() const { return has_proven_wrong_; }
   /// Since when the pose has not been wrong, as far as is known; nothing where it never was.
   [[nodiscard]] const std::optional<Timestamp>& trusted_since() const { return trusted_since_; }
@@ -76,15 +81,20 @@ class WriteGate {
 
  private:
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
+  [[nodiscard]] bool holds(GateReason judgement, const TrackedScan& tracked);
 
   WriteGateParams params_;
   PoseJump jump_;
+  Misfit misfit_;
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
   bool was_tracking_ = false;
   bool has_proven_wrong_ = false;
   bool is_confirming_ = false;
+  bool is_distrusted_ = false;  // told that it was wrong, and not yet open again
   Timestamp holds_since_;
+  double held_m_ = 0.0;  // driven since then
+  std::optional<Pose2> last_odom_from_robot_;
   std::optional<Timestamp> trusted_since_;
   std::optional<Timestamp> last_;
   GateTimes times_{};

@@ -76,6 +76,27 @@ TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedByTheReplayBitForBit) {
             content_of(folder_.path() / "live/trajectory.tum"));
 }
 
+TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame) {
+  settings_.mapping.store_scan.gate.provisional.time_s = 60.0;  // the whole drive
+  const RunReport live = run_live(2ms, [&](const Pipeline& pipeline) {
+    const auto give_up_at = std::chrono::steady_clock::now() + 60s;
+    while (pipeline.telemetry().newest_revision.value() == 0 && std::chrono::steady_clock::now() < give_up_at) {
+      std::this_thread::sleep_for(1ms);
+    }
+    const Pose2 far_away =
+        test::pose_on_drive(0.106 * static_cast<double>(pipeline.telemetry().scans.value())) * Pose2{2.0, 0.0, 0.0};
+    EXPECT_EQ(asked({Request::Kind::kRelocalize, far_away})["ok"], true);
+  });
+  const auto withdrawn = std::count_if(live.changes.begin(), live.changes.end(),
+                                       [](const ChangeNote& change) { return !change.withdraws.empty(); });
+  EXPECT_EQ(withdrawn, 1);
+  const RunReport again = replay("live.pcapng", "replayed");
+  EXPECT_EQ(again.journal, "obeyed");
+  EXPECT_EQ(again.journal_differences, 0u);
+  expect_same_files("live", "replayed");
+  EXPECT_GT(mapping::shut_s(again.gate_times), 0.0);
+}
+
 TEST_F(ControlDeskTest, WhileMappingIsPausedTheMapStaysAsItIs) {
   const RunReport live = run_live(2ms, [&](const Pipeline&) {
     ASSERT_TRUE(reached_scan(0));

@@ -12,7 +12,7 @@
 namespace deltamap::daemon::tool::experiment {
 namespace {
 
-constexpr std::array kPlaces{"hall", "depot"};
+constexpr std::array kPlaces{"hall", "depot", "changed"};
 constexpr std::array kGates{"gated", "open"};
 
 class Gate : public Experiment {

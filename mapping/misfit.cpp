@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/misfit.hpp"
+
+#include <algorithm>
+
+namespace deltamap::mapping {
+namespace {
+
+/// Share of the beams that usually do not fit, up to which the map is taken for right: in a hall that is half changed
+/// every corner shows another view.
+constexpr double kMostUsual = 0.15;
+
+double approached(double mean, double value, double passed_s, double over_s) {
+  return mean + std::min(1.0, passed_s / over_s) * (value - mean);
+}
+
+}  // namespace
+
+void Misfit::observe(const TrackedScan& tracked) {
+  const Belief& belief = tracked.estimate.belief;
+  const std::uint32_t expected = belief.stable.expected + belief.elsewhere.expected;
+  if (expected < params_.least_expected) return;
+  const Shares now{static_cast<double>(belief.stable.short_of + belief.elsewhere.short_of) / expected,
+                   static_cast<double>(belief.stable.beyond + belief.elsewhere.beyond) / expected};
+  if (!last_) usual_ = present_ = now;
+  const double passed_s = last_ ? std::max(0.0, seconds(tracked.scan.time - *last_)) : 0.0;
+  last_ = tracked.scan.time;
+  for (double Shares::*share : {&Shares::short_of, &Shares::beyond}) {
+    usual_.*share = approached(usual_.*share, now.*share, passed_s, params_.usual_s);
+    present_.*share = approached(present_.*share, now.*share, passed_s, params_.present_s);
+  }
+}
+
+bool Misfit::is_sudden() const {
+  return present_.short_of + present_.beyond - usual_.short_of - usual_.beyond > params_.most_drop;
+}
+
+bool Misfit::is_both_ways() const {
+  if (usual_.short_of + usual_.beyond > kMostUsual) return false;
+  return std::min(present_.short_of - usual_.short_of, present_.beyond - usual_.beyond) > params_.most_drop_both_ways;
+}
+
+}  // namespace deltamap::mapping

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Notices that scans have suddenly stopped fitting: fewer beams end where the map expects them than over the last
+// seconds. Something has changed in view, or the robot is elsewhere; P(pose right) takes seconds to tell the two apart.
+#pragma once
+
+#include <optional>
+
+#include "core/messages.hpp"
+
+namespace deltamap::mapping {
+
+struct MisfitParams {
+  double usual_s = 10.0;             ///< over which the usual share of fitting beams is averaged, s; > 0
+  double present_s = 0.35;           ///< over which the present one is, s; > 0
+  double most_drop = 0.2;           ///< of the share of beams; [0, 1] (mapping.gate.most_misfit)
+  double most_drop_both_ways = 0.1;  ///< of beams too short and of beams too long, each: what a thing that comes or
+                                     ///< goes does not do; [0, 1]
+  std::uint32_t least_expected = 30;  ///< a scan in which the map expects fewer beams to end says nothing
+};
+
+class Misfit {
+ public:
+  explicit Misfit(const MisfitParams& params) : params_{params} {}
+
+  void observe(const TrackedScan& tracked);
+  /// Fewer beams fit than usual.
+  [[nodiscard]] bool is_sudden() const;
+  /// And more than usual are too short, and more too long: as if the whole view were another one.
+  [[nodiscard]] bool is_both_ways() const;
+
+ private:
+  struct Shares {
+    double short_of = 0.0;
+    double beyond = 0.0;
+  };
+  MisfitParams params_;
+  std::optional<Timestamp> last_;
+  Shares usual_;
+  Shares present_;
+};
+
+}  // namespace deltamap::mapping
