@@ -32,6 +32,7 @@ void Misfit::observe(const TrackedScan& tracked) {
 }
 
 bool Misfit::is_sudden() const {
+  if (usual_.short_of + usual_.beyond > kMostUsual) return false;
   return present_.short_of + present_.beyond - usual_.short_of - usual_.beyond > params_.most_drop;
 }
 

@@ -23,7 +23,7 @@ class Misfit {
   explicit Misfit(const MisfitParams& params) : params_{params} {}
 
   void observe(const TrackedScan& tracked);
-  /// Fewer beams fit than usual.
+  /// The map has fitted well, and now fewer beams do.
   [[nodiscard]] bool is_sudden() const;
   /// And more than usual are too short, and more too long: as if the whole view were another one.
   [[nodiscard]] bool is_both_ways() const;

@@ -200,7 +200,7 @@ TEST(WriteGate, WaitsForProofWhereTheWholeViewHasBecomeAnother) {
   StraightDrive robot;
   WriteGate gate{{}};
   for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
-  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 40, 40));
+  for (int i = 0; i < 10; ++i) gate.observe(seeing(robot.next(), 40, 40));
   EXPECT_EQ(gate.reason(), GateReason::kMisfit);
   for (int i = 0; i < 190; ++i) gate.observe(seeing(robot.next(), 5, 5));
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
@@ -214,8 +214,6 @@ TEST(WriteGate, TakesNoCornerOfAHallThatIsOutOfDateForAnotherPlace) {
   WriteGate gate{{}};
   for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 20, 20));
   for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 55, 55));
-  EXPECT_EQ(gate.reason(), GateReason::kMisfit);
-  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 20, 20));
   EXPECT_TRUE(gate.is_open());
 }
 
