@@ -6,10 +6,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/grid_ray.hpp"
+#include "mapping/awareness/cell_group.hpp"
+#include "mapping/awareness/face_step.hpp"
+#include "mapping/hidden_floor.hpp"
 #include "mapping/merge/acceptance.hpp"
 
 namespace deltamap::mapping {
 namespace {
+
+constexpr int kLeastOpaqueCells = 10;  // of a surface
 
 /// The cells around the verdicts, and what they may become.
 class DoubtMask {
@@ -66,15 +72,26 @@ CellState state_after(CellState before, Cell cell, const RayCount& count, const 
   return before == CellState::kUnknown && is_free ? CellState::kFree : before;
 }
 
-std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask,
-                                           const EvidenceUpdateParams& params) {
-  const int unknown_reach = static_cast<int>(std::ceil(params.unknown_reach_m / map.resolution_m()));
-  const CellBox box = grown(mask.box(), unknown_reach, map.geometry());
-  std::vector<CellChange> changes;
+/// Only what is in doubt can be seen through, and specks, which beams pass by.
+void make_surfaces_opaque(const OccupancyGrid& map, const DoubtMask& mask, RayCounts& counts) {
+  const CellBox& box = counts.box();
   for (int row = box.first.row; row < box.last.row; ++row) {
     for (int column = box.first.column; column < box.last.column; ++column) {
       const Cell cell{column, row};
-      if (!counts.box().contains(cell)) continue;
+      if (map[cell] != CellState::kOccupied || mask.may_be_removed(cell)) continue;
+      if (awareness::group_size(map, cell, kLeastOpaqueCells) == kLeastOpaqueCells) counts.make_opaque(cell);
+    }
+  }
+}
+
+/// Cells around the verdicts that the beams contradict, and unknown ones anywhere that they have seen free.
+std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask,
+                                           const EvidenceUpdateParams& params) {
+  std::vector<CellChange> changes;
+  const CellBox& box = counts.box();
+  for (int row = box.first.row; row < box.last.row; ++row) {
+    for (int column = box.first.column; column < box.last.column; ++column) {
+      const Cell cell{column, row};
       const CellState before = map[cell];
       if (before != CellState::kUnknown && !mask.contains(cell)) continue;
       const CellState after = state_after(before, cell, counts[cell], mask, params);
@@ -84,27 +101,112 @@ std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCo
   return changes;
 }
 
-/// Occupied cells connected to `start` (8 neighbours), counted up to `enough`.
-int group_size(const OccupancyGrid& map, Cell start, int enough) {
-  std::vector<Cell> group{start};
-  for (std::size_t next = 0; next < group.size() && static_cast<int>(group.size()) < enough; ++next) {
-    for (int row = -1; row <= 1; ++row) {
-      for (int column = -1; column <= 1; ++column) {
-        const Cell cell{group[next].column + column, group[next].row + row};
-        if (map.at(cell) == CellState::kOccupied && std::find(group.begin(), group.end(), cell) == group.end()) {
-          group.push_back(cell);
-        }
-      }
+/// Of the eight neighbours. Within a line of cells it is two.
+int count_occupied_around(const OccupancyGrid& map, Cell cell) {
+  int occupied = 0;
+  for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
+    for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
+      occupied += map.at({column, row}) == CellState::kOccupied ? 1 : 0;
     }
   }
-  return static_cast<int>(group.size());
+  return occupied;
+}
+
+/// A cell left out of a straight line of cells.
+template <typename IsGap>
+void close_pinholes(const CellBox& box, IsGap&& is_gap, OccupancyGrid& after) {
+  const OccupancyGrid before = after;
+  const auto is_occupied = [&](int column, int row) { return before.at({column, row}) == CellState::kOccupied; };
+  for (int row = box.first.row; row < box.last.row; ++row) {
+    for (int column = box.first.column; column < box.last.column; ++column) {
+      const bool level = is_occupied(column - 1, row) && is_occupied(column + 1, row);
+      const bool upright = is_occupied(column, row - 1) && is_occupied(column, row + 1);
+      const bool beside = level ? is_occupied(column, row - 1) || is_occupied(column, row + 1)
+                                : is_occupied(column - 1, row) || is_occupied(column + 1, row);
+      if (level != upright && !beside && is_gap({column, row})) after.set({column, row}, CellState::kOccupied);
+    }
+  }
+}
+
+/// Between the ends of neighbouring beams on one face there is no gap, unless beams have gone through it.
+void close_faces(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask,
+                 const std::vector<PlacedScan>& scans, const EvidenceUpdateParams& params,
+                 std::vector<CellChange>& changes) {
+  OccupancyGrid after = patched(map, changes);
+  const auto is_drawn = [&](const Point2& end) {
+    const Cell cell = map.geometry().cell_at(end);
+    return mask.may_be_added(cell) && after.at(cell) == CellState::kOccupied;
+  };
+  const OccupancyGrid drawn = after;
+  const auto is_gap = [&](Cell cell) {
+    return count_occupied_around(drawn, cell) <= 2 && mask.may_be_added(cell) &&
+           after.at(cell) != CellState::kOccupied && counts.box().contains(cell) &&
+           counts[cell].clear_passes < params.free_passes;
+  };
+  for (const PlacedScan& scan : scans) {
+    const TrackedScan& tracked = *scan.tracked;
+    const auto length_m = [&](std::size_t i) {
+      const Beam& beam = tracked.scan.beams[i];
+      return beam.kind == BeamKind::kRange && beam.range_m <= params.longest_m ? static_cast<double>(beam.range_m)
+                                                                               : 0.0;
+    };
+    const auto end = [&](std::size_t i) -> Point2 {
+      return scan.map_from_robot * Point2{tracked.rays[i].end.cast<double>()};
+    };
+    const awareness::FaceParams face{.slant = params.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
+    awareness::for_each_face_step(tracked.rays.size(), face, length_m, end, [&](std::size_t i) {
+      if (!is_drawn(end(i)) || !is_drawn(end(i + 1))) return;
+      walk_ray(map.geometry(), end(i), end(i + 1), [&](Cell cell, double) {
+        if (is_gap(cell)) after.set(cell, CellState::kOccupied);
+        return true;
+      });
+    });
+  }
+  close_pinholes(mask.box(), is_gap, after);
+  changes = changes_between(map, after);
+}
+
+/// What surfaces have closed off from the robot is not known any longer: floor beside new ones, and floor that beams
+/// saw before they stood there.
+void forget_hidden_floor(const OccupancyGrid& map, const std::vector<PlacedScan>& scans, double most_hidden_m2,
+                         std::vector<CellChange>& changes) {
+  OccupancyGrid after = patched(map, changes);
+  std::vector<Cell> starts;
+  for (const auto& [cell, was, is] : changes) {
+    if (is == CellState::kFree && was == CellState::kUnknown) starts.push_back(cell);
+    if (is != CellState::kOccupied) continue;
+    for (const Cell& side : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}})
+      starts.push_back({cell.column + side.column, cell.row + side.row});
+  }
+  std::vector<Point2> robot_was;
+  for (const PlacedScan& scan : scans) robot_was.push_back(scan.map_from_robot.position());
+  for (const Cell& cell : hidden_floor(after, starts, robot_was, most_hidden_m2)) after.set(cell, CellState::kUnknown);
+  changes = changes_between(map, after);
 }
 
 void leave_out_specks(const OccupancyGrid& map, std::vector<CellChange>& changes, int least_cells) {
   const OccupancyGrid after = patched(map, changes);
   std::erase_if(changes, [&](const CellChange& change) {
-    return change.after == CellState::kOccupied && group_size(after, change.cell, least_cells) < least_cells;
+    return change.after == CellState::kOccupied && awareness::group_size(after, change.cell, least_cells) < least_cells;
   });
+}
+
+/// A cell or two that is left of what has been freed around it goes too, unless something was met there.
+void free_remnants(const OccupancyGrid& map, const RayCounts& counts, int least_cells,
+                   std::vector<CellChange>& changes) {
+  OccupancyGrid after = patched(map, changes);
+  for (const CellChange& change : changes) {
+    if (change.after != CellState::kFree || change.before != CellState::kOccupied) continue;
+    for (int row = -2; row <= 2; ++row) {
+      for (int column = -2; column <= 2; ++column) {
+        const Cell cell{change.cell.column + column, change.cell.row + row};
+        if (after.at(cell) != CellState::kOccupied || !counts.box().contains(cell) || counts[cell].hits > 0) continue;
+        if (counts[cell].passes > 0 && awareness::group_size(after, cell, least_cells) < least_cells)
+          after.set(cell, CellState::kFree);
+      }
+    }
+  }
+  changes = changes_between(map, after);
 }
 
 MapUpdate refused(Refusal refusal) {
@@ -127,11 +229,15 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
   }
 
   RayCounts counts{map.geometry(), box_seen(map.geometry(), placement.scans, params.longest_m)};
+  make_surfaces_opaque(map, mask, counts);
   for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
   MapUpdate update;
   update.map_from_local = placement.mean_correction;
   update.changes = contradicted_cells(map, counts, mask, params);
+  close_faces(map, counts, mask, placement.scans, params, update.changes);
   leave_out_specks(map, update.changes, params.least_speck_cells);
+  free_remnants(map, counts, params.least_speck_cells, update.changes);
+  forget_hidden_floor(map, placement.scans, params.most_hidden_m2, update.changes);
   update.acceptance =
       merge::acceptance(counts.local_map(params.occupied_hit_share), patched(map, update.changes)).value();
   if (update.changes.empty()) update.refusal = Refusal::kNothingChanged;

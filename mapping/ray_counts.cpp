@@ -42,14 +42,17 @@ void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
     const BeamInMap beam = beam_in_map(scan, i, longest_m);
     const Cell last = map_.cell_at(beam.end);
     const double clear_end_m = (beam.end - beam.from).norm() - clear_m;
+    bool stopped = false;
     walk_ray(map_, beam.from, beam.end, [&](Cell cell, double entered_m) {
       if (!box_.contains(cell) || cell == last) return true;
-      RayCount& count = counts_[index_of(cell)];
+      const std::size_t index = index_of(cell);
+      RayCount& count = counts_[index];
       count_up(count.passes);
       if (entered_m < clear_end_m) count_up(count.clear_passes);
-      return true;
+      stopped = entered_m < clear_end_m && !opaque_.empty() && opaque_[index] != 0;
+      return !stopped;
     });
-    if (beam.hits && box_.contains(last)) count_up(counts_[index_of(last)].hits);
+    if (beam.hits && !stopped && box_.contains(last)) count_up(counts_[index_of(last)].hits);
   }
 }
 

@@ -22,7 +22,7 @@ struct BeamEvidenceParams {
   double most_position_deviation_m = 0.3;      ///< poses worse than this say nothing
   double most_heading_deviation_rad = 0.07;    ///< poses worse than this say nothing (4°)
   double most_aside_m = 0.2;                   ///< a beam says nothing beyond where its own σ aside exceeds this
-  double most_range_m = 12.0;                  ///< a beam says nothing beyond this
+  double most_range_m = 25.0;                  ///< a beam says nothing beyond this
   double beyond_m = 0.2;  ///< a beam must end this far behind what it went through, besides the interval
 };
 

@@ -2,9 +2,11 @@
 #include "mapping/awareness/evidence_phase.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/grid_ray.hpp"
+#include "mapping/awareness/face_step.hpp"
 
 namespace deltamap::mapping::awareness {
 namespace {
@@ -31,7 +33,7 @@ double EvidencePhase::least_share(Question question) const {
 
 bool EvidencePhase::is_proven(Question question, Cell block) const {
   const Ballot ballot = layer_.ballot(question, block);
-  return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= params_.persistence_s &&
+  return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= params_.face_persistence_s &&
          ballot.share() >= least_share(question);
 }
 
@@ -44,6 +46,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     waiting_.clear();
     solid_.assign(layer_.blocks().cell_count(), 0);
     watched_ = WatchList{params_.watch, layer_.blocks()};
+    flips_ = FlipMemory{params_.flips};
     find_solid({{0, 0}, {map_->width(), map_->height()}});
     return;
   }
@@ -81,7 +84,7 @@ void EvidencePhase::count_beams() {
 }
 
 /// One vote a block, question and keyframe; a block that was both hit and passed was hit.
-EvidencePhase::Votes EvidencePhase::votes_of_beams() const {
+EvidencePhase::Votes EvidencePhase::votes_of_beams(double bearing_step_rad) const {
   Votes votes;
   const GridGeometry& blocks = layer_.blocks();
   const auto add = [&](Blocks& side, Cell block) {
@@ -112,17 +115,33 @@ EvidencePhase::Votes EvidencePhase::votes_of_beams() const {
       return true;
     });
   }
+  add_faces(bearing_step_rad, yes_added);
   for (const Question question : kQuestions) {
     const auto i = static_cast<std::size_t>(question);
     sort_unique(votes.yes[i]);
     sort_unique(votes.no[i]);
-    Blocks only_no;
-    std::set_difference(votes.no[i].begin(), votes.no[i].end(), votes.yes[i].begin(), votes.yes[i].end(),
-                        std::back_inserter(only_no));
-    votes.no[i] = std::move(only_no);
+    Blocks& hit = question == Question::kAdded ? votes.yes[i] : votes.no[i];
+    Blocks& passed = question == Question::kAdded ? votes.no[i] : votes.yes[i];
+    Blocks only_passed;
+    std::set_difference(passed.begin(), passed.end(), hit.begin(), hit.end(), std::back_inserter(only_passed));
+    passed = std::move(only_passed);
   }
   sort_unique(votes.ends);
   return votes;
+}
+
+/// Far away, neighbouring beams end blocks apart: what lies between them on one new face is as new.
+void EvidencePhase::add_faces(double bearing_step_rad, Blocks& added) const {
+  const GridGeometry& blocks = layer_.blocks();
+  const auto length_m = [&](std::size_t i) { return beams_[i].ends_off_map ? beams_[i].length_m : 0.0; };
+  const auto end = [&](std::size_t i) -> const Point2& { return beams_[i].end; };
+  const FaceParams face{.slant = params_.face_slant, .bearing_step_rad = bearing_step_rad};
+  for_each_face_step(beams_.size(), face, length_m, end, [&](std::size_t i) {
+    walk_ray(blocks, end(i), end(i + 1), [&](Cell block, double) {
+      if (blocks.contains(block)) added.push_back(static_cast<std::uint32_t>(blocks.index_of(block)));
+      return true;
+    });
+  });
 }
 
 void EvidencePhase::cast(const Votes& votes) {
@@ -192,6 +211,55 @@ std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const Blocks& bloc
   return set;
 }
 
+/// Narrow, and away from everything that the map has: a person, a trolley.
+bool EvidencePhase::is_small_and_apart(const std::vector<ProvenBlock>& region) const {
+  if (region.front().question != Question::kAdded) return false;
+  CellBox box = layer_.cells_of(region.front().block);
+  for (const ProvenBlock& proven : region) {
+    const CellBox cells = layer_.cells_of(proven.block);
+    box = {{std::min(box.first.column, cells.first.column), std::min(box.first.row, cells.first.row)},
+           {std::max(box.last.column, cells.last.column), std::max(box.last.row, cells.last.row)}};
+  }
+  if (std::max(box.width(), box.height()) * map_->resolution_m() >= params_.small_m) return false;
+  const CellBox around = grown(box, static_cast<int>(params_.apart_m / map_->resolution_m()), map_->geometry());
+  for (int row = around.first.row; row < around.last.row; ++row) {
+    for (int column = around.first.column; column < around.last.column; ++column) {
+      if ((*map_)[{column, row}] == CellState::kOccupied) return false;
+    }
+  }
+  return true;
+}
+
+/// A surface that comes back half a block beside is the same.
+double EvidencePhase::flips_beyond(Cell block) const {
+  const GridGeometry& blocks = layer_.blocks();
+  double most = -1.0;
+  for (int row = block.row - 1; row <= block.row + 1; ++row) {
+    for (int column = block.column - 1; column <= block.column + 1; ++column) {
+      if (!blocks.contains({column, row})) continue;
+      most = std::max(most, flips_.beyond(static_cast<std::uint32_t>(blocks.index_of({column, row})), now_ms_));
+    }
+  }
+  return most;
+}
+
+/// Not seen for long enough to tell it from what only passes: somebody who stands, a door, a pane that some beams miss.
+/// Who goes on toggling has to last twice as long each time.
+bool EvidencePhase::is_passing(const std::vector<ProvenBlock>& region) const {
+  double most_flips = -1.0;
+  std::ptrdiff_t toggling = 0;
+  double longest_s = 0.0;
+  for (const ProvenBlock& proven : region) {
+    const double flips = flips_beyond(proven.block);
+    toggling += flips >= 0.0 ? 1 : 0;
+    most_flips = std::max(most_flips, flips);
+    longest_s = std::max(longest_s, layer_.ballot(proven.question, proven.block).span_s());
+  }
+  if (2 * toggling >= static_cast<std::ptrdiff_t>(region.size()))
+    return longest_s < params_.persistence_s * std::exp2(most_flips);
+  return is_small_and_apart(region) && longest_s < params_.persistence_s;
+}
+
 std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
   std::erase_if(waiting_, [&](const ProvenBlock& proven) { return !is_proven(proven.question, proven.block); });
   ScanSet set;
@@ -204,7 +272,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
                             [](const ProvenBlock& a, const ProvenBlock& b) { return a.since_ms < b.since_ms; });
     const bool settled = 1e-3 * (now_ms_ - newest->since_ms) >= params_.settle_s ||
                          1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s;
-    if (region.size() < params_.least_blocks || !settled) continue;
+    if (region.size() < params_.least_blocks || !settled || is_passing(region)) continue;
     const Question question = region.front().question;
     Blocks blocks;
     std::uint32_t region_first_ms = now_ms_;
@@ -212,6 +280,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
       region_first_ms = std::min(region_first_ms, layer_.ballot(question, block).first_ms);
       add_verdicts(question, block, set.verdicts);
       blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
+      flips_.note(blocks.back(), question, now_ms_);
       hand_on(question, block);
     }
     // Keyframes from before a thing went would draw it again: what was freed counts from now on.
@@ -250,7 +319,7 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
 
   beams_ = beam_evidence(*map_, tracked, params_.beams, std::move(beams_));
   count_beams();
-  const Votes votes = votes_of_beams();
+  const Votes votes = votes_of_beams(tracked.scan.bearing_step_rad);
   cast(votes);
   Blocks blocks = merged(merged(votes.yes[0], votes.yes[1]), merged(votes.no[0], votes.no[1]));
   blocks = merged(std::move(blocks), votes.ends);

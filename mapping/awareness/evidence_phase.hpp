@@ -11,6 +11,7 @@
 #include "core/messages.hpp"
 #include "mapping/awareness/beam_evidence.hpp"
 #include "mapping/awareness/evidence_regions.hpp"
+#include "mapping/awareness/flip_memory.hpp"
 #include "mapping/awareness/keyframe_pool.hpp"
 #include "mapping/awareness/vote_layer.hpp"
 #include "mapping/awareness/watch_list.hpp"
@@ -18,19 +19,25 @@
 namespace deltamap::mapping::awareness {
 
 struct EvidencePhaseParams {
-  double persistence_s = 3.0;        ///< votes must span at least so long; >= 0 (mapping.persistence_s)
-  double least_votes = 4.0;          ///< keyframes that say so, worn votes not counted; > 0
-  double least_added_share = 0.8;    ///< of the votes on a block that say "added"; (0.5, 1]
+  double persistence_s = 120.0;     ///< votes on a small free-standing thing, or on what toggles, must span at least so
+                                    ///< long; >= 0 (mapping.persistence_s)
+  double small_m = 1.0;             ///< wider is no small thing; >= 0
+  double apart_m = 0.3;             ///< free-standing: farther than this from every surface of the map; >= 0
+  double face_persistence_s = 1.5;  ///< on all else; >= 0
+  double least_votes = 3.0;         ///< keyframes that say so, worn votes not counted; > 0
+  double least_added_share = 0.8;   ///< of the votes on a block that say "added"; (0.5, 1]
   double least_removed_share = 0.8;  ///< of the votes on a block that say "removed"; (0.5, 1]
   int reach_blocks = 2;              ///< proven blocks at most so far apart are one region; >= 1
   std::uint32_t least_blocks = 3;    ///< a smaller region is a speck and waits; >= 1
-  double settle_s = 2.0;             ///< a region is handed on when it has not grown for so long, …
-  double most_wait_s = 6.0;          ///< … or has waited so long
-  double joining_votes = 2.0;        ///< blocks beside a region with so many votes and the share are taken along
+  double face_slant = 2.5;     ///< as in EvidenceUpdateParams: what lies between two ends on a face is voted on too
+  double settle_s = 0.5;       ///< a region is handed on when it has not grown for so long, …
+  double most_wait_s = 1.5;    ///< … or has waited so long
+  double joining_votes = 2.0;  ///< blocks beside a region with so many votes and the share are taken along
   BeamEvidenceParams beams;
   VoteLayerParams votes;
   KeyframeParams keyframes;
   WatchParams watch;
+  FlipParams flips;
 };
 
 class EvidencePhase {
@@ -56,7 +63,11 @@ class EvidencePhase {
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void find_solid(const CellBox& cells);
   void count_beams();
-  [[nodiscard]] Votes votes_of_beams() const;
+  [[nodiscard]] Votes votes_of_beams(double bearing_step_rad) const;
+  void add_faces(double bearing_step_rad, Blocks& blocks) const;
+  [[nodiscard]] double flips_beyond(Cell block) const;
+  [[nodiscard]] bool is_passing(const std::vector<ProvenBlock>& region) const;
+  [[nodiscard]] bool is_small_and_apart(const std::vector<ProvenBlock>& region) const;
   void cast(const Votes& votes);
   [[nodiscard]] bool is_proven(Question question, Cell block) const;
   [[nodiscard]] double least_share(Question question) const;
@@ -75,6 +86,7 @@ class EvidencePhase {
   std::vector<ProvenBlock> waiting_;
   std::vector<std::uint8_t> solid_;  // blocks with an occupied cell
   WatchList watched_;
+  FlipMemory flips_;
   std::optional<Timestamp> start_;
   std::uint32_t now_ms_ = 0;
   std::uint32_t phase_ = 0;

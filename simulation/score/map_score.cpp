@@ -32,7 +32,8 @@ Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMas
   for (std::size_t i = 0; i < cells; ++i) {
     if (where[i] == 0) continue;
     pairs.truth_cells += is_occupied(truth, i) ? 1 : 0;
-    pairs.map_cells += is_occupied(map, i) ? 1 : 0;
+    // What cannot be seen cannot be wrong, but may be the neighbour of what can.
+    pairs.map_cells += is_occupied(map, i) && truth.cells()[i] != CellState::kUnknown ? 1 : 0;
     if (is_occupied(truth, i) && is_occupied(map, i)) pair(i, i);
   }
   for (std::size_t i = 0; i < cells; ++i) {
@@ -44,6 +45,7 @@ Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMas
       const std::size_t j = geometry.index_of(beside);
       if (where[j] == 0 || !is_occupied(map, j) || pairs.of_map[j] != 0) continue;
       pair(i, j);
+      pairs.map_cells += truth.cells()[j] == CellState::kUnknown ? 1 : 0;
       break;
     }
   }

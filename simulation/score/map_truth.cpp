@@ -97,16 +97,24 @@ CellMask MapTruth::seen() const {
   return seen;
 }
 
-CellMask MapTruth::lasting() const {
+CellMask MapTruth::surfaces_of(Material material) const {
   const GridGeometry& geometry = perfect_.geometry();
   CellMask lasting(geometry.cell_count(), 0);
   for (const Object& object : world_.objects) {
     if (object.kind == ObjectKind::kContainer || object.kind == ObjectKind::kDoor) continue;
+    if (object.material != material) continue;
     for (const Cell cell : surface_cells(object.shape, geometry)) {
       if (geometry.contains(cell) && of_doors_[geometry.index_of(cell)] == 0) lasting[geometry.index_of(cell)] = 1;
     }
   }
   return lasting;
+}
+
+CellMask MapTruth::seen_through() const {
+  CellMask mask = surfaces_of(Material::kGlass);
+  const CellMask wrapped = surfaces_of(Material::kWrap);
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = static_cast<std::uint8_t>(mask[i] | wrapped[i]);
+  return mask;
 }
 
 std::array<double, 4> MapTruth::wall_drift(const OccupancyGrid& first, const OccupancyGrid& map) const {

@@ -29,13 +29,19 @@ class MapTruth {
   [[nodiscard]] CellMask seen() const;
   /// Cells that the last beam which touched them went through.
   [[nodiscard]] const CellMask& last_passed() const { return last_passed_; }
-  /// Surfaces of M_0 that never move, those of doors left out.
-  [[nodiscard]] CellMask lasting() const;
+  /// The leaf of a door sweeps over the cell.
+  [[nodiscard]] bool is_at_door(std::size_t cell) const { return of_doors_[cell] != 0; }
+  /// Surfaces of M_0 that never move and send beams back: walls and posts, no glass, no doors.
+  [[nodiscard]] CellMask lasting() const { return surfaces_of(Material::kSolid); }
+  /// Panes and what is wrapped.
+  [[nodiscard]] CellMask seen_through() const;
   /// The four outer walls in the map: mean distance by which they have moved outwards, m; NaN where a wall is not
   /// drawn. Left, right, lower, upper.
   [[nodiscard]] std::array<double, 4> wall_drift(const OccupancyGrid& first, const OccupancyGrid& map) const;
 
  private:
+  [[nodiscard]] CellMask surfaces_of(Material material) const;
+
   Point2 floor_;  // where the robot started
   World world_;
   Bounds outer_;

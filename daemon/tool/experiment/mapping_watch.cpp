@@ -119,14 +119,22 @@ void MappingWatch::judge_changes(const OccupancyGrid& map) {
   }
 }
 
-/// Occupied in the map, nothing stands there, and a beam has gone through since.
+bool MappingWatch::is_ghost(const OccupancyGrid& map, std::size_t cell) const {
+  return truth_.last_passed()[cell] != 0 && map.cells()[cell] == CellState::kOccupied &&
+         !has_occupied_within(surfaces_, map.geometry().cell_of(cell), kGhostReach);
+}
+
+OccupancyGrid MappingWatch::ghosts(const OccupancyGrid& map) const {
+  OccupancyGrid grid{map.geometry()};
+  for (std::size_t i = 0; i < map.cells().size(); ++i) {
+    if (is_ghost(map, i)) grid.set(map.geometry().cell_of(i), CellState::kOccupied);
+  }
+  return grid;
+}
+
 void MappingWatch::count_ghosts(const OccupancyGrid& map) {
   ghosts_now_ = 0;
-  const score::CellMask& passed = truth_.last_passed();
-  for (std::size_t i = 0; i < passed.size(); ++i) {
-    if (passed[i] == 0 || map.cells()[i] != CellState::kOccupied) continue;
-    if (!has_occupied_within(surfaces_, map.geometry().cell_of(i), kGhostReach)) ++ghosts_now_;
-  }
+  for (std::size_t i = 0; i < map.cells().size(); ++i) ghosts_now_ += is_ghost(map, i) ? 1 : 0;
   ghost_cell_minutes_ += static_cast<double>(ghosts_now_) * params_.judge_every_s / 60.0;
 }
 
@@ -140,6 +148,7 @@ void MappingWatch::judge_writing(const Mapped& scan) {
   cells_written_ += changes.size();
   if (errors_m_.back() > params_.wrong_pose_m) cells_written_astray_ += changes.size();
   const auto is_right = [&](const CellChange& change) {
+    if (truth_.is_at_door(first_->geometry().index_of(change.cell))) return true;  // it comes and goes
     const bool stands = has_occupied_within(surfaces_, change.cell, 1);
     if (change.after == CellState::kOccupied) return stands;
     if (change.after == CellState::kUnknown) return truth_.visible()[change.cell] != CellState::kFree || stands;
@@ -236,6 +245,7 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
           {"skill", score::skill(ours.contour_f1, stale.contour_f1, perfect.contour_f1)},
           {"wrong_m2", ours.wrong_m2},
           {"walls_kept", score::share_kept(*first_, map, truth_.lasting())},
+          {"glass_and_wrap_kept", score::share_kept(*first_, map, truth_.seen_through())},
           {"wall_drift_m", drift_m},
           {"writes_per_cell_hour", share(writes, seen_cells) / hours},
           {"most_writes_of_a_cell", static_cast<double>(most_writes)},

@@ -35,6 +35,9 @@ class MappingWatch {
   [[nodiscard]] std::vector<std::pair<std::string, double>> numbers(const OccupancyGrid& map);
   /// A row every `score_every_s`.
   [[nodiscard]] const ScanTable& course() const { return course_; }
+  /// Occupied in the map, nothing stands there, and a beam has gone through since.
+  [[nodiscard]] OccupancyGrid ghosts(const OccupancyGrid& map) const;
+  [[nodiscard]] const OccupancyGrid& perfect() const { return truth_.perfect(); }
   [[nodiscard]] const OccupancyGrid& truth() const { return truth_.visible(); }
 
  private:
@@ -48,6 +51,7 @@ class MappingWatch {
 
   void look(const Mapped& scan);
   void judge_changes(const OccupancyGrid& map);
+  [[nodiscard]] bool is_ghost(const OccupancyGrid& map, std::size_t cell) const;
   void count_ghosts(const OccupancyGrid& map);
   void judge_writing(const Mapped& scan);
   void add_course_row(const OccupancyGrid& map);
