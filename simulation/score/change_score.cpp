@@ -39,7 +39,8 @@ ChangeScore change_score(const Scenario& scenario, const Truth& truth, const Occ
     if (next == truth.poses.end() || past.watched().empty()) continue;
     const double lasts_s = std::min(params.longest_look_s, seconds(next->time - pose->time));
     const Pose2 map_from_laser = pose->map_from_robot * scenario.laser.optics.robot_from_laser;
-    past.look(past.view_from(map_from_laser, params.range_m, params.beams), lasts_s, params.face_beams);
+    past.look(past.view_from(map_from_laser, params.range_m, params.beams, past.standing()), lasts_s,
+              params.face_beams);
   }
   for (; change != truth.changes.end(); ++change)
     past.apply(change->change, change->time, truth.poses.back().map_from_robot.position());

@@ -27,8 +27,11 @@ class ChangeWatch {
   void apply(const MoverEvent& event) { standing_.apply(event); }
   void apply(const Change& change, Timestamp time, const Point2& robot);
 
-  /// What a perfect laser sees from there, over the half circle ahead.
-  [[nodiscard]] std::vector<TrueBeam> view_from(const Pose2& map_from_laser, double range_m, int beams) const;
+  /// What a perfect laser sees from there, over the half circle ahead: the world, and what stands or moves about in it.
+  [[nodiscard]] std::vector<TrueBeam> view_from(const Pose2& map_from_laser, double range_m, int beams,
+                                                const MovingSurfaces& about) const;
+  /// What stands about, as far as has been told.
+  [[nodiscard]] MovingSurfaces standing() const { return standing_.surfaces(); }
   /// The view stood for so long.
   void look(std::span<const TrueBeam> view, double seconds, int face_beams);
 

@@ -23,6 +23,7 @@ Mapped MappingDrive::next() {
   mapped.map_from_robot = step.map_from_robot;
   mapped.changes = std::move(step.changes);
   mapped.events = std::move(step.events);
+  mapped.about = drive_.movers().bodies();
   mapped.time = step.scan.time;
   mapped.passed_s = seconds(step.scan.time - *first_);
   const double began_s = thread_cpu_s();

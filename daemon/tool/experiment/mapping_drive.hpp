@@ -30,6 +30,7 @@ struct Mapped {
   std::optional<MapStep::Result> update;    ///< what became of the Δ-phase that this scan closed
   std::vector<simulation::Change> changes;  ///< since the last scan
   std::vector<simulation::MoverEvent> events;
+  simulation::Bodies about;  ///< who moves or stands about, and doors, now
   Timestamp time;
   double passed_s = 0.0;  ///< since the drive began
   StageCosts costs;

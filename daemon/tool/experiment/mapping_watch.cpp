@@ -71,6 +71,7 @@ void MappingWatch::refresh_surfaces() {
 
 void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   now_s_ = scan.passed_s;
+  about_ = scan.about;
   for (const simulation::Change& change : scan.changes)
     changes_.apply(change, scan.time, scan.map_from_robot.position());
   for (const simulation::MoverEvent& event : scan.events) changes_.apply(event);
@@ -94,7 +95,8 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
 
 void MappingWatch::look(const Mapped& scan) {
   next_look_s_ += params_.look_every_s;
-  const auto view = changes_.view_from(scan.map_from_robot * robot_from_laser_, params_.range_m, kViewBeams);
+  const auto view =
+      changes_.view_from(scan.map_from_robot * robot_from_laser_, params_.range_m, kViewBeams, about_.surfaces());
   changes_.look(view, params_.look_every_s, kFaceBeams);
   truth_.touch(view);
 }
@@ -119,9 +121,20 @@ void MappingWatch::judge_changes(const OccupancyGrid& map) {
   }
 }
 
+bool MappingWatch::is_near_someone(const Point2& place) const {
+  const double near_m = (kGhostReach + 1) * first_->resolution_m();
+  const simulation::MovingSurfaces surfaces = about_.surfaces();
+  return std::any_of(
+             surfaces.round.begin(), surfaces.round.end(),
+             [&](const simulation::Circle& one) { return (one.centre - place).norm() < one.radius_m + near_m; }) ||
+         std::any_of(surfaces.straight.begin(), surfaces.straight.end(),
+                     [&](const simulation::Segment& one) { return distance_between(place, one) < near_m; });
+}
+
 bool MappingWatch::is_ghost(const OccupancyGrid& map, std::size_t cell) const {
   return truth_.last_passed()[cell] != 0 && map.cells()[cell] == CellState::kOccupied &&
-         !has_occupied_within(surfaces_, map.geometry().cell_of(cell), kGhostReach);
+         !has_occupied_within(surfaces_, map.geometry().cell_of(cell), kGhostReach) &&
+         !is_near_someone(map.geometry().centre_of(map.geometry().cell_of(cell)));
 }
 
 OccupancyGrid MappingWatch::ghosts(const OccupancyGrid& map) const {

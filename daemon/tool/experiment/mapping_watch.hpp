@@ -51,6 +51,7 @@ class MappingWatch {
 
   void look(const Mapped& scan);
   void judge_changes(const OccupancyGrid& map);
+  [[nodiscard]] bool is_near_someone(const Point2& place) const;
   [[nodiscard]] bool is_ghost(const OccupancyGrid& map, std::size_t cell) const;
   void count_ghosts(const OccupancyGrid& map);
   void judge_writing(const Mapped& scan);
@@ -62,6 +63,7 @@ class MappingWatch {
   std::shared_ptr<const OccupancyGrid> first_;
   simulation::score::ChangeWatch changes_;
   simulation::score::MapTruth truth_;
+  simulation::Bodies about_;
   OccupancyGrid surfaces_;  // all that stands now, passing things too
   std::vector<Fate> fates_;
   ScanTable course_;
