@@ -16,6 +16,10 @@ namespace deltamap::mapping {
 namespace {
 
 constexpr int kLeastOpaqueCells = 10;  // of a surface
+constexpr int kDrawnAheadPasses = 8;
+constexpr double kDrawnAheadShare = 0.1;  // of the beams, and of the hits behind
+constexpr int kRemnantReach = 3;          // cells from what has been freed
+constexpr int kRemnantCells = 6;          // larger groups are none
 
 /// The cells around the verdicts, and what they may become.
 class DoubtMask {
@@ -60,12 +64,35 @@ class DoubtMask {
   std::vector<std::uint8_t> flags_;
 };
 
-CellState state_after(CellState before, Cell cell, const RayCount& count, const DoubtMask& mask,
+/// Noise strews the hits of a face over the cells before it: those are few beside the face's own.
+bool is_strewn(const RayCounts& counts, Cell cell, double least_of_face) {
+  int most = 0;
+  for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
+    for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
+      if (counts.box().contains({column, row})) most = std::max(most, static_cast<int>(counts[{column, row}].hits));
+    }
+  }
+  return counts[cell].hits < least_of_face * most;
+}
+
+/// A face that was drawn a cell too far ahead: nearly all beams go on to the cell behind.
+bool is_drawn_ahead(const RayCounts& counts, Cell cell) {
+  const RayCount& count = counts[cell];
+  return count.passes >= kDrawnAheadPasses && count.hit_share() <= kDrawnAheadShare &&
+         is_strewn(counts, cell, kDrawnAheadShare);
+}
+
+CellState state_after(CellState before, Cell cell, const RayCounts& counts, const DoubtMask& mask,
                       const EvidenceUpdateParams& params) {
+  const RayCount& count = counts[cell];
   const int decisive = count.hits + count.clear_passes;
   const bool is_free =
       count.clear_passes >= params.free_passes && count.hits <= params.free_hit_share * static_cast<double>(decisive);
-  if (before == CellState::kOccupied) return mask.may_be_removed(cell) && is_free ? CellState::kFree : before;
+  if (before == CellState::kOccupied) {
+    const bool goes =
+        (mask.may_be_removed(cell) && is_free) || (mask.may_be_added(cell) && is_drawn_ahead(counts, cell));
+    return goes ? CellState::kFree : before;
+  }
   if (mask.may_be_added(cell) && count.hits >= params.occupied_hits && count.hit_share() >= params.occupied_hit_share) {
     return CellState::kOccupied;
   }
@@ -94,7 +121,7 @@ std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCo
       const Cell cell{column, row};
       const CellState before = map[cell];
       if (before != CellState::kUnknown && !mask.contains(cell)) continue;
-      const CellState after = state_after(before, cell, counts[cell], mask, params);
+      const CellState after = state_after(before, cell, counts, mask, params);
       if (after != before) changes.push_back({cell, before, after});
     }
   }
@@ -191,18 +218,19 @@ void leave_out_specks(const OccupancyGrid& map, std::vector<CellChange>& changes
   });
 }
 
-/// A cell or two that is left of what has been freed around it goes too, unless something was met there.
-void free_remnants(const OccupancyGrid& map, const RayCounts& counts, int least_cells,
-                   std::vector<CellChange>& changes) {
+/// A few cells that are left of what has been freed around them go too, unless something was met there.
+void free_remnants(const OccupancyGrid& map, const RayCounts& counts, std::vector<CellChange>& changes) {
   OccupancyGrid after = patched(map, changes);
+  const auto is_remnant = [&](Cell cell) {
+    return after.at(cell) == CellState::kOccupied && counts.box().contains(cell) && counts[cell].hits == 0 &&
+           counts[cell].passes > 0 && awareness::group_size(after, cell, kRemnantCells) < kRemnantCells;
+  };
   for (const CellChange& change : changes) {
     if (change.after != CellState::kFree || change.before != CellState::kOccupied) continue;
-    for (int row = -2; row <= 2; ++row) {
-      for (int column = -2; column <= 2; ++column) {
+    for (int row = -kRemnantReach; row <= kRemnantReach; ++row) {
+      for (int column = -kRemnantReach; column <= kRemnantReach; ++column) {
         const Cell cell{change.cell.column + column, change.cell.row + row};
-        if (after.at(cell) != CellState::kOccupied || !counts.box().contains(cell) || counts[cell].hits > 0) continue;
-        if (counts[cell].passes > 0 && awareness::group_size(after, cell, least_cells) < least_cells)
-          after.set(cell, CellState::kFree);
+        if (is_remnant(cell)) after.set(cell, CellState::kFree);
       }
     }
   }
@@ -236,7 +264,7 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
   update.changes = contradicted_cells(map, counts, mask, params);
   close_faces(map, counts, mask, placement.scans, params, update.changes);
   leave_out_specks(map, update.changes, params.least_speck_cells);
-  free_remnants(map, counts, params.least_speck_cells, update.changes);
+  free_remnants(map, counts, update.changes);
   forget_hidden_floor(map, placement.scans, params.most_hidden_m2, update.changes);
   update.acceptance =
       merge::acceptance(counts.local_map(params.occupied_hit_share), patched(map, update.changes)).value();

@@ -9,6 +9,7 @@
 namespace deltamap::mapping {
 namespace {
 
+constexpr int kCrackCells = 2;
 constexpr std::array<Cell, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 class Floor {
@@ -36,9 +37,20 @@ class Floor {
   enum class Met : std::uint8_t { kNothingNew, kNew, kOpenFloor };
   static bool meets_open(Met met) { return met == Met::kOpenFloor; }
 
+  /// A gap of a cell or two in a line of occupied cells, which only the drawing has left.
+  [[nodiscard]] bool is_crack(Cell cell) const {
+    const auto gap = [&](const Cell& step) {
+      for (int i = 1; i <= kCrackCells; ++i) {
+        if (map_.at({cell.column + i * step.column, cell.row + i * step.row}) == CellState::kOccupied) return i;
+      }
+      return 2 * kCrackCells;
+    };
+    return gap({1, 0}) + gap({-1, 0}) <= kCrackCells + 1 || gap({0, 1}) + gap({0, -1}) <= kCrackCells + 1;
+  }
+
   bool enter(Cell cell, std::vector<Cell>& piece) {
-    if (map_.at(cell) != CellState::kFree || !open_.try_emplace(map_.geometry().index_of(cell), false).second)
-      return false;
+    if (map_.at(cell) != CellState::kFree || is_crack(cell)) return false;
+    if (!open_.try_emplace(map_.geometry().index_of(cell), false).second) return false;
     piece.push_back(cell);
     return true;
   }
@@ -46,8 +58,8 @@ class Floor {
   Met enter_beside(Cell cell, const Cell& side, std::vector<Cell>& piece) {
     const Cell beside{cell.column + side.column, cell.row + side.row};
     if (enter(beside, piece)) return Met::kNew;
-    if (map_.at(beside) != CellState::kFree) return Met::kNothingNew;
-    return open_[map_.geometry().index_of(beside)] ? Met::kOpenFloor : Met::kNothingNew;
+    const auto seen = open_.find(map_.geometry().index_of(beside));
+    return map_.geometry().contains(beside) && seen != open_.end() && seen->second ? Met::kOpenFloor : Met::kNothingNew;
   }
 
   const OccupancyGrid& map_;
