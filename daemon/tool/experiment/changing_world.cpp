@@ -175,6 +175,11 @@ Report ChangingWorld::report(const std::vector<Outcome>& outcomes) const {
     report.charts.push_back(
         course_chart(kind.name + ": contour F1, ours, stale, perfect", "F1", ours, {"f1", "f1_stale", "f1_perfect"}));
     report.tables.push_back(table_of(kind.name, ours, paper));
+    for (const Outcome* one : {ours.front(), paper.empty() ? nullptr : paper.front()}) {
+      if (one == nullptr) continue;
+      for (const Picture& picture : one->pictures)
+        report.pictures.push_back({kind.name + ", " + one->label("method") + ": " + picture.title, picture.svg});
+    }
   }
   return report;
 }

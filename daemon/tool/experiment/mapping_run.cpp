@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/tool/experiment/mapping_run.hpp"
 
-#include <cstdlib>
-
-#include "core/grid_file.hpp"
 #include "daemon/tool/experiment/localizer_drive.hpp"
 #include "daemon/tool/experiment/mapping_drive.hpp"
 #include "daemon/tool/experiment/mapping_watch.hpp"
+#include "daemon/tool/experiment/svg_map.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 
@@ -25,14 +23,10 @@ Outcome outcome_of(const MappingRun& run) {
     drive.restart();
   }
   Outcome outcome;
-  if (const char* dump = std::getenv("DUMP")) {
-    write_grid(drive.map(), std::string(dump) + "_ours.yaml");
-    write_grid(watch.truth(), std::string(dump) + "_truth.yaml");
-    write_grid(watch.perfect(), std::string(dump) + "_perfect.yaml");
-    write_grid(watch.ghosts(drive.map()), std::string(dump) + "_ghosts.yaml");
-  }
   outcome.numbers = watch.numbers(drive.map());
   outcome.scans = watch.course();
+  outcome.pictures = {{"the map at the end; blue: only there, orange: only in the truth",
+                       svg_of_difference(drive.map(), watch.truth())}};
   return outcome;
 }
 
