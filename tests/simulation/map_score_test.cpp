@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// How maps are held against the truth: contours paired one to one, skill, what is kept, and what could be known at
+// best.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "simulation/scenario.hpp"
+#include "simulation/score/change_watch.hpp"
+#include "simulation/score/map_score.hpp"
+#include "simulation/score/map_truth.hpp"
+#include "simulation/start_map.hpp"
+#include "tests/support/drawn_grid.hpp"
+
+namespace deltamap::simulation::score {
+namespace {
+
+CellMask everywhere(const OccupancyGrid& grid) { return CellMask(grid.geometry().cell_count(), 1); }
+
+TEST(MapScore, OfTheTruthItselfIsPerfect) {
+  const OccupancyGrid truth = test::drawn_grid({"####", "#..#", "####"});
+  const MapScore score = map_score(truth, truth, everywhere(truth));
+  EXPECT_EQ(score.contour_f1, 1.0);
+  EXPECT_EQ(score.acceptance, 1.0);
+  EXPECT_EQ(score.wrong_m2, 0.0);
+}
+
+TEST(MapScore, PairsANeighbourOnceOnly) {
+  const OccupancyGrid truth = test::drawn_grid({"......", ".####.", "......"});
+  const OccupancyGrid beside = test::drawn_grid({".####.", "......", "......"});
+  EXPECT_EQ(map_score(truth, beside, everywhere(truth)).contour_f1, 1.0);
+  const OccupancyGrid thick = test::drawn_grid({".####.", ".####.", "......"});
+  EXPECT_NEAR(map_score(truth, thick, everywhere(truth)).contour_f1, 2.0 * 4.0 / 12.0, 1e-12);
+}
+
+TEST(MapScore, CountsWhatIsMissingAndWhatIsTooMuch) {
+  const OccupancyGrid truth = test::drawn_grid({"##....", "......", "......"});
+  const OccupancyGrid other = test::drawn_grid({"......", "......", "....##"});
+  const MapScore score = map_score(truth, other, everywhere(truth));
+  EXPECT_EQ(score.contour_f1, 0.0);
+  EXPECT_EQ(score.wrong_m2, 4.0);
+}
+
+TEST(MapScore, AsksNothingWhereNobodyCanSee) {
+  const OccupancyGrid truth = test::drawn_grid({"#...  ", "#...  "});
+  const OccupancyGrid map = test::drawn_grid({"#....#", "#....#"});
+  EXPECT_EQ(map_score(truth, map, everywhere(truth)).contour_f1, 1.0);
+}
+
+TEST(MapScore, SkillIsTheShareOfTheWayToTheBest) {
+  EXPECT_DOUBLE_EQ(skill(0.9, 0.8, 1.0), 0.5);
+  EXPECT_LT(skill(0.7, 0.8, 1.0), 0.0);
+  EXPECT_TRUE(std::isnan(skill(0.9, 1.0, 1.0)));
+}
+
+TEST(MapScore, KeptIsWhatStillHasASurfaceBeside) {
+  const OccupancyGrid first = test::drawn_grid({"####", "....", "...."});
+  const OccupancyGrid after = test::drawn_grid({"#...", "....", "...#"});
+  EXPECT_DOUBLE_EQ(share_kept(first, after, everywhere(first)), 0.5);
+  EXPECT_TRUE(std::isnan(share_kept(first, after, CellMask(12, 0))));
+}
+
+const Scenario& room() {
+  static const Scenario scenario = parse_scenario(R"(
+walls:
+  - [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
+blocks:
+  - {corner: [3, 1], columns: 1, rows: 1, size: [1, 1]}
+robot:
+  start: [1, 1, 0]
+)",
+                                                  "room");
+  return scenario;
+}
+
+TEST(MapTruth, ThePerfectMapperKnowsOnlyWhatBeamsHaveTouched) {
+  const OccupancyGrid first = start_map(room(), 0.05);
+  MapTruth truth{room(), first};
+  ChangeWatch watch{room(), first.geometry()};
+  const Change gone{ChangeKind::kRemoved, room().world.largest_id(), {{3.5, 1.5}, 1.0, 1.0, 0.0}, {}};
+  watch.apply(gone, Timestamp{}, {1.0, 1.0});
+  truth.see(watch.world());
+  EXPECT_EQ(truth.perfect(), first);
+  EXPECT_EQ(map_score(truth.visible(), truth.perfect(), truth.seen()).contour_f1, 1.0);  // of nothing seen
+
+  truth.touch(watch.view_from({1.0, 1.5, 0.0}, 20.0, 181, {}));
+  const CellMask seen = truth.seen();
+  EXPECT_GT(map_score(truth.visible(), truth.perfect(), seen).contour_f1,
+            map_score(truth.visible(), first, seen).contour_f1);
+  const Cell face = first.geometry().cell_at({3.0, 1.5});
+  EXPECT_EQ(first[face], CellState::kOccupied);
+  EXPECT_EQ(truth.perfect()[face], CellState::kFree);
+  EXPECT_EQ(truth.last_passed()[first.geometry().index_of(face)], 1);
+}
+
+TEST(MapTruth, InsidesCountAsOccupiedOnlyInTheSolidTruth) {
+  const OccupancyGrid first = start_map(room(), 0.05);
+  const MapTruth truth{room(), first};
+  const Cell inside = first.geometry().cell_at({3.5, 1.5});
+  EXPECT_EQ(truth.visible()[inside], CellState::kUnknown);
+  EXPECT_EQ(truth.solid()[inside], CellState::kOccupied);
+}
+
+TEST(MapTruth, TellsHowFarTheOuterWallsHaveMoved) {
+  const OccupancyGrid first = start_map(room(), 0.05);
+  const MapTruth truth{room(), first};
+  for (const double wall_m : truth.wall_drift(first, first)) EXPECT_EQ(wall_m, 0.0);
+  OccupancyGrid moved{first.geometry()};
+  for (std::size_t i = 0; i < first.cells().size(); ++i) {
+    const Cell cell = first.geometry().cell_of(i);
+    moved.set(cell, first.at({cell.column - 1, cell.row}));
+  }
+  const auto drift = truth.wall_drift(first, moved);
+  EXPECT_NEAR(drift[0], -0.05, 0.01);  // the ends of the walls beside count too
+  EXPECT_NEAR(drift[1], 0.05, 0.01);
+}
+
+}  // namespace
+}  // namespace deltamap::simulation::score
