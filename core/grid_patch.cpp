@@ -29,11 +29,15 @@ OccupancyGrid patched(OccupancyGrid grid, std::span<const CellChange> changes) {
 }
 
 std::vector<CellChange> changes_between(const OccupancyGrid& before, const OccupancyGrid& after) {
-  assert(before.geometry() == after.geometry() && "only grids of one geometry can be compared cell by cell");
   std::vector<CellChange> changes;
-  for (std::size_t i = 0; i < before.cells().size(); ++i) {
-    if (before.cells()[i] != after.cells()[i]) {
-      changes.push_back({before.geometry().cell_of(i), before.cells()[i], after.cells()[i]});
+  const GridGeometry& geometry = before.geometry();
+  for (int row = 0; row < geometry.height; ++row) {
+    const auto first = static_cast<std::ptrdiff_t>(geometry.index_of({0, row}));
+    const auto from = before.cells().begin() + first;
+    if (std::equal(from, from + geometry.width, after.cells().begin() + first)) continue;  // most rows, and quick
+    for (int column = 0; column < geometry.width; ++column) {
+      const Cell cell{column, row};
+      if (before[cell] != after[cell]) changes.push_back({cell, before[cell], after[cell]});
     }
   }
   return changes;

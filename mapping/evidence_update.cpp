@@ -99,18 +99,6 @@ CellState state_after(CellState before, Cell cell, const RayCounts& counts, cons
   return before == CellState::kUnknown && is_free ? CellState::kFree : before;
 }
 
-/// Only what is in doubt can be seen through, and specks, which beams pass by.
-void make_surfaces_opaque(const OccupancyGrid& map, const DoubtMask& mask, RayCounts& counts) {
-  const CellBox& box = counts.box();
-  for (int row = box.first.row; row < box.last.row; ++row) {
-    for (int column = box.first.column; column < box.last.column; ++column) {
-      const Cell cell{column, row};
-      if (map[cell] != CellState::kOccupied || mask.may_be_removed(cell)) continue;
-      if (awareness::group_size(map, cell, kLeastOpaqueCells) == kLeastOpaqueCells) counts.make_opaque(cell);
-    }
-  }
-}
-
 /// Cells around the verdicts that the beams contradict, and unknown ones anywhere that they have seen free.
 std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask,
                                            const EvidenceUpdateParams& params) {
@@ -257,7 +245,10 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
   }
 
   RayCounts counts{map.geometry(), box_seen(map.geometry(), placement.scans, params.longest_m)};
-  make_surfaces_opaque(map, mask, counts);
+  // Only what is in doubt can be seen through, and specks, which beams pass by.
+  counts.stop_at(map, [&](Cell cell) {
+    return !mask.may_be_removed(cell) && awareness::group_size(map, cell, kLeastOpaqueCells) == kLeastOpaqueCells;
+  });
   for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
   MapUpdate update;
   update.map_from_local = placement.mean_correction;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/grid_ray.hpp"
 
@@ -36,6 +37,19 @@ RayCounts::RayCounts(const GridGeometry& map, const CellBox& box)
       box_{box},
       counts_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height())) {}
 
+void RayCounts::stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops) {
+  walls_ = &walls;
+  stops_ = std::move(stops);
+  opaque_.assign(counts_.size(), Opaque::kUnasked);
+}
+
+bool RayCounts::stops_in(Cell cell) {
+  if (walls_ == nullptr || walls_->at(cell) != CellState::kOccupied) return false;
+  Opaque& opaque = opaque_[index_of(cell)];
+  if (opaque == Opaque::kUnasked) opaque = stops_(cell) ? Opaque::kYes : Opaque::kNo;
+  return opaque == Opaque::kYes;
+}
+
 void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
   for (std::size_t i = 0; i < scan.tracked->rays.size(); ++i) {
     if (scan.tracked->scan.beams[i].kind != BeamKind::kRange) continue;
@@ -45,11 +59,10 @@ void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
     bool stopped = false;
     walk_ray(map_, beam.from, beam.end, [&](Cell cell, double entered_m) {
       if (!box_.contains(cell) || cell == last) return true;
-      const std::size_t index = index_of(cell);
-      RayCount& count = counts_[index];
+      RayCount& count = counts_[index_of(cell)];
       count_up(count.passes);
       if (entered_m < clear_end_m) count_up(count.clear_passes);
-      stopped = entered_m < clear_end_m && !opaque_.empty() && opaque_[index] != 0;
+      stopped = entered_m < clear_end_m && stops_in(cell);
       return !stopped;
     });
     if (beam.hits && !stopped && box_.contains(last)) count_up(counts_[index_of(last)].hits);

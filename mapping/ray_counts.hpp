@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -32,12 +33,11 @@ class RayCounts {
  public:
   RayCounts(const GridGeometry& map, const CellBox& box);
 
-  /// Nothing counts behind such a cell: a beam that seems to have gone through says that its pose, or the surface, is
-  /// not what it seems.
-  void make_opaque(Cell cell) {
-    if (opaque_.empty()) opaque_.assign(counts_.size(), 0);
-    opaque_[index_of(cell)] = 1;
-  }
+  /// Nothing counts behind an occupied cell of `walls` that stops beams: one that seems to have gone through says that
+  /// its pose, or the surface, is not what it seems. `stops(cell)` is asked once a cell; `walls` must outlive the
+  /// counts.
+  void stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops);
+
   /// Counts the beams that have a range; those longer than `longest_m` only as passing, up to there. A pass is clear
   /// where the beam goes on for `clear_m`.
   void add(const PlacedScan& scan, double longest_m, double clear_m);
@@ -57,7 +57,12 @@ class RayCounts {
   GridGeometry map_;
   CellBox box_;
   std::vector<RayCount> counts_;
-  std::vector<std::uint8_t> opaque_;  // empty: none is
+  enum class Opaque : std::uint8_t { kUnasked, kYes, kNo };
+  [[nodiscard]] bool stops_in(Cell cell);
+
+  const OccupancyGrid* walls_ = nullptr;
+  std::function<bool(Cell)> stops_;
+  std::vector<Opaque> opaque_;
 };
 
 /// The part of the map that the scans' beams touch, up to `longest_m`.

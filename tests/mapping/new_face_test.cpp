@@ -149,7 +149,10 @@ TEST(RayCounts, CountNothingBehindAnOpaqueCell) {
   EXPECT_GT((open[{11, 0}].hits), 0);
   EXPECT_GT((open[{8, 0}].passes), 0);
   RayCounts shut{world.geometry(), all};
-  shut.make_opaque({5, 0});
+  OccupancyGrid walls = world;
+  walls.set({5, 0}, CellState::kOccupied);
+  walls.set({3, 0}, CellState::kOccupied);
+  shut.stop_at(walls, [](Cell cell) { return cell.column == 5; });
   shut.add({&scan, scan.estimate.map_from_robot}, 20.0, 0.2);
   EXPECT_EQ((shut[{11, 0}].hits), 0);
   EXPECT_EQ((shut[{8, 0}].passes), 0);
