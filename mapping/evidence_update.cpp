@@ -18,7 +18,7 @@ namespace {
 constexpr int kLeastOpaqueCells = 10;  // of a surface
 constexpr int kDrawnAheadPasses = 8;
 constexpr double kDrawnAheadShare = 0.1;  // of the beams, and of the hits behind
-constexpr int kRemnantReach = 3;          // cells from what has been freed
+constexpr int kRemnantReach = 2;          // cells from what has been freed
 constexpr int kRemnantCells = 6;          // larger groups are none
 
 /// The cells around the verdicts, and what they may become.
@@ -116,7 +116,7 @@ std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCo
   return changes;
 }
 
-/// Of the eight neighbours. Within a line of cells it is two.
+/// Of the cell and its eight neighbours. For a gap of one cell in a line it is two.
 int count_occupied_around(const OccupancyGrid& map, Cell cell) {
   int occupied = 0;
   for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
@@ -207,11 +207,13 @@ void leave_out_specks(const OccupancyGrid& map, std::vector<CellChange>& changes
 }
 
 /// A few cells that are left of what has been freed around them go too, unless something was met there.
-void free_remnants(const OccupancyGrid& map, const RayCounts& counts, std::vector<CellChange>& changes) {
+void free_remnants(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask, int least_passes,
+                   std::vector<CellChange>& changes) {
   OccupancyGrid after = patched(map, changes);
   const auto is_remnant = [&](Cell cell) {
-    return after.at(cell) == CellState::kOccupied && counts.box().contains(cell) && counts[cell].hits == 0 &&
-           counts[cell].passes > 0 && awareness::group_size(after, cell, kRemnantCells) < kRemnantCells;
+    return after.at(cell) == CellState::kOccupied && mask.may_be_removed(cell) && counts.box().contains(cell) &&
+           counts[cell].hits == 0 && counts[cell].passes >= least_passes &&
+           awareness::group_size(after, cell, kRemnantCells) < kRemnantCells;
   };
   for (const CellChange& change : changes) {
     if (change.after != CellState::kFree || change.before != CellState::kOccupied) continue;
@@ -255,7 +257,7 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
   update.changes = contradicted_cells(map, counts, mask, params);
   close_faces(map, counts, mask, placement.scans, params, update.changes);
   leave_out_specks(map, update.changes, params.least_speck_cells);
-  free_remnants(map, counts, update.changes);
+  free_remnants(map, counts, mask, params.free_passes, update.changes);
   forget_hidden_floor(map, placement.scans, params.most_hidden_m2, update.changes);
   update.acceptance =
       merge::acceptance(counts.local_map(params.occupied_hit_share), patched(map, update.changes)).value();

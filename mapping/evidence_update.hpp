@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns an S(k) of the evidence method into changes: its scans are brought onto what is not in doubt, cast once more
-// around the verdicts, and only cells there that the beams clearly contradict are written.
+// around the verdicts, and cells there that the beams clearly contradict are written; unknown floor that beams have
+// seen becomes free, floor that new surfaces hide unknown.
 #pragma once
 
 #include "core/messages.hpp"

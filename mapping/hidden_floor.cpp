@@ -27,16 +27,13 @@ class Floor {
     for (std::size_t next = 0; next < piece.size() && !is_open; ++next) {
       const Cell cell = piece[next];
       is_open = piece.size() > most_cells_ || std::find(robot_was_.begin(), robot_was_.end(), cell) != robot_was_.end();
-      for (const Cell& side : kSides) is_open |= meets_open(enter_beside(cell, side, piece));
+      for (const Cell& side : kSides) is_open |= meets_open_floor(cell, side, piece);
     }
     for (const Cell& cell : piece) open_[map_.geometry().index_of(cell)] = is_open;
     return is_open ? std::vector<Cell>{} : piece;
   }
 
  private:
-  enum class Met : std::uint8_t { kNothingNew, kNew, kOpenFloor };
-  static bool meets_open(Met met) { return met == Met::kOpenFloor; }
-
   /// A gap of a cell or two in a line of occupied cells, which only the drawing has left.
   [[nodiscard]] bool is_crack(Cell cell) const {
     const auto gap = [&](const Cell& step) {
@@ -55,11 +52,12 @@ class Floor {
     return true;
   }
 
-  Met enter_beside(Cell cell, const Cell& side, std::vector<Cell>& piece) {
+  /// Goes on to the cell beside; or does it belong to a piece from which the robot can be reached?
+  bool meets_open_floor(Cell cell, const Cell& side, std::vector<Cell>& piece) {
     const Cell beside{cell.column + side.column, cell.row + side.row};
-    if (enter(beside, piece)) return Met::kNew;
+    if (!map_.geometry().contains(beside) || enter(beside, piece)) return false;
     const auto seen = open_.find(map_.geometry().index_of(beside));
-    return map_.geometry().contains(beside) && seen != open_.end() && seen->second ? Met::kOpenFloor : Met::kNothingNew;
+    return seen != open_.end() && seen->second;
   }
 
   const OccupancyGrid& map_;

@@ -10,11 +10,11 @@
 namespace deltamap::mapping {
 
 struct MisfitParams {
-  double usual_s = 10.0;             ///< over which the usual share of fitting beams is averaged, s; > 0
-  double present_s = 0.35;           ///< over which the present one is, s; > 0
-  double most_drop = 0.2;           ///< of the share of beams; [0, 1] (mapping.gate.most_misfit)
-  double most_drop_both_ways = 0.1;  ///< of beams too short and of beams too long, each: what a thing that comes or
-                                     ///< goes does not do; [0, 1]
+  double usual_s = 10.0;              ///< over which the usual share of fitting beams is averaged, s; > 0
+  double present_s = 0.35;            ///< over which the present one is, s; > 0
+  double most_drop = 0.2;             ///< of the share of beams; [0, 1] (mapping.gate.most_misfit)
+  double most_drop_both_ways = 0.1;   ///< of beams too short and of beams too long, each: what a thing that comes or
+                                      ///< goes does not do; [0, 1]
   std::uint32_t least_expected = 30;  ///< a scan in which the map expects fewer beams to end says nothing
 };
 

@@ -83,7 +83,7 @@ bool WriteGate::holds(GateReason judgement, const TrackedScan& tracked) {
   if (judgement != GateReason::kOpen) {
     holds_since_ = tracked.scan.time;
     held_m_ = 0.0;
-  } else if (last_odom_from_robot_) {
+  } else if (last_odom_from_robot_ && last_epoch_ == tracked.odometry_epoch) {
     held_m_ += distance_between(*last_odom_from_robot_, tracked.odom_from_robot);
   }
   return seconds(tracked.scan.time - holds_since_) >= params_.confirm_s && held_m_ >= params_.confirm_m;
@@ -113,6 +113,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
   if (is_open()) shut_for_s_ = 0.0;
   provisional_.observe(tracked, is_open());
   last_odom_from_robot_ = tracked.odom_from_robot;
+  last_epoch_ = tracked.odometry_epoch;
 }
 
 }  // namespace deltamap::mapping

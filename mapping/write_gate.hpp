@@ -95,6 +95,7 @@ class WriteGate {
   Timestamp holds_since_;
   double held_m_ = 0.0;  // driven since then
   std::optional<Pose2> last_odom_from_robot_;
+  std::uint32_t last_epoch_ = 0;  // of odometry
   std::optional<Timestamp> trusted_since_;
   std::optional<Timestamp> last_;
   GateTimes times_{};

@@ -145,9 +145,10 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const TrackedSc
   const BeamJudge judge{map, deviation, params};
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     BeamVerdict& beam = verdicts[i];
-    beam.what = BeamClass::kSilent;
-    beam.passed.clear();
-    beam.ends_off_map = false;
+    std::vector<Cell> memory = std::move(beam.passed);
+    memory.clear();
+    beam = BeamVerdict{};
+    beam.passed = std::move(memory);
     if (silent || tracked.scan.beams[i].kind != BeamKind::kRange) continue;
     const RayInRobot& ray = tracked.rays[i];
     beam.from = tracked.estimate.map_from_robot * Point2{ray.origin.cast<double>()};

@@ -32,7 +32,7 @@ double EvidencePhase::least_share(Question question) const {
 }
 
 bool EvidencePhase::is_proven(Question question, Cell block) const {
-  const Ballot ballot = layer_.ballot(question, block);
+  const Ballot ballot = layer_.ballot(question, block, now_ms_);
   return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= params_.face_persistence_s &&
          ballot.share() >= least_share(question);
 }
@@ -168,7 +168,7 @@ std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlo
       for (int column = -params_.reach_blocks; column <= params_.reach_blocks; ++column) {
         const Cell block{proven.block.column + column, proven.block.row + row};
         if (!blocks.contains(block)) continue;
-        const Ballot ballot = layer_.ballot(question, block);
+        const Ballot ballot = layer_.ballot(question, block, now_ms_);
         const bool joins =
             ballot.yes >= static_cast<float>(params_.joining_votes) && ballot.share() >= least_share(question);
         if (joins || block == proven.block) indices.push_back(static_cast<std::uint32_t>(blocks.index_of(block)));
@@ -204,7 +204,7 @@ void EvidencePhase::hand_on(Question question, Cell block) {
 std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const Blocks& blocks, std::uint32_t first_ms) {
   if (set.verdicts.empty()) return std::nullopt;
   set.phase = phase_ + 1;
-  set.began = *start_ + std::chrono::milliseconds{first_ms};
+  set.began = set.ended - std::chrono::milliseconds{now_ms_ - first_ms};  // holds where the count has wrapped
   set.scans = keyframes_.that_saw(blocks, set.began);
   if (set.scans.empty()) return std::nullopt;
   phase_ = set.phase;
@@ -253,7 +253,7 @@ bool EvidencePhase::is_passing(const std::vector<ProvenBlock>& region) const {
     const double flips = flips_beyond(proven.block);
     toggling += flips >= 0.0 ? 1 : 0;
     most_flips = std::max(most_flips, flips);
-    longest_s = std::max(longest_s, layer_.ballot(proven.question, proven.block).span_s());
+    longest_s = std::max(longest_s, layer_.ballot(proven.question, proven.block, now_ms_).span_s());
   }
   if (2 * toggling >= static_cast<std::ptrdiff_t>(region.size()))
     return longest_s < params_.persistence_s * std::exp2(most_flips);
@@ -277,7 +277,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
     Blocks blocks;
     std::uint32_t region_first_ms = now_ms_;
     for (const Cell& block : with_joining_blocks(region)) {
-      region_first_ms = std::min(region_first_ms, layer_.ballot(question, block).first_ms);
+      region_first_ms = std::min(region_first_ms, layer_.ballot(question, block, now_ms_).first_ms);
       add_verdicts(question, block, set.verdicts);
       blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
       flips_.note(blocks.back(), question, now_ms_);

@@ -14,7 +14,7 @@ namespace deltamap::mapping::awareness {
 struct FlipParams {
   double half_life_s = 900.0;        ///< of a flip's weight; > 0
   double toggles_from = 1.5;         ///< flips, the old ones worn, from which on a block toggles; > 0
-  std::uint32_t most_blocks = 8192;  ///< remembered, 16 bytes each; beyond, all that is worn is forgotten
+  std::uint32_t most_blocks = 8192;  ///< remembered, some 40 bytes each; beyond, all that is worn is forgotten
 };
 
 class FlipMemory {
@@ -26,7 +26,6 @@ class FlipMemory {
   void note(std::uint32_t block, Question question, std::uint32_t now_ms);
   /// By how many flips the block is past toggles_from; negative: it does not toggle.
   [[nodiscard]] double beyond(std::uint32_t block, std::uint32_t now_ms) const;
-  void clear() { blocks_.clear(); }
 
  private:
   struct Flips {

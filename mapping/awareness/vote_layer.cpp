@@ -21,10 +21,16 @@ CellBox VoteLayer::cells_of(Cell block) const {
   return {first, {first.column + cells_per_block_, first.row + cells_per_block_}};
 }
 
-Ballot VoteLayer::ballot(Question question, Cell block) const {
+Ballot VoteLayer::ballot(Question question, Cell block, std::uint32_t now_ms) const {
   const std::int32_t tile = tile_of_[place_of(block)];
   if (tile < 0) return {};
-  return tiles_[static_cast<std::size_t>(tile)].ballots[static_cast<std::size_t>(question)][slot_of(block)];
+  Ballot ballot = tiles_[static_cast<std::size_t>(tile)].ballots[static_cast<std::size_t>(question)][slot_of(block)];
+  if (is_void(ballot, now_ms)) ballot.yes = 0.0F;
+  return ballot;
+}
+
+bool VoteLayer::is_void(const Ballot& ballot, std::uint32_t now_ms) const {
+  return ballot.last_ms != 0 && 1e-3 * (now_ms - ballot.last_ms) > params_.forget_s;
 }
 
 VoteLayer::Tile& VoteLayer::tile_for(Cell block, std::uint32_t now_ms) {
@@ -36,8 +42,8 @@ VoteLayer::Tile& VoteLayer::tile_for(Cell block, std::uint32_t now_ms) {
     } else {
       const auto oldest = std::min_element(tiles_.begin(), tiles_.end(),
                                            [](const Tile& a, const Tile& b) { return a.last_ms < b.last_ms; });
-      empty_tile(*oldest);
       tile_of_[oldest->place] = -1;
+      empty_tile(*oldest);
       tile_of_[place] = static_cast<std::int32_t>(oldest - tiles_.begin());
     }
     tiles_[static_cast<std::size_t>(tile_of_[place])].place = static_cast<std::uint32_t>(place);
@@ -60,7 +66,7 @@ void VoteLayer::empty_tile(Tile& tile) {
 
 void VoteLayer::vote(Question question, Cell block, bool yes, std::uint32_t now_ms) {
   Ballot& ballot = tile_for(block, now_ms).ballots[static_cast<std::size_t>(question)][slot_of(block)];
-  if (ballot.last_ms != 0 && 1e-3 * (now_ms - ballot.last_ms) > params_.forget_s) ballot.yes = 0.0F;
+  if (is_void(ballot, now_ms)) ballot.yes = 0.0F;
   const auto most = static_cast<float>(params_.most_votes);
   const auto left = static_cast<float>(1.0 - params_.wear);
   if (yes) {

@@ -53,7 +53,8 @@ class VoteLayer {
   [[nodiscard]] bool is_open(Question question, Cell block) const {
     return (open_[blocks_.index_of(block)] & bit_of(question)) != 0;
   }
-  [[nodiscard]] Ballot ballot(Question question, Cell block) const;
+  /// Without the yes votes that are void by now.
+  [[nodiscard]] Ballot ballot(Question question, Cell block, std::uint32_t now_ms) const;
 
   /// A "no" where nobody has said "yes" yet counts too: what has often been confirmed is hard to overturn.
   void vote(Question question, Cell block, bool yes, std::uint32_t now_ms);
@@ -82,6 +83,7 @@ class VoteLayer {
   }
   [[nodiscard]] Tile& tile_for(Cell block, std::uint32_t now_ms);
   void empty_tile(Tile& tile);
+  [[nodiscard]] bool is_void(const Ballot& ballot, std::uint32_t now_ms) const;
 
   VoteLayerParams params_;
   GridGeometry blocks_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/score/map_score.hpp"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -52,12 +51,6 @@ Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMas
   return pairs;
 }
 
-bool is_near_occupied(const OccupancyGrid& map, Cell cell) {
-  return map.at(cell) == CellState::kOccupied || std::any_of(kAround.begin(), kAround.end(), [&](const Cell& step) {
-           return map.at({cell.column + step.column, cell.row + step.row}) == CellState::kOccupied;
-         });
-}
-
 }  // namespace
 
 MapScore map_score(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where) {
@@ -88,14 +81,16 @@ double skill(double ours, double stale, double perfect) {
 }
 
 double share_kept(const OccupancyGrid& first, const OccupancyGrid& map, const CellMask& these) {
+  OccupancyGrid lasting{first.geometry()};
   std::size_t all = 0;
-  std::size_t kept = 0;
   for (std::size_t i = 0; i < these.size(); ++i) {
     if (these[i] == 0 || first.cells()[i] != CellState::kOccupied) continue;
+    lasting.set(first.geometry().cell_of(i), CellState::kOccupied);
     ++all;
-    kept += is_near_occupied(map, map.geometry().cell_of(i)) ? 1 : 0;
   }
-  return all == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(kept) / static_cast<double>(all);
+  if (all == 0) return std::numeric_limits<double>::quiet_NaN();
+  const Pairs pairs = paired(lasting, map, CellMask(these.size(), 1));
+  return static_cast<double>(pairs.count) / static_cast<double>(all);
 }
 
 CellMask grown(const CellMask& mask, const GridGeometry& geometry) {

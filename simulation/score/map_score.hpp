@@ -26,8 +26,8 @@ struct MapScore {
 /// is no way.
 [[nodiscard]] double skill(double ours, double stale, double perfect);
 
-/// Share of the cells of `these` that are occupied in `first` and have an occupied cell on or beside them in `map`; NaN
-/// where there are none.
+/// Share of the cells of `these` that are occupied in `first` and have an occupied cell of their own on or beside them
+/// in `map`; NaN where there are none.
 [[nodiscard]] double share_kept(const OccupancyGrid& first, const OccupancyGrid& map, const CellMask& these);
 
 /// The mask grown by one cell on every side.

@@ -40,6 +40,20 @@ TEST_F(Beams, AreConsistentWhereTheyEndAtTheWall) {
   EXPECT_EQ(verdict(5.2).what, BeamClass::kConsistent);
 }
 
+TEST_F(Beams, SayNothingOfTheScanBeforeWhereTheyHaveNoRange) {
+  TrackedScan tracked;
+  tracked.estimate.state = LocalizerState::kTracking;
+  tracked.scan.beams = {{3.0F, 0.0F, BeamKind::kRange}};
+  tracked.rays = {{{0.0F, 0.0F}, {3.0F, 0.0F}}};
+  std::vector<BeamVerdict> verdicts = beam_evidence(map, tracked, {});
+  ASSERT_TRUE(verdicts.front().ends_off_map);
+  tracked.scan.beams.front().kind = BeamKind::kBeyondMaximum;
+  verdicts = beam_evidence(map, tracked, {}, std::move(verdicts));
+  EXPECT_EQ(verdicts.front().what, BeamClass::kSilent);
+  EXPECT_EQ(verdicts.front().length_m, 0.0);
+  EXPECT_FALSE(verdicts.front().ends_off_map);
+}
+
 TEST_F(Beams, AreShortWhereTheyEndInTheFreeSpaceBefore) {
   const BeamVerdict beam = verdict(3.0);
   EXPECT_EQ(beam.what, BeamClass::kShort);

@@ -57,7 +57,7 @@ TEST(MapScore, SkillIsTheShareOfTheWayToTheBest) {
 TEST(MapScore, KeptIsWhatStillHasASurfaceBeside) {
   const OccupancyGrid first = test::drawn_grid({"####", "....", "...."});
   const OccupancyGrid after = test::drawn_grid({"#...", "....", "...#"});
-  EXPECT_DOUBLE_EQ(share_kept(first, after, everywhere(first)), 0.5);
+  EXPECT_DOUBLE_EQ(share_kept(first, after, everywhere(first)), 0.25);
   EXPECT_TRUE(std::isnan(share_kept(first, after, CellMask(12, 0))));
 }
 

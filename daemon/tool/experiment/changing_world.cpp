@@ -28,7 +28,7 @@ enum class Over : std::uint8_t { kMean, kLeast, kMost };
 /// A number that is asked of a kind of drive, for the evidence method.
 struct Asked {
   std::string drive;   ///< empty: of every kind
-  std::string number;  ///< or a difference "a-b"
+  std::string number;  ///< or a difference "a - b"
   Over over = Over::kMean;
   Target target;
   std::string unit{};
@@ -193,6 +193,7 @@ std::vector<Asked> asked_of_lasting_drives(const std::string& drive) {
           {drive, "recall", Over::kMean, {.least = 0.98}},
           {drive, "precision", Over::kMean, {.least = 0.98}},
           {drive, "follow_median_s", Over::kMean, {.most = 8.0}, "s"},
+          {drive, "cells_written_astray", Over::kMost, {.most = 0.0}},
           {drive, "walls_kept", Over::kLeast, {.least = 1.0}},
           {drive, "wall_drift_m", Over::kMost, {.most = 0.02}, "m"}};
 }

@@ -15,9 +15,10 @@ constexpr int kViewBeams = 181;
 constexpr int kFaceBeams = 3;        // of one view make a face seen
 constexpr double kFoundShare = 0.5;  // of a change's visible cells must be right
 constexpr double kSeenLeast_s = 10.0;
-constexpr int kRegionReach = 2;    // cells; written cells so near are one thing
-constexpr std::size_t kSpeck = 3;  // smaller regions are not counted as things
-constexpr int kGhostReach = 2;     // cells from anything that stands
+constexpr double kRightShare = 0.8;  // of a written thing's cells
+constexpr int kRegionReach = 2;      // cells; written cells so near are one thing
+constexpr std::size_t kSpeck = 3;    // smaller regions are not counted as things
+constexpr int kGhostReach = 2;       // cells from anything that stands
 
 bool has_occupied_within(const OccupancyGrid& map, Cell cell, int reach) {
   for (int row = cell.row - reach; row <= cell.row + reach; ++row) {
@@ -28,7 +29,7 @@ bool has_occupied_within(const OccupancyGrid& map, Cell cell, int reach) {
   return false;
 }
 
-/// Written cells that are near each other, whatever they became.
+/// Written cells that are near each other.
 std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {
   std::vector<std::vector<CellChange>> things;
   while (!left.empty()) {
@@ -82,6 +83,7 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   ++scans_;
   scans_lost_ += scan.estimate.state == LocalizerState::kTracking ? 0 : 1;
   errors_m_.push_back(distance_between(scan.map_from_robot, scan.estimate.map_from_robot));
+  times_.push_back(scan.time);
   errors_since_row_m_.push_back(errors_m_.back());
   if (scan.update) judge_writing(scan);
   if (now_s_ >= next_look_s_) look(scan);
@@ -109,12 +111,18 @@ void MappingWatch::judge_changes(const OccupancyGrid& map) {
     Fate& fate = fates_[i];
     if (fate.is_settled || fate.followed_after_s >= 0.0) continue;
     score::Watched& watched = changes_.watched()[i];
+    if (watched.change.is_overtaken) {
+      fate.is_settled = true;
+      continue;
+    }
     changes_.judge(watched, map, surfaces_, params);
     const score::ScoredChange& change = watched.change;
-    if (fate.first_seen_s < 0.0 && change.seen_s > 0.0) fate.first_seen_s = now_s_;
-    if (change.is_overtaken)
-      fate.is_settled = true;
-    else if (change.seen_s > 0.0 && change.is_followed(kFoundShare)) {
+    if (change.visible_cells == 0 || change.seen_s <= 0.0) continue;
+    const bool is_followed = change.is_followed(kFoundShare);
+    if (fate.first_seen_s < 0.0) {
+      fate.first_seen_s = now_s_;
+      fate.is_settled = fate.was_right = is_followed;
+    } else if (is_followed) {
       fate.followed_after_s = change.seen_s;
       fate.followed_after_clock_s = now_s_ - fate.first_seen_s;
     }
@@ -151,6 +159,12 @@ void MappingWatch::count_ghosts(const OccupancyGrid& map) {
   ghost_cell_minutes_ += static_cast<double>(ghosts_now_) * params_.judge_every_s / 60.0;
 }
 
+/// Of the newest scan that is not newer.
+double MappingWatch::error_at_m(Timestamp time) const {
+  const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+  return after == times_.begin() ? 0.0 : errors_m_[static_cast<std::size_t>(after - times_.begin()) - 1];
+}
+
 void MappingWatch::judge_writing(const Mapped& scan) {
   if (!scan.update->revision) {
     ++refused_;
@@ -159,23 +173,32 @@ void MappingWatch::judge_writing(const Mapped& scan) {
   ++revisions_;
   const std::vector<CellChange>& changes = scan.update->revision->changes;
   cells_written_ += changes.size();
-  if (errors_m_.back() > params_.wrong_pose_m) cells_written_astray_ += changes.size();
+  const double error_m = std::max(errors_m_.back(), error_at_m(scan.update->note.time));
+  if (error_m > params_.wrong_pose_m) cells_written_astray_ += changes.size();
+  const OccupancyGrid& truth = truth_.visible();
   const auto is_right = [&](const CellChange& change) {
-    if (truth_.is_at_door(first_->geometry().index_of(change.cell))) return true;  // it comes and goes
-    const bool stands = has_occupied_within(surfaces_, change.cell, 1);
-    if (change.after == CellState::kOccupied) return stands;
-    if (change.after == CellState::kUnknown) return truth_.visible()[change.cell] != CellState::kFree || stands;
-    return surfaces_[change.cell] != CellState::kOccupied || change.before != CellState::kOccupied;
+    if (change.after == CellState::kOccupied) return has_occupied_within(truth, change.cell, 1);
+    if (change.after == CellState::kUnknown) return truth[change.cell] != CellState::kFree;
+    return truth[change.cell] != CellState::kOccupied;
   };
   for (const CellChange& change : changes) {
     ++writes_[first_->geometry().index_of(change.cell)];
     cells_wrong_ += is_right(change) ? 0 : 1;
   }
-  for (const std::vector<CellChange>& thing : things_of(changes)) {
-    if (thing.size() < kSpeck) continue;
-    ++regions_;
-    const auto right = std::count_if(thing.begin(), thing.end(), is_right);
-    regions_wrong_ += 2 * right < static_cast<std::ptrdiff_t>(thing.size()) ? 1 : 0;
+  std::vector<CellChange> come;
+  std::vector<CellChange> gone;
+  for (const CellChange& change : changes) {
+    if (truth_.is_at_door(first_->geometry().index_of(change.cell))) continue;  // it comes and goes
+    if (change.after == CellState::kOccupied) come.push_back(change);
+    if (change.before == CellState::kOccupied && change.after == CellState::kFree) gone.push_back(change);
+  }
+  for (const auto& side : {come, gone}) {
+    for (const std::vector<CellChange>& thing : things_of(side)) {
+      if (thing.size() < kSpeck) continue;
+      ++regions_;
+      const auto right = static_cast<double>(std::count_if(thing.begin(), thing.end(), is_right));
+      regions_wrong_ += right < kRightShare * static_cast<double>(thing.size()) ? 1 : 0;
+    }
   }
 }
 
@@ -199,7 +222,7 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
   std::size_t found = 0;
   for (std::size_t i = 0; i < fates_.size(); ++i) {
     const score::ScoredChange& change = changes_.watched()[i].change;
-    if (changes_.watched()[i].witness.longest_seen_s() < kSeenLeast_s || change.visible_cells == 0) continue;
+    if (fates_[i].was_right || change.seen_s < kSeenLeast_s || change.visible_cells == 0) continue;
     const bool is_found = fates_[i].followed_after_s >= 0.0;
     found += is_found ? 1 : 0;
     in_view_s.push_back(is_found ? fates_[i].followed_after_s : std::numeric_limits<double>::infinity());

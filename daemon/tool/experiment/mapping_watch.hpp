@@ -18,7 +18,7 @@ namespace deltamap::daemon::tool::experiment {
 
 struct MappingWatchParams {
   double range_m = 80.0;       ///< as far as the robot sees
-  double look_every_s = 0.5;   ///< what is in view, > 0
+  double look_every_s = 0.2;   ///< what is in view, > 0
   double judge_every_s = 1.0;  ///< whether the map has followed, and ghosts, > 0
   double score_every_s = 300.0;
   double wrong_pose_m = 0.3;  ///< cells written while the pose is farther off are counted apart
@@ -46,7 +46,8 @@ class MappingWatch {
     double followed_after_s = -1.0;       ///< seconds in view until the map had followed; negative: not yet
     double followed_after_clock_s = 0.0;  ///< since it was first in view
     double first_seen_s = -1.0;
-    bool is_settled = false;  ///< overtaken, and counted
+    bool is_settled = false;  ///< overtaken, or not to be counted
+    bool was_right = false;   ///< the map had it right when it first came into view: nothing to follow
   };
 
   void look(const Mapped& scan);
@@ -55,6 +56,7 @@ class MappingWatch {
   [[nodiscard]] bool is_ghost(const OccupancyGrid& map, std::size_t cell) const;
   void count_ghosts(const OccupancyGrid& map);
   void judge_writing(const Mapped& scan);
+  [[nodiscard]] double error_at_m(Timestamp time) const;
   void add_course_row(const OccupancyGrid& map);
   void refresh_surfaces();
 
@@ -68,6 +70,7 @@ class MappingWatch {
   std::vector<Fate> fates_;
   ScanTable course_;
   std::vector<double> errors_m_;
+  std::vector<Timestamp> times_;  // of the errors
   std::vector<double> errors_since_row_m_;
   double now_s_ = 0.0;
   double next_look_s_ = 0.0;
