@@ -62,6 +62,12 @@ double over_all(const std::vector<double>& values, Over over) {
 
 const char* name_of(Over over) { return over == Over::kLeast ? "least" : over == Over::kMost ? "most" : "mean"; }
 
+/// Nothing where the number is only shown.
+std::optional<Target> target_of(const Asked& asked) {
+  if (!asked.target.least && !asked.target.most) return std::nullopt;
+  return asked.target;
+}
+
 class ChangingWorld : public Experiment {
  public:
   explicit ChangingWorld(Plan plan) : plan_{std::move(plan)} {}
@@ -165,7 +171,7 @@ Report ChangingWorld::report(const std::vector<Outcome>& outcomes) const {
       if (!papers.empty())
         peers += (peers.empty() ? "" : "; ") + std::string{"method paper: "} + text_of(over_all(papers, asked.over));
       report.figures.push_back({kind.name + ": " + asked.number + ", " + name_of(asked.over),
-                                over_all(values, asked.over), asked.unit, asked.target, peers});
+                                over_all(values, asked.over), asked.unit, target_of(asked), peers});
     }
     auto both = ours;
     both.insert(both.end(), paper.begin(), paper.end());
