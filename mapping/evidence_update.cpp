@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/grid_ray.hpp"
@@ -144,12 +145,11 @@ void close_pinholes(const CellBox& box, IsGap&& is_gap, OccupancyGrid& after) {
 }
 
 /// Between the ends of neighbouring beams on one face there is no gap, unless beams have gone through it.
-void close_faces(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask,
-                 const std::vector<PlacedScan>& scans, const EvidenceUpdateParams& params,
-                 std::vector<CellChange>& changes) {
-  OccupancyGrid after = patched(map, changes);
+[[nodiscard]] OccupancyGrid with_closed_faces(OccupancyGrid after, const RayCounts& counts, const DoubtMask& mask,
+                                              const std::vector<PlacedScan>& scans,
+                                              const EvidenceUpdateParams& params) {
   const auto is_drawn = [&](const Point2& end) {
-    const Cell cell = map.geometry().cell_at(end);
+    const Cell cell = after.geometry().cell_at(end);
     return mask.may_be_added(cell) && after.at(cell) == CellState::kOccupied;
   };
   const OccupancyGrid drawn = after;
@@ -171,23 +171,22 @@ void close_faces(const OccupancyGrid& map, const RayCounts& counts, const DoubtM
     const awareness::FaceParams face{.slant = params.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
     awareness::for_each_face_step(tracked.rays.size(), face, length_m, end, [&](std::size_t i) {
       if (!is_drawn(end(i)) || !is_drawn(end(i + 1))) return;
-      walk_ray(map.geometry(), end(i), end(i + 1), [&](Cell cell, double) {
+      walk_ray(drawn.geometry(), end(i), end(i + 1), [&](Cell cell, double) {
         if (is_gap(cell)) after.set(cell, CellState::kOccupied);
         return true;
       });
     });
   }
   close_pinholes(mask.box(), is_gap, after);
-  changes = changes_between(map, after);
+  return after;
 }
 
 /// What surfaces have closed off from the robot is not known any longer: floor beside new ones, and floor that beams
 /// saw before they stood there.
-void forget_hidden_floor(const OccupancyGrid& map, const std::vector<PlacedScan>& scans, double most_hidden_m2,
-                         std::vector<CellChange>& changes) {
-  OccupancyGrid after = patched(map, changes);
+[[nodiscard]] OccupancyGrid without_hidden_floor(const OccupancyGrid& map, OccupancyGrid after,
+                                                 const std::vector<PlacedScan>& scans, double most_hidden_m2) {
   std::vector<Cell> starts;
-  for (const auto& [cell, was, is] : changes) {
+  for (const auto& [cell, was, is] : changes_between(map, after)) {
     if (is == CellState::kFree && was == CellState::kUnknown) starts.push_back(cell);
     if (is != CellState::kOccupied) continue;
     for (const Cell& side : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}})
@@ -196,26 +195,27 @@ void forget_hidden_floor(const OccupancyGrid& map, const std::vector<PlacedScan>
   std::vector<Point2> robot_was;
   for (const PlacedScan& scan : scans) robot_was.push_back(scan.map_from_robot.position());
   for (const Cell& cell : hidden_floor(after, starts, robot_was, most_hidden_m2)) after.set(cell, CellState::kUnknown);
-  changes = changes_between(map, after);
+  return after;
 }
 
-void leave_out_specks(const OccupancyGrid& map, std::vector<CellChange>& changes, int least_cells) {
-  const OccupancyGrid after = patched(map, changes);
-  std::erase_if(changes, [&](const CellChange& change) {
-    return change.after == CellState::kOccupied && awareness::group_size(after, change.cell, least_cells) < least_cells;
-  });
+[[nodiscard]] OccupancyGrid without_specks(const OccupancyGrid& map, const OccupancyGrid& after, int least_cells) {
+  OccupancyGrid without = after;
+  for (const CellChange& change : changes_between(map, after)) {
+    if (change.after != CellState::kOccupied) continue;
+    if (awareness::group_size(after, change.cell, least_cells) < least_cells) without.set(change.cell, change.before);
+  }
+  return without;
 }
 
 /// A few cells that are left of what has been freed around them go too, unless something was met there.
-void free_remnants(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask, int least_passes,
-                   std::vector<CellChange>& changes) {
-  OccupancyGrid after = patched(map, changes);
+[[nodiscard]] OccupancyGrid without_remnants(const OccupancyGrid& map, OccupancyGrid after, const RayCounts& counts,
+                                             const DoubtMask& mask, int least_passes) {
   const auto is_remnant = [&](Cell cell) {
     return after.at(cell) == CellState::kOccupied && mask.may_be_removed(cell) && counts.box().contains(cell) &&
            counts[cell].hits == 0 && counts[cell].passes >= least_passes &&
            awareness::group_size(after, cell, kRemnantCells) < kRemnantCells;
   };
-  for (const CellChange& change : changes) {
+  for (const CellChange& change : changes_between(map, after)) {
     if (change.after != CellState::kFree || change.before != CellState::kOccupied) continue;
     for (int row = -kRemnantReach; row <= kRemnantReach; ++row) {
       for (int column = -kRemnantReach; column <= kRemnantReach; ++column) {
@@ -224,7 +224,7 @@ void free_remnants(const OccupancyGrid& map, const RayCounts& counts, const Doub
       }
     }
   }
-  changes = changes_between(map, after);
+  return after;
 }
 
 MapUpdate refused(Refusal refusal) {
@@ -254,13 +254,13 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
   for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
   MapUpdate update;
   update.map_from_local = placement.mean_correction;
-  update.changes = contradicted_cells(map, counts, mask, params);
-  close_faces(map, counts, mask, placement.scans, params, update.changes);
-  leave_out_specks(map, update.changes, params.least_speck_cells);
-  free_remnants(map, counts, mask, params.free_passes, update.changes);
-  forget_hidden_floor(map, placement.scans, params.most_hidden_m2, update.changes);
-  update.acceptance =
-      merge::acceptance(counts.local_map(params.occupied_hit_share), patched(map, update.changes)).value();
+  OccupancyGrid after = patched(map, contradicted_cells(map, counts, mask, params));
+  after = with_closed_faces(std::move(after), counts, mask, placement.scans, params);
+  after = without_specks(map, after, params.least_speck_cells);
+  after = without_remnants(map, std::move(after), counts, mask, params.free_passes);
+  after = without_hidden_floor(map, std::move(after), placement.scans, params.most_hidden_m2);
+  update.changes = changes_between(map, after);
+  update.acceptance = merge::acceptance(counts.local_map(params.occupied_hit_share), after).value();
   if (update.changes.empty()) update.refusal = Refusal::kNothingChanged;
   if (update.acceptance < params.least_acceptance) update.refusal = Refusal::kLowAcceptance;
   if (!update.accepted()) update.changes.clear();

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/merge/acceptance.hpp"
 
+#include "core/near_occupied.hpp"
+
 namespace deltamap::mapping::merge {
 namespace {
-
-bool is_near_occupied(const OccupancyGrid& map, Cell cell) {
-  for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
-    for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
-      if (map.at({column, row}) == CellState::kOccupied) return true;
-    }
-  }
-  return false;
-}
 
 void count(Acceptance& counts, CellState one, CellState other) {
   if (one == CellState::kUnknown || other == CellState::kUnknown) return;
@@ -42,7 +35,7 @@ double surface_agreement(const OccupancyGrid& map, const OccupancyGrid& local, c
     if (local.cells()[i] != CellState::kOccupied) continue;
     const Point2 centre_in_map = map_from_local * local.geometry().centre_of(local.geometry().cell_of(i));
     const Cell cell = map.geometry().cell_at(centre_in_map);
-    const bool near = is_near_occupied(map, cell);
+    const bool near = has_occupied_within(map, cell, 1);
     found += near ? 1 : 0;
     known += near || map.at(cell) != CellState::kUnknown ? 1 : 0;
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/near_occupied.hpp"
 #include "simulation/start_map.hpp"
 #include "simulation/surface_optics.hpp"
 
@@ -12,15 +13,6 @@ namespace deltamap::simulation::score {
 namespace {
 
 constexpr double kSamePlace_m = 0.05;  // places this near to each other count as one
-
-bool has_occupied_neighbour(const OccupancyGrid& map, Cell cell) {
-  for (int row = -1; row <= 1; ++row) {
-    for (int column = -1; column <= 1; ++column) {
-      if (map.at({cell.column + column, cell.row + row}) == CellState::kOccupied) return true;
-    }
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -98,9 +90,9 @@ void ChangeWatch::judge(Watched& watched, const OccupancyGrid& map, const Occupa
   for (const std::size_t index : watched.witness.touched()) {
     const Cell cell = geometry_.cell_of(index);
     // A cell beside something else that stands there now says nothing about what has gone.
-    if (!change.appears && has_occupied_neighbour(surfaces, cell)) continue;
+    if (!change.appears && has_occupied_within(surfaces, cell, 1)) continue;
     ++change.visible_cells;
-    const bool is_right = change.appears ? has_occupied_neighbour(map, cell) : map[cell] == CellState::kFree;
+    const bool is_right = change.appears ? has_occupied_within(map, cell, 1) : map[cell] == CellState::kFree;
     if (is_right) ++change.right_cells;
   }
   change.seen_s = watched.witness.longest_seen_s();
