@@ -24,15 +24,12 @@ void add(Milestones& milestones, double passed, Timestamp now, double step, doub
 
 void ProvisionalWindow::observe(const TrackedScan& tracked, bool counts) {
   const Timestamp now = tracked.scan.time;
+  const double way_m = driven_way_.since_last_m(tracked);
   if (counts && last_) {
     passed_s_ += std::max(0.0, seconds(now - *last_));
-    if (tracked.odometry_epoch == epoch_) {
-      driven_m_ += distance_between(last_odom_from_robot_, tracked.odom_from_robot);
-    }
+    driven_m_ += way_m;
   }
   last_ = now;
-  last_odom_from_robot_ = tracked.odom_from_robot;
-  epoch_ = tracked.odometry_epoch;
   add(way_, driven_m_, now, kMilestone_m, params_.way_m);
   add(time_, passed_s_, now, kMilestone_s, params_.time_s);
 }

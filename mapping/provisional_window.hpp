@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/messages.hpp"
+#include "mapping/driven_way.hpp"
 
 namespace deltamap::mapping {
 
@@ -38,8 +39,7 @@ class ProvisionalWindow {
   double driven_m_ = 0.0;
   double passed_s_ = 0.0;
   std::optional<Timestamp> last_;
-  Pose2 last_odom_from_robot_;
-  std::uint32_t epoch_ = 0;
+  DrivenWay driven_way_;
 };
 
 }  // namespace deltamap::mapping

@@ -79,14 +79,14 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 }
 
 /// Has the pose held for long and far enough?
-bool WriteGate::holds(GateReason judgement, const TrackedScan& tracked) {
+bool WriteGate::holds(GateReason judgement, Timestamp time, double driven_m) {
   if (judgement != GateReason::kOpen) {
-    holds_since_ = tracked.scan.time;
+    holds_since_ = time;
     held_m_ = 0.0;
-  } else if (last_odom_from_robot_ && last_epoch_ == tracked.odometry_epoch) {
-    held_m_ += distance_between(*last_odom_from_robot_, tracked.odom_from_robot);
+  } else {
+    held_m_ += driven_m;
   }
-  return seconds(tracked.scan.time - holds_since_) >= params_.confirm_s && held_m_ >= params_.confirm_m;
+  return seconds(time - holds_since_) >= params_.confirm_s && held_m_ >= params_.confirm_m;
 }
 
 void WriteGate::observe(const TrackedScan& tracked) {
@@ -97,6 +97,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
   }
   last_ = time;
+  const double driven_m = driven_way_.since_last_m(tracked);
   const GateReason judgement = judged(tracked);
   const bool is_proof = proves_wrong(judgement);
   const bool doubts_long = judgement != GateReason::kOpen && shut_for_s_ >= params_.most_doubt_s;
@@ -104,7 +105,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
   if (was_tracking_ && (is_proof || misfit_.is_both_ways())) is_confirming_ = true;
-  if (is_confirming_ && holds(judgement, tracked)) is_confirming_ = false;
+  if (is_confirming_ && holds(judgement, time, driven_m)) is_confirming_ = false;
   reason_ = is_confirming_ && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
   if (is_open() && is_distrusted_) {
     is_distrusted_ = false;
@@ -112,8 +113,6 @@ void WriteGate::observe(const TrackedScan& tracked) {
   }
   if (is_open()) shut_for_s_ = 0.0;
   provisional_.observe(tracked, is_open());
-  last_odom_from_robot_ = tracked.odom_from_robot;
-  last_epoch_ = tracked.odometry_epoch;
 }
 
 }  // namespace deltamap::mapping

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/messages.hpp"
+#include "mapping/driven_way.hpp"
 #include "mapping/misfit.hpp"
 #include "mapping/pose_jump.hpp"
 #include "mapping/provisional_window.hpp"
@@ -81,7 +82,7 @@ class WriteGate {
 
  private:
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
-  [[nodiscard]] bool holds(GateReason judgement, const TrackedScan& tracked);
+  [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double driven_m);
 
   WriteGateParams params_;
   PoseJump jump_;
@@ -94,8 +95,7 @@ class WriteGate {
   bool is_distrusted_ = false;  // told that it was wrong, and not yet open again
   Timestamp holds_since_;
   double held_m_ = 0.0;  // driven since then
-  std::optional<Pose2> last_odom_from_robot_;
-  std::uint32_t last_epoch_ = 0;  // of odometry
+  DrivenWay driven_way_;
   std::optional<Timestamp> trusted_since_;
   std::optional<Timestamp> last_;
   GateTimes times_{};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 
+#include "daemon/tool/experiment/error_course.hpp"
 #include "daemon/tool/experiment/lived_in.hpp"
 #include "daemon/tool/experiment/localizer_drive.hpp"
 #include "daemon/tool/experiment/mapping_drive.hpp"
@@ -29,7 +30,7 @@ class Count {
   explicit Count(const GateRun& run) : run_{run} {}
 
   void observe(const Mapped& scan, double error_m, const OccupancyGrid& map) {
-    errors_.emplace_back(scan.time, error_m);
+    errors_.add(scan.time, error_m);
     while (!astray_.empty() && scan.passed_s - astray_.front().written_s >= run_.look_back_s) look_back(map);
     if (!scan.update) return;
     const MapStep::Result& update = *scan.update;
@@ -43,7 +44,7 @@ class Count {
     }
     revisions_ += 1.0;
     cells_ += static_cast<double>(changes.size());
-    if (error_at(update.note.time) > run_.wrong_pose_m) cells_drawn_astray_ += static_cast<double>(changes.size());
+    if (errors_.at_m(update.note.time) > run_.wrong_pose_m) cells_drawn_astray_ += static_cast<double>(changes.size());
     if (error_m <= run_.wrong_pose_m) return;
     cells_astray_ += static_cast<double>(changes.size());
     astray_.push_back({scan.passed_s, changes});
@@ -62,12 +63,6 @@ class Count {
   }
 
  private:
-  [[nodiscard]] double error_at(Timestamp time) const {
-    const auto found =
-        std::find_if(errors_.rbegin(), errors_.rend(), [&](const auto& entry) { return entry.first <= time; });
-    return found == errors_.rend() ? 0.0 : found->second;
-  }
-
   void look_back(const OccupancyGrid& map) {
     for (const CellChange& change : astray_.front().changes) {
       if (map[change.cell] == change.after) cells_that_stood_ += 1.0;
@@ -81,7 +76,7 @@ class Count {
   double cells_ = 0.0;
   double cells_astray_ = 0.0;
   double cells_drawn_astray_ = 0.0;  // where the pose was wrong when their set ended
-  std::vector<std::pair<Timestamp, double>> errors_;
+  ErrorCourse errors_;
   double cells_that_stood_ = 0.0;
   double withdrawn_ = 0.0;
   double withdrawn_cells_ = 0.0;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/near_occupied.hpp"
+
 namespace deltamap::daemon::tool::experiment {
 namespace {
 
@@ -19,15 +21,6 @@ constexpr double kRightShare = 0.8;  // of a written thing's cells
 constexpr int kRegionReach = 2;      // cells; written cells so near are one thing
 constexpr std::size_t kSpeck = 3;    // smaller regions are not counted as things
 constexpr int kGhostReach = 2;       // cells from anything that stands
-
-bool has_occupied_within(const OccupancyGrid& map, Cell cell, int reach) {
-  for (int row = cell.row - reach; row <= cell.row + reach; ++row) {
-    for (int column = cell.column - reach; column <= cell.column + reach; ++column) {
-      if (map.at({column, row}) == CellState::kOccupied) return true;
-    }
-  }
-  return false;
-}
 
 /// Written cells that are near each other.
 std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {
@@ -82,9 +75,9 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
 
   ++scans_;
   scans_lost_ += scan.estimate.state == LocalizerState::kTracking ? 0 : 1;
-  errors_m_.push_back(distance_between(scan.map_from_robot, scan.estimate.map_from_robot));
-  times_.push_back(scan.time);
-  errors_since_row_m_.push_back(errors_m_.back());
+  const double error_m = distance_between(scan.map_from_robot, scan.estimate.map_from_robot);
+  errors_.add(scan.time, error_m);
+  errors_since_row_m_.push_back(error_m);
   if (scan.update) judge_writing(scan);
   if (now_s_ >= next_look_s_) look(scan);
   if (now_s_ >= next_judgement_s_) {
@@ -145,24 +138,10 @@ bool MappingWatch::is_ghost(const OccupancyGrid& map, std::size_t cell) const {
          !is_near_someone(map.geometry().centre_of(map.geometry().cell_of(cell)));
 }
 
-OccupancyGrid MappingWatch::ghosts(const OccupancyGrid& map) const {
-  OccupancyGrid grid{map.geometry()};
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
-    if (is_ghost(map, i)) grid.set(map.geometry().cell_of(i), CellState::kOccupied);
-  }
-  return grid;
-}
-
 void MappingWatch::count_ghosts(const OccupancyGrid& map) {
   ghosts_now_ = 0;
   for (std::size_t i = 0; i < map.cells().size(); ++i) ghosts_now_ += is_ghost(map, i) ? 1 : 0;
   ghost_cell_minutes_ += static_cast<double>(ghosts_now_) * params_.judge_every_s / 60.0;
-}
-
-/// Of the newest scan that is not newer.
-double MappingWatch::error_at_m(Timestamp time) const {
-  const auto after = std::upper_bound(times_.begin(), times_.end(), time);
-  return after == times_.begin() ? 0.0 : errors_m_[static_cast<std::size_t>(after - times_.begin()) - 1];
 }
 
 void MappingWatch::judge_writing(const Mapped& scan) {
@@ -173,7 +152,7 @@ void MappingWatch::judge_writing(const Mapped& scan) {
   ++revisions_;
   const std::vector<CellChange>& changes = scan.update->revision->changes;
   cells_written_ += changes.size();
-  const double error_m = std::max(errors_m_.back(), error_at_m(scan.update->note.time));
+  const double error_m = std::max(errors_.at_m(scan.time), errors_.at_m(scan.update->note.time));
   if (error_m > params_.wrong_pose_m) cells_written_astray_ += changes.size();
   const OccupancyGrid& truth = truth_.visible();
   const auto is_right = [&](const CellChange& change) {
@@ -202,13 +181,15 @@ void MappingWatch::judge_writing(const Mapped& scan) {
   }
 }
 
+MappingWatch::Scores MappingWatch::scores_of(const OccupancyGrid& map) const {
+  const score::CellMask seen = truth_.seen();
+  return {seen, score::map_score(truth_.visible(), map, seen), score::map_score(truth_.visible(), *first_, seen),
+          score::map_score(truth_.visible(), truth_.perfect(), seen), score::map_score(truth_.solid(), map, seen)};
+}
+
 void MappingWatch::add_course_row(const OccupancyGrid& map) {
   next_row_s_ += params_.score_every_s;
-  const score::CellMask seen = truth_.seen();
-  const score::MapScore ours = score::map_score(truth_.visible(), map, seen);
-  const score::MapScore stale = score::map_score(truth_.visible(), *first_, seen);
-  const score::MapScore perfect = score::map_score(truth_.visible(), truth_.perfect(), seen);
-  const score::MapScore solid = score::map_score(truth_.solid(), map, seen);
+  const auto [seen, ours, stale, perfect, solid] = scores_of(map);
   course_.add({now_s_, mean_of(errors_since_row_m_), quantile(errors_since_row_m_, 1.0), ours.acceptance,
                stale.acceptance, perfect.acceptance, solid.acceptance, ours.contour_f1, stale.contour_f1,
                perfect.contour_f1, ours.wrong_m2, static_cast<double>(ghosts_now_), static_cast<double>(revisions_)});
@@ -228,11 +209,7 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
     in_view_s.push_back(is_found ? fates_[i].followed_after_s : std::numeric_limits<double>::infinity());
     clock_s.push_back(is_found ? fates_[i].followed_after_clock_s : std::numeric_limits<double>::infinity());
   }
-  const score::CellMask seen = truth_.seen();
-  const score::MapScore ours = score::map_score(truth_.visible(), map, seen);
-  const score::MapScore stale = score::map_score(truth_.visible(), *first_, seen);
-  const score::MapScore perfect = score::map_score(truth_.visible(), truth_.perfect(), seen);
-  const score::MapScore solid = score::map_score(truth_.solid(), map, seen);
+  const auto [seen, ours, stale, perfect, solid] = scores_of(map);
   const score::MapScore solid_perfect = score::map_score(truth_.solid(), truth_.perfect(), seen);
   double drift_m = 0.0;
   for (const double wall_m : truth_.wall_drift(*first_, map))
@@ -252,10 +229,10 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
     return all == 0 ? std::numeric_limits<double>::quiet_NaN() : whole(part) / whole(all);
   };
   return {{"minutes", now_s_ / 60.0},
-          {"error_mean_m", mean_of(errors_m_)},
-          {"error_rms_m", root_mean_square(errors_m_)},
-          {"error_p99_m", quantile(errors_m_, 0.99)},
-          {"error_most_m", quantile(errors_m_, 1.0)},
+          {"error_mean_m", mean_of(errors_.all_m())},
+          {"error_rms_m", root_mean_square(errors_.all_m())},
+          {"error_p99_m", quantile(errors_.all_m(), 0.99)},
+          {"error_most_m", quantile(errors_.all_m(), 1.0)},
           {"not_tracking", share(scans_lost_, scans_)},
           {"changes_seen_10s", whole(in_view_s.size())},
           {"changes_found", whole(found)},

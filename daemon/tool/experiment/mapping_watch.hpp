@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/tool/experiment/error_course.hpp"
 #include "daemon/tool/experiment/mapping_drive.hpp"
 #include "daemon/tool/experiment/scan_table.hpp"
 #include "simulation/score/change_watch.hpp"
@@ -35,9 +36,6 @@ class MappingWatch {
   [[nodiscard]] std::vector<std::pair<std::string, double>> numbers(const OccupancyGrid& map);
   /// A row every `score_every_s`.
   [[nodiscard]] const ScanTable& course() const { return course_; }
-  /// Occupied in the map, nothing stands there, and a beam has gone through since.
-  [[nodiscard]] OccupancyGrid ghosts(const OccupancyGrid& map) const;
-  [[nodiscard]] const OccupancyGrid& perfect() const { return truth_.perfect(); }
   [[nodiscard]] const OccupancyGrid& truth() const { return truth_.visible(); }
 
  private:
@@ -50,13 +48,20 @@ class MappingWatch {
     bool was_right = false;   ///< the map had it right when it first came into view: nothing to follow
   };
 
+  /// Against what a laser can see, over all that has ever been in view.
+  struct Scores {
+    simulation::score::CellMask seen;
+    simulation::score::MapScore ours, stale, perfect;
+    simulation::score::MapScore solid;  ///< ours, insides counted
+  };
+  [[nodiscard]] Scores scores_of(const OccupancyGrid& map) const;
   void look(const Mapped& scan);
   void judge_changes(const OccupancyGrid& map);
   [[nodiscard]] bool is_near_someone(const Point2& place) const;
+  /// Occupied in the map, nothing stands there, and a beam has gone through since.
   [[nodiscard]] bool is_ghost(const OccupancyGrid& map, std::size_t cell) const;
   void count_ghosts(const OccupancyGrid& map);
   void judge_writing(const Mapped& scan);
-  [[nodiscard]] double error_at_m(Timestamp time) const;
   void add_course_row(const OccupancyGrid& map);
   void refresh_surfaces();
 
@@ -69,8 +74,7 @@ class MappingWatch {
   OccupancyGrid surfaces_;  // all that stands now, passing things too
   std::vector<Fate> fates_;
   ScanTable course_;
-  std::vector<double> errors_m_;
-  std::vector<Timestamp> times_;  // of the errors
+  ErrorCourse errors_;
   std::vector<double> errors_since_row_m_;
   double now_s_ = 0.0;
   double next_look_s_ = 0.0;

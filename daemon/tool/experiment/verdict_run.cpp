@@ -2,6 +2,7 @@
 #include "daemon/tool/experiment/verdict_run.hpp"
 
 #include <cmath>
+#include "daemon/tool/experiment/view_difference.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 namespace {
@@ -13,24 +14,7 @@ constexpr double kMostWaiting = 2.0;  // times the driving that is wanted: then 
 constexpr double kOracle_s = 30.0;  // of driving: the path that the oracle sees
 constexpr double kViewEvery_s = 2.5;
 
-constexpr double kOtherEnd_m = 0.25;     // between two ranges of one beam that end on different things
-constexpr double kOtherEndShare = 0.05;  // of the beams: the map is wrong here
-
-/// Whether what can be seen from a pose differs between two worlds.
-bool view_differs(const simulation::RayCaster& one, const simulation::RayCaster& other, const Pose2& map_from_laser,
-                  double max_range_m) {
-  constexpr int kBeams = 181;
-  int differing = 0;
-  for (int beam = 0; beam < kBeams; ++beam) {
-    const double bearing_rad = map_from_laser.theta + radians(beam - 90.0);
-    const auto range_m = [&](const simulation::RayCaster& surfaces) {
-      const auto hit = surfaces.cast(map_from_laser.position(), bearing_rad, max_range_m);
-      return hit ? hit->range_m : max_range_m;
-    };
-    if (std::abs(range_m(one) - range_m(other)) > kOtherEnd_m) ++differing;
-  }
-  return differing > kOtherEndShare * kBeams;
-}
+constexpr double kOtherEndShare = 0.05;  // of the beams end elsewhere: the map is wrong here
 
 /// Whether the robot moved or turned between two scans.
 bool has_driven(const Pose2& before, const Pose2& now, double dt_s) {
@@ -82,8 +66,9 @@ VerdictScans verdict_scans(const VerdictPlace& place, const localization::Stabil
     }
     const PoseError error = error_of(scan);
     const Belief& belief = scan.estimate.belief;
-    const bool differs = event_s && run.changed_share > 0.0 &&
-                         view_differs(pair.drive().surfaces(), as_mapped, map_from_laser, run.max_range_m);
+    const bool differs =
+        event_s && run.changed_share > 0.0 &&
+        differing_share(pair.drive().surfaces(), as_mapped, map_from_laser, run.max_range_m) > kOtherEndShare;
     scans.add({event_s ? passed_s - *event_s : passed_s - run.before_s, driven_s, scan.map_from_robot.x,
                scan.map_from_robot.y, scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
                static_cast<double>(scan.estimate.state), belief.pose_right, belief.map_wrong,
