@@ -2,6 +2,7 @@
 #include "core/grid_patch.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace deltamap {
 
@@ -31,10 +32,11 @@ OccupancyGrid patched(OccupancyGrid grid, std::span<const CellChange> changes) {
 std::vector<CellChange> changes_between(const OccupancyGrid& before, const OccupancyGrid& after) {
   std::vector<CellChange> changes;
   const GridGeometry& geometry = before.geometry();
+  const auto width = static_cast<std::size_t>(geometry.width);
   for (int row = 0; row < geometry.height; ++row) {
-    const auto first = static_cast<std::ptrdiff_t>(geometry.index_of({0, row}));
-    const auto from = before.cells().begin() + first;
-    if (std::equal(from, from + geometry.width, after.cells().begin() + first)) continue;  // most rows, and quick
+    const std::size_t first = static_cast<std::size_t>(row) * width;
+    if (std::memcmp(before.cells().data() + first, after.cells().data() + first, width) == 0)
+      continue;  // most rows, and quick
     for (int column = 0; column < geometry.width; ++column) {
       const Cell cell{column, row};
       if (before[cell] != after[cell]) changes.push_back({cell, before[cell], after[cell]});

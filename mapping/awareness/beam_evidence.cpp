@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
-
-#include "core/grid_ray.hpp"
 
 namespace deltamap::mapping::awareness {
 namespace {
@@ -32,10 +29,12 @@ double aside_m(const PoseDeviation& deviation, double distance_m) {
   return std::hypot(deviation.position_m, distance_m * deviation.heading_rad);
 }
 
-bool has_surface_within(const OccupancyGrid& map, const Point2& place, double radius_m) {
+bool has_surface_within(const OccupancyGrid& map, const ClearSpace& clear, const Point2& place, double radius_m) {
   const GridGeometry& geometry = map.geometry();
   const Cell centre = geometry.cell_at(place);
-  if (map.at(centre) == CellState::kOccupied) return true;
+  const bool on_map = geometry.contains(centre);
+  if (on_map && map[centre] == CellState::kOccupied) return true;
+  if (on_map && clear.clear_cells_around(centre) * geometry.resolution_m >= radius_m) return false;
   const int reach = static_cast<int>(std::ceil(radius_m / geometry.resolution_m));
   const double radius2 = radius_m * radius_m;
   for (int ring = 1; ring <= reach; ++ring) {
@@ -52,21 +51,22 @@ bool has_surface_within(const OccupancyGrid& map, const Point2& place, double ra
   return false;
 }
 
-/// Does a neighbouring beam, which the robot's pose could as well have sent, meet a surface about as far away?
-bool meets_surface_between(const OccupancyGrid& map, const Point2& from, const Point2& to, double nearest_m,
-                           double farthest_m) {
-  const double length_m = (to - from).norm();
-  if (length_m <= nearest_m) return false;
-  const Point2 along = (to - from) / length_m;
-  bool met = false;
-  const Point2 start = from + std::max(0.0, nearest_m) * along;
-  const Point2 stop = from + std::min(length_m, farthest_m) * along;
-  walk_ray(map.geometry(), start, stop, [&](Cell cell, double) {
-    met = map.at(cell) == CellState::kOccupied;
-    return !met;
-  });
-  return met;
-}
+/// As pose * point, with the sine taken once for all points.
+class PointsInMap {
+ public:
+  explicit PointsInMap(const Pose2& map_from_robot)
+      : pose_{map_from_robot}, c_{std::cos(map_from_robot.theta)}, s_{std::sin(map_from_robot.theta)} {}
+
+  [[nodiscard]] Point2 operator()(const Eigen::Vector2f& point) const {
+    const Point2 in_robot = point.cast<double>();
+    return {pose_.x + c_ * in_robot.x() - s_ * in_robot.y(), pose_.y + s_ * in_robot.x() + c_ * in_robot.y()};
+  }
+
+ private:
+  Pose2 pose_;
+  double c_;
+  double s_;
+};
 
 struct Passage {
   double entered_m;
@@ -76,8 +76,9 @@ struct Passage {
 
 class BeamJudge {
  public:
-  BeamJudge(const OccupancyGrid& map, const PoseDeviation& deviation, const BeamEvidenceParams& params)
-      : map_{map}, deviation_{deviation}, params_{params} {}
+  BeamJudge(const OccupancyGrid& map, const ClearSpace& clear, const PoseDeviation& deviation,
+            const BeamEvidenceParams& params)
+      : map_{map}, clear_{clear}, deviation_{deviation}, params_{params} {}
 
   /// The occupied cells in the beam's way that it has clearly left behind, for every pose within the uncertainty.
   void collect_passed(BeamVerdict& beam) const {
@@ -85,17 +86,16 @@ class BeamJudge {
     if (limit_m <= 0.0) return;
     std::optional<Passage> passage;
     const double gap_m = 2.5 * map_.resolution_m();
-    walk_ray(map_.geometry(), beam.from, beam.end, [&](Cell cell, double entered_m) {
-      if (map_.at(cell) == CellState::kOccupied) {
-        if (!passage) passage = Passage{entered_m, entered_m, beam.passed.size()};
-        if (entered_m > limit_m) return false;  // the beam ends inside: it has passed what lies before
-        passage->left_m = entered_m + map_.resolution_m();
-        beam.passed.push_back(cell);
-      } else if (passage && entered_m > passage->left_m + gap_m) {
+    walk_surfaces(map_, clear_, beam.from, beam.end, [&](Cell cell, double entered_m, double before_m) {
+      if (passage && before_m > passage->left_m + gap_m) {
         close(beam, *passage);
         passage.reset();
       }
-      return entered_m <= limit_m || passage.has_value();
+      if (entered_m > limit_m) return false;  // the beam ends inside: it has passed what lies before
+      if (!passage) passage = Passage{entered_m, entered_m, beam.passed.size()};
+      passage->left_m = entered_m + map_.resolution_m();
+      beam.passed.push_back(cell);
+      return true;
     });
     if (passage) close(beam, *passage);
   }
@@ -115,7 +115,7 @@ class BeamJudge {
     for (const double side : {1.0, -1.0}) {
       const Point2 from = beam.from + side * near_m * left;
       const Point2 end = beam.end + side * far_m * left;
-      if (!meets_surface_between(map_, from, end, passage.entered_m - slack_m,
+      if (!meets_surface_between(from, end, passage.entered_m - slack_m,
                                  std::min(passage.left_m + slack_m, beam.length_m - beam.interval_m))) {
         return false;
       }
@@ -123,7 +123,23 @@ class BeamJudge {
     return true;
   }
 
+  /// Does a neighbouring beam, which the robot's pose could as well have sent, meet a surface about as far away?
+  [[nodiscard]] bool meets_surface_between(const Point2& from, const Point2& to, double nearest_m,
+                                           double farthest_m) const {
+    const double length_m = (to - from).norm();
+    if (length_m <= nearest_m) return false;
+    const Point2 along = (to - from) / length_m;
+    bool met = false;
+    walk_surfaces(map_, clear_, from + std::max(0.0, nearest_m) * along, from + std::min(length_m, farthest_m) * along,
+                  [&](Cell, double, double) {
+                    met = true;
+                    return false;
+                  });
+    return met;
+  }
+
   const OccupancyGrid& map_;
+  const ClearSpace& clear_;
   const PoseDeviation deviation_;
   const BeamEvidenceParams& params_;
 };
@@ -137,28 +153,30 @@ bool speaks(const Estimate& estimate, double turn_rate_rad_per_s, const BeamEvid
          deviation.heading_rad <= params.most_heading_deviation_rad;
 }
 
-std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const TrackedScan& tracked,
+std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpace& clear, const TrackedScan& tracked,
                                        const BeamEvidenceParams& params, std::vector<BeamVerdict> verdicts) {
   verdicts.resize(tracked.rays.size());
   const bool silent = !speaks(tracked.estimate, tracked.turn_rate_rad_per_s, params);
   const PoseDeviation deviation = pose_deviation(tracked.estimate, tracked.turn_rate_rad_per_s, params);
-  const BeamJudge judge{map, deviation, params};
+  const BeamJudge judge{map, clear, deviation, params};
+  const double farthest_m =
+      std::min(params.most_range_m, std::sqrt(std::max(0.0, params.most_aside_m * params.most_aside_m -
+                                                                deviation.position_m * deviation.position_m)) /
+                                        deviation.heading_rad);
+  const PointsInMap in_map{tracked.estimate.map_from_robot};
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     BeamVerdict& beam = verdicts[i];
-    std::vector<Cell> memory = std::move(beam.passed);
-    memory.clear();
-    beam = BeamVerdict{};
-    beam.passed = std::move(memory);
+    beam.passed.clear();
+    beam.what = BeamClass::kSilent;
+    beam.length_m = 0.0;
+    beam.ends_at_surface = true;
+    beam.ends_off_map = false;
     if (silent || tracked.scan.beams[i].kind != BeamKind::kRange) continue;
     const RayInRobot& ray = tracked.rays[i];
-    beam.from = tracked.estimate.map_from_robot * Point2{ray.origin.cast<double>()};
-    beam.end = tracked.estimate.map_from_robot * Point2{ray.end.cast<double>()};
+    beam.from = in_map(ray.origin);
+    beam.end = in_map(ray.end);
     beam.length_m = (beam.end - beam.from).norm();
     if (beam.length_m <= 0.0) continue;
-    const double farthest_m =
-        std::min(params.most_range_m, std::sqrt(std::max(0.0, params.most_aside_m * params.most_aside_m -
-                                                                  deviation.position_m * deviation.position_m)) /
-                                          deviation.heading_rad);
     beam.ends_at_surface = beam.length_m <= farthest_m;
     if (!beam.ends_at_surface) {
       beam.end = beam.from + (beam.end - beam.from) * (farthest_m / beam.length_m);
@@ -168,7 +186,7 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const TrackedSc
 
     judge.collect_passed(beam);
     beam.ends_off_map =
-        beam.ends_at_surface && !has_surface_within(map, beam.end, beam.interval_m + map.resolution_m());
+        beam.ends_at_surface && !has_surface_within(map, clear, beam.end, beam.interval_m + map.resolution_m());
     if (!beam.passed.empty()) {
       beam.what = BeamClass::kThrough;
     } else if (beam.ends_off_map) {

@@ -9,6 +9,7 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
+#include "mapping/awareness/clear_space.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -48,9 +49,9 @@ struct BeamVerdict {
 /// Is the estimate good enough for its beams to say anything?
 [[nodiscard]] bool speaks(const Estimate& estimate, double turn_rate_rad_per_s, const BeamEvidenceParams& params);
 
-/// One verdict a beam, written over `verdicts` of the scan before (its memory is used again).
-[[nodiscard]] std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const TrackedScan& tracked,
-                                                     const BeamEvidenceParams& params,
+/// One verdict a beam, written over `verdicts` of the scan before (its memory is used again). `clear` is that of `map`.
+[[nodiscard]] std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpace& clear,
+                                                     const TrackedScan& tracked, const BeamEvidenceParams& params,
                                                      std::vector<BeamVerdict> verdicts = {});
 
 }  // namespace deltamap::mapping::awareness

@@ -5,9 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/grid_ray.hpp"
-#include "mapping/awareness/face_step.hpp"
-
 namespace deltamap::mapping::awareness {
 namespace {
 
@@ -44,34 +41,16 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (before == nullptr || before->geometry() != map_->geometry()) {
     layer_ = VoteLayer{params_.votes, map_->geometry()};
     waiting_.clear();
-    solid_.assign(layer_.blocks().cell_count(), 0);
+    clear_ = ClearSpace{*map_, layer_.cells_per_block()};
     watched_ = WatchList{params_.watch, layer_.blocks()};
     flips_ = FlipMemory{params_.flips};
-    find_solid({{0, 0}, {map_->width(), map_->height()}});
     return;
   }
-  for (const CellChange& change : changes_between(*before, *map_)) {
-    const CellBox around = grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry());
-    layer_.reset(around);
-    find_solid(around);
+  const std::vector<CellChange> changes = changes_between(*before, *map_);
+  for (const CellChange& change : changes) {
+    layer_.reset(grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry()));
   }
-}
-
-void EvidencePhase::find_solid(const CellBox& cells) {
-  const Cell first = layer_.block_of(cells.first);
-  const int side = layer_.cells_per_block();
-  for (int row = first.row; row * side < cells.last.row; ++row) {
-    for (int column = first.column; column * side < cells.last.column; ++column) {
-      const CellBox block = layer_.cells_of({column, row});
-      bool solid = false;
-      for (int y = block.first.row; y < block.last.row; ++y) {
-        for (int x = block.first.column; x < block.last.column; ++x) {
-          solid = solid || map_->at({x, y}) == CellState::kOccupied;
-        }
-      }
-      solid_[layer_.blocks().index_of({column, row})] = solid ? 1 : 0;
-    }
-  }
+  clear_.update(*map_, changes);
 }
 
 void EvidencePhase::count_beams() {
@@ -81,67 +60,6 @@ void EvidencePhase::count_beams() {
     short_beams_ += beam.ends_off_map ? 1 : 0;
     through_beams_ += beam.what == BeamClass::kThrough ? 1 : 0;
   }
-}
-
-/// One vote a block, question and keyframe; a block that was both hit and passed was hit.
-EvidencePhase::Votes EvidencePhase::votes_of_beams(double bearing_step_rad) const {
-  Votes votes;
-  const GridGeometry& blocks = layer_.blocks();
-  const auto add = [&](Blocks& side, Cell block) {
-    if (blocks.contains(block)) side.push_back(static_cast<std::uint32_t>(blocks.index_of(block)));
-  };
-  auto& [yes_added, yes_removed] = votes.yes;
-  auto& [no_added, no_removed] = votes.no;
-  for (const BeamVerdict& beam : beams_) {
-    if (beam.length_m <= 0.0) continue;  // silent
-    for (const Cell& cell : beam.passed) add(yes_removed, layer_.block_of(cell));
-    if (beam.ends_off_map) add(yes_added, blocks.cell_at(beam.end));
-    const Cell end = blocks.cell_at(beam.end);
-    if (beam.ends_at_surface && blocks.contains(end) && watched_.is_watched(end)) add(votes.ends, end);
-    if (beam.ends_at_surface && !beam.ends_off_map) {
-      for (int row = -1; row <= 1; ++row) {
-        for (int column = -1; column <= 1; ++column) {
-          const Cell near{end.column + column, end.row + row};
-          if (blocks.contains(near) && solid_[blocks.index_of(near)] != 0) add(no_removed, near);
-        }
-      }
-    }
-    const double clear_m = beam.length_m - beam.interval_m - map_->resolution_m();
-    if (clear_m <= 0.0) continue;
-    const Point2 clear_end = beam.from + (beam.end - beam.from) * (clear_m / beam.length_m);
-    walk_ray(blocks, beam.from, clear_end, [&](Cell block, double) {
-      if (!blocks.contains(block)) return false;
-      if (layer_.is_open(Question::kAdded, block)) add(no_added, block);
-      return true;
-    });
-  }
-  add_faces(bearing_step_rad, yes_added);
-  for (const Question question : kQuestions) {
-    const auto i = static_cast<std::size_t>(question);
-    sort_unique(votes.yes[i]);
-    sort_unique(votes.no[i]);
-    Blocks& hit = question == Question::kAdded ? votes.yes[i] : votes.no[i];
-    Blocks& passed = question == Question::kAdded ? votes.no[i] : votes.yes[i];
-    Blocks only_passed;
-    std::set_difference(passed.begin(), passed.end(), hit.begin(), hit.end(), std::back_inserter(only_passed));
-    passed = std::move(only_passed);
-  }
-  sort_unique(votes.ends);
-  return votes;
-}
-
-/// Far away, neighbouring beams end blocks apart: what lies between them on one new face is as new.
-void EvidencePhase::add_faces(double bearing_step_rad, Blocks& added) const {
-  const GridGeometry& blocks = layer_.blocks();
-  const auto length_m = [&](std::size_t i) { return beams_[i].ends_off_map ? beams_[i].length_m : 0.0; };
-  const auto end = [&](std::size_t i) -> const Point2& { return beams_[i].end; };
-  const FaceParams face{.slant = params_.face_slant, .bearing_step_rad = bearing_step_rad};
-  for_each_face_step(beams_.size(), face, length_m, end, [&](std::size_t i) {
-    walk_ray(blocks, end(i), end(i + 1), [&](Cell block, double) {
-      if (blocks.contains(block)) added.push_back(static_cast<std::uint32_t>(blocks.index_of(block)));
-      return true;
-    });
-  });
 }
 
 void EvidencePhase::cast(const Votes& votes) {
@@ -317,14 +235,12 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   through_beams_ = 0;
   if (!keyframes_.is_due(tracked) || !speaks(estimate, tracked.turn_rate_rad_per_s, params_.beams)) return std::nullopt;
 
-  beams_ = beam_evidence(*map_, tracked, params_.beams, std::move(beams_));
+  beams_ = beam_evidence(*map_, clear_, tracked, params_.beams, std::move(beams_));
   count_beams();
-  const Votes votes = votes_of_beams(tracked.scan.bearing_step_rad);
+  const FaceParams face{.slant = params_.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
+  const Votes& votes = votes_.of(beams_, {clear_, layer_, watched_}, face);
   cast(votes);
-  Blocks blocks = merged(merged(votes.yes[0], votes.yes[1]), merged(votes.no[0], votes.no[1]));
-  blocks = merged(std::move(blocks), votes.ends);
-  sort_unique(blocks);
-  keyframes_.keep(tracked, std::move(blocks));
+  keyframes_.keep(tracked, votes.all);
   watched_.see(votes.ends);
   std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);
   return set ? std::move(set) : another_look(tracked.scan.time);

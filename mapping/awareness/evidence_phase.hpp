@@ -10,6 +10,8 @@
 
 #include "core/messages.hpp"
 #include "mapping/awareness/beam_evidence.hpp"
+#include "mapping/awareness/beam_votes.hpp"
+#include "mapping/awareness/clear_space.hpp"
 #include "mapping/awareness/evidence_regions.hpp"
 #include "mapping/awareness/flip_memory.hpp"
 #include "mapping/awareness/keyframe_pool.hpp"
@@ -53,18 +55,8 @@ class EvidencePhase {
   [[nodiscard]] std::uint32_t through_beams() const { return through_beams_; }
 
  private:
-  using Blocks = std::vector<std::uint32_t>;  // indices, sorted and unique once collected
-  struct Votes {
-    Blocks yes[2];
-    Blocks no[2];
-    Blocks ends;  // where beams ended in watched blocks
-  };
-
   void take_map(std::shared_ptr<const OccupancyGrid> map);
-  void find_solid(const CellBox& cells);
   void count_beams();
-  [[nodiscard]] Votes votes_of_beams(double bearing_step_rad) const;
-  void add_faces(double bearing_step_rad, Blocks& blocks) const;
   [[nodiscard]] double flips_beyond(Cell block) const;
   [[nodiscard]] bool is_passing(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_small_and_apart(const std::vector<ProvenBlock>& region) const;
@@ -84,7 +76,8 @@ class EvidencePhase {
   KeyframePool keyframes_;
   std::vector<BeamVerdict> beams_;
   std::vector<ProvenBlock> waiting_;
-  std::vector<std::uint8_t> solid_;  // blocks with an occupied cell
+  ClearSpace clear_;
+  BeamVotes votes_;
   WatchList watched_;
   FlipMemory flips_;
   std::optional<Timestamp> start_;

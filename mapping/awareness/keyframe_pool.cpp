@@ -5,17 +5,6 @@
 #include <utility>
 
 namespace deltamap::mapping::awareness {
-namespace {
-
-bool share_one(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
-  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-    if (*i == *j) return true;
-    *i < *j ? ++i : ++j;
-  }
-  return false;
-}
-
-}  // namespace
 
 bool KeyframePool::is_due(const TrackedScan& tracked) const {
   if (kept_.empty()) return true;
@@ -26,19 +15,23 @@ bool KeyframePool::is_due(const TrackedScan& tracked) const {
          seconds(tracked.scan.time - last.scan.time) >= params_.waited_s;
 }
 
-void KeyframePool::keep(const TrackedScan& tracked, std::vector<std::uint32_t> sorted_blocks) {
+void KeyframePool::keep(const TrackedScan& tracked, std::vector<std::uint32_t> blocks) {
   if (!kept_.empty() && kept_.back().tracked.odometry_epoch != tracked.odometry_epoch) kept_.clear();
   if (kept_.size() >= params_.most_kept) kept_.pop_front();
-  kept_.push_back({tracked, std::move(sorted_blocks)});
+  kept_.push_back({tracked, std::move(blocks)});
   kept_.back().tracked.estimate.map.reset();  // a keyframe outlives the map that its pose was computed on
 }
 
-std::vector<TrackedScan> KeyframePool::that_saw(const std::vector<std::uint32_t>& sorted_blocks,
-                                                Timestamp since) const {
+std::vector<TrackedScan> KeyframePool::that_saw(const std::vector<std::uint32_t>& blocks, Timestamp since) const {
+  if (blocks.empty()) return {};
+  std::vector<bool> asked(*std::max_element(blocks.begin(), blocks.end()) + 1, false);
+  for (const std::uint32_t block : blocks) asked[block] = true;
   std::vector<TrackedScan> scans;
   for (auto keyframe = kept_.rbegin(); keyframe != kept_.rend() && scans.size() < params_.most_in_set; ++keyframe) {
     if (keyframe->tracked.scan.time < since) break;
-    if (share_one(keyframe->blocks, sorted_blocks)) scans.push_back(keyframe->tracked);
+    const bool saw = std::any_of(keyframe->blocks.begin(), keyframe->blocks.end(),
+                                 [&](std::uint32_t block) { return block < asked.size() && asked[block]; });
+    if (saw) scans.push_back(keyframe->tracked);
   }
   std::reverse(scans.begin(), scans.end());
   return scans;

@@ -21,7 +21,7 @@ struct KeyframeParams {
 
 struct Keyframe {
   TrackedScan tracked;                ///< without its map
-  std::vector<std::uint32_t> blocks;  ///< that it voted on, sorted
+  std::vector<std::uint32_t> blocks;  ///< that it voted on
 };
 
 class KeyframePool {
@@ -30,10 +30,9 @@ class KeyframePool {
 
   [[nodiscard]] bool is_due(const TrackedScan& tracked) const;
   /// Keeps the scan, and forgets the oldest and those of another odometry epoch.
-  void keep(const TrackedScan& tracked, std::vector<std::uint32_t> sorted_blocks);
+  void keep(const TrackedScan& tracked, std::vector<std::uint32_t> blocks);
   /// The newest keyframes since `since` that voted on one of the blocks, in order of time.
-  [[nodiscard]] std::vector<TrackedScan> that_saw(const std::vector<std::uint32_t>& sorted_blocks,
-                                                  Timestamp since) const;
+  [[nodiscard]] std::vector<TrackedScan> that_saw(const std::vector<std::uint32_t>& blocks, Timestamp since) const;
 
  private:
   KeyframeParams params_;

@@ -13,6 +13,9 @@ VoteLayer::VoteLayer(const VoteLayerParams& params, const GridGeometry& map) : p
   tiles_across_ = static_cast<std::size_t>(blocks_.width / kTileSide + 1);
   const std::size_t tiles_up = static_cast<std::size_t>(blocks_.height / kTileSide + 1);
   open_.assign(blocks_.cell_count(), 0);
+  squares_ = {blocks_.width / kSquareSide + 1, blocks_.height / kSquareSide + 1, blocks_.resolution_m * kSquareSide,
+              blocks_.origin};
+  opened_.assign(squares_.cell_count(), 0);
   tile_of_.assign(tiles_across_ * tiles_up, -1);
 }
 
@@ -53,12 +56,21 @@ VoteLayer::Tile& VoteLayer::tile_for(Cell block, std::uint32_t now_ms) {
   return tile;
 }
 
+void VoteLayer::set_open(Cell block, std::uint8_t bits) {
+  std::uint8_t& open = open_[blocks_.index_of(block)];
+  std::uint8_t& opened = opened_[squares_.index_of({block.column / kSquareSide, block.row / kSquareSide})];
+  const std::uint8_t added = bit_of(Question::kAdded);
+  if ((open & added) != (bits & added))
+    opened = static_cast<std::uint8_t>((bits & added) != 0 ? opened + 1 : opened - 1);
+  open = bits;
+}
+
 void VoteLayer::empty_tile(Tile& tile) {
   const Cell first{static_cast<int>(tile.place % tiles_across_) * kTileSide,
                    static_cast<int>(tile.place / tiles_across_) * kTileSide};
   for (int row = first.row; row < std::min(first.row + kTileSide, blocks_.height); ++row) {
     for (int column = first.column; column < std::min(first.column + kTileSide, blocks_.width); ++column) {
-      open_[blocks_.index_of({column, row})] = 0;
+      set_open({column, row}, 0);
     }
   }
   tile = Tile{};
@@ -73,7 +85,7 @@ void VoteLayer::vote(Question question, Cell block, bool yes, std::uint32_t now_
     if (ballot.yes < 0.5F) ballot.first_ms = now_ms;
     ballot.yes = std::min(most, ballot.yes + 1.0F);
     ballot.no *= left;
-    open_[blocks_.index_of(block)] |= bit_of(question);
+    set_open(block, open_[blocks_.index_of(block)] | bit_of(question));
   } else {
     ballot.no = std::min(most, ballot.no + 1.0F);
     ballot.yes *= left;
@@ -82,7 +94,7 @@ void VoteLayer::vote(Question question, Cell block, bool yes, std::uint32_t now_
 }
 
 void VoteLayer::reset(Question question, Cell block) {
-  open_[blocks_.index_of(block)] &= static_cast<std::uint8_t>(~bit_of(question));
+  set_open(block, static_cast<std::uint8_t>(open_[blocks_.index_of(block)] & ~bit_of(question)));
   const std::int32_t tile = tile_of_[place_of(block)];
   if (tile >= 0)
     tiles_[static_cast<std::size_t>(tile)].ballots[static_cast<std::size_t>(question)][slot_of(block)] = {};

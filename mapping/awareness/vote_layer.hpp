@@ -5,10 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/grid_patch.hpp"
+#include "core/grid_ray.hpp"
 #include "core/occupancy_grid.hpp"
 
 namespace deltamap::mapping::awareness {
@@ -49,10 +51,14 @@ class VoteLayer {
   [[nodiscard]] Cell block_of(Cell cell) const { return {cell.column / cells_per_block_, cell.row / cells_per_block_}; }
   [[nodiscard]] CellBox cells_of(Cell block) const;
 
-  /// Has anybody said yes to the question in this block? Asked along every beam.
+  /// Has anybody said yes to the question in this block?
   [[nodiscard]] bool is_open(Question question, Cell block) const {
     return (open_[blocks_.index_of(block)] & bit_of(question)) != 0;
   }
+  /// `visit(Cell block)` for those that the segment touches in which somebody has said "added"; most of the way there
+  /// is none, and it is passed in squares of many blocks.
+  template <typename Visit>
+  void walk_open(const Point2& from, const Point2& to, Visit&& visit) const;
   /// Without the yes votes that are void by now.
   [[nodiscard]] Ballot ballot(Question question, Cell block, std::uint32_t now_ms) const;
 
@@ -64,6 +70,7 @@ class VoteLayer {
 
  private:
   static constexpr int kTileSide = 16;
+  static constexpr int kSquareSide = 8;
   struct Tile {
     Ballot ballots[2][kTileSide * kTileSide];
     std::uint32_t last_ms = 0;
@@ -81,6 +88,7 @@ class VoteLayer {
     return static_cast<std::size_t>(block.row % kTileSide) * kTileSide +
            static_cast<std::size_t>(block.column % kTileSide);
   }
+  void set_open(Cell block, std::uint8_t bits);
   [[nodiscard]] Tile& tile_for(Cell block, std::uint32_t now_ms);
   void empty_tile(Tile& tile);
   [[nodiscard]] bool is_void(const Ballot& ballot, std::uint32_t now_ms) const;
@@ -90,8 +98,32 @@ class VoteLayer {
   int cells_per_block_ = 1;
   std::size_t tiles_across_ = 0;
   std::vector<std::uint8_t> open_;     // a bit a question, for each block
+  GridGeometry squares_;               // of kSquareSide × kSquareSide blocks
+  std::vector<std::uint8_t> opened_;   // blocks in a square in which somebody has said "added"
   std::vector<std::int32_t> tile_of_;  // index into tiles_, -1 = none
   std::vector<Tile> tiles_;
 };
+
+template <typename Visit>
+void VoteLayer::walk_open(const Point2& from, const Point2& to, Visit&& visit) const {
+  const double length_m = (to - from).norm();
+  const auto walk_blocks = [&](const Point2& first, const Point2& last) {
+    walk_ray(blocks_, first, last, [&](Cell block, double) {
+      if (!blocks_.contains(block)) return false;
+      if (is_open(Question::kAdded, block)) visit(block);
+      return true;
+    });
+  };
+  std::optional<Point2> since;  // where the squares began that have open blocks
+  walk_ray(squares_, from, to, [&](Cell square, double entered_m) {
+    const bool is_empty = !squares_.contains(square) || opened_[squares_.index_of(square)] == 0;
+    if (is_empty == !since) return true;
+    const Point2 here = entered_m > 0.0 ? Point2{from + (to - from) * (entered_m / length_m)} : from;
+    if (since) walk_blocks(*since, here);
+    since = is_empty ? std::nullopt : std::optional{here};
+    return true;
+  });
+  if (since) walk_blocks(*since, to);
+}
 
 }  // namespace deltamap::mapping::awareness

@@ -34,7 +34,7 @@ class WatchList {
 
   [[nodiscard]] bool is_watched(Cell block) const { return watchers_[geometry_.index_of(block)] > 0; }
 
-  /// The watched blocks in which a keyframe's beams ended, sorted.
+  /// The watched blocks in which a keyframe's beams ended.
   void see(const std::vector<std::uint32_t>& ends);
 
   /// The first region that enough keyframes have seen.

@@ -23,7 +23,7 @@ class Beams : public testing::Test {
         Eigen::Vector3d{position_m * position_m, position_m * position_m, heading_rad * heading_rad}.asDiagonal();
     tracked.estimate.state = state;
     tracked.turn_rate_rad_per_s = turn_rate;
-    return beam_evidence(map, tracked, {}).front();
+    return beam_evidence(map, ClearSpace{map, 2}, tracked, {}).front();
   }
 
   OccupancyGrid map{{220, 200, 0.05, {-1.0, -5.0}}, CellState::kFree};
@@ -45,10 +45,11 @@ TEST_F(Beams, SayNothingOfTheScanBeforeWhereTheyHaveNoRange) {
   tracked.estimate.state = LocalizerState::kTracking;
   tracked.scan.beams = {{3.0F, 0.0F, BeamKind::kRange}};
   tracked.rays = {{{0.0F, 0.0F}, {3.0F, 0.0F}}};
-  std::vector<BeamVerdict> verdicts = beam_evidence(map, tracked, {});
+  const ClearSpace clear{map, 2};
+  std::vector<BeamVerdict> verdicts = beam_evidence(map, clear, tracked, {});
   ASSERT_TRUE(verdicts.front().ends_off_map);
   tracked.scan.beams.front().kind = BeamKind::kBeyondMaximum;
-  verdicts = beam_evidence(map, tracked, {}, std::move(verdicts));
+  verdicts = beam_evidence(map, clear, tracked, {}, std::move(verdicts));
   EXPECT_EQ(verdicts.front().what, BeamClass::kSilent);
   EXPECT_EQ(verdicts.front().length_m, 0.0);
   EXPECT_FALSE(verdicts.front().ends_off_map);

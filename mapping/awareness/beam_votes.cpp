@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/awareness/beam_votes.hpp"
+
+#include <algorithm>
+
+#include "core/grid_ray.hpp"
+
+namespace deltamap::mapping::awareness {
+
+void BeamVotes::mark(const GridGeometry& blocks, Cell block, Marks what) {
+  if (!blocks.contains(block)) return;
+  const std::size_t index = blocks.index_of(block);
+  Marks& marks = marks_[index];
+  if (marks == 0) marked_.push_back(static_cast<std::uint32_t>(index));
+  marks |= what;
+}
+
+void BeamVotes::mark_still_there(Cell end, const ClearSpace& clear) {
+  const GridGeometry& blocks = clear.blocks();
+  if (blocks.contains(end)) {
+    if (clear.distance(end) > 1 || (marks_[blocks.index_of(end)] & kLookedAround) != 0) return;
+    mark(blocks, end, kLookedAround);
+  }
+  for (int row = end.row - 1; row <= end.row + 1; ++row) {
+    for (int column = end.column - 1; column <= end.column + 1; ++column) {
+      if (blocks.contains({column, row}) && clear.is_solid({column, row})) mark(blocks, {column, row}, kStillThere);
+    }
+  }
+}
+
+void BeamVotes::mark_beam(const BeamVerdict& beam, const VotedMap& map) {
+  const GridGeometry& blocks = map.layer.blocks();
+  for (const Cell& cell : beam.passed) mark(blocks, map.layer.block_of(cell), kGone);
+  const Cell end = blocks.cell_at(beam.end);
+  if (beam.ends_off_map) mark(blocks, end, kNewHere);
+  if (beam.ends_at_surface && blocks.contains(end) && map.watched.is_watched(end)) mark(blocks, end, kWatchedEnd);
+  if (beam.ends_at_surface && !beam.ends_off_map) mark_still_there(end, map.clear);
+  const double clear_m = beam.length_m - beam.interval_m - blocks.resolution_m / map.layer.cells_per_block();
+  if (clear_m <= 0.0) return;
+  const Point2 clear_end = beam.from + (beam.end - beam.from) * (clear_m / beam.length_m);
+  map.layer.walk_open(beam.from, clear_end, [&](Cell block) { mark(blocks, block, kNothingNew); });
+}
+
+/// Far away, neighbouring beams end blocks apart: what lies between them on one new face is as new.
+void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face) {
+  const auto length_m = [&](std::size_t i) { return beams[i].ends_off_map ? beams[i].length_m : 0.0; };
+  const auto end = [&](std::size_t i) -> const Point2& { return beams[i].end; };
+  for_each_face_step(beams.size(), face, length_m, end, [&](std::size_t i) {
+    walk_ray(blocks, end(i), end(i + 1), [&](Cell block, double) {
+      mark(blocks, block, kNewHere);
+      return true;
+    });
+  });
+}
+
+/// A block that was both hit and passed was hit.
+void BeamVotes::collect() {
+  constexpr auto kAdded = static_cast<std::size_t>(Question::kAdded);
+  constexpr auto kRemoved = static_cast<std::size_t>(Question::kRemoved);
+  for (Blocks* blocks : {&votes_.yes[0], &votes_.yes[1], &votes_.no[0], &votes_.no[1], &votes_.ends, &votes_.all}) {
+    blocks->clear();
+  }
+  for (const std::uint32_t block : marked_) {
+    const Marks marks = marks_[block];
+    marks_[block] = 0;
+    if ((marks & kNewHere) != 0) {
+      votes_.yes[kAdded].push_back(block);
+    } else if ((marks & kNothingNew) != 0) {
+      votes_.no[kAdded].push_back(block);
+    }
+    if ((marks & kStillThere) != 0) {
+      votes_.no[kRemoved].push_back(block);
+    } else if ((marks & kGone) != 0) {
+      votes_.yes[kRemoved].push_back(block);
+    }
+    if ((marks & kWatchedEnd) != 0) votes_.ends.push_back(block);
+    if (marks != kLookedAround) votes_.all.push_back(block);
+  }
+  marked_.clear();
+  for (Blocks& yes : votes_.yes) std::sort(yes.begin(), yes.end());
+}
+
+const Votes& BeamVotes::of(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face) {
+  const GridGeometry& blocks = map.layer.blocks();
+  marks_.resize(blocks.cell_count(), 0);
+  for (const BeamVerdict& beam : beams) {
+    if (beam.length_m > 0.0) mark_beam(beam, map);  // else silent
+  }
+  mark_faces(beams, blocks, face);
+  collect();
+  return votes_;
+}
+
+}  // namespace deltamap::mapping::awareness

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a keyframe's beams vote, block by block: new where they end off the map, gone where they went through what it
+// has, and against both where they found it as it is. One vote a block and question.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mapping/awareness/beam_evidence.hpp"
+#include "mapping/awareness/clear_space.hpp"
+#include "mapping/awareness/face_step.hpp"
+#include "mapping/awareness/vote_layer.hpp"
+#include "mapping/awareness/watch_list.hpp"
+
+namespace deltamap::mapping::awareness {
+
+using Blocks = std::vector<std::uint32_t>;  // by index
+
+/// By question. The yes votes are sorted, all else comes as it was met.
+struct Votes {
+  Blocks yes[2];
+  Blocks no[2];
+  Blocks ends;  ///< watched blocks in which beams ended
+  Blocks all;   ///< every block above
+};
+
+/// The map that a scan's beams vote on: all of the same blocks.
+struct VotedMap {
+  const ClearSpace& clear;
+  const VoteLayer& layer;
+  const WatchList& watched;
+};
+
+class BeamVotes {
+ public:
+  /// The votes stand until the next scan's.
+  [[nodiscard]] const Votes& of(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face);
+
+ private:
+  using Marks = std::uint8_t;  // a bit each of the following
+  static constexpr Marks kNewHere = 1, kNothingNew = 2, kGone = 4, kStillThere = 8, kWatchedEnd = 16,
+                         kLookedAround = 32;
+
+  void mark(const GridGeometry& blocks, Cell block, Marks what);
+  void mark_beam(const BeamVerdict& beam, const VotedMap& map);
+  void mark_still_there(Cell end, const ClearSpace& clear);
+  void mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face);
+  void collect();
+
+  std::vector<Marks> marks_;  // of every block; none between scans
+  Blocks marked_;             // blocks with marks, each once
+  Votes votes_;
+};
+
+}  // namespace deltamap::mapping::awareness
