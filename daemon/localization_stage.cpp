@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
+#include "navigation/remembered_obstacles.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -81,6 +82,7 @@ void LocalizationStage::pass_over(const Scan& scan) {
 void LocalizationStage::localize(Scan scan) {
   const std::uint32_t number = scan.number;
   take_revisions(number);
+  take_things(number);
   take_commands(number);
   TrackedScan tracked = step_.observe(std::move(scan));
   show(tracked.estimate, tracked.scan.received);
@@ -89,7 +91,7 @@ void LocalizationStage::localize(Scan scan) {
   (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
   keep_now_and_then(tracked.scan.time);
-  if (pilot_) wiring_.drive(pilot_->step(tracked));
+  if (pilot_) wiring_.drive(pilot_->step(tracked, obstacles_beside(tracked)));
   if (!mapping_enabled_ || is_paused_ || wiring_.tracked_scans.try_send(std::move(tracked))) return;
   wiring_.telemetry.tracked_lost.add(1);
   note({Kind::kTrackedLost, number, 0});
@@ -101,6 +103,20 @@ void LocalizationStage::take_revisions(std::uint32_t scan) {
     // Counted from the start of the run, as a replay does.
     note({Kind::kRevision, scan, revision->number - first_revision_});
   }
+}
+
+void LocalizationStage::take_things(std::uint32_t scan) {
+  std::shared_ptr<const TemporaryThings> newest;
+  while (auto things = wiring_.things.try_receive()) newest = std::move(*things);
+  if (newest == nullptr || is_paused_) return;
+  note({Kind::kThings, scan, newest->number});
+  things_ = newest;
+  step_.apply(std::move(newest));
+}
+
+std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& tracked) const {
+  if (things_ == nullptr) return {};
+  return navigation::remembered_obstacles(*things_, tracked, {});
 }
 
 // --- the operator ---
@@ -125,6 +141,10 @@ CommandOutcome LocalizationStage::obey(const Command& command, std::uint32_t sca
   if (!mapping_enabled_) return {command.ticket, false, "'mapping.enabled' is false: there is nothing to pause"};
   is_paused_ = command.kind == Command::Kind::kPause;
   wiring_.telemetry.paused.set(is_paused_);
+  if (is_paused_) {  // nobody would notice what leaves
+    things_.reset();
+    step_.apply(things_);
+  }
   note({is_paused_ ? Kind::kPaused : Kind::kResumed, scan, 0});
   return {command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from};
 }

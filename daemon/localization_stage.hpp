@@ -25,6 +25,7 @@ class LocalizationStage {
   struct Wiring {
     Channel<SensorMessage>& sensors;
     Channel<MapRevision>& revisions;
+    Channel<std::shared_ptr<const TemporaryThings>>& things;
     Channel<Command>& commands;
     Channel<TrackedScan>& tracked_scans;
     RecorderInput& recorder;
@@ -48,6 +49,9 @@ class LocalizationStage {
   void pass_over(const Scan& scan);
   void localize(Scan scan);
   void take_revisions(std::uint32_t scan);
+  void take_things(std::uint32_t scan);
+  /// For the pilot: what stands there although the scan does not show it.
+  [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked) const;
   void take_commands(std::uint32_t scan);
   [[nodiscard]] CommandOutcome obey(const Command& command, std::uint32_t scan);
   void save(const Command& command);
@@ -69,6 +73,7 @@ class LocalizationStage {
   std::uint32_t first_revision_;
   std::uint64_t first_map_;
   std::shared_ptr<const OccupancyGrid> map_;
+  std::shared_ptr<const TemporaryThings> things_;  // may be null
   MemorySettings memory_;
   bool is_kept_;                        // there is a store to keep it beside
   std::optional<Timestamp> pose_kept_;  // nothing until the first scan

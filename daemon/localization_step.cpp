@@ -2,6 +2,7 @@
 #include "daemon/localization_step.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace deltamap::daemon {
 namespace {
@@ -50,6 +51,8 @@ TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
 }
 
 void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(revision); }
+
+void LocalizationStep::apply(std::shared_ptr<const TemporaryThings> things) { localizer_.apply(std::move(things)); }
 
 void LocalizationStep::relocalize(const Pose2& map_from_robot) {
   localizer_.relocalize(localization::InitialPose{map_from_robot});

@@ -36,6 +36,8 @@ class LocalizationStep {
   /// A scan that a newer one has overtaken: where odometry alone says that it was taken.
   [[nodiscard]] TrajectoryPoint pass_over(const Scan& scan);
   void apply(const MapRevision& revision);
+  /// What is different from the map for now; null: nothing is known any more.
+  void apply(std::shared_ptr<const TemporaryThings> things);
   /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°).
   void relocalize(const Pose2& map_from_robot);
 

@@ -71,20 +71,22 @@ struct Pipeline::State {
       128};                           // localization → delta: the newest scan is not looked at for changes, journaled
   Channel<ScanSet> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
-  Channel<Command> commands{16};      // control → localization: the newest command, and its sender is told
+  Channel<std::shared_ptr<const TemporaryThings>> things{8};  // delta → localization: offered again at the next scan
+  Channel<Command> commands{16};  // control → localization: the newest command, and its sender is told
 
   // The first that touches a file: where another daemon listens at the socket, this one ends before it does harm.
   std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
   Recorder recorder;                     // bytes, decisions, lines → disk
   IoStage io;                            // bytes → Odometry, Scan
-  LocalizationStage localization;        // Odometry, Scan, MapRevision, Command → TrackedScan, DriveCommand
-  void look_for_changes();               // TrackedScan → ScanSet
-  void update_maps();                    // ScanSet → MapRevision
+  LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
+  void look_for_changes();         // TrackedScan → ScanSet, TemporaryThings
+  void update_maps();              // ScanSet → MapRevision
 
   // --- what each thread owns ---
 
   mapping::StoreScan store_scan;
   GateWatch gate_watch;
+  std::uint32_t things_sent = 0;     // number of the newest snapshot that the localizer has been sent
   std::deque<ScanSet> waiting_sets;  // the map thread was busy: offered again at the next scan; one set, and orders
   MapStep map_step;
   mapping::MapStore* store;                    // of the settings; null after it has failed
@@ -97,6 +99,7 @@ struct Pipeline::State {
   }
   void hand_over(ScanSet set);
   void offer_waiting_sets();
+  void offer_things();
   void tell_of_gate(const mapping::Awareness& awareness);
   void update_map(const ScanSet& set);
   void save(const MapStep::Result& result);
@@ -140,6 +143,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                    options.first_map,
                    {.sensors = sensors,
                     .revisions = revisions,
+                    .things = things,
                     .commands = commands,
                     .tracked_scans = tracked_scans,
                     .recorder = recorder.from_localization(),
@@ -181,6 +185,7 @@ void Pipeline::State::look_for_changes() {
     const Workload::Item item{awareness_work};
     offer_waiting_sets();
     auto set = store_scan.observe(*tracked);
+    offer_things();
     const mapping::Awareness& awareness = store_scan.awareness();
     telemetry.r_d.set(awareness.r_d);
     telemetry.in_phase.set(awareness.in_phase);
@@ -198,6 +203,15 @@ void Pipeline::State::look_for_changes() {
 
 void Pipeline::State::offer_waiting_sets() {
   while (!waiting_sets.empty() && sets.try_send(std::move(waiting_sets.front()))) waiting_sets.pop_front();
+}
+
+void Pipeline::State::offer_things() {
+  const std::shared_ptr<const TemporaryThings>& newest = store_scan.temporary();
+  if (newest == nullptr || newest->number == things_sent) return;
+  const std::uint32_t number = newest->number;
+  telemetry.things_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
+  telemetry.things_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
+  if (things.try_send(std::shared_ptr<const TemporaryThings>{newest})) things_sent = number;
 }
 
 void Pipeline::State::tell_of_gate(const mapping::Awareness& awareness) {

@@ -15,6 +15,7 @@
 #include "daemon/revision_keeper.hpp"
 #include "daemon/revision_queue.hpp"
 #include "daemon/stage.hpp"
+#include "daemon/things_queue.hpp"
 #include "drivers/port/replay_port.hpp"
 #include "mapping/store_scan.hpp"
 
@@ -79,6 +80,7 @@ class Replay {
       report_.journal = "obeyed";
     obeys_ = report_.journal == "obeyed";
     revisions_ = std::make_unique<RevisionQueue>(obeys_ ? &journal_ : nullptr, job.map_delay_s);
+    things_ = std::make_unique<ThingsQueue>(obeys_ ? &journal_ : nullptr);
   }
 
   void run(const ReplayProgress& progress);
@@ -99,6 +101,7 @@ class Replay {
   mapping::StoreScan store_scan_;
   MapStep map_;
   std::unique_ptr<RevisionQueue> revisions_;
+  std::unique_ptr<ThingsQueue> things_;
   mapping::MapStore store_;
   LineFile trajectory_;
   LineFile localization_log_;
@@ -160,6 +163,7 @@ void Replay::take(Scan&& scan) {
   {
     const CpuTimer timer{report_.cpu.localization_s};
     while (const auto revision = revisions_->next_before(scan)) localization_.apply(*revision);
+    if (auto things = things_->next_before(scan.number)) localization_.apply(std::move(things));
     if (obeys_) obey_commands_before(scan.number);
     tracked = localization_.observe(std::move(scan));
     step_times_.add(timer.elapsed_s());
@@ -177,6 +181,7 @@ void Replay::obey_commands_before(std::uint32_t scan) {
   for (const Decision& command : journal_.commands_before(scan)) {
     if (command.kind == Decision::Kind::kRelocalized) localization_.relocalize(command.map_from_robot);
     if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
+    if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
     if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
   }
 }
@@ -190,6 +195,7 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
   {
     const CpuTimer timer{report_.cpu.awareness_s};
     set = store_scan_.observe(tracked);
+    things_->push(store_scan_.temporary());
   }
   if (!set) return;
   if (set->withdraw_from) return update_map(*set);

@@ -114,11 +114,22 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                             "deviations of the particles within which the estimate goes on from scan to scan"));
 }
 
+void add_temporary(localization::TemporaryBeamsParams& temporary, Keys& keys) {
+  const std::string at = "localization.temporary.";
+  keys.push_back(flag_key(at + "weighing", temporary.weighing,
+                          "leave beams that end at what stands there for now out of weighing"));
+  keys.push_back(flag_key(at + "belief", temporary.belief,
+                          "and out of what speaks against the pose; slower to notice a wrong one"));
+  keys.push_back(number_key(at + "least_share_left", temporary.least_share_left, "", 0.0, 1.0,
+                            "of a scan's beams; where fewer would be left, all weigh"));
+}
+
 }  // namespace
 
 void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys) {
   add_particles(localizer, keys);
   add_models(localizer, keys);
+  add_temporary(localizer.temporary, keys);
 }
 
 }  // namespace deltamap::daemon

@@ -41,6 +41,16 @@ void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, double& lon
                             "without votes until a block starts anew"));
 }
 
+void add_temporary(mapping::awareness::TemporaryParams& temporary, Keys& keys) {
+  const std::string at = "mapping.temporary.";
+  keys.push_back(whole_key(at + "least_votes", temporary.least_votes, "", 1, 255,
+                           "keyframes that put a block into the temporary layer (method evidence)"));
+  keys.push_back(whole_key(at + "most_votes", temporary.most_votes, "", 1, 255,
+                           "keyframes that must see otherwise, at most, until it leaves; at least least_votes"));
+  keys.push_back(number_key(at + "lapse_s", temporary.lapse_s, "s", 1.0, 86400.0, "unseen, until it leaves"));
+  keys.push_back(whole_key(at + "most_blocks", temporary.most_blocks, "", 1, 1000000, "of each kind; 32 bytes each"));
+}
+
 void add_evidence_update(mapping::EvidenceUpdateParams& evidence, Keys& keys) {
   const std::string with_evidence = "mapping.evidence.update.";
   keys.push_back(
@@ -117,6 +127,7 @@ void add_mapping_keys(MappingSettings& settings, Keys& keys) {
                             "how changes are found and merged"));
   add_evidence(store_scan.evidence, settings.update.evidence.longest_m, keys);
   add_evidence_update(settings.update.evidence, keys);
+  add_temporary(store_scan.evidence.temporary, keys);
   add_gate(store_scan.gate, keys);
   add_paper(store_scan, keys);
   add_paper_update(settings.update.paper, keys);

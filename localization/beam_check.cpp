@@ -67,9 +67,11 @@ class BeamJudge {
         heading_rad_{
             std::hypot(std::sqrt(std::max(0.0, believed.covariance(2, 2))), params.least_heading_deviation_rad)} {}
 
+  [[nodiscard]] Point2 end_of(const RayInRobot& ray) const { return pose_ * Point2{ray.end.cast<double>()}; }
+
   [[nodiscard]] CheckedBeam judged(const RayInRobot& ray) const {
     const Point2 from = pose_ * Point2{ray.origin.cast<double>()};
-    const Point2 end = pose_ * Point2{ray.end.cast<double>()};
+    const Point2 end = end_of(ray);
     const double length_m = (end - from).norm();
     const Aside aside{position_m_, std::hypot(position_m_, length_m * heading_rad_)};
     if (length_m <= kOutOfTheLaserM || aside.at_end_m > params_.most_aside_m) return {};
@@ -125,13 +127,18 @@ class BeamJudge {
 }  // namespace
 
 std::span<const CheckedBeam> BeamCheck::check(const OccupancyGrid& map, const Scan& scan,
-                                              std::span<const RayInRobot> rays, const RefinedPose& believed) {
+                                              std::span<const RayInRobot> rays, const RefinedPose& believed,
+                                              const TemporaryThings* things) {
   const BeamJudge judge{map, believed, scan.max_range_m, params_};
   const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(1, params_.beams)));
   beams_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = i * rays.size() / count;
     beams_.push_back(scan.beams[at].kind == BeamKind::kRange ? judge.judged(rays[at]) : CheckedBeam{});
+    if (things == nullptr) continue;
+    CheckedBeam& beam = beams_.back();
+    beam.is_known = (beam.what == BeamFit::kShort && things->stands_at(judge.end_of(rays[at]))) ||
+                    (beam.what == BeamFit::kBeyond && things->is_gone_at(map.geometry().centre_of(beam.expected)));
   }
   return beams_;
 }

@@ -11,6 +11,7 @@
 #include "core/angle.hpp"
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
+#include "core/temporary_things.hpp"
 #include "localization/pose_refinement.hpp"
 
 namespace deltamap::localization {
@@ -36,15 +37,16 @@ struct CheckedBeam {
   BeamFit what = BeamFit::kSilent;
   Cell expected;            ///< the obstacle that the map expects the beam to end at
   Point2 normal{0.0, 0.0};  ///< of its surface, towards free space; zero where it has none
+  bool is_known = false;    ///< kShort, kBeyond: by what is known to stand or to be gone there for now
 };
 
 class BeamCheck {
  public:
   explicit BeamCheck(const BeamCheckParams& params) : params_{params} {}
 
-  /// The chosen beams in order of bearing; valid until the next call.
+  /// The chosen beams in order of bearing; valid until the next call. `things` may be null.
   std::span<const CheckedBeam> check(const OccupancyGrid& map, const Scan& scan, std::span<const RayInRobot> rays,
-                                     const RefinedPose& believed);
+                                     const RefinedPose& believed, const TemporaryThings* things = nullptr);
 
  private:
   BeamCheckParams params_;

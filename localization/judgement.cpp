@@ -47,7 +47,7 @@ const Belief& Judgement::observe(const View& view) {
   if (!due(view.passed)) return belief_;
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
-  const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed);
+  const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed, view.things);
   judge_.observe(tallied(beams, stability_), passed, shares_in(view.rivals));
   belief_ = judge_.belief();
   earn(beams, view);

@@ -40,6 +40,7 @@ class Judgement {
     LocalizerState state = LocalizerState::kGlobal;
     PoseJudge::Passed passed;  ///< since the last scan
     const RivalReport& rivals;
+    const TemporaryThings* things = nullptr;  ///< what is known to be different for now
   };
   const Belief& observe(const View& view);
 

@@ -66,6 +66,8 @@ void Localizer::apply(const MapRevision& revision) {
   state.beam_model.reset();
 }
 
+void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->things = std::move(things); }
+
 void Localizer::relocalize(const InitialPose& pose) { state_->start_at(pose); }
 
 const RivalReport& Localizer::rivals() const { return state_->rivals.report(); }

@@ -16,6 +16,7 @@
 #include "localization/pose_refinement.hpp"
 #include "localization/pose_track.hpp"
 #include "localization/rivals.hpp"
+#include "localization/temporary_beams.hpp"
 #include "localization/tracker.hpp"
 
 namespace deltamap::localization {
@@ -38,6 +39,7 @@ struct LocalizerParams {
   PlaceBankParams places;
   FitParams fit;
   JudgementParams judgement;
+  TemporaryBeamsParams temporary;
 };
 
 }  // namespace deltamap::localization

@@ -133,7 +133,7 @@ RefinedPose Localizer::State::search(const ScanInstant& now) {
 
 RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_from_laser) {
   const Tracker::Answer tracked = tracker.observe({.now = now,
-                                                   .ends = ends,
+                                                   .ends = weighing_ends(now),
                                                    .field = field,
                                                    .beam_model = beam_model ? &*beam_model : nullptr,
                                                    .robot_from_laser = robot_from_laser});
@@ -156,6 +156,15 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
   return tracked.believed;
 }
 
+const BeamEnds& Localizer::State::weighing_ends(const ScanInstant& now) {
+  const bool knows = params.temporary.weighing && things && !things->standing.empty() && last_believed;
+  if (!knows || ends.size() == 0) return ends;
+  const Pose2 expected = *last_believed * motion_between(last_joined, joined_at(now));
+  ends_beside_things = lasting_ends(ends, *things, expected, std::move(ends_beside_things));
+  const double left = static_cast<double>(ends_beside_things.size());
+  return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_things : ends;
+}
+
 bool Localizer::State::has_won(const RivalPlace& place, const Pose2& believed) const {
   constexpr double kClearlyBetter = 0.15;
   if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
@@ -169,6 +178,8 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   FitMonitor::Observation seen = passed_since_last_scan(now);
   last_joined = joined_at(now);
   last_scan = now.time;
+  const bool is_tracking = monitor.state() == LocalizerState::kTracking && !check.under_way();
+  last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
   seen.fit = explained_share(field, ends, believed.map_from_robot);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
   if (check.under_way()) return blind ? void() : judge_start(seen.fit);
@@ -179,7 +190,8 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .believed = believed,
                                             .state = before,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
-                                            .rivals = rivals.report()});
+                                            .rivals = rivals.report(),
+                                            .things = params.temporary.belief ? things.get() : nullptr});
   if (blind) return;
   seen.verdict = belief.verdict;
   seen.trust = judgement.trust();

@@ -30,6 +30,9 @@ struct Localizer::State {
   PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   BeamEnds ends;
+  std::shared_ptr<const TemporaryThings> things;  ///< that stand or are gone for now; may be null
+  BeamEnds ends_beside_things;
+  std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
   Pose2 last_joined;  ///< odometry at the last scan
@@ -65,6 +68,8 @@ struct Localizer::State {
   /// has beaten it may be the image of one that nobody has looked at yet.
   RefinedPose search(const ScanInstant& now);
   RefinedPose track(const ScanInstant& now, const Point2& robot_from_laser);
+  /// Those that weigh the believed pose: without what stands about for now, where enough are left.
+  const BeamEnds& weighing_ends(const ScanInstant& now);
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
   [[nodiscard]] bool has_won(const RivalPlace& place, const Pose2& believed) const;
   [[nodiscard]] FitMonitor::Observation passed_since_last_scan(const ScanInstant& now) const;

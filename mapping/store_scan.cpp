@@ -27,6 +27,10 @@ StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
 
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
+const std::shared_ptr<const TemporaryThings>& StoreScan::temporary() const {
+  return state_->evidence.temporary().newest();
+}
+
 std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {
   State& s = *state_;
   // Averages hold the weights of a tracked pose alone: what a lost filter thinks of a scan says nothing about the map.
@@ -39,7 +43,12 @@ std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {
     s.awareness.stored_scans = s.paper.kept();
   } else {
     s.gate.observe(tracked);
-    if (s.gate.lets_vote()) s.gate.take(s.evidence.observe(tracked), tracked);
+    if (s.gate.lets_vote()) {
+      s.gate.take(s.evidence.observe(tracked), tracked);
+    } else {
+      s.evidence.temporary().hide(tracked.scan.time);
+    }
+    if (s.gate.gate().has_proven_wrong()) s.evidence.temporary().clear();
     set = s.gate.next();
     s.awareness.in_phase = s.evidence.waiting() > 0;
     s.awareness.phase = s.evidence.number();

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/messages.hpp"
+#include "core/temporary_things.hpp"
 #include "mapping/awareness/delta_phase.hpp"
 #include "mapping/awareness/divergence_ratio.hpp"
 #include "mapping/awareness/evidence_phase.hpp"
@@ -51,6 +52,9 @@ class StoreScan {
   [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
 
   [[nodiscard]] const Awareness& awareness() const;
+  /// What is different now and not map (evidence alone): the newest snapshot, another one only where something has
+  /// changed. Null until there was something; empty while the pose is in doubt.
+  [[nodiscard]] const std::shared_ptr<const TemporaryThings>& temporary() const;
 
  private:
   struct State;

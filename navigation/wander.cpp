@@ -24,8 +24,9 @@ constexpr std::array<double, 7> kBends{0.0, 0.2, -0.2, 0.4, -0.4, 0.7, -0.7};  /
 
 }  // namespace
 
-void Wander::look(const Scan& scan) {
+void Wander::look(const Scan& scan, std::span<const Point2> also_in_robot) {
   obstacles_ = obstacles_of(scan, params_.obstacles);
+  obstacles_.insert(obstacles_.end(), also_in_robot.begin(), also_in_robot.end());
   const double first = scan.robot_from_laser.theta + scan.first_bearing_rad;
   const double last =
       first + static_cast<double>(scan.beams.empty() ? 0 : scan.beams.size() - 1) * scan.bearing_step_rad;
@@ -116,8 +117,8 @@ DriveCommand Wander::driving(Timestamp time) const {
   return {time, share * params_.speed_m_per_s, share * best_bend};  // the same bend, driven slower
 }
 
-DriveCommand Wander::step(const TrackedScan& tracked) {
-  look(tracked.scan);
+DriveCommand Wander::step(const TrackedScan& tracked, std::span<const Point2> also_in_robot) {
+  look(tracked.scan, also_in_robot);
   const Timestamp time = tracked.scan.time;
   if (!leg_ends_) plan_leg(time);
   const double free_ahead_m = free_towards_m(0.0);

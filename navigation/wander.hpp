@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drives about so that everything reachable gets seen: straight on where it is clear, round what stands in the way, out
-// of dead ends, and now and then off in another direction. Needs no pose and no map: only what the scan saw, and the
-// odometry to know how far it has turned. Never reverses: the laser looks ahead only.
+// of dead ends, and now and then off in another direction. Needs no pose and no map: only what the scan saw, what else
+// is known to stand about, and the odometry to know how far it has turned. Never reverses: the laser looks ahead only.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/angle.hpp"
@@ -32,8 +33,9 @@ class Wander {
  public:
   Wander(const WanderParams& params, std::uint64_t seed) : params_{params}, random_{seed} {}
 
-  /// What to do after this scan; hand it to Safety, which has the last word.
-  [[nodiscard]] DriveCommand step(const TrackedScan& tracked);
+  /// What to do after this scan; hand it to Safety, which has the last word. `also_in_robot`: obstacles besides those
+  /// that the scan saw.
+  [[nodiscard]] DriveCommand step(const TrackedScan& tracked, std::span<const Point2> also_in_robot = {});
 
  private:
   /// A turn on the spot. The side is kept to the end, so that a corner cannot make the robot waver.
@@ -48,7 +50,7 @@ class Wander {
     double right_rad;  // bearings of the outermost beams in the robot's frame
     double left_rad;
   };
-  void look(const Scan& scan);
+  void look(const Scan& scan, std::span<const Point2> also_in_robot);
   void plan_leg(Timestamp from);
   void begin_turn(const TrackedScan& tracked, double by_rad);
   /// Whether it still has to turn; ends the turn where not.
@@ -62,7 +64,7 @@ class Wander {
 
   WanderParams params_;
   Random random_;
-  std::vector<Point2> obstacles_;  // of the present scan, in the robot's frame
+  std::vector<Point2> obstacles_;  // in the robot's frame
   Field field_{};
   std::optional<Turn> turn_;
   std::optional<Timestamp> leg_ends_;

@@ -40,6 +40,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   const std::shared_ptr<const OccupancyGrid> before = std::exchange(map_, std::move(map));
   if (before == nullptr || before->geometry() != map_->geometry()) {
     layer_ = VoteLayer{params_.votes, map_->geometry()};
+    temporary_ = TemporaryLayer{params_.temporary, layer_.blocks(), layer_.cells_per_block()};
     waiting_.clear();
     clear_ = ClearSpace{*map_, layer_.cells_per_block()};
     watched_ = WatchList{params_.watch, layer_.blocks()};
@@ -51,6 +52,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     layer_.reset(grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry()));
   }
   clear_.update(*map_, changes);
+  temporary_.follow(*map_);
 }
 
 void EvidencePhase::count_beams() {
@@ -240,6 +242,7 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   const FaceParams face{.slant = params_.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
   const Votes& votes = votes_.of(beams_, {clear_, layer_, watched_}, face);
   cast(votes);
+  temporary_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   keyframes_.keep(tracked, votes.all);
   watched_.see(votes.ends);
   std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);

@@ -15,6 +15,7 @@
 #include "mapping/awareness/evidence_regions.hpp"
 #include "mapping/awareness/flip_memory.hpp"
 #include "mapping/awareness/keyframe_pool.hpp"
+#include "mapping/awareness/temporary_layer.hpp"
 #include "mapping/awareness/vote_layer.hpp"
 #include "mapping/awareness/watch_list.hpp"
 
@@ -40,6 +41,7 @@ struct EvidencePhaseParams {
   KeyframeParams keyframes;
   WatchParams watch;
   FlipParams flips;
+  TemporaryParams temporary;
 };
 
 class EvidencePhase {
@@ -53,6 +55,8 @@ class EvidencePhase {
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   [[nodiscard]] std::uint32_t short_beams() const { return short_beams_; }
   [[nodiscard]] std::uint32_t through_beams() const { return through_beams_; }
+  /// What every keyframe has told so far, long before it is proven.
+  [[nodiscard]] TemporaryLayer& temporary() { return temporary_; }
 
  private:
   void take_map(std::shared_ptr<const OccupancyGrid> map);
@@ -73,6 +77,7 @@ class EvidencePhase {
   EvidencePhaseParams params_;
   std::shared_ptr<const OccupancyGrid> map_;
   VoteLayer layer_;
+  TemporaryLayer temporary_;
   KeyframePool keyframes_;
   std::vector<BeamVerdict> beams_;
   std::vector<ProvenBlock> waiting_;

@@ -9,8 +9,9 @@ namespace {
 using Kind = Decision::Kind;
 
 TEST(Journal, EveryDecisionSurvivesTheRecording) {
-  for (const Kind kind : {Kind::kRevision, Kind::kScanDropped, Kind::kScanLost, Kind::kOdometryLost, Kind::kTrackedLost,
-                          Kind::kSetLost, Kind::kPhaseClosed, Kind::kPaused, Kind::kResumed, Kind::kRelocalized}) {
+  for (const Kind kind :
+       {Kind::kRevision, Kind::kThings, Kind::kScanDropped, Kind::kScanLost, Kind::kOdometryLost, Kind::kTrackedLost,
+        Kind::kSetLost, Kind::kPhaseClosed, Kind::kPaused, Kind::kResumed, Kind::kRelocalized}) {
     Decision decision{kind, 4000000000u, 7};
     if (kind == Kind::kOdometryLost || kind == Kind::kSetLost) decision.scan = 0;
     const bool has_no_number = kind == Kind::kScanDropped || kind == Kind::kScanLost || kind == Kind::kTrackedLost ||
@@ -39,11 +40,14 @@ TEST(Journal, AnswersWhatWasDecidedInTheNewestRun) {
   journal.read(note_of(RunIdentity{1, 2}));
   journal.read("scan 3 dropped");
   journal.read("revision 2 before scan 9");
+  journal.read("temporary 5 before scan 9");
   journal.read("phase 4 closed at scan 8");
   EXPECT_FALSE(journal.was_dropped(1));
   EXPECT_TRUE(journal.was_dropped(3));
   EXPECT_EQ(journal.revision_before(9), 2u);
   EXPECT_FALSE(journal.revision_before(8));
+  EXPECT_EQ(journal.things_before(9), 5u);
+  EXPECT_FALSE(journal.things_before(8));
   EXPECT_EQ(journal.closing_scan(4), 8u);
   EXPECT_TRUE(journal.commands_before(9).empty());
 }

@@ -8,6 +8,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/replay_run.hpp"
 #include "daemon/revision_queue.hpp"
+#include "daemon/things_queue.hpp"
 #include "daemon/tool/import_carmen.hpp"
 #include "daemon/tool/run_tool.hpp"
 #include "mapping/map_store.hpp"
@@ -178,6 +179,29 @@ TEST(RevisionQueue, AJournalDecidesBeforeWhichScanARevisionIsTaken) {
   EXPECT_EQ(queue.next_before(scan)->number, 1u);
   EXPECT_EQ(queue.next_before(scan)->number, 2u);
   EXPECT_FALSE(queue.next_before(scan));
+}
+
+std::shared_ptr<const TemporaryThings> snapshot(std::uint32_t number) {
+  return std::make_shared<const TemporaryThings>(
+      TemporaryThings{.number = number, .time = {}, .blocks = {}, .standing = {}, .gone = {}});
+}
+
+TEST(ThingsQueue, WithoutAJournalTheNewestSnapshotIsTakenBeforeTheNextScan) {
+  ThingsQueue queue{nullptr};
+  EXPECT_EQ(queue.next_before(1), nullptr);
+  for (const std::uint32_t number : {1u, 2u, 2u}) queue.push(snapshot(number));
+  EXPECT_EQ(queue.next_before(2)->number, 2u);
+  EXPECT_EQ(queue.next_before(3), nullptr);
+}
+
+TEST(ThingsQueue, AJournalDecidesBeforeWhichScanASnapshotIsTaken) {
+  Journal journal;
+  journal.read("temporary 2 before scan 7");
+  ThingsQueue queue{&journal};
+  for (const std::uint32_t number : {1u, 2u, 3u}) queue.push(snapshot(number));
+  EXPECT_EQ(queue.next_before(6), nullptr);
+  EXPECT_EQ(queue.next_before(7)->number, 2u);
+  EXPECT_EQ(queue.next_before(8), nullptr);
 }
 
 }  // namespace
