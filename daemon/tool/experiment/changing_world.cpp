@@ -199,6 +199,9 @@ std::vector<Asked> asked_of_lasting_drives(const std::string& drive) {
           {drive, "recall", Over::kMean, {.least = 0.98}},
           {drive, "precision", Over::kMean, {.least = 0.98}},
           {drive, "follow_median_s", Over::kMean, {.most = 8.0}, "s"},
+          {drive, "layer_recall", Over::kMean, {.least = 0.98}},
+          {drive, "layer_median_s", Over::kMean, {.most = 3.0}, "s"},
+          {drive, "layer_gone_within_10s", Over::kMean, {}},
           {drive, "cells_written_astray", Over::kMost, {.most = 0.0}},
           {drive, "walls_kept", Over::kLeast, {.least = 1.0}},
           {drive, "wall_drift_m", Over::kMost, {.most = 0.02}, "m"}};
@@ -269,6 +272,7 @@ Plan passers() {
           {{.name = "passers", .scenario = "endurance.yaml", .minutes = 120.0, .seeds = 2}},
           {{"", "ghost_cells_at_end", Over::kMost, {.most = 5.0}},
            {"", "ghost_cell_minutes", Over::kMean, {}},
+           {"", "ghosts_of_override", Over::kMost, {.most = 0.01}},
            {"", "skill", Over::kLeast, {}},
            {"", "walls_kept", Over::kLeast, {.least = 1.0}},
            {"", "error_p99_m", Over::kMost, {.most = 0.2}, "m"}}};

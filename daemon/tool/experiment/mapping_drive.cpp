@@ -28,13 +28,16 @@ Mapped MappingDrive::next() {
   mapped.passed_s = seconds(step.scan.time - *first_);
   const double began_s = thread_cpu_s();
   for (const Odometry& odometry : step.odometry) localizer_->observe(odometry);
-  const TrackedScan tracked = localizer_->observe(std::move(step.scan));
+  mapped.tracked = localizer_->observe(std::move(step.scan));
+  const TrackedScan& tracked = mapped.tracked;
   const double localized_s = thread_cpu_s();
   mapped.costs.localizer_s = localized_s - began_s;
   mapped.estimate = tracked.estimate;
   last_pose_ = tracked.estimate.map_from_robot;
   const auto set = settings_.mapping.enabled ? store_scan_->observe(tracked) : std::nullopt;
   mapped.awareness = store_scan_->awareness();
+  if (things_ != store_scan_->temporary()) localizer_->apply(things_ = store_scan_->temporary());
+  mapped.things = things_;
   const double aware_s = thread_cpu_s();
   mapped.costs.awareness_s = aware_s - localized_s;
   if (!set) return mapped;

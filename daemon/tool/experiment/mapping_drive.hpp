@@ -27,8 +27,10 @@ struct Mapped {
   Pose2 map_from_robot;  ///< the truth
   Estimate estimate;
   mapping::Awareness awareness;
-  std::optional<MapStep::Result> update;    ///< what became of the Δ-phase that this scan closed
-  std::vector<simulation::Change> changes;  ///< since the last scan
+  std::shared_ptr<const TemporaryThings> things;  ///< the temporary layer after this scan; may be null
+  TrackedScan tracked;                            ///< what all of that was made from
+  std::optional<MapStep::Result> update;          ///< what became of the Δ-phase that this scan closed
+  std::vector<simulation::Change> changes;        ///< since the last scan
   std::vector<simulation::MoverEvent> events;
   simulation::Bodies about;  ///< who moves or stands about, and doors, now
   Timestamp time;
@@ -56,6 +58,7 @@ class MappingDrive {
   std::optional<localization::Localizer> localizer_;
   std::optional<mapping::StoreScan> store_scan_;
   std::optional<MapStep> map_;
+  std::shared_ptr<const TemporaryThings> things_;
   std::optional<Timestamp> first_;
   Pose2 last_pose_;
 };

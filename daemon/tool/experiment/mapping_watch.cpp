@@ -15,8 +15,6 @@ namespace score = simulation::score;
 
 constexpr int kViewBeams = 181;
 constexpr int kFaceBeams = 3;        // of one view make a face seen
-constexpr double kFoundShare = 0.5;  // of a change's visible cells must be right
-constexpr double kSeenLeast_s = 10.0;
 constexpr double kRightShare = 0.8;  // of a written thing's cells
 constexpr int kRegionReach = 2;      // cells; written cells so near are one thing
 constexpr std::size_t kSpeck = 3;    // smaller regions are not counted as things
@@ -43,6 +41,25 @@ std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {
   return things;
 }
 
+/// The map as one who knows the temporary layer sees it: what stands occupied, what has gone free.
+OccupancyGrid with_things(OccupancyGrid map, const TemporaryThings* things) {
+  if (things == nullptr || things->empty()) return map;
+  const int side = static_cast<int>(std::lround(things->blocks.resolution_m / map.resolution_m()));
+  const auto draw = [&](const std::vector<std::uint32_t>& blocks, CellState state, bool only_occupied) {
+    for (const std::uint32_t index : blocks) {
+      const Cell block = things->blocks.cell_of(index);
+      for (int i = 0; i < side * side; ++i) {
+        const Cell cell{block.column * side + i % side, block.row * side + i / side};
+        if (!map.geometry().contains(cell)) continue;
+        if (!only_occupied || map[cell] == CellState::kOccupied) map.set(cell, state);
+      }
+    }
+  };
+  draw(things->gone, CellState::kFree, true);
+  draw(things->standing, CellState::kOccupied, false);
+  return map;
+}
+
 }  // namespace
 
 MappingWatch::MappingWatch(const simulation::Scenario& scenario, std::shared_ptr<const OccupancyGrid> first_map,
@@ -52,6 +69,7 @@ MappingWatch::MappingWatch(const simulation::Scenario& scenario, std::shared_ptr
       first_{std::move(first_map)},
       changes_{scenario, first_->geometry()},
       truth_{scenario, *first_},
+      override_{*first_},
       course_{{"t_s", "error_mean_m", "error_most_m", "acceptance", "acceptance_stale", "acceptance_perfect",
                "acceptance_solid", "f1", "f1_stale", "f1_perfect", "wrong_m2", "ghost_cells", "revisions"}},
       next_row_s_{params.score_every_s},
@@ -66,12 +84,12 @@ void MappingWatch::refresh_surfaces() {
 void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   now_s_ = scan.passed_s;
   about_ = scan.about;
+  things_ = scan.things;
   for (const simulation::Change& change : scan.changes)
     changes_.apply(change, scan.time, scan.map_from_robot.position());
   for (const simulation::MoverEvent& event : scan.events) changes_.apply(event);
   if (!scan.changes.empty()) truth_.see(changes_.world());
   if (!scan.changes.empty() || !scan.events.empty()) refresh_surfaces();
-  fates_.resize(changes_.watched().size());
 
   ++scans_;
   scans_lost_ += scan.estimate.state == LocalizerState::kTracking ? 0 : 1;
@@ -79,6 +97,7 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   errors_.add(scan.time, error_m);
   errors_since_row_m_.push_back(error_m);
   if (scan.update) judge_writing(scan);
+  override_.observe(scan.tracked);
   if (now_s_ >= next_look_s_) look(scan);
   if (now_s_ >= next_judgement_s_) {
     next_judgement_s_ += params_.judge_every_s;
@@ -97,29 +116,8 @@ void MappingWatch::look(const Mapped& scan) {
 }
 
 void MappingWatch::judge_changes(const OccupancyGrid& map) {
-  score::ChangeScoreParams params;
-  params.found_share = kFoundShare;
-  params.seen_least_s = kSeenLeast_s;
-  for (std::size_t i = 0; i < fates_.size(); ++i) {
-    Fate& fate = fates_[i];
-    if (fate.is_settled || fate.followed_after_s >= 0.0) continue;
-    score::Watched& watched = changes_.watched()[i];
-    if (watched.change.is_overtaken) {
-      fate.is_settled = true;
-      continue;
-    }
-    changes_.judge(watched, map, surfaces_, params);
-    const score::ScoredChange& change = watched.change;
-    if (change.visible_cells == 0 || change.seen_s <= 0.0) continue;
-    const bool is_followed = change.is_followed(kFoundShare);
-    if (fate.first_seen_s < 0.0) {
-      fate.first_seen_s = now_s_;
-      fate.is_settled = fate.was_right = is_followed;
-    } else if (is_followed) {
-      fate.followed_after_s = change.seen_s;
-      fate.followed_after_clock_s = now_s_ - fate.first_seen_s;
-    }
-  }
+  by_map_.judge(changes_, map, surfaces_, now_s_);
+  by_layer_.judge(changes_, with_things(map, things_.get()), surfaces_, now_s_, &by_map_);
 }
 
 bool MappingWatch::is_near_someone(const Point2& place) const {
@@ -138,10 +136,18 @@ bool MappingWatch::is_ghost(const OccupancyGrid& map, std::size_t cell) const {
          !is_near_someone(map.geometry().centre_of(map.geometry().cell_of(cell)));
 }
 
+std::size_t MappingWatch::ghosts_in(const OccupancyGrid& map) const {
+  std::size_t ghosts = 0;
+  for (std::size_t i = 0; i < map.cells().size(); ++i) ghosts += is_ghost(map, i) ? 1 : 0;
+  return ghosts;
+}
+
 void MappingWatch::count_ghosts(const OccupancyGrid& map) {
-  ghosts_now_ = 0;
-  for (std::size_t i = 0; i < map.cells().size(); ++i) ghosts_now_ += is_ghost(map, i) ? 1 : 0;
-  ghost_cell_minutes_ += static_cast<double>(ghosts_now_) * params_.judge_every_s / 60.0;
+  const double minutes = params_.judge_every_s / 60.0;
+  ghosts_now_ = ghosts_in(map);
+  ghost_cell_minutes_ += static_cast<double>(ghosts_now_) * minutes;
+  ghost_cell_minutes_of_layer_ += static_cast<double>(ghosts_in(with_things(map, things_.get()))) * minutes;
+  ghost_cell_minutes_of_override_ += static_cast<double>(ghosts_in(override_.map())) * minutes;
 }
 
 void MappingWatch::judge_writing(const Mapped& scan) {
@@ -198,17 +204,10 @@ void MappingWatch::add_course_row(const OccupancyGrid& map) {
 
 std::vector<std::pair<std::string, double>> MappingWatch::numbers(const OccupancyGrid& map) {
   judge_changes(map);
-  std::vector<double> in_view_s;
-  std::vector<double> clock_s;
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < fates_.size(); ++i) {
-    const score::ScoredChange& change = changes_.watched()[i].change;
-    if (fates_[i].was_right || change.seen_s < kSeenLeast_s || change.visible_cells == 0) continue;
-    const bool is_found = fates_[i].followed_after_s >= 0.0;
-    found += is_found ? 1 : 0;
-    in_view_s.push_back(is_found ? fates_[i].followed_after_s : std::numeric_limits<double>::infinity());
-    clock_s.push_back(is_found ? fates_[i].followed_after_clock_s : std::numeric_limits<double>::infinity());
-  }
+  const ChangeFollowing::Numbers followed = by_map_.numbers(changes_);
+  const ChangeFollowing::Numbers layer = by_layer_.numbers(changes_);
+  const ChangeFollowing::Numbers layer_added = by_layer_.numbers(changes_, ChangeFollowing::Which::kAppeared);
+  const ChangeFollowing::Numbers layer_gone = by_layer_.numbers(changes_, ChangeFollowing::Which::kDisappeared);
   const auto [seen, ours, stale, perfect, solid] = scores_of(map);
   const score::MapScore solid_perfect = score::map_score(truth_.solid(), truth_.perfect(), seen);
   double drift_m = 0.0;
@@ -234,12 +233,20 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
           {"error_p99_m", quantile(errors_.all_m(), 0.99)},
           {"error_most_m", quantile(errors_.all_m(), 1.0)},
           {"not_tracking", share(scans_lost_, scans_)},
-          {"changes_seen_10s", whole(in_view_s.size())},
-          {"changes_found", whole(found)},
-          {"recall", share(found, in_view_s.size())},
-          {"follow_median_s", quantile(in_view_s, 0.5)},
-          {"follow_p90_s", quantile(in_view_s, 0.9)},
-          {"follow_clock_median_s", quantile(clock_s, 0.5)},
+          {"changes_seen_10s", whole(followed.seen)},
+          {"changes_found", whole(followed.found)},
+          {"recall", followed.recall},
+          {"follow_median_s", followed.median_s},
+          {"follow_p90_s", followed.p90_s},
+          {"follow_clock_median_s", followed.clock_median_s},
+          {"layer_recall", layer.recall},
+          {"layer_median_s", layer.median_s},
+          {"layer_p90_s", layer.p90_s},
+          {"layer_added_recall", layer_added.recall},
+          {"layer_added_median_s", layer_added.median_s},
+          {"layer_gone_recall", layer_gone.recall},
+          {"layer_gone_median_s", layer_gone.median_s},
+          {"layer_gone_within_10s", layer_gone.within_10s},
           {"things_written", whole(regions_)},
           {"precision", 1.0 - share(regions_wrong_, regions_)},
           {"cells_written", whole(cells_written_)},
@@ -263,7 +270,10 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
           {"writes_per_cell_hour", share(writes, seen_cells) / hours},
           {"most_writes_of_a_cell", static_cast<double>(most_writes)},
           {"ghost_cells_at_end", whole(ghosts_now_)},
-          {"ghost_cell_minutes", ghost_cell_minutes_}};
+          {"ghost_cell_minutes", ghost_cell_minutes_},
+          {"ghost_cell_minutes_layer", ghost_cell_minutes_of_layer_},
+          {"ghost_cell_minutes_override", ghost_cell_minutes_of_override_},
+          {"ghosts_of_override", ghost_cell_minutes_ / std::max(1e-9, ghost_cell_minutes_of_override_)}};
 }
 
 }  // namespace deltamap::daemon::tool::experiment

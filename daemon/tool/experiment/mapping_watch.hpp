@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/tool/experiment/change_following.hpp"
 #include "daemon/tool/experiment/error_course.hpp"
 #include "daemon/tool/experiment/mapping_drive.hpp"
+#include "daemon/tool/experiment/override_map.hpp"
 #include "daemon/tool/experiment/scan_table.hpp"
 #include "simulation/score/change_watch.hpp"
 #include "simulation/score/map_truth.hpp"
@@ -39,15 +41,6 @@ class MappingWatch {
   [[nodiscard]] const OccupancyGrid& truth() const { return truth_.visible(); }
 
  private:
-  /// How a change has fared so far.
-  struct Fate {
-    double followed_after_s = -1.0;       ///< seconds in view until the map had followed; negative: not yet
-    double followed_after_clock_s = 0.0;  ///< since it was first in view
-    double first_seen_s = -1.0;
-    bool is_settled = false;  ///< overtaken, or not to be counted
-    bool was_right = false;   ///< the map had it right when it first came into view: nothing to follow
-  };
-
   /// Against what a laser can see, over all that has ever been in view.
   struct Scores {
     simulation::score::CellMask seen;
@@ -60,6 +53,7 @@ class MappingWatch {
   [[nodiscard]] bool is_near_someone(const Point2& place) const;
   /// Occupied in the map, nothing stands there, and a beam has gone through since.
   [[nodiscard]] bool is_ghost(const OccupancyGrid& map, std::size_t cell) const;
+  [[nodiscard]] std::size_t ghosts_in(const OccupancyGrid& map) const;
   void count_ghosts(const OccupancyGrid& map);
   void judge_writing(const Mapped& scan);
   void add_course_row(const OccupancyGrid& map);
@@ -72,7 +66,10 @@ class MappingWatch {
   simulation::score::MapTruth truth_;
   simulation::Bodies about_;
   OccupancyGrid surfaces_;  // all that stands now, passing things too
-  std::vector<Fate> fates_;
+  ChangeFollowing by_map_;
+  ChangeFollowing by_layer_;  // M_k and the temporary layer over it
+  std::shared_ptr<const TemporaryThings> things_;
+  OverrideMap override_;
   ScanTable course_;
   ErrorCourse errors_;
   std::vector<double> errors_since_row_m_;
@@ -92,6 +89,8 @@ class MappingWatch {
   std::vector<std::uint16_t> writes_;  // of each cell
   std::size_t ghosts_now_ = 0;
   double ghost_cell_minutes_ = 0.0;
+  double ghost_cell_minutes_of_layer_ = 0.0;     // M_k and the temporary layer over it
+  double ghost_cell_minutes_of_override_ = 0.0;  // of the override rule
 };
 
 }  // namespace deltamap::daemon::tool::experiment

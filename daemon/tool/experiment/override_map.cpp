@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tool/experiment/override_map.hpp"
+
+#include <cmath>
+
+#include "core/grid_ray.hpp"
+
+namespace deltamap::daemon::tool::experiment {
+
+bool OverrideMap::is_keyframe(const TrackedScan& tracked) const {
+  constexpr mapping::awareness::KeyframeParams kChosen{};
+  if (tracked.estimate.state != LocalizerState::kTracking) return false;
+  if (!last_ || last_->epoch != tracked.odometry_epoch) return true;
+  const Pose2 motion = motion_between(last_->odom_from_robot, tracked.odom_from_robot);
+  return motion.position().norm() >= kChosen.moved_m || std::abs(motion.theta) >= kChosen.turned_rad ||
+         seconds(tracked.scan.time - last_->time) >= kChosen.waited_s;
+}
+
+void OverrideMap::set(Cell cell, CellState state) {
+  if (map_.geometry().contains(cell)) map_.set(cell, state);
+}
+
+void OverrideMap::observe(const TrackedScan& tracked) {
+  if (!is_keyframe(tracked)) return;
+  last_ = Taken{tracked.odom_from_robot, tracked.odometry_epoch, tracked.scan.time};
+  const Pose2& map_from_robot = tracked.estimate.map_from_robot;
+  const auto for_each_range = [&](auto&& take) {
+    for (std::size_t i = 0; i < tracked.rays.size(); ++i) {
+      if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
+      take(map_from_robot * Point2{tracked.rays[i].origin.cast<double>()},
+           map_from_robot * Point2{tracked.rays[i].end.cast<double>()});
+    }
+  };
+  for_each_range([&](const Point2& from, const Point2& end) {
+    walk_ray(map_.geometry(), from, end, [&](Cell cell, double) {
+      set(cell, CellState::kFree);
+      return true;
+    });
+  });
+  for_each_range([&](const Point2&, const Point2& end) { set(map_.geometry().cell_at(end), CellState::kOccupied); });
+}
+
+}  // namespace deltamap::daemon::tool::experiment
