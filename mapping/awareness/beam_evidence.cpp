@@ -86,12 +86,12 @@ class BeamJudge {
     if (limit_m <= 0.0) return;
     std::optional<Passage> passage;
     const double gap_m = 2.5 * map_.resolution_m();
-    walk_surfaces(map_, clear_, beam.from, beam.end, [&](Cell cell, double entered_m, double before_m) {
+    const Point2 limit = beam.from + (beam.end - beam.from) * (limit_m / beam.length_m);
+    walk_surfaces(map_, clear_, beam.from, limit, [&](Cell cell, double entered_m, double before_m) {
       if (passage && before_m > passage->left_m + gap_m) {
         close(beam, *passage);
         passage.reset();
       }
-      if (entered_m > limit_m) return false;  // the beam ends inside: it has passed what lies before
       if (!passage) passage = Passage{entered_m, entered_m, beam.passed.size()};
       passage->left_m = entered_m + map_.resolution_m();
       beam.passed.push_back(cell);

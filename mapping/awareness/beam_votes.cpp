@@ -7,38 +7,49 @@
 
 namespace deltamap::mapping::awareness {
 
-void BeamVotes::mark(const GridGeometry& blocks, Cell block, Marks what) {
-  if (!blocks.contains(block)) return;
-  const std::size_t index = blocks.index_of(block);
+void BeamVotes::mark(std::size_t index, Marks what) {
   Marks& marks = marks_[index];
   if (marks == 0) marked_.push_back(static_cast<std::uint32_t>(index));
   marks |= what;
 }
 
+/// The surface that the beam met may lie in the block beside.
 void BeamVotes::mark_still_there(Cell end, const ClearSpace& clear) {
   const GridGeometry& blocks = clear.blocks();
-  if (blocks.contains(end)) {
-    if (clear.distance(end) > 1 || (marks_[blocks.index_of(end)] & kLookedAround) != 0) return;
-    mark(blocks, end, kLookedAround);
-  }
-  for (int row = end.row - 1; row <= end.row + 1; ++row) {
-    for (int column = end.column - 1; column <= end.column + 1; ++column) {
-      if (blocks.contains({column, row}) && clear.is_solid({column, row})) mark(blocks, {column, row}, kStillThere);
+  const auto mark_solid = [&](std::size_t index) {
+    if (clear.distances()[index] == 0) mark(index, kStillThere);
+  };
+  if (end.column < 1 || end.row < 1 || end.column > blocks.width - 2 || end.row > blocks.height - 2) {
+    for (int row = end.row - 1; row <= end.row + 1; ++row) {
+      for (int column = end.column - 1; column <= end.column + 1; ++column) {
+        if (blocks.contains({column, row})) mark_solid(blocks.index_of({column, row}));
+      }
     }
+    return;
+  }
+  const std::size_t middle = blocks.index_of(end);
+  if (clear.distances()[middle] > 1 || (marks_[middle] & kLookedAround) != 0) return;
+  mark(middle, kLookedAround);
+  const auto across = static_cast<std::size_t>(blocks.width);
+  for (std::size_t left = middle - across - 1; left <= middle + across - 1; left += across) {
+    mark_solid(left);
+    mark_solid(left + 1);
+    mark_solid(left + 2);
   }
 }
 
 void BeamVotes::mark_beam(const BeamVerdict& beam, const VotedMap& map) {
   const GridGeometry& blocks = map.layer.blocks();
-  for (const Cell& cell : beam.passed) mark(blocks, map.layer.block_of(cell), kGone);
+  for (const Cell& cell : beam.passed) mark(blocks.index_of(map.layer.block_of(cell)), kGone);
   const Cell end = blocks.cell_at(beam.end);
-  if (beam.ends_off_map) mark(blocks, end, kNewHere);
-  if (beam.ends_at_surface && blocks.contains(end) && map.watched.is_watched(end)) mark(blocks, end, kWatchedEnd);
+  const bool on_map = blocks.contains(end);
+  if (on_map && beam.ends_off_map) mark(blocks.index_of(end), kNewHere);
+  if (on_map && beam.ends_at_surface && map.watched.is_watched(end)) mark(blocks.index_of(end), kWatchedEnd);
   if (beam.ends_at_surface && !beam.ends_off_map) mark_still_there(end, map.clear);
   const double clear_m = beam.length_m - beam.interval_m - blocks.resolution_m / map.layer.cells_per_block();
   if (clear_m <= 0.0) return;
   const Point2 clear_end = beam.from + (beam.end - beam.from) * (clear_m / beam.length_m);
-  map.layer.walk_open(beam.from, clear_end, [&](Cell block) { mark(blocks, block, kNothingNew); });
+  map.layer.walk_open(beam.from, clear_end, [&](Cell block) { mark(blocks.index_of(block), kNothingNew); });
 }
 
 /// Far away, neighbouring beams end blocks apart: what lies between them on one new face is as new.
@@ -47,7 +58,7 @@ void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometr
   const auto end = [&](std::size_t i) -> const Point2& { return beams[i].end; };
   for_each_face_step(beams.size(), face, length_m, end, [&](std::size_t i) {
     walk_ray(blocks, end(i), end(i + 1), [&](Cell block, double) {
-      mark(blocks, block, kNewHere);
+      if (blocks.contains(block)) mark(blocks.index_of(block), kNewHere);
       return true;
     });
   });

@@ -42,7 +42,7 @@ class BeamVotes {
   static constexpr Marks kNewHere = 1, kNothingNew = 2, kGone = 4, kStillThere = 8, kWatchedEnd = 16,
                          kLookedAround = 32;
 
-  void mark(const GridGeometry& blocks, Cell block, Marks what);
+  void mark(std::size_t block, Marks what);
   void mark_beam(const BeamVerdict& beam, const VotedMap& map);
   void mark_still_there(Cell end, const ClearSpace& clear);
   void mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face);

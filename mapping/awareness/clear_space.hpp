@@ -30,6 +30,7 @@ class ClearSpace {
   [[nodiscard]] bool is_solid(Cell block) const { return distance(block) == 0; }
   /// To the nearest solid block: rows or columns, whichever are more; at most kFarthest. The block lies on the map.
   [[nodiscard]] int distance(Cell block) const { return distance_[blocks_.index_of(block)]; }
+  [[nodiscard]] const std::vector<std::uint8_t>& distances() const { return distance_; }
   [[nodiscard]] const GridGeometry& blocks() const { return blocks_; }
   /// No cell within so many rows and columns of this one, which lies on the map, is occupied; 0: who knows.
   [[nodiscard]] int clear_cells_around(Cell cell) const {
@@ -47,75 +48,85 @@ class ClearSpace {
   std::vector<std::uint8_t> distance_;
 };
 
+/// One coordinate of a beam, in cells.
+struct BeamAxis {
+  double start = 0.0;
+  int first = 0;  // cell in which it begins
+  int last = 0;   // cell in which it ends
+  int step = 0;   // -1, 0, 1
+  double cells_per_m = 0.0;
+  double per_cell_m = std::numeric_limits<double>::infinity();  // distance between borders
+
+  BeamAxis(double start_cells, double delta_cells, double length_m, int first_cell, int last_cell)
+      : start{start_cells}, first{first_cell}, last{last_cell} {
+    if (delta_cells == 0.0) return;
+    step = delta_cells > 0.0 ? 1 : -1;
+    cells_per_m = delta_cells / length_m;
+    per_cell_m = std::abs(length_m / delta_cells);
+  }
+  [[nodiscard]] int cell_at(double way_m) const {
+    const double place = start + cells_per_m * way_m;
+    return place < 0.0 ? -1 : static_cast<int>(place);
+  }
+  /// Where the beam leaves the cell.
+  [[nodiscard]] double leaves_m(int cell) const {
+    return step == 0 ? per_cell_m : (cell + (step > 0 ? 1 : 0) - start) * (step * per_cell_m);
+  }
+};
+
 /// Visits the occupied cells that the segment touches, in order: `visit(Cell, double entered_m, double before_m)` gets
 /// the distances from `from` at which the beam enters the cell and has entered the cell before it, and answers whether
-/// to go on. The way of walk_ray, with leaps.
+/// to go on. The way of walk_ray, with leaps; `from` lies on the map.
 template <typename Visit>
 void walk_surfaces(const OccupancyGrid& map, const ClearSpace& clear, const Point2& from, const Point2& to,
                    Visit&& visit) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  constexpr int kLeastLeap = 3;  // cells; shorter ones cost more than they save
+  constexpr int kLeastLeap = 2;  // cells; shorter ones cost more than they save
   const GridGeometry& geometry = map.geometry();
   const double length_m = (to - from).norm();
+  const Cell first = geometry.cell_at(from);
   const Cell last = geometry.cell_at(to);
+  const Point2 start = (from - geometry.origin) / geometry.resolution_m;
+  const Point2 delta = (to - from) / geometry.resolution_m;
+  const BeamAxis x{start.x(), delta.x(), length_m, first.column, last.column};
+  const BeamAxis y{start.y(), delta.y(), length_m, first.row, last.row};
+  // A little less than a cell, so that rounding does not carry a leap across one border more.
+  const double per_leapt_cell_m = (1.0 - 1e-9) * std::min(x.per_cell_m, y.per_cell_m);
 
-  struct Axis {
-    int step = 0;  // -1, 0, 1
-    double metres_per_metre = 0.0;
-    double per_cell_m = kNever;  // distance between borders
-    double next_m = kNever;      // distance at which the beam crosses the next border
-    int left = 0;                // borders to cross
-
-    void begin_at(int cell, int last_cell, double cell_low_m, double resolution_m) {
-      if (step == 0) return;
-      left = std::max(0, step * (last_cell - cell));
-      next_m = (step > 0 ? cell_low_m + resolution_m : cell_low_m) / metres_per_metre;
+  double way_m = 0.0;  // the beam is in the cell there
+  Cell cell = first;
+  while (geometry.contains(cell)) {
+    int clear_cells = clear.clear_cells_around(cell);
+    if (clear_cells >= kLeastLeap) {
+      way_m += clear_cells * per_leapt_cell_m;
+      if (!(way_m < length_m)) return;
+      cell = {x.cell_at(way_m), y.cell_at(way_m)};
+      continue;
     }
-  };
-  const auto axis = [&](double delta) -> Axis {
-    if (delta == 0.0) return {};
-    const double per_metre = delta / length_m;
-    return {delta > 0.0 ? 1 : -1, per_metre, geometry.resolution_m / std::abs(per_metre)};
-  };
-  Axis x = axis(to.x() - from.x());
-  Axis y = axis(to.y() - from.y());
-  Cell cell = geometry.cell_at(from);
-  const auto begin = [&] {
-    x.begin_at(cell.column, last.column, geometry.origin.x() + cell.column * geometry.resolution_m - from.x(),
-               geometry.resolution_m);
-    y.begin_at(cell.row, last.row, geometry.origin.y() + cell.row * geometry.resolution_m - from.y(),
-               geometry.resolution_m);
-  };
-  begin();
-
-  const double per_leapt_cell_m = std::min(x.per_cell_m, y.per_cell_m);
-  double entered_m = 0.0;
-  double before_m = 0.0;
-  for (bool has_met_map = false;;) {
-    if (geometry.contains(cell)) {
-      has_met_map = true;
-      const int clear_cells = clear.clear_cells_around(cell);
-      if (clear_cells >= kLeastLeap) {
-        const double leapt_m = entered_m + clear_cells * per_leapt_cell_m;
-        if (!(leapt_m < length_m)) return;
-        cell = geometry.cell_at(from + (to - from) * (leapt_m / length_m));
-        begin();
-        entered_m =
-            std::max({0.0, x.step == 0 ? 0.0 : x.next_m - x.per_cell_m, y.step == 0 ? 0.0 : y.next_m - y.per_cell_m});
-        before_m = entered_m;
-        continue;
-      }
+    double next_x_m = x.leaves_m(cell.column);
+    double next_y_m = y.leaves_m(cell.row);
+    double before_m = 0.0;
+    double entered_m = 0.0;
+    if (x.step != 0) entered_m = std::max(entered_m, next_x_m - x.per_cell_m);
+    if (y.step != 0) entered_m = std::max(entered_m, next_y_m - y.per_cell_m);
+    while (clear_cells < kLeastLeap) {
       if (clear_cells < 0 && map[cell] == CellState::kOccupied && !visit(cell, entered_m, before_m)) return;
-    } else if (has_met_map) {
-      return;  // what has left the grid does not come back
+      if (cell == last) return;
+      before_m = entered_m;
+      // Rounding must not carry it past the last column or row.
+      const bool along_x = cell.row == y.last || (cell.column != x.last && next_x_m < next_y_m);
+      if (along_x) {
+        cell.column += x.step;
+        entered_m = next_x_m;
+        next_x_m += x.per_cell_m;
+      } else {
+        cell.row += y.step;
+        entered_m = next_y_m;
+        next_y_m += y.per_cell_m;
+      }
+      if (!geometry.contains(cell) || entered_m > length_m) return;
+      clear_cells = clear.clear_cells_around(cell);
     }
-    if (x.left + y.left <= 0) return;
-    Axis& crossed = y.left == 0 || (x.left > 0 && x.next_m < y.next_m) ? x : y;
-    (&crossed == &x ? cell.column : cell.row) += crossed.step;
-    --crossed.left;
-    before_m = entered_m;
-    entered_m = crossed.next_m;
-    crossed.next_m += crossed.per_cell_m;
+    way_m = entered_m;
   }
 }
 

@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace deltamap::mapping::awareness {
+namespace {
+
+constexpr float kNobody = 0.1F;  // worn votes that count for nothing
+
+}  // namespace
 
 VoteLayer::VoteLayer(const VoteLayerParams& params, const GridGeometry& map) : params_{params} {
   cells_per_block_ = std::max(1, static_cast<int>(std::lround(params.block_m / map.resolution_m)));
@@ -56,13 +61,13 @@ VoteLayer::Tile& VoteLayer::tile_for(Cell block, std::uint32_t now_ms) {
   return tile;
 }
 
-void VoteLayer::set_open(Cell block, std::uint8_t bits) {
+void VoteLayer::set_open(Cell block, int bits) {
   std::uint8_t& open = open_[blocks_.index_of(block)];
   std::uint8_t& opened = opened_[squares_.index_of({block.column / kSquareSide, block.row / kSquareSide})];
   const std::uint8_t added = bit_of(Question::kAdded);
   if ((open & added) != (bits & added))
     opened = static_cast<std::uint8_t>((bits & added) != 0 ? opened + 1 : opened - 1);
-  open = bits;
+  open = static_cast<std::uint8_t>(bits);
 }
 
 void VoteLayer::empty_tile(Tile& tile) {
@@ -89,12 +94,13 @@ void VoteLayer::vote(Question question, Cell block, bool yes, std::uint32_t now_
   } else {
     ballot.no = std::min(most, ballot.no + 1.0F);
     ballot.yes *= left;
+    if (ballot.no >= most && ballot.yes < kNobody) set_open(block, open_[blocks_.index_of(block)] & ~bit_of(question));
   }
   ballot.last_ms = now_ms;
 }
 
 void VoteLayer::reset(Question question, Cell block) {
-  set_open(block, static_cast<std::uint8_t>(open_[blocks_.index_of(block)] & ~bit_of(question)));
+  set_open(block, open_[blocks_.index_of(block)] & ~bit_of(question));
   const std::int32_t tile = tile_of_[place_of(block)];
   if (tile >= 0)
     tiles_[static_cast<std::size_t>(tile)].ballots[static_cast<std::size_t>(question)][slot_of(block)] = {};

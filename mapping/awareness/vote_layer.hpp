@@ -51,7 +51,7 @@ class VoteLayer {
   [[nodiscard]] Cell block_of(Cell cell) const { return {cell.column / cells_per_block_, cell.row / cells_per_block_}; }
   [[nodiscard]] CellBox cells_of(Cell block) const;
 
-  /// Has anybody said yes to the question in this block?
+  /// Has anybody said yes to the question in this block, and not been outvoted as often as it counts since?
   [[nodiscard]] bool is_open(Question question, Cell block) const {
     return (open_[blocks_.index_of(block)] & bit_of(question)) != 0;
   }
@@ -88,7 +88,7 @@ class VoteLayer {
     return static_cast<std::size_t>(block.row % kTileSide) * kTileSide +
            static_cast<std::size_t>(block.column % kTileSide);
   }
-  void set_open(Cell block, std::uint8_t bits);
+  void set_open(Cell block, int bits);
   [[nodiscard]] Tile& tile_for(Cell block, std::uint32_t now_ms);
   void empty_tile(Tile& tile);
   [[nodiscard]] bool is_void(const Ballot& ballot, std::uint32_t now_ms) const;

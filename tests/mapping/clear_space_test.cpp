@@ -77,8 +77,8 @@ TEST(ClearSpace, FollowsAMapThatChangesAsIfMadeAnew) {
 
 TEST(WalkSurfaces, MeetsWhatTheWholeWalkMeets) {
   Random random{5};
-  for (int round = 0; round < 400; ++round) {
-    const OccupancyGrid map = strewn_map(random, round);
+  for (int round = 0; round < 1000; ++round) {
+    const OccupancyGrid map = strewn_map(random, round / 2);
     const ClearSpace clear{map, kCellsPerBlock};
     const Point2 from = anywhere(random);
     // Straight ones, ones that leave the map, and ones that begin and end in the same place, too.
@@ -103,7 +103,9 @@ TEST(WalkSurfaces, MeetsWhatTheWholeWalkMeets) {
       if (next >= by_walking.size()) return false;
       EXPECT_EQ(cell, by_walking[next].cell);
       EXPECT_NEAR(entered_m, by_walking[next].entered_m, 1e-9);
-      EXPECT_NEAR(cell_before_m, by_walking[next].before_m, 1e-9);
+      EXPECT_NEAR(cell_before_m, by_walking[next].before_m, 1e-9)
+          << "round " << round << " cell " << cell.column << "," << cell.row << " entered " << entered_m << " from "
+          << from.transpose() << " to " << to.transpose();
       ++next;
       return true;
     });
