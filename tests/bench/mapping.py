@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What mapping costs a scan of 180 or 181 beams, in instructions that callgrind counts: Δ-awareness, averaged over all scans,
+and the updates of the map beside it. On the real log `intel`, whose map lacks nothing, and in a simulated hall where a
+container comes or goes each minute. Called by ./dev bench mapping.
+
+  mapping.py [--quick]    --quick: two minutes of the hall alone"""
+import argparse, re, subprocess
+
+from measuring import DATA, OUT, ROOT, TOOL, mark, row, unpacked
+
+AWARENESS = "deltamap::mapping::StoreScan::observe("
+UPDATE = "deltamap::daemon::MapStep::update("
+MOST = 500e3
+KNOWN_START = "9.442,-3.389,-156.2"
+
+
+def costs(profile):
+    """{function: (calls, instructions with all that it called)} of a callgrind file."""
+    names, found, callee, is_cost = {}, {}, None, False
+    for line in profile.read_text().splitlines():
+        named = re.match(r"(c?)fn=\((\d+)\)(?: (.*))?", line)
+        if named:
+            if named.group(3):
+                names[named.group(2)] = named.group(3)
+            if named.group(1):
+                callee = named.group(2)
+        elif line.startswith("calls="):
+            calls, is_cost = int(line[6:].split()[0]), True
+        elif is_cost:
+            had = found.get(callee, (0, 0))
+            found[callee] = (had[0] + calls, had[1] + int(line.split()[1]))
+            is_cost = False
+    return {names[number]: cost for number, cost in found.items()}
+
+
+def measured(what, *arguments):
+    """Instructions a scan: of awareness and of updates; how many updates there were."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    profile = OUT / (what + ".callgrind")
+    done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=%s" % profile, "--collect-atstart=no",
+                           "--toggle-collect=%s*" % AWARENESS, "--toggle-collect=%s*" % UPDATE, TOOL, *map(str, arguments)],
+                          cwd=ROOT, text=True, capture_output=True)
+    found = costs(profile) if profile.exists() else {}
+    total = {wanted: [sum(x) for x in zip((0, 0), *(cost for name, cost in found.items() if name.startswith(wanted)))]
+             for wanted in (AWARENESS, UPDATE)}
+    scans = total[AWARENESS][0]
+    if not scans:
+        raise SystemExit("callgrind on %s saw no scan:\n%s%s" % (what, done.stdout, done.stderr))
+    return total[AWARENESS][1] / scans, total[UPDATE][1] / scans, total[UPDATE][0], scans
+
+
+def rows_of(where, measure):
+    awareness, update, updates, scans = measure
+    return [row("awareness a scan, " + where, "%.0f thousand instructions" % (awareness / 1e3), "≤ 500 thousand", awareness <= MOST,
+                "prototype 1.08 million"),
+            row("updates of the map, averaged over the scans, " + where,
+                "%.0f thousand instructions (%d sets in %d scans)" % (update / 1e3, updates, scans))]
+
+
+def intel():
+    log = unpacked("intel.log", OUT / "data")
+    capture = OUT / "data/intel.pcapng"
+    subprocess.run([TOOL, "import", "carmen", log, capture], check=True, stdout=subprocess.DEVNULL)
+    return measured("intel", "replay", capture, "--map", DATA / "maps/ref_intel.yaml", "--config", ROOT / "config/pioneer.yaml",
+                    "--out", OUT / "intel-mapping", "--set", "laser.mount.x_m=0", "--initial-pose", KNOWN_START)
+
+
+def hall(minutes):
+    return measured("hall", "experiment", "table2", "--only", "evidence", "--repeats", 1, "--jobs", 1, "--minutes", minutes,
+                    "--out", OUT / "hall-mapping")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    quick = parser.parse_args().quick
+    rows = rows_of("simulated hall", hall(2 if quick else 10))
+    if not quick and (DATA / "intel.log.xz").exists():
+        rows += rows_of("`intel`", intel())
+    elif not quick:
+        print("skipped: `intel`, which is not in %s" % DATA)
+    for one in rows:
+        print("%-10s %s: %s (%s)" % (mark(one), one["figure"], one["ours"], one["target"]), flush=True)
+    raise SystemExit(0 if all(one["met"] is not False for one in rows) else 1)
+
+
+main()
