@@ -272,7 +272,7 @@ Plan passers() {
           {{.name = "passers", .scenario = "endurance.yaml", .minutes = 120.0, .seeds = 2}},
           {{"", "ghost_cells_at_end", Over::kMost, {.most = 5.0}},
            {"", "ghost_cell_minutes", Over::kMean, {}},
-           {"", "ghosts_of_override", Over::kMost, {.most = 0.01}},
+           {"", "passer_ghosts_of_override", Over::kMost, {.most = 0.01}},
            {"", "skill", Over::kLeast, {}},
            {"", "walls_kept", Over::kLeast, {.least = 1.0}},
            {"", "error_p99_m", Over::kMost, {.most = 0.2}, "m"}}};

@@ -79,6 +79,12 @@ MappingWatch::MappingWatch(const simulation::Scenario& scenario, std::shared_ptr
 
 void MappingWatch::refresh_surfaces() {
   surfaces_ = score::drawn_surfaces(changes_.world_and_standing(), first_->geometry());
+  const OccupancyGrid lasting = score::drawn_surfaces(changes_.world(), first_->geometry());
+  if (ever_surfaces_.cells().empty()) ever_surfaces_ = *first_;
+  for (std::size_t i = 0; i < lasting.cells().size(); ++i) {
+    if (lasting.cells()[i] == CellState::kOccupied)
+      ever_surfaces_.set(lasting.geometry().cell_of(i), CellState::kOccupied);
+  }
 }
 
 void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
@@ -136,18 +142,23 @@ bool MappingWatch::is_ghost(const OccupancyGrid& map, std::size_t cell) const {
          !is_near_someone(map.geometry().centre_of(map.geometry().cell_of(cell)));
 }
 
-std::size_t MappingWatch::ghosts_in(const OccupancyGrid& map) const {
-  std::size_t ghosts = 0;
-  for (std::size_t i = 0; i < map.cells().size(); ++i) ghosts += is_ghost(map, i) ? 1 : 0;
+MappingWatch::Ghosts MappingWatch::ghosts_in(const OccupancyGrid& map) const {
+  Ghosts ghosts;
+  for (std::size_t i = 0; i < map.cells().size(); ++i) {
+    if (!is_ghost(map, i)) continue;
+    ++ghosts.all;
+    ghosts.of_passers += has_occupied_within(ever_surfaces_, map.geometry().cell_of(i), kGhostReach) ? 0 : 1;
+  }
   return ghosts;
 }
 
 void MappingWatch::count_ghosts(const OccupancyGrid& map) {
   const double minutes = params_.judge_every_s / 60.0;
-  ghosts_now_ = ghosts_in(map);
-  ghost_cell_minutes_ += static_cast<double>(ghosts_now_) * minutes;
-  ghost_cell_minutes_of_layer_ += static_cast<double>(ghosts_in(with_things(map, things_.get()))) * minutes;
-  ghost_cell_minutes_of_override_ += static_cast<double>(ghosts_in(override_.map())) * minutes;
+  const Ghosts ghosts = ghosts_in(map);
+  ghosts_now_ = ghosts.all;
+  ghosts_of_map_.add(ghosts, minutes);
+  ghosts_of_layer_.add(ghosts_in(with_things(map, things_.get())), minutes);
+  ghosts_of_override_.add(ghosts_in(override_.map()), minutes);
 }
 
 void MappingWatch::judge_writing(const Mapped& scan) {
@@ -270,10 +281,13 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
           {"writes_per_cell_hour", share(writes, seen_cells) / hours},
           {"most_writes_of_a_cell", static_cast<double>(most_writes)},
           {"ghost_cells_at_end", whole(ghosts_now_)},
-          {"ghost_cell_minutes", ghost_cell_minutes_},
-          {"ghost_cell_minutes_layer", ghost_cell_minutes_of_layer_},
-          {"ghost_cell_minutes_override", ghost_cell_minutes_of_override_},
-          {"ghosts_of_override", ghost_cell_minutes_ / std::max(1e-9, ghost_cell_minutes_of_override_)}};
+          {"ghost_cell_minutes", ghosts_of_map_.all},
+          {"ghost_cell_minutes_layer", ghosts_of_layer_.all},
+          {"ghost_cell_minutes_override", ghosts_of_override_.all},
+          {"passer_ghost_minutes", ghosts_of_map_.of_passers},
+          {"passer_ghost_minutes_layer", ghosts_of_layer_.of_passers},
+          {"passer_ghost_minutes_override", ghosts_of_override_.of_passers},
+          {"passer_ghosts_of_override", ghosts_of_map_.of_passers / std::max(1e-9, ghosts_of_override_.of_passers)}};
 }
 
 }  // namespace deltamap::daemon::tool::experiment

@@ -53,7 +53,11 @@ class MappingWatch {
   [[nodiscard]] bool is_near_someone(const Point2& place) const;
   /// Occupied in the map, nothing stands there, and a beam has gone through since.
   [[nodiscard]] bool is_ghost(const OccupancyGrid& map, std::size_t cell) const;
-  [[nodiscard]] std::size_t ghosts_in(const OccupancyGrid& map) const;
+  struct Ghosts {
+    std::size_t all = 0;
+    std::size_t of_passers = 0;  ///< where no container, wall or post has ever stood
+  };
+  [[nodiscard]] Ghosts ghosts_in(const OccupancyGrid& map) const;
   void count_ghosts(const OccupancyGrid& map);
   void judge_writing(const Mapped& scan);
   void add_course_row(const OccupancyGrid& map);
@@ -65,7 +69,8 @@ class MappingWatch {
   simulation::score::ChangeWatch changes_;
   simulation::score::MapTruth truth_;
   simulation::Bodies about_;
-  OccupancyGrid surfaces_;  // all that stands now, passing things too
+  OccupancyGrid surfaces_;       // all that stands now, passing things too
+  OccupancyGrid ever_surfaces_;  // all that has ever stood in M_0 and the world, without what passes
   ChangeFollowing by_map_;
   ChangeFollowing by_layer_;  // M_k and the temporary layer over it
   std::shared_ptr<const TemporaryThings> things_;
@@ -88,9 +93,15 @@ class MappingWatch {
   std::size_t refused_ = 0;
   std::vector<std::uint16_t> writes_;  // of each cell
   std::size_t ghosts_now_ = 0;
-  double ghost_cell_minutes_ = 0.0;
-  double ghost_cell_minutes_of_layer_ = 0.0;     // M_k and the temporary layer over it
-  double ghost_cell_minutes_of_override_ = 0.0;  // of the override rule
+  struct GhostMinutes {  // cell · minutes
+    double all = 0.0;
+    double of_passers = 0.0;
+    void add(const Ghosts& ghosts, double minutes) {
+      all += static_cast<double>(ghosts.all) * minutes;
+      of_passers += static_cast<double>(ghosts.of_passers) * minutes;
+    }
+  };
+  GhostMinutes ghosts_of_map_, ghosts_of_layer_, ghosts_of_override_;
 };
 
 }  // namespace deltamap::daemon::tool::experiment
