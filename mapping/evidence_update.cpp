@@ -21,6 +21,7 @@ constexpr int kDrawnAheadPasses = 8;
 constexpr double kDrawnAheadShare = 0.1;  // of the beams, and of the hits behind
 constexpr int kRemnantReach = 2;          // cells from what has been freed
 constexpr int kRemnantCells = 6;          // larger groups are none
+constexpr int kSurfaceCells = 17;         // smaller groups are specks
 
 /// The cells around the verdicts, and what they may become.
 class DoubtMask {
@@ -34,6 +35,7 @@ class DoubtMask {
     for (const CellVerdict& verdict : verdicts) {
       const bool added = verdict.state == CellState::kOccupied;
       mark(verdict.cell, added ? params.added_reach_cells : params.removed_reach_cells, added ? kAdded : kRemoved);
+      if (!added) mark(verdict.cell, 0, kGone);
     }
   }
 
@@ -41,10 +43,13 @@ class DoubtMask {
   [[nodiscard]] bool contains(Cell cell) const { return flags(cell) != 0; }
   [[nodiscard]] bool may_be_added(Cell cell) const { return (flags(cell) & kAdded) != 0; }
   [[nodiscard]] bool may_be_removed(Cell cell) const { return (flags(cell) & kRemoved) != 0; }
+  /// The verdict was on this very cell.
+  [[nodiscard]] bool is_gone(Cell cell) const { return (flags(cell) & kGone) != 0; }
 
  private:
   static constexpr std::uint8_t kAdded = 1;
   static constexpr std::uint8_t kRemoved = 2;
+  static constexpr std::uint8_t kGone = 4;
 
   [[nodiscard]] std::size_t index_of(Cell cell) const {
     return static_cast<std::size_t>(cell.row - box_.first.row) * static_cast<std::size_t>(box_.width()) +
@@ -83,15 +88,18 @@ bool is_drawn_ahead(const RayCounts& counts, Cell cell) {
          is_strewn(counts, cell, kDrawnAheadShare);
 }
 
-CellState state_after(CellState before, Cell cell, const RayCounts& counts, const DoubtMask& mask,
-                      const EvidenceUpdateParams& params) {
+CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, const RayCounts& counts,
+                      const DoubtMask& mask, const EvidenceUpdateParams& params) {
   const RayCount& count = counts[cell];
   const int decisive = count.hits + count.clear_passes;
   const bool is_free =
       count.clear_passes >= params.free_passes && count.hits <= params.free_hit_share * static_cast<double>(decisive);
   if (before == CellState::kOccupied) {
+    // A verdict on a speck comes from beams beside it as well.
+    const bool is_gone = mask.is_gone(cell) && count.hits == 0 &&
+                         (count.clear_passes > 0 || awareness::group_size(map, cell, kSurfaceCells) < kSurfaceCells);
     const bool goes =
-        (mask.may_be_removed(cell) && is_free) || (mask.may_be_added(cell) && is_drawn_ahead(counts, cell));
+        (mask.may_be_removed(cell) && is_free) || is_gone || (mask.may_be_added(cell) && is_drawn_ahead(counts, cell));
     return goes ? CellState::kFree : before;
   }
   if (mask.may_be_added(cell) && count.hits >= params.occupied_hits && count.hit_share() >= params.occupied_hit_share) {
@@ -110,7 +118,7 @@ std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCo
       const Cell cell{column, row};
       const CellState before = map[cell];
       if (before != CellState::kUnknown && !mask.contains(cell)) continue;
-      const CellState after = state_after(before, cell, counts, mask, params);
+      const CellState after = state_after(map, before, cell, counts, mask, params);
       if (after != before) changes.push_back({cell, before, after});
     }
   }

@@ -5,29 +5,13 @@
 #include <cmath>
 #include <optional>
 
+#include "mapping/awareness/pose_deviation.hpp"
+
 namespace deltamap::mapping::awareness {
 namespace {
 
 /// A face met at a slant lies farther along for a beam beside: up to so many times as far as the beam lies aside (14°).
 constexpr double kMostSlant = 4.0;
-
-struct PoseDeviation {
-  double position_m;
-  double heading_rad;
-};
-
-PoseDeviation pose_deviation(const Estimate& estimate, double turn_rate_rad_per_s, const BeamEvidenceParams& params) {
-  const PoseCovariance& c = estimate.covariance;
-  const double heading = std::sqrt(std::max(0.0, c(2, 2)));
-  return {std::hypot(std::sqrt(std::max(0.0, std::max(c(0, 0), c(1, 1)))), params.least_position_deviation_m),
-          std::hypot(heading, params.least_heading_deviation_rad) +
-              std::abs(turn_rate_rad_per_s) * params.clock_deviation_s};
-}
-
-/// How far aside a beam may lie from where the pose puts it, at a distance from the laser.
-double aside_m(const PoseDeviation& deviation, double distance_m) {
-  return std::hypot(deviation.position_m, distance_m * deviation.heading_rad);
-}
 
 bool has_surface_within(const OccupancyGrid& map, const ClearSpace& clear, const Point2& place, double radius_m) {
   const GridGeometry& geometry = map.geometry();
@@ -110,7 +94,7 @@ class BeamJudge {
     const Point2 along = (beam.end - beam.from) / beam.length_m;
     const Point2 left{-along.y(), along.x()};
     const double near_m = params_.deviations * deviation_.position_m;
-    const double far_m = params_.deviations * aside_m(deviation_, beam.length_m);
+    const double far_m = params_.deviations * deviation_.aside_m(beam.length_m);
     const double slack_m = params_.beyond_m + near_m + kMostSlant * (far_m - near_m);
     for (const double side : {1.0, -1.0}) {
       const Point2 from = beam.from + side * near_m * left;
@@ -182,7 +166,7 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
       beam.end = beam.from + (beam.end - beam.from) * (farthest_m / beam.length_m);
       beam.length_m = farthest_m;
     }
-    beam.interval_m = params.deviations * std::hypot(aside_m(deviation, beam.length_m), params.range_deviation_m);
+    beam.interval_m = params.deviations * std::hypot(deviation.aside_m(beam.length_m), params.range_deviation_m);
 
     judge.collect_passed(beam);
     beam.ends_off_map =

@@ -64,6 +64,32 @@ void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometr
   });
 }
 
+/// Far away, neighbouring beams pass a face blocks apart: what lies between them on the face is as gone.
+void BeamVotes::mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face) {
+  const GridGeometry& blocks = map.layer.blocks();
+  const auto place = [&](Cell cell) { return blocks.centre_of(map.layer.block_of(cell)); };
+  for (std::size_t i = 0; i + 1 < beams.size(); ++i) {
+    if (beams[i].length_m <= 0.0 || beams[i + 1].length_m <= 0.0 || beams[i].passed.empty()) continue;
+    for (const Cell& beside : beams[i + 1].passed) {
+      const Point2 to = place(beside);
+      const auto nearest = std::min_element(beams[i].passed.begin(), beams[i].passed.end(), [&](Cell a, Cell b) {
+        return (place(a) - to).squaredNorm() < (place(b) - to).squaredNorm();
+      });
+      const Point2 from = place(*nearest);
+      const double step_m = face.slant * (to - beams[i + 1].from).norm() * face.bearing_step_rad;
+      if ((to - from).norm() <= step_m + blocks.resolution_m) mark_gone_between(from, to, map.clear);
+    }
+  }
+}
+
+void BeamVotes::mark_gone_between(const Point2& from, const Point2& to, const ClearSpace& clear) {
+  const GridGeometry& blocks = clear.blocks();
+  walk_ray(blocks, from, to, [&](Cell block, double) {
+    if (clear.is_solid(block)) mark(blocks.index_of(block), kGone);
+    return true;
+  });
+}
+
 /// A block that was both hit and passed was hit.
 void BeamVotes::collect() {
   constexpr auto kAdded = static_cast<std::size_t>(Question::kAdded);
@@ -91,13 +117,16 @@ void BeamVotes::collect() {
   for (Blocks& yes : votes_.yes) std::sort(yes.begin(), yes.end());
 }
 
-const Votes& BeamVotes::of(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face) {
+const Votes& BeamVotes::of(std::span<const BeamVerdict> beams, std::span<const Cell> gone, const VotedMap& map,
+                           const FaceParams& face) {
   const GridGeometry& blocks = map.layer.blocks();
   marks_.resize(blocks.cell_count(), 0);
   for (const BeamVerdict& beam : beams) {
     if (beam.length_m > 0.0) mark_beam(beam, map);  // else silent
   }
+  for (const Cell& cell : gone) mark(blocks.index_of(map.layer.block_of(cell)), kGone);
   mark_faces(beams, blocks, face);
+  mark_gone_faces(beams, map, face);
   collect();
   return votes_;
 }

@@ -34,8 +34,10 @@ struct VotedMap {
 
 class BeamVotes {
  public:
-  /// The votes stand until the next scan's.
-  [[nodiscard]] const Votes& of(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face);
+  /// `gone`: cells of small things that the beams together have shown to be gone. The votes stand until the next
+  /// scan's.
+  [[nodiscard]] const Votes& of(std::span<const BeamVerdict> beams, std::span<const Cell> gone, const VotedMap& map,
+                                const FaceParams& face);
 
  private:
   using Marks = std::uint8_t;  // a bit each of the following
@@ -46,6 +48,8 @@ class BeamVotes {
   void mark_beam(const BeamVerdict& beam, const VotedMap& map);
   void mark_still_there(Cell end, const ClearSpace& clear);
   void mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face);
+  void mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face);
+  void mark_gone_between(const Point2& from, const Point2& to, const ClearSpace& clear);
   void collect();
 
   std::vector<Marks> marks_;  // of every block; none between scans

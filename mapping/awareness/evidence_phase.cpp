@@ -22,7 +22,8 @@ std::vector<std::uint32_t> merged(std::vector<std::uint32_t> all, const std::vec
 
 }  // namespace
 
-EvidencePhase::EvidencePhase(const EvidencePhaseParams& params) : params_{params}, keyframes_{params.keyframes} {}
+EvidencePhase::EvidencePhase(const EvidencePhaseParams& params)
+    : params_{params}, keyframes_{params.keyframes}, specks_{params.specks} {}
 
 double EvidencePhase::least_share(Question question) const {
   return question == Question::kAdded ? params_.least_added_share : params_.least_removed_share;
@@ -38,6 +39,7 @@ bool EvidencePhase::is_proven(Question question, Cell block) const {
 void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (map == map_) return;
   const std::shared_ptr<const OccupancyGrid> before = std::exchange(map_, std::move(map));
+  specks_.take_map(*map_);
   if (before == nullptr || before->geometry() != map_->geometry()) {
     layer_ = VoteLayer{params_.votes, map_->geometry()};
     temporary_ = TemporaryLayer{params_.temporary, layer_.blocks(), layer_.cells_per_block()};
@@ -79,26 +81,31 @@ void EvidencePhase::cast(const Votes& votes) {
   }
 }
 
-std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlock>& region) const {
-  std::vector<std::uint32_t> indices;
+/// The region and, from neighbour to neighbour, what has been voted for beside it: a thing comes and goes as a whole.
+std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlock>& region) {
   const GridGeometry& blocks = layer_.blocks();
   const Question question = region.front().question;
-  for (const ProvenBlock& proven : region) {
+  const double least_votes = question == Question::kAdded ? params_.joining_votes : params_.joining_gone_votes;
+  joined_.resize(blocks.cell_count(), 0);
+  std::vector<Cell> joined;
+  const auto join = [&](Cell block) {
+    if (std::exchange(joined_[blocks.index_of(block)], 1) == 0) joined.push_back(block);
+  };
+  const auto is_voted_for = [&](Cell block) {
+    const Ballot ballot = layer_.ballot(question, block, now_ms_);
+    return ballot.yes >= static_cast<float>(least_votes) && ballot.share() >= least_share(question);
+  };
+  for (const ProvenBlock& proven : region) join(proven.block);
+  for (std::size_t next = 0; next < joined.size(); ++next) {
     for (int row = -params_.reach_blocks; row <= params_.reach_blocks; ++row) {
       for (int column = -params_.reach_blocks; column <= params_.reach_blocks; ++column) {
-        const Cell block{proven.block.column + column, proven.block.row + row};
-        if (!blocks.contains(block)) continue;
-        const Ballot ballot = layer_.ballot(question, block, now_ms_);
-        const bool joins =
-            ballot.yes >= static_cast<float>(params_.joining_votes) && ballot.share() >= least_share(question);
-        if (joins || block == proven.block) indices.push_back(static_cast<std::uint32_t>(blocks.index_of(block)));
+        const Cell block{joined[next].column + column, joined[next].row + row};
+        if (blocks.contains(block) && is_voted_for(block)) join(block);
       }
     }
   }
-  sort_unique(indices);
-  std::vector<Cell> cells;
-  for (const std::uint32_t index : indices) cells.push_back(blocks.cell_of(index));
-  return cells;
+  for (const Cell& block : joined) joined_[blocks.index_of(block)] = 0;
+  return joined;
 }
 
 void EvidencePhase::add_verdicts(Question question, Cell block, std::vector<CellVerdict>& verdicts) const {
@@ -180,6 +187,17 @@ bool EvidencePhase::is_passing(const std::vector<ProvenBlock>& region) const {
   return is_small_and_apart(region) && longest_s < params_.persistence_s;
 }
 
+/// Smaller regions are noise, but what is gone may have been small.
+bool EvidencePhase::is_large_enough(const std::vector<ProvenBlock>& region) const {
+  if (region.size() >= params_.least_blocks) return true;
+  if (region.front().question == Question::kAdded) return false;
+  return std::all_of(region.begin(), region.end(), [&](const ProvenBlock& proven) {
+    std::vector<CellVerdict> gone;
+    add_verdicts(proven.question, proven.block, gone);
+    return std::all_of(gone.begin(), gone.end(), [&](const CellVerdict& v) { return specks_.is_of_speck(v.cell); });
+  });
+}
+
 std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
   std::erase_if(waiting_, [&](const ProvenBlock& proven) { return !is_proven(proven.question, proven.block); });
   ScanSet set;
@@ -192,7 +210,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
                             [](const ProvenBlock& a, const ProvenBlock& b) { return a.since_ms < b.since_ms; });
     const bool settled = 1e-3 * (now_ms_ - newest->since_ms) >= params_.settle_s ||
                          1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s;
-    if (region.size() < params_.least_blocks || !settled || is_passing(region)) continue;
+    if (!settled || !is_large_enough(region) || is_passing(region)) continue;
     const Question question = region.front().question;
     Blocks blocks;
     std::uint32_t region_first_ms = now_ms_;
@@ -203,6 +221,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
       flips_.note(blocks.back(), question, now_ms_);
       hand_on(question, block);
     }
+    sort_unique(blocks);
     // Keyframes from before a thing went would draw it again: what was freed counts from now on.
     const bool added = question == Question::kAdded;
     watched_.watch(blocks, added ? params_.reach_blocks : 0, added ? region_first_ms : now_ms_);
@@ -240,7 +259,8 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   beams_ = beam_evidence(*map_, clear_, tracked, params_.beams, std::move(beams_));
   count_beams();
   const FaceParams face{.slant = params_.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
-  const Votes& votes = votes_.of(beams_, {clear_, layer_, watched_}, face);
+  const std::vector<Cell> gone = specks_.missed(tracked, beams_, params_.beams);
+  const Votes& votes = votes_.of(beams_, gone, {clear_, layer_, watched_}, face);
   cast(votes);
   temporary_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   keyframes_.keep(tracked, votes.all);

@@ -15,6 +15,7 @@
 #include "mapping/awareness/evidence_regions.hpp"
 #include "mapping/awareness/flip_memory.hpp"
 #include "mapping/awareness/keyframe_pool.hpp"
+#include "mapping/awareness/specks.hpp"
 #include "mapping/awareness/temporary_layer.hpp"
 #include "mapping/awareness/vote_layer.hpp"
 #include "mapping/awareness/watch_list.hpp"
@@ -35,12 +36,14 @@ struct EvidencePhaseParams {
   double face_slant = 3.0;     ///< as in EvidenceUpdateParams: what lies between two ends on a face is voted on too
   double settle_s = 0.2;       ///< a region is handed on when it has not grown for so long, …
   double most_wait_s = 0.6;    ///< … or has waited so long
-  double joining_votes = 2.0;  ///< blocks beside a region with so many votes and the share are taken along
+  double joining_votes = 2.0;  ///< blocks beside an added region with so many votes and the share are taken along
+  double joining_gone_votes = 1.0;  ///< the same beside a removed one
   BeamEvidenceParams beams;
   VoteLayerParams votes;
   KeyframeParams keyframes;
   WatchParams watch;
   FlipParams flips;
+  SpeckParams specks;
   TemporaryParams temporary;
 };
 
@@ -62,13 +65,14 @@ class EvidencePhase {
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void count_beams();
   [[nodiscard]] double flips_beyond(Cell block) const;
+  [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_passing(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_small_and_apart(const std::vector<ProvenBlock>& region) const;
   void cast(const Votes& votes);
   [[nodiscard]] bool is_proven(Question question, Cell block) const;
   [[nodiscard]] double least_share(Question question) const;
   [[nodiscard]] std::optional<ScanSet> settled_regions(Timestamp time);
-  [[nodiscard]] std::vector<Cell> with_joining_blocks(const std::vector<ProvenBlock>& region) const;
+  [[nodiscard]] std::vector<Cell> with_joining_blocks(const std::vector<ProvenBlock>& region);
   void add_verdicts(Question question, Cell block, std::vector<CellVerdict>& verdicts) const;
   void hand_on(Question question, Cell block);
   [[nodiscard]] std::optional<ScanSet> another_look(Timestamp time);
@@ -83,8 +87,10 @@ class EvidencePhase {
   std::vector<ProvenBlock> waiting_;
   ClearSpace clear_;
   BeamVotes votes_;
+  std::vector<std::uint8_t> joined_;  // a flag a block: belongs to the region that is being handed on
   WatchList watched_;
   FlipMemory flips_;
+  Specks specks_;
   std::optional<Timestamp> start_;
   std::uint32_t now_ms_ = 0;
   std::uint32_t phase_ = 0;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small things of the map that are gone. A beam through a speck says little: for another pose within the uncertainty it
+// would have gone past. A fan of beams says more: were the speck there, then for every such pose one of them would have
+// met it. What was small in the first map is left alone: a table's leg, a pole, which beams miss more often than not.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mapping/awareness/beam_evidence.hpp"
+#include "mapping/awareness/pose_deviation.hpp"
+
+namespace deltamap::mapping::awareness {
+
+struct SpeckParams {
+  double most_side_m = 0.8;  ///< of the box around a group of occupied cells; larger ones are surfaces; > 0
+  double most_step = 0.8;    ///< between neighbouring beams at the speck, of its width; (0, 1)
+};
+
+class Specks {
+ public:
+  Specks() = default;
+  explicit Specks(const SpeckParams& params) : params_{params} {}
+
+  /// Finds the small groups of occupied cells of a map that the first map of its geometry did not have.
+  void take_map(const OccupancyGrid& map);
+
+  [[nodiscard]] bool is_of_speck(Cell cell) const { return (flags_[geometry_.index_of(cell)] & kOfSpeck) != 0; }
+
+  /// The cells of all specks that the beams of a scan would have met, and have not: every beam that may have passed
+  /// there ends clearly beyond. `beams`: the verdicts on `tracked`.
+  [[nodiscard]] std::vector<Cell> missed(const TrackedScan& tracked, std::span<const BeamVerdict> beams,
+                                         const BeamEvidenceParams& params) const;
+
+ private:
+  using Flags = std::uint8_t;  // any of the following
+  static constexpr Flags kThin = 1, kOfSpeck = 2, kTaken = 4;
+  struct Speck {
+    Point2 middle{0.0, 0.0};
+    double radius_m = 0.0;  ///< of the circle around all its cells
+    std::vector<Cell> cells;
+  };
+  /// All that is joined to an occupied cell.
+  [[nodiscard]] std::vector<Cell> take_group(const OccupancyGrid& map, Cell start);
+  [[nodiscard]] bool is_missed(const Speck& speck, const TrackedScan& tracked, std::span<const BeamVerdict> beams,
+                               const PoseDeviation& deviation, const BeamEvidenceParams& params) const;
+
+  SpeckParams params_;
+  GridGeometry geometry_;
+  std::vector<Speck> specks_;
+  std::vector<Flags> flags_;  // of each cell
+};
+
+}  // namespace deltamap::mapping::awareness
