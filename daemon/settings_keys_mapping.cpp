@@ -107,6 +107,8 @@ void add_gate(mapping::WriteGateParams& gate, Keys& keys) {
   keys.push_back(number_key(at + "confirm_m", gate.confirm_m, "m", 0.0, 1000.0, "and must have driven meanwhile"));
   keys.push_back(
       number_key(at + "most_misfit", gate.misfit.most_drop, "", 0.0, 1.0, "of the beams, that suddenly stop fitting"));
+  keys.push_back(number_key(at + "most_break", gate.scan_break.most, "", 0.0, 1.0,
+                            "of the beams, that break with the scan before: the robot was carried"));
   keys.push_back(number_key(at + "most_doubt_s", gate.most_doubt_s, "s", 0.1, 3600.0,
                             "of doubt without a proof, until what is provisional is withdrawn"));
   keys.push_back(number_key(at + "hold_s", gate.hold_s, "s", 0.0, 60.0,

@@ -36,6 +36,11 @@ bool Misfit::is_sudden() const {
   return present_.short_of + present_.beyond - usual_.short_of - usual_.beyond > params_.most_drop;
 }
 
+bool Misfit::is_worse_than_remembered() const {
+  if (!remembered_) return false;
+  return present_.short_of + present_.beyond - remembered_->short_of - remembered_->beyond > params_.most_drop;
+}
+
 bool Misfit::is_both_ways() const {
   if (usual_.short_of + usual_.beyond > kMostUsual) return false;
   return std::min(present_.short_of - usual_.short_of, present_.beyond - usual_.beyond) > params_.most_drop_both_ways;

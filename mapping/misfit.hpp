@@ -28,6 +28,13 @@ class Misfit {
   /// And more than usual are too short, and more too long: as if the whole view were another one.
   [[nodiscard]] bool is_both_ways() const;
 
+  /// What is usual now is what has to come back.
+  void remember() { remembered_ = usual_; }
+  void forget() { remembered_.reset(); }
+  [[nodiscard]] bool remembers() const { return remembered_.has_value(); }
+  /// Fewer beams fit than usual before it was remembered.
+  [[nodiscard]] bool is_worse_than_remembered() const;
+
  private:
   struct Shares {
     double short_of = 0.0;
@@ -37,6 +44,7 @@ class Misfit {
   std::optional<Timestamp> last_;
   Shares usual_;
   Shares present_;
+  std::optional<Shares> remembered_;
 };
 
 }  // namespace deltamap::mapping

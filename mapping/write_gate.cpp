@@ -78,9 +78,30 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   return GateReason::kOpen;
 }
 
+/// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
+/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before.
+void WriteGate::note_break(const TrackedScan& tracked) {
+  const Timestamp time = tracked.scan.time;
+  if (scan_break_.observe(tracked) && was_tracking_) {
+    broken_ = time;
+    if (!misfit_.remembers()) misfit_.remember();
+  }
+  if (!broken_ || is_confirming_) return;
+  if (misfit_.is_worse_than_remembered()) {
+    is_confirming_ = true;
+  } else if (seconds(time - *broken_) > params_.break_settles_s) {
+    broken_.reset();
+    misfit_.forget();
+  }
+}
+
+bool WriteGate::fits_as_before_break(Timestamp time) const {
+  return !broken_ || seconds(time - *broken_) > params_.most_unlike_s || !misfit_.is_worse_than_remembered();
+}
+
 /// Has the pose held for long and far enough?
 bool WriteGate::holds(GateReason judgement, Timestamp time, double driven_m) {
-  if (judgement != GateReason::kOpen) {
+  if (judgement != GateReason::kOpen || !fits_as_before_break(time)) {
     holds_since_ = time;
     held_m_ = 0.0;
   } else {
@@ -95,18 +116,26 @@ void WriteGate::observe(const TrackedScan& tracked) {
     const double passed_s = std::max(0.0, seconds(time - *last_));
     times_[static_cast<std::size_t>(reason_)] += passed_s;
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
+    doubted_for_s_ += passed_s;
   }
   last_ = time;
   const double driven_m = driven_way_.since_last_m(tracked);
   const GateReason judgement = judged(tracked);
+  note_break(tracked);
   const bool is_proof = proves_wrong(judgement);
-  const bool doubts_long = judgement != GateReason::kOpen && shut_for_s_ >= params_.most_doubt_s;
+  if (judgement == GateReason::kOpen) doubted_for_s_ = 0.0;
+  const bool doubts_long = doubted_for_s_ >= params_.most_doubt_s;
   has_proven_wrong_ = was_tracking_ && !is_distrusted_ && (is_proof || doubts_long);
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
   if (was_tracking_ && (is_proof || misfit_.is_both_ways())) is_confirming_ = true;
-  if (is_confirming_ && holds(judgement, time, driven_m)) is_confirming_ = false;
-  reason_ = is_confirming_ && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
+  if (is_confirming_ && holds(judgement, time, driven_m)) {
+    is_confirming_ = false;
+    broken_.reset();
+    misfit_.forget();
+  }
+  const bool confirms = is_confirming_ || broken_;
+  reason_ = confirms && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
   if (is_open() && is_distrusted_) {
     is_distrusted_ = false;
     trusted_since_ = time;

@@ -16,6 +16,7 @@
 #include "mapping/misfit.hpp"
 #include "mapping/pose_jump.hpp"
 #include "mapping/provisional_window.hpp"
+#include "mapping/scan_break.hpp"
 
 namespace deltamap::mapping {
 
@@ -26,7 +27,7 @@ enum class GateReason : std::uint8_t {
   kWrong,        ///< it calls its own pose wrong
   kJumped,       ///< the estimate has moved otherwise than odometry, farther than its covariance explains
   kDisbelieved,  ///< P(pose right) is so low that it is rather wrong
-  kConfirming,   ///< the pose was wrong a moment ago, or the whole view another one, and has to hold for a while
+  kConfirming,   ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
   kDoubtful,     ///< P(pose right) is low
   kMisfit,       ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
   kRival,        ///< another place holds too much of the belief: two modes
@@ -50,6 +51,10 @@ struct WriteGateParams {
   double hold_s = 1.5;             ///< a set waits so long for a sign that its last scans were wrong; >= 0
   PoseJumpParams jump;
   MisfitParams misfit;
+  ScanBreakParams scan_break;
+  double break_settles_s =
+      3.0;  ///< after a break of the scans it waits so long to see whether the map still fits; >= 0
+  double most_unlike_s = 120.0;  ///< for so long after one as much must fit as before to confirm the pose; >= 0
   ProvisionalParams provisional;
 };
 
@@ -63,7 +68,11 @@ using GateTimes = std::array<double, kGateReasons>;
 class WriteGate {
  public:
   explicit WriteGate(const WriteGateParams& params)
-      : params_{params}, jump_{params.jump}, misfit_{params.misfit}, provisional_{params.provisional} {}
+      : params_{params},
+        jump_{params.jump},
+        misfit_{params.misfit},
+        scan_break_{params.scan_break},
+        provisional_{params.provisional} {}
 
   /// Every tracked scan in order.
   void observe(const TrackedScan& tracked);
@@ -82,11 +91,15 @@ class WriteGate {
 
  private:
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
+  void note_break(const TrackedScan& tracked);
+  [[nodiscard]] bool fits_as_before_break(Timestamp time) const;
   [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double driven_m);
 
   WriteGateParams params_;
   PoseJump jump_;
   Misfit misfit_;
+  ScanBreak scan_break_;
+  std::optional<Timestamp> broken_;  // when scans broke off last, until that has been explained
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
   bool was_tracking_ = false;
@@ -100,6 +113,7 @@ class WriteGate {
   std::optional<Timestamp> last_;
   GateTimes times_{};
   double shut_for_s_ = 0.0;
+  double doubted_for_s_ = 0.0;  // without a scan that speaks for the pose
 };
 
 }  // namespace deltamap::mapping
