@@ -97,7 +97,7 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
   if (before == CellState::kOccupied) {
     // A verdict on a speck comes from beams beside it as well.
     const bool is_gone = mask.is_gone(cell) && count.hits == 0 &&
-                         (count.clear_passes > 0 || awareness::group_size(map, cell, kSurfaceCells) < kSurfaceCells);
+                         awareness::group_size(map, cell, kSurfaceCells) < kSurfaceCells;
     const bool goes =
         (mask.may_be_removed(cell) && is_free) || is_gone || (mask.may_be_added(cell) && is_drawn_ahead(counts, cell));
     return goes ? CellState::kFree : before;
