@@ -96,8 +96,8 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
       count.clear_passes >= params.free_passes && count.hits <= params.free_hit_share * static_cast<double>(decisive);
   if (before == CellState::kOccupied) {
     // A verdict on a speck comes from beams beside it as well.
-    const bool is_gone = mask.is_gone(cell) && count.hits == 0 &&
-                         awareness::group_size(map, cell, kSurfaceCells) < kSurfaceCells;
+    const bool is_gone =
+        mask.is_gone(cell) && count.hits == 0 && awareness::group_size(map, cell, kSurfaceCells) < kSurfaceCells;
     const bool goes =
         (mask.may_be_removed(cell) && is_free) || is_gone || (mask.may_be_added(cell) && is_drawn_ahead(counts, cell));
     return goes ? CellState::kFree : before;
