@@ -2,6 +2,7 @@
 #include "core/grid_patch.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 
 namespace deltamap {
@@ -30,6 +31,7 @@ OccupancyGrid patched(OccupancyGrid grid, std::span<const CellChange> changes) {
 }
 
 std::vector<CellChange> changes_between(const OccupancyGrid& before, const OccupancyGrid& after) {
+  assert(before.geometry() == after.geometry() && "only grids of one geometry can be compared cell by cell");
   std::vector<CellChange> changes;
   const GridGeometry& geometry = before.geometry();
   const auto width = static_cast<std::size_t>(geometry.width);
