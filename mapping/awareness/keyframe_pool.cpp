@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "mapping/awareness/keyframe_choice.hpp"
+
 namespace deltamap::mapping::awareness {
 
 bool KeyframePool::is_due(const TrackedScan& tracked) const {
-  if (kept_.empty()) return true;
-  const TrackedScan& last = kept_.back().tracked;
-  if (last.odometry_epoch != tracked.odometry_epoch) return true;
-  const Pose2 motion = motion_between(last.odom_from_robot, tracked.odom_from_robot);
-  return motion.position().norm() >= params_.moved_m || std::abs(motion.theta) >= params_.turned_rad ||
-         seconds(tracked.scan.time - last.scan.time) >= params_.waited_s;
+  return kept_.empty() || is_next_keyframe(params_, place_of(kept_.back().tracked), place_of(tracked));
 }
 
 void KeyframePool::keep(const TrackedScan& tracked, std::vector<std::uint32_t> blocks) {

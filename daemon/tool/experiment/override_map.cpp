@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/tool/experiment/override_map.hpp"
 
-#include <cmath>
-
 #include "core/grid_ray.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 
 bool OverrideMap::is_keyframe(const TrackedScan& tracked) const {
-  constexpr mapping::awareness::KeyframeParams kChosen{};
+  namespace awareness = mapping::awareness;
   if (tracked.estimate.state != LocalizerState::kTracking) return false;
-  if (!last_ || last_->epoch != tracked.odometry_epoch) return true;
-  const Pose2 motion = motion_between(last_->odom_from_robot, tracked.odom_from_robot);
-  return motion.position().norm() >= kChosen.moved_m || std::abs(motion.theta) >= kChosen.turned_rad ||
-         seconds(tracked.scan.time - last_->time) >= kChosen.waited_s;
+  return !last_ || awareness::is_next_keyframe(awareness::KeyframeParams{}, *last_, awareness::place_of(tracked));
 }
 
 void OverrideMap::set(Cell cell, CellState state) {
@@ -22,7 +17,7 @@ void OverrideMap::set(Cell cell, CellState state) {
 
 void OverrideMap::observe(const TrackedScan& tracked) {
   if (!is_keyframe(tracked)) return;
-  last_ = Taken{tracked.odom_from_robot, tracked.odometry_epoch, tracked.scan.time};
+  last_ = mapping::awareness::place_of(tracked);
   const Pose2& map_from_robot = tracked.estimate.map_from_robot;
   const auto for_each_range = [&](auto&& take) {
     for (std::size_t i = 0; i < tracked.rays.size(); ++i) {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/messages.hpp"
-#include "mapping/awareness/keyframe_pool.hpp"
+#include "mapping/awareness/keyframe_choice.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 
@@ -22,13 +22,8 @@ class OverrideMap {
   [[nodiscard]] bool is_keyframe(const TrackedScan& tracked) const;
   void set(Cell cell, CellState state);
 
-  struct Taken {
-    Pose2 odom_from_robot;
-    std::uint32_t epoch = 0;
-    Timestamp time;
-  };
   OccupancyGrid map_;
-  std::optional<Taken> last_;
+  std::optional<mapping::awareness::ScanPlace> last_;
 };
 
 }  // namespace deltamap::daemon::tool::experiment
