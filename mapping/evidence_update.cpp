@@ -12,6 +12,7 @@
 #include "mapping/awareness/face_step.hpp"
 #include "mapping/hidden_floor.hpp"
 #include "mapping/merge/acceptance.hpp"
+#include "mapping/ray_counts.hpp"
 
 namespace deltamap::mapping {
 namespace {

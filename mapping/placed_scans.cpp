@@ -8,6 +8,7 @@
 
 #include "mapping/alignment/registration.hpp"
 #include "mapping/alignment/surface.hpp"
+#include "mapping/ray_counts.hpp"
 
 namespace deltamap::mapping {
 namespace {

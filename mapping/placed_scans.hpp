@@ -9,7 +9,7 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
-#include "mapping/ray_counts.hpp"
+#include "mapping/placed_scan.hpp"
 
 namespace deltamap::mapping {
 

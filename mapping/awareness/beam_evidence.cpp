@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/points_in_map.hpp"
 #include "mapping/awareness/pose_deviation.hpp"
 
 namespace deltamap::mapping::awareness {
@@ -34,23 +35,6 @@ bool has_surface_within(const OccupancyGrid& map, const ClearSpace& clear, const
   }
   return false;
 }
-
-/// As pose * point, with the sine taken once for all points.
-class PointsInMap {
- public:
-  explicit PointsInMap(const Pose2& map_from_robot)
-      : pose_{map_from_robot}, c_{std::cos(map_from_robot.theta)}, s_{std::sin(map_from_robot.theta)} {}
-
-  [[nodiscard]] Point2 operator()(const Eigen::Vector2f& point) const {
-    const Point2 in_robot = point.cast<double>();
-    return {pose_.x + c_ * in_robot.x() - s_ * in_robot.y(), pose_.y + s_ * in_robot.x() + c_ * in_robot.y()};
-  }
-
- private:
-  Pose2 pose_;
-  double c_;
-  double s_;
-};
 
 struct Passage {
   double entered_m;

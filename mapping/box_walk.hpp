@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The way of a beam over the cells of a box, cell by cell, by their index in the box: the cells of walk_ray in its
+// order, for callers to whom every instruction a cell counts.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <limits>
+
+#include "core/grid_patch.hpp"
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap::mapping {
+
+class BoxWalk {
+ public:
+  /// Begins in the cell of `from`, which must lie in the box.
+  BoxWalk(const GridGeometry& map, const CellBox& box, const Point2& from, const Point2& to) {
+    const Cell first = map.cell_at(from);
+    const Cell last = map.cell_at(to);
+    const std::ptrdiff_t width = box.width();
+    index_ = (first.row - box.first.row) * width + (first.column - box.first.column);
+    cells_left_ = std::abs(last.column - first.column) + std::abs(last.row - first.row);
+    const double length_m = (to - from).norm();
+    const double r = map.resolution_m;
+    columns_ = Axis{{.start_m = from.x(), .delta_m = to.x() - from.x(), .length_m = length_m, .cell_m = r},
+                    map.origin.x() + first.column * r,
+                    {.first = box.first.column, .last = box.last.column, .from = first.column, .to = last.column},
+                    1};
+    rows_ = Axis{{.start_m = from.y(), .delta_m = to.y() - from.y(), .length_m = length_m, .cell_m = r},
+                 map.origin.y() + first.row * r,
+                 {.first = box.first.row, .last = box.last.row, .from = first.row, .to = last.row},
+                 width};
+  }
+
+  /// In the cell of `to`?
+  [[nodiscard]] bool is_at_end() const { return cells_left_ == 0; }
+  /// Of the present cell, row by row.
+  [[nodiscard]] std::size_t index() const { return static_cast<std::size_t>(index_); }
+  /// Distance from `from` at which the beam has entered the present cell.
+  [[nodiscard]] double entered_m() const { return entered_m_; }
+  /// On to the next cell, where there is one; false where the beam leaves the box.
+  bool goes_on() {
+    --cells_left_;
+    return columns_.next_m < rows_.next_m ? crosses(columns_) : crosses(rows_);
+  }
+
+ private:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  struct Line {
+    double start_m, delta_m, length_m, cell_m;
+  };
+  struct Span {
+    int first, last;  // of the box; last excluded
+    int from, to;     // of the beam
+  };
+  struct Axis {
+    double next_m = kNever;      // distance at which the beam crosses the next border
+    double per_cell_m = kNever;  // distance between borders
+    std::ptrdiff_t stride = 0;   // of the index
+    int borders_left = 0;        // up to the beam's last cell or the box's, whichever comes first
+    bool leaves = false;         // the box's comes first
+
+    Axis() = default;
+    Axis(const Line& line, double cell_low_m, const Span& span, std::ptrdiff_t cell_stride) {
+      if (span.from == span.to) return;
+      const bool ascends = line.delta_m > 0.0;
+      const double per_metre = line.delta_m / line.length_m;
+      next_m = ((ascends ? cell_low_m + line.cell_m : cell_low_m) - line.start_m) / per_metre;
+      per_cell_m = line.cell_m / std::abs(per_metre);
+      stride = ascends ? cell_stride : -cell_stride;
+      const int to_end = std::abs(span.to - span.from);
+      const int in_box = ascends ? span.last - 1 - span.from : span.from - span.first;
+      borders_left = std::min(to_end, in_box);
+      leaves = in_box < to_end;
+    }
+  };
+
+  bool crosses(Axis& axis) {
+    if (axis.borders_left == 0) return false;
+    index_ += axis.stride;
+    entered_m_ = axis.next_m;
+    // Counting borders ends the walk exactly in the last cell, whatever the rounding.
+    axis.next_m = --axis.borders_left > 0 || axis.leaves ? axis.next_m + axis.per_cell_m : kNever;
+    return true;
+  }
+
+  Axis columns_;
+  Axis rows_;
+  std::ptrdiff_t index_ = 0;
+  int cells_left_ = 0;
+  double entered_m_ = 0.0;
+};
+
+}  // namespace deltamap::mapping
