@@ -2,15 +2,14 @@
 #include "mapping/evidence_update.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "core/grid_ray.hpp"
 #include "mapping/awareness/cell_group.hpp"
-#include "mapping/awareness/face_step.hpp"
+#include "mapping/closed_faces.hpp"
 #include "mapping/hidden_floor.hpp"
+#include "mapping/map_draft.hpp"
 #include "mapping/merge/acceptance.hpp"
 #include "mapping/ray_counts.hpp"
 
@@ -84,14 +83,14 @@ bool is_strewn(const RayCounts& counts, Cell cell, double least_of_face) {
 
 /// A face that was drawn a cell too far ahead: nearly all beams go on to the cell behind.
 bool is_drawn_ahead(const RayCounts& counts, Cell cell) {
-  const RayCount& count = counts[cell];
+  const RayCount count = counts[cell];
   return count.passes >= kDrawnAheadPasses && count.hit_share() <= kDrawnAheadShare &&
          is_strewn(counts, cell, kDrawnAheadShare);
 }
 
 CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, const RayCounts& counts,
                       const DoubtMask& mask, const EvidenceUpdateParams& params) {
-  const RayCount& count = counts[cell];
+  const RayCount count = counts[cell];
   const int decisive = count.hits + count.clear_passes;
   const bool is_free =
       count.clear_passes >= params.free_passes && count.hits <= params.free_hit_share * static_cast<double>(decisive);
@@ -109,93 +108,28 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
   return before == CellState::kUnknown && is_free ? CellState::kFree : before;
 }
 
-/// Cells around the verdicts that the beams contradict, and unknown ones anywhere that they have seen free.
-std::vector<CellChange> contradicted_cells(const OccupancyGrid& map, const RayCounts& counts, const DoubtMask& mask,
-                                           const EvidenceUpdateParams& params) {
-  std::vector<CellChange> changes;
-  const CellBox& box = counts.box();
-  for (int row = box.first.row; row < box.last.row; ++row) {
-    for (int column = box.first.column; column < box.last.column; ++column) {
-      const Cell cell{column, row};
-      const CellState before = map[cell];
-      if (before != CellState::kUnknown && !mask.contains(cell)) continue;
-      const CellState after = state_after(map, before, cell, counts, mask, params);
-      if (after != before) changes.push_back({cell, before, after});
+/// With what the beams contradict around the verdicts, and the unknown cells anywhere that they have seen free.
+[[nodiscard]] MapDraft with_contradicted_cells(MapDraft draft, const OccupancyGrid& map, const RayCounts& counts,
+                                               const DoubtMask& mask, const EvidenceUpdateParams& params) {
+  const auto decide = [&](Cell cell) { draft.set(cell, state_after(map, map[cell], cell, counts, mask, params)); };
+  counts.for_each_seen([&](Cell cell, const RayCount& count) {
+    const bool seen_free = map[cell] == CellState::kUnknown && count.clear_passes >= params.free_passes;
+    if (seen_free && !mask.contains(cell)) decide(cell);
+  });
+  for (int row = mask.box().first.row; row < mask.box().last.row; ++row) {
+    for (int column = mask.box().first.column; column < mask.box().last.column; ++column) {
+      if (mask.contains({column, row}) && counts.box().contains({column, row})) decide({column, row});
     }
   }
-  return changes;
-}
-
-/// Of the cell and its eight neighbours. For a gap of one cell in a line it is two.
-int count_occupied_around(const OccupancyGrid& map, Cell cell) {
-  int occupied = 0;
-  for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
-    for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
-      occupied += map.at({column, row}) == CellState::kOccupied ? 1 : 0;
-    }
-  }
-  return occupied;
-}
-
-/// A cell left out of a straight line of cells.
-template <typename IsGap>
-void close_pinholes(const CellBox& box, IsGap&& is_gap, OccupancyGrid& after) {
-  const OccupancyGrid before = after;
-  const auto is_occupied = [&](int column, int row) { return before.at({column, row}) == CellState::kOccupied; };
-  for (int row = box.first.row; row < box.last.row; ++row) {
-    for (int column = box.first.column; column < box.last.column; ++column) {
-      const bool level = is_occupied(column - 1, row) && is_occupied(column + 1, row);
-      const bool upright = is_occupied(column, row - 1) && is_occupied(column, row + 1);
-      const bool beside = level ? is_occupied(column, row - 1) || is_occupied(column, row + 1)
-                                : is_occupied(column - 1, row) || is_occupied(column + 1, row);
-      if (level != upright && !beside && is_gap({column, row})) after.set({column, row}, CellState::kOccupied);
-    }
-  }
-}
-
-/// Between the ends of neighbouring beams on one face there is no gap, unless beams have gone through it.
-[[nodiscard]] OccupancyGrid with_closed_faces(OccupancyGrid after, const RayCounts& counts, const DoubtMask& mask,
-                                              const std::vector<PlacedScan>& scans,
-                                              const EvidenceUpdateParams& params) {
-  const auto is_drawn = [&](const Point2& end) {
-    const Cell cell = after.geometry().cell_at(end);
-    return mask.may_be_added(cell) && after.at(cell) == CellState::kOccupied;
-  };
-  const OccupancyGrid drawn = after;
-  const auto is_gap = [&](Cell cell) {
-    return count_occupied_around(drawn, cell) <= 2 && mask.may_be_added(cell) &&
-           after.at(cell) != CellState::kOccupied && counts.box().contains(cell) &&
-           counts[cell].clear_passes < params.free_passes;
-  };
-  for (const PlacedScan& scan : scans) {
-    const TrackedScan& tracked = *scan.tracked;
-    const auto length_m = [&](std::size_t i) {
-      const Beam& beam = tracked.scan.beams[i];
-      return beam.kind == BeamKind::kRange && beam.range_m <= params.longest_m ? static_cast<double>(beam.range_m)
-                                                                               : 0.0;
-    };
-    const auto end = [&](std::size_t i) -> Point2 {
-      return scan.map_from_robot * Point2{tracked.rays[i].end.cast<double>()};
-    };
-    const awareness::FaceParams face{.slant = params.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
-    awareness::for_each_face_step(tracked.rays.size(), face, length_m, end, [&](std::size_t i) {
-      if (!is_drawn(end(i)) || !is_drawn(end(i + 1))) return;
-      walk_ray(drawn.geometry(), end(i), end(i + 1), [&](Cell cell, double) {
-        if (is_gap(cell)) after.set(cell, CellState::kOccupied);
-        return true;
-      });
-    });
-  }
-  close_pinholes(mask.box(), is_gap, after);
-  return after;
+  return draft;
 }
 
 /// What surfaces have closed off from the robot is not known any longer: floor beside new ones, and floor that beams
 /// saw before they stood there.
-[[nodiscard]] OccupancyGrid without_hidden_floor(const OccupancyGrid& map, OccupancyGrid after,
-                                                 const std::vector<PlacedScan>& scans, double most_hidden_m2) {
+[[nodiscard]] MapDraft without_hidden_floor(MapDraft draft, const std::vector<PlacedScan>& scans,
+                                            double most_hidden_m2) {
   std::vector<Cell> starts;
-  for (const auto& [cell, was, is] : changes_between(map, after)) {
+  for (const auto& [cell, was, is] : draft.changes()) {
     if (is == CellState::kFree && was == CellState::kUnknown) starts.push_back(cell);
     if (is != CellState::kOccupied) continue;
     for (const Cell& side : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}})
@@ -203,37 +137,51 @@ void close_pinholes(const CellBox& box, IsGap&& is_gap, OccupancyGrid& after) {
   }
   std::vector<Point2> robot_was;
   for (const PlacedScan& scan : scans) robot_was.push_back(scan.map_from_robot.position());
-  for (const Cell& cell : hidden_floor(after, starts, robot_was, most_hidden_m2)) after.set(cell, CellState::kUnknown);
-  return after;
+  for (const Cell& cell : hidden_floor(draft.map(), starts, robot_was, most_hidden_m2)) {
+    draft.set(cell, CellState::kUnknown);
+  }
+  return draft;
 }
 
-[[nodiscard]] OccupancyGrid without_specks(const OccupancyGrid& map, const OccupancyGrid& after, int least_cells) {
-  OccupancyGrid without = after;
-  for (const CellChange& change : changes_between(map, after)) {
-    if (change.after != CellState::kOccupied) continue;
-    if (awareness::group_size(after, change.cell, least_cells) < least_cells) without.set(change.cell, change.before);
-  }
-  return without;
+[[nodiscard]] MapDraft without_specks(MapDraft draft, int least_cells) {
+  std::vector<CellChange> specks = draft.changes();
+  std::erase_if(specks, [&](const CellChange& change) {
+    return change.after != CellState::kOccupied ||
+           awareness::group_size(draft.map(), change.cell, least_cells) >= least_cells;
+  });
+  for (const CellChange& speck : specks) draft.set(speck.cell, speck.before);
+  return draft;
 }
 
 /// A few cells that are left of what has been freed around them go too, unless something was met there.
-[[nodiscard]] OccupancyGrid without_remnants(const OccupancyGrid& map, OccupancyGrid after, const RayCounts& counts,
-                                             const DoubtMask& mask, int least_passes) {
+[[nodiscard]] MapDraft without_remnants(MapDraft draft, const RayCounts& counts, const DoubtMask& mask,
+                                        int least_passes) {
   const auto is_remnant = [&](Cell cell) {
-    return after.at(cell) == CellState::kOccupied && mask.may_be_removed(cell) && counts.box().contains(cell) &&
+    return draft.map().at(cell) == CellState::kOccupied && mask.may_be_removed(cell) && counts.box().contains(cell) &&
            counts[cell].hits == 0 && counts[cell].passes >= least_passes &&
-           awareness::group_size(after, cell, kRemnantCells) < kRemnantCells;
+           awareness::group_size(draft.map(), cell, kRemnantCells) < kRemnantCells;
   };
-  for (const CellChange& change : changes_between(map, after)) {
+  for (const CellChange& change : draft.changes()) {
     if (change.after != CellState::kFree || change.before != CellState::kOccupied) continue;
     for (int row = -kRemnantReach; row <= kRemnantReach; ++row) {
       for (int column = -kRemnantReach; column <= kRemnantReach; ++column) {
         const Cell cell{change.cell.column + column, change.cell.row + row};
-        if (is_remnant(cell)) after.set(cell, CellState::kFree);
+        if (is_remnant(cell)) draft.set(cell, CellState::kFree);
       }
     }
   }
-  return after;
+  return draft;
+}
+
+/// Eq. 11 of the map and the local map that the counts are: occupied where enough of the beams ended.
+merge::Acceptance acceptance(const RayCounts& counts, const OccupancyGrid& map, double occupied_hit_share) {
+  merge::Acceptance cells;
+  counts.for_each_seen([&](Cell cell, const RayCount& count) {
+    if (map[cell] == CellState::kUnknown) return;
+    const bool occupied = count.hit_share() >= occupied_hit_share;
+    ++(occupied == (map[cell] == CellState::kOccupied) ? cells.agreeing : cells.disagreeing);
+  });
+  return cells;
 }
 
 MapUpdate refused(Refusal refusal) {
@@ -263,13 +211,15 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
   for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
   MapUpdate update;
   update.map_from_local = placement.mean_correction;
-  OccupancyGrid after = patched(map, contradicted_cells(map, counts, mask, params));
-  after = with_closed_faces(std::move(after), counts, mask, placement.scans, params);
-  after = without_specks(map, after, params.least_speck_cells);
-  after = without_remnants(map, std::move(after), counts, mask, params.free_passes);
-  after = without_hidden_floor(map, std::move(after), placement.scans, params.most_hidden_m2);
-  update.changes = changes_between(map, after);
-  update.acceptance = merge::acceptance(counts.local_map(params.occupied_hit_share), after).value();
+  MapDraft draft = with_contradicted_cells(MapDraft{map}, map, counts, mask, params);
+  draft = with_closed_faces(std::move(draft), counts, placement.scans, mask.box(),
+                            [&](Cell cell) { return mask.may_be_added(cell); },
+                            {params.longest_m, params.face_slant, params.free_passes});
+  draft = without_specks(std::move(draft), params.least_speck_cells);
+  draft = without_remnants(std::move(draft), counts, mask, params.free_passes);
+  draft = without_hidden_floor(std::move(draft), placement.scans, params.most_hidden_m2);
+  update.changes = draft.changes();
+  update.acceptance = acceptance(counts, draft.map(), params.occupied_hit_share).value();
   if (update.changes.empty()) update.refusal = Refusal::kNothingChanged;
   if (update.acceptance < params.least_acceptance) update.refusal = Refusal::kLowAcceptance;
   if (!update.accepted()) update.changes.clear();

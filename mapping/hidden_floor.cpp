@@ -3,37 +3,77 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <cstdlib>
 #include <unordered_map>
 
 namespace deltamap::mapping {
 namespace {
 
 constexpr int kCrackCells = 2;
-constexpr std::array<Cell, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 class Floor {
  public:
   Floor(const OccupancyGrid& map, std::span<const Point2> robot_was, double most_m2)
       : map_{map}, most_cells_{static_cast<std::size_t>(most_m2 / (map.resolution_m() * map.resolution_m()))} {
-    for (const Point2& place : robot_was) robot_was_.push_back(map.geometry().cell_at(place));
+    for (const Point2& place : robot_was) {
+      const Cell cell = map.geometry().cell_at(place);
+      if (!is_floor(cell)) continue;
+      robot_was_.push_back(cell);
+      open_[map.geometry().index_of(cell)] = true;
+    }
   }
 
   /// The whole piece of floor that the cell belongs to where it is closed off; else nothing. A piece is looked at once.
   [[nodiscard]] std::vector<Cell> closed_off_from(Cell start) {
     std::vector<Cell> piece;
     if (!enter(start, piece)) return {};
+    const Cell goal = nearest_place_of_robot(start);
+    std::vector<Cell> edge{start};  // to be gone on from, the last one first
     bool is_open = false;
-    for (std::size_t next = 0; next < piece.size() && !is_open; ++next) {
-      const Cell cell = piece[next];
-      is_open = piece.size() > most_cells_ || std::find(robot_was_.begin(), robot_was_.end(), cell) != robot_was_.end();
-      for (const Cell& side : kSides) is_open |= meets_open_floor(cell, side, piece);
+    while (!edge.empty() && !is_open) {
+      const Cell cell = edge.back();
+      edge.pop_back();
+      is_open = piece.size() > most_cells_;
+      for (const Cell& side : sides_towards({goal.column - cell.column, goal.row - cell.row})) {
+        const Cell beside{cell.column + side.column, cell.row + side.row};
+        is_open |= is_known_open(beside);
+        if (enter(beside, piece)) edge.push_back(beside);
+      }
     }
     for (const Cell& cell : piece) open_[map_.geometry().index_of(cell)] = is_open;
     return is_open ? std::vector<Cell>{} : piece;
   }
 
  private:
+  /// The sides of a cell, those that lead away first: what is entered last is gone on from first, so that the robot is
+  /// reached in about as many cells as it is away.
+  [[nodiscard]] static std::array<Cell, 4> sides_towards(Cell way) {
+    const Cell along{way.column < 0 ? -1 : 1, 0};
+    const Cell up{0, way.row < 0 ? -1 : 1};
+    const bool is_flat = std::abs(way.column) > std::abs(way.row);
+    const Cell& first = is_flat ? along : up;
+    const Cell& second = is_flat ? up : along;
+    return {{{-first.column, -first.row}, {-second.column, -second.row}, second, first}};
+  }
+
+  [[nodiscard]] Cell nearest_place_of_robot(Cell cell) const {
+    const auto distance = [&](const Cell& place) {
+      return std::abs(place.column - cell.column) + std::abs(place.row - cell.row);
+    };
+    const auto nearest = std::min_element(robot_was_.begin(), robot_was_.end(),
+                                          [&](const Cell& a, const Cell& b) { return distance(a) < distance(b); });
+    return nearest == robot_was_.end() ? cell : *nearest;
+  }
+
+  [[nodiscard]] bool is_floor(Cell cell) const { return map_.at(cell) == CellState::kFree && !is_crack(cell); }
+
+  /// Does the cell belong to a piece from which the robot can be reached?
+  [[nodiscard]] bool is_known_open(Cell cell) const {
+    if (!map_.geometry().contains(cell)) return false;
+    const auto seen = open_.find(map_.geometry().index_of(cell));
+    return seen != open_.end() && seen->second;
+  }
+
   /// A gap of a cell or two in a line of occupied cells, which only the drawing has left.
   [[nodiscard]] bool is_crack(Cell cell) const {
     const auto gap = [&](const Cell& step) {
@@ -46,18 +86,12 @@ class Floor {
   }
 
   bool enter(Cell cell, std::vector<Cell>& piece) {
-    if (map_.at(cell) != CellState::kFree || is_crack(cell)) return false;
-    if (!open_.try_emplace(map_.geometry().index_of(cell), false).second) return false;
+    if (map_.at(cell) != CellState::kFree) return false;
+    const std::size_t index = map_.geometry().index_of(cell);
+    if (open_.contains(index) || is_crack(cell)) return false;
+    open_[index] = false;
     piece.push_back(cell);
     return true;
-  }
-
-  /// Goes on to the cell beside; or does it belong to a piece from which the robot can be reached?
-  bool meets_open_floor(Cell cell, const Cell& side, std::vector<Cell>& piece) {
-    const Cell beside{cell.column + side.column, cell.row + side.row};
-    if (!map_.geometry().contains(beside) || enter(beside, piece)) return false;
-    const auto seen = open_.find(map_.geometry().index_of(beside));
-    return seen != open_.end() && seen->second;
   }
 
   const OccupancyGrid& map_;

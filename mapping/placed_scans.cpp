@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/points_in_map.hpp"
 #include "mapping/alignment/registration.hpp"
 #include "mapping/alignment/surface.hpp"
 #include "mapping/ray_counts.hpp"
@@ -22,20 +23,62 @@ alignment::PoseBelief belief_of(const Estimate& estimate, const PlacementParams&
   return {estimate.map_from_robot, covariance.inverse()};
 }
 
-alignment::NearestSurface surface_around(const OccupancyGrid& map, const CellBox& box,
-                                         const std::function<bool(Cell)>& is_in_doubt, double reach_m) {
-  std::vector<alignment::SurfacePoint> surface = alignment::contour_of(map, box);
-  std::erase_if(surface, [&](const alignment::SurfacePoint& point) {
-    return is_in_doubt(map.geometry().cell_at(point.position));
-  });
-  return alignment::NearestSurface{std::move(surface), map.resolution_m(), reach_m};
+/// The places where the scans' beams may end, for all that the placement may move them: surfaces elsewhere need not be
+/// known.
+class PlacesOfEnds {
+ public:
+  PlacesOfEnds(const GridGeometry& map, double reach_m) {
+    const double side_m = 0.5 * (reach_m + kMostMoved_m);  // so that two blocks reach far enough
+    cells_per_block_ = std::max(1, static_cast<int>(std::ceil(side_m / map.resolution_m)));
+    blocks_ = {map.width / cells_per_block_ + 1, map.height / cells_per_block_ + 1, cells_per_block_ * map.resolution_m,
+               map.origin};
+    has_end_.resize(blocks_.cell_count());
+    is_near_end_.resize(blocks_.cell_count());
+  }
+
+  void add(const Point2& end) {
+    const Cell middle = blocks_.cell_at(end);
+    if (!blocks_.contains(middle) || std::exchange(has_end_[blocks_.index_of(middle)], 1) != 0) return;
+    const CellBox near = grown({middle, {middle.column + 1, middle.row + 1}}, 2, blocks_);
+    for (int row = near.first.row; row < near.last.row; ++row) {
+      for (int column = near.first.column; column < near.last.column; ++column) {
+        is_near_end_[blocks_.index_of({column, row})] = 1;
+      }
+    }
+  }
+  [[nodiscard]] bool contains(Cell cell) const {
+    return is_near_end_[blocks_.index_of({cell.column / cells_per_block_, cell.row / cells_per_block_})] != 0;
+  }
+
+ private:
+  static constexpr double kMostMoved_m = 0.5;
+
+  GridGeometry blocks_;
+  int cells_per_block_ = 1;
+  std::vector<std::uint8_t> has_end_;
+  std::vector<std::uint8_t> is_near_end_;
+};
+
+alignment::NearestSurface surface_around(const OccupancyGrid& map, const std::vector<PlacedScan>& guesses,
+                                         const std::function<bool(Cell)>& is_in_doubt, const PlacementParams& params) {
+  PlacesOfEnds ends{map.geometry(), params.reach_m};
+  for (const PlacedScan& guess : guesses) {
+    const PointsInMap in_map{guess.map_from_robot};
+    for (const Point2& end : alignment::ray_ends(*guess.tracked, params.longest_m)) ends.add(in_map(end));
+  }
+  const int margin = static_cast<int>(std::ceil(params.reach_m / map.resolution_m()));
+  const CellBox box = grown(box_seen(map.geometry(), guesses, params.longest_m), margin, map.geometry());
+  return alignment::NearestSurface{
+      alignment::contour_of(map, box, [&](Cell cell) { return ends.contains(cell) && !is_in_doubt(cell); }),
+      map.resolution_m(), params.reach_m};
 }
 
 /// How many points have a surface in reach, wherever exactly.
 std::size_t points_near(const alignment::NearestSurface& surface, const std::vector<Point2>& points,
                         const Pose2& pose) {
+  const PointsInMap in_map{pose};
   return static_cast<std::size_t>(std::count_if(
-      points.begin(), points.end(), [&](const Point2& point) { return surface.nearest(pose * point) != nullptr; }));
+      points.begin(), points.end(), [&](const Point2& point) { return surface.nearest(in_map(point)) != nullptr; }));
 }
 
 }  // namespace
@@ -44,9 +87,7 @@ Placement placed_scans(const OccupancyGrid& map, const std::vector<TrackedScan>&
                        const std::function<bool(Cell)>& is_in_doubt, const PlacementParams& params) {
   std::vector<PlacedScan> guesses;
   for (const TrackedScan& tracked : scans) guesses.push_back({&tracked, tracked.estimate.map_from_robot});
-  const int margin = static_cast<int>(std::ceil(params.reach_m / map.resolution_m()));
-  const CellBox box = grown(box_seen(map.geometry(), guesses, params.longest_m), margin, map.geometry());
-  const alignment::NearestSurface surface = surface_around(map, box, is_in_doubt, params.reach_m);
+  const alignment::NearestSurface surface = surface_around(map, guesses, is_in_doubt, params);
 
   Placement placement;
   Eigen::Vector3d moved_sum = Eigen::Vector3d::Zero();

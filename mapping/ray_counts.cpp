@@ -43,60 +43,51 @@ void for_each_beam(const PlacedScan& scan, double longest_m, Visit&& visit) {
 RayCounts::RayCounts(const GridGeometry& map, const CellBox& box)
     : map_{map},
       box_{box},
-      counts_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height())),
-      walls_(counts_.size(), CellState::kUnknown) {}
+      marks_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height())),
+      hits_(marks_.size()),
+      clear_passes_(marks_.size()),
+      late_passes_(marks_.size()) {}
 
 void RayCounts::stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops) {
-  for (int row = box_.first.row; row < box_.last.row; ++row) {
-    const Cell first{box_.first.column, row};
-    const auto begin = walls.cells().begin() + static_cast<std::ptrdiff_t>(walls.geometry().index_of(first));
-    std::copy(begin, begin + box_.width(), walls_.begin() + static_cast<std::ptrdiff_t>(index_of(first)));
-  }
+  walls_ = &walls;
   stops_ = std::move(stops);
-  is_opaque_.assign(counts_.size(), 0);
+}
+
+RayCounts::Mark RayCounts::first_seen(std::size_t index) {
+  seen_.push_back(static_cast<std::uint32_t>(index));
+  const bool is_wall = walls_ != nullptr && walls_->at(cell_of(index)) == CellState::kOccupied;
+  return marks_[index] = is_wall ? Mark::kWall : Mark::kOpen;
 }
 
 bool RayCounts::stops_in(std::size_t index) {
-  if (is_opaque_[index] != 0) return true;
-  const auto width = static_cast<std::size_t>(box_.width());
-  const Cell cell{box_.first.column + static_cast<int>(index % width),
-                  box_.first.row + static_cast<int>(index / width)};
-  const bool stops = stops_(cell);
-  is_opaque_[index] = stops ? 1 : 0;
-  if (!stops) walls_[index] = CellState::kFree;  // is not asked again
-  return stops;
+  if (marks_[index] == Mark::kWall) marks_[index] = stops_(cell_of(index)) ? Mark::kOpaque : Mark::kOpen;
+  return marks_[index] == Mark::kOpaque;
 }
 
-bool RayCounts::passes_to_end(BoxWalk& walk, double clear_end_m) {
+void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits) {
+  BoxWalk walk{map_, box_, from, end};
   while (!walk.is_at_end()) {
-    RayCount& count = counts_[walk.index()];
-    ++count.passes;
+    const std::size_t index = walk.index();
+    Mark mark = marks_[index];
+    if (mark == Mark::kUnseen) mark = first_seen(index);
     if (walk.entered_m() < clear_end_m) {
-      ++count.clear_passes;
-      if (walls_[walk.index()] == CellState::kOccupied && stops_in(walk.index())) return false;
+      ++clear_passes_[index];
+      if (mark != Mark::kOpen && stops_in(index)) return;
+    } else {
+      ++late_passes_[index];
     }
-    if (!walk.goes_on()) return false;
+    if (!walk.goes_on()) return;
   }
-  return true;
+  if (!hits) return;
+  if (marks_[walk.index()] == Mark::kUnseen) first_seen(walk.index());
+  ++hits_[walk.index()];
 }
 
 void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
   for_each_beam(scan, longest_m, [&](const BeamInMap& beam) {
     if (!box_.contains(map_.cell_at(beam.from))) return;
-    BoxWalk walk{map_, box_, beam.from, beam.end};
-    if (passes_to_end(walk, beam.length_m - clear_m) && beam.hits) ++counts_[walk.index()].hits;
+    add_beam(beam.from, beam.end, beam.length_m - clear_m, beam.hits);
   });
-}
-
-OccupancyGrid RayCounts::local_map(double least_hit_share) const {
-  const Point2 corner = map_.origin + map_.resolution_m * Point2{box_.first.column, box_.first.row};
-  OccupancyGrid local{{std::max(0, box_.width()), std::max(0, box_.height()), map_.resolution_m, corner}};
-  for (std::size_t i = 0; i < counts_.size(); ++i) {
-    if (counts_[i].seen() == 0) continue;
-    const bool occupied = counts_[i].hit_share() >= least_hit_share;
-    local.set(local.geometry().cell_of(i), occupied ? CellState::kOccupied : CellState::kFree);
-  }
-  return local;
 }
 
 CellBox box_seen(const GridGeometry& map, std::span<const PlacedScan> scans, double longest_m) {

@@ -23,14 +23,13 @@ struct RayCount {
   [[nodiscard]] double hit_share() const { return seen() == 0 ? 0.0 : static_cast<double>(hits) / seen(); }
 };
 
-class BoxWalk;
-
 class RayCounts {
  public:
   RayCounts(const GridGeometry& map, const CellBox& box);
 
   /// Nothing counts behind an occupied cell of `walls` that stops beams: one that seems to have gone through says that
-  /// its pose, or the surface, is not what it seems. `stops(cell)` is asked once a cell.
+  /// its pose, or the surface, is not what it seems. `stops(cell)` is asked at most once a cell; `walls` must outlive
+  /// the counts. To be told before the first beam.
   void stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops);
 
   /// Counts the beams that have a range; those longer than `longest_m` only as passing, up to there. A pass is clear
@@ -39,25 +38,42 @@ class RayCounts {
 
   [[nodiscard]] const CellBox& box() const { return box_; }
   /// `cell` must lie in the box.
-  [[nodiscard]] const RayCount& operator[](Cell cell) const { return counts_[index_of(cell)]; }
-  /// Occupied where the share of hits is at least `least_hit_share`, else free; unknown where nothing was seen.
-  [[nodiscard]] OccupancyGrid local_map(double least_hit_share) const;
+  [[nodiscard]] RayCount operator[](Cell cell) const { return count_at(index_of(cell)); }
+
+  /// `visit(Cell, RayCount)` for each cell that a beam has touched, in the order in which they were.
+  template <typename Visit>
+  void for_each_seen(Visit&& visit) const {
+    for (const std::uint32_t index : seen_) visit(cell_of(index), count_at(index));
+  }
 
  private:
+  enum class Mark : std::uint8_t { kUnseen, kOpen, kWall, kOpaque };  // a wall has not been asked yet
+
   [[nodiscard]] std::size_t index_of(Cell cell) const {
     return static_cast<std::size_t>(cell.row - box_.first.row) * static_cast<std::size_t>(box_.width()) +
            static_cast<std::size_t>(cell.column - box_.first.column);
   }
-
-  /// Counts the walk's passes; false where it is stopped or leaves the box.
-  [[nodiscard]] bool passes_to_end(BoxWalk& walk, double clear_end_m);
+  [[nodiscard]] Cell cell_of(std::size_t index) const {
+    const auto width = static_cast<std::size_t>(box_.width());
+    return {box_.first.column + static_cast<int>(index % width), box_.first.row + static_cast<int>(index / width)};
+  }
+  [[nodiscard]] RayCount count_at(std::size_t index) const {
+    return {hits_[index], clear_passes_[index] + late_passes_[index], clear_passes_[index]};
+  }
+  /// A cell is touched for the first time.
+  Mark first_seen(std::size_t index);
   [[nodiscard]] bool stops_in(std::size_t index);
+  void add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits);
 
   GridGeometry map_;
   CellBox box_;
-  std::vector<RayCount> counts_;
-  std::vector<CellState> walls_;         // occupied: stops, or is to be asked
-  std::vector<std::uint8_t> is_opaque_;  // has been asked, and stops
+  // By cell of the box. Apart from each other, for most of them are never touched but to be set to 0.
+  std::vector<Mark> marks_;
+  std::vector<std::int32_t> hits_;
+  std::vector<std::int32_t> clear_passes_;
+  std::vector<std::int32_t> late_passes_;
+  std::vector<std::uint32_t> seen_;
+  const OccupancyGrid* walls_ = nullptr;
   std::function<bool(Cell)> stops_;
 };
 

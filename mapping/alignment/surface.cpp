@@ -94,6 +94,11 @@ std::vector<SurfacePoint> surface_of(std::span<const Point2> ordered_ends) {
 }
 
 std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& box) {
+  return contour_of(map, box, [](Cell) { return true; });
+}
+
+std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& box,
+                                     const std::function<bool(Cell)>& is_wanted) {
   constexpr int kAround = 2;  // cells; the line is laid through the contour in 5 × 5 cells
   const CellBox wide = grown(box, kAround, map.geometry());
   if (wide.empty()) return {};
@@ -105,8 +110,8 @@ std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& bo
                   static_cast<std::size_t>(cell.column - wide.first.column)] = 1;
   }
   std::vector<SurfacePoint> surface;
-  surface.reserve(contour.size());
   for (const Cell& cell : contour) {
+    if (!is_wanted(cell)) continue;
     PlaceSums sums;
     const int first = std::max(cell.column - kAround, wide.first.column);
     const int last = std::min(cell.column + kAround, wide.last.column - 1);

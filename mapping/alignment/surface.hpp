@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct SurfacePoint {
 /// The contour of a map inside a box: centres of occupied cells that have a free neighbour and lie on a line with
 /// others.
 [[nodiscard]] std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& box);
+/// Of these, the points of cells that are wanted: what is not costs next to nothing.
+[[nodiscard]] std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& box,
+                                                   const std::function<bool(Cell)>& is_wanted);
 
 /// A table over the plane that answers the nearest surface point in constant time.
 class NearestSurface {
