@@ -16,8 +16,8 @@ namespace deltamap::mapping {
 
 class BoxWalk {
  public:
-  /// Begins in the cell of `from`, which must lie in the box.
-  BoxWalk(const GridGeometry& map, const CellBox& box, const Point2& from, const Point2& to) {
+  /// Begins in the cell of `from`, which must lie in the box. Inlined, or the walk would not stay in registers.
+  [[gnu::always_inline]] BoxWalk(const GridGeometry& map, const CellBox& box, const Point2& from, const Point2& to) {
     const Cell first = map.cell_at(from);
     const Cell last = map.cell_at(to);
     const std::ptrdiff_t width = box.width();

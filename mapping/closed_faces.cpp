@@ -12,15 +12,14 @@
 namespace deltamap::mapping {
 namespace {
 
-/// Of the cell and its eight neighbours. For a gap of one cell in a line it is two.
-int count_occupied_around(const OccupancyGrid& map, Cell cell) {
-  int occupied = 0;
+/// Of the cell and its eight neighbours, those that `is_drawn`. For a gap of one cell in a line it is two.
+template <typename IsDrawn>
+int count_drawn_around(Cell cell, IsDrawn&& is_drawn) {
+  int drawn = 0;
   for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
-    for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
-      occupied += map.at({column, row}) == CellState::kOccupied ? 1 : 0;
-    }
+    for (int column = cell.column - 1; column <= cell.column + 1; ++column) drawn += is_drawn({column, row}) ? 1 : 0;
   }
-  return occupied;
+  return drawn;
 }
 
 /// A cell left out of a straight line of cells.
@@ -81,32 +80,37 @@ void for_each_step_near(const ScanEnds& scan, const awareness::FaceParams& face,
 MapDraft with_closed_faces(MapDraft draft, const RayCounts& counts, const std::vector<PlacedScan>& scans,
                            const CellBox& box, const std::function<bool(Cell)>& may_be_added,
                            const ClosedFacesParams& params) {
-  const OccupancyGrid drawn = draft.map();
-  const GridGeometry& geometry = drawn.geometry();
+  const OccupancyGrid& map = draft.map();
+  const GridGeometry& geometry = map.geometry();
+  std::vector<Cell> closed;
   const auto may_be_face = [&](const Point2& end) {
     const Cell cell = geometry.cell_at(end);
     return box.contains(cell) && may_be_added(cell);
   };
-  const auto is_drawn = [&](const Point2& end) {
-    return may_be_face(end) && draft.map().at(geometry.cell_at(end)) == CellState::kOccupied;
+  const auto is_face = [&](const Point2& end) {
+    return may_be_face(end) && map.at(geometry.cell_at(end)) == CellState::kOccupied;
+  };
+  const auto is_drawn = [&](Cell cell) {
+    return map.at(cell) == CellState::kOccupied && std::find(closed.begin(), closed.end(), cell) == closed.end();
   };
   const auto is_gap = [&](Cell cell) {
-    return count_occupied_around(drawn, cell) <= 2 && may_be_added(cell) &&
-           draft.map().at(cell) != CellState::kOccupied && counts.box().contains(cell) &&
-           counts[cell].clear_passes < params.free_passes;
+    return map.at(cell) != CellState::kOccupied && may_be_added(cell) && counts.box().contains(cell) &&
+           counts[cell].clear_passes < params.free_passes && count_drawn_around(cell, is_drawn) <= 2;
   };
   for (const PlacedScan& scan : scans) {
     const awareness::FaceParams face{.slant = params.face_slant,
                                      .bearing_step_rad = scan.tracked->scan.bearing_step_rad};
     for_each_step_near(ends_of(scan, params.longest_m), face, may_be_face, [&](const Point2& one, const Point2& next) {
-      if (!is_drawn(one) || !is_drawn(next)) return;
+      if (!is_face(one) || !is_face(next)) return;
       walk_ray(geometry, one, next, [&](Cell cell, double) {
-        if (is_gap(cell)) draft.set(cell, CellState::kOccupied);
+        if (!is_gap(cell)) return true;
+        draft.set(cell, CellState::kOccupied);
+        closed.push_back(cell);
         return true;
       });
     });
   }
-  for (const Cell& hole : pinholes(draft.map(), box, is_gap)) draft.set(hole, CellState::kOccupied);
+  for (const Cell& hole : pinholes(map, box, is_gap)) draft.set(hole, CellState::kOccupied);
   return draft;
 }
 

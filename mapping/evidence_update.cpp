@@ -113,8 +113,8 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
                                                const DoubtMask& mask, const EvidenceUpdateParams& params) {
   const auto decide = [&](Cell cell) { draft.set(cell, state_after(map, map[cell], cell, counts, mask, params)); };
   counts.for_each_seen([&](Cell cell, const RayCount& count) {
-    const bool seen_free = map[cell] == CellState::kUnknown && count.clear_passes >= params.free_passes;
-    if (seen_free && !mask.contains(cell)) decide(cell);
+    if (count.clear_passes < params.free_passes || map[cell] != CellState::kUnknown) return;
+    if (!mask.contains(cell)) decide(cell);
   });
   for (int row = mask.box().first.row; row < mask.box().last.row; ++row) {
     for (int column = mask.box().first.column; column < mask.box().last.column; ++column) {

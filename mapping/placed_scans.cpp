@@ -51,7 +51,7 @@ class PlacesOfEnds {
   }
 
  private:
-  static constexpr double kMostMoved_m = 0.5;
+  static constexpr double kMostMoved_m = 0.2;
 
   GridGeometry blocks_;
   int cells_per_block_ = 1;

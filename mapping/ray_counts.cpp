@@ -43,44 +43,43 @@ void for_each_beam(const PlacedScan& scan, double longest_m, Visit&& visit) {
 RayCounts::RayCounts(const GridGeometry& map, const CellBox& box)
     : map_{map},
       box_{box},
-      marks_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height())),
-      hits_(marks_.size()),
-      clear_passes_(marks_.size()),
-      late_passes_(marks_.size()) {}
+      marks_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()), kUnseen),
+      counts_{std::make_unique_for_overwrite<Count[]>(marks_.size())} {}
 
 void RayCounts::stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops) {
   walls_ = &walls;
   stops_ = std::move(stops);
 }
 
-RayCounts::Mark RayCounts::first_seen(std::size_t index) {
+void RayCounts::see(std::size_t index) {
   seen_.push_back(static_cast<std::uint32_t>(index));
+  counts_[index] = {0, 0, 0};
   const bool is_wall = walls_ != nullptr && walls_->at(cell_of(index)) == CellState::kOccupied;
-  return marks_[index] = is_wall ? Mark::kWall : Mark::kOpen;
+  marks_[index] = is_wall ? kWall : kOpen;
 }
 
-bool RayCounts::stops_in(std::size_t index) {
-  if (marks_[index] == Mark::kWall) marks_[index] = stops_(cell_of(index)) ? Mark::kOpaque : Mark::kOpen;
-  return marks_[index] == Mark::kOpaque;
+bool RayCounts::lets_through(std::size_t index) {
+  if (marks_[index] == kUnseen) see(index);
+  if (marks_[index] == kWall) marks_[index] = stops_(cell_of(index)) ? kOpaque : kOpen;
+  return marks_[index] != kOpaque;
 }
 
 void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits) {
   BoxWalk walk{map_, box_, from, end};
-  while (!walk.is_at_end()) {
+  while (walk.entered_m() < clear_end_m && !walk.is_at_end()) {
     const std::size_t index = walk.index();
-    Mark mark = marks_[index];
-    if (mark == Mark::kUnseen) mark = first_seen(index);
-    if (walk.entered_m() < clear_end_m) {
-      ++clear_passes_[index];
-      if (mark != Mark::kOpen && stops_in(index)) return;
-    } else {
-      ++late_passes_[index];
-    }
+    const bool goes_through = marks_[index] == kOpen || lets_through(index);
+    ++counts_[index].clear_passes;
+    if (!goes_through || !walk.goes_on()) return;
+  }
+  while (!walk.is_at_end()) {
+    if (marks_[walk.index()] == kUnseen) see(walk.index());
+    ++counts_[walk.index()].late_passes;
     if (!walk.goes_on()) return;
   }
   if (!hits) return;
-  if (marks_[walk.index()] == Mark::kUnseen) first_seen(walk.index());
-  ++hits_[walk.index()];
+  if (marks_[walk.index()] == kUnseen) see(walk.index());
+  ++counts_[walk.index()].hits;
 }
 
 void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -47,7 +48,11 @@ class RayCounts {
   }
 
  private:
-  enum class Mark : std::uint8_t { kUnseen, kOpen, kWall, kOpaque };  // a wall has not been asked yet
+  using Mark = std::uint8_t;
+  static constexpr Mark kUnseen = 0, kOpen = 1, kWall = 2, kOpaque = 3;  // a wall has not been asked whether it stops
+  struct Count {
+    std::int32_t hits, clear_passes, late_passes;
+  };
 
   [[nodiscard]] std::size_t index_of(Cell cell) const {
     return static_cast<std::size_t>(cell.row - box_.first.row) * static_cast<std::size_t>(box_.width()) +
@@ -58,20 +63,19 @@ class RayCounts {
     return {box_.first.column + static_cast<int>(index % width), box_.first.row + static_cast<int>(index / width)};
   }
   [[nodiscard]] RayCount count_at(std::size_t index) const {
-    return {hits_[index], clear_passes_[index] + late_passes_[index], clear_passes_[index]};
+    if (marks_[index] == kUnseen) return {};
+    const Count& count = counts_[index];
+    return {count.hits, count.clear_passes + count.late_passes, count.clear_passes};
   }
-  /// A cell is touched for the first time.
-  Mark first_seen(std::size_t index);
-  [[nodiscard]] bool stops_in(std::size_t index);
+  void see(std::size_t index);
+  /// Sees the cell, where it has not been, and says whether beams go on behind it.
+  [[nodiscard]] bool lets_through(std::size_t index);
   void add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits);
 
   GridGeometry map_;
   CellBox box_;
-  // By cell of the box. Apart from each other, for most of them are never touched but to be set to 0.
-  std::vector<Mark> marks_;
-  std::vector<std::int32_t> hits_;
-  std::vector<std::int32_t> clear_passes_;
-  std::vector<std::int32_t> late_passes_;
+  std::vector<Mark> marks_;          // by cell of the box
+  std::unique_ptr<Count[]> counts_;  // likewise; of no value where unseen: most cells are, and need not be cleared
   std::vector<std::uint32_t> seen_;
   const OccupancyGrid* walls_ = nullptr;
   std::function<bool(Cell)> stops_;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/points_in_map.hpp"
+
 namespace deltamap::mapping::alignment {
 namespace {
 
@@ -23,26 +25,33 @@ struct NormalEquations {
 NormalEquations normal_equations(std::span<const Point2> points, const NearestSurface& reference, const Pose2& pose,
                                  double reach_m) {
   NormalEquations sums;
-  const double c = std::cos(pose.theta);
-  const double s = std::sin(pose.theta);
+  const PointsInMap in_reference{pose};
+  // The lower half of the matrix, number by number: this loop is most of what a registration costs.
+  double xx = 0.0, yx = 0.0, yy = 0.0, tx = 0.0, ty = 0.0, tt = 0.0;
   for (const Point2& point : points) {
-    const Point2 arm{c * point.x() - s * point.y(), s * point.x() + c * point.y()};
-    const Point2 place{pose.x + arm.x(), pose.y + arm.y()};
+    const Point2 place = in_reference(point);
     const SurfacePoint* line = reference.nearest(place);
     if (line == nullptr) continue;
     const Point2 apart = place - line->position;
     if (apart.squaredNorm() > reach_m * reach_m) continue;
-    const double distance_m = line->normal.dot(apart);
-    const Eigen::Vector3d gradient{line->normal.x(), line->normal.y(),
-                                   -line->normal.x() * arm.y() + line->normal.y() * arm.x()};
+    const Point2 arm = place - pose.position();
+    const Point2& normal = line->normal;
+    const double distance_m = normal.dot(apart);
+    const double turn = -normal.x() * arm.y() + normal.y() * arm.x();  // of the distance with the heading
     const double share = distance_m / reach_m;
     const double weight =
         (1.0 - share * share) * (1.0 - share * share);  // Tukey: nothing jumps at the border of the reach
-    sums.matrix.noalias() += weight * gradient * gradient.transpose();
-    sums.right_side.noalias() -= weight * distance_m * gradient;
+    const double wx = weight * normal.x();
+    const double wy = weight * normal.y();
+    const double wt = weight * turn;
+    xx += wx * normal.x(), yx += wy * normal.x(), yy += wy * normal.y();
+    tx += wt * normal.x(), ty += wt * normal.y(), tt += wt * turn;
+    sums.right_side.x() -= wx * distance_m, sums.right_side.y() -= wy * distance_m;
+    sums.right_side.z() -= wt * distance_m;
     sums.squares += distance_m * distance_m;
     ++sums.paired;
   }
+  sums.matrix << xx, yx, tx, yx, yy, ty, tx, ty, tt;
   return sums;
 }
 

@@ -41,8 +41,10 @@ class NearestSurface {
 
   /// Null where there is none in reach. The answer is exact up to half a table cell.
   [[nodiscard]] const SurfacePoint* nearest(const Point2& place) const {
-    const Cell cell = table_.cell_at(place);
-    if (!table_.contains(cell)) return nullptr;
+    const Point2 in_table = (place - table_.origin) / table_.resolution_m;
+    if (!(in_table.x() >= 0.0 && in_table.y() >= 0.0)) return nullptr;  // so that truncation is rounding down
+    const Cell cell{static_cast<int>(in_table.x()), static_cast<int>(in_table.y())};
+    if (cell.column >= table_.width || cell.row >= table_.height) return nullptr;
     const std::int32_t index = nearest_[table_.index_of(cell)];
     return index < 0 ? nullptr : &points_[static_cast<std::size_t>(index)];
   }
