@@ -14,6 +14,11 @@ namespace {
 
 constexpr std::uint32_t kOneInSlips = 16;  // particles that are drawn as if the wheels had slipped
 
+Pose2 drawn_slip(const MotionModelParams& model, double share, Random& random) {
+  return {random.normal(share * model.slip_m), random.normal(0.25 * share * model.slip_m),
+          random.normal(share * model.slip_rad)};
+}
+
 }  // namespace
 
 ParticleFilter::ParticleFilter(const ParticleFilterParams& params, std::uint64_t seed)
@@ -50,9 +55,17 @@ void ParticleFilter::let_some_slip(const MotionModelParams& model) {
   // More of them than slips are likely, each with the less weight: only one that fits far better is believed.
   const double log_weight = std::log(model.slip_probability * kOneInSlips);
   for (std::size_t i = random_.index_below(kOneInSlips); i < particles_.size(); i += kOneInSlips) {
-    const Pose2 slip{random_.normal(model.slip_m), random_.normal(0.25 * model.slip_m), random_.normal(model.slip_rad)};
-    particles_.set_pose(i, particles_.pose(i) * slip);
+    particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, 1.0, random_));
     particles_.log_weight[i] += log_weight;
+  }
+}
+
+void ParticleFilter::let_all_slip(const MotionModelParams& model, double share) {
+  const auto best = static_cast<std::size_t>(std::max_element(particles_.weight.begin(), particles_.weight.end()) -
+                                             particles_.weight.begin());
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (i != best) particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, share, random_));
+    particles_.log_weight[i] = 0.0;
   }
 }
 
@@ -81,15 +94,22 @@ void ParticleFilter::normalize_weights() {
 
 double ParticleFilter::n_eff() const { return effective_sample_size(particles_.weight); }
 
+bool ParticleFilter::is_depleted() const {
+  return n_eff() < params_.depleted_below * static_cast<double>(particles_.size());
+}
+
 bool ParticleFilter::resample_if_needed(std::size_t occupied_cells) {
   if (n_eff() >= params_.resample_below * static_cast<double>(particles_.size())) return false;
-  const std::size_t count = std::clamp(kld_sample_count(occupied_cells, params_.kld_error, params_.kld_quantile),
-                                       static_cast<std::size_t>(params_.min), static_cast<std::size_t>(params_.max));
+  resample(std::clamp(kld_sample_count(occupied_cells, params_.kld_error, params_.kld_quantile),
+                      static_cast<std::size_t>(params_.min), static_cast<std::size_t>(params_.max)));
+  return true;
+}
+
+void ParticleFilter::resample(std::size_t count) {
   choice_ = low_variance_choice(particles_.weight, count, random_.uniform(), std::move(choice_));
   drawn_.resize_uniform(count);
   for (std::size_t i = 0; i < count; ++i) drawn_.set_pose(i, particles_.pose(choice_[i]));
   std::swap(particles_, drawn_);
-  return true;
 }
 
 }  // namespace deltamap::localization

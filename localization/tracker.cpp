@@ -9,6 +9,8 @@
 namespace deltamap::localization {
 namespace {
 
+constexpr double kCloser = 0.25;  // share of a slip
+
 std::int32_t misfit_at(const Pose2& map_from_robot, const Tracker::Seen& seen) {
   return seen.beam_model != nullptr ? seen.beam_model->misfit_steps(seen.ends, seen.robot_from_laser, map_from_robot)
                                     : misfit_steps(seen.field, seen.ends, map_from_robot);
@@ -57,9 +59,12 @@ bool Tracker::update_due(const MotionSince& since) const {
 /// Moves and weighs the particles; they may be drawn anew afterwards.
 Tracker::Answer Tracker::update(const Seen& seen, const MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
-  if (last_update_) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
+  const bool was_here = last_update_.has_value();
+  if (was_here) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
   last_update_ = seen.now;
-  const std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};
+  std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};
+  if (sees && was_here && params_.motion.slip_probability > 0.0 && filter_.is_depleted())
+    misfits = weighed_after_slip(seen);
   Answer answer;
   answer.n_eff = filter_.n_eff();
   best_ = hypotheses_.best(filter_.particles());
@@ -89,6 +94,16 @@ std::span<const std::int32_t> Tracker::weighed(const Seen& seen) {
   const double evidence_beams = params_.particles.evidence_beams;
   if (seen.beam_model == nullptr) return filter_.weigh(seen.field, seen.ends, evidence_beams);
   return filter_.weigh_by([&](const Pose2& pose) { return misfit_at(pose, seen); }, seen.ends.size(), evidence_beams);
+}
+
+/// After a slip a single particle may happen to fit better than all others and yet lie a third of a metre off: before
+/// one is believed all of them slip, and those that fit then once more, less far.
+std::span<const std::int32_t> Tracker::weighed_after_slip(const Seen& seen) {
+  filter_.let_all_slip(params_.motion, 1.0);
+  (void)weighed(seen);
+  filter_.resample(filter_.particles().size());
+  filter_.let_all_slip(params_.motion, kCloser);
+  return weighed(seen);
 }
 
 double Tracker::mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const {

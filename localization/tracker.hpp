@@ -71,6 +71,7 @@ class Tracker {
   Answer follow(const Seen& seen, const MotionSince& since);
   [[nodiscard]] bool update_due(const MotionSince& since) const;
   [[nodiscard]] std::span<const std::int32_t> weighed(const Seen& seen);
+  [[nodiscard]] std::span<const std::int32_t> weighed_after_slip(const Seen& seen);
   [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const;
   [[nodiscard]] double mean_over_some_members(const Seen& seen, const Pose2& motion) const;
   [[nodiscard]] RefinedPose slid(const Seen& seen, const RefinedPose& prior);

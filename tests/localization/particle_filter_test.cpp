@@ -65,6 +65,40 @@ TEST(ParticleFilter, ResamplesToEqualWeightsAndAsManyAsTheCellsCallFor) {
   EXPECT_EQ(filter.particles().size(), 100u);
 }
 
+double distance_of_mean_m(const ParticleFilter& filter, const Point2& truth) {
+  Point2 mean{0.0, 0.0};
+  for (std::size_t i = 0; i < filter.particles().size(); ++i) {
+    mean += filter.particles().weight[i] * filter.particles().pose(i).position();
+  }
+  return (mean - truth).norm();
+}
+
+TEST(ParticleFilter, FindsTheRobotAfterASlipFarMoreCloselyWhereAllParticlesSlip) {
+  const OccupancyGrid map = room();
+  const LikelihoodField field{map, {}};
+  const Pose2 truth{2.0, 2.0, 0.5};
+  const BeamEnds ends = ends_from(map, truth);
+  const MotionModelParams motion;
+  double few_m = 0.0;
+  double all_m = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    ParticleFilter filter{{.min = 500, .max = 500}, seed};
+    filter.start_around({1.8, 2.0, 0.6}, 0.005, 0.002);
+    filter.move({}, 0.0, motion);
+    (void)filter.weigh(field, ends, 60.0);
+    EXPECT_TRUE(filter.is_depleted());
+    few_m += distance_of_mean_m(filter, truth.position());
+    filter.let_all_slip(motion, 1.0);
+    (void)filter.weigh(field, ends, 60.0);
+    filter.resample(500);
+    filter.let_all_slip(motion, 0.25);
+    (void)filter.weigh(field, ends, 60.0);
+    all_m += distance_of_mean_m(filter, truth.position());
+  }
+  EXPECT_LT(all_m, 0.4 * few_m);
+  EXPECT_LT(all_m / 20.0, 0.04);
+}
+
 TEST(ParticleFilter, CountsAScanTheSameWhateverItsNumberOfBeams) {
   const OccupancyGrid map = room();
   const LikelihoodField field{map, {}};
