@@ -26,6 +26,7 @@ struct RayCount {
 
 class RayCounts {
  public:
+  /// `box` lies on the map.
   RayCounts(const GridGeometry& map, const CellBox& box);
 
   /// Nothing counts behind an occupied cell of `walls` that stops beams: one that seems to have gone through says that
