@@ -52,12 +52,15 @@ void Specks::take_map(const OccupancyGrid& map) {
   const bool is_first = geometry_ != map.geometry();
   geometry_ = map.geometry();
   specks_.clear();
-  flags_.resize(geometry_.cell_count());
-  for (Flags& flags : flags_) flags = is_first ? 0 : flags & kThin;
+  if (is_first) flags_.assign(geometry_.cell_count(), 0);
+  for (Flags& flags : flags_) flags &= kThin;
   const auto most_cells = static_cast<int>(params_.most_side_m / geometry_.resolution_m);
-  for (std::size_t i = 0; i < flags_.size(); ++i) {
-    if (map.cells()[i] != CellState::kOccupied || (flags_[i] & kTaken) != 0) continue;
-    std::vector<Cell> group = take_group(map, geometry_.cell_of(i));
+  const std::vector<CellState>& cells = map.cells();
+  const auto occupied_from = [&](auto place) { return std::find(place, cells.end(), CellState::kOccupied); };
+  for (auto place = occupied_from(cells.begin()); place != cells.end(); place = occupied_from(place + 1)) {
+    const auto index = static_cast<std::size_t>(place - cells.begin());
+    if ((flags_[index] & kTaken) != 0) continue;
+    std::vector<Cell> group = take_group(map, geometry_.cell_of(index));
     const CellBox box = box_around(group);
     if (std::max(box.width(), box.height()) > most_cells) continue;
     const auto flags_of = [&](Cell cell) -> Flags& { return flags_[geometry_.index_of(cell)]; };
