@@ -112,9 +112,8 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
 [[nodiscard]] MapDraft with_contradicted_cells(MapDraft draft, const OccupancyGrid& map, const RayCounts& counts,
                                                const DoubtMask& mask, const EvidenceUpdateParams& params) {
   const auto decide = [&](Cell cell) { draft.set(cell, state_after(map, map[cell], cell, counts, mask, params)); };
-  counts.for_each_seen([&](Cell cell, const RayCount& count) {
-    if (count.clear_passes < params.free_passes || map[cell] != CellState::kUnknown) return;
-    if (!mask.contains(cell)) decide(cell);
+  counts.for_each_clear(params.free_passes, [&](Cell cell) {
+    if (map[cell] == CellState::kUnknown && !mask.contains(cell)) decide(cell);
   });
   for (int row = mask.box().first.row; row < mask.box().last.row; ++row) {
     for (int column = mask.box().first.column; column < mask.box().last.column; ++column) {
@@ -178,7 +177,7 @@ merge::Acceptance acceptance(const RayCounts& counts, const OccupancyGrid& map, 
   merge::Acceptance cells;
   counts.for_each_seen([&](Cell cell, const RayCount& count) {
     if (map[cell] == CellState::kUnknown) return;
-    const bool occupied = count.hit_share() >= occupied_hit_share;
+    const bool occupied = count.hits > 0 && count.hit_share() >= occupied_hit_share;
     ++(occupied == (map[cell] == CellState::kOccupied) ? cells.agreeing : cells.disagreeing);
   });
   return cells;

@@ -40,12 +40,22 @@ class RayCounts {
 
   [[nodiscard]] const CellBox& box() const { return box_; }
   /// `cell` must lie in the box.
-  [[nodiscard]] RayCount operator[](Cell cell) const { return count_at(index_of(cell)); }
+  [[nodiscard]] RayCount operator[](Cell cell) const {
+    const std::size_t index = index_of(cell);
+    return marks_[index] == kUnseen ? RayCount{} : count_at(index);
+  }
 
   /// `visit(Cell, RayCount)` for each cell that a beam has touched, in the order in which they were.
   template <typename Visit>
   void for_each_seen(Visit&& visit) const {
     for (const std::uint32_t index : seen_) visit(cell_of(index), count_at(index));
+  }
+  /// Likewise, those alone that at least so many beams have passed clearly.
+  template <typename Visit>
+  void for_each_clear(int least_passes, Visit&& visit) const {
+    for (const std::uint32_t index : seen_) {
+      if (counts_[index].clear_passes >= least_passes) visit(cell_of(index));
+    }
   }
 
  private:
@@ -63,8 +73,8 @@ class RayCounts {
     const auto width = static_cast<std::size_t>(box_.width());
     return {box_.first.column + static_cast<int>(index % width), box_.first.row + static_cast<int>(index / width)};
   }
+  /// Of a cell that has been seen.
   [[nodiscard]] RayCount count_at(std::size_t index) const {
-    if (marks_[index] == kUnseen) return {};
     const Count& count = counts_[index];
     return {count.hits, count.clear_passes + count.late_passes, count.clear_passes};
   }
