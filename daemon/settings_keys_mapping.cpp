@@ -109,6 +109,11 @@ void add_gate(mapping::WriteGateParams& gate, Keys& keys) {
       number_key(at + "most_misfit", gate.misfit.most_drop, "", 0.0, 1.0, "of the beams, that suddenly stop fitting"));
   keys.push_back(number_key(at + "most_break", gate.scan_break.most, "", 0.0, 1.0,
                             "of the beams, that break with the scan before: the robot was carried"));
+  keys.push_back(number_key(at + "most_break_one_way", gate.scan_break.most_one_way, "", 0.0, 1.0,
+                            "likewise where all are nearer, or all farther away"));
+  keys.push_back(number_key(at + "wary_break", gate.wary_break, "", 0.0, 1.0,
+                            "of the beams, that break: a worse fit soon after says that the robot was carried, …"));
+  keys.push_back(number_key(at + "wary_s", gate.wary_s, "s", 0.0, 60.0, "… so soon"));
   keys.push_back(number_key(at + "most_doubt_s", gate.most_doubt_s, "s", 0.1, 3600.0,
                             "of doubt without a proof, until what is provisional is withdrawn"));
   keys.push_back(number_key(at + "hold_s", gate.hold_s, "s", 0.0, 60.0,

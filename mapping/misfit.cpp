@@ -36,9 +36,10 @@ bool Misfit::is_sudden() const {
   return present_.short_of + present_.beyond - usual_.short_of - usual_.beyond > params_.most_drop;
 }
 
-bool Misfit::is_worse_than_remembered() const {
+bool Misfit::is_worse_than_remembered(double explained) const {
   if (!remembered_) return false;
-  return present_.short_of + present_.beyond - remembered_->short_of - remembered_->beyond > params_.most_drop;
+  const double more = present_.short_of + present_.beyond - remembered_->short_of - remembered_->beyond;
+  return more > params_.most_drop + explained;
 }
 
 bool Misfit::is_both_ways() const {

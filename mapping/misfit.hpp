@@ -32,8 +32,8 @@ class Misfit {
   void remember() { remembered_ = usual_; }
   void forget() { remembered_.reset(); }
   [[nodiscard]] bool remembers() const { return remembered_.has_value(); }
-  /// Fewer beams fit than usual before it was remembered.
-  [[nodiscard]] bool is_worse_than_remembered() const;
+  /// Fewer beams fit than usual before it was remembered, and than without that share of them.
+  [[nodiscard]] bool is_worse_than_remembered(double explained) const;
 
  private:
   struct Shares {

@@ -17,7 +17,7 @@ struct ScanBreakParams {
   double most = 0.2;                ///< of the beams that may suddenly be nearer or farther away, beyond what is usual;
                                     ///< [0, 1] (mapping.gate.most_break)
   double each_way = 0.05;           ///< of them at least so many each way; a break that is larger than
-  double whole_view = 0.6;          ///< is one whichever way; both [0, 1]
+  double most_one_way = 0.3;        ///< is one whichever way; both [0, 1] (mapping.gate.most_break_one_way)
   double least_m = 0.25;            ///< a smaller difference of range is none; > 0
   double wheels_rad_per_m = 0.05;   ///< that odometry may have turned unnoticed; >= 0
   double wheels_rad_per_rad = 0.1;  ///< likewise; >= 0
@@ -27,12 +27,18 @@ struct ScanBreakParams {
   std::uint32_t least_compared = 30;  ///< beams; fewer say nothing
 };
 
+/// What of the view does not follow from the scan before.
+struct SeenBreak {
+  double share = 0.0;     ///< of the beams, more than usual
+  bool is_large = false;  ///< as large as if the robot had been carried
+};
+
 class ScanBreak {
  public:
   explicit ScanBreak(const ScanBreakParams& params) : params_{params} {}
 
-  /// Every scan in order: does it break with the one before?
-  [[nodiscard]] bool observe(const TrackedScan& tracked);
+  /// Every scan in order.
+  [[nodiscard]] SeenBreak observe(const TrackedScan& tracked);
 
  private:
   struct Shares {

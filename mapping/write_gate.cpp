@@ -8,6 +8,9 @@
 namespace deltamap::mapping {
 namespace {
 
+/// A thing in whose place the map is wrong takes up more of the view as the robot comes nearer.
+constexpr double kApproached = 1.5;
+
 /// σ along the longest axis of the ellipse.
 double widest_deviation_m(const PoseCovariance& covariance) {
   const double middle = 0.5 * (covariance(0, 0) + covariance(1, 1));
@@ -79,24 +82,35 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 }
 
 /// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
-/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before.
+/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before. A small
+/// break is a thing's as long as not many more beams cease to fit than have broken off.
 void WriteGate::note_break(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
-  if (scan_break_.observe(tracked) && was_tracking_) {
-    broken_ = time;
-    if (!misfit_.remembers()) misfit_.remember();
+  const SeenBreak seen = scan_break_.observe(tracked);
+  const bool is_small = !seen.is_large && !is_confirming_ && seen.share > params_.wary_break;
+  if (was_tracking_ && (seen.is_large || is_small)) {
+    if (!broken_) misfit_.remember();
+    if (seen.is_large) {
+      broken_ = Broken{time, 0.0, true};
+    } else if (!broken_) {
+      broken_ = Broken{time, kApproached * seen.share, false};
+    }
   }
   if (!broken_ || is_confirming_) return;
-  if (misfit_.is_worse_than_remembered()) {
+  if (misfit_.is_worse_than_remembered(broken_->explained)) {
     is_confirming_ = true;
-  } else if (seconds(time - *broken_) > params_.break_settles_s) {
+  } else if (seconds(time - broken_->time) > params_.wary_s) {
     broken_.reset();
     misfit_.forget();
   }
 }
 
+bool WriteGate::breaks_now(Timestamp time) const {
+  return broken_ && broken_->shuts && seconds(time - broken_->time) <= params_.break_settles_s;
+}
+
 bool WriteGate::fits_as_before_break(Timestamp time) const {
-  return !broken_ || seconds(time - *broken_) > params_.most_unlike_s || !misfit_.is_worse_than_remembered();
+  return !broken_ || seconds(time - broken_->time) > params_.most_unlike_s || !misfit_.is_worse_than_remembered(0.0);
 }
 
 /// Has the pose held for long and far enough?
@@ -134,7 +148,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
     broken_.reset();
     misfit_.forget();
   }
-  const bool confirms = is_confirming_ || broken_;
+  const bool confirms = is_confirming_ || breaks_now(time);
   reason_ = confirms && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
   if (is_open() && is_distrusted_) {
     is_distrusted_ = false;

@@ -41,9 +41,9 @@ inline constexpr std::size_t kGateReasons = 11;
 
 struct WriteGateParams {
   bool enabled = true;             ///< false: everything is written, as the paper does (mapping.gate.enabled)
-  double least_pose_right = 0.75;  ///< P(pose right) below which it is shut; [0, 1]
+  double least_pose_right = 0.83;  ///< P(pose right) below which it is shut; [0, 1]
   double disbelieved_below = 0.3;  ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
-  double most_rival_share = 0.3;   ///< of the belief, that another place may hold; [0, 1]
+  double most_rival_share = 0.05;  ///< of the belief, that another place may hold; [0, 1]
   double most_deviation_m = 0.3;   ///< σ of the position along its worst axis; > 0
   double confirm_s = 20.0;         ///< so long all must hold again after the pose was wrong; >= 0
   double confirm_m = 10.0;         ///< and so far it must have driven meanwhile; >= 0
@@ -52,8 +52,9 @@ struct WriteGateParams {
   PoseJumpParams jump;
   MisfitParams misfit;
   ScanBreakParams scan_break;
-  double break_settles_s =
-      3.0;  ///< after a break of the scans it waits so long to see whether the map still fits; >= 0
+  double break_settles_s = 1.0;  ///< after a large break it waits so long to see whether the map still fits; >= 0
+  double wary_break = 0.08;      ///< of the beams: what breaks off less makes it not even wary; [0, 1]
+  double wary_s = 5.0;           ///< so long after a break a worse fit says that the robot was carried; >= 0
   double most_unlike_s = 120.0;  ///< for so long after one as much must fit as before to confirm the pose; >= 0
   ProvisionalParams provisional;
 };
@@ -90,8 +91,14 @@ class WriteGate {
   [[nodiscard]] double shut_for_s() const { return shut_for_s_; }
 
  private:
+  struct Broken {
+    Timestamp time;
+    double explained = 0.0;  // share of the beams that a thing may have taken out of the map's view
+    bool shuts = false;
+  };
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
   void note_break(const TrackedScan& tracked);
+  [[nodiscard]] bool breaks_now(Timestamp time) const;
   [[nodiscard]] bool fits_as_before_break(Timestamp time) const;
   [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double driven_m);
 
@@ -99,7 +106,7 @@ class WriteGate {
   PoseJump jump_;
   Misfit misfit_;
   ScanBreak scan_break_;
-  std::optional<Timestamp> broken_;  // when scans broke off last, until that has been explained
+  std::optional<Broken> broken_;  // the last break of the scans, until it has been explained
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
   bool was_tracking_ = false;

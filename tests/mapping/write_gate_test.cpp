@@ -4,44 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "mapping/gated_sets.hpp"
+#include "tests/mapping/straight_drive.hpp"
 
 namespace deltamap::mapping {
 namespace {
-
-constexpr double kPeriod_s = 0.1;
-constexpr double kSpeed_m_per_s = 0.5;
-
-/// A robot that drives straight on and knows where it is.
-class StraightDrive {
- public:
-  [[nodiscard]] TrackedScan next() {
-    time_s_ += kPeriod_s;
-    way_m_ += speed_m_per_s * kPeriod_s;
-    TrackedScan tracked;
-    tracked.scan.time = at(time_s_);
-    tracked.odom_from_robot = {way_m_, 0.0, 0.0};
-    tracked.estimate.time = tracked.scan.time;
-    tracked.estimate.map_from_robot = map_from_odom * tracked.odom_from_robot;
-    tracked.estimate.covariance = PoseCovariance{Eigen::Vector3d{4e-4, 4e-4, 1e-4}.asDiagonal()};
-    tracked.estimate.state = LocalizerState::kTracking;
-    tracked.estimate.belief.pose_right = 0.9;
-    return tracked;
-  }
-  [[nodiscard]] static Timestamp at(double time_s) { return timestamp_from_ns(0) + duration_from_seconds(time_s); }
-  [[nodiscard]] double time_s() const { return time_s_; }
-  [[nodiscard]] Timestamp now() const { return at(time_s_); }
-
-  double speed_m_per_s = kSpeed_m_per_s;
-  Pose2 map_from_odom;
-
- private:
-  double time_s_ = 0.0;
-  double way_m_ = 0.0;
-};
 
 ScanSet set_of(double began_s, double ended_s, std::uint32_t phase = 1) {
   ScanSet set;
@@ -385,87 +352,6 @@ TEST_F(Sets, AllPassAShutGateThatIsOff) {
   const auto handed_on = on(kPeriod_s);
   ASSERT_EQ(handed_on.size(), 1u);
   EXPECT_FALSE(handed_on[0].pose_in_doubt);
-}
-
-/// What a laser of 180 beams sees in an aisle 3 m wide: niches 1 m deep stand 2 m apart, every third one is walled up.
-TrackedScan aisle_scan(StraightDrive& robot, double carried_m, double thing_m = 0.0) {
-  TrackedScan tracked = robot.next();
-  const double x = tracked.odom_from_robot.x + carried_m;
-  tracked.scan.first_bearing_rad = -0.5 * std::numbers::pi;
-  tracked.scan.bearing_step_rad = radians(1.0);
-  const auto is_wall = [](double along, double aside) {
-    if (std::abs(aside) < 1.5) return along > 60.0;
-    const double place = std::floor(0.5 * along);
-    const bool niche = std::fmod(along + 100.0, 2.0) < 1.0 && std::fmod(place + 300.0, aside > 0.0 ? 3.0 : 5.0) >= 1.0;
-    return !niche || std::abs(aside) >= 2.5;
-  };
-  for (int i = 0; i < 180; ++i) {
-    const double bearing_rad = tracked.scan.bearing_rad(static_cast<std::size_t>(i));
-    const Point2 along{std::cos(bearing_rad), std::sin(bearing_rad)};
-    double range_m = 0.05;
-    while (range_m < 30.0 && !is_wall(x + range_m * along.x(), range_m * along.y())) range_m += 0.02;
-    if (thing_m > 0.0 && i >= 90 && i < 140) range_m = std::min(range_m, thing_m);
-    tracked.scan.beams.push_back({static_cast<float>(range_m), 0.0F, BeamKind::kRange});
-    tracked.rays.push_back({{0.0F, 0.0F}, (range_m * along).cast<float>()});
-  }
-  tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 95, .short_of = 5};
-  return tracked;
-}
-
-TEST(ScanBreak, IsNoneWhereTheRobotDrivesOnItsOwnWheels) {
-  StraightDrive robot;
-  ScanBreak scans{{}};
-  for (int i = 0; i < 300; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0))) << i;
-}
-
-TEST(ScanBreak, IsSeenInTheFirstScanOfACarriedRobot) {
-  StraightDrive robot;
-  ScanBreak scans{{}};
-  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0)));
-  EXPECT_TRUE(scans.observe(aisle_scan(robot, 2.5)));
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 2.5)));
-}
-
-TEST(ScanBreak, IsNoneWhereAThingComesOrGoes) {
-  StraightDrive robot;
-  ScanBreak scans{{}};
-  for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0, 1.0)));
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0, 1.0)));
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0)));
-}
-
-TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(aisle_scan(robot, 0.0));
-  ASSERT_TRUE(gate.is_open());
-  gate.observe(aisle_scan(robot, 2.5));
-  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
-  for (int i = 0; i < 35; ++i) gate.observe(aisle_scan(robot, 2.5));
-  EXPECT_TRUE(gate.is_open());
-  EXPECT_FALSE(gate.trusted_since());  // nothing has proven wrong
-}
-
-TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(aisle_scan(robot, 0.0));
-  const auto carried = [&](std::uint32_t fit) {
-    TrackedScan tracked = aisle_scan(robot, 2.5);
-    tracked.estimate.belief.elsewhere = {.expected = 100, .fit = fit, .beyond = 100 - fit};
-    gate.observe(tracked);
-  };
-  for (int i = 0; i < 400; ++i) {
-    carried(50);  // long past usual: the localizer goes on believing in its pose
-    ASSERT_FALSE(gate.is_open()) << i;
-  }
-  for (int i = 0; i < 180; ++i) {
-    carried(95);
-    ASSERT_FALSE(gate.is_open()) << i;
-  }
-  for (int i = 0; i < 60; ++i) carried(95);
-  EXPECT_TRUE(gate.is_open());
 }
 
 }  // namespace
