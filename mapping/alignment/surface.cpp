@@ -137,8 +137,6 @@ NearestSurface::NearestSurface(std::vector<SurfacePoint> points, double table_ce
       low_x_{static_cast<float>(table_.origin.x())},
       low_y_{static_cast<float>(table_.origin.y())} {
   const int reach_cells = static_cast<int>(std::ceil(reach_m / table_cell_m));
-  // So much beyond the reach that rounding to float leaves nothing out.
-  const double reach2 = 1.000001 * reach_m * reach_m;
   std::vector<double> across2(2 * static_cast<std::size_t>(reach_cells) + 1);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point2& position = points_[i].position;
@@ -154,11 +152,7 @@ NearestSurface::NearestSurface(std::vector<SurfacePoint> points, double table_ce
       const double dy = table_.centre_of({0, row}).y() - position.y();
       const double up2 = dy * dy;
       const std::size_t start = table_.index_of({first, row});
-      std::size_t k = 0;
-      std::size_t end = static_cast<std::size_t>(last - first) + 1;
-      while (k < end && across2[k] + up2 > reach2) ++k;  // the corners are out of reach
-      while (k < end && across2[end - 1] + up2 > reach2) --end;
-      for (; k < end; ++k) {
+      for (std::size_t k = 0; k <= static_cast<std::size_t>(last - first); ++k) {
         const auto d2 = static_cast<float>(across2[k] + up2);
         if (d2 >= distance2_[start + k]) continue;
         distance2_[start + k] = d2;
