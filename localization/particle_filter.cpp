@@ -54,17 +54,17 @@ void ParticleFilter::move(const Pose2& motion, double unknown_s, const MotionMod
 void ParticleFilter::let_some_slip(const MotionModelParams& model) {
   // More of them than slips are likely, each with the less weight: only one that fits far better is believed.
   const double log_weight = std::log(model.slip_probability * kOneInSlips);
-  for (std::size_t i = random_.index_below(kOneInSlips); i < particles_.size(); i += kOneInSlips) {
+  first_slip_ = random_.index_below(kOneInSlips);
+  for (std::size_t i = first_slip_; i < particles_.size(); i += kOneInSlips) {
     particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, 1.0, random_));
     particles_.log_weight[i] += log_weight;
   }
 }
 
 void ParticleFilter::let_all_slip(const MotionModelParams& model, double share) {
-  const auto best = static_cast<std::size_t>(std::max_element(particles_.weight.begin(), particles_.weight.end()) -
-                                             particles_.weight.begin());
+  const std::size_t kept = best();
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (i != best) particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, share, random_));
+    if (i != kept) particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, share, random_));
     particles_.log_weight[i] = 0.0;
   }
 }
@@ -94,8 +94,14 @@ void ParticleFilter::normalize_weights() {
 
 double ParticleFilter::n_eff() const { return effective_sample_size(particles_.weight); }
 
-bool ParticleFilter::is_depleted() const {
-  return n_eff() < params_.depleted_below * static_cast<double>(particles_.size());
+std::size_t ParticleFilter::best() const {
+  return static_cast<std::size_t>(std::max_element(particles_.weight.begin(), particles_.weight.end()) -
+                                  particles_.weight.begin());
+}
+
+bool ParticleFilter::rests_on_few_slips() const {
+  return n_eff() < params_.depleted_below * static_cast<double>(particles_.size()) &&
+         best() % kOneInSlips == first_slip_;
 }
 
 bool ParticleFilter::resample_if_needed(std::size_t occupied_cells) {

@@ -20,7 +20,7 @@ struct ParticleFilterParams {
   int min = 500;                 ///< fewest particles; 10..max
   int max = 5000;                ///< most particles: what global localization starts with; min..200000
   double resample_below = 0.5;   ///< share of the particles below which N_eff calls for resampling; 0..1
-  double depleted_below = 0.05;  ///< share below which too few fit for one of them to be believed; 0..1, 0 = never
+  double depleted_below = 0.05;  ///< share below which a slip is not believed for one of them alone; 0..1, 0 = never
   double evidence_beams = 20.0;  ///< independent beams that a scan counts as; > 0: neighbours see the same things
   double kld_error = 0.05;       ///< bound of the approximation error that sets the number of particles; > 0 (ε)
   double kld_quantile = 2.33;    ///< of the normal distribution, how surely the bound holds; > 0 (z)
@@ -53,9 +53,10 @@ class ParticleFilter {
   /// N_eff (Eq. 5) of the accumulated weights.
   [[nodiscard]] double n_eff() const;
 
-  /// Hardly any particle carries weight: the robot is where too few were drawn.
-  [[nodiscard]] bool is_depleted() const;
-  /// Moves all but the best as if the wheels had just slipped, by a share of the usual slip; their weights are forgotten.
+  /// Hardly any particle carries weight, and the best was drawn as slipped in the last move: too few were to trust it.
+  [[nodiscard]] bool rests_on_few_slips() const;
+  /// Moves all but the best as if the wheels had just slipped, by a share of the usual slip; their weights are
+  /// forgotten.
   void let_all_slip(const MotionModelParams& model, double share);
   /// Draws so many by their weights.
   void resample(std::size_t count);
@@ -67,6 +68,7 @@ class ParticleFilter {
 
  private:
   void accumulate(std::size_t beams, double evidence_beams);
+  [[nodiscard]] std::size_t best() const;
   void let_some_slip(const MotionModelParams& model);
   void normalize_weights();
 
@@ -75,6 +77,7 @@ class ParticleFilter {
   Ziggurat ziggurat_;
   ParticleSet particles_;
   ParticleSet drawn_;
+  std::uint32_t first_slip_ = 0;  // of the particles that the last move let slip
   std::vector<std::uint32_t> choice_;
   std::vector<std::int32_t> misfits_;
 };

@@ -63,7 +63,7 @@ Tracker::Answer Tracker::update(const Seen& seen, const MotionSince& since) {
   if (was_here) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
   last_update_ = seen.now;
   std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};
-  if (sees && was_here && params_.motion.slip_probability > 0.0 && filter_.is_depleted())
+  if (sees && was_here && params_.motion.slip_probability > 0.0 && filter_.rests_on_few_slips())
     misfits = weighed_after_slip(seen);
   Answer answer;
   answer.n_eff = filter_.n_eff();

@@ -39,8 +39,8 @@ bool EvidencePhase::is_proven(Question question, Cell block) const {
 void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (map == map_) return;
   const std::shared_ptr<const OccupancyGrid> before = std::exchange(map_, std::move(map));
-  specks_.take_map(*map_);
   if (before == nullptr || before->geometry() != map_->geometry()) {
+    specks_.begin(*map_);
     layer_ = VoteLayer{params_.votes, map_->geometry()};
     temporary_ = TemporaryLayer{params_.temporary, layer_.blocks(), layer_.cells_per_block()};
     waiting_.clear();
@@ -53,6 +53,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   for (const CellChange& change : changes) {
     layer_.reset(grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry()));
   }
+  specks_.follow(*map_, changes);
   clear_.update(*map_, changes);
   temporary_.follow(*map_);
 }

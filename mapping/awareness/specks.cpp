@@ -30,48 +30,88 @@ double width_m(const std::vector<Cell>& cells, const GridGeometry& geometry, con
 
 }  // namespace
 
-std::vector<Cell> Specks::take_group(const OccupancyGrid& map, Cell start) {
+/// Stops where the group grows too wide to be a speck, or meets one that has.
+std::optional<std::vector<Cell>> Specks::small_group(const OccupancyGrid& map, Cell start) {
+  const auto most_cells = static_cast<int>(params_.most_side_m / geometry_.resolution_m);
   std::vector<Cell> group;
+  CellBox box{start, start};
+  bool is_small = true;
   const auto take = [&](Cell cell) {
     if (map.at(cell) != CellState::kOccupied) return;
-    Flags& flags = flags_[geometry_.index_of(cell)];
-    if ((flags & kTaken) == 0) group.push_back(cell);
+    Flags& flags = flags_of(cell);
+    if ((flags & kWide) != 0) is_small = false;
+    if ((flags & kTaken) != 0) return;
     flags |= kTaken;
+    group.push_back(cell);
+    box.first = {std::min(box.first.column, cell.column), std::min(box.first.row, cell.row)};
+    box.last = {std::max(box.last.column, cell.column + 1), std::max(box.last.row, cell.row + 1)};
+    if (std::max(box.width(), box.height()) > most_cells) is_small = false;
   };
   take(start);
-  for (std::size_t next = 0; next < group.size(); ++next) {
+  for (std::size_t next = 0; next < group.size() && is_small; ++next) {
     const Cell middle = group[next];
     for (int row = middle.row - 1; row <= middle.row + 1; ++row) {
       for (int column = middle.column - 1; column <= middle.column + 1; ++column) take({column, row});
     }
   }
-  return group;
+  taken_.insert(taken_.end(), group.begin(), group.end());
+  if (is_small) return group;
+  for (const Cell& cell : group) flags_of(cell) |= kWide;
+  return std::nullopt;
 }
 
-void Specks::take_map(const OccupancyGrid& map) {
-  const bool is_first = geometry_ != map.geometry();
-  geometry_ = map.geometry();
-  specks_.clear();
-  if (is_first) flags_.assign(geometry_.cell_count(), 0);
-  for (Flags& flags : flags_) flags &= kThin;
-  const auto most_cells = static_cast<int>(params_.most_side_m / geometry_.resolution_m);
-  const std::vector<CellState>& cells = map.cells();
-  const auto occupied_from = [&](auto place) { return std::find(place, cells.end(), CellState::kOccupied); };
-  for (auto place = occupied_from(cells.begin()); place != cells.end(); place = occupied_from(place + 1)) {
-    const auto index = static_cast<std::size_t>(place - cells.begin());
-    if ((flags_[index] & kTaken) != 0) continue;
-    std::vector<Cell> group = take_group(map, geometry_.cell_of(index));
-    const CellBox box = box_around(group);
-    if (std::max(box.width(), box.height()) > most_cells) continue;
-    const auto flags_of = [&](Cell cell) -> Flags& { return flags_[geometry_.index_of(cell)]; };
-    if (is_first)
-      for (const Cell& cell : group) flags_of(cell) |= kThin;
-    if (std::any_of(group.begin(), group.end(), [&](Cell cell) { return (flags_of(cell) & kThin) != 0; })) continue;
-    for (const Cell& cell : group) flags_of(cell) |= kOfSpeck;
+void Specks::gather(const OccupancyGrid& map, std::span<const Cell> starts) {
+  for (const Cell& start : starts) {
+    if (map.at(start) != CellState::kOccupied || (flags_of(start) & (kTaken | kWide)) != 0) continue;
+    std::optional<std::vector<Cell>> group = small_group(map, start);
+    if (!group) continue;
+    if (std::any_of(group->begin(), group->end(), [&](Cell cell) { return (flags_of(cell) & kThin) != 0; })) continue;
+    for (const Cell& cell : *group) flags_of(cell) |= kOfSpeck;
+    const CellBox box = box_around(*group);
     const Point2 first = geometry_.centre_of(box.first);
     const Point2 last = geometry_.centre_of({box.last.column - 1, box.last.row - 1});
-    specks_.push_back({0.5 * (first + last), 0.5 * ((last - first).norm() + geometry_.resolution_m), std::move(group)});
+    specks_.push_back(
+        {0.5 * (first + last), 0.5 * ((last - first).norm() + geometry_.resolution_m), std::move(*group)});
   }
+  for (const Cell& cell : taken_) flags_of(cell) &= static_cast<Flags>(~(kTaken | kWide));
+  taken_.clear();
+}
+
+void Specks::begin(const OccupancyGrid& map) {
+  geometry_ = map.geometry();
+  flags_.assign(geometry_.cell_count(), 0);
+  specks_.clear();
+  std::vector<Cell> occupied;
+  for (std::size_t i = 0; i < map.cells().size(); ++i) {
+    if (map.cells()[i] == CellState::kOccupied) occupied.push_back(geometry_.cell_of(i));
+  }
+  gather(map, occupied);
+  for (const Speck& speck : specks_) {
+    for (const Cell& cell : speck.cells) flags_of(cell) = kThin;
+  }
+  specks_.clear();
+}
+
+void Specks::follow(const OccupancyGrid& map, std::span<const CellChange> changes) {
+  std::vector<Cell> starts;
+  for (const CellChange& change : changes) {
+    for (int row = change.cell.row - 1; row <= change.cell.row + 1; ++row) {
+      for (int column = change.cell.column - 1; column <= change.cell.column + 1; ++column) {
+        if (geometry_.contains({column, row})) starts.push_back({column, row});
+      }
+    }
+  }
+  for (const Cell& cell : starts) flags_of(cell) |= kTouched;
+  const auto is_touched = [&](Cell cell) { return (flags_of(cell) & kTouched) != 0; };
+  const std::size_t around_changes = starts.size();
+  std::erase_if(specks_, [&](const Speck& speck) {
+    if (std::none_of(speck.cells.begin(), speck.cells.end(), is_touched)) return false;
+    for (const Cell& cell : speck.cells) flags_of(cell) &= static_cast<Flags>(~kOfSpeck);
+    starts.insert(starts.end(), speck.cells.begin(), speck.cells.end());
+    return true;
+  });
+  for (std::size_t i = 0; i < around_changes; ++i) flags_of(starts[i]) &= static_cast<Flags>(~kTouched);
+  gather(map, starts);
 }
 
 std::vector<Cell> Specks::missed(const TrackedScan& tracked, std::span<const BeamVerdict> beams,

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/grid_patch.hpp"
 #include "mapping/awareness/beam_evidence.hpp"
 #include "mapping/awareness/pose_deviation.hpp"
 
@@ -23,8 +25,10 @@ class Specks {
   Specks() = default;
   explicit Specks(const SpeckParams& params) : params_{params} {}
 
-  /// Finds the small groups of occupied cells of a map that the first map of its geometry did not have.
-  void take_map(const OccupancyGrid& map);
+  /// What is small in this map is no speck, here and in all maps that follow.
+  void begin(const OccupancyGrid& map);
+  /// Finds the small groups of occupied cells around the changes that have led to this map.
+  void follow(const OccupancyGrid& map, std::span<const CellChange> changes);
 
   [[nodiscard]] bool is_of_speck(Cell cell) const { return (flags_[geometry_.index_of(cell)] & kOfSpeck) != 0; }
 
@@ -35,14 +39,17 @@ class Specks {
 
  private:
   using Flags = std::uint8_t;  // any of the following
-  static constexpr Flags kThin = 1, kOfSpeck = 2, kTaken = 4;
+  static constexpr Flags kThin = 1, kOfSpeck = 2;
+  static constexpr Flags kTaken = 4, kWide = 8, kTouched = 16;  // only while groups are looked for
   struct Speck {
     Point2 middle{0.0, 0.0};
     double radius_m = 0.0;  ///< of the circle around all its cells
     std::vector<Cell> cells;
   };
-  /// All that is joined to an occupied cell.
-  [[nodiscard]] std::vector<Cell> take_group(const OccupancyGrid& map, Cell start);
+  [[nodiscard]] Flags& flags_of(Cell cell) { return flags_[geometry_.index_of(cell)]; }
+  /// All that is joined to an occupied cell; nothing where it is too wide.
+  [[nodiscard]] std::optional<std::vector<Cell>> small_group(const OccupancyGrid& map, Cell start);
+  void gather(const OccupancyGrid& map, std::span<const Cell> starts);
   [[nodiscard]] bool is_missed(const Speck& speck, const TrackedScan& tracked, std::span<const BeamVerdict> beams,
                                const PoseDeviation& deviation, const BeamEvidenceParams& params) const;
 
@@ -50,6 +57,7 @@ class Specks {
   GridGeometry geometry_;
   std::vector<Speck> specks_;
   std::vector<Flags> flags_;  // of each cell
+  std::vector<Cell> taken_;   // whose flags of looking are set
 };
 
 }  // namespace deltamap::mapping::awareness

@@ -86,7 +86,7 @@ TEST(ParticleFilter, FindsTheRobotAfterASlipFarMoreCloselyWhereAllParticlesSlip)
     filter.start_around({1.8, 2.0, 0.6}, 0.005, 0.002);
     filter.move({}, 0.0, motion);
     (void)filter.weigh(field, ends, 60.0);
-    EXPECT_TRUE(filter.is_depleted());
+    EXPECT_TRUE(filter.rests_on_few_slips());
     few_m += distance_of_mean_m(filter, truth.position());
     filter.let_all_slip(motion, 1.0);
     (void)filter.weigh(field, ends, 60.0);

@@ -2,6 +2,11 @@
 // What beams show to be gone together that none of them shows alone: specks between them, and the face that they pass.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
 #include "mapping/awareness/beam_votes.hpp"
 #include "mapping/awareness/specks.hpp"
 #include "tests/support/drawn_hall.hpp"
@@ -32,6 +37,11 @@ class Gone : public testing::Test {
     clear = ClearSpace{map, 2};
     beams = beam_evidence(map, clear, tracked, {});
   }
+  /// First the one map, then the other.
+  void known(const OccupancyGrid& first, const OccupancyGrid& then) {
+    specks.begin(first);
+    specks.follow(then, changes_between(first, then));
+  }
   std::size_t missed() { return specks.missed(tracked, beams, {}).size(); }
 
   Random random{1};
@@ -43,54 +53,121 @@ class Gone : public testing::Test {
 };
 
 TEST_F(Gone, IsASpeckThatBeamsWouldHaveMet) {
-  specks.take_map(room());
-  specks.take_map(speck);
+  known(room(), speck);
   look(room(), speck);
   EXPECT_EQ(missed(), 4U);
 }
 
 TEST_F(Gone, IsNoSpeckThatBeamsMeet) {
-  specks.take_map(room());
-  specks.take_map(speck);
+  known(room(), speck);
   look(speck, speck);
   EXPECT_EQ(missed(), 0U);
 }
 
 TEST_F(Gone, IsNoSpeckBesideWhichABeamEnds) {
-  specks.take_map(room());
-  specks.take_map(speck);
+  known(room(), speck);
   look(room_with({4.0, 5.15}, {4.1, 5.25}), speck);  // the pose may be so far off
   EXPECT_EQ(missed(), 0U);
 }
 
 TEST_F(Gone, IsNoSpeckThatFitsBetweenTwoBeams) {
-  specks.take_map(room());
-  specks.take_map(room_with({8.5, 5.0}, {8.55, 5.05}));
+  known(room(), room_with({8.5, 5.0}, {8.55, 5.05}));
   look(room(), room_with({8.5, 5.0}, {8.55, 5.05}));
   EXPECT_EQ(missed(), 0U);
 }
 
 TEST_F(Gone, IsNoSpeckAtTheEdgeOfTheView) {
   const OccupancyGrid beside = room_with({2.0, 7.0}, {2.1, 7.1});
-  specks.take_map(room());
-  specks.take_map(beside);
+  known(room(), beside);
   look(room(), beside);
   EXPECT_EQ(missed(), 0U);
 }
 
 TEST_F(Gone, IsNothingThinThatTheFirstMapHadAlready) {
-  specks.take_map(speck);
-  specks.take_map(speck);
+  known(speck, speck);
   look(room(), speck);
   EXPECT_EQ(missed(), 0U);
 }
 
 TEST_F(Gone, IsNoSurfaceByItsSpecks) {
   const OccupancyGrid face = room_with({4.0, 4.0}, {4.1, 6.0});
-  specks.take_map(room());
-  specks.take_map(face);
+  known(room(), face);
   look(room(), face);
   EXPECT_EQ(missed(), 0U);
+}
+
+TEST_F(Gone, IsWhatIsLeftOfASurfaceFromTheChangeOnThatLeavesIt) {
+  const OccupancyGrid face = room_with({4.0, 4.0}, {4.1, 6.0});
+  known(room(), face);
+  specks.follow(speck, changes_between(face, speck));
+  look(room(), speck);
+  EXPECT_EQ(missed(), 4U);
+}
+
+TEST_F(Gone, IsNoSpeckThatHasGrownIntoASurface) {
+  const OccupancyGrid face = room_with({4.0, 4.0}, {4.1, 6.0});
+  known(room(), speck);
+  specks.follow(face, changes_between(speck, face));
+  look(room(), face);
+  EXPECT_EQ(missed(), 0U);
+  EXPECT_FALSE(specks.is_of_speck(face.geometry().cell_at({4.02, 5.02})));
+}
+
+/// By hand: is the group of this cell small, and none of it in a small group of the first map?
+bool is_small_and_new(const OccupancyGrid& first, const OccupancyGrid& map, Cell cell, int most_cells) {
+  const auto group_of = [&](const OccupancyGrid& grid, Cell start) {
+    std::set<std::pair<int, int>> group;
+    std::vector<Cell> open{start};
+    while (!open.empty()) {
+      const Cell next = open.back();
+      open.pop_back();
+      if (grid.at(next) != CellState::kOccupied || !group.emplace(next.column, next.row).second) continue;
+      for (int row = -1; row <= 1; ++row)
+        for (int column = -1; column <= 1; ++column) open.push_back({next.column + column, next.row + row});
+    }
+    return group;
+  };
+  const auto is_small = [&](const std::set<std::pair<int, int>>& group) {
+    std::set<int> rows;
+    for (const auto& [column, row] : group) rows.insert(row);
+    return !group.empty() && group.rbegin()->first - group.begin()->first < most_cells &&
+           *rows.rbegin() - *rows.begin() < most_cells;
+  };
+  const auto group = group_of(map, cell);
+  return is_small(group) && std::none_of(group.begin(), group.end(), [&](const auto& place) {
+           return is_small(group_of(first, {place.first, place.second}));
+         });
+}
+
+TEST_F(Gone, FollowsSpecksThroughAnyChanges) {
+  OccupancyGrid first{{60, 40, 0.05, {0.0, 0.0}}, CellState::kFree};
+  Random chance{7};
+  const auto scatter = [&](OccupancyGrid& map, int strokes) {
+    for (int i = 0; i < strokes; ++i) {
+      const Cell from{static_cast<int>(chance.index_below(60)), static_cast<int>(chance.index_below(40))};
+      const bool level = chance.index_below(2) == 0;
+      const CellState state = chance.index_below(2) == 0 ? CellState::kOccupied : CellState::kFree;
+      for (int step = 0; step < static_cast<int>(chance.index_below(12)) + 1; ++step) {
+        const Cell cell{from.column + (level ? step : 0), from.row + (level ? 0 : step)};
+        if (map.geometry().contains(cell)) map.set(cell, state);
+      }
+    }
+  };
+  scatter(first, 25);
+  specks.begin(first);
+  OccupancyGrid map = first;
+  for (int change = 0; change < 30; ++change) {
+    const OccupancyGrid before = map;
+    scatter(map, 6);
+    specks.follow(map, changes_between(before, map));
+    for (int row = 0; row < 40; ++row) {
+      for (int column = 0; column < 60; ++column) {
+        const Cell cell{column, row};
+        ASSERT_EQ(specks.is_of_speck(cell), is_small_and_new(first, map, cell, 16))
+            << "change " << change << ", cell " << column << ", " << row;
+      }
+    }
+  }
 }
 
 TEST_F(Gone, IsTheWholeFaceBetweenTheBeamsThatPassIt) {
