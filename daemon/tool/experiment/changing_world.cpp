@@ -229,6 +229,7 @@ Plan seven_hours() {
           "The paper's Figures 10 to 12: seven hours, 420 changes",
           {{.name = "hall", .scenario = "hall.yaml", .minutes = 420.0}},
           std::vector<Asked>{{"", "acceptance_perfect - acceptance", Over::kMost, {.most = 0.004}},
+                             {"", "shortfall_growth", Over::kMost, {.most = 0.001}},
                              {"", "skill", Over::kLeast, {.least = 0.9}}} +
               asked_of_lasting_drives("")};
 }
@@ -242,7 +243,9 @@ Plan endurance() {
   Plan plan{"endurance",
             "24 hours with ten restarts among racks, doors and passers-by; and changes twice as often until it breaks",
             {{.name = "24h", .scenario = "endurance.yaml", .minutes = 1440.0, .restarts = 10, .methods = {"evidence"}}},
-            asked_of_lasting_drives("24h")};
+            asked_of_lasting_drives("24h") +
+                std::vector<Asked>{{"24h", "acceptance_perfect - acceptance", Over::kMost, {.most = 0.004}},
+                                   {"24h", "shortfall_growth", Over::kMost, {.most = 0.001}}}};
   for (const double seconds : {30.0, 15.0, 7.5, 3.75})
     plan.drives.push_back({.name = "every-" + text_of(seconds) + "s",
                            .scenario = "hall.yaml",
@@ -318,8 +321,9 @@ Plan changed_start() {
                              drive.changed_at_start->share = share;
                            }});
   }
-  plan.asked = {{"50%", "skill", Over::kLeast, {.least = 0.8}},
-                {"", "skill", Over::kLeast, {}},
+  plan.asked = {{"25%", "skill", Over::kLeast, {}},
+                {"50%", "skill", Over::kLeast, {.least = 0.8}},
+                {"75%", "skill", Over::kLeast, {}},
                 {"", "not_tracking", Over::kMost, {}},
                 {"", "error_p99_m", Over::kMost, {}, "m"}};
   return plan;

@@ -14,32 +14,9 @@ namespace {
 namespace score = simulation::score;
 
 constexpr int kViewBeams = 181;
-constexpr int kFaceBeams = 3;        // of one view make a face seen
-constexpr double kRightShare = 0.8;  // of a written thing's cells
-constexpr int kRegionReach = 2;      // cells; written cells so near are one thing
-constexpr std::size_t kSpeck = 3;    // smaller regions are not counted as things
-constexpr int kGhostReach = 2;       // cells from anything that stands
-
-/// Written cells that are near each other.
-std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {
-  std::vector<std::vector<CellChange>> things;
-  while (!left.empty()) {
-    std::vector<CellChange> thing{left.back()};
-    left.pop_back();
-    for (std::size_t next = 0; next < thing.size(); ++next) {
-      const Cell middle = thing[next].cell;
-      const auto is_near = [&](const CellChange& other) {
-        return std::abs(other.cell.column - middle.column) <= kRegionReach &&
-               std::abs(other.cell.row - middle.row) <= kRegionReach;
-      };
-      const auto first = std::partition(left.begin(), left.end(), [&](const CellChange& c) { return !is_near(c); });
-      thing.insert(thing.end(), first, left.end());
-      left.erase(first, left.end());
-    }
-    things.push_back(std::move(thing));
-  }
-  return things;
-}
+constexpr int kFaceBeams = 3;   // of one view make a face seen
+constexpr int kGhostReach = 2;  // cells from anything that stands
+constexpr std::size_t kLeastRowsOfALine = 3;
 
 /// The map as one who knows the temporary layer sees it: what stands occupied, what has gone free.
 OccupancyGrid with_things(OccupancyGrid map, const TemporaryThings* things) {
@@ -73,7 +50,7 @@ MappingWatch::MappingWatch(const simulation::Scenario& scenario, std::shared_ptr
       course_{{"t_s", "error_mean_m", "error_most_m", "acceptance", "acceptance_stale", "acceptance_perfect",
                "acceptance_solid", "f1", "f1_stale", "f1_perfect", "wrong_m2", "ghost_cells", "revisions"}},
       next_row_s_{params.score_every_s},
-      writes_(first_->geometry().cell_count(), 0) {
+      written_{first_->geometry()} {
   refresh_surfaces();
 }
 
@@ -163,39 +140,11 @@ void MappingWatch::count_ghosts(const OccupancyGrid& map) {
 
 void MappingWatch::judge_writing(const Mapped& scan) {
   if (!scan.update->revision) {
-    ++refused_;
+    written_.note_refused();
     return;
   }
-  ++revisions_;
-  const std::vector<CellChange>& changes = scan.update->revision->changes;
-  cells_written_ += changes.size();
   const double error_m = std::max(errors_.at_m(scan.time), errors_.at_m(scan.update->note.time));
-  if (error_m > params_.wrong_pose_m) cells_written_astray_ += changes.size();
-  const OccupancyGrid& truth = truth_.visible();
-  const auto is_right = [&](const CellChange& change) {
-    if (change.after == CellState::kOccupied) return has_occupied_within(truth, change.cell, 1);
-    if (change.after == CellState::kUnknown) return truth[change.cell] != CellState::kFree;
-    return truth[change.cell] != CellState::kOccupied;
-  };
-  for (const CellChange& change : changes) {
-    ++writes_[first_->geometry().index_of(change.cell)];
-    cells_wrong_ += is_right(change) ? 0 : 1;
-  }
-  std::vector<CellChange> come;
-  std::vector<CellChange> gone;
-  for (const CellChange& change : changes) {
-    if (truth_.is_at_door(first_->geometry().index_of(change.cell))) continue;  // it comes and goes
-    if (change.after == CellState::kOccupied) come.push_back(change);
-    if (change.before == CellState::kOccupied && change.after == CellState::kFree) gone.push_back(change);
-  }
-  for (const auto& side : {come, gone}) {
-    for (const std::vector<CellChange>& thing : things_of(side)) {
-      if (thing.size() < kSpeck) continue;
-      ++regions_;
-      const auto right = static_cast<double>(std::count_if(thing.begin(), thing.end(), is_right));
-      regions_wrong_ += right < kRightShare * static_cast<double>(thing.size()) ? 1 : 0;
-    }
-  }
+  written_.observe(scan.update->revision->changes, truth_, error_m > params_.wrong_pose_m);
 }
 
 MappingWatch::Scores MappingWatch::scores_of(const OccupancyGrid& map) const {
@@ -209,43 +158,44 @@ void MappingWatch::add_course_row(const OccupancyGrid& map) {
   const auto [seen, ours, stale, perfect, solid] = scores_of(map);
   course_.add({now_s_, mean_of(errors_since_row_m_), quantile(errors_since_row_m_, 1.0), ours.acceptance,
                stale.acceptance, perfect.acceptance, solid.acceptance, ours.contour_f1, stale.contour_f1,
-               perfect.contour_f1, ours.wrong_m2, static_cast<double>(ghosts_now_), static_cast<double>(revisions_)});
+               perfect.contour_f1, ours.wrong_m2, static_cast<double>(ghosts_now_),
+               static_cast<double>(written_.revisions())});
   errors_since_row_m_.clear();
 }
 
-std::vector<std::pair<std::string, double>> MappingWatch::numbers(const OccupancyGrid& map) {
-  judge_changes(map);
-  const ChangeFollowing::Numbers followed = by_map_.numbers(changes_);
-  const ChangeFollowing::Numbers layer = by_layer_.numbers(changes_);
-  const ChangeFollowing::Numbers layer_added = by_layer_.numbers(changes_, ChangeFollowing::Which::kAppeared);
-  const ChangeFollowing::Numbers layer_gone = by_layer_.numbers(changes_, ChangeFollowing::Which::kDisappeared);
-  const auto [seen, ours, stale, perfect, solid] = scores_of(map);
-  const score::MapScore solid_perfect = score::map_score(truth_.solid(), truth_.perfect(), seen);
-  double drift_m = 0.0;
-  for (const double wall_m : truth_.wall_drift(*first_, map))
-    if (std::isfinite(wall_m)) drift_m = std::max(drift_m, std::abs(wall_m));
-  std::size_t seen_cells = 0;
-  std::uint16_t most_writes = 0;
-  std::size_t writes = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] == 0) continue;
-    ++seen_cells;
-    writes += writes_[i];
-    most_writes = std::max(most_writes, writes_[i]);
+/// How much more the map falls short of a perfect one at the end than in the beginning, by the line that fits best.
+double MappingWatch::shortfall_growth() const {
+  const std::vector<double> time_s = course_.column("t_s");
+  const std::vector<double> ours = course_.column("acceptance");
+  const std::vector<double> perfect = course_.column("acceptance_perfect");
+  if (time_s.size() < kLeastRowsOfALine) return std::numeric_limits<double>::quiet_NaN();
+  const double middle_s = mean_of(time_s);
+  double moment = 0.0;
+  double spread = 0.0;
+  for (std::size_t row = 0; row < time_s.size(); ++row) {
+    moment += (time_s[row] - middle_s) * (perfect[row] - ours[row]);
+    spread += (time_s[row] - middle_s) * (time_s[row] - middle_s);
   }
-  const double hours = std::max(now_s_, 1.0) / 3600.0;
-  const auto whole = [](std::size_t number) { return static_cast<double>(number); };
-  const auto share = [&](std::size_t part, std::size_t all) {
-    return all == 0 ? std::numeric_limits<double>::quiet_NaN() : whole(part) / whole(all);
-  };
+  return moment / spread * (time_s.back() - time_s.front());
+}
+
+MappingWatch::Numbers MappingWatch::numbers_of_pose() const {
+  const auto scans = static_cast<double>(std::max<std::size_t>(1, scans_));
   return {{"minutes", now_s_ / 60.0},
           {"error_mean_m", mean_of(errors_.all_m())},
           {"error_rms_m", root_mean_square(errors_.all_m())},
           {"error_p99_m", quantile(errors_.all_m(), 0.99)},
           {"error_most_m", quantile(errors_.all_m(), 1.0)},
-          {"not_tracking", share(scans_lost_, scans_)},
-          {"changes_seen_10s", whole(followed.seen)},
-          {"changes_found", whole(followed.found)},
+          {"not_tracking", static_cast<double>(scans_lost_) / scans}};
+}
+
+MappingWatch::Numbers MappingWatch::numbers_of_following() {
+  const ChangeFollowing::Numbers followed = by_map_.numbers(changes_);
+  const ChangeFollowing::Numbers layer = by_layer_.numbers(changes_);
+  const ChangeFollowing::Numbers layer_added = by_layer_.numbers(changes_, ChangeFollowing::Which::kAppeared);
+  const ChangeFollowing::Numbers layer_gone = by_layer_.numbers(changes_, ChangeFollowing::Which::kDisappeared);
+  return {{"changes_seen_10s", static_cast<double>(followed.seen)},
+          {"changes_found", static_cast<double>(followed.found)},
           {"recall", followed.recall},
           {"follow_median_s", followed.median_s},
           {"follow_p90_s", followed.p90_s},
@@ -257,19 +207,20 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
           {"layer_added_median_s", layer_added.median_s},
           {"layer_gone_recall", layer_gone.recall},
           {"layer_gone_median_s", layer_gone.median_s},
-          {"layer_gone_within_10s", layer_gone.within_10s},
-          {"things_written", whole(regions_)},
-          {"precision", 1.0 - share(regions_wrong_, regions_)},
-          {"cells_written", whole(cells_written_)},
-          {"cells_wrong", share(cells_wrong_, cells_written_)},
-          {"cells_written_astray", whole(cells_written_astray_)},
-          {"revisions", whole(revisions_)},
-          {"refused", whole(refused_)},
-          {"acceptance", ours.acceptance},
+          {"layer_gone_within_10s", layer_gone.within_10s}};
+}
+
+MappingWatch::Numbers MappingWatch::numbers_of_map(const OccupancyGrid& map, const Scores& scores) const {
+  const auto& [seen, ours, stale, perfect, solid] = scores;
+  double drift_m = 0.0;
+  for (const double wall_m : truth_.wall_drift(*first_, map))
+    if (std::isfinite(wall_m)) drift_m = std::max(drift_m, std::abs(wall_m));
+  return {{"acceptance", ours.acceptance},
           {"acceptance_stale", stale.acceptance},
           {"acceptance_perfect", perfect.acceptance},
+          {"shortfall_growth", shortfall_growth()},
           {"acceptance_solid", solid.acceptance},
-          {"acceptance_solid_perfect", solid_perfect.acceptance},
+          {"acceptance_solid_perfect", score::map_score(truth_.solid(), truth_.perfect(), seen).acceptance},
           {"f1", ours.contour_f1},
           {"f1_stale", stale.contour_f1},
           {"f1_perfect", perfect.contour_f1},
@@ -277,10 +228,11 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
           {"wrong_m2", ours.wrong_m2},
           {"walls_kept", score::share_kept(*first_, map, truth_.lasting())},
           {"glass_and_wrap_kept", score::share_kept(*first_, map, truth_.seen_through())},
-          {"wall_drift_m", drift_m},
-          {"writes_per_cell_hour", share(writes, seen_cells) / hours},
-          {"most_writes_of_a_cell", static_cast<double>(most_writes)},
-          {"ghost_cells_at_end", whole(ghosts_now_)},
+          {"wall_drift_m", drift_m}};
+}
+
+MappingWatch::Numbers MappingWatch::numbers_of_ghosts() const {
+  return {{"ghost_cells_at_end", static_cast<double>(ghosts_now_)},
           {"ghost_cell_minutes", ghosts_of_map_.all},
           {"ghost_cell_minutes_layer", ghosts_of_layer_.all},
           {"ghost_cell_minutes_override", ghosts_of_override_.all},
@@ -288,6 +240,18 @@ std::vector<std::pair<std::string, double>> MappingWatch::numbers(const Occupanc
           {"passer_ghost_minutes_layer", ghosts_of_layer_.of_passers},
           {"passer_ghost_minutes_override", ghosts_of_override_.of_passers},
           {"passer_ghosts_of_override", ghosts_of_map_.of_passers / std::max(1e-9, ghosts_of_override_.of_passers)}};
+}
+
+MappingWatch::Numbers MappingWatch::numbers(const OccupancyGrid& map) {
+  judge_changes(map);
+  const Scores scores = scores_of(map);
+  Numbers all;
+  for (const Numbers& some :
+       {numbers_of_pose(), numbers_of_following(), written_.numbers(scores.seen, std::max(now_s_, 1.0) / 3600.0),
+        numbers_of_map(map, scores), numbers_of_ghosts()}) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
 }
 
 }  // namespace deltamap::daemon::tool::experiment

@@ -14,6 +14,7 @@
 #include "daemon/tool/experiment/mapping_drive.hpp"
 #include "daemon/tool/experiment/override_map.hpp"
 #include "daemon/tool/experiment/scan_table.hpp"
+#include "daemon/tool/experiment/written_cells.hpp"
 #include "simulation/score/change_watch.hpp"
 #include "simulation/score/map_truth.hpp"
 
@@ -35,7 +36,8 @@ class MappingWatch {
   void observe(const Mapped& scan, const OccupancyGrid& map);
 
   /// Everything that is a number at the end of the drive. `map`: the last.
-  [[nodiscard]] std::vector<std::pair<std::string, double>> numbers(const OccupancyGrid& map);
+  using Numbers = std::vector<std::pair<std::string, double>>;
+  [[nodiscard]] Numbers numbers(const OccupancyGrid& map);
   /// A row every `score_every_s`.
   [[nodiscard]] const ScanTable& course() const { return course_; }
   [[nodiscard]] const OccupancyGrid& truth() const { return truth_.visible(); }
@@ -48,6 +50,11 @@ class MappingWatch {
     simulation::score::MapScore solid;  ///< ours, insides counted
   };
   [[nodiscard]] Scores scores_of(const OccupancyGrid& map) const;
+  [[nodiscard]] double shortfall_growth() const;
+  [[nodiscard]] Numbers numbers_of_pose() const;
+  [[nodiscard]] Numbers numbers_of_following();
+  [[nodiscard]] Numbers numbers_of_map(const OccupancyGrid& map, const Scores& scores) const;
+  [[nodiscard]] Numbers numbers_of_ghosts() const;
   void look(const Mapped& scan);
   void judge_changes(const OccupancyGrid& map);
   [[nodiscard]] bool is_near_someone(const Point2& place) const;
@@ -84,14 +91,7 @@ class MappingWatch {
   double next_row_s_ = 0.0;
   std::size_t scans_ = 0;
   std::size_t scans_lost_ = 0;
-  std::size_t cells_written_ = 0;
-  std::size_t cells_written_astray_ = 0;
-  std::size_t cells_wrong_ = 0;
-  std::size_t regions_ = 0;
-  std::size_t regions_wrong_ = 0;
-  std::size_t revisions_ = 0;
-  std::size_t refused_ = 0;
-  std::vector<std::uint16_t> writes_;  // of each cell
+  WrittenCells written_;
   std::size_t ghosts_now_ = 0;
   struct GhostMinutes {  // cell · minutes
     double all = 0.0;
