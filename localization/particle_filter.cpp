@@ -29,6 +29,7 @@ ParticleFilter::ParticleFilter(const ParticleFilterParams& params, std::uint64_t
 
 void ParticleFilter::start_around(const Pose2& map_from_robot, double position_deviation_m,
                                   double heading_deviation_rad) {
+  first_slip_.reset();
   particles_.resize_uniform(static_cast<std::size_t>(params_.min));
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const double x_m = map_from_robot.x + random_.normal(position_deviation_m);
@@ -38,6 +39,7 @@ void ParticleFilter::start_around(const Pose2& map_from_robot, double position_d
 }
 
 void ParticleFilter::start_at(std::span<const Pose2> map_from_robot) {
+  first_slip_.reset();
   particles_.resize_uniform(map_from_robot.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_.set_pose(i, map_from_robot[i]);
 }
@@ -48,6 +50,7 @@ void ParticleFilter::move(const Pose2& motion, double unknown_s, const MotionMod
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     particles_.set_pose(i, sampled_motion(particles_.pose(i), turns, noise, ziggurat_, random_));
   }
+  first_slip_.reset();
   if (model.slip_probability > 0.0) let_some_slip(model);
 }
 
@@ -55,18 +58,26 @@ void ParticleFilter::let_some_slip(const MotionModelParams& model) {
   // More of them than slips are likely, each with the less weight: only one that fits far better is believed.
   const double log_weight = std::log(model.slip_probability * kOneInSlips);
   first_slip_ = random_.index_below(kOneInSlips);
-  for (std::size_t i = first_slip_; i < particles_.size(); i += kOneInSlips) {
+  for (std::size_t i = *first_slip_; i < particles_.size(); i += kOneInSlips) {
     particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, 1.0, random_));
     particles_.log_weight[i] += log_weight;
   }
 }
 
-void ParticleFilter::let_all_slip(const MotionModelParams& model, double share) {
-  const std::size_t kept = best();
+void ParticleFilter::let_all_slip(const MotionModelParams& model) { slip_around(particles_.pose(best()), model, 1.0); }
+
+void ParticleFilter::let_chosen_slip(const MotionModelParams& model, double share) {
+  const Pose2 kept = particles_.pose(best());
+  draw(particles_.size());
+  slip_around(kept, model, share);
+}
+
+void ParticleFilter::slip_around(const Pose2& kept, const MotionModelParams& model, double share) {
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (i != kept) particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, share, random_));
+    particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, share, random_));
     particles_.log_weight[i] = 0.0;
   }
+  particles_.set_pose(0, kept);
 }
 
 std::span<const std::int32_t> ParticleFilter::weigh(const LikelihoodField& field, const BeamEnds& ends,
@@ -100,18 +111,18 @@ std::size_t ParticleFilter::best() const {
 }
 
 bool ParticleFilter::rests_on_few_slips() const {
-  return n_eff() < params_.depleted_below * static_cast<double>(particles_.size()) &&
-         best() % kOneInSlips == first_slip_;
+  return n_eff() < params_.depleted_below * static_cast<double>(particles_.size()) && first_slip_ &&
+         best() % kOneInSlips == *first_slip_;
 }
 
 bool ParticleFilter::resample_if_needed(std::size_t occupied_cells) {
   if (n_eff() >= params_.resample_below * static_cast<double>(particles_.size())) return false;
-  resample(std::clamp(kld_sample_count(occupied_cells, params_.kld_error, params_.kld_quantile),
-                      static_cast<std::size_t>(params_.min), static_cast<std::size_t>(params_.max)));
+  draw(std::clamp(kld_sample_count(occupied_cells, params_.kld_error, params_.kld_quantile),
+                  static_cast<std::size_t>(params_.min), static_cast<std::size_t>(params_.max)));
   return true;
 }
 
-void ParticleFilter::resample(std::size_t count) {
+void ParticleFilter::draw(std::size_t count) {
   choice_ = low_variance_choice(particles_.weight, count, random_.uniform(), std::move(choice_));
   drawn_.resize_uniform(count);
   for (std::size_t i = 0; i < count; ++i) drawn_.set_pose(i, particles_.pose(choice_[i]));

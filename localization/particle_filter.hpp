@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct ParticleFilterParams {
   int min = 500;                 ///< fewest particles; 10..max
   int max = 5000;                ///< most particles: what global localization starts with; min..200000
   double resample_below = 0.5;   ///< share of the particles below which N_eff calls for resampling; 0..1
-  double depleted_below = 0.05;  ///< share below which a slip is not believed for one of them alone; 0..1, 0 = never
+  double depleted_below = 0.01;  ///< share below which a slip is not believed for one of them alone; 0..1, 0 = never
   double evidence_beams = 20.0;  ///< independent beams that a scan counts as; > 0: neighbours see the same things
   double kld_error = 0.05;       ///< bound of the approximation error that sets the number of particles; > 0 (ε)
   double kld_quantile = 2.33;    ///< of the normal distribution, how surely the bound holds; > 0 (z)
@@ -55,11 +56,10 @@ class ParticleFilter {
 
   /// Hardly any particle carries weight, and the best was drawn as slipped in the last move: too few were to trust it.
   [[nodiscard]] bool rests_on_few_slips() const;
-  /// Moves all but the best as if the wheels had just slipped, by a share of the usual slip; their weights are
-  /// forgotten.
-  void let_all_slip(const MotionModelParams& model, double share);
-  /// Draws so many by their weights.
-  void resample(std::size_t count);
+  /// Moves all but the best as if the wheels had just slipped; weights are forgotten.
+  void let_all_slip(const MotionModelParams& model);
+  /// The same with those that are drawn by their weights, by a share of the usual slip.
+  void let_chosen_slip(const MotionModelParams& model, double share);
   /// Draws anew where N_eff is low; as many particles as `occupied_cells` cells call for. True where it did.
   bool resample_if_needed(std::size_t occupied_cells);
 
@@ -69,6 +69,8 @@ class ParticleFilter {
  private:
   void accumulate(std::size_t beams, double evidence_beams);
   [[nodiscard]] std::size_t best() const;
+  void slip_around(const Pose2& kept, const MotionModelParams& model, double share);
+  void draw(std::size_t count);
   void let_some_slip(const MotionModelParams& model);
   void normalize_weights();
 
@@ -77,7 +79,7 @@ class ParticleFilter {
   Ziggurat ziggurat_;
   ParticleSet particles_;
   ParticleSet drawn_;
-  std::uint32_t first_slip_ = 0;  // of the particles that the last move let slip
+  std::optional<std::uint32_t> first_slip_;  // of the particles that the last move let slip
   std::vector<std::uint32_t> choice_;
   std::vector<std::int32_t> misfits_;
 };

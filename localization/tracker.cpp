@@ -59,12 +59,10 @@ bool Tracker::update_due(const MotionSince& since) const {
 /// Moves and weighs the particles; they may be drawn anew afterwards.
 Tracker::Answer Tracker::update(const Seen& seen, const MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
-  const bool was_here = last_update_.has_value();
-  if (was_here) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
+  if (last_update_) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
   last_update_ = seen.now;
   std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};
-  if (sees && was_here && params_.motion.slip_probability > 0.0 && filter_.rests_on_few_slips())
-    misfits = weighed_after_slip(seen);
+  if (sees && filter_.rests_on_few_slips()) misfits = weighed_after_slip(seen);
   Answer answer;
   answer.n_eff = filter_.n_eff();
   best_ = hypotheses_.best(filter_.particles());
@@ -99,10 +97,9 @@ std::span<const std::int32_t> Tracker::weighed(const Seen& seen) {
 /// After a slip a single particle may happen to fit better than all others and yet lie a third of a metre off: before
 /// one is believed all of them slip, and those that fit then once more, less far.
 std::span<const std::int32_t> Tracker::weighed_after_slip(const Seen& seen) {
-  filter_.let_all_slip(params_.motion, 1.0);
+  filter_.let_all_slip(params_.motion);
   (void)weighed(seen);
-  filter_.resample(filter_.particles().size());
-  filter_.let_all_slip(params_.motion, kCloser);
+  filter_.let_chosen_slip(params_.motion, kCloser);
   return weighed(seen);
 }
 

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wheels lose their grip: the robot turns and slides in a way that odometry does not tell.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "localization/localizer.hpp"
+#include "localization/localizer_params.hpp"
+#include "tests/support/cast_scan.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+constexpr double kScanPeriodS = 0.1067;
+constexpr int kSlipsAtStep = 40;
+
+OccupancyGrid corridor() {
+  OccupancyGrid map{{220, 440, 0.05, {-0.5, -0.5}}, CellState::kOccupied};
+  test::fill_box(map, {0.0, 0.0}, {5.0, 20.0}, CellState::kFree);
+  test::fill_box(map, {5.0, 8.0}, {9.0, 10.5}, CellState::kFree);
+  return map;
+}
+
+/// Mean error of the position over the second after a slip by `slip`.
+double error_after_m(const Pose2& slip, double depleted_below, std::uint64_t seed) {
+  LocalizerParams params;
+  params.particles.depleted_below = depleted_below;
+  params.motion.slip_probability = 1e-3;  // so that it is believed at once
+  const auto map = std::make_shared<const OccupancyGrid>(corridor());
+  Pose2 truth{3.9, 18.0, -std::numbers::pi / 2.0};
+  Localizer localizer{params, map, InitialPose{truth, 0.02, 0.01}, seed};
+  Random random{seed + 100};
+  Odometry odometry;
+  odometry.time = timestamp_from_ns(1'700'000'000'000'000'000);
+  double sum_m = 0.0;
+  for (int step = 1; step <= kSlipsAtStep + 10; ++step) {
+    const Pose2 driven{0.05, 0.0, 0.0};
+    truth = truth * driven * (step == kSlipsAtStep ? slip : Pose2{});
+    odometry.odom_from_robot = odometry.odom_from_robot * driven;
+    odometry.time += duration_from_seconds(kScanPeriodS);
+    localizer.observe(odometry);
+    const TrackedScan tracked = localizer.observe(test::cast_scan(*map, truth, odometry.time, {}, random));
+    if (step > kSlipsAtStep) sum_m += distance_between(tracked.estimate.map_from_robot, truth);
+  }
+  return sum_m / 10.0;
+}
+
+double error_after_slips_m(double depleted_below) {
+  double sum_m = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const double side = seed % 2 == 0 ? 1.0 : -1.0;
+    sum_m += error_after_m({-0.1, 0.0, side * radians(5.0)}, depleted_below, seed);
+  }
+  return sum_m / 20.0;
+}
+
+TEST(Slip, IsFoundMoreCloselyWhereAllParticlesSlipThanWhereTheFirstThatFitsIsBelieved) {
+  const double all_m = error_after_slips_m(ParticleFilterParams{}.depleted_below);
+  EXPECT_LT(all_m, 0.75 * error_after_slips_m(0.0));
+}
+
+}  // namespace
+}  // namespace deltamap::localization
