@@ -28,8 +28,10 @@ class Misfit {
   /// And more than usual are too short, and more too long: as if the whole view were another one.
   [[nodiscard]] bool is_both_ways() const;
 
-  /// What is usual now is what has to come back.
-  void remember() { remembered_ = usual_; }
+  /// What is usual now is what has to come back; nothing where that is not known yet.
+  void remember() {
+    if (last_) remembered_ = usual_;
+  }
   void forget() { remembered_.reset(); }
   [[nodiscard]] bool remembers() const { return remembered_.has_value(); }
   /// Fewer beams fit than usual before it was remembered, and than without that share of them.

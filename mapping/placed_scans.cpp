@@ -23,7 +23,7 @@ alignment::PoseBelief belief_of(const Estimate& estimate, const PlacementParams&
   return {estimate.map_from_robot, covariance.inverse()};
 }
 
-/// The places where the scans' beams may end, for all that the placement may move them: surfaces elsewhere need not be
+/// The places near which the scans' beams end, with room for the placement to move them: surfaces elsewhere need not be
 /// known.
 class PlacesOfEnds {
  public:
@@ -38,7 +38,8 @@ class PlacesOfEnds {
 
   void add(const Point2& end) {
     const Cell middle = blocks_.cell_at(end);
-    if (!blocks_.contains(middle) || std::exchange(has_end_[blocks_.index_of(middle)], 1) != 0) return;
+    // Outside the map there may still be a surface in reach: the map's border, for a pose that is a little off.
+    if (blocks_.contains(middle) && std::exchange(has_end_[blocks_.index_of(middle)], 1) != 0) return;
     const CellBox near = grown({middle, {middle.column + 1, middle.row + 1}}, 2, blocks_);
     for (int row = near.first.row; row < near.last.row; ++row) {
       for (int column = near.first.column; column < near.last.column; ++column) {
@@ -51,6 +52,7 @@ class PlacesOfEnds {
   }
 
  private:
+  // Corrections are of some centimetres. An end that is moved farther may miss a surface that is in reach by then.
   static constexpr double kMostMoved_m = 0.2;
 
   GridGeometry blocks_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/grid_ray.hpp"
 #include "core/points_in_map.hpp"
 #include "mapping/box_walk.hpp"
 
@@ -90,10 +91,29 @@ void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end
   ++counts_[walk.index()].hits;
 }
 
+/// A robot seldom stands outside its map: cell by cell will do.
+void RayCounts::add_beam_from_outside(const Point2& from, const Point2& end, double clear_end_m, bool hits) {
+  const Cell last = map_.cell_at(end);
+  bool stopped = false;
+  walk_ray(map_, from, end, [&](Cell cell, double entered_m) {
+    if (cell == last || !box_.contains(cell)) return true;
+    const std::size_t index = index_of(cell);
+    const bool goes_through = lets_through(index);
+    const bool is_clear = entered_m < clear_end_m;
+    ++(is_clear ? counts_[index].clear_passes : counts_[index].late_passes);
+    stopped = is_clear && !goes_through;
+    return !stopped;
+  });
+  if (!hits || stopped || !box_.contains(last)) return;
+  if (marks_[index_of(last)] == kUnseen) see(index_of(last));
+  ++counts_[index_of(last)].hits;
+}
+
 void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
   for_each_beam(scan, longest_m, [&](const BeamInMap& beam) {
-    if (!box_.contains(map_.cell_at(beam.from))) return;
-    add_beam(beam.from, beam.end, beam.length_m - clear_m, beam.hits);
+    const bool is_inside = box_.contains(map_.cell_at(beam.from));
+    const auto count = is_inside ? &RayCounts::add_beam : &RayCounts::add_beam_from_outside;
+    (this->*count)(beam.from, beam.end, beam.length_m - clear_m, beam.hits);
   });
 }
 

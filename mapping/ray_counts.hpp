@@ -35,7 +35,7 @@ class RayCounts {
   void stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops);
 
   /// Counts the beams that have a range; those longer than `longest_m` only as passing, up to there. A pass is clear
-  /// where the beam goes on for `clear_m`. Beams that begin outside the box count for nothing.
+  /// where the beam goes on for `clear_m`.
   void add(const PlacedScan& scan, double longest_m, double clear_m);
 
   [[nodiscard]] const CellBox& box() const { return box_; }
@@ -82,6 +82,7 @@ class RayCounts {
   /// Sees the cell, where it has not been, and says whether beams go on behind it.
   [[nodiscard]] bool lets_through(std::size_t index);
   void add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits);
+  void add_beam_from_outside(const Point2& from, const Point2& end, double clear_end_m, bool hits);
 
   GridGeometry map_;
   CellBox box_;

@@ -42,9 +42,11 @@ class NearestSurface {
   /// Null where there is none in reach. The answer is exact up to half a table cell.
   [[nodiscard]] const SurfacePoint* nearest(const Point2& place) const {
     const Point2 in_table = (place - table_.origin) / table_.resolution_m;
-    if (!(in_table.x() >= 0.0 && in_table.y() >= 0.0)) return nullptr;  // so that truncation is rounding down
+    // Before the cast, which tells nothing of a place beyond all integers; and then truncation is rounding down.
+    if (!(in_table.x() >= 0.0 && in_table.y() >= 0.0 && in_table.x() < table_.width && in_table.y() < table_.height)) {
+      return nullptr;
+    }
     const Cell cell{static_cast<int>(in_table.x()), static_cast<int>(in_table.y())};
-    if (cell.column >= table_.width || cell.row >= table_.height) return nullptr;
     const std::int32_t index = nearest_[table_.index_of(cell)];
     return index < 0 ? nullptr : &points_[static_cast<std::size_t>(index)];
   }

@@ -48,7 +48,8 @@ std::vector<RayCount> plain_counts(const PlacedScan& scan, const OccupancyGrid& 
     const Point2 end = from + way * (length_m / way.norm());
     bool stopped = false;
     walk_ray(kMap, from, end, [&](Cell cell, double entered_m) {
-      if (cell == kMap.cell_at(end) || !kMap.contains(cell)) return false;
+      if (cell == kMap.cell_at(end)) return false;
+      if (!kMap.contains(cell)) return true;
       RayCount& count = counts[kMap.index_of(cell)];
       ++count.passes;
       if (entered_m >= length_m - kClear_m) return true;
@@ -62,36 +63,46 @@ std::vector<RayCount> plain_counts(const PlacedScan& scan, const OccupancyGrid& 
   return counts;
 }
 
+void expect_plain_counts(const PlacedScan& placed, const OccupancyGrid& walls) {
+  RayCounts counts{kMap, box_seen(kMap, {&placed, 1}, kLongest_m)};
+  counts.stop_at(walls, is_opaque);
+  counts.add(placed, kLongest_m, kClear_m);
+  const std::vector<RayCount> plain = plain_counts(placed, walls);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    const Cell cell = kMap.cell_of(i);
+    if (!counts.box().contains(cell)) {
+      EXPECT_EQ(plain[i].seen(), 0);
+      continue;
+    }
+    ASSERT_EQ(counts[cell].hits, plain[i].hits) << cell.column << ' ' << cell.row;
+    ASSERT_EQ(counts[cell].passes, plain[i].passes) << cell.column << ' ' << cell.row;
+    ASSERT_EQ(counts[cell].clear_passes, plain[i].clear_passes) << cell.column << ' ' << cell.row;
+  }
+}
+
 TEST(RayCounts, AreThoseOfAPlainWalkAlongEachBeam) {
   Random random{7};
   const OccupancyGrid walls = strewn_walls(random);
   for (int round = 0; round < 20; ++round) {
     const TrackedScan scan = random_scan(random);
-    const PlacedScan placed{&scan, {random.uniform(-2.5, 4.5), random.uniform(1.5, 6.5), random.uniform(-3.1, 3.1)}};
-    RayCounts counts{kMap, box_seen(kMap, {&placed, 1}, kLongest_m)};
-    counts.stop_at(walls, is_opaque);
-    counts.add(placed, kLongest_m, kClear_m);
-    const std::vector<RayCount> plain = plain_counts(placed, walls);
-    for (std::size_t i = 0; i < plain.size(); ++i) {
-      const Cell cell = kMap.cell_of(i);
-      if (!counts.box().contains(cell)) {
-        EXPECT_EQ(plain[i].seen(), 0);
-        continue;
-      }
-      ASSERT_EQ(counts[cell].hits, plain[i].hits) << cell.column << ' ' << cell.row;
-      ASSERT_EQ(counts[cell].passes, plain[i].passes) << cell.column << ' ' << cell.row;
-      ASSERT_EQ(counts[cell].clear_passes, plain[i].clear_passes) << cell.column << ' ' << cell.row;
-    }
+    expect_plain_counts({&scan, {random.uniform(-2.5, 4.5), random.uniform(1.5, 6.5), random.uniform(-3.1, 3.1)}},
+                        walls);
   }
 }
 
-TEST(RayCounts, OfBeamsThatBeginOutsideTheirBoxAreNone) {
+TEST(RayCounts, AreThoseOfAPlainWalkWhereTheLaserIsOutsideTheMapToo) {
   Random random{8};
-  const TrackedScan scan = random_scan(random);
-  RayCounts counts{kMap, {{0, 0}, {10, 10}}};
-  counts.add({&scan, {2.0, 4.0, 0.0}}, kLongest_m, kClear_m);
-  for (int row = 0; row < 10; ++row) {
-    for (int column = 0; column < 10; ++column) EXPECT_EQ((counts[{column, row}].seen()), 0);
+  const OccupancyGrid walls = strewn_walls(random);
+  constexpr double kOutside_m = 0.3;
+  const Point2 high = kMap.origin + kMap.resolution_m * Point2{kMap.width, kMap.height};
+  const Point2 middle = 0.5 * (kMap.origin + high);
+  for (const Point2& place : {Point2{kMap.origin.x() - kOutside_m, middle.y()},
+                              {high.x() + kOutside_m, middle.y()},
+                              {middle.x(), kMap.origin.y() - kOutside_m},
+                              {middle.x(), high.y() + kOutside_m},
+                              {high.x() + kOutside_m, high.y() + kOutside_m}}) {
+    const TrackedScan scan = random_scan(random);
+    expect_plain_counts({&scan, {place.x(), place.y(), random.uniform(-3.1, 3.1)}}, walls);
   }
 }
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/misfit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/mapping/straight_drive.hpp"
+
+namespace deltamap::mapping {
+namespace {
+
+TEST(Misfit, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
+  StraightDrive robot;
+  Misfit misfit{{}};
+  misfit.remember();
+  for (int i = 0; i < 50; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 50, .short_of = 50};
+    misfit.observe(tracked);
+  }
+  EXPECT_FALSE(misfit.is_worse_than_remembered(0.0));
+}
+
+}  // namespace
+}  // namespace deltamap::mapping
