@@ -83,7 +83,8 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 
 /// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
 /// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before. A small
-/// break is a thing's as long as not many more beams cease to fit than have broken off.
+/// break is a thing's as long as not many more beams cease to fit than have broken off then; what further small breaks
+/// may explain while it is wary is not added.
 void WriteGate::note_break(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
   const SeenBreak seen = scan_break_.observe(tracked);
@@ -97,12 +98,17 @@ void WriteGate::note_break(const TrackedScan& tracked) {
     }
   }
   if (!broken_ || is_confirming_) return;
+  const double over_s = broken_->shuts ? std::max(params_.wary_s, params_.break_settles_s) : params_.wary_s;
   if (misfit_.is_worse_than_remembered(broken_->explained)) {
     is_confirming_ = true;
-  } else if (seconds(time - broken_->time) > params_.wary_s) {
-    broken_.reset();
-    misfit_.forget();
+  } else if (seconds(time - broken_->time) > over_s) {
+    forget_break();
   }
+}
+
+void WriteGate::forget_break() {
+  broken_.reset();
+  misfit_.forget();
 }
 
 bool WriteGate::breaks_now(Timestamp time) const {
@@ -145,8 +151,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
   if (was_tracking_ && (is_proof || misfit_.is_both_ways())) is_confirming_ = true;
   if (is_confirming_ && holds(judgement, time, driven_m)) {
     is_confirming_ = false;
-    broken_.reset();
-    misfit_.forget();
+    forget_break();
   }
   const bool confirms = is_confirming_ || breaks_now(time);
   reason_ = confirms && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;

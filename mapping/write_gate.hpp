@@ -98,6 +98,7 @@ class WriteGate {
   };
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
   void note_break(const TrackedScan& tracked);
+  void forget_break();
   [[nodiscard]] bool breaks_now(Timestamp time) const;
   [[nodiscard]] bool fits_as_before_break(Timestamp time) const;
   [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double driven_m);

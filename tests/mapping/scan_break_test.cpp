@@ -87,6 +87,21 @@ TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
   EXPECT_FALSE(gate.trusted_since());  // nothing has proven wrong
 }
 
+TEST(WriteGate, ALargeBreakShutsItForItsTimeWhereItIsNeverWary) {
+  StraightDrive robot;
+  WriteGateParams params;
+  params.wary_s = 0.0;
+  params.break_settles_s = 1.0;
+  WriteGate gate{params};
+  for (int i = 0; i < 100; ++i) gate.observe(aisle_scan(robot, 0.0));
+  for (int i = 0; i < 10; ++i) {
+    gate.observe(aisle_scan(robot, 2.5));
+    ASSERT_EQ(gate.reason(), GateReason::kConfirming) << i;
+  }
+  for (int i = 0; i < 2; ++i) gate.observe(aisle_scan(robot, 2.5));
+  EXPECT_TRUE(gate.is_open());
+}
+
 TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
   StraightDrive robot;
   WriteGate gate{{}};
