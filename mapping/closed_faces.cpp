@@ -48,6 +48,8 @@ struct ScanEnds {
 
 ScanEnds ends_of(const PlacedScan& scan, double longest_m) {
   ScanEnds ends;
+  ends.ends.reserve(scan.tracked->rays.size());
+  ends.lengths_m.reserve(scan.tracked->rays.size());
   const PointsInMap in_map{scan.map_from_robot};
   for (std::size_t i = 0; i < scan.tracked->rays.size(); ++i) {
     const Beam& beam = scan.tracked->scan.beams[i];

@@ -176,9 +176,8 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
 merge::Acceptance acceptance(const RayCounts& counts, const OccupancyGrid& map, double occupied_hit_share) {
   merge::Acceptance cells;
   counts.for_each_seen([&](Cell cell, const RayCount& count) {
-    if (map[cell] == CellState::kUnknown) return;
     const bool occupied = count.hits > 0 && count.hit_share() >= occupied_hit_share;
-    ++(occupied == (map[cell] == CellState::kOccupied) ? cells.agreeing : cells.disagreeing);
+    cells.add(map[cell], occupied ? CellState::kOccupied : CellState::kFree);
   });
   return cells;
 }

@@ -15,6 +15,7 @@ class MapDraft {
  public:
   /// `before` must outlive the draft.
   explicit MapDraft(const OccupancyGrid& before) : before_{&before}, map_{before} {}
+  explicit MapDraft(OccupancyGrid&& before) = delete;
 
   [[nodiscard]] const OccupancyGrid& map() const { return map_; }
 

@@ -3,21 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/angle.hpp"
 #include "mapping/awareness/pose_deviation.hpp"
 
 namespace deltamap::mapping::awareness {
 namespace {
-
-CellBox box_around(const std::vector<Cell>& cells) {
-  CellBox box{cells.front(), cells.front()};
-  for (const Cell& cell : cells) {
-    box.first = {std::min(box.first.column, cell.column), std::min(box.first.row, cell.row)};
-    box.last = {std::max(box.last.column, cell.column + 1), std::max(box.last.row, cell.row + 1)};
-  }
-  return box;
-}
 
 /// Across the line of sight, m: from the first cell to the last, and one cell.
 double width_m(const std::vector<Cell>& cells, const GridGeometry& geometry, const Point2& sight) {
@@ -31,9 +23,9 @@ double width_m(const std::vector<Cell>& cells, const GridGeometry& geometry, con
 }  // namespace
 
 /// Stops where the group grows too wide to be a speck, or meets one that has.
-std::optional<std::vector<Cell>> Specks::small_group(const OccupancyGrid& map, Cell start) {
+std::optional<Specks::Group> Specks::small_group(const OccupancyGrid& map, Cell start) {
   const auto most_cells = static_cast<int>(params_.most_side_m / geometry_.resolution_m);
-  std::vector<Cell> group;
+  std::vector<Cell> cells;
   CellBox box{start, start};
   bool is_small = true;
   const auto take = [&](Cell cell) {
@@ -42,36 +34,35 @@ std::optional<std::vector<Cell>> Specks::small_group(const OccupancyGrid& map, C
     if ((flags & kWide) != 0) is_small = false;
     if ((flags & kTaken) != 0) return;
     flags |= kTaken;
-    group.push_back(cell);
+    cells.push_back(cell);
     box.first = {std::min(box.first.column, cell.column), std::min(box.first.row, cell.row)};
     box.last = {std::max(box.last.column, cell.column + 1), std::max(box.last.row, cell.row + 1)};
     if (std::max(box.width(), box.height()) > most_cells) is_small = false;
   };
   take(start);
-  for (std::size_t next = 0; next < group.size() && is_small; ++next) {
-    const Cell middle = group[next];
+  for (std::size_t next = 0; next < cells.size() && is_small; ++next) {
+    const Cell middle = cells[next];
     for (int row = middle.row - 1; row <= middle.row + 1; ++row) {
       for (int column = middle.column - 1; column <= middle.column + 1; ++column) take({column, row});
     }
   }
-  taken_.insert(taken_.end(), group.begin(), group.end());
-  if (is_small) return group;
-  for (const Cell& cell : group) flags_of(cell) |= kWide;
+  taken_.insert(taken_.end(), cells.begin(), cells.end());
+  if (is_small) return Group{std::move(cells), box};
+  for (const Cell& cell : cells) flags_of(cell) |= kWide;
   return std::nullopt;
 }
 
 void Specks::gather(const OccupancyGrid& map, std::span<const Cell> starts) {
   for (const Cell& start : starts) {
     if (map.at(start) != CellState::kOccupied || (flags_of(start) & (kTaken | kWide)) != 0) continue;
-    std::optional<std::vector<Cell>> group = small_group(map, start);
+    std::optional<Group> group = small_group(map, start);
     if (!group) continue;
-    if (std::any_of(group->begin(), group->end(), [&](Cell cell) { return (flags_of(cell) & kThin) != 0; })) continue;
-    for (const Cell& cell : *group) flags_of(cell) |= kOfSpeck;
-    const CellBox box = box_around(*group);
+    auto& [cells, box] = *group;
+    if (std::any_of(cells.begin(), cells.end(), [&](Cell cell) { return (flags_of(cell) & kThin) != 0; })) continue;
+    for (const Cell& cell : cells) flags_of(cell) |= kOfSpeck;
     const Point2 first = geometry_.centre_of(box.first);
     const Point2 last = geometry_.centre_of({box.last.column - 1, box.last.row - 1});
-    specks_.push_back(
-        {0.5 * (first + last), 0.5 * ((last - first).norm() + geometry_.resolution_m), std::move(*group)});
+    specks_.push_back({0.5 * (first + last), 0.5 * ((last - first).norm() + geometry_.resolution_m), std::move(cells)});
   }
   for (const Cell& cell : taken_) flags_of(cell) &= static_cast<Flags>(~(kTaken | kWide));
   taken_.clear();

@@ -47,8 +47,12 @@ class Specks {
     std::vector<Cell> cells;
   };
   [[nodiscard]] Flags& flags_of(Cell cell) { return flags_[geometry_.index_of(cell)]; }
+  struct Group {
+    std::vector<Cell> cells;
+    CellBox box;  ///< around them
+  };
   /// All that is joined to an occupied cell; nothing where it is too wide.
-  [[nodiscard]] std::optional<std::vector<Cell>> small_group(const OccupancyGrid& map, Cell start);
+  [[nodiscard]] std::optional<Group> small_group(const OccupancyGrid& map, Cell start);
   void gather(const OccupancyGrid& map, std::span<const Cell> starts);
   [[nodiscard]] bool is_missed(const Speck& speck, const TrackedScan& tracked, std::span<const BeamVerdict> beams,
                                const PoseDeviation& deviation, const BeamEvidenceParams& params) const;

@@ -4,14 +4,6 @@
 #include "core/near_occupied.hpp"
 
 namespace deltamap::mapping::merge {
-namespace {
-
-void count(Acceptance& counts, CellState one, CellState other) {
-  if (one == CellState::kUnknown || other == CellState::kUnknown) return;
-  ++(one == other ? counts.agreeing : counts.disagreeing);
-}
-
-}  // namespace
 
 Acceptance acceptance(const OccupancyGrid& one, const OccupancyGrid& other) {
   Acceptance counts;
@@ -19,10 +11,10 @@ Acceptance acceptance(const OccupancyGrid& one, const OccupancyGrid& other) {
   for (std::size_t i = 0; i < one.cells().size(); ++i) {
     if (one.cells()[i] == CellState::kUnknown) continue;
     if (same_cells) {
-      count(counts, one.cells()[i], other.cells()[i]);
+      counts.add(one.cells()[i], other.cells()[i]);
     } else {
       const Point2 centre_in_map = one.geometry().centre_of(one.geometry().cell_of(i));
-      count(counts, one.cells()[i], other.at(other.geometry().cell_at(centre_in_map)));
+      counts.add(one.cells()[i], other.at(other.geometry().cell_at(centre_in_map)));
     }
   }
   return counts;

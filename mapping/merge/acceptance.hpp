@@ -13,6 +13,11 @@ struct Acceptance {
   std::size_t agreeing = 0;     ///< agr: cells that are free in both or occupied in both
   std::size_t disagreeing = 0;  ///< dis: cells that are free in one and occupied in the other
 
+  /// Counts a cell of the two maps.
+  void add(CellState one, CellState other) {
+    if (one == CellState::kUnknown || other == CellState::kUnknown) return;
+    ++(one == other ? agreeing : disagreeing);
+  }
   /// w = agr / (agr + dis), 0 where nothing agrees.
   [[nodiscard]] double value() const {
     return agreeing == 0 ? 0.0 : static_cast<double>(agreeing) / static_cast<double>(agreeing + disagreeing);

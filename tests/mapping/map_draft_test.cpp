@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <type_traits>
+
 #include "core/random.hpp"
 
 namespace deltamap::mapping {
@@ -19,6 +21,11 @@ TEST(MapDraft, TellsWhatAComparisonOfTheWholeMapsTells) {
   }
   EXPECT_FALSE(draft.changes().empty());
   EXPECT_EQ(draft.changes(), changes_between(before, draft.map()));
+}
+
+TEST(MapDraft, IsMadeOfNoMapThatIsGoneByThen) {
+  EXPECT_FALSE((std::is_constructible_v<MapDraft, OccupancyGrid>));
+  EXPECT_TRUE((std::is_constructible_v<MapDraft, const OccupancyGrid&>));
 }
 
 TEST(MapDraft, HasNotChangedACellThatWasSetBack) {
