@@ -148,7 +148,11 @@ void WriteGate::observe(const TrackedScan& tracked) {
   has_proven_wrong_ = was_tracking_ && !is_distrusted_ && (is_proof || doubts_long);
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
-  if (was_tracking_ && (is_proof || misfit_.is_both_ways())) is_confirming_ = true;
+  if (was_tracking_ && !is_confirming_ && (is_proof || misfit_.is_both_ways())) {
+    is_confirming_ = true;
+    // What has only made it wary is a thing that stays: as much as without it need not fit again.
+    if (broken_ && !broken_->shuts) forget_break();
+  }
   if (is_confirming_ && holds(judgement, time, driven_m)) {
     is_confirming_ = false;
     forget_break();

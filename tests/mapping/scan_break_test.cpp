@@ -153,6 +153,16 @@ TEST_F(OutOfDate, MoreThatCeasesToFitThanHasBrokenOffIsACarriedRobot) {
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
 }
 
+TEST_F(OutOfDate, AThingThatCameIsNoPartOfWhatAWrongPoseHasToConfirm) {
+  for (int i = 0; i < 20; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 50), 50, 40));
+  ASSERT_TRUE(gate.is_open());
+  TrackedScan disbelieved = fitting(aisle_scan(robot, 0.0, 50), 50, 40);
+  disbelieved.estimate.belief.pose_right = 0.2;
+  gate.observe(disbelieved);
+  for (int i = 0; i < 205; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 50), 50, 40));
+  EXPECT_TRUE(gate.is_open());
+}
+
 TEST_F(OutOfDate, AHallThatIsMoreAndMoreOutOfDateLeavesTheGateOpen) {
   for (int i = 0; i < 100; ++i) {
     gate.observe(fitting(aisle_scan(robot, 0.0), 30, 10));
