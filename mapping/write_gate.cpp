@@ -82,9 +82,8 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 }
 
 /// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
-/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before. A small
-/// break is a thing's as long as not many more beams cease to fit than have broken off then; what further small breaks
-/// may explain while it is wary is not added.
+/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before. Small
+/// breaks are of things as long as not many more beams cease to fit than have broken off.
 void WriteGate::note_break(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
   const SeenBreak seen = scan_break_.observe(tracked);
@@ -95,6 +94,8 @@ void WriteGate::note_break(const TrackedScan& tracked) {
       broken_ = Broken{time, 0.0, true};
     } else if (!broken_) {
       broken_ = Broken{time, kApproached * seen.share, false};
+    } else if (!broken_->shuts) {
+      broken_->explained += kApproached * seen.share;
     }
   }
   if (!broken_ || is_confirming_) return;

@@ -153,6 +153,14 @@ TEST_F(OutOfDate, MoreThatCeasesToFitThanHasBrokenOffIsACarriedRobot) {
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
 }
 
+TEST_F(OutOfDate, ThingsThatComeOneAfterTheOtherLeaveTheGateOpen) {
+  for (int i = 0; i < 15; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 20), 67, 23));
+  for (int i = 0; i < 60; ++i) {
+    gate.observe(fitting(aisle_scan(robot, 0.0, 45), 38, 52));
+    ASSERT_TRUE(gate.is_open()) << i;
+  }
+}
+
 TEST_F(OutOfDate, AThingThatCameIsNoPartOfWhatAWrongPoseHasToConfirm) {
   for (int i = 0; i < 20; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 50), 50, 40));
   ASSERT_TRUE(gate.is_open());
