@@ -21,7 +21,7 @@ struct ParticleFilterParams {
   int min = 500;                 ///< fewest particles; 10..max
   int max = 5000;                ///< most particles: what global localization starts with; min..200000
   double resample_below = 0.5;   ///< share of the particles below which N_eff calls for resampling; 0..1
-  double depleted_below = 0.01;  ///< share below which a slip is not believed for one of them alone; 0..1, 0 = never
+  double depleted_below = 0.0;   ///< share below which a slip is not believed for one of them alone; 0..1, 0 = never
   double evidence_beams = 20.0;  ///< independent beams that a scan counts as; > 0: neighbours see the same things
   double kld_error = 0.05;       ///< bound of the approximation error that sets the number of particles; > 0 (ε)
   double kld_quantile = 2.33;    ///< of the normal distribution, how surely the bound holds; > 0 (z)

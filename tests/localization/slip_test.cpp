@@ -55,7 +55,7 @@ double error_after_slips_m(double depleted_below) {
 }
 
 TEST(Slip, IsFoundMoreCloselyWhereAllParticlesSlipThanWhereTheFirstThatFitsIsBelieved) {
-  const double all_m = error_after_slips_m(ParticleFilterParams{}.depleted_below);
+  const double all_m = error_after_slips_m(0.01);
   EXPECT_LT(all_m, 0.75 * error_after_slips_m(0.0));
 }
 
