@@ -111,7 +111,8 @@ std::size_t ParticleFilter::best() const {
 }
 
 bool ParticleFilter::rests_on_few_slips() const {
-  return n_eff() < params_.depleted_below * static_cast<double>(particles_.size()) && first_slip_ &&
+  return first_slip_ && params_.depleted_below > 0.0 &&
+         n_eff() < params_.depleted_below * static_cast<double>(particles_.size()) &&
          best() % kOneInSlips == *first_slip_;
 }
 

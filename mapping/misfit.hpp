@@ -33,7 +33,6 @@ class Misfit {
     if (last_) remembered_ = usual_;
   }
   void forget() { remembered_.reset(); }
-  [[nodiscard]] bool remembers() const { return remembered_.has_value(); }
   /// Fewer beams fit than usual before it was remembered, and than without that share of them.
   [[nodiscard]] bool is_worse_than_remembered(double explained) const;
 

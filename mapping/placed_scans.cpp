@@ -61,12 +61,14 @@ class PlacesOfEnds {
   std::vector<std::uint8_t> is_near_end_;
 };
 
+/// `ends_of_scans`: of each guess, in the robot's frame.
 alignment::NearestSurface surface_around(const OccupancyGrid& map, const std::vector<PlacedScan>& guesses,
+                                         const std::vector<std::vector<Point2>>& ends_of_scans,
                                          const std::function<bool(Cell)>& is_in_doubt, const PlacementParams& params) {
   PlacesOfEnds ends{map.geometry(), params.reach_m};
-  for (const PlacedScan& guess : guesses) {
-    const PointsInMap in_map{guess.map_from_robot};
-    for (const Point2& end : alignment::ray_ends(*guess.tracked, params.longest_m)) ends.add(in_map(end));
+  for (std::size_t i = 0; i < guesses.size(); ++i) {
+    const PointsInMap in_map{guesses[i].map_from_robot};
+    for (const Point2& end : ends_of_scans[i]) ends.add(in_map(end));
   }
   const int margin = static_cast<int>(std::ceil(params.reach_m / map.resolution_m()));
   const CellBox box = grown(box_seen(map.geometry(), guesses, params.longest_m), margin, map.geometry());
@@ -88,13 +90,18 @@ std::size_t points_near(const alignment::NearestSurface& surface, const std::vec
 Placement placed_scans(const OccupancyGrid& map, const std::vector<TrackedScan>& scans,
                        const std::function<bool(Cell)>& is_in_doubt, const PlacementParams& params) {
   std::vector<PlacedScan> guesses;
-  for (const TrackedScan& tracked : scans) guesses.push_back({&tracked, tracked.estimate.map_from_robot});
-  const alignment::NearestSurface surface = surface_around(map, guesses, is_in_doubt, params);
+  std::vector<std::vector<Point2>> ends;
+  for (const TrackedScan& tracked : scans) {
+    guesses.push_back({&tracked, tracked.estimate.map_from_robot});
+    ends.push_back(alignment::ray_ends(tracked, params.longest_m));
+  }
+  const alignment::NearestSurface surface = surface_around(map, guesses, ends, is_in_doubt, params);
 
   Placement placement;
   Eigen::Vector3d moved_sum = Eigen::Vector3d::Zero();
-  for (const PlacedScan& guess : guesses) {
-    const std::vector<Point2> points = alignment::ray_ends(*guess.tracked, params.longest_m);
+  for (std::size_t i = 0; i < guesses.size(); ++i) {
+    const PlacedScan& guess = guesses[i];
+    const std::vector<Point2>& points = ends[i];
     const double shared =
         std::min(1.0, params.independent_points / std::max<double>(1.0, static_cast<double>(points.size())));
     const alignment::RegistrationParams registration_params{

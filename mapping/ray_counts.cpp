@@ -82,13 +82,10 @@ void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end
     if (!goes_through || !walk.goes_on()) return;
   }
   while (!walk.is_at_end()) {
-    if (marks_[walk.index()] == kUnseen) see(walk.index());
-    ++counts_[walk.index()].late_passes;
+    ++seen_count(walk.index()).late_passes;
     if (!walk.goes_on()) return;
   }
-  if (!hits) return;
-  if (marks_[walk.index()] == kUnseen) see(walk.index());
-  ++counts_[walk.index()].hits;
+  if (hits) ++seen_count(walk.index()).hits;
 }
 
 /// A robot seldom stands outside its map: cell by cell will do.
@@ -104,9 +101,7 @@ void RayCounts::add_beam_from_outside(const Point2& from, const Point2& end, dou
     stopped = is_clear && !goes_through;
     return !stopped;
   });
-  if (!hits || stopped || !box_.contains(last)) return;
-  if (marks_[index_of(last)] == kUnseen) see(index_of(last));
-  ++counts_[index_of(last)].hits;
+  if (hits && !stopped && box_.contains(last)) ++seen_count(index_of(last)).hits;
 }
 
 void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {

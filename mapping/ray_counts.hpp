@@ -79,6 +79,10 @@ class RayCounts {
     return {count.hits, count.clear_passes + count.late_passes, count.clear_passes};
   }
   void see(std::size_t index);
+  [[nodiscard]] Count& seen_count(std::size_t index) {
+    if (marks_[index] == kUnseen) see(index);
+    return counts_[index];
+  }
   /// Sees the cell, where it has not been, and says whether beams go on behind it.
   [[nodiscard]] bool lets_through(std::size_t index);
   void add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits);

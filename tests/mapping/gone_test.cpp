@@ -50,6 +50,7 @@ class Gone : public testing::Test {
   TrackedScan tracked;
   std::vector<BeamVerdict> beams;
   const OccupancyGrid speck = room_with({4.0, 5.0}, {4.1, 5.1});  // four cells, 2 m ahead
+  const OccupancyGrid surface = room_with({4.0, 4.0}, {4.1, 6.0});
 };
 
 TEST_F(Gone, IsASpeckThatBeamsWouldHaveMet) {
@@ -90,27 +91,24 @@ TEST_F(Gone, IsNothingThinThatTheFirstMapHadAlready) {
 }
 
 TEST_F(Gone, IsNoSurfaceByItsSpecks) {
-  const OccupancyGrid face = room_with({4.0, 4.0}, {4.1, 6.0});
-  known(room(), face);
-  look(room(), face);
+  known(room(), surface);
+  look(room(), surface);
   EXPECT_EQ(missed(), 0U);
 }
 
 TEST_F(Gone, IsWhatIsLeftOfASurfaceFromTheChangeOnThatLeavesIt) {
-  const OccupancyGrid face = room_with({4.0, 4.0}, {4.1, 6.0});
-  known(room(), face);
-  specks.follow(speck, changes_between(face, speck));
+  known(room(), surface);
+  specks.follow(speck, changes_between(surface, speck));
   look(room(), speck);
   EXPECT_EQ(missed(), 4U);
 }
 
 TEST_F(Gone, IsNoSpeckThatHasGrownIntoASurface) {
-  const OccupancyGrid face = room_with({4.0, 4.0}, {4.1, 6.0});
   known(room(), speck);
-  specks.follow(face, changes_between(speck, face));
-  look(room(), face);
+  specks.follow(surface, changes_between(speck, surface));
+  look(room(), surface);
   EXPECT_EQ(missed(), 0U);
-  EXPECT_FALSE(specks.is_of_speck(face.geometry().cell_at({4.02, 5.02})));
+  EXPECT_FALSE(specks.is_of_speck(surface.geometry().cell_at({4.02, 5.02})));
 }
 
 /// By hand: is the group of this cell small, and none of it in a small group of the first map?

@@ -2,7 +2,6 @@
 #include "daemon/tool/experiment/mapping_watch.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -43,8 +43,8 @@ bool agrees(const OccupancyGrid& truth, const CellChange& change) {
 
 }  // namespace
 
-template <typename IsRight>
-void WrittenCells::count_things(const std::vector<CellChange>& written, IsRight&& is_right) {
+void WrittenCells::count_things(const std::vector<CellChange>& written, const OccupancyGrid& truth) {
+  const auto is_right = [&](const CellChange& change) { return agrees(truth, change); };
   for (const std::vector<CellChange>& thing : things_of(written)) {
     if (thing.size() < kSpeck) continue;
     ++things_;
@@ -58,19 +58,18 @@ void WrittenCells::observe(std::span<const CellChange> changes, const simulation
   ++revisions_;
   cells_ += changes.size();
   if (is_astray) cells_astray_ += changes.size();
-  const auto is_right = [&](const CellChange& change) { return agrees(truth.visible(), change); };
   std::vector<CellChange> come;
   std::vector<CellChange> gone;
   for (const CellChange& change : changes) {
     const std::size_t cell = geometry_.index_of(change.cell);
     ++writes_[cell];
-    cells_wrong_ += is_right(change) ? 0 : 1;
+    cells_wrong_ += agrees(truth.visible(), change) ? 0 : 1;
     if (truth.is_at_door(cell)) continue;  // it comes and goes
     if (change.after == CellState::kOccupied) come.push_back(change);
     if (change.before == CellState::kOccupied && change.after == CellState::kFree) gone.push_back(change);
   }
-  count_things(come, is_right);
-  count_things(gone, is_right);
+  count_things(come, truth.visible());
+  count_things(gone, truth.visible());
 }
 
 std::vector<std::pair<std::string, double>> WrittenCells::numbers(const simulation::score::CellMask& seen,

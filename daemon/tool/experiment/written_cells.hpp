@@ -28,8 +28,7 @@ class WrittenCells {
                                                                     double hours) const;
 
  private:
-  template <typename IsRight>
-  void count_things(const std::vector<CellChange>& written, IsRight&& is_right);
+  void count_things(const std::vector<CellChange>& written, const OccupancyGrid& truth);
 
   GridGeometry geometry_;
   std::size_t cells_ = 0;
