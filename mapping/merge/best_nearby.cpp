@@ -3,117 +3,171 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
-#include "mapping/merge/acceptance.hpp"
 #include "mapping/merge/motion_equations.hpp"
 
 namespace deltamap::mapping::merge {
 namespace {
 
-// By the local map's state and the map's: agreeing cells in the lower half, disagreeing ones in the upper.
-constexpr std::uint64_t kAgrees = 1;
-constexpr std::uint64_t kDisagrees = 1ULL << 32U;
-constexpr std::array<std::uint64_t, 6> kPackedCounts{kAgrees, kDisagrees, 0, kDisagrees, kAgrees, 0};
+constexpr std::size_t kMostPlaces = 128;  // of a shift
+constexpr int kHalvings = 3;              // of the turn's step
+constexpr std::size_t kParted = 3;        // turns beside which the step is halved
 
-/// Eq. 11 of the cells along the edges near a pose. A cell that meets the same state wherever the pose may move is
-/// counted once; only the others are looked at again. Those at the rim of the map do not count.
-class NearbyAcceptance {
- public:
-  /// The cells move by less than `margin_cells` (< 0.5).
-  NearbyAcceptance(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& motion,
-                   float margin_cells)
-      : cells_{map.cells().data()}, width_{map.width()} {
-    const Placing place{motion};
-    for (const EdgeCell& edge : edges) {
-      const PointInCells at = place(edge.at);
-      if (!(at.x >= 1.0F && at.y >= 1.0F && at.x < static_cast<float>(map.width() - 1) &&
-            at.y < static_cast<float>(map.height() - 1))) {
-        continue;
+/// Cells counted for Eq. 11, both numbers in one: those that agree in the upper half, those known in both in the lower.
+using Counts = std::int64_t;
+constexpr Counts kKnown = 1;
+constexpr Counts kAgrees = (Counts{1} << 32) + kKnown;
+constexpr std::array<std::array<Counts, 3>, 3> kCounts{{{kAgrees, kKnown, 0}, {kKnown, kAgrees, 0}, {0, 0, 0}}};
+
+double known_in(Counts counts) { return static_cast<double>(static_cast<std::int32_t>(counts)); }
+double agreeing_in(Counts counts) {
+  return static_cast<double>((counts - static_cast<std::int32_t>(counts)) / (Counts{1} << 32));
+}
+
+/// An edge cell passes from one cell of the map into the next, along one axis.
+struct Crossing {
+  float at_cells = 0.0F;  ///< beyond this shift it lies in the cell with the higher index; before any turn
+  float per_turn = 0.0F;  ///< how far a turn, in cells at the lever arm, takes it the same way
+  Counts gain = 0;        ///< of the shifts beyond
+};
+
+struct Crossings {
+  std::vector<Crossing> all;
+  Counts before = 0;  ///< gain over the start of a shift that lies before all of them
+};
+
+/// All cells that may cross near a pose.
+struct CellsNearBorders {
+  Crossings x;
+  Crossings y;
+  Counts at_start = 0;
+};
+
+CellsNearBorders cells_near_borders(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
+                                    double lever_cells, double reach_cells) {
+  const auto c = static_cast<float>(std::cos(start.turn_rad));
+  const auto s = static_cast<float>(std::sin(start.turn_rad));
+  const auto tx = static_cast<float>(start.column);
+  const auto ty = static_cast<float>(start.row);
+  const auto per_lever = static_cast<float>(1.0 / lever_cells);
+  const auto reach = static_cast<float>(reach_cells);
+  const auto most_x = static_cast<float>(map.width() - 1);
+  const auto most_y = static_cast<float>(map.height() - 1);
+  const std::ptrdiff_t width = map.width();
+  CellsNearBorders near;
+  near.x.all.reserve(edges.size());
+  near.y.all.reserve(edges.size());
+  for (const EdgeCell& edge : edges) {
+    const float arm_x = c * edge.at.x - s * edge.at.y;
+    const float arm_y = s * edge.at.x + c * edge.at.y;
+    const float x = arm_x + tx;
+    const float y = arm_y + ty;
+    if (!(x >= 1.0F && y >= 1.0F && x < most_x && y < most_y)) continue;
+    const auto column = static_cast<std::int32_t>(x);
+    const auto row = static_cast<std::int32_t>(y);
+    const CellState* const here = map.cells().data() + row * width + column;
+    const auto& counts = kCounts[static_cast<std::size_t>(edge.state)];
+    const Counts counts_here = counts[static_cast<std::size_t>(*here)];
+    near.at_start += counts_here;
+    const auto add = [&](Crossings& crossings, float in_cell, float per_turn, std::ptrdiff_t next) {
+      const float farthest = reach + reach * std::abs(per_turn);
+      if (in_cell <= farthest && here[-next] != *here) {
+        const Counts gain = counts_here - counts[static_cast<std::size_t>(here[-next])];
+        crossings.all.push_back({-in_cell, per_turn, gain});
+        crossings.before -= gain;
       }
-      if (is_settled(at, margin_cells)) {
-        settled_ += packed(edge.state, *cell_at(at));
-      } else {
-        left_.push_back(edge);
+      if (1.0F - in_cell <= farthest && here[next] != *here) {
+        const Counts gain = counts[static_cast<std::size_t>(here[next])] - counts_here;
+        crossings.all.push_back({1.0F - in_cell, per_turn, gain});
       }
+    };
+    add(near.x, x - static_cast<float>(column), -arm_y * per_lever, 1);
+    add(near.y, y - static_cast<float>(row), arm_x * per_lever, width);
+  }
+  return near;
+}
+
+struct BestShift {
+  double shift_cells = 0.0;
+  double gain = -std::numeric_limits<double>::infinity();  ///< cells that agree, and what is known less
+};
+
+/// Along one axis, after a turn. What is best over a stretch is answered by its middle.
+BestShift best_shift(const Crossings& crossings, double turn_cells, double acceptance, const BestNearbyParams& params) {
+  const int half = static_cast<int>(std::lround(params.reach_cells / params.shift_step_cells));
+  const int places = 2 * half + 1;
+  assert(static_cast<std::size_t>(places) < kMostPlaces && "the step is too fine for the reach");
+  std::array<Counts, kMostPlaces> gains{};
+  const auto per_step = static_cast<float>(1.0 / params.shift_step_cells);
+  const auto turn = static_cast<float>(turn_cells);
+  const auto first = static_cast<float>(-half * params.shift_step_cells);
+  for (const Crossing& crossing : crossings.all) {
+    const float steps = (crossing.at_cells - turn * crossing.per_turn - first) * per_step;
+    const int next = std::clamp(static_cast<int>(steps + 1.0F), 0, places);  // the first place beyond
+    gains[static_cast<std::size_t>(next)] += crossing.gain;
+  }
+  BestShift best;
+  Counts sum = crossings.before;
+  Counts best_sum = 0;
+  int from = 0;
+  int to = 0;
+  for (int i = 0; i < places; ++i) {
+    sum += gains[static_cast<std::size_t>(i)];
+    if (sum == best_sum && to + 1 == i) {
+      to = i;
+      continue;
     }
+    const double gain = agreeing_in(sum) - acceptance * known_in(sum);
+    if (gain > best.gain) best.gain = gain, best_sum = sum, from = to = i;
   }
+  best.shift_cells = (0.5 * (from + to) - half) * params.shift_step_cells;
+  return best;
+}
 
-  [[nodiscard]] double at(const CellMotion& motion) const {
-    const Placing place{motion};
-    std::uint64_t sum = settled_;
-    for (const EdgeCell& edge : left_) sum += packed(edge.state, *cell_at(place(edge.at)));
-    return Acceptance{sum & 0xFFFFFFFFU, sum >> 32U}.value();
-  }
-
- private:
-  struct Placing {
-    float c, s, tx, ty;
-    explicit Placing(const CellMotion& motion)
-        : c{static_cast<float>(std::cos(motion.turn_rad))},
-          s{static_cast<float>(std::sin(motion.turn_rad))},
-          tx{static_cast<float>(motion.column)},
-          ty{static_cast<float>(motion.row)} {}
-    PointInCells operator()(const PointInCells& at) const {
-      return {c * at.x - s * at.y + tx, s * at.x + c * at.y + ty};
-    }
-  };
-  static std::uint64_t packed(CellState local, CellState map) {
-    return kPackedCounts[3 * static_cast<std::size_t>(local) + static_cast<std::size_t>(map)];
-  }
-  [[nodiscard]] const CellState* cell_at(const PointInCells& at) const {
-    return cells_ + static_cast<std::int32_t>(at.y) * width_ + static_cast<std::int32_t>(at.x);
-  }
-  /// Whether all cells that may be reached have one state.
-  [[nodiscard]] bool is_settled(const PointInCells& at, float margin_cells) const {
-    const float u = at.x - static_cast<float>(static_cast<std::int32_t>(at.x));
-    const float v = at.y - static_cast<float>(static_cast<std::int32_t>(at.y));
-    const std::ptrdiff_t beside = u < margin_cells ? -1 : u > 1.0F - margin_cells ? 1 : 0;
-    const std::ptrdiff_t above = v < margin_cells ? -width_ : v > 1.0F - margin_cells ? width_ : 0;
-    const CellState* const here = cell_at(at);
-    return here[beside] == *here && here[above] == *here && here[above + beside] == *here;
-  }
-
-  const CellState* cells_;
-  std::ptrdiff_t width_;
-  std::vector<EdgeCell> left_;
-  std::uint64_t settled_ = 0;
+struct Pose {
+  Eigen::Vector3d step_cells;
+  double gain = 0.0;
 };
 
 }  // namespace
 
 CellMotion best_nearby(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
-                       double step_cells, int rounds) {
+                       const BestNearbyParams& params) {
   const double lever_cells = lever_of(edges);
-  CellMotion best = start;
-  const double most_moved_cells = 2.0 * step_cells;
-  // A turn moves the farthest cells by about twice what it moves those at the lever arm; not all axes move at once.
-  const NearbyAcceptance acceptance_at{map, edges, start, static_cast<float>(std::min(0.49, 4.0 * step_cells))};
-  const auto is_near = [&](const CellMotion& motion) {
-    return std::abs(motion.column - start.column) <= most_moved_cells &&
-           std::abs(motion.row - start.row) <= most_moved_cells &&
-           lever_cells * std::abs(motion.turn_rad - start.turn_rad) <= most_moved_cells;
+  const CellsNearBorders near = cells_near_borders(map, edges, start, lever_cells, params.reach_cells);
+  if (near.at_start == 0) return start;
+  const double acceptance = agreeing_in(near.at_start) / known_in(near.at_start);
+  std::vector<Pose> poses;
+  const auto look = [&](double turn_cells) {
+    const BestShift x = best_shift(near.x, turn_cells, acceptance, params);
+    const BestShift y = best_shift(near.y, turn_cells, acceptance, params);
+    poses.push_back({{x.shift_cells, y.shift_cells, turn_cells}, x.gain + y.gain});
   };
-  double best_acceptance = acceptance_at.at(best);
-  for (int round = 0; round < rounds; ++round) {
-    const CellMotion before = best;
-    for (const int axis : {0, 1, 2}) {
-      for (const double step : {step_cells, -step_cells}) {
-        const CellMotion motion = moved(best, step * Eigen::Vector3d::Unit(axis), lever_cells);
-        if (!is_near(motion)) continue;
-        const double acceptance = acceptance_at.at(motion);
-        if (acceptance <= best_acceptance) continue;
-        best_acceptance = acceptance;
-        best = motion;
-        break;
-      }
-    }
-    if (best == before) step_cells *= 0.5;
+  const auto sort_best_first = [&] {
+    std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.gain > b.gain; });
+  };
+  const int half = static_cast<int>(std::lround(params.reach_cells / params.turn_step_cells));
+  look(0.0);  // first: of equals, the pose that was there
+  for (int i = 1; i <= half; ++i) {
+    for (const int turns : {-i, i}) look(turns * params.turn_step_cells);
   }
-  return best;
+  double step_cells = params.turn_step_cells;
+  for (int i = 0; i < kHalvings; ++i) {
+    step_cells *= 0.5;
+    sort_best_first();
+    for (std::size_t k = 0; k < std::min(kParted, poses.size()); ++k) {
+      const double turn_cells = poses[k].step_cells.z();
+      for (const double beside : {turn_cells - step_cells, turn_cells + step_cells}) look(beside);
+    }
+  }
+  sort_best_first();
+  return moved(start, poses.front().step_cells, lever_cells);
 }
 
 }  // namespace deltamap::mapping::merge

@@ -59,19 +59,24 @@ struct PointInMetres {
   float y = 0.0F;
 };
 
-/// Squared distances to the surface, bounded by the reach, in deviations: -2 ln p of the points at a pose.
-double misfit(std::span<const Point2> points, const alignment::NearestSurface& surface, const Pose2& pose,
-              const PriorMergeParams& params) {
+/// Squared distances to the surface, bounded by the reach, in deviations: -2 ln p of the points at a pose. Those beyond
+/// what the map knows count as the others do on average: that they find no surface speaks for no pose.
+double misfit(const OccupancyGrid& map, std::span<const Point2> points, const alignment::NearestSurface& surface,
+              const Pose2& pose, const PriorMergeParams& params) {
   const double most2 = params.reach_m * params.reach_m;
   const double c = std::cos(pose.theta);
   const double s = std::sin(pose.theta);
   double sum = 0.0;
+  std::size_t known = 0;
   for (const Point2& point : points) {
     const Point2 place{pose.x + c * point.x() - s * point.y(), pose.y + s * point.x() + c * point.y()};
+    if (map.at(map.geometry().cell_at(place)) == CellState::kUnknown) continue;
     const alignment::SurfacePoint* nearest = surface.nearest(place);
     sum += nearest == nullptr ? most2 : std::min(most2, (place - nearest->position).squaredNorm());
+    ++known;
   }
-  return sum / (params.surface_deviation_m * params.surface_deviation_m);
+  const double mean2 = known == 0 ? most2 : sum / static_cast<double>(known);
+  return static_cast<double>(points.size()) * mean2 / (params.surface_deviation_m * params.surface_deviation_m);
 }
 
 /// The same of a sample, from the middles of the surface's table: quick, and good enough to choose starts.
@@ -204,7 +209,7 @@ PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface
     const Eigen::Vector3d moved{pose.x - guess.x, pose.y - guess.y, pose.theta};
     const double chi2 = moved.dot(belief.information * moved);
     answers.push_back({pose, end.information + belief.information,
-                       shared * misfit(points, surface, pose, params) + chi2,
+                       shared * misfit(map, points, surface, pose, params) + chi2,
                        agreement(map, points, pose, std::max(1U, params.least_points)), chi2});
   }
   std::stable_sort(answers.begin(), answers.end(), [](const Answer& a, const Answer& b) { return a.cost < b.cost; });
