@@ -43,28 +43,33 @@ std::vector<Cell> contour_cells(const OccupancyGrid& map) {
 std::vector<Cell> contour_cells(const OccupancyGrid& map, const CellBox& box) {
   const CellBox part = grown(box, 0, map.geometry());
   std::vector<Cell> contour;
-  for (int row = part.first.row; row < part.last.row; ++row) {
-    const bool has_rows_beside = row > 0 && row + 1 < map.height();
-    for (int column = part.first.column; column < part.last.column;) {
-      const bool together =
-          has_rows_beside && column > 0 && column + kTogether < map.width() && column + kTogether <= part.last.column;
-      if (!together) {
-        if (is_contour(map, {column, row})) contour.push_back({column, row});
-        ++column;
-        continue;
-      }
-      const CellState* const here = map.cells().data() + map.geometry().index_of({column, row});
-      const std::uint64_t occupied = word_at(here) & kLowBits;
-      if (occupied != 0) {
-        std::uint64_t left = occupied & (free_in(word_at(here - 1)) | free_in(word_at(here + 1)) |
-                                         free_in(word_at(here - map.width())) | free_in(word_at(here + map.width())));
-        for (; left != 0; left &= left - 1) {
-          const int byte = std::countr_zero(left) / 8;
-          contour.push_back({column + byte, row});
-        }
-      }
-      column += kTogether;
+  const auto look_at_each = [&](int row, int first, int last) {
+    for (int column = first; column < last; ++column) {
+      if (is_contour(map, {column, row})) contour.push_back({column, row});
     }
+  };
+  const int width = map.width();
+  // Words whose cells have all their neighbours.
+  const int first_word = std::max(part.first.column, 1);
+  const int words = (std::min(part.last.column, width - 1) - first_word) / kTogether;
+  for (int row = part.first.row; row < part.last.row; ++row) {
+    if (row == 0 || row + 1 >= map.height() || words <= 0) {
+      look_at_each(row, part.first.column, part.last.column);
+      continue;
+    }
+    look_at_each(row, part.first.column, first_word);
+    const CellState* const begin = map.cells().data() + map.geometry().index_of({first_word, row});
+    const CellState* const end = begin + words * kTogether;
+    for (const CellState* here = begin; here != end; here += kTogether) {
+      const std::uint64_t occupied = word_at(here) & kLowBits;
+      if (occupied == 0) continue;
+      std::uint64_t left = occupied & (free_in(word_at(here - 1)) | free_in(word_at(here + 1)) |
+                                       free_in(word_at(here - width)) | free_in(word_at(here + width)));
+      for (; left != 0; left &= left - 1) {
+        contour.push_back({first_word + static_cast<int>(here - begin) + std::countr_zero(left) / 8, row});
+      }
+    }
+    look_at_each(row, first_word + words * kTogether, part.last.column);
   }
   return contour;
 }

@@ -16,8 +16,8 @@ namespace deltamap::mapping::merge {
 namespace {
 
 constexpr std::size_t kMostPlaces = 128;  // of a shift
-constexpr int kHalvings = 3;              // of the turn's step
-constexpr std::size_t kParted = 3;        // turns beside which the step is halved
+constexpr int kHalvings = 2;              // of the turn's step
+constexpr std::size_t kParted = 2;        // turns beside which the step is halved
 
 /// Cells counted for Eq. 11, both numbers in one: those that agree in the upper half, those known in both in the lower.
 using Counts = std::int64_t;

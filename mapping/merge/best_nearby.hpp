@@ -12,7 +12,7 @@ namespace deltamap::mapping::merge {
 struct BestNearbyParams {
   double reach_cells = 0.12;        ///< how far is looked along each axis, a turn at the lever arm; (0, 0.25]
   double shift_step_cells = 0.005;  ///< at least a fiftieth of the reach
-  double turn_step_cells = 0.02;    ///< at the lever arm; beside the best ones it is halved three times
+  double turn_step_cells = 0.02;    ///< at the lever arm; beside the best ones it is halved twice
 };
 
 /// The best pose of a lattice around one, by Eq. 11 over the cells along the edges. So near, a shift along x takes

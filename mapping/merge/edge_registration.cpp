@@ -2,6 +2,7 @@
 #include "mapping/merge/edge_registration.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -10,7 +11,8 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr int kReach_cells = 1;
+constexpr std::size_t kBits = 64;        // of a word
+constexpr std::uint64_t kThree = 0b111;  // cells in a row: an edge and those beside it
 constexpr int kLeastPaired = 20;
 
 MotionEquations motion_equations(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& motion,
@@ -65,24 +67,31 @@ MotionEquations motion_equations(const OccupancyGrid& map, std::span<const EdgeC
 }  // namespace
 
 std::vector<EdgeCell> edge_cells(const OccupancyGrid& local, std::span<const Cell> contour, const Point2& middle) {
-  std::vector<std::uint8_t> taken(local.geometry().cell_count(), 0);
+  // A bit a cell, with a rim of one; bit 0 of a row is the rim's.
+  const auto width = static_cast<std::size_t>(local.width());
+  const std::size_t words = (width + 2) / kBits + 1;
+  std::vector<std::uint64_t> marks(words * static_cast<std::size_t>(local.height() + 2), 0);
+  for (const Cell& cell : contour) {
+    const auto first = static_cast<std::size_t>(cell.column);  // bit of the cell to the left
+    std::uint64_t* const word = marks.data() + static_cast<std::size_t>(cell.row) * words + first / kBits;
+    const std::size_t shift = first % kBits;
+    for (const std::size_t row : {std::size_t{0}, words, 2 * words}) {
+      word[row] |= kThree << shift;
+      if (shift + 3 > kBits) word[row + 1] |= kThree >> (kBits - shift);
+    }
+  }
   std::vector<EdgeCell> edges;
   edges.reserve(6 * contour.size());
-  const auto width = static_cast<std::size_t>(local.width());
   const auto to_x = static_cast<float>(0.5 - middle.x());
   const auto to_y = static_cast<float>(0.5 - middle.y());
-  for (const Cell& cell : contour) {
-    const int first = std::max(0, cell.column - kReach_cells);
-    const int last = std::min(local.width() - 1, cell.column + kReach_cells);
-    for (int y = std::max(0, cell.row - kReach_cells); y <= std::min(local.height() - 1, cell.row + kReach_cells);
-         ++y) {
-      const std::size_t row = static_cast<std::size_t>(y) * width;
-      for (int x = first; x <= last; ++x) {
-        std::uint8_t& is_taken = taken[row + static_cast<std::size_t>(x)];
-        const CellState state = local.cells()[row + static_cast<std::size_t>(x)];
-        if (is_taken != 0 || state == CellState::kUnknown) continue;
-        is_taken = 1;
-        edges.push_back({{static_cast<float>(x) + to_x, static_cast<float>(y) + to_y}, state});
+  for (std::size_t row = 0; row < static_cast<std::size_t>(local.height()); ++row) {
+    const std::uint64_t* const word = marks.data() + (row + 1) * words;
+    const CellState* const states = local.cells().data() + row * width;
+    for (std::size_t i = 0; i < words; ++i) {
+      for (std::uint64_t left = word[i]; left != 0; left &= left - 1) {
+        const std::size_t column = i * kBits + static_cast<std::size_t>(std::countr_zero(left)) - 1;
+        if (column >= width || states[column] == CellState::kUnknown) continue;
+        edges.push_back({{static_cast<float>(column) + to_x, static_cast<float>(row) + to_y}, states[column]});
       }
     }
   }

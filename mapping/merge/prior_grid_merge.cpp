@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The merge of two grids with a prior.
+#include <algorithm>
 #include <cassert>
+#include <utility>
+#include <vector>
 
+#include "core/points_in_map.hpp"
 #include "mapping/merge/best_nearby.hpp"
 #include "mapping/merge/border_registration.hpp"
 #include "mapping/merge/edge_registration.hpp"
@@ -11,10 +15,33 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::size_t kContourPoints = 250;    // of the local contour, to be brought onto the map's
+constexpr std::size_t kPlacingContour = 1200;  // cells of the local contour nearest its middle that place it: no more
+                                               // of the map is prepared than they can reach
+constexpr std::size_t kContourPoints = 250;    // of these, to be brought onto the map's
 constexpr std::size_t kRoughEdgeCells = 2500;  // to come near, before more of them count
 constexpr double kRoughlySettled_cells = 0.02;
-constexpr std::size_t kMostEdgeCells = 12000;  // at the end
+constexpr double kNearlySettled_cells = 0.03;   // well inside the reach of the last search
+constexpr std::size_t kMostEdgeContour = 1750;  // whose cells and neighbours count at the end
+
+/// Of many, those that lie on the map at the guess and nearest to the middle.
+std::vector<Cell> placing_cells(const OccupancyGrid& map, const OccupancyGrid& local, const std::vector<Cell>& contour,
+                                const Point2& middle, const Pose2& map_from_local_guess) {
+  if (contour.size() <= kPlacingContour) return contour;
+  const PointsInMap in_map{map_from_local_guess};
+  std::vector<std::pair<double, Cell>> by_distance;
+  by_distance.reserve(contour.size());
+  for (const Cell& cell : contour) {
+    if (!map.geometry().contains(map.geometry().cell_at(in_map(local.geometry().centre_of(cell))))) continue;
+    by_distance.emplace_back((Point2{cell.column + 0.5, cell.row + 0.5} - middle).squaredNorm(), cell);
+  }
+  const std::size_t count = std::min(kPlacingContour, by_distance.size());
+  std::nth_element(by_distance.begin(), by_distance.begin() + static_cast<std::ptrdiff_t>(count), by_distance.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Cell> nearest;
+  nearest.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) nearest.push_back(by_distance[i].second);
+  return nearest;
+}
 
 }  // namespace
 
@@ -26,16 +53,16 @@ PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local, con
   const Point2 middle = middle_of(contour, local);
   const Point2 middle_in_local = local.geometry().origin + resolution_m * middle;
   std::vector<Point2> points;
-  for (const Cell& cell : thinned_to(contour, kContourPoints))
+  for (const Cell& cell : thinned_to(placing_cells(map, local, contour, middle, map_from_local_guess), kContourPoints))
     points.emplace_back(map_from_local_guess * local.geometry().centre_of(cell));
   PriorMerge merge = prior_merge(map, points, {map_from_local_guess * middle_in_local, covariance}, params);
   if (!merge.accepted()) return merge;
 
   const Pose2 rough = merge.map_from_guess * map_from_local_guess;
-  const std::vector<EdgeCell> edges = thinned_to(edge_cells(local, contour, middle), kMostEdgeCells);
+  const std::vector<EdgeCell> edges = edge_cells(local, thinned_to(contour, kMostEdgeContour), middle);
   CellMotion motion = cell_motion(rough, map.geometry(), middle_in_local);
   motion = edge_registration(map, thinned_to(edges, kRoughEdgeCells), motion, {.settled_cells = kRoughlySettled_cells});
-  motion = border_registration(map, edges, motion, {});
+  motion = border_registration(map, edges, motion, {.settled_cells = kNearlySettled_cells});
   motion = best_nearby(map, edges, motion);
   merge.map_from_guess = map_from_local(motion, map.geometry(), middle_in_local) * inverse(map_from_local_guess);
   return merge;
