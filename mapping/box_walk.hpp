@@ -22,6 +22,7 @@ class BoxWalk {
     const Cell last = map.cell_at(to);
     const std::ptrdiff_t width = box.width();
     index_ = (first.row - box.first.row) * width + (first.column - box.first.column);
+    width_ = width;
     cells_left_ = std::abs(last.column - first.column) + std::abs(last.row - first.row);
     const double length_m = (to - from).norm();
     const double r = map.resolution_m;
@@ -33,6 +34,8 @@ class BoxWalk {
                  map.origin.y() + first.row * r,
                  {.first = box.first.row, .last = box.last.row, .from = first.row, .to = last.row},
                  width};
+    // A cell that is entered two cells before the end is not the last one, and the next is not either.
+    if (!columns_.leaves && !rows_.leaves) far_from_end_m_ = length_m - 2.0 * r;
   }
 
   /// In the cell of `to`?
@@ -41,6 +44,39 @@ class BoxWalk {
   [[nodiscard]] std::size_t index() const { return static_cast<std::size_t>(index_); }
   /// Distance from `from` at which the beam has entered the present cell.
   [[nodiscard]] double entered_m() const { return entered_m_; }
+  /// Goes on while `takes(index)`, through the cells that are entered before `until_m`; stops early near the beam's
+  /// end. Far from it no axis runs out of borders: nothing needs counting on the way.
+  template <typename Takes>
+  [[gnu::always_inline]] void strides(double until_m, Takes&& takes) {
+    const double limit_m = std::min(until_m, far_from_end_m_);
+    if (entered_m_ >= limit_m) return;
+    const double column_m = columns_.per_cell_m;
+    const double row_m = rows_.per_cell_m;
+    const std::ptrdiff_t column_stride = columns_.stride;
+    const std::ptrdiff_t row_stride = rows_.stride;
+    double next_column_m = columns_.next_m;
+    double next_row_m = rows_.next_m;
+    double entered_m = entered_m_;
+    std::ptrdiff_t index = index_;
+    while (entered_m < limit_m && takes(static_cast<std::size_t>(index))) {
+      if (next_column_m < next_row_m) {
+        entered_m = next_column_m;
+        next_column_m += column_m;
+        index += column_stride;
+      } else {
+        entered_m = next_row_m;
+        next_row_m += row_m;
+        index += row_stride;
+      }
+    }
+    const int columns = static_cast<int>(std::abs(index % width_ - index_ % width_));
+    const int rows = static_cast<int>(std::abs(index / width_ - index_ / width_));
+    columns_.has_crossed(columns, next_column_m);
+    rows_.has_crossed(rows, next_row_m);
+    cells_left_ -= columns + rows;
+    entered_m_ = entered_m;
+    index_ = index;
+  }
   /// On to the next cell, where there is one; false where the beam leaves the box.
   bool goes_on() {
     --cells_left_;
@@ -77,6 +113,11 @@ class BoxWalk {
       borders_left = std::min(to_end, in_box);
       leaves = in_box < to_end;
     }
+
+    void has_crossed(int borders, double new_next_m) {
+      borders_left -= borders;
+      next_m = borders_left > 0 ? new_next_m : kNever;
+    }
   };
 
   bool crosses(Axis& axis) {
@@ -90,8 +131,10 @@ class BoxWalk {
 
   Axis columns_;
   Axis rows_;
+  std::ptrdiff_t width_ = 1;
   std::ptrdiff_t index_ = 0;
   int cells_left_ = 0;
+  double far_from_end_m_ = -kNever;
   double entered_m_ = 0.0;
 };
 

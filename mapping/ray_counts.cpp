@@ -45,18 +45,12 @@ RayCounts::RayCounts(const GridGeometry& map, const CellBox& box)
     : map_{map},
       box_{box},
       marks_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()), kUnseen),
-      counts_{std::make_unique_for_overwrite<Count[]>(marks_.size())} {}
+      counts_{std::make_unique_for_overwrite<Count[]>(marks_.size())},
+      seen_{std::make_unique_for_overwrite<std::uint32_t[]>(marks_.size())} {}
 
 void RayCounts::stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops) {
   walls_ = &walls;
   stops_ = std::move(stops);
-}
-
-void RayCounts::see(std::size_t index) {
-  seen_.push_back(static_cast<std::uint32_t>(index));
-  counts_[index] = {0, 0, 0};
-  const bool is_wall = walls_ != nullptr && (*walls_)[cell_of(index)] == CellState::kOccupied;
-  marks_[index] = is_wall ? kWall : kOpen;
 }
 
 bool RayCounts::lets_through(std::size_t index) {
@@ -71,11 +65,11 @@ void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end
   Count* const counts = counts_.get();
   const auto is_clear = [&] { return walk.entered_m() < clear_end_m && !walk.is_at_end(); };
   while (is_clear()) {
-    // Nine cells of ten: nothing is called here, so that the walk stays in registers.
-    while (is_clear() && marks[walk.index()] == kOpen) {
-      ++counts[walk.index()].clear_passes;
-      if (!walk.goes_on()) return;
-    }
+    walk.strides(clear_end_m, [&](std::size_t index) {
+      const Mark mark = marks[index] == kUnseen ? see(index) : marks[index];
+      if (mark == kOpen) ++counts[index].clear_passes;
+      return mark == kOpen;
+    });
     if (!is_clear()) break;
     const bool goes_through = lets_through(walk.index());
     ++counts[walk.index()].clear_passes;

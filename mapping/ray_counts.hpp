@@ -48,12 +48,12 @@ class RayCounts {
   /// `visit(Cell, RayCount)` for each cell that a beam has touched, in the order in which they were.
   template <typename Visit>
   void for_each_seen(Visit&& visit) const {
-    for (const std::uint32_t index : seen_) visit(cell_of(index), count_at(index));
+    for (const std::uint32_t index : seen()) visit(cell_of(index), count_at(index));
   }
   /// Likewise, those alone that at least so many beams have passed clearly.
   template <typename Visit>
   void for_each_clear(int least_passes, Visit&& visit) const {
-    for (const std::uint32_t index : seen_) {
+    for (const std::uint32_t index : seen()) {
       if (counts_[index].clear_passes >= least_passes) visit(cell_of(index));
     }
   }
@@ -78,7 +78,14 @@ class RayCounts {
     const Count& count = counts_[index];
     return {count.hits, count.clear_passes + count.late_passes, count.clear_passes};
   }
-  void see(std::size_t index);
+  [[nodiscard]] std::span<const std::uint32_t> seen() const { return {seen_.get(), seen_cells_}; }
+  /// Nothing is called here: walks that come upon cells for the first time stay in registers.
+  [[gnu::always_inline]] Mark see(std::size_t index) {
+    seen_[seen_cells_++] = static_cast<std::uint32_t>(index);
+    counts_[index] = {0, 0, 0};
+    const bool is_wall = walls_ != nullptr && (*walls_)[cell_of(index)] == CellState::kOccupied;
+    return marks_[index] = is_wall ? kWall : kOpen;
+  }
   [[nodiscard]] Count& seen_count(std::size_t index) {
     if (marks_[index] == kUnseen) see(index);
     return counts_[index];
@@ -92,7 +99,8 @@ class RayCounts {
   CellBox box_;
   std::vector<Mark> marks_;          // by cell of the box
   std::unique_ptr<Count[]> counts_;  // likewise; of no value where unseen: most cells are, and need not be cleared
-  std::vector<std::uint32_t> seen_;
+  std::unique_ptr<std::uint32_t[]> seen_;  // cells by index, in the order in which they were
+  std::size_t seen_cells_ = 0;
   const OccupancyGrid* walls_ = nullptr;
   std::function<bool(Cell)> stops_;
 };
