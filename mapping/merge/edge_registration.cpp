@@ -103,6 +103,19 @@ std::vector<EdgeCell> edge_cells(const OccupancyGrid& local) {
   return edge_cells(local, contour, middle_of(contour, local));
 }
 
+Acceptance edge_acceptance(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& motion) {
+  const double c = std::cos(motion.turn_rad);
+  const double s = std::sin(motion.turn_rad);
+  Acceptance counts;
+  for (const EdgeCell& edge : edges) {
+    const double x = c * edge.at.x - s * edge.at.y + motion.column;
+    const double y = s * edge.at.x + c * edge.at.y + motion.row;
+    if (!(x >= 0.0 && y >= 0.0 && x < map.width() && y < map.height())) continue;
+    counts.add(edge.state, map[{static_cast<int>(x), static_cast<int>(y)}]);
+  }
+  return counts;
+}
+
 CellMotion edge_registration(const OccupancyGrid& map, std::span<const EdgeCell> edges, const CellMotion& start,
                              const EdgeRegistrationParams& params) {
   const double lever_cells = lever_of(edges);

@@ -30,6 +30,10 @@ struct EdgeCell {
 /// The same of the contour of all of it.
 [[nodiscard]] std::vector<EdgeCell> edge_cells(const OccupancyGrid& local);
 
+/// Eq. 11 over the cells that come to lie on the map.
+[[nodiscard]] Acceptance edge_acceptance(const OccupancyGrid& map, std::span<const EdgeCell> edges,
+                                         const CellMotion& motion);
+
 /// `start` within about a cell of the answer; `start` itself where the edges do not hold it.
 [[nodiscard]] CellMotion edge_registration(const OccupancyGrid& map, std::span<const EdgeCell> edges,
                                            const CellMotion& start, const EdgeRegistrationParams& params);

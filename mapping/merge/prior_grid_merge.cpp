@@ -20,6 +20,8 @@ constexpr std::size_t kPlacingContour = 1200;  // cells of the local contour nea
 constexpr std::size_t kContourPoints = 250;    // of these, to be brought onto the map's
 constexpr std::size_t kRoughEdgeCells = 2500;  // to come near, before more of them count
 constexpr double kRoughlySettled_cells = 0.02;
+constexpr double kRivalCost = 15.0;             // above the best answer's: Eq. 11 is asked
+constexpr double kLeastLead = 0.01;             // in Eq. 11 along the edges, over the second best
 constexpr double kNearlySettled_cells = 0.03;   // well inside the reach of the last search
 constexpr std::size_t kMostEdgeContour = 1750;  // whose cells and neighbours count at the end
 
@@ -43,6 +45,33 @@ std::vector<Cell> placing_cells(const OccupancyGrid& map, const OccupancyGrid& l
   return nearest;
 }
 
+struct Choice {
+  MergeRefusal refusal = MergeRefusal::kTooFewPoints;
+  const PriorAnswer* answer = nullptr;
+};
+
+/// The best answer; or of those nearly as good the one with the greatest Eq. 11, which knows floor from wall.
+template <typename AcceptanceOf>
+Choice chosen(const std::vector<PriorAnswer>& answers, const PriorMergeParams& params, AcceptanceOf&& acceptance_of) {
+  if (answers.empty()) return {};
+  std::vector<const PriorAnswer*> rivals;
+  for (const PriorAnswer& answer : answers) {
+    const bool is_rival = answer.cost < answers.front().cost + kRivalCost;
+    if (is_rival && refusal_of(answer, params) == MergeRefusal::kNone) rivals.push_back(&answer);
+  }
+  if (rivals.empty()) return {refusal_of(answers.front(), params), &answers.front()};
+  if (rivals.size() == 1) return {MergeRefusal::kNone, rivals.front()};
+  double best = -1.0;
+  double second = -1.0;
+  const PriorAnswer* answer = nullptr;
+  for (const PriorAnswer* const rival : rivals) {
+    const double acceptance = acceptance_of(*rival);
+    second = std::max(second, std::min(best, acceptance));
+    if (acceptance > best) best = acceptance, answer = rival;
+  }
+  return {best < second + kLeastLead ? MergeRefusal::kAmbiguous : MergeRefusal::kNone, answer};
+}
+
 }  // namespace
 
 PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local, const Pose2& map_from_local_guess,
@@ -55,13 +84,28 @@ PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local, con
   std::vector<Point2> points;
   for (const Cell& cell : thinned_to(placing_cells(map, local, contour, middle, map_from_local_guess), kContourPoints))
     points.emplace_back(map_from_local_guess * local.geometry().centre_of(cell));
-  PriorMerge merge = prior_merge(map, points, {map_from_local_guess * middle_in_local, covariance}, params);
+  const std::vector<PriorAnswer> answers =
+      prior_answers(map, points, {map_from_local_guess * middle_in_local, covariance}, params);
+  const std::vector<EdgeCell> edges = edge_cells(local, thinned_to(contour, kMostEdgeContour), middle);
+  const std::vector<EdgeCell> few_edges = thinned_to(edges, kRoughEdgeCells);
+  const auto near = [&](const PriorAnswer& answer) {
+    const Pose2 rough = answer.map_from_guess * map_from_local_guess;
+    return edge_registration(map, few_edges, cell_motion(rough, map.geometry(), middle_in_local),
+                             {.settled_cells = kRoughlySettled_cells});
+  };
+  const Choice choice = chosen(answers, params, [&](const PriorAnswer& answer) {
+    return edge_acceptance(map, few_edges, near(answer)).value();
+  });
+  PriorMerge merge;
+  merge.refusal = choice.refusal;
+  if (choice.answer != nullptr) {
+    merge.covariance = choice.answer->covariance;
+    merge.agreement = choice.answer->agreement;
+    merge.chi2 = choice.answer->chi2;
+  }
   if (!merge.accepted()) return merge;
 
-  const Pose2 rough = merge.map_from_guess * map_from_local_guess;
-  const std::vector<EdgeCell> edges = edge_cells(local, thinned_to(contour, kMostEdgeContour), middle);
-  CellMotion motion = cell_motion(rough, map.geometry(), middle_in_local);
-  motion = edge_registration(map, thinned_to(edges, kRoughEdgeCells), motion, {.settled_cells = kRoughlySettled_cells});
+  CellMotion motion = near(*choice.answer);
   motion = border_registration(map, edges, motion, {.settled_cells = kNearlySettled_cells});
   motion = best_nearby(map, edges, motion);
   merge.map_from_guess = map_from_local(motion, map.geometry(), middle_in_local) * inverse(map_from_local_guess);

@@ -17,6 +17,7 @@ constexpr double kSearchStep_m = 0.15;       // well inside the reach of the clo
 constexpr double kMostSearchPoses = 3000.0;  // coarser steps above
 constexpr std::size_t kMostSearchPoints = 80;
 constexpr std::size_t kStarts = 4;  // poses of the search that are brought to the end
+constexpr double kRivalCost = 6.0;  // above the best one's
 constexpr double kApart_m = 0.15;   // starts and answers nearer than this are the same
 
 /// The points about the robot, so that a change of heading turns them about it.
@@ -169,13 +170,15 @@ double agreement(const OccupancyGrid& map, std::span<const Point2> points, const
 
 }  // namespace
 
-PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
-                       const PosePrior& prior, const PriorMergeParams& params) {
-  PriorMerge merge;
-  if (surface_points_in_map_guess.size() < std::max(1U, params.least_points)) {
-    merge.refusal = MergeRefusal::kTooFewPoints;
-    return merge;
-  }
+MergeRefusal refusal_of(const PriorAnswer& answer, const PriorMergeParams& params) {
+  if (answer.agreement < params.least_agreement) return MergeRefusal::kLowAgreement;
+  if (answer.chi2 > params.most_chi2) return MergeRefusal::kImplausible;
+  return MergeRefusal::kNone;
+}
+
+std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
+                                       const PosePrior& prior, const PriorMergeParams& params) {
+  if (surface_points_in_map_guess.size() < std::max(1U, params.least_points)) return {};
   const std::vector<Point2> points = about(prior.position_in_map, surface_points_in_map_guess);
   const double lever_m = lever_arm_m(points);
   const PoseCovariance covariance = floored(prior.covariance, params);
@@ -194,44 +197,54 @@ PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface
       .point_deviation_m = point_deviation_m};
   const alignment::PoseBelief belief{guess, covariance.inverse()};
 
-  struct Answer {
+  struct End {
     Pose2 pose;
-    Eigen::Matrix3d information;
-    double cost;
-    double agreement;
-    double chi2;
+    PriorAnswer answer;
   };
-  std::vector<Answer> answers;
+  std::vector<End> ends;
   for (const Start& start : search(points, surface, prior, covariance, lever_m, params)) {
     const alignment::Registration end =
         alignment::registration(points, surface, start.pose, belief, registration_params);
     const Pose2& pose = end.reference_from_moving;
     const Eigen::Vector3d moved{pose.x - guess.x, pose.y - guess.y, pose.theta};
     const double chi2 = moved.dot(belief.information * moved);
-    answers.push_back({pose, end.information + belief.information,
-                       shared * misfit(map, points, surface, pose, params) + chi2,
-                       agreement(map, points, pose, std::max(1U, params.least_points)), chi2});
+    ends.push_back({pose,
+                    {.map_from_guess = pose * inverse(guess),
+                     .covariance = (end.information + belief.information).inverse(),
+                     .agreement = agreement(map, points, pose, std::max(1U, params.least_points)),
+                     .chi2 = chi2,
+                     .cost = shared * misfit(map, points, surface, pose, params) + chi2}});
   }
-  std::stable_sort(answers.begin(), answers.end(), [](const Answer& a, const Answer& b) { return a.cost < b.cost; });
+  std::stable_sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.answer.cost < b.answer.cost; });
+  std::vector<PriorAnswer> answers;
+  for (auto end = ends.begin(); end != ends.end(); ++end) {
+    const bool is_new = std::none_of(ends.begin(), end, [&](const End& better) {
+      const double turn_m = lever_m * turn_between(better.pose.theta, end->pose.theta);
+      return std::hypot(distance_between(better.pose, end->pose), turn_m) <= kApart_m;
+    });
+    if (is_new) answers.push_back(end->answer);
+  }
+  return answers;
+}
 
-  const Answer& best = answers.front();
+PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
+                       const PosePrior& prior, const PriorMergeParams& params) {
+  const std::vector<PriorAnswer> answers = prior_answers(map, surface_points_in_map_guess, prior, params);
+  PriorMerge merge;
+  if (answers.empty()) {
+    merge.refusal = MergeRefusal::kTooFewPoints;
+    return merge;
+  }
+  const PriorAnswer& best = answers.front();
+  merge.refusal = refusal_of(best, params);
+  merge.covariance = best.covariance;
   merge.agreement = best.agreement;
   merge.chi2 = best.chi2;
-  merge.covariance = best.information.inverse();
-  const bool has_rival = std::any_of(answers.begin() + 1, answers.end(), [&](const Answer& other) {
-    const double turn_m = lever_m * turn_between(best.pose.theta, other.pose.theta);
-    return std::hypot(distance_between(best.pose, other.pose), turn_m) > kApart_m &&
-           other.agreement > best.agreement - params.ambiguity_margin && other.cost < best.cost + 6.0;
+  const bool has_rival = std::any_of(answers.begin() + 1, answers.end(), [&](const PriorAnswer& other) {
+    return other.agreement > best.agreement - params.ambiguity_margin && other.cost < best.cost + kRivalCost;
   });
-  if (best.agreement < params.least_agreement) {
-    merge.refusal = MergeRefusal::kLowAgreement;
-  } else if (best.chi2 > params.most_chi2) {
-    merge.refusal = MergeRefusal::kImplausible;
-  } else if (has_rival) {
-    merge.refusal = MergeRefusal::kAmbiguous;
-  } else {
-    merge.map_from_guess = best.pose * inverse(guess);
-  }
+  if (merge.accepted() && has_rival) merge.refusal = MergeRefusal::kAmbiguous;
+  if (merge.accepted()) merge.map_from_guess = best.map_from_guess;
   return merge;
 }
 

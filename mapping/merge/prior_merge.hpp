@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/occupancy_grid.hpp"
 #include "mapping/merge/merge_refusal.hpp"
@@ -44,14 +45,29 @@ struct PriorMerge {
   [[nodiscard]] bool accepted() const { return refusal == MergeRefusal::kNone; }
 };
 
+/// A pose that the points may have.
+struct PriorAnswer {
+  Pose2 map_from_guess;
+  PoseCovariance covariance = PoseCovariance::Zero();
+  double agreement = 0.0;
+  double chi2 = 0.0;
+  double cost = 0.0;  ///< -2 ln p of the points and of the prior
+};
+/// What prior_merge() chooses among: best first, none beside a better one; none where there are too few points.
+[[nodiscard]] std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map,
+                                                     std::span<const Point2> surface_points_in_map_guess,
+                                                     const PosePrior& prior, const PriorMergeParams& params);
+/// What speaks against an answer by itself.
+[[nodiscard]] MergeRefusal refusal_of(const PriorAnswer& answer, const PriorMergeParams& params);
+
 /// `surface_points_in_map_guess`: hits placed in the map by the localizer's poses, only those expected to be found in
 /// it.
 [[nodiscard]] PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
                                      const PosePrior& prior, const PriorMergeParams& params);
 
-/// The same for a local map: its contour is brought onto the map, then the cells along its edges to a fraction of a
-/// cell. `covariance`: of the place and turn of its middle (the mean of its contour). Both grids must have the same
-/// resolution.
+/// The same for a local map: its contour is brought onto the map, Eq. 11 along its edges tells rivals apart, then these
+/// edges are brought to a fraction of a cell. `covariance`: of the place and turn of its middle (the mean of its
+/// contour). Both grids must have the same resolution.
 [[nodiscard]] PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local,
                                      const Pose2& map_from_local_guess, const PoseCovariance& covariance,
                                      const PriorMergeParams& params);
