@@ -15,7 +15,7 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::size_t kPlacingContour = 1200;  // cells of the local contour nearest its middle that place it: no more
+constexpr std::size_t kPlacingContour = 2000;  // cells of the local contour nearest its middle that place it: no more
                                                // of the map is prepared than they can reach
 constexpr std::size_t kContourPoints = 250;    // of these, to be brought onto the map's
 constexpr std::size_t kRoughEdgeCells = 2500;  // to come near, before more of them count
