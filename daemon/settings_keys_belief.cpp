@@ -87,6 +87,10 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
                             "odds of a place nearby against the believed one, before any scan"));
   keys.push_back(number_key("localization.rivals.elsewhere_prior", rivals.elsewhere_prior, "", 1e-30, 1.0,
                             "odds of any other place: how rarely somebody carries the robot away"));
+  keys.push_back(number_key("localization.rivals.carried_prior", rivals.carried_prior, "", 0.0, 1.0,
+                            "odds that the robot has just been carried to a place that fits from then on"));
+  keys.push_back(number_key("localization.rivals.held_by", rivals.held_by, "", 0.0, 1000.0,
+                            "more log evidence that must speak against a pose that proven tiles hold"));
   keys.push_back(number_key("localization.rivals.prior_after_search", rivals.prior_after_search, "", 1e-30, 1.0,
                             "the same where the believed place was not given but found"));
   keys.push_back(number_key("localization.rivals.kidnapped_prior", rivals.kidnapped_prior, "", 1e-30, 1.0,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/judgement.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace deltamap::localization {
@@ -11,7 +12,7 @@ PoseJudge::Shares shares_in(const RivalReport& report) {
   if (report.own_known) {
     const RivalPlace& rival = report.rivals.front();
     return {.believed = report.own_share,
-            .best_rival = report.listed > 0 ? rival.share : 0.0,
+            .best_rival = report.listed > 0 ? std::max(rival.share, report.carried_share) : 0.0,
             .map_from_rival = rival.map_from_robot,
             .beaten = report.beaten,
             .unique = report.unique};

@@ -145,6 +145,7 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
       rivals.observe(field, {.ends = ends,
                              .joined_from_robot = joined_at(now),
                              .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
+                             .held = proven_hold.share(),
                              .unknown_s = tracked.unknown_s});
   if (report.listed == 0 || !has_won(report.rivals.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.rivals.front().map_from_robot;
@@ -192,12 +193,19 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
                                             .rivals = rivals.report(),
                                             .things = params.temporary.belief ? things.get() : nullptr});
+  if (before == LocalizerState::kTracking) {
+    proven_hold.observe(belief.stable);
+  } else {
+    proven_hold.forget();
+  }
   if (blind) return;
   seen.verdict = belief.verdict;
   seen.trust = judgement.trust();
   seen.beaten = rivals.report().beaten;
   const LocalizerState after = monitor.observe(seen, best);
-  rivals.suspect(monitor.suspicious());
+  fit_fall.observe(seen.fit, seen.passed_s);
+  rivals.suspect(monitor.suspicious() || fit_fall.is_recent(),
+                 fit_fall.is_recent() ? 1.0 : params.rivals.suspicious_pace);
   if (before != after) enter(after, before, believed.map_from_robot, now);
 }
 

@@ -67,7 +67,6 @@ void PlaceBank::carry(const Pose2& motion) {
   for (Place& place : places_) {
     place.map_from_robot = place.map_from_robot * motion;
     place.followed_m += driven_m;
-    place.followed_rad += std::abs(motion.theta);
   }
 }
 
@@ -102,9 +101,12 @@ void PlaceBank::slide(const LikelihoodField& field, const BeamEnds& ends, std::s
 
 void PlaceBank::weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights) {
   const double kept = 1.0 - 1.0 / params_.memory_steps;
+  double of_believed = 0.0;
   for (Place& place : places_) {
-    place.log_evidence = kept * place.log_evidence +
-                         params_.evidence_beams * mean_log_likelihood(field, ends, weights, place.map_from_robot);
+    const double says = params_.evidence_beams * mean_log_likelihood(field, ends, weights, place.map_from_robot);
+    place.log_evidence = kept * place.log_evidence + says;
+    if (&place == &places_.front()) of_believed = says;
+    place.since_carried = believing_ ? std::max(0.0, kept * place.since_carried + says - of_believed) : 0.0;
   }
 }
 
@@ -154,10 +156,10 @@ void PlaceBank::settle() {
       places_[kept++] = places_[i];
     } else if (!(believing_ && twin == 0) && odds_of(places_[twin]) < odds_of(places_[i])) {
       const double followed_m = std::max(places_[twin].followed_m, places_[i].followed_m);
-      const double followed_rad = std::max(places_[twin].followed_rad, places_[i].followed_rad);
+      const double since_carried = std::max(places_[twin].since_carried, places_[i].since_carried);
       places_[twin] = places_[i];
       places_[twin].followed_m = followed_m;
-      places_[twin].followed_rad = followed_rad;
+      places_[twin].since_carried = since_carried;
     }
   }
   places_.resize(kept);

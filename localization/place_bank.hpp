@@ -36,7 +36,7 @@ struct Place {
   double log_prior = 0.0;
   double share = 0.0;
   double followed_m = 0.0;
-  double followed_rad = 0.0;
+  double since_carried = 0.0;  ///< log evidence against the believed one, since when it speaks for it most; >= 0
 };
 
 /// Mean over the beams of weight · ln p(z) with the robot at the pose; no weights: all 1. 0 without beams.
@@ -64,6 +64,10 @@ class PlaceBank {
   template <typename PriorOf>
   void set_priors(PriorOf&& log_prior_of) {
     for (Place& place : places_) place.log_prior = log_prior_of(place.map_from_robot);
+  }
+  /// Log odds of the believed one, before any scan.
+  void set_believed_prior(double log_prior) {
+    if (believing_ && !places_.empty()) places_.front().log_prior = log_prior;
   }
   /// The believed one becomes a place like all others, with the evidence that it has.
   void stop_believing() { believing_ = false; }

@@ -21,6 +21,15 @@ bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double 
   return distance_between(pose, other) < distance_m && std::abs(turn_between(pose.theta, other.theta)) < turn_rad;
 }
 
+/// By how much log evidence the newest scans speak for a place against another, since when they speak for it most.
+/// Older ones lie too far back for a robot that has just been carried, and among hundreds of places chance favours one.
+double ahead_lately(const ScanStack::Sums& its, const ScanStack::Sums& others, std::size_t scans) {
+  constexpr std::size_t kLately = 6;
+  double ahead = 0.0;
+  for (std::size_t k = 0; k < std::min(scans, kLately); ++k) ahead = std::max(ahead, its[k] - others[k]);
+  return ahead;
+}
+
 }  // namespace
 
 Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const GlobalSearchParams& search,
@@ -49,6 +58,7 @@ void Rivals::forget_places() {
 
 void Rivals::start_believing_in(const Pose2& found) {
   believing_ = true;
+  bank_.set_believed_prior(0.0);
   if (!is_near_believed(found)) {
     elsewhere_prior_ = params_.prior_after_search;
     stack_.clear();  // its scans are from before the robot was carried off
@@ -67,7 +77,8 @@ void Rivals::stop_believing() {
   write_report();
 }
 
-void Rivals::suspect(bool suspicious) {
+void Rivals::suspect(bool suspicious, double pace) {
+  pace_ = pace;
   if (suspicious && !suspicious_ && !search_.under_way()) search_.start();
   suspicious_ = suspicious;
   bank_.make_room(suspicious);
@@ -147,6 +158,8 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   if (last_believed_) last_believed_ = *last_believed_ * motion;
   if (believing_ && seen.map_from_believed) bank_.believe(*seen.map_from_believed);
   if (believing_) last_believed_ = seen.map_from_believed;
+  held_by_ = believing_ ? params_.held_by * seen.held : 0.0;
+  bank_.set_believed_prior(held_by_);
   thin(seen);
   if (ends_.size() == 0) return report_;
 
@@ -161,8 +174,8 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   }
   if (believing_) probe(field, seen.joined_from_robot);
   if (!believing_ || suspicious_) {
-    const std::span<const Pose2> found = search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot,
-                                                      believing_ ? params_.suspicious_pace : 1.0);
+    const std::span<const Pose2> found =
+        search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot, believing_ ? pace_ : 1.0);
     if (!found.empty()) admit_all(field, found, seen.joined_from_robot);
   }
   bank_.settle();
@@ -192,10 +205,16 @@ void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> pose
   for (const Pose2& pose : poses) {
     if (bank_.knows(pose)) continue;
     double ahead = ahead_of(its, field, pose, joined);
+    double since_carried = 0.0;
+    if (believing_ && ahead > 0.0) {
+      since_carried =
+          bank_.params().evidence_beams * ahead_lately(stack_.log_likelihoods(field, pose, joined), its, stack_.size());
+    }
     if (believing_) ahead = std::clamp(ahead, -kFarthestBehind, params_.most_ahead);
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + (proven && !believing_ ? std::min(0.0, ahead) : ahead),
-                 .log_prior = log_prior_unbelieved(pose) + (proven ? kOverlooked : 0.0)});
+                 .log_prior = log_prior_unbelieved(pose) + (proven ? kOverlooked : 0.0),
+                 .since_carried = since_carried});
   }
 }
 
@@ -240,11 +259,18 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   const bool nearby = is_within(pose, own.map_from_robot, params_.nearby_m, params_.nearby_rad);
   double ahead = bank_.params().evidence_beams * gain;
   // A slip lies behind a nearby place: before it, the scans say nothing of it.
-  if (!nearby) ahead = ahead_of(stack_.log_likelihoods(field, own.map_from_robot, joined), field, pose, joined);
+  double since_carried = 0.0;
+  if (!nearby) {
+    const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
+    ahead = ahead_of(owns, field, pose, joined);
+    since_carried =
+        bank_.params().evidence_beams * ahead_lately(stack_.log_likelihoods(field, pose, joined), owns, stack_.size());
+  }
   bank_.admit(
       {.map_from_robot = pose,
        .log_evidence = own.log_evidence + std::clamp(ahead, -kFarthestBehind, nearby ? 0.0 : params_.most_ahead),
-       .log_prior = std::log(nearby ? params_.nearby_prior : elsewhere_prior_)});
+       .log_prior = std::log(nearby ? params_.nearby_prior : elsewhere_prior_),
+       .since_carried = since_carried});
 }
 
 void Rivals::write_report() {
@@ -254,6 +280,7 @@ void Rivals::write_report() {
   report_.unique = report_.own_known;
   report_.places = places.size();
   double squared_shares = 0.0;
+  double most_since_carried = 0.0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Place& place = places[i];
     squared_shares += place.share * place.share;
@@ -263,8 +290,12 @@ void Rivals::write_report() {
       continue;
     }
     list(place);
+    if (report_.own_known &&
+        !is_within(place.map_from_robot, places.front().map_from_robot, params_.nearby_m, params_.nearby_rad)) {
+      most_since_carried = std::max(most_since_carried, place.since_carried);
+    }
     const double ahead = place.log_evidence - report_.own_log_evidence;
-    if (report_.own_known && ahead > params_.beats_by && place.followed_m >= params_.wins_after_m) {
+    if (report_.own_known && ahead > params_.beats_by + held_by_ && place.followed_m >= params_.wins_after_m) {
       beaten_for_m_ = report_.beaten ? std::max(beaten_for_m_, place.followed_m) : place.followed_m;
       report_.beaten = true;
     }
@@ -273,6 +304,8 @@ void Rivals::write_report() {
   for (std::size_t i = 0; i < report_.listed; ++i) {
     report_.rivals[i].share_around = share_around(report_.rivals[i].map_from_robot);
   }
+  const double carried_odds = params_.carried_prior * std::exp(most_since_carried);
+  if (report_.own_known && places.size() > 1) report_.carried_share = carried_odds / (1.0 + carried_odds);
   report_.effective_places = squared_shares > 0.0 ? 1.0 / squared_shares : 1.0;
 }
 

@@ -26,12 +26,14 @@ struct RivalsParams {
   double nearby_rad = radians(20.0);  ///< likewise, rad; > 0
   double nearby_prior = 1e-3;         ///< odds of such a place against the believed one, before any scan; 0..1
   double elsewhere_prior = 1e-5;      ///< odds of any other place: nobody carries robots about; 0..1
+  double carried_prior = 0.01;        ///< odds that it has just been carried to one that fits from then on; 0..1
   double prior_after_search = 0.3;    ///< the same where the believed place was not given but found; 0..1
   double kidnapped_prior =
       0.001;  ///< odds of being elsewhere against near, where the believed place has proven wrong; 0..1
   double winning_share = 0.98;   ///< of the belief at which another place is believed instead; 0.5..1
   double wins_after_m = 1.0;     ///< driven since it was found before another place may win, m; >= 0
   double beats_by = 12.0;        ///< log evidence of clearly better, whatever the odds before; > 0
+  double held_by = 8.0;          ///< more log evidence against a pose that proven tiles hold; >= 0
   double most_ahead = 10.0;      ///< log evidence that a place may be found with ahead of the believed one; >= 0
   double equal_within = 4.0;     ///< log evidence of about as well; > 0
   int refined_a_scan = 4;        ///< places that are slid to their best fit at a scan while tracking; >= 0
@@ -59,8 +61,9 @@ struct RivalReport {
   std::size_t listed = 0;                  ///< of them in use
   std::size_t places = 0;                  ///< followed in all, the believed one too
   double effective_places = 1.0;           ///< 1 / Σ share²
-  bool beaten = false;  ///< one of them explains the recent scans clearly better than the believed place
-  bool unique = false;  ///< no place that is followed explains these about as well
+  double carried_share = 0.0;  ///< of belief in the best one, had the robot been carried there lately; [0, 1)
+  bool beaten = false;         ///< one of them explains the recent scans clearly better than the believed place
+  bool unique = false;         ///< no place that is followed explains these about as well
 };
 
 class Rivals {
@@ -75,8 +78,8 @@ class Rivals {
   void start_believing_in(const Pose2& found);
   /// From now on nothing is believed and the whole map is searched; known places keep what speaks for them.
   void stop_believing();
-  /// While true, the whole map is searched beside the believed pose.
-  void suspect(bool suspicious);
+  /// While true, the whole map is searched beside the believed pose; `pace`: of a full search, (0, 1].
+  void suspect(bool suspicious, double pace);
   /// As stop_believing(), and forgets all places.
   void start_anywhere();
 
@@ -84,6 +87,7 @@ class Rivals {
     const BeamEnds& ends;                      ///< robot frame; may be empty
     Pose2 joined_from_robot;                   ///< by odometry (OdometryAt)
     std::optional<Pose2> map_from_believed{};  ///< where the robot is believed to be, if anywhere
+    double held = 0.0;                         ///< how far proven tiles hold that pose, [0, 1]
     double unknown_s = 0.0;                    ///< seconds since the last scan that odometry does not cover
   };
   const RivalReport& observe(const LikelihoodField& field, const Seen& seen);
@@ -131,12 +135,14 @@ class Rivals {
   std::optional<Pose2> last_joined_;
   bool believing_ = false;
   bool suspicious_ = false;
+  double pace_ = 1.0;
   double elsewhere_prior_;
   std::optional<Pose2> last_believed_;  // carried along by odometry
   bool probe_nearby_next_ = false;
   double since_step_m_ = 0.0;
   double since_step_rad_ = 0.0;
   RivalReport report_;
+  double held_by_ = 0.0;
   double beaten_for_m_ = 0.0;  // so long the place that has beaten the believed one has been followed
 };
 

@@ -39,14 +39,15 @@ class Round {
   [[nodiscard]] Rivals& rivals() { return rivals_; }
   [[nodiscard]] const Pose2& truth() const { return truth_; }
 
-  const RivalReport& step(std::optional<Pose2> believed) {
+  const RivalReport& step(std::optional<Pose2> believed, double held = 0.0) {
     const Pose2 motion = kMotion;
     truth_ = truth_ * motion;
     joined_ = joined_ * motion;
     const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
     return rivals_.observe(field_, {.ends = scoring_ends(scan, deskewed(scan, {}), 0),
                                     .joined_from_robot = joined_,
-                                    .map_from_believed = believed});
+                                    .map_from_believed = believed,
+                                    .held = held});
   }
 
  private:
@@ -93,6 +94,41 @@ TEST(Rivals, FindPlacesThatFitAsWellAndNeverPreferThem) {
     }
   }
   EXPECT_EQ(others_known, 3);
+}
+
+/// Metres until another place holds nearly all belief against a wrong pose.
+double driven_until_won_m(const OccupancyGrid& map, double held) {
+  constexpr double kMost_m = 40.0;
+  Round round{map, map, {1.6, 1.0, 0.0}, 1};
+  round.rivals().start_believing();
+  Pose2 believed{7.5, 3.0, 1.5};
+  double driven_m = 0.0;
+  for (bool won = false; !won && driven_m < kMost_m; driven_m += 0.1) {
+    believed = believed * kMotion;
+    const RivalReport& report = round.step(believed, held);
+    won = report.listed > 0 && report.rivals[0].share > 0.98;
+  }
+  return driven_m;
+}
+
+TEST(Rivals, HaveToOutdoWhatProvenTilesSayForThePose) {
+  const OccupancyGrid map = test::drawn_flat();
+  EXPECT_GT(driven_until_won_m(map, 1.0), driven_until_won_m(map, 0.0) + 0.2);
+}
+
+TEST(Rivals, TellThatTheRobotMayHaveBeenCarriedLongBeforeTheyWin) {
+  const OccupancyGrid map = test::drawn_flat();
+  Round round{map, map, {1.6, 1.0, 0.0}, 1};
+  round.rivals().start_believing();
+  round.rivals().suspect(true, 1.0);
+  Pose2 believed{7.5, 3.0, 1.5};
+  double share_then = 1.0;
+  for (int i = 0; i < 100 && share_then == 1.0; ++i) {
+    believed = believed * kMotion;
+    const RivalReport& report = round.step(believed);
+    if (report.carried_share > 0.5) share_then = report.rivals[0].share;
+  }
+  EXPECT_LT(share_then, 0.5);
 }
 
 TEST(Rivals, WinOverAWrongPoseWithinMetresAndLeadTheSearchToTheTruth) {
