@@ -17,7 +17,7 @@ struct EvidenceUpdateParams {
   double longest_m = 25.0;              ///< beams beyond do not draw
   int added_reach_cells = 4;            ///< cells so far from a verdict "occupied" may become occupied; >= 0
   int removed_reach_cells = 2;          ///< cells so far from a verdict "free" may become free; >= 0
-  double most_hidden_m2 = 40.0;         ///< larger pieces of floor that new surfaces close off stay free; >= 0
+  double most_hidden_m2 = 15.0;         ///< larger pieces of floor that new surfaces close off stay free; >= 0
   double face_slant = 3.0;  ///< neighbouring beams that end so much farther apart than they diverge meet one face; >= 1
   double occupied_hit_share = 0.3;  ///< a cell is occupied from this share of hits on, …
   int occupied_hits = 2;            ///< … and so many hits

@@ -31,7 +31,9 @@ double EvidencePhase::least_share(Question question) const {
 
 bool EvidencePhase::is_proven(Question question, Cell block) const {
   const Ballot ballot = layer_.ballot(question, block, now_ms_);
-  return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= params_.face_persistence_s &&
+  const bool is_young = question == Question::kRemoved && young_.is_young(block);
+  const double least_span_s = is_young ? params_.young_persistence_s : params_.face_persistence_s;
+  return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= least_span_s &&
          ballot.share() >= least_share(question);
 }
 
@@ -47,6 +49,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     clear_ = ClearSpace{*map_, layer_.cells_per_block()};
     watched_ = WatchList{params_.watch, layer_.blocks()};
     flips_ = FlipMemory{params_.flips};
+    young_ = YoungBlocks{*map_, layer_.blocks(), layer_.cells_per_block()};
     return;
   }
   const std::vector<CellChange> changes = changes_between(*before, *map_);
@@ -54,6 +57,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     layer_.reset(grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry()));
   }
   specks_.follow(*map_, changes);
+  young_.follow(*map_, changes);
   clear_.update(*map_, changes);
   temporary_.follow(*map_);
 }
@@ -174,6 +178,7 @@ double EvidencePhase::flips_beyond(Cell block) const {
 /// Not seen for long enough to tell it from what only passes: somebody who stands, a door, a pane that some beams miss.
 /// Who goes on toggling has to last twice as long each time.
 bool EvidencePhase::is_passing(const std::vector<ProvenBlock>& region) const {
+  if (is_young(region)) return false;  // it goes at once, and has to last the longer when it comes again
   double most_flips = -1.0;
   std::ptrdiff_t toggling = 0;
   double longest_s = 0.0;
@@ -186,6 +191,12 @@ bool EvidencePhase::is_passing(const std::vector<ProvenBlock>& region) const {
   if (2 * toggling >= static_cast<std::ptrdiff_t>(region.size()))
     return longest_s < params_.persistence_s * std::exp2(most_flips);
   return is_small_and_apart(region) && longest_s < params_.persistence_s;
+}
+
+/// Something that this run itself has written is gone.
+bool EvidencePhase::is_young(const std::vector<ProvenBlock>& region) const {
+  return region.front().question == Question::kRemoved &&
+         std::all_of(region.begin(), region.end(), [&](const ProvenBlock& one) { return young_.is_young(one.block); });
 }
 
 /// Smaller regions are noise, but what is gone may have been small.

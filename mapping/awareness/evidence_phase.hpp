@@ -19,6 +19,7 @@
 #include "mapping/awareness/temporary_layer.hpp"
 #include "mapping/awareness/vote_layer.hpp"
 #include "mapping/awareness/watch_list.hpp"
+#include "mapping/awareness/young_blocks.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -37,7 +38,8 @@ struct EvidencePhaseParams {
   double settle_s = 0.2;       ///< a region is handed on when it has not grown for so long, …
   double most_wait_s = 0.6;    ///< … or has waited so long
   double joining_votes = 2.0;  ///< blocks beside an added region with so many votes and the share are taken along
-  double joining_gone_votes = 1.0;  ///< the same beside a removed one
+  double joining_gone_votes = 1.0;   ///< the same beside a removed one
+  double young_persistence_s = 0.3;  ///< votes that what this run itself has written is gone must span; >= 0
   BeamEvidenceParams beams;
   VoteLayerParams votes;
   KeyframeParams keyframes;
@@ -65,6 +67,7 @@ class EvidencePhase {
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void count_beams();
   [[nodiscard]] double flips_beyond(Cell block) const;
+  [[nodiscard]] bool is_young(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_passing(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_small_and_apart(const std::vector<ProvenBlock>& region) const;
@@ -91,6 +94,7 @@ class EvidencePhase {
   WatchList watched_;
   FlipMemory flips_;
   Specks specks_;
+  YoungBlocks young_;
   std::optional<Timestamp> start_;
   std::uint32_t now_ms_ = 0;
   std::uint32_t phase_ = 0;

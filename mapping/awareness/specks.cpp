@@ -106,35 +106,48 @@ void Specks::follow(const OccupancyGrid& map, std::span<const CellChange> change
 }
 
 std::vector<Cell> Specks::missed(const TrackedScan& tracked, std::span<const BeamVerdict> beams,
-                                 const BeamEvidenceParams& params) const {
+                                 const BeamEvidenceParams& params) {
   std::vector<Cell> cells;
   const PoseDeviation deviation = pose_deviation(tracked.estimate, tracked.turn_rate_rad_per_s, params);
-  for (const Speck& speck : specks_) {
-    if (is_missed(speck, tracked, beams, deviation, params))
+  for (Speck& speck : specks_) {
+    if (is_missed(speck, look_at(speck, tracked, beams, deviation, params)))
       cells.insert(cells.end(), speck.cells.begin(), speck.cells.end());
   }
   return cells;
 }
 
-bool Specks::is_missed(const Speck& speck, const TrackedScan& tracked, std::span<const BeamVerdict> beams,
-                       const PoseDeviation& deviation, const BeamEvidenceParams& params) const {
+bool Specks::is_missed(Speck& speck, Look look) const {
+  if (look == Look::kNothing) return false;
+  speck.thin_looks = look == Look::kThrough ? speck.thin_looks + 1 : 0;
+  if (speck.thin_looks < params_.thin_looks) return look == Look::kMissed;
+  speck.thin_looks = 0;
+  return true;
+}
+
+Specks::Look Specks::look_at(const Speck& speck, const TrackedScan& tracked, std::span<const BeamVerdict> beams,
+                             const PoseDeviation& deviation, const BeamEvidenceParams& params) const {
   const Scan& scan = tracked.scan;
   const Pose2 laser = tracked.estimate.map_from_robot * scan.robot_from_laser;
   const Point2 way = speck.middle - laser.position();
   const double distance_m = way.norm();
-  if (distance_m > params.most_range_m || distance_m <= speck.radius_m) return false;
-  const double step_m = distance_m * scan.bearing_step_rad;
-  if (step_m > params_.most_step * width_m(speck.cells, geometry_, way / distance_m)) return false;
-  const double bearing_rad = wrapped_angle(std::atan2(way.y(), way.x()) - laser.theta);
+  if (distance_m > params.most_range_m || distance_m <= speck.radius_m) return Look::kNothing;
+  const double bearing_rad = wrapped_angle(std::atan2(way.y(), way.x()) - laser.theta) - scan.first_bearing_rad;
   const double aside_m = speck.radius_m + params.deviations * deviation.aside_m(distance_m);
   const double half_rad = aside_m / distance_m;
-  const double first = std::floor((bearing_rad - half_rad - scan.first_bearing_rad) / scan.bearing_step_rad);
-  const double last = std::ceil((bearing_rad + half_rad - scan.first_bearing_rad) / scan.bearing_step_rad);
-  if (first < 0.0 || last >= static_cast<double>(beams.size())) return false;
-  const double beyond_m = distance_m + aside_m + params.beyond_m;
-  return std::all_of(beams.begin() + static_cast<std::ptrdiff_t>(first),
-                     beams.begin() + static_cast<std::ptrdiff_t>(last) + 1,
-                     [&](const BeamVerdict& beam) { return beam.length_m >= beyond_m; });
+  const double first = std::floor((bearing_rad - half_rad) / scan.bearing_step_rad);
+  const double last = std::ceil((bearing_rad + half_rad) / scan.bearing_step_rad);
+  if (first < 0.0 || last >= static_cast<double>(beams.size())) return Look::kNothing;
+  const auto fan = beams.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first) + 1);
+  const double near_m = aside_m + params.beyond_m;
+  const auto is_beyond = [&](const BeamVerdict& beam) { return beam.length_m >= distance_m + near_m; };
+  const auto is_met = [&](const BeamVerdict& beam) { return std::abs(beam.length_m - distance_m) < near_m; };
+  if (!std::all_of(fan.begin(), fan.end(), is_beyond))
+    return std::any_of(fan.begin(), fan.end(), is_met) ? Look::kMet : Look::kNothing;
+  const double width = width_m(speck.cells, geometry_, way / distance_m);
+  if (distance_m * scan.bearing_step_rad <= params_.most_step * width) return Look::kMissed;
+  const double nearest = std::round(bearing_rad / scan.bearing_step_rad);
+  const double beside_m = distance_m * std::abs(bearing_rad - nearest * scan.bearing_step_rad);
+  return beside_m <= 0.5 * width ? Look::kThrough : Look::kNothing;
 }
 
 }  // namespace deltamap::mapping::awareness

@@ -18,6 +18,7 @@ namespace deltamap::mapping::awareness {
 struct SpeckParams {
   double most_side_m = 0.8;  ///< of the box around a group of occupied cells; larger ones are surfaces; > 0
   double most_step = 0.8;    ///< between neighbouring beams at the speck, of its width; (0, 1)
+  int thin_looks = 8;        ///< scans in which one beam goes through its middle that count as one denser fan; >= 1
 };
 
 class Specks {
@@ -33,9 +34,10 @@ class Specks {
   [[nodiscard]] bool is_of_speck(Cell cell) const { return (flags_[geometry_.index_of(cell)] & kOfSpeck) != 0; }
 
   /// The cells of all specks that the beams of a scan would have met, and have not: every beam that may have passed
-  /// there ends clearly beyond. `beams`: the verdicts on `tracked`.
+  /// there ends clearly beyond. From farther away, where the fan has gaps, it takes several scans in which the best
+  /// pose sends a beam right through. `beams`: the verdicts on `tracked`.
   [[nodiscard]] std::vector<Cell> missed(const TrackedScan& tracked, std::span<const BeamVerdict> beams,
-                                         const BeamEvidenceParams& params) const;
+                                         const BeamEvidenceParams& params);
 
  private:
   using Flags = std::uint8_t;  // any of the following
@@ -45,7 +47,9 @@ class Specks {
     Point2 middle{0.0, 0.0};
     double radius_m = 0.0;  ///< of the circle around all its cells
     std::vector<Cell> cells;
+    int thin_looks = 0;  ///< since it was missed or met last
   };
+  enum class Look : std::uint8_t { kNothing, kMet, kThrough, kMissed };
   [[nodiscard]] Flags& flags_of(Cell cell) { return flags_[geometry_.index_of(cell)]; }
   struct Group {
     std::vector<Cell> cells;
@@ -54,8 +58,9 @@ class Specks {
   /// All that is joined to an occupied cell; nothing where it is too wide.
   [[nodiscard]] std::optional<Group> small_group(const OccupancyGrid& map, Cell start);
   void gather(const OccupancyGrid& map, std::span<const Cell> starts);
-  [[nodiscard]] bool is_missed(const Speck& speck, const TrackedScan& tracked, std::span<const BeamVerdict> beams,
-                               const PoseDeviation& deviation, const BeamEvidenceParams& params) const;
+  [[nodiscard]] Look look_at(const Speck& speck, const TrackedScan& tracked, std::span<const BeamVerdict> beams,
+                             const PoseDeviation& deviation, const BeamEvidenceParams& params) const;
+  [[nodiscard]] bool is_missed(Speck& speck, Look look) const;
 
   SpeckParams params_;
   GridGeometry geometry_;

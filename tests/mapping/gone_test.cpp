@@ -77,6 +77,27 @@ TEST_F(Gone, IsNoSpeckThatFitsBetweenTwoBeams) {
   EXPECT_EQ(missed(), 0U);
 }
 
+TEST_F(Gone, IsASpeckFarAwayThatSeveralBeamsHaveGoneThrough) {
+  const OccupancyGrid far = room_with({8.5, 5.0}, {8.55, 5.05});
+  known(room(), far);
+  look(room(), far, {2.0, 5.025, 0.0});
+  for (int i = 1; i < SpeckParams{}.thin_looks; ++i) EXPECT_EQ(missed(), 0U);
+  EXPECT_EQ(missed(), 1U);
+  EXPECT_EQ(missed(), 0U);  // and again from the first
+}
+
+TEST_F(Gone, IsNoSpeckFarAwayThatABeamHasMetInBetween) {
+  const OccupancyGrid far = room_with({8.5, 5.0}, {8.55, 5.05});
+  const Pose2 ahead{2.0, 5.025, 0.0};
+  known(room(), far);
+  look(room(), far, ahead);
+  for (int i = 1; i < SpeckParams{}.thin_looks; ++i) EXPECT_EQ(missed(), 0U);
+  look(far, far, ahead);
+  EXPECT_EQ(missed(), 0U);
+  look(room(), far, ahead);
+  EXPECT_EQ(missed(), 0U);
+}
+
 TEST_F(Gone, IsNoSpeckAtTheEdgeOfTheView) {
   const OccupancyGrid beside = room_with({2.0, 7.0}, {2.1, 7.1});
   known(room(), beside);

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/awareness/young_blocks.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/drawn_hall.hpp"
+
+namespace deltamap::mapping::awareness {
+namespace {
+
+const GridGeometry kMap{20, 20, 0.05, {0.0, 0.0}};
+const GridGeometry kBlocks{10, 10, 0.1, {0.0, 0.0}};
+constexpr Cell kBlock{2, 3};
+constexpr Cell kCell{4, 6};        // in it
+constexpr Cell kCellBeside{5, 7};  // in it too
+
+class Young : public testing::Test {
+ protected:
+  void begin() { young = YoungBlocks{map, kBlocks, 2}; }
+  void write(Cell cell, CellState state) {
+    const OccupancyGrid before = map;
+    map.set(cell, state);
+    young.follow(map, changes_between(before, map));
+  }
+
+  OccupancyGrid map{kMap, CellState::kFree};
+  YoungBlocks young;
+};
+
+TEST_F(Young, IsWhatHasBeenWrittenSinceTheFirstMap) {
+  begin();
+  EXPECT_FALSE(young.is_young(kBlock));
+  write(kCell, CellState::kOccupied);
+  EXPECT_TRUE(young.is_young(kBlock));
+}
+
+TEST_F(Young, IsNothingThatTheFirstMapShows) {
+  map.set(kCell, CellState::kOccupied);
+  begin();
+  write(kCellBeside, CellState::kOccupied);
+  EXPECT_FALSE(young.is_young(kBlock));
+}
+
+TEST_F(Young, IsNothingThatComesWhereTheFirstMapHadSomething) {
+  map.set(kCell, CellState::kOccupied);
+  begin();
+  write(kCell, CellState::kFree);
+  write(kCell, CellState::kOccupied);  // a pane, wrapped goods: seen through and met again
+  EXPECT_FALSE(young.is_young(kBlock));
+}
+
+TEST_F(Young, IsNothingThatHasGone) {
+  begin();
+  write(kCell, CellState::kOccupied);
+  write(kCellBeside, CellState::kOccupied);
+  write(kCell, CellState::kUnknown);
+  EXPECT_TRUE(young.is_young(kBlock));
+  write(kCellBeside, CellState::kFree);
+  EXPECT_FALSE(young.is_young(kBlock));
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::awareness
