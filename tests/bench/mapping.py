@@ -5,7 +5,7 @@ and the updates of the map beside it. On the real log `intel`, whose map lacks n
 container comes or goes each minute. Called by ./dev bench mapping.
 
   mapping.py [--quick]    --quick: two minutes of the hall alone"""
-import argparse, re, subprocess
+import argparse, re, subprocess, sys
 
 from measuring import DATA, OUT, ROOT, TOOL, mark, row, unpacked
 
@@ -52,10 +52,11 @@ def measured(what, *arguments):
 
 def rows_of(where, measure):
     awareness, update, updates, scans = measure
-    return [row("awareness a scan, " + where, "%.0f thousand instructions" % (awareness / 1e3), "≤ 500 thousand", awareness <= MOST,
-                "prototype 1.08 million"),
+    both = awareness + update
+    return [row("awareness a scan, " + where, "%.0f thousand instructions" % (awareness / 1e3), "", None, "prototype 1.08 million"),
             row("updates of the map, averaged over the scans, " + where,
-                "%.0f thousand instructions (%d sets in %d scans)" % (update / 1e3, updates, scans))]
+                "%.0f thousand instructions (%d sets in %d scans)" % (update / 1e3, updates, scans)),
+            row("both together, " + where, "%.0f thousand instructions" % (both / 1e3), "≤ 500 thousand", both <= MOST)]
 
 
 def intel():
@@ -79,7 +80,7 @@ def main():
     if not quick and (DATA / "intel.log.xz").exists():
         rows += rows_of("`intel`", intel())
     elif not quick:
-        print("skipped: `intel`, which is not in %s" % DATA)
+        print("mapping.py: no intel.log.xz in %s (DELTAMAP_DATA): NOT measured on it" % DATA, file=sys.stderr)
     for one in rows:
         print("%-10s %s: %s (%s)" % (mark(one), one["figure"], one["ours"], one["target"]), flush=True)
     raise SystemExit(0 if all(one["met"] is not False for one in rows) else 1)
