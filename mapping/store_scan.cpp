@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/store_scan.hpp"
 
+#include "mapping/waiting_scans.hpp"
+
 namespace deltamap::mapping {
+namespace {
+
+constexpr std::uint32_t kMostWaiting = 240;  // a minute's; 2 MB
+constexpr int kLateAtOnce = 3;               // keyframes a scan, so that no scan costs much more than others
+
+}  // namespace
 
 struct StoreScan::State {
   State(const StoreScanParams& params, std::uint64_t seed)
@@ -9,13 +17,37 @@ struct StoreScan::State {
         ratio{params.divergence},
         paper{params.delta_phase, seed},
         evidence{params.evidence},
-        gate{params.gate} {}
+        gate{params.gate},
+        waiting{params.evidence.keyframes, kMostWaiting} {}
+
+  /// Where the gate is shut a keyframe waits, unless the pose may be wrong by then; once it is open again, those that
+  /// wait vote first.
+  std::optional<ScanSet> gated_set(const TrackedScan& tracked) {
+    gate.observe(tracked);
+    if (gate.gate().has_proven_wrong()) {
+      waiting.clear();
+      evidence.temporary().clear();
+    }
+    if (gate.waits_to_vote() || (gate.lets_vote() && !waiting.empty())) waiting.keep(tracked);
+    if (!gate.lets_vote()) {
+      evidence.temporary().hide(tracked.scan.time);
+    } else if (waiting.empty()) {
+      gate.take(evidence.observe(tracked), tracked);
+    } else {
+      for (int i = 0; i < kLateAtOnce && !waiting.empty(); ++i) {
+        const std::optional<TrackedScan> late = waiting.next(tracked.estimate);
+        gate.take(evidence.observe(*late), *late);
+      }
+    }
+    return gate.next();
+  }
 
   MappingMethod method;
   awareness::DivergenceRatio ratio;
   awareness::DeltaPhase paper;
   awareness::EvidencePhase evidence;
   GatedSets gate;
+  WaitingScans waiting;
   Awareness awareness;
 };
 
@@ -42,14 +74,7 @@ std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {
     s.awareness.phase = s.paper.number();
     s.awareness.stored_scans = s.paper.kept();
   } else {
-    s.gate.observe(tracked);
-    if (s.gate.lets_vote()) {
-      s.gate.take(s.evidence.observe(tracked), tracked);
-    } else {
-      s.evidence.temporary().hide(tracked.scan.time);
-    }
-    if (s.gate.gate().has_proven_wrong()) s.evidence.temporary().clear();
-    set = s.gate.next();
+    set = s.gated_set(tracked);
     s.awareness.in_phase = s.evidence.waiting() > 0;
     s.awareness.phase = s.evidence.number();
     s.awareness.short_beams = s.evidence.short_beams();

@@ -82,6 +82,8 @@ class WriteGate {
   [[nodiscard]] GateReason reason() const { return reason_; }
   /// Did this scan prove the pose wrong that was believed before it, or is it in doubt for too long?
   [[nodiscard]] bool has_proven_wrong() const { return has_proven_wrong_; }
+  /// Told that the pose was wrong, and not open since.
+  [[nodiscard]] bool is_distrusted() const { return is_distrusted_; }
   /// Since when the pose has not been wrong, as far as is known; nothing where it never was.
   [[nodiscard]] const std::optional<Timestamp>& trusted_since() const { return trusted_since_; }
   /// What was written before is no longer provisional.
@@ -113,7 +115,7 @@ class WriteGate {
   bool was_tracking_ = false;
   bool has_proven_wrong_ = false;
   bool is_confirming_ = false;
-  bool is_distrusted_ = false;  // told that it was wrong, and not yet open again
+  bool is_distrusted_ = false;
   Timestamp holds_since_;
   double held_m_ = 0.0;  // driven since then
   DrivenWay driven_way_;
