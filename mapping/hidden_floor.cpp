@@ -3,18 +3,26 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <unordered_map>
+#include <utility>
 
 namespace deltamap::mapping {
 namespace {
 
-constexpr int kCrackCells = 2;
+constexpr double kCrack_m = 0.25;  // narrower is no way in
+constexpr int kLeastCrackCells = 2;
+constexpr std::array<Cell, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 class Floor {
  public:
   Floor(const OccupancyGrid& map, std::span<const Point2> robot_was, double most_m2)
-      : map_{map}, most_cells_{static_cast<std::size_t>(most_m2 / (map.resolution_m() * map.resolution_m()))} {
+      : map_{map},
+        most_cells_{static_cast<std::size_t>(most_m2 / (map.resolution_m() * map.resolution_m()))},
+        crack_cells_{std::max(kLeastCrackCells, static_cast<int>(std::lround(kCrack_m / map.resolution_m())))},
+        slanting_cells_{static_cast<int>(crack_cells_ / std::numbers::sqrt2)} {
     for (const Point2& place : robot_was) {
       const Cell cell = map.geometry().cell_at(place);
       if (!is_floor(cell)) continue;
@@ -41,7 +49,7 @@ class Floor {
       }
     }
     for (const Cell& cell : piece) open_[map_.geometry().index_of(cell)] = is_open;
-    return is_open ? std::vector<Cell>{} : piece;
+    return is_open ? std::vector<Cell>{} : with_cracks(std::move(piece));
   }
 
  private:
@@ -74,15 +82,35 @@ class Floor {
     return seen != open_.end() && seen->second;
   }
 
-  /// A gap of a cell or two in a line of occupied cells, which only the drawing has left.
+  /// In a gap too narrow to be a way, between occupied cells on a line: faces that only the drawing has left open, and
+  /// corners that no beam has met.
   [[nodiscard]] bool is_crack(Cell cell) const {
-    const auto gap = [&](const Cell& step) {
-      for (int i = 1; i <= kCrackCells; ++i) {
-        if (map_.at({cell.column + i * step.column, cell.row + i * step.row}) == CellState::kOccupied) return i;
+    const auto steps_to_occupied = [&](const Cell& step, int most) {
+      for (int steps = 1; steps <= most; ++steps) {
+        if (map_.at({cell.column + steps * step.column, cell.row + steps * step.row}) == CellState::kOccupied)
+          return steps;
       }
-      return 2 * kCrackCells;
+      return most + 1;
     };
-    return gap({1, 0}) + gap({-1, 0}) <= kCrackCells + 1 || gap({0, 1}) + gap({0, -1}) <= kCrackCells + 1;
+    const auto is_narrow = [&](const Cell& line, int most) {
+      const int steps = steps_to_occupied(line, most);
+      const int room = most + 1 - steps;
+      return room > 0 && steps_to_occupied({-line.column, -line.row}, room) <= room;
+    };
+    return is_narrow({1, 0}, crack_cells_) || is_narrow({0, 1}, crack_cells_) || is_narrow({1, 1}, slanting_cells_) ||
+           is_narrow({1, -1}, slanting_cells_);
+  }
+
+  /// With the corners that are too narrow to be entered.
+  [[nodiscard]] std::vector<Cell> with_cracks(std::vector<Cell> piece) {
+    for (std::size_t next = 0; next < piece.size(); ++next) {
+      for (const Cell& side : kSides) {
+        const Cell beside{piece[next].column + side.column, piece[next].row + side.row};
+        if (map_.at(beside) != CellState::kFree || !is_crack(beside)) continue;
+        if (open_.emplace(map_.geometry().index_of(beside), false).second) piece.push_back(beside);
+      }
+    }
+    return piece;
   }
 
   bool enter(Cell cell, std::vector<Cell>& piece) {
@@ -96,6 +124,8 @@ class Floor {
 
   const OccupancyGrid& map_;
   std::size_t most_cells_;
+  int crack_cells_;     // free cells of a crack along a row or column
+  int slanting_cells_;  // along a diagonal
   std::vector<Cell> robot_was_;
   std::unordered_map<std::size_t, bool> open_;  // cells that have been looked at, and whether the robot can come there
 };

@@ -47,7 +47,7 @@ TEST(HiddenFloor, IsNotWhereTheRobotWas) {
 TEST(HiddenFloor, IsNotMoreThanWasAllowed) {
   const std::vector<Cell> starts{{4, 3}};
   const std::vector<Point2> robot{{0.5, 0.5}};
-  EXPECT_TRUE(hidden_floor(closed_box(), starts, robot, 8.0).empty());
+  EXPECT_TRUE(hidden_floor(closed_box(), starts, robot, 4.0).empty());
 }
 
 TEST(HiddenFloor, DoesNotLeakThroughACrack) {
@@ -55,7 +55,25 @@ TEST(HiddenFloor, DoesNotLeakThroughACrack) {
   cracked.set({3, 3}, CellState::kFree);
   const std::vector<Cell> starts{{4, 3}};
   const std::vector<Point2> robot{{0.5, 0.5}};
-  EXPECT_EQ(hidden_floor(cracked, starts, robot, 40.0).size(), 9U);
+  EXPECT_EQ(hidden_floor(cracked, starts, robot, 40.0).size(), 10U);  // the crack itself too
+}
+
+/// A box of 40 × 40 cells of 5 cm in a field of 80 × 80, its corners left out for so many cells each way.
+OccupancyGrid box_without_corners(int left_out) {
+  OccupancyGrid grid{{80, 80, 0.05, {0.0, 0.0}}, CellState::kFree};
+  for (int i = 20 + left_out; i <= 60 - left_out; ++i) {
+    for (const Cell& cell : {Cell{i, 20}, Cell{i, 60}, Cell{20, i}, Cell{60, i}}) grid.set(cell, CellState::kOccupied);
+  }
+  return grid;
+}
+
+TEST(HiddenFloor, DoesNotLeakThroughCornersThatNoBeamHasMet) {
+  const std::vector<Cell> starts{{40, 21}};
+  const std::vector<Point2> robot{{0.5, 0.5}};
+  const std::vector<Cell> hidden = hidden_floor(box_without_corners(3), starts, robot, 40.0);
+  EXPECT_GE(hidden.size(), 39U * 39U - 4U);  // into the corners, but for their last cells
+  EXPECT_LE(hidden.size(), 41U * 41U);
+  EXPECT_TRUE(hidden_floor(box_without_corners(8), starts, robot, 40.0).empty()) << "0.5 m are a way in";
 }
 
 TEST(HiddenFloor, IsOpenThroughAWideGap) {
