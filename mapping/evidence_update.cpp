@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kLeastOpaqueCells = 10;  // of a surface
 constexpr int kDrawnAheadPasses = 8;
+constexpr int kDrawnAheadReach = 3;  // cells
 constexpr double kDrawnAheadShare = 0.1;  // of the beams, and of the hits behind
 constexpr int kRemnantReach = 2;          // cells from what has been freed
 constexpr int kRemnantCells = 6;          // larger groups are none
@@ -73,15 +74,15 @@ class DoubtMask {
 /// Noise strews the hits of a face over the cells before it: those are few beside the face's own.
 bool is_strewn(const RayCounts& counts, Cell cell, double least_of_face) {
   int most = 0;
-  for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
-    for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
+  for (int row = cell.row - kDrawnAheadReach; row <= cell.row + kDrawnAheadReach; ++row) {
+    for (int column = cell.column - kDrawnAheadReach; column <= cell.column + kDrawnAheadReach; ++column) {
       if (counts.box().contains({column, row})) most = std::max(most, static_cast<int>(counts[{column, row}].hits));
     }
   }
   return counts[cell].hits < least_of_face * most;
 }
 
-/// A face that was drawn a cell too far ahead: nearly all beams go on to the cell behind.
+/// A face that was drawn some cells too far ahead: nearly all beams go on to the cells behind.
 bool is_drawn_ahead(const RayCounts& counts, Cell cell) {
   const RayCount count = counts[cell];
   return count.passes >= kDrawnAheadPasses && count.hit_share() <= kDrawnAheadShare &&
