@@ -27,6 +27,13 @@ void GatedSets::withdraw(const TrackedScan& tracked) {
   due_.push_front(std::move(order));
 }
 
+/// Not where the pose itself is doubtful or spread wide: such scans would draw beside what is there.
+bool GatedSets::waits_to_vote() const {
+  const GateReason why = gate_.reason();
+  return !lets_vote() && !gate_.is_distrusted() &&
+         (why == GateReason::kMisfit || why == GateReason::kConfirming || why == GateReason::kRival);
+}
+
 void GatedSets::take(std::optional<ScanSet> set, const TrackedScan& tracked) {
   if (!set) return;
   set->covariance = tracked.estimate.covariance;

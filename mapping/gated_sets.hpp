@@ -19,11 +19,8 @@ class GatedSets {
   void observe(const TrackedScan& tracked);
   /// May the phase see this scan?
   [[nodiscard]] bool lets_vote() const { return !params_.enabled || gate_.is_open(); }
-  /// Shut, though nothing speaks against the pose itself: may the scan vote once the gate is open again?
-  [[nodiscard]] bool waits_to_vote() const {
-    return !lets_vote() && !gate_.is_distrusted() &&
-           (gate_.reason() == GateReason::kMisfit || gate_.reason() == GateReason::kConfirming);
-  }
+  /// Shut, though nothing has proven the pose wrong: may the scan vote once the gate is open again?
+  [[nodiscard]] bool waits_to_vote() const;
   /// The set that ended with this scan, if one did.
   void take(std::optional<ScanSet> set, const TrackedScan& tracked);
   /// What is to be handed on now: a set, a marked set, or an order; at most one a scan.

@@ -21,6 +21,7 @@ Outcome outcome_of(const MappingRun& run) {
     if (passed_s < next_restart_s || passed_s >= 60.0 * run.minutes) continue;
     next_restart_s += restart_every_s;
     drive.restart();
+    watch.restarted();
   }
   Outcome outcome;
   outcome.numbers = watch.numbers(drive.map());

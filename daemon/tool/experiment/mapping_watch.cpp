@@ -12,6 +12,7 @@ namespace {
 
 namespace score = simulation::score;
 
+constexpr double kLongestStartCheck_s = 5.0;  // who is undecided for longer has lost his way
 constexpr int kViewBeams = 181;
 constexpr int kFaceBeams = 3;   // of one view make a face seen
 constexpr int kGhostReach = 2;  // cells from anything that stands
@@ -73,8 +74,7 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   if (!scan.changes.empty()) truth_.see(changes_.world());
   if (!scan.changes.empty() || !scan.events.empty()) refresh_surfaces();
 
-  ++scans_;
-  scans_lost_ += scan.estimate.state == LocalizerState::kTracking ? 0 : 1;
+  count_lost(scan);
   const double error_m = distance_between(scan.map_from_robot, scan.estimate.map_from_robot);
   errors_.add(scan.time, error_m);
   errors_since_row_m_.push_back(error_m);
@@ -87,6 +87,15 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
     count_ghosts(map);
   }
   if (now_s_ >= next_row_s_) add_course_row(map);
+}
+
+void MappingWatch::count_lost(const Mapped& scan) {
+  ++scans_;
+  const bool is_tracking = scan.estimate.state == LocalizerState::kTracking;
+  if (started_s_) longest_start_check_s_ = std::max(longest_start_check_s_, now_s_ - *started_s_);
+  if (is_tracking) started_s_.reset();
+  const bool checks_start = started_s_ && now_s_ - *started_s_ < kLongestStartCheck_s;
+  scans_lost_ += is_tracking || checks_start ? 0 : 1;
 }
 
 void MappingWatch::look(const Mapped& scan) {
@@ -185,7 +194,8 @@ MappingWatch::Numbers MappingWatch::numbers_of_pose() const {
           {"error_rms_m", root_mean_square(errors_.all_m())},
           {"error_p99_m", quantile(errors_.all_m(), 0.99)},
           {"error_most_m", quantile(errors_.all_m(), 1.0)},
-          {"not_tracking", static_cast<double>(scans_lost_) / scans}};
+          {"not_tracking", static_cast<double>(scans_lost_) / scans},
+          {"longest_start_check_s", longest_start_check_s_}};
 }
 
 MappingWatch::Numbers MappingWatch::numbers_of_following() {

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +35,8 @@ class MappingWatch {
                const MappingWatchParams& params);
 
   void observe(const Mapped& scan, const OccupancyGrid& map);
+  /// The daemon has begun again: its localizer checks the pose that was kept before it tracks.
+  void restarted() { started_s_ = now_s_; }
 
   /// Everything that is a number at the end of the drive. `map`: the last.
   using Numbers = std::vector<std::pair<std::string, double>>;
@@ -55,6 +58,7 @@ class MappingWatch {
   [[nodiscard]] Numbers numbers_of_following();
   [[nodiscard]] Numbers numbers_of_map(const OccupancyGrid& map, const Scores& scores) const;
   [[nodiscard]] Numbers numbers_of_ghosts() const;
+  void count_lost(const Mapped& scan);
   void look(const Mapped& scan);
   void judge_changes(const OccupancyGrid& map);
   [[nodiscard]] bool is_near_someone(const Point2& place) const;
@@ -90,7 +94,9 @@ class MappingWatch {
   double next_judgement_s_ = 0.0;
   double next_row_s_ = 0.0;
   std::size_t scans_ = 0;
-  std::size_t scans_lost_ = 0;
+  std::size_t scans_lost_ = 0;            // not tracked, but for those of a start's check
+  std::optional<double> started_s_{0.0};  // since when it checks its start pose; nothing once it tracks
+  double longest_start_check_s_ = 0.0;
   WrittenCells written_;
   std::size_t ghosts_now_ = 0;
   struct GhostMinutes {  // cell · minutes
