@@ -137,7 +137,8 @@ void WriteGate::observe(const TrackedScan& tracked) {
     const double passed_s = std::max(0.0, seconds(time - *last_));
     times_[static_cast<std::size_t>(reason_)] += passed_s;
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
-    doubted_for_s_ += passed_s;
+    // Another place alone is no doubt that proves anything: it makes the pose improbable, jump or go on.
+    if (reason_ != GateReason::kRival) doubted_for_s_ += passed_s;
   }
   last_ = time;
   const double driven_m = driven_way_.since_last_m(tracked);
