@@ -4,6 +4,11 @@
 #include <utility>
 
 namespace deltamap::mapping {
+namespace {
+
+constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late
+
+}  // namespace
 
 void GatedSets::observe(const TrackedScan& tracked) {
   now_ = tracked.scan.time;
@@ -27,10 +32,10 @@ void GatedSets::withdraw(const TrackedScan& tracked) {
   due_.push_front(std::move(order));
 }
 
-/// Not where the pose itself is doubtful or spread wide: such scans would draw beside what is there.
-bool GatedSets::waits_to_vote() const {
+/// Not where the pose itself may be off or is spread wide: such scans would draw beside what is there.
+bool GatedSets::waits_to_vote(const Estimate& estimate) const {
   const GateReason why = gate_.reason();
-  return !lets_vote() && !gate_.is_distrusted() &&
+  return !lets_vote() && !gate_.is_distrusted() && estimate.belief.pose_right >= kSure &&
          (why == GateReason::kMisfit || why == GateReason::kConfirming || why == GateReason::kRival);
 }
 

@@ -20,7 +20,7 @@ class GatedSets {
   /// May the phase see this scan?
   [[nodiscard]] bool lets_vote() const { return !params_.enabled || gate_.is_open(); }
   /// Shut, though nothing has proven the pose wrong: may the scan vote once the gate is open again?
-  [[nodiscard]] bool waits_to_vote() const;
+  [[nodiscard]] bool waits_to_vote(const Estimate& estimate) const;
   /// The set that ended with this scan, if one did.
   void take(std::optional<ScanSet> set, const TrackedScan& tracked);
   /// What is to be handed on now: a set, a marked set, or an order; at most one a scan.

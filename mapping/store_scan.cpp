@@ -28,7 +28,7 @@ struct StoreScan::State {
       waiting.clear();
       evidence.temporary().clear();
     }
-    if (gate.waits_to_vote() || (gate.lets_vote() && !waiting.empty())) waiting.keep(tracked);
+    if (gate.waits_to_vote(tracked.estimate) || (gate.lets_vote() && !waiting.empty())) waiting.keep(tracked);
     if (!gate.lets_vote()) {
       evidence.temporary().hide(tracked.scan.time);
     } else if (waiting.empty()) {
