@@ -11,6 +11,9 @@ namespace {
 /// A thing in whose place the map is wrong takes up more of the view as the robot comes nearer.
 constexpr double kApproached = 1.5;
 
+/// Of the weight of other doubts. In aisles that look alike one is conceivable for a dozen seconds, and the pose right.
+constexpr double kDoubtOfRival = 0.5;
+
 /// σ along the longest axis of the ellipse.
 double widest_deviation_m(const PoseCovariance& covariance) {
   const double middle = 0.5 * (covariance(0, 0) + covariance(1, 1));
@@ -137,8 +140,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
     const double passed_s = std::max(0.0, seconds(time - *last_));
     times_[static_cast<std::size_t>(reason_)] += passed_s;
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
-    // Another place alone is no doubt that proves anything: it makes the pose improbable, jump or go on.
-    if (reason_ != GateReason::kRival) doubted_for_s_ += passed_s;
+    doubted_for_s_ += reason_ == GateReason::kRival ? kDoubtOfRival * passed_s : passed_s;
   }
   last_ = time;
   const double driven_m = driven_way_.since_last_m(tracked);
