@@ -203,9 +203,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.trust = judgement.trust();
   seen.beaten = rivals.report().beaten;
   const LocalizerState after = monitor.observe(seen, best);
-  fit_fall.observe(seen.fit, seen.passed_s);
-  rivals.suspect(monitor.suspicious() || fit_fall.is_recent(),
-                 fit_fall.is_recent() ? 1.0 : params.rivals.suspicious_pace);
+  rivals.suspect(monitor.suspicious());
   if (before != after) enter(after, before, believed.map_from_robot, now);
 }
 

@@ -9,7 +9,6 @@
 #include <optional>
 #include <span>
 
-#include "localization/fit_fall.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/proven_hold.hpp"
@@ -46,7 +45,6 @@ struct Localizer::State {
   Hypothesis best;                  ///< of the particles, or the place that leads a search
   double w_avg = 1.0;               ///< of that; before any scan nothing speaks against the pose
   double n_eff = 0.0;               ///< of the particles, or of a search's places
-  FitFall fit_fall;
   ProvenHold proven_hold;
 
   // How a pose comes to be believed, and ceases to be.

@@ -77,8 +77,7 @@ void Rivals::stop_believing() {
   write_report();
 }
 
-void Rivals::suspect(bool suspicious, double pace) {
-  pace_ = pace;
+void Rivals::suspect(bool suspicious) {
   if (suspicious && !suspicious_ && !search_.under_way()) search_.start();
   suspicious_ = suspicious;
   bank_.make_room(suspicious);
@@ -174,8 +173,8 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   }
   if (believing_) probe(field, seen.joined_from_robot);
   if (!believing_ || suspicious_) {
-    const std::span<const Pose2> found =
-        search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot, believing_ ? pace_ : 1.0);
+    const std::span<const Pose2> found = search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot,
+                                                      believing_ ? params_.suspicious_pace : 1.0);
     if (!found.empty()) admit_all(field, found, seen.joined_from_robot);
   }
   bank_.settle();

@@ -78,8 +78,8 @@ class Rivals {
   void start_believing_in(const Pose2& found);
   /// From now on nothing is believed and the whole map is searched; known places keep what speaks for them.
   void stop_believing();
-  /// While true, the whole map is searched beside the believed pose; `pace`: of a full search, (0, 1].
-  void suspect(bool suspicious, double pace);
+  /// While true, the whole map is searched beside the believed pose.
+  void suspect(bool suspicious);
   /// As stop_believing(), and forgets all places.
   void start_anywhere();
 
@@ -135,7 +135,6 @@ class Rivals {
   std::optional<Pose2> last_joined_;
   bool believing_ = false;
   bool suspicious_ = false;
-  double pace_ = 1.0;
   double elsewhere_prior_;
   std::optional<Pose2> last_believed_;  // carried along by odometry
   bool probe_nearby_next_ = false;

@@ -120,7 +120,7 @@ TEST(Rivals, TellThatTheRobotMayHaveBeenCarriedLongBeforeTheyWin) {
   const OccupancyGrid map = test::drawn_flat();
   Round round{map, map, {1.6, 1.0, 0.0}, 1};
   round.rivals().start_believing();
-  round.rivals().suspect(true, 1.0);
+  round.rivals().suspect(true);
   Pose2 believed{7.5, 3.0, 1.5};
   double share_then = 1.0;
   for (int i = 0; i < 100 && share_then == 1.0; ++i) {
