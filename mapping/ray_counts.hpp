@@ -62,7 +62,7 @@ class RayCounts {
   using Mark = std::uint8_t;
   static constexpr Mark kUnseen = 0, kOpen = 1, kWall = 2, kOpaque = 3;  // a wall has not been asked whether it stops
   struct Count {
-    std::int32_t hits, clear_passes, late_passes;
+    std::uint16_t hits, clear_passes, late_passes;  // a set has some 10 000 beams at most
   };
 
   [[nodiscard]] std::size_t index_of(Cell cell) const {
