@@ -28,15 +28,16 @@ struct StoreScan::State {
       waiting.clear();
       evidence.temporary().clear();
     }
-    if (gate.waits_to_vote(tracked.estimate) || (gate.lets_vote() && !waiting.empty())) waiting.keep(tracked);
     if (!gate.lets_vote()) {
+      if (gate.waits_to_vote(tracked.estimate)) waiting.keep(tracked);
       evidence.temporary().hide(tracked.scan.time);
     } else if (waiting.empty()) {
       gate.take(evidence.observe(tracked), tracked);
     } else {
-      for (int i = 0; i < kLateAtOnce && !waiting.empty(); ++i) {
+      waiting.keep(tracked);
+      for (int i = 0; i < kLateAtOnce; ++i) {
         const std::optional<TrackedScan> late = waiting.next(tracked.estimate);
-        gate.take(evidence.observe(*late), *late);
+        if (late) gate.take(evidence.observe(*late), *late);
       }
     }
     return gate.next();
