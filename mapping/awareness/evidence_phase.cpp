@@ -49,7 +49,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     clear_ = ClearSpace{*map_, layer_.cells_per_block()};
     watched_ = WatchList{params_.watch, layer_.blocks()};
     flips_ = FlipMemory{params_.flips};
-    young_ = YoungBlocks{*map_, layer_.blocks(), layer_.cells_per_block()};
+    young_ = YoungBlocks{clear_, layer_.cells_per_block()};
     return;
   }
   const std::vector<CellChange> changes = changes_between(*before, *map_);
@@ -57,8 +57,8 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     layer_.reset(grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry()));
   }
   specks_.follow(*map_, changes);
-  young_.follow(*map_, changes);
   clear_.update(*map_, changes);
+  young_.follow(clear_, changes);
   temporary_.follow(*map_);
 }
 

@@ -9,21 +9,26 @@ namespace deltamap::mapping::awareness {
 namespace {
 
 const GridGeometry kMap{20, 20, 0.05, {0.0, 0.0}};
-const GridGeometry kBlocks{10, 10, 0.1, {0.0, 0.0}};
 constexpr Cell kBlock{2, 3};
 constexpr Cell kCell{4, 6};        // in it
 constexpr Cell kCellBeside{5, 7};  // in it too
 
 class Young : public testing::Test {
  protected:
-  void begin() { young = YoungBlocks{map, kBlocks, 2}; }
+  void begin() {
+    clear = ClearSpace{map, 2};
+    young = YoungBlocks{clear, 2};
+  }
   void write(Cell cell, CellState state) {
     const OccupancyGrid before = map;
     map.set(cell, state);
-    young.follow(map, changes_between(before, map));
+    const std::vector<CellChange> changes = changes_between(before, map);
+    clear.update(map, changes);
+    young.follow(clear, changes);
   }
 
   OccupancyGrid map{kMap, CellState::kFree};
+  ClearSpace clear;
   YoungBlocks young;
 };
 
