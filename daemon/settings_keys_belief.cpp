@@ -111,6 +111,10 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
                             "log evidence that a place may be found with ahead of the believed one"));
   keys.push_back(number_key("localization.rivals.suspicious_pace", rivals.suspicious_pace, "", 0.001, 1.0,
                             "pace of a search of the whole map while a pose is believed"));
+  keys.push_back(whole_key("localization.rivals.images", rivals.images, "", 0, 1000,
+                           "places where the map looks alike that are remembered"));
+  keys.push_back(whole_key("localization.rivals.images_a_scan", rivals.images_a_scan, "", 0, 1000,
+                           "of them looked at again in one scan while tracking"));
   keys.push_back(whole_key("localization.rivals.headings", rivals.headings, "", 1, 720, "and headings"));
 }
 

@@ -11,9 +11,10 @@ PoseJudge::Shares shares_in(const RivalReport& report) {
   if (report.places == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
   if (report.own_known) {
     const RivalPlace& rival = report.rivals.front();
+    const bool carried = report.carried_share > rival.share;
     return {.believed = report.own_share,
             .best_rival = report.listed > 0 ? std::max(rival.share, report.carried_share) : 0.0,
-            .map_from_rival = rival.map_from_robot,
+            .map_from_rival = carried ? report.map_from_carried : rival.map_from_robot,
             .beaten = report.beaten,
             .unique = report.unique};
   }

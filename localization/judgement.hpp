@@ -8,7 +8,7 @@
 
 #include "localization/beam_check.hpp"
 #include "localization/pose_verdict.hpp"
-#include "localization/rivals.hpp"
+#include "localization/rival_report.hpp"
 #include "localization/stability.hpp"
 #include "localization/view_tally.hpp"
 

@@ -34,6 +34,21 @@ double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends, s
   return -LikelihoodField::kStep * misfit_steps(field, ends, pose) / static_cast<double>(ends.size());
 }
 
+Comparison compared(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
+                    const Pose2& place, const Pose2& other, double evidence_beams) {
+  Comparison result;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const Point2 end{static_cast<double>(ends.x_m[i]), static_cast<double>(ends.y_m[i])};
+    const int more =
+        field.steps_at(field.geometry().cell_at(other * end)) - field.steps_at(field.geometry().cell_at(place * end));
+    const double weight = weights.empty() ? 1.0 : static_cast<double>(weights[i]);
+    (more > 0 ? result.gained : result.lost) += weight * std::abs(more);
+  }
+  const double of_a_step =
+      evidence_beams * LikelihoodField::kStep / static_cast<double>(std::max<std::size_t>(1, ends.size()));
+  return {of_a_step * result.gained, of_a_step * result.lost};
+}
+
 PlaceBank::PlaceBank(const PlaceBankParams& params) : params_{params} {
   places_.reserve(static_cast<std::size_t>(std::max(params.most, params.most_while_believing)) + 1);
 }
@@ -99,14 +114,23 @@ void PlaceBank::slide(const LikelihoodField& field, const BeamEnds& ends, std::s
   next_to_slide_ = (next_to_slide_ + count) % others;
 }
 
-void PlaceBank::weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights) {
+void PlaceBank::weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
+                      double telling) {
   const double kept = 1.0 - 1.0 / params_.memory_steps;
   double of_believed = 0.0;
   for (Place& place : places_) {
     const double says = params_.evidence_beams * mean_log_likelihood(field, ends, weights, place.map_from_robot);
     place.log_evidence = kept * place.log_evidence + says;
     if (&place == &places_.front()) of_believed = says;
-    place.since_carried = believing_ ? std::max(0.0, kept * place.since_carried + says - of_believed) : 0.0;
+    const double since_carried = kept * place.since_carried + telling * (says - of_believed);
+    place.since_carried = believing_ ? std::max(0.0, since_carried) : 0.0;
+    if (place.since_carried == 0.0) {
+      place.lost_since = 0.0;
+    } else {
+      const Comparison beside =
+          compared(field, ends, weights, place.map_from_robot, places_.front().map_from_robot, params_.evidence_beams);
+      place.lost_since = kept * place.lost_since + telling * beside.lost;
+    }
   }
 }
 
@@ -156,10 +180,13 @@ void PlaceBank::settle() {
       places_[kept++] = places_[i];
     } else if (!(believing_ && twin == 0) && odds_of(places_[twin]) < odds_of(places_[i])) {
       const double followed_m = std::max(places_[twin].followed_m, places_[i].followed_m);
-      const double since_carried = std::max(places_[twin].since_carried, places_[i].since_carried);
+      const Place& longer = places_[twin].since_carried > places_[i].since_carried ? places_[twin] : places_[i];
+      const double since_carried = longer.since_carried;
+      const double lost_since = longer.lost_since;
       places_[twin] = places_[i];
       places_[twin].followed_m = followed_m;
       places_[twin].since_carried = since_carried;
+      places_[twin].lost_since = lost_since;
     }
   }
   places_.resize(kept);

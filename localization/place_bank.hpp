@@ -37,11 +37,22 @@ struct Place {
   double share = 0.0;
   double followed_m = 0.0;
   double since_carried = 0.0;  ///< log evidence against the believed one, since when it speaks for it most; >= 0
+  double lost_since = 0.0;     ///< of that what beams that fit the believed one better have taken away; >= 0
+};
+
+/// What a scan says of a place beside another.
+struct Comparison {
+  double gained = 0.0;  ///< log evidence from beams that fit the place better
+  double lost = 0.0;    ///< from beams that fit the other one better
 };
 
 /// Mean over the beams of weight · ln p(z) with the robot at the pose; no weights: all 1. 0 without beams.
 [[nodiscard]] double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends,
                                          std::span<const float> weights, const Pose2& pose);
+
+/// From `evidence_beams` independent beams.
+[[nodiscard]] Comparison compared(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
+                                  const Pose2& place, const Pose2& other, double evidence_beams);
 
 class PlaceBank {
  public:
@@ -49,6 +60,10 @@ class PlaceBank {
 
   [[nodiscard]] const PlaceBankParams& params() const { return params_; }
   [[nodiscard]] std::span<const Place> places() const { return places_; }
+  /// Without the believed one.
+  [[nodiscard]] std::span<const Place> rivals() const {
+    return places().subspan(believing_ && !places_.empty() ? 1 : 0);
+  }
   /// The one that is believed, if any; always the first.
   [[nodiscard]] bool believing() const { return believing_; }
 
@@ -75,8 +90,9 @@ class PlaceBank {
   void carry(const Pose2& motion);
   /// Slides `count` places, a round after the other, those that come close to the best one always.
   void slide(const LikelihoodField& field, const BeamEnds& ends, std::size_t count, double unknown_s);
-  /// Once for each decorrelated scan.
-  void weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights);
+  /// Once for each decorrelated scan. `telling`: how much of it counts as evidence since the robot may have been
+  /// carried, [0, 1].
+  void weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights, double telling = 1.0);
   /// A new place, unless it is known. Takes the room of a worse one where the bank is full.
   void admit(const Place& place);
   /// Joins places that have come together, gives up hopeless ones, shares the belief.

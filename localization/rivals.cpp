@@ -3,32 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "localization/weighing.hpp"
 
 namespace deltamap::localization {
 namespace {
 
-constexpr std::size_t kProbesKept = 8;
 constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that a newcomer may fit worse by
 constexpr double kOverlooked = -2.0;        // log odds of a place that earlier looks did not find
-constexpr double kAroundM = 0.6;            // places that the next scans may join
 constexpr double kFarthestBehind = 6.0;     // log evidence: the stack may hold scans from before a slip
-
-bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad) {
-  return distance_between(pose, other) < distance_m && std::abs(turn_between(pose.theta, other.theta)) < turn_rad;
-}
-
-/// By how much log evidence the newest scans speak for a place against another, since when they speak for it most.
-/// Older ones lie too far back for a robot that has just been carried, and among hundreds of places chance favours one.
-double ahead_lately(const ScanStack::Sums& its, const ScanStack::Sums& others, std::size_t scans) {
-  constexpr std::size_t kLately = 6;
-  double ahead = 0.0;
-  for (std::size_t k = 0; k < std::min(scans, kLately); ++k) ahead = std::max(ahead, its[k] - others[k]);
-  return ahead;
-}
 
 }  // namespace
 
@@ -36,10 +19,16 @@ Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const Gl
                const OccupancyGrid& map, const LikelihoodField& field, std::uint64_t seed)
     : params_{params},
       coarse_{map, field, params.block_m},
-      probes_{params.headings, kProbesKept},
+      probes_{params.headings, seed},
+      watch_{bank,
+             {.images = params.images,
+              .images_a_scan = params.images_a_scan,
+              .probes = params.probes / 2,
+              .slid = params.refined_a_scan,
+              .nearby_m = params.nearby_m,
+              .nearby_rad = params.nearby_rad}},
       search_{search, params.headings},
       bank_{bank},
-      random_{seed},
       elsewhere_prior_{params.elsewhere_prior} {}
 
 void Rivals::start_believing() {
@@ -52,8 +41,10 @@ void Rivals::start_believing() {
 /// And all that was seen.
 void Rivals::forget_places() {
   bank_.clear();
+  watch_.clear();
   stack_.clear();
   novelty_.clear();
+  usual_misfit_.forget();
 }
 
 void Rivals::start_believing_in(const Pose2& found) {
@@ -73,7 +64,7 @@ void Rivals::stop_believing() {
   bank_.stop_believing();
   bank_.set_priors([&](const Pose2& pose) { return log_prior_unbelieved(pose); });
   search_.start();
-  if (report_.beaten) stack_.keep_last(beaten_for_m_);
+  if (report_.beaten) stack_.keep_last(report_.beaten_for_m);
   write_report();
 }
 
@@ -89,14 +80,6 @@ void Rivals::start_anywhere() {
   stop_believing();
 }
 
-double Rivals::share_around(const Pose2& pose) const {
-  double share = 0.0;
-  for (const Place& place : bank_.places().subspan(bank_.believing() ? 1 : 0)) {
-    if (is_within(place.map_from_robot, pose, kAroundM, params_.nearby_rad)) share += place.share;
-  }
-  return share;
-}
-
 bool Rivals::is_near_believed(const Pose2& pose) const {
   return last_believed_ && is_within(pose, *last_believed_, params_.nearby_m, params_.nearby_rad);
 }
@@ -110,7 +93,7 @@ std::optional<Place> Rivals::best_place() const {
   const Place* const best = bank_.reference();
   if (best == nullptr) return std::nullopt;
   Place found = *best;
-  found.share = share_around(best->map_from_robot);
+  found.share = share_around(bank_, best->map_from_robot, params_.nearby_rad);
   return found;
 }
 
@@ -154,6 +137,7 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   const Pose2 motion = last_joined_ ? motion_between(*last_joined_, seen.joined_from_robot) : Pose2{};
   last_joined_ = seen.joined_from_robot;
   bank_.carry(motion);
+  watch_.carry(motion);
   if (last_believed_) last_believed_ = *last_believed_ * motion;
   if (believing_ && seen.map_from_believed) bank_.believe(*seen.map_from_believed);
   if (believing_) last_believed_ = seen.map_from_believed;
@@ -166,11 +150,7 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   bank_.slide(field, ends_, slid, seen.unknown_s);
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
-  if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
-    bank_.weigh(field, ends_, novelty_.weights(ends_, seen.joined_from_robot));
-    since_step_m_ = 0.0;
-    since_step_rad_ = 0.0;
-  }
+  weigh(field, seen);
   if (believing_) probe(field, seen.joined_from_robot);
   if (!believing_ || suspicious_) {
     const std::span<const Pose2> found = search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot,
@@ -206,8 +186,8 @@ void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> pose
     double ahead = ahead_of(its, field, pose, joined);
     double since_carried = 0.0;
     if (believing_ && ahead > 0.0) {
-      since_carried =
-          bank_.params().evidence_beams * ahead_lately(stack_.log_likelihoods(field, pose, joined), its, stack_.size());
+      since_carried = usual_misfit_.telling() * bank_.params().evidence_beams *
+                      ahead_lately(stack_.log_likelihoods(field, pose, joined), its, stack_.size());
     }
     if (believing_) ahead = std::clamp(ahead, -kFarthestBehind, params_.most_ahead);
     bank_.admit({.map_from_robot = pose,
@@ -217,34 +197,41 @@ void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> pose
   }
 }
 
-void Rivals::probe(const LikelihoodField& field, const Pose2& joined) {
-  if (bank_.places().empty()) return;
-  (void)probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
-  probe_nearby_next_ = !probe_nearby_next_;
-  if (probe_nearby_next_) {
-    const std::optional<Pose2> nearby = best_nearby(field);
-    if (nearby) admit_rival(field, *nearby, joined);
-    return;
+/// The scan speaks for or against all places where it tells something new.
+void Rivals::weigh(const LikelihoodField& field, const Seen& seen) {
+  const bool believes = believing_ && !bank_.places().empty();
+  std::span<const float> weights;
+  if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
+    weights = novelty_.weights(ends_, seen.joined_from_robot);
+    if (believes) usual_misfit_.observe(1.0 - explained_share(field, ends_, bank_.places().front().map_from_robot));
+    bank_.weigh(field, ends_, weights, usual_misfit_.telling());
+    since_step_m_ = 0.0;
+    since_step_rad_ = 0.0;
   }
-  for (const Candidate& candidate : probes_.best_apart(1)) admit_rival(field, candidate.map_from_robot, joined);
+  if (!believes) return watch_.clear();
+  watch_.observe({.field = field,
+                  .coarse = coarse_,
+                  .ends = ends_,
+                  .near_ends = near_ends_,
+                  .map_from_believed = bank_.places().front().map_from_robot,
+                  .joined_from_robot = seen.joined_from_robot,
+                  .stack = stack_,
+                  .telling = usual_misfit_.telling(),
+                  .weights = weights,
+                  .unknown_s = seen.unknown_s},
+                 bank_.rivals());
 }
 
-std::optional<Pose2> Rivals::best_nearby(const LikelihoodField& field) {
+void Rivals::probe(const LikelihoodField& field, const Pose2& joined) {
+  if (bank_.places().empty()) return;
+  probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
+  probe_nearby_next_ = !probe_nearby_next_;
   const Pose2 believed = bank_.places().front().map_from_robot;
-  std::optional<Pose2> best;
-  std::int32_t least = std::numeric_limits<std::int32_t>::max();
-  for (int i = 0; i < params_.probes_nearby; ++i) {
-    const double x_m = random_.uniform(-params_.nearby_m, params_.nearby_m);
-    const double y_m = random_.uniform(-params_.nearby_m, params_.nearby_m);
-    const double turn_rad = random_.uniform(-params_.nearby_rad, params_.nearby_rad);
-    const Pose2 tried{believed.x + x_m, believed.y + y_m, wrapped_angle(believed.theta + turn_rad)};
-    if (bank_.knows(tried)) continue;
-    const std::int32_t misfit = misfit_steps(field, ends_, tried);
-    if (misfit >= least) continue;
-    least = misfit;
-    best = tried;
-  }
-  return best;
+  const std::optional<Pose2> found =
+      probe_nearby_next_ ? probes_.best_nearby(field, ends_, bank_, {believed, params_.nearby_m, params_.nearby_rad},
+                                               params_.probes_nearby)
+                         : probes_.best_anywhere();
+  if (found) admit_rival(field, *found, joined);
 }
 
 /// Beside a believed pose only what fits the scan nearly as well is worth following.
@@ -262,8 +249,8 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   if (!nearby) {
     const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
     ahead = ahead_of(owns, field, pose, joined);
-    since_carried =
-        bank_.params().evidence_beams * ahead_lately(stack_.log_likelihoods(field, pose, joined), owns, stack_.size());
+    since_carried = usual_misfit_.telling() * bank_.params().evidence_beams *
+                    ahead_lately(stack_.log_likelihoods(field, pose, joined), owns, stack_.size());
   }
   bank_.admit(
       {.map_from_robot = pose,
@@ -273,48 +260,13 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
 }
 
 void Rivals::write_report() {
-  const std::span<const Place> places = bank_.places();
-  report_ = {};
-  report_.own_known = bank_.believing();
-  report_.unique = report_.own_known;
-  report_.places = places.size();
-  double squared_shares = 0.0;
-  double most_since_carried = 0.0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const Place& place = places[i];
-    squared_shares += place.share * place.share;
-    if (report_.own_known && i == 0) {
-      report_.own_log_evidence = place.log_evidence;
-      report_.own_share = place.share;
-      continue;
-    }
-    list(place);
-    if (report_.own_known &&
-        !is_within(place.map_from_robot, places.front().map_from_robot, params_.nearby_m, params_.nearby_rad)) {
-      most_since_carried = std::max(most_since_carried, place.since_carried);
-    }
-    const double ahead = place.log_evidence - report_.own_log_evidence;
-    if (report_.own_known && ahead > params_.beats_by + held_by_ && place.followed_m >= params_.wins_after_m) {
-      beaten_for_m_ = report_.beaten ? std::max(beaten_for_m_, place.followed_m) : place.followed_m;
-      report_.beaten = true;
-    }
-    report_.unique &= ahead <= -params_.equal_within;
-  }
-  for (std::size_t i = 0; i < report_.listed; ++i) {
-    report_.rivals[i].share_around = share_around(report_.rivals[i].map_from_robot);
-  }
-  const double carried_odds = params_.carried_prior * std::exp(most_since_carried);
-  if (report_.own_known && places.size() > 1) report_.carried_share = carried_odds / (1.0 + carried_odds);
-  report_.effective_places = squared_shares > 0.0 ? 1.0 / squared_shares : 1.0;
-}
-
-/// Among the best others, where it belongs there.
-void Rivals::list(const Place& place) {
-  RivalPlace entry{place.map_from_robot, place.log_evidence, place.share, 0.0, place.followed_m};
-  for (std::size_t rank = 0; rank < report_.listed; ++rank) {
-    if (entry.share > report_.rivals[rank].share) std::swap(entry, report_.rivals[rank]);
-  }
-  if (report_.listed < RivalReport::kListed) report_.rivals[report_.listed++] = entry;
+  report_ = report_on(bank_, watch_.places(),
+                      {.nearby_m = params_.nearby_m,
+                       .nearby_rad = params_.nearby_rad,
+                       .carried_prior = params_.carried_prior,
+                       .beats_by = params_.beats_by + held_by_,
+                       .wins_after_m = params_.wins_after_m,
+                       .equal_within = params_.equal_within});
 }
 
 }  // namespace deltamap::localization

@@ -4,18 +4,19 @@
 // that fits as well as the believed one stays a rival for ever; one that fits clearly better for metres wins.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 
-#include "core/random.hpp"
 #include "localization/coarse_field.hpp"
 #include "localization/global_search.hpp"
-#include "localization/lattice_search.hpp"
+#include "localization/image_watch.hpp"
 #include "localization/place_bank.hpp"
+#include "localization/rival_probes.hpp"
+#include "localization/rival_report.hpp"
 #include "localization/scan_stack.hpp"
 #include "localization/surface_novelty.hpp"
+#include "localization/usual_misfit.hpp"
 
 namespace deltamap::localization {
 
@@ -26,7 +27,7 @@ struct RivalsParams {
   double nearby_rad = radians(20.0);  ///< likewise, rad; > 0
   double nearby_prior = 1e-3;         ///< odds of such a place against the believed one, before any scan; 0..1
   double elsewhere_prior = 1e-5;      ///< odds of any other place: nobody carries robots about; 0..1
-  double carried_prior = 0.01;        ///< odds that it has just been carried to one that fits from then on; 0..1
+  double carried_prior = 0.003;       ///< odds that it has just been carried to one that fits from then on; 0..1
   double prior_after_search = 0.3;    ///< the same where the believed place was not given but found; 0..1
   double kidnapped_prior =
       0.001;  ///< odds of being elsewhere against near, where the believed place has proven wrong; 0..1
@@ -40,30 +41,8 @@ struct RivalsParams {
   double block_m = 0.25;         ///< side of the coarse field's blocks, m; > 0
   int headings = 96;             ///< of the lattice of poses; > 0
   double suspicious_pace = 0.2;  ///< of a search of the whole map while a pose is believed; (0, 1]
-};
-
-/// A place that is not believed, with what speaks for it.
-struct RivalPlace {
-  Pose2 map_from_robot;
-  double log_evidence = 0.0;  ///< ln p(recent scans | there), from independent beams; <= 0
-  double share = 0.0;         ///< of the belief, [0, 1]
-  double share_around = 0.0;  ///< the same of all places within some decimetres of it together
-  double followed_m = 0.0;    ///< driven since it was found
-};
-
-/// The believed place and the best others. All shares, those of places not listed too, sum to 1.
-struct RivalReport {
-  static constexpr std::size_t kListed = 4;
-  bool own_known = false;         ///< false: nothing is believed, the best place leads `rivals`
-  double own_log_evidence = 0.0;  ///< as in RivalPlace
-  double own_share = 0.0;
-  std::array<RivalPlace, kListed> rivals;  ///< best first
-  std::size_t listed = 0;                  ///< of them in use
-  std::size_t places = 0;                  ///< followed in all, the believed one too
-  double effective_places = 1.0;           ///< 1 / Σ share²
-  double carried_share = 0.0;  ///< of belief in the best one, had the robot been carried there lately; [0, 1)
-  bool beaten = false;         ///< one of them explains the recent scans clearly better than the believed place
-  bool unique = false;         ///< no place that is followed explains these about as well
+  int images = 16;               ///< of a place in the map that are remembered; >= 0
+  int images_a_scan = 2;         ///< of them looked at again in a scan; >= 0
 };
 
 class Rivals {
@@ -107,31 +86,30 @@ class Rivals {
  private:
   void forget_places();
   void thin(const Seen& seen);
+  void weigh(const LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
   void probe(const LikelihoodField& field, const Pose2& joined);
   void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined);
   void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
-  [[nodiscard]] std::optional<Pose2> best_nearby(const LikelihoodField& field);
   /// By how much log evidence the scans of the last metres speak for a pose against another, of which they say
   /// `others`. While a pose is believed, only those since the robot may have been carried off: since when they speak
   /// for it most.
   [[nodiscard]] double ahead_of(const ScanStack::Sums& others, const LikelihoodField& field, const Pose2& pose,
                                 const Pose2& joined) const;
-  [[nodiscard]] double share_around(const Pose2& pose) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
-  void list(const Place& place);
 
   RivalsParams params_;
   CoarseField coarse_;
-  LatticeSearch probes_;
+  RivalProbes probes_;
+  ImageWatch watch_;
   GlobalSearch search_;
   PlaceBank bank_;
   ScanStack stack_;
-  Random random_;
   BeamEnds ends_;       // thinned
   BeamEnds near_ends_;  // of these, those that a coarse lattice of headings can place
   SurfaceNovelty novelty_;
+  UsualMisfit usual_misfit_;
   std::optional<Pose2> last_joined_;
   bool believing_ = false;
   bool suspicious_ = false;
@@ -142,7 +120,6 @@ class Rivals {
   double since_step_rad_ = 0.0;
   RivalReport report_;
   double held_by_ = 0.0;
-  double beaten_for_m_ = 0.0;  // so long the place that has beaten the believed one has been followed
 };
 
 }  // namespace deltamap::localization

@@ -52,4 +52,8 @@ class ScanStack {
   std::size_t newest_ = 0;
 };
 
+/// By how much the newest scans speak for a place against another, since when they speak for it most. Older ones lie
+/// too far back for a robot that has just been carried, and among hundreds of places chance favours one. >= 0
+[[nodiscard]] double ahead_lately(const ScanStack::Sums& its, const ScanStack::Sums& others, std::size_t scans);
+
 }  // namespace deltamap::localization

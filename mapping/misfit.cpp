@@ -22,11 +22,12 @@ void Misfit::observe(const TrackedScan& tracked) {
   if (expected < params_.least_expected) return;
   const Shares now{static_cast<double>(belief.stable.short_of + belief.elsewhere.short_of) / expected,
                    static_cast<double>(belief.stable.beyond + belief.elsewhere.beyond) / expected};
-  if (!last_) usual_ = present_ = now;
+  if (!last_) usual_ = lately_ = present_ = now;
   const double passed_s = last_ ? std::max(0.0, seconds(tracked.scan.time - *last_)) : 0.0;
   last_ = tracked.scan.time;
   for (double Shares::*share : {&Shares::short_of, &Shares::beyond}) {
     usual_.*share = approached(usual_.*share, now.*share, passed_s, params_.usual_s);
+    lately_.*share = approached(lately_.*share, now.*share, passed_s, params_.lately_s);
     present_.*share = approached(present_.*share, now.*share, passed_s, params_.present_s);
   }
 }
@@ -44,7 +45,10 @@ bool Misfit::is_worse_than_remembered(double explained) const {
 
 bool Misfit::is_both_ways() const {
   if (usual_.short_of + usual_.beyond > kMostUsual) return false;
-  return std::min(present_.short_of - usual_.short_of, present_.beyond - usual_.beyond) > params_.most_drop_both_ways;
+  const auto both_more_than = [&](const Shares& before) {
+    return std::min(present_.short_of - before.short_of, present_.beyond - before.beyond);
+  };
+  return both_more_than(usual_) > params_.most_drop_both_ways && both_more_than(lately_) > params_.least_at_once;
 }
 
 }  // namespace deltamap::mapping

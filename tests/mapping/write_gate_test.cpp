@@ -179,6 +179,17 @@ TEST(WriteGate, WaitsForProofWhereTheWholeViewHasBecomeAnother) {
   EXPECT_FALSE(gate.trusted_since()) << "nothing was proven";
 }
 
+TEST(WriteGate, TakesNoThingThatComesAndAnotherThatGoesAMomentLaterForAnotherView) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
+  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 0));
+  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 34));
+  EXPECT_EQ(gate.reason(), GateReason::kMisfit);
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
+  EXPECT_TRUE(gate.is_open());
+}
+
 TEST(WriteGate, TakesNoCornerOfAHallThatIsOutOfDateForAnotherPlace) {
   StraightDrive robot;
   WriteGate gate{{}};
