@@ -5,6 +5,11 @@
 #include <utility>
 
 namespace deltamap::mapping::awareness {
+namespace {
+
+constexpr std::uint32_t kMostBetween = 72;  // keyframes: a surface may be met from its other side much later
+
+}  // namespace
 
 void WatchList::forget(std::vector<Region>::iterator region) {
   for (const std::uint32_t index : region->look.blocks) --watchers_[index];
@@ -31,12 +36,14 @@ void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_block
   regions_.push_back(std::move(region));
 }
 
-void WatchList::see(const std::vector<std::uint32_t>& ends) {
+void WatchList::see(std::vector<std::uint32_t> ends) {
+  std::sort(ends.begin(), ends.end());
   for (Region& region : regions_) {
     const std::vector<std::uint32_t>& blocks = region.look.blocks;
-    const bool seen = std::any_of(ends.begin(), ends.end(), [&](std::uint32_t index) {
-      return std::binary_search(blocks.begin(), blocks.end(), index);
-    });
+    const auto first = std::lower_bound(ends.begin(), ends.end(), blocks.front());
+    const auto last = std::upper_bound(first, ends.end(), blocks.back());
+    const bool seen = std::any_of(
+        first, last, [&](std::uint32_t index) { return std::binary_search(blocks.begin(), blocks.end(), index); });
     region.seen += seen ? 1 : 0;
   }
 }
@@ -47,7 +54,7 @@ std::optional<Look> WatchList::due_look() {
   if (due == regions_.end()) return std::nullopt;
   Look look = due->look;
   due->seen = 0;
-  due->next_look *= 3;
+  due->next_look = std::min(3 * due->next_look, kMostBetween);
   if (--due->looks_left == 0) forget(due);
   return look;
 }

@@ -12,9 +12,9 @@
 namespace deltamap::mapping::awareness {
 
 struct WatchParams {
-  std::uint32_t first_look = 8;     ///< keyframes with beams that end in a region until the next look, …
-  std::uint32_t looks = 3;          ///< … so often, after three times as many keyframes each
-  std::uint32_t most_watched = 64;  ///< regions; the oldest goes; at most 255
+  std::uint32_t first_look = 8;      ///< keyframes with beams that end in a region until the next look, …
+  std::uint32_t looks = 30;          ///< … so often, after three times as many keyframes each, up to a limit
+  std::uint32_t most_watched = 250;  ///< regions; the oldest goes; at most 255
 };
 
 /// What is to be looked at now: blocks by index, sorted, and since when their keyframes count.
@@ -35,7 +35,7 @@ class WatchList {
   [[nodiscard]] bool is_watched(Cell block) const { return watchers_[geometry_.index_of(block)] > 0; }
 
   /// The watched blocks in which a keyframe's beams ended.
-  void see(const std::vector<std::uint32_t>& ends);
+  void see(std::vector<std::uint32_t> ends);
 
   /// The first region that enough keyframes have seen.
   [[nodiscard]] std::optional<Look> due_look();

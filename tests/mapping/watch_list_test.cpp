@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a region that has been written is looked at again.
+#include "mapping/awareness/watch_list.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap::mapping::awareness {
+namespace {
+
+class Watched : public testing::Test {
+ protected:
+  /// How many keyframes with these ends there are until the next look; 0: none in a thousand.
+  int keyframes_until_look(const std::vector<std::uint32_t>& ends) {
+    for (int seen = 1; seen <= 1000; ++seen) {
+      list.see(ends);
+      if (list.due_look()) return seen;
+    }
+    return 0;
+  }
+
+  GridGeometry blocks{20, 10, 0.1, {0.0, 0.0}};
+  WatchList list{{.first_look = 8, .looks = 4}, blocks};
+};
+
+TEST_F(Watched, IsLookedAtAgainMuchLaterToo) {
+  list.watch({45, 46}, 0, 0);
+  const int first = keyframes_until_look({46});
+  const int second = keyframes_until_look({46});
+  const int third = keyframes_until_look({46});
+  const int fourth = keyframes_until_look({46});
+  EXPECT_EQ(first, 8);
+  EXPECT_EQ(second, 24);
+  EXPECT_EQ(third, 72);
+  EXPECT_EQ(fourth, 72);  // as many again: the other side of a wall may be seen much later
+}
+
+TEST_F(Watched, IsForgottenAfterItsLooks) {
+  list.watch({45}, 0, 0);
+  for (int look = 0; look < 4; ++look) EXPECT_GT(keyframes_until_look({45}), 0);
+  EXPECT_EQ(keyframes_until_look({45}), 0);
+  EXPECT_FALSE(list.is_watched(blocks.cell_of(45)));
+}
+
+TEST_F(Watched, IsSeenByEndsInItsOwnBlocksAlone) {
+  list.watch({45, 66}, 0, 0);
+  EXPECT_EQ(keyframes_until_look({44, 46, 65, 67}), 0);
+  EXPECT_EQ(keyframes_until_look({67, 66, 3}), 8);  // in any order
+}
+
+TEST_F(Watched, IsEachRegionByItself) {
+  list.watch({45}, 0, 0);
+  list.watch({66}, 0, 0);
+  for (int seen = 0; seen < 7; ++seen) list.see({45});
+  list.see({66});
+  EXPECT_FALSE(list.due_look());
+  list.see({45});
+  const auto look = list.due_look();
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->blocks, (std::vector<std::uint32_t>{45}));
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::awareness
