@@ -18,12 +18,13 @@ SettingKey most_range_key(std::string name, double& judged_m, double& drawn_m) {
 }
 
 void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, double& longest_drawn_m, Keys& keys) {
-  keys.push_back(number_key("mapping.persistence_s", evidence.persistence_s, "s", 0.0, 86400.0,
+  keys.push_back(number_key("mapping.persistence_s", evidence.passing.persistence_s, "s", 0.0, 86400.0,
                             "how long a small free-standing thing, or what toggles, must last to become map"));
   const std::string at = "mapping.evidence.";
   keys.push_back(number_key(at + "face_persistence_s", evidence.face_persistence_s, "s", 0.0, 86400.0,
                             "how long any other difference must last"));
-  keys.push_back(number_key(at + "small_m", evidence.small_m, "m", 0.0, 100.0, "what is wider is no small thing"));
+  keys.push_back(
+      number_key(at + "small_m", evidence.passing.small_m, "m", 0.0, 100.0, "what is wider is no small thing"));
   keys.push_back(number_key(at + "least_votes", evidence.least_votes, "", 0.1, 1000.0, "keyframes that must say so"));
   keys.push_back(number_key(at + "least_added_share", evidence.least_added_share, "", 0.5, 1.0,
                             "of the votes on a block that say added"));

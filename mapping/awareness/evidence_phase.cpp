@@ -2,7 +2,6 @@
 #include "mapping/awareness/evidence_phase.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace deltamap::mapping::awareness {
@@ -48,7 +47,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     waiting_.clear();
     clear_ = ClearSpace{*map_, layer_.cells_per_block()};
     watched_ = WatchList{params_.watch, layer_.blocks()};
-    flips_ = FlipMemory{params_.flips};
+    passing_ = Passing{params_.passing};
     young_ = YoungBlocks{clear_, layer_.cells_per_block()};
     return;
   }
@@ -143,62 +142,6 @@ std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const Blocks& bloc
   return set;
 }
 
-/// Narrow, and away from everything that the map has: a person, a trolley.
-bool EvidencePhase::is_small_and_apart(const std::vector<ProvenBlock>& region) const {
-  if (region.front().question != Question::kAdded) return false;
-  CellBox box = layer_.cells_of(region.front().block);
-  for (const ProvenBlock& proven : region) {
-    const CellBox cells = layer_.cells_of(proven.block);
-    box = {{std::min(box.first.column, cells.first.column), std::min(box.first.row, cells.first.row)},
-           {std::max(box.last.column, cells.last.column), std::max(box.last.row, cells.last.row)}};
-  }
-  if (std::max(box.width(), box.height()) * map_->resolution_m() >= params_.small_m) return false;
-  const CellBox around = grown(box, static_cast<int>(params_.apart_m / map_->resolution_m()), map_->geometry());
-  for (int row = around.first.row; row < around.last.row; ++row) {
-    for (int column = around.first.column; column < around.last.column; ++column) {
-      if ((*map_)[{column, row}] == CellState::kOccupied) return false;
-    }
-  }
-  return true;
-}
-
-/// A surface that comes back half a block beside is the same.
-double EvidencePhase::flips_beyond(Cell block) const {
-  const GridGeometry& blocks = layer_.blocks();
-  double most = -1.0;
-  for (int row = block.row - 1; row <= block.row + 1; ++row) {
-    for (int column = block.column - 1; column <= block.column + 1; ++column) {
-      if (!blocks.contains({column, row})) continue;
-      most = std::max(most, flips_.beyond(static_cast<std::uint32_t>(blocks.index_of({column, row})), now_ms_));
-    }
-  }
-  return most;
-}
-
-/// Not seen for long enough to tell it from what only passes: somebody who stands, a door, a pane that some beams miss.
-/// Who goes on toggling has to last twice as long each time.
-bool EvidencePhase::is_passing(const std::vector<ProvenBlock>& region) const {
-  if (is_young(region)) return false;  // it goes at once, and has to last the longer when it comes again
-  double most_flips = -1.0;
-  std::ptrdiff_t toggling = 0;
-  double longest_s = 0.0;
-  for (const ProvenBlock& proven : region) {
-    const double flips = flips_beyond(proven.block);
-    toggling += flips >= 0.0 ? 1 : 0;
-    most_flips = std::max(most_flips, flips);
-    longest_s = std::max(longest_s, layer_.ballot(proven.question, proven.block, now_ms_).span_s());
-  }
-  if (2 * toggling >= static_cast<std::ptrdiff_t>(region.size()))
-    return longest_s < params_.persistence_s * std::exp2(most_flips);
-  return is_small_and_apart(region) && longest_s < params_.persistence_s;
-}
-
-/// Something that this run itself has written is gone.
-bool EvidencePhase::is_young(const std::vector<ProvenBlock>& region) const {
-  return region.front().question == Question::kRemoved &&
-         std::all_of(region.begin(), region.end(), [&](const ProvenBlock& one) { return young_.is_young(one.block); });
-}
-
 /// Smaller regions are noise, but what is gone may have been small.
 bool EvidencePhase::is_large_enough(const std::vector<ProvenBlock>& region) const {
   if (region.size() >= params_.least_blocks) return true;
@@ -222,7 +165,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
                             [](const ProvenBlock& a, const ProvenBlock& b) { return a.since_ms < b.since_ms; });
     const bool settled = 1e-3 * (now_ms_ - newest->since_ms) >= params_.settle_s ||
                          1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s;
-    if (!settled || !is_large_enough(region) || is_passing(region)) continue;
+    if (!settled || !is_large_enough(region) || passing_.is_passing(region, {*map_, layer_, young_, now_ms_})) continue;
     const Question question = region.front().question;
     Blocks blocks;
     std::uint32_t region_first_ms = now_ms_;
@@ -230,7 +173,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
       region_first_ms = std::min(region_first_ms, layer_.ballot(question, block, now_ms_).first_ms);
       add_verdicts(question, block, set.verdicts);
       blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
-      flips_.note(blocks.back(), question, now_ms_);
+      passing_.note(blocks.back(), question, now_ms_);
       hand_on(question, block);
     }
     sort_unique(blocks);

@@ -13,8 +13,8 @@
 #include "mapping/awareness/beam_votes.hpp"
 #include "mapping/awareness/clear_space.hpp"
 #include "mapping/awareness/evidence_regions.hpp"
-#include "mapping/awareness/flip_memory.hpp"
 #include "mapping/awareness/keyframe_pool.hpp"
+#include "mapping/awareness/passing.hpp"
 #include "mapping/awareness/specks.hpp"
 #include "mapping/awareness/temporary_layer.hpp"
 #include "mapping/awareness/vote_layer.hpp"
@@ -24,13 +24,9 @@
 namespace deltamap::mapping::awareness {
 
 struct EvidencePhaseParams {
-  double persistence_s = 120.0;     ///< votes on a small free-standing thing, or on what toggles, must span at least so
-                                    ///< long; >= 0 (mapping.persistence_s)
-  double small_m = 1.0;             ///< wider is no small thing; >= 0
-  double apart_m = 0.3;             ///< free-standing: farther than this from every surface of the map; >= 0
-  double face_persistence_s = 1.5;  ///< on all else; >= 0
-  double least_votes = 3.0;         ///< keyframes that say so, worn votes not counted; > 0
-  double least_added_share = 0.8;   ///< of the votes on a block that say "added"; (0.5, 1]
+  double face_persistence_s = 1.5;   ///< votes on what does not only pass must span at least so long; >= 0
+  double least_votes = 3.0;          ///< keyframes that say so, worn votes not counted; > 0
+  double least_added_share = 0.8;    ///< of the votes on a block that say "added"; (0.5, 1]
   double least_removed_share = 0.8;  ///< of the votes on a block that say "removed"; (0.5, 1]
   int reach_blocks = 2;              ///< proven blocks at most so far apart are one region; >= 1
   std::uint32_t least_blocks = 3;    ///< a smaller region is a speck and waits; >= 1
@@ -44,7 +40,7 @@ struct EvidencePhaseParams {
   VoteLayerParams votes;
   KeyframeParams keyframes;
   WatchParams watch;
-  FlipParams flips;
+  PassingParams passing;
   SpeckParams specks;
   TemporaryParams temporary;
 };
@@ -66,11 +62,7 @@ class EvidencePhase {
  private:
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void count_beams();
-  [[nodiscard]] double flips_beyond(Cell block) const;
-  [[nodiscard]] bool is_young(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
-  [[nodiscard]] bool is_passing(const std::vector<ProvenBlock>& region) const;
-  [[nodiscard]] bool is_small_and_apart(const std::vector<ProvenBlock>& region) const;
   void cast(const Votes& votes);
   [[nodiscard]] bool is_proven(Question question, Cell block) const;
   [[nodiscard]] double least_share(Question question) const;
@@ -92,7 +84,7 @@ class EvidencePhase {
   BeamVotes votes_;
   std::vector<std::uint8_t> joined_;  // a flag a block: belongs to the region that is being handed on
   WatchList watched_;
-  FlipMemory flips_;
+  Passing passing_;
   Specks specks_;
   YoungBlocks young_;
   std::optional<Timestamp> start_;

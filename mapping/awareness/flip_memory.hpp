@@ -13,7 +13,7 @@ namespace deltamap::mapping::awareness {
 
 struct FlipParams {
   double half_life_s = 900.0;        ///< of a flip's weight; > 0
-  double toggles_from = 1.5;         ///< flips, the old ones worn, from which on a block toggles; > 0
+  double toggles_from = 2.5;         ///< flips, the old ones worn, from which on a block toggles; > 0
   std::uint32_t most_blocks = 8192;  ///< remembered, some 40 bytes each; beyond, all that is worn is forgotten
 };
 
