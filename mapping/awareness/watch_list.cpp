@@ -7,7 +7,7 @@
 namespace deltamap::mapping::awareness {
 namespace {
 
-constexpr std::uint32_t kMostBetween = 72;  // keyframes: a surface may be met from its other side much later
+constexpr std::uint32_t kMostBetween = 40;  // keyframes: a surface may be met from its other side much later
 
 }  // namespace
 

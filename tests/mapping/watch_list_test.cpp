@@ -30,8 +30,8 @@ TEST_F(Watched, IsLookedAtAgainMuchLaterToo) {
   const int fourth = keyframes_until_look({46});
   EXPECT_EQ(first, 8);
   EXPECT_EQ(second, 24);
-  EXPECT_EQ(third, 72);
-  EXPECT_EQ(fourth, 72);  // as many again: the other side of a wall may be seen much later
+  EXPECT_EQ(third, 40);
+  EXPECT_EQ(fourth, 40);  // as many again: the other side of a wall may be seen much later
 }
 
 TEST_F(Watched, IsForgottenAfterItsLooks) {
