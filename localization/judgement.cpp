@@ -13,7 +13,7 @@ PoseJudge::Shares shares_in(const RivalReport& report) {
     const RivalPlace& rival = report.rivals.front();
     const bool carried = report.carried_share > rival.share;
     return {.believed = report.own_share,
-            .best_rival = report.listed > 0 ? std::max(rival.share, report.carried_share) : 0.0,
+            .best_rival = std::max(rival.share, report.carried_share),  // one of them may be watched, not listed
             .map_from_rival = carried ? report.map_from_carried : rival.map_from_robot,
             .beaten = report.beaten,
             .unique = report.unique};

@@ -68,9 +68,8 @@ RivalReport report_on(const PlaceBank& bank, const PlaceBank& watched, const Riv
       if (carried == nullptr || says(place) > says(*carried)) carried = &place;
     }
   }
-  if (carried == nullptr) return report;
-  const double carried_odds = rules.carried_prior * std::exp(says(*carried));
-  report.carried_share = carried_odds / (1.0 + carried_odds);
+  if (carried == nullptr || says(*carried) <= 0.0) return report;
+  report.carried_share = rules.carried_prior / (rules.carried_prior + std::exp(-says(*carried)));
   report.map_from_carried = carried->map_from_robot;
   return report;
 }

@@ -53,6 +53,7 @@ void Rivals::start_believing_in(const Pose2& found) {
   if (!is_near_believed(found)) {
     elsewhere_prior_ = params_.prior_after_search;
     stack_.clear();  // its scans are from before the robot was carried off
+    usual_misfit_.forget();
     bank_.set_priors([](const Pose2&) { return 0.0; });
   }
   bank_.believe_among(found);

@@ -100,10 +100,12 @@ std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlo
     return ballot.yes >= static_cast<float>(least_votes) && ballot.share() >= least_share(question);
   };
   for (const ProvenBlock& proven : region) join(proven.block);
-  for (std::size_t next = 0; next < joined.size(); ++next) {
+  std::size_t next = 0;
+  while (next < joined.size()) {
+    const Cell middle = joined[next++];
     for (int row = -params_.reach_blocks; row <= params_.reach_blocks; ++row) {
       for (int column = -params_.reach_blocks; column <= params_.reach_blocks; ++column) {
-        const Cell block{joined[next].column + column, joined[next].row + row};
+        const Cell block{middle.column + column, middle.row + row};
         if (blocks.contains(block) && is_voted_for(block)) join(block);
       }
     }

@@ -17,7 +17,7 @@ void WatchList::forget(std::vector<Region>::iterator region) {
 }
 
 void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms) {
-  if (params_.looks == 0 || params_.most_watched == 0) return;
+  if (blocks.empty() || params_.looks == 0 || params_.most_watched == 0) return;
   if (regions_.size() >= params_.most_watched) forget(regions_.begin());
   Region region{{{}, first_ms}, 0, params_.first_look, params_.looks};
   std::vector<std::uint32_t>& wide = region.look.blocks;

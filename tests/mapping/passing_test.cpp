@@ -62,7 +62,7 @@ TEST_F(Passes, NoPartOfAFaceWithUnknownGroundBehindIt) {
 }
 
 TEST_F(Passes, ASmallThingOnKnownFloorWithALittleUnknownBesideIt) {
-  fill_rows(47, 48, CellState::kUnknown);
+  fill_rows(45, 46, CellState::kUnknown);
   EXPECT_TRUE(is_passing(voted(Question::kAdded, 5, 5)));
 }
 
@@ -72,6 +72,7 @@ TEST_F(Passes, WhatGoesOnTogglingTwiceAsLongEachTime) {
   note_flips(seconds_5, 6);
   EXPECT_TRUE(is_passing(seconds_5));
   EXPECT_TRUE(is_passing(voted(Question::kRemoved, 5, 130)));
+  EXPECT_FALSE(is_passing(voted(Question::kRemoved, 5, 700)));  // 5 flips: 2.5 past the limit, 679 s
 }
 
 }  // namespace
