@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kLeastOpaqueCells = 10;  // of a surface
 constexpr int kDrawnAheadPasses = 8;
-constexpr int kDrawnAheadReach = 3;  // cells
+constexpr int kDrawnAheadReach = 3;       // cells
 constexpr double kDrawnAheadShare = 0.1;  // of the beams, and of the hits behind
 constexpr int kRemnantReach = 2;          // cells from what has been freed
 constexpr int kRemnantCells = 6;          // larger groups are none
