@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "localization/global_search.hpp"
-#include "localization/rival_report.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -26,6 +25,7 @@ ImageWatch::ImageWatch(const PlaceBankParams& bank, const Effort& effort)
 
 void ImageWatch::observe(const Seen& seen, std::span<const Place> followed) {
   bank_.believe(seen.map_from_believed);
+  own_fit_ = mean_log_likelihood(seen.field, seen.ends, {}, seen.map_from_believed);
   bank_.slide(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
   if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.telling);
   note(followed, seen.map_from_believed);
@@ -44,11 +44,10 @@ void ImageWatch::note(std::span<const Place> followed, const Pose2& map_from_bel
 }
 
 void ImageWatch::look_again(const Seen& seen) {
-  const double own = mean_log_likelihood(seen.field, seen.ends, {}, seen.map_from_believed);
   for (int i = 0; i < effort_.images_a_scan; ++i) {
     const std::optional<Pose2> there = images_.next(seen.map_from_believed);
     if (!there || bank_.knows(*there)) continue;
-    if (mean_log_likelihood(seen.field, seen.ends, {}, *there) < own - kBeforeItIsSlid) continue;
+    if (mean_log_likelihood(seen.field, seen.ends, {}, *there) < own_fit_ - kBeforeItIsSlid) continue;
     admit(*there, seen);
   }
 }
@@ -74,13 +73,11 @@ void ImageWatch::probe(const Seen& seen) {
 void ImageWatch::admit(const Pose2& rough, const Seen& seen) {
   const Pose2 pose = settled(seen.field, seen.ends, rough);
   if (bank_.knows(pose) || is_within(pose, seen.map_from_believed, effort_.nearby_m, effort_.nearby_rad)) return;
-  const double own = mean_log_likelihood(seen.field, seen.ends, {}, seen.map_from_believed);
-  if (mean_log_likelihood(seen.field, seen.ends, {}, pose) < own - kFitsNearlyAsWell) return;
+  if (mean_log_likelihood(seen.field, seen.ends, {}, pose) < own_fit_ - kFitsNearlyAsWell) return;
   const double ahead =
       bank_.params().evidence_beams *
-      ahead_lately(seen.stack.log_likelihoods(seen.field, pose, seen.joined_from_robot),
-                   seen.stack.log_likelihoods(seen.field, seen.map_from_believed, seen.joined_from_robot),
-                   seen.stack.size());
+      seen.stack.ahead_lately(seen.stack.log_likelihoods(seen.field, pose, seen.joined_from_robot),
+                              seen.stack.log_likelihoods(seen.field, seen.map_from_believed, seen.joined_from_robot));
   const Comparison now = compared(seen.field, seen.ends, {}, pose, seen.map_from_believed, 1.0);
   bank_.admit({.map_from_robot = pose,
                .log_evidence = bank_.places().front().log_evidence + ahead,

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "localization/coarse_field.hpp"
@@ -61,7 +60,8 @@ class ImageWatch {
   PlaceBank bank_;
   PlaceImages images_;
   LatticeSearch lattice_;
-  BeamEnds turned_;  // to the believed heading
+  BeamEnds turned_;       // to the believed heading
+  double own_fit_ = 0.0;  // mean ln p(z) of the scan at the believed pose
 };
 
 }  // namespace deltamap::localization

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/points_in_map.hpp"
 #include "localization/weighing.hpp"
 
 namespace deltamap::localization {
@@ -11,16 +12,17 @@ namespace {
 
 double odds_of(const Place& place) { return place.log_evidence + place.log_prior; }
 
+std::uint8_t steps_at_end(const LikelihoodField& field, const PointsInMap& in_map, const BeamEnds& ends,
+                          std::size_t i) {
+  return field.steps_at(field.geometry().cell_at(in_map(Eigen::Vector2f{ends.x_m[i], ends.y_m[i]})));
+}
+
 double weighted_mean(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
                      const Pose2& pose) {
-  const double c = std::cos(pose.theta);
-  const double s = std::sin(pose.theta);
+  const PointsInMap in_map{pose};
   double sum = 0.0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    const auto x_m = static_cast<double>(ends.x_m[i]);
-    const auto y_m = static_cast<double>(ends.y_m[i]);
-    const Point2 end{pose.x + c * x_m - s * y_m, pose.y + s * x_m + c * y_m};
-    sum += static_cast<double>(weights[i]) * field.steps_at(field.geometry().cell_at(end));
+    sum += static_cast<double>(weights[i]) * steps_at_end(field, in_map, ends, i);
   }
   return -LikelihoodField::kStep * sum / static_cast<double>(ends.size());
 }
@@ -36,17 +38,21 @@ double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends, s
 
 Comparison compared(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
                     const Pose2& place, const Pose2& other, double evidence_beams) {
+  const PointsInMap from_place{place};
+  const PointsInMap from_other{other};
   Comparison result;
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    const Point2 end{static_cast<double>(ends.x_m[i]), static_cast<double>(ends.y_m[i])};
-    const int more =
-        field.steps_at(field.geometry().cell_at(other * end)) - field.steps_at(field.geometry().cell_at(place * end));
+    const int more = steps_at_end(field, from_other, ends, i) - steps_at_end(field, from_place, ends, i);
     const double weight = weights.empty() ? 1.0 : static_cast<double>(weights[i]);
     (more > 0 ? result.gained : result.lost) += weight * std::abs(more);
   }
   const double of_a_step =
       evidence_beams * LikelihoodField::kStep / static_cast<double>(std::max<std::size_t>(1, ends.size()));
   return {of_a_step * result.gained, of_a_step * result.lost};
+}
+
+bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad) {
+  return distance_between(pose, other) < distance_m && std::abs(turn_between(pose.theta, other.theta)) < turn_rad;
 }
 
 PlaceBank::PlaceBank(const PlaceBankParams& params) : params_{params} {

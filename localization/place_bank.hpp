@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,6 +52,8 @@ struct Comparison {
 /// From `evidence_beams` independent beams.
 [[nodiscard]] Comparison compared(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
                                   const Pose2& place, const Pose2& other, double evidence_beams);
+
+[[nodiscard]] bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad);
 
 class PlaceBank {
  public:

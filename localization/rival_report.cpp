@@ -26,10 +26,6 @@ void list(const Place& place, RivalReport& report) {
 
 }  // namespace
 
-bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad) {
-  return distance_between(pose, other) < distance_m && std::abs(turn_between(pose.theta, other.theta)) < turn_rad;
-}
-
 double share_around(const PlaceBank& bank, const Pose2& pose, double turn_rad) {
   double share = 0.0;
   for (const Place& place : bank.rivals()) {

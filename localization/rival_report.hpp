@@ -53,6 +53,4 @@ struct RivalRules {
 /// Share of the belief of all places about the pose, the believed one left out.
 [[nodiscard]] double share_around(const PlaceBank& bank, const Pose2& pose, double turn_rad);
 
-[[nodiscard]] bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad);
-
 }  // namespace deltamap::localization

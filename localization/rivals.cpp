@@ -164,9 +164,7 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   return report_;
 }
 
-double Rivals::ahead_of(const ScanStack::Sums& others, const LikelihoodField& field, const Pose2& pose,
-                        const Pose2& joined) const {
-  const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
+double Rivals::ahead_of(const ScanStack::Sums& its, const ScanStack::Sums& others) const {
   double ahead = 0.0;
   for (std::size_t k = 0; k < stack_.size(); ++k) {
     const double since_then = its[k] - others[k];
@@ -175,26 +173,27 @@ double Rivals::ahead_of(const ScanStack::Sums& others, const LikelihoodField& fi
   return bank_.params().evidence_beams * ahead;
 }
 
+double Rivals::since_carried(const ScanStack::Sums& its, const ScanStack::Sums& others) const {
+  if (!believing_) return 0.0;
+  return usual_misfit_.telling() * bank_.params().evidence_beams * stack_.ahead_lately(its, others);
+}
+
 void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined) {
   constexpr double kJustFoundM = 0.5;
   const Place* const best = bank_.reference();
   const bool proven = best != nullptr && best->followed_m > kJustFoundM;  // then no newcomer starts ahead of it
   const Pose2 held_against = best != nullptr ? best->map_from_robot : poses.front();
-  const ScanStack::Sums its = stack_.log_likelihoods(field, held_against, joined);
+  const ScanStack::Sums others = stack_.log_likelihoods(field, held_against, joined);
   const double base = best != nullptr ? best->log_evidence : 0.0;
   for (const Pose2& pose : poses) {
     if (bank_.knows(pose)) continue;
-    double ahead = ahead_of(its, field, pose, joined);
-    double since_carried = 0.0;
-    if (believing_ && ahead > 0.0) {
-      since_carried = usual_misfit_.telling() * bank_.params().evidence_beams *
-                      ahead_lately(stack_.log_likelihoods(field, pose, joined), its, stack_.size());
-    }
+    const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
+    double ahead = ahead_of(its, others);
     if (believing_) ahead = std::clamp(ahead, -kFarthestBehind, params_.most_ahead);
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + (proven && !believing_ ? std::min(0.0, ahead) : ahead),
                  .log_prior = log_prior_unbelieved(pose) + (proven ? kOverlooked : 0.0),
-                 .since_carried = since_carried});
+                 .since_carried = since_carried(its, others)});
   }
 }
 
@@ -244,20 +243,18 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
       mean_log_likelihood(field, ends_, {}, pose) - mean_log_likelihood(field, ends_, {}, own.map_from_robot);
   if (gain < -kFitsNearlyAsWell) return;
   const bool nearby = is_within(pose, own.map_from_robot, params_.nearby_m, params_.nearby_rad);
-  double ahead = bank_.params().evidence_beams * gain;
-  // A slip lies behind a nearby place: before it, the scans say nothing of it.
-  double since_carried = 0.0;
-  if (!nearby) {
-    const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
-    ahead = ahead_of(owns, field, pose, joined);
-    since_carried = usual_misfit_.telling() * bank_.params().evidence_beams *
-                    ahead_lately(stack_.log_likelihoods(field, pose, joined), owns, stack_.size());
+  if (nearby) {  // a slip lies behind it: before that, the scans say nothing of it
+    const double ahead = std::clamp(bank_.params().evidence_beams * gain, -kFarthestBehind, 0.0);
+    return bank_.admit({.map_from_robot = pose,
+                        .log_evidence = own.log_evidence + ahead,
+                        .log_prior = std::log(params_.nearby_prior)});
   }
-  bank_.admit(
-      {.map_from_robot = pose,
-       .log_evidence = own.log_evidence + std::clamp(ahead, -kFarthestBehind, nearby ? 0.0 : params_.most_ahead),
-       .log_prior = std::log(nearby ? params_.nearby_prior : elsewhere_prior_),
-       .since_carried = since_carried});
+  const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
+  const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
+  bank_.admit({.map_from_robot = pose,
+               .log_evidence = own.log_evidence + std::clamp(ahead_of(its, owns), -kFarthestBehind, params_.most_ahead),
+               .log_prior = std::log(elsewhere_prior_),
+               .since_carried = since_carried(its, owns)});
 }
 
 void Rivals::write_report() {

@@ -91,11 +91,11 @@ class Rivals {
   void probe(const LikelihoodField& field, const Pose2& joined);
   void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined);
   void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
-  /// By how much log evidence the scans of the last metres speak for a pose against another, of which they say
-  /// `others`. While a pose is believed, only those since the robot may have been carried off: since when they speak
-  /// for it most.
-  [[nodiscard]] double ahead_of(const ScanStack::Sums& others, const LikelihoodField& field, const Pose2& pose,
-                                const Pose2& joined) const;
+  /// By how much log evidence the scans of the last metres speak for a pose, of which they say `its`, against another.
+  /// While a pose is believed, only those since the robot may have been carried off: since when they speak for it most.
+  [[nodiscard]] double ahead_of(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
+  /// Likewise what a place brings with it, had the robot been carried there lately; 0 where nothing is believed.
+  [[nodiscard]] double since_carried(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
 

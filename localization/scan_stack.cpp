@@ -46,10 +46,10 @@ ScanStack::Sums ScanStack::log_likelihoods(const LikelihoodField& field, const P
   return sums;
 }
 
-double ahead_lately(const ScanStack::Sums& its, const ScanStack::Sums& others, std::size_t scans) {
+double ScanStack::ahead_lately(const Sums& its, const Sums& others) const {
   constexpr std::size_t kLately = 6;
   double ahead = 0.0;
-  for (std::size_t k = 0; k < std::min(scans, kLately); ++k) ahead = std::max(ahead, its[k] - others[k]);
+  for (std::size_t k = 0; k < std::min(count_, kLately); ++k) ahead = std::max(ahead, its[k] - others[k]);
   return ahead;
 }
 

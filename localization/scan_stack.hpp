@@ -37,6 +37,10 @@ class ScanStack {
   [[nodiscard]] Sums log_likelihoods(const LikelihoodField& field, const Pose2& map_from_robot,
                                      const Pose2& joined_from_robot) const;
 
+  /// By how much the newest scans speak for a place against another, since when they speak for it most. Older ones lie
+  /// too far back for a robot that has just been carried, and among hundreds of places chance favours one. >= 0
+  [[nodiscard]] double ahead_lately(const Sums& its, const Sums& others) const;
+
  private:
   struct Kept {
     BeamEnds ends;
@@ -51,9 +55,5 @@ class ScanStack {
   std::size_t count_ = 0;
   std::size_t newest_ = 0;
 };
-
-/// By how much the newest scans speak for a place against another, since when they speak for it most. Older ones lie
-/// too far back for a robot that has just been carried, and among hundreds of places chance favours one. >= 0
-[[nodiscard]] double ahead_lately(const ScanStack::Sums& its, const ScanStack::Sums& others, std::size_t scans);
 
 }  // namespace deltamap::localization
