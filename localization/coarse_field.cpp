@@ -3,10 +3,18 @@
 #include "localization/coarse_field.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
 namespace deltamap::localization {
+namespace {
+
+constexpr std::int16_t kFarthest = 16000;  // blocks; the map's border is nearer
+constexpr auto kBeforeColumns = static_cast<std::int16_t>(-CoarseField::kAtOnce);
+constexpr std::int16_t kBeforeRows = -1;
+
+}  // namespace
 
 CoarseField::CoarseField(const OccupancyGrid& map, const LikelihoodField& field, double block_m)
     : cells_a_block_{std::max(1, static_cast<int>(std::lround(block_m / map.resolution_m())))},
@@ -73,25 +81,40 @@ Point2 CoarseField::centre_of(std::uint32_t block) const {
 }
 
 TurnedBeams turned_beams(const BeamEnds& ends, double heading_rad, double block_m) {
-  constexpr double kFarthest = 16000.0;  // blocks; the map's border is nearer
   TurnedBeams beams;
   beams.count = std::min(ends.size(), TurnedBeams::kMost);
   const double c = std::cos(heading_rad) / block_m;
   const double s = std::sin(heading_rad) / block_m;
-  const auto whole = [kFarthest](double blocks) {
-    return static_cast<std::int16_t>(std::clamp(std::floor(blocks + 0.5), -kFarthest, kFarthest));
+  const auto whole = [](double blocks) {
+    return static_cast<std::int16_t>(std::clamp<double>(std::floor(blocks + 0.5), -kFarthest, kFarthest));
   };
-  std::size_t i = 0;
-  for (const std::size_t first : {0u, 2u, 1u, 3u}) {  // those looked at early shall see all sides
-    for (std::size_t nth = first; nth < beams.count; nth += 4, ++i) {
-      const std::size_t from = nth * ends.size() / beams.count;
-      const auto x_m = static_cast<double>(ends.x_m[from]);
-      const auto y_m = static_cast<double>(ends.y_m[from]);
-      beams.columns[i] = whole(c * x_m - s * y_m);
-      beams.rows[i] = whole(s * x_m + c * y_m);
-    }
+  for (std::size_t i = 0; i < beams.count; ++i) {
+    const std::size_t from = i * ends.size() / beams.count;
+    const auto x_m = static_cast<double>(ends.x_m[from]);
+    const auto y_m = static_cast<double>(ends.y_m[from]);
+    beams.columns[i] = whole(c * x_m - s * y_m);
+    beams.rows[i] = whole(s * x_m + c * y_m);
   }
   return beams;
+}
+
+/// In 16 bits throughout: eight beams an instruction.
+CoarseField::Places CoarseField::places_of(const TurnedBeams& beams, int column, int row) const {
+  assert(std::max(columns_, rows_) < kFarthest && "a beam's block must fit 16 bits");
+  const auto own_column = static_cast<std::int16_t>(column);
+  const auto own_row = static_cast<std::int16_t>(row);
+  const auto beyond_column = static_cast<std::int16_t>(columns_);
+  const auto beyond_row = static_cast<std::int16_t>(rows_);
+  const auto width = static_cast<std::int16_t>(padded_columns());
+  Places places;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto x = static_cast<std::int16_t>(own_column + beams.columns[i]);
+    const auto y = static_cast<std::int16_t>(own_row + beams.rows[i]);
+    const std::int16_t in_column = std::clamp(x, kBeforeColumns, beyond_column);
+    const std::int16_t in_row = std::clamp(y, kBeforeRows, beyond_row);
+    places[i] = (in_row + 1) * width + in_column + kAtOnce;
+  }
+  return places;
 }
 
 CoarseMisfits coarse_misfits(const CoarseField& field, const TurnedBeams& beams, std::uint32_t block) {
@@ -99,9 +122,10 @@ CoarseMisfits coarse_misfits(const CoarseField& field, const TurnedBeams& beams,
   const auto columns = static_cast<std::uint32_t>(field.columns());
   const auto own_column = static_cast<int>(block % columns);
   const auto own_row = static_cast<int>(block / columns);
+  const CoarseField::Places places = field.places_of(beams, own_column, own_row);
   CoarseMisfits sums{};
   for (std::size_t beam = 0; beam < beams.count; ++beam) {
-    const std::uint8_t* const steps = field.from(own_column + beams.columns[beam], own_row + beams.rows[beam]);
+    const std::uint8_t* const steps = field.bytes() + places[beam];
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = static_cast<std::uint16_t>(sums[i] + steps[i]);
   }
   return sums;

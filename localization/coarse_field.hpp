@@ -17,6 +17,14 @@
 
 namespace deltamap::localization {
 
+/// A few beams of a scan turned to one heading, as whole blocks from the block that the robot stands in.
+struct TurnedBeams {
+  static constexpr std::size_t kMost = 32;
+  std::array<std::int16_t, kMost> columns{};
+  std::array<std::int16_t, kMost> rows{};
+  std::size_t count = 0;
+};
+
 class CoarseField {
  public:
   /// Blocks of about `block_m`; at least one cell.
@@ -39,6 +47,10 @@ class CoarseField {
     return bytes_.data() + static_cast<std::ptrdiff_t>(std::clamp(row, -1, rows_) + 1) * padded_columns() +
            std::clamp(column, -kAtOnce, columns_) + kAtOnce;
   }
+  /// The same for all beams of a robot in the block, as places in bytes(). Of beams beyond the count: any place.
+  using Places = std::array<std::int32_t, TurnedBeams::kMost>;
+  [[nodiscard]] Places places_of(const TurnedBeams& beams, int column, int row) const;
+  [[nodiscard]] const std::uint8_t* bytes() const { return bytes_.data(); }
   [[nodiscard]] Point2 origin() const { return origin_; }
 
  private:
@@ -57,13 +69,6 @@ class CoarseField {
   std::vector<std::uint32_t> free_blocks_;
 };
 
-/// A few beams of a scan turned to one heading, as whole blocks from the block that the robot stands in.
-struct TurnedBeams {
-  static constexpr std::size_t kMost = 32;
-  std::array<std::int16_t, kMost> columns{};
-  std::array<std::int16_t, kMost> rows{};
-  std::size_t count = 0;
-};
 [[nodiscard]] TurnedBeams turned_beams(const BeamEnds& ends, double heading_rad, double block_m);
 
 /// Sums of the field's steps over the beams with the robot in the middle of the block, and of those to its right.
