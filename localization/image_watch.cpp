@@ -26,7 +26,7 @@ ImageWatch::ImageWatch(const PlaceBankParams& bank, const Effort& effort)
 void ImageWatch::observe(const Seen& seen, std::span<const Place> followed) {
   bank_.believe(seen.map_from_believed);
   own_fit_ = mean_log_likelihood(seen.field, seen.ends, {}, seen.map_from_believed);
-  bank_.slide(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
+  bank_.slide_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
   if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.telling);
   note(followed, seen.map_from_believed);
   note(bank_.rivals(), seen.map_from_believed);
@@ -65,6 +65,7 @@ void ImageWatch::probe(const Seen& seen) {
   }
   (void)lattice_.look(seen.coarse, turned_, static_cast<std::size_t>(std::max(0, effort_.probes)));
   for (const Candidate& candidate : lattice_.best_apart(1)) {
+    if (!may_reach(candidate, own_fit_ - kFitsNearlyAsWell)) continue;
     const Pose2& at = candidate.map_from_robot;
     admit({at.x, at.y, wrapped_angle(at.theta + heading_rad)}, seen);
   }
@@ -81,6 +82,7 @@ void ImageWatch::admit(const Pose2& rough, const Seen& seen) {
   const Comparison now = compared(seen.field, seen.ends, {}, pose, seen.map_from_believed, 1.0);
   bank_.admit({.map_from_robot = pose,
                .log_evidence = bank_.places().front().log_evidence + ahead,
+               .log_prior = std::log(effort_.prior),
                .since_carried = seen.telling * ahead,
                .lost_since = now.gained > 0.0 ? seen.telling * ahead * now.lost / now.gained : 0.0});
 }

@@ -22,9 +22,10 @@ class ImageWatch {
     int images = 16;           ///< that are remembered; >= 0
     int images_a_scan = 2;     ///< of them looked at again in a scan; >= 0
     int probes = 400;          ///< poses turned by right angles that are looked at in a scan; >= 0
-    int slid = 4;              ///< places that are slid to their best fit in a scan; >= 0
+    int slid = 4;              ///< places that are slid to their best fit in a scan, beside those that come close; >= 0
     double nearby_m = 1.5;     ///< no image of the believed pose but a slip, m; > 0
     double nearby_rad = 0.35;  ///< and turned less; > 0
+    double prior = 0.003;      ///< odds of one against the believed pose, before any scan; 0..1
   };
   ImageWatch(const PlaceBankParams& bank, const Effort& effort);
 
@@ -37,7 +38,7 @@ class ImageWatch {
     const CoarseField& coarse;
     const BeamEnds& ends;
     const BeamEnds& near_ends;  ///< that a coarse lattice can place
-    Pose2 map_from_believed;
+    Pose2 map_from_believed;    ///< slid to where the scan fits, as its images will be
     Pose2 joined_from_robot;
     const ScanStack& stack;
     double telling = 1.0;              ///< how much beams that miss say, [0, 1]

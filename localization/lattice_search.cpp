@@ -30,6 +30,11 @@ std::uint32_t next_row(std::uint32_t block, int columns) {
 
 }  // namespace
 
+bool may_reach(const Candidate& candidate, double fit) {
+  constexpr double kBetterThanItsBlock = 0.35;  // by headings and blocks that the lattice leaves out
+  return -LikelihoodField::kStep * candidate.misfit / std::max(1U, candidate.beams) >= fit - kBetterThanItsBlock;
+}
+
 LatticeSearch::LatticeSearch(int headings, std::size_t most)
     : headings_{static_cast<std::size_t>(std::max(1, headings))}, stride_{spreading_stride(headings_)}, most_{most} {
   best_.reserve(most_);
@@ -71,7 +76,8 @@ bool LatticeSearch::look(const CoarseField& field, const BeamEnds& ends, std::si
         const Point2 at = field.centre_of(blocks[next_block_]);
         keep({{at.x(), at.y(), heading},
               misfit,
-              static_cast<std::uint32_t>(next_heading_ * blocks.size() + next_block_)});
+              static_cast<std::uint32_t>(next_heading_ * blocks.size() + next_block_),
+              static_cast<std::uint32_t>(beams.count)});
       }
     }
     if (next_block_ < blocks.size()) continue;

@@ -16,7 +16,12 @@ struct Candidate {
   Pose2 map_from_robot;
   std::int32_t misfit = 0;   ///< on the coarse field
   std::uint32_t number = 0;  ///< in the lattice; decides between equals
+  std::uint32_t beams = 0;   ///< that the misfit is of
 };
+
+/// May the scan fit so well (mean ln p(z)) about there? Few poses, slid to their best, fit much better than their
+/// block.
+[[nodiscard]] bool may_reach(const Candidate& candidate, double fit);
 
 class LatticeSearch {
  public:

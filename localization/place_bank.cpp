@@ -104,12 +104,16 @@ void PlaceBank::slide(Place& place, const LikelihoodField& field, const BeamEnds
 }
 
 void PlaceBank::slide(const LikelihoodField& field, const BeamEnds& ends, std::size_t count, double unknown_s) {
+  // The believed one too: places slid to their best fit would beat it by a hair at each scan.
+  if (believing_ && !places_.empty() && ends.size() > 0) slide(places_.front(), field, ends, unknown_s);
+  slide_others(field, ends, count, unknown_s);
+}
+
+void PlaceBank::slide_others(const LikelihoodField& field, const BeamEnds& ends, std::size_t count, double unknown_s) {
   constexpr double kClose = 5.0;
   const std::size_t first = believing_ ? 1 : 0;
   if (places_.empty() || ends.size() == 0) return;
   const double close = odds_of(*reference()) - kClose;
-  // The believed one too: places slid to their best fit would beat it by a hair at each scan.
-  if (believing_) slide(places_.front(), field, ends, unknown_s);
   const std::size_t others = places_.size() - first;
   if (others == 0) return;
   for (std::size_t i = 0; i < others; ++i) {

@@ -89,8 +89,10 @@ class PlaceBank {
   void stop_believing() { believing_ = false; }
 
   void carry(const Pose2& motion);
-  /// Slides `count` places, a round after the other, those that come close to the best one always.
+  /// Slides `count` places, a round after the other, those that come close to the best one and the believed one always.
   void slide(const LikelihoodField& field, const BeamEnds& ends, std::size_t count, double unknown_s);
+  /// Likewise, but for the believed one.
+  void slide_others(const LikelihoodField& field, const BeamEnds& ends, std::size_t count, double unknown_s);
   /// Once for each decorrelated scan. `telling`: how much of it counts as evidence since the robot may have been
   /// carried, [0, 1].
   void weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights, double telling = 1.0);

@@ -19,8 +19,10 @@ void RivalProbes::look(const CoarseField& coarse, const BeamEnds& ends, std::siz
   (void)lattice_.look(coarse, ends, count);
 }
 
-std::optional<Pose2> RivalProbes::best_anywhere() {
-  for (const Candidate& candidate : lattice_.best_apart(1)) return candidate.map_from_robot;
+std::optional<Pose2> RivalProbes::best_anywhere(double fit) {
+  for (const Candidate& candidate : lattice_.best_apart(1)) {
+    if (may_reach(candidate, fit)) return candidate.map_from_robot;
+  }
   return std::nullopt;
 }
 

@@ -20,8 +20,8 @@ class RivalProbes {
 
   /// Judges the next `count` poses of the whole map by the ends of a scan.
   void look(const CoarseField& coarse, const BeamEnds& ends, std::size_t count);
-  /// The best of them since it was asked last.
-  [[nodiscard]] std::optional<Pose2> best_anywhere();
+  /// The best of them since it was asked last, where the scan may fit so well (mean ln p(z)) about it.
+  [[nodiscard]] std::optional<Pose2> best_anywhere(double fit);
 
   struct Around {
     Pose2 map_from_believed;

@@ -26,7 +26,8 @@ Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const Gl
               .probes = params.probes / 2,
               .slid = params.refined_a_scan,
               .nearby_m = params.nearby_m,
-              .nearby_rad = params.nearby_rad}},
+              .nearby_rad = params.nearby_rad,
+              .prior = params.carried_prior}},
       search_{search, params.headings},
       bank_{bank},
       elsewhere_prior_{params.elsewhere_prior} {}
@@ -227,20 +228,20 @@ void Rivals::probe(const LikelihoodField& field, const Pose2& joined) {
   probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
   probe_nearby_next_ = !probe_nearby_next_;
   const Pose2 believed = bank_.places().front().map_from_robot;
+  const double own_fit = mean_log_likelihood(field, ends_, {}, believed);
   const std::optional<Pose2> found =
       probe_nearby_next_ ? probes_.best_nearby(field, ends_, bank_, {believed, params_.nearby_m, params_.nearby_rad},
                                                params_.probes_nearby)
-                         : probes_.best_anywhere();
-  if (found) admit_rival(field, *found, joined);
+                         : probes_.best_anywhere(own_fit - kFitsNearlyAsWell);
+  if (found) admit_rival(field, *found, joined, own_fit);
 }
 
 /// Beside a believed pose only what fits the scan nearly as well is worth following.
-void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined) {
+void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined, double own_fit) {
   const Place& own = bank_.places().front();
   const Pose2 pose = settled(field, ends_, rough);
   if (bank_.knows(pose)) return;
-  const double gain =
-      mean_log_likelihood(field, ends_, {}, pose) - mean_log_likelihood(field, ends_, {}, own.map_from_robot);
+  const double gain = mean_log_likelihood(field, ends_, {}, pose) - own_fit;
   if (gain < -kFitsNearlyAsWell) return;
   const bool nearby = is_within(pose, own.map_from_robot, params_.nearby_m, params_.nearby_rad);
   if (nearby) {  // a slip lies behind it: before that, the scans say nothing of it

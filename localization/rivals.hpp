@@ -89,7 +89,7 @@ class Rivals {
   void weigh(const LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
   void probe(const LikelihoodField& field, const Pose2& joined);
-  void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined);
+  void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined, double own_fit);
   void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
   /// By how much log evidence the scans of the last metres speak for a pose, of which they say `its`, against another.
   /// While a pose is believed, only those since the robot may have been carried off: since when they speak for it most.

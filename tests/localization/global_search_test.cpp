@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "localization/weighing.hpp"
 #include "tests/support/drawn_flat.hpp"
 
 namespace deltamap::localization {
@@ -99,6 +100,20 @@ TEST(LatticeSearch, LooksAtEveryPoseOnceHoweverItIsSliced) {
   const auto found = sliced.best_apart(20);
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].map_from_robot, expected[i].map_from_robot);
+}
+
+TEST(LatticeSearch, KnowsWhereAScanMayFitAsWellAsAtTheTruth) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  const CoarseField coarse{map, field, kBlock_m};
+  const Pose2 truth{4.5, 2.0, 1.1};
+  const BeamEnds ends = seen_from(truth, 3);
+  LatticeSearch lattice{kHeadings, 2000};
+  (void)lattice.look(coarse, ends, lattice.poses(coarse));
+  const double fit = -LikelihoodField::kStep * misfit_steps(field, ends, truth) / static_cast<double>(ends.size());
+  const std::vector<Candidate> found = lattice.best_apart(200);
+  EXPECT_TRUE(may_reach(found.front(), fit));
+  EXPECT_FALSE(may_reach(found.back(), fit));
 }
 
 TEST(GlobalSearch, FindsTheRobotFromManyPlacesInItsFirstLook) {
