@@ -10,6 +10,10 @@ namespace {
 /// every corner shows another view.
 constexpr double kMostUsual = 0.15;
 
+/// Of the time over which the last moment is averaged: so much a scan after a silence counts at most. More would
+/// swallow what was before, and with it all that has changed meanwhile.
+constexpr double kMostOfAMoment = 0.5;
+
 double approached(double mean, double value, double passed_s, double over_s) {
   return mean + std::min(1.0, passed_s / over_s) * (value - mean);
 }
@@ -23,7 +27,8 @@ void Misfit::observe(const TrackedScan& tracked) {
   const Shares now{static_cast<double>(belief.stable.short_of + belief.elsewhere.short_of) / expected,
                    static_cast<double>(belief.stable.beyond + belief.elsewhere.beyond) / expected};
   if (!last_) usual_ = lately_ = present_ = now;
-  const double passed_s = last_ ? std::max(0.0, seconds(tracked.scan.time - *last_)) : 0.0;
+  const double since_last_s = last_ ? seconds(tracked.scan.time - *last_) : 0.0;
+  const double passed_s = std::clamp(since_last_s, 0.0, kMostOfAMoment * params_.lately_s);
   last_ = tracked.scan.time;
   for (double Shares::*share : {&Shares::short_of, &Shares::beyond}) {
     usual_.*share = approached(usual_.*share, now.*share, passed_s, params_.usual_s);

@@ -20,5 +20,20 @@ TEST(Misfit, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
   EXPECT_FALSE(misfit.is_worse_than_remembered(0.0));
 }
 
+TEST(Misfit, SeesAnotherViewAfterASilenceToo) {
+  StraightDrive robot;
+  Misfit misfit{{}};
+  for (int i = 0; i < 200; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 100};
+    misfit.observe(tracked);
+  }
+  for (int i = 0; i < 50; ++i) (void)robot.next();
+  TrackedScan tracked = robot.next();
+  tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 60, .short_of = 20, .beyond = 20};
+  misfit.observe(tracked);
+  EXPECT_TRUE(misfit.is_both_ways());
+}
+
 }  // namespace
 }  // namespace deltamap::mapping
