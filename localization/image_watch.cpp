@@ -23,6 +23,11 @@ ImageWatch::ImageWatch(const PlaceBankParams& bank, const Effort& effort)
       images_{static_cast<std::size_t>(std::max(0, effort.images))},
       lattice_{kRightAngles, kKept} {}
 
+void ImageWatch::carry(const Pose2& motion) {
+  bank_.carry(motion);
+  images_.age(motion.position().norm());
+}
+
 void ImageWatch::observe(const Seen& seen, std::span<const Place> followed) {
   bank_.believe(seen.map_from_believed);
   own_fit_ = mean_log_likelihood(seen.field, seen.ends, {}, seen.map_from_believed);

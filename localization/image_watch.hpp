@@ -31,7 +31,7 @@ class ImageWatch {
 
   /// Forgets what speaks for them, not where they are.
   void clear() { bank_.clear(); }
-  void carry(const Pose2& motion) { bank_.carry(motion); }
+  void carry(const Pose2& motion);
 
   struct Seen {
     const LikelihoodField& field;

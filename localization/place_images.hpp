@@ -14,13 +14,20 @@ namespace deltamap::localization {
 
 class PlaceImages {
  public:
-  /// Remembers `most`; beyond, those that have been followed for the shortest way go.
-  explicit PlaceImages(std::size_t most) : most_{most} { images_.reserve(most); }
+  /// Remembers `most`; beyond, those that have been followed for the shortest way go. One that has not been met again
+  /// while the robot drove `forgotten_after_m` is of somewhere else, or of a map that has changed.
+  explicit PlaceImages(std::size_t most, double forgotten_after_m = 1000.0)
+      : most_{most}, forgotten_after_m_{forgotten_after_m} {
+    images_.reserve(most);
+  }
 
   [[nodiscard]] std::size_t size() const { return images_.size(); }
 
   /// A place that has explained the scans beside the believed pose, for so long.
   void note(const Pose2& map_from_believed, const Pose2& map_from_place, double followed_m);
+
+  /// The robot has driven on.
+  void age(double driven_m);
 
   /// Where the robot is if it is at one of the images: one after the other; nothing while none is known.
   [[nodiscard]] std::optional<Pose2> next(const Pose2& map_from_believed);
@@ -29,9 +36,11 @@ class PlaceImages {
   struct Image {
     Pose2 map_from_map;  // applied to a pose it is the pose's image
     double followed_m = 0.0;
+    double driven_since_m = 0.0;  // it was met last
   };
 
   std::size_t most_;
+  double forgotten_after_m_;
   std::vector<Image> images_;
   std::size_t next_ = 0;
 };

@@ -53,6 +53,17 @@ TEST(PlaceImages, KeepThoseThatWereFollowedLongest) {
   EXPECT_DOUBLE_EQ(x_m, 5.0) << "the one of 20 m and the one of 3 m, neither that of 1 m";
 }
 
+TEST(PlaceImages, AreForgottenWhereTheyAreNotMetAgainOnALongWay) {
+  PlaceImages images{4, 100.0};
+  images.note({}, {5.0, 0.0, 0.0}, 20.0);
+  images.note({}, {0.0, 5.0, 0.0}, 2.0);
+  images.age(60.0);
+  images.note({}, {0.0, 5.0, 0.0}, 1.0);
+  images.age(60.0);
+  ASSERT_EQ(images.size(), 1U);
+  EXPECT_DOUBLE_EQ(images.next({})->y, 5.0) << "the one that was met again";
+}
+
 TEST(PlaceImages, RememberNoneWhereThereIsNoRoom) {
   PlaceImages images{0};
   images.note({}, {5.0, 0.0, 0.0}, 20.0);
