@@ -83,6 +83,10 @@ void PlaceBank::believe_among(const Pose2& map_from_robot) {
   believing_ = true;
 }
 
+void PlaceBank::forget_carrying() {
+  for (Place& place : places_) place.since_carried = place.lost_since = 0.0;
+}
+
 void PlaceBank::carry(const Pose2& motion) {
   const double driven_m = motion.position().norm();
   for (Place& place : places_) {

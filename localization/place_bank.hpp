@@ -85,6 +85,9 @@ class PlaceBank {
   void set_believed_prior(double log_prior) {
     if (believing_ && !places_.empty()) places_.front().log_prior = log_prior;
   }
+  /// What speaks for places since the robot may have been carried to one spoke against a pose that is believed no
+  /// longer.
+  void forget_carrying();
   /// The believed one becomes a place like all others, with the evidence that it has.
   void stop_believing() { believing_ = false; }
 

@@ -48,8 +48,20 @@ void Rivals::forget_places() {
   usual_misfit_.forget();
 }
 
+/// What spoke for other places spoke against a pose that has been mended since.
+void Rivals::forget_carrying() {
+  bank_.forget_carrying();
+  watch_.clear();
+}
+
+bool Rivals::has_jumped(const Pose2& map_from_believed) const {
+  return last_believed_ &&
+         !is_within(map_from_believed, *last_believed_, bank_.params().same_m, bank_.params().same_rad);
+}
+
 void Rivals::start_believing_in(const Pose2& found) {
   believing_ = true;
+  forget_carrying();
   bank_.set_believed_prior(0.0);
   if (!is_near_believed(found)) {
     elsewhere_prior_ = params_.prior_after_search;
@@ -141,7 +153,10 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   bank_.carry(motion);
   watch_.carry(motion);
   if (last_believed_) last_believed_ = *last_believed_ * motion;
-  if (believing_ && seen.map_from_believed) bank_.believe(*seen.map_from_believed);
+  if (believing_ && seen.map_from_believed) {
+    if (has_jumped(*seen.map_from_believed)) forget_carrying();
+    bank_.believe(*seen.map_from_believed);
+  }
   if (believing_) last_believed_ = seen.map_from_believed;
   held_by_ = believing_ ? params_.held_by * seen.held : 0.0;
   bank_.set_believed_prior(held_by_);

@@ -85,6 +85,9 @@ class Rivals {
 
  private:
   void forget_places();
+  void forget_carrying();
+  /// Otherwise than odometry says, by more than two places that are one.
+  [[nodiscard]] bool has_jumped(const Pose2& map_from_believed) const;
   void thin(const Seen& seen);
   void weigh(const LikelihoodField& field, const Seen& seen);
   void keep_near_ends();

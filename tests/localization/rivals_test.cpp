@@ -5,29 +5,15 @@
 
 #include "tests/support/drawn_flat.hpp"
 #include "tests/support/drawn_hall.hpp"
+#include "tests/support/symmetric_hall.hpp"
 
 namespace deltamap::localization {
 namespace {
 
+using test::symmetric_hall;
+using test::turned_about_the_middle;
+
 const Pose2 kMotion{0.1, 0.0, 0.1};  // of each scan: round a circle of 1 m
-
-/// 12 × 12 m with one block in each quarter: looks the same after every quarter turn about its middle (6, 6).
-OccupancyGrid symmetric_hall() {
-  OccupancyGrid hall{{280, 280, 0.05, {-1.0, -1.0}}};
-  test::fill_box(hall, {-0.2, -0.2}, {12.2, 12.2}, CellState::kOccupied);
-  test::fill_box(hall, {0.0, 0.0}, {12.0, 12.0}, CellState::kFree);
-  for (const double x : {2.0, 8.5}) {
-    for (const double y : {2.0, 8.5}) {
-      test::fill_box(hall, {x, y}, {x + 1.5, y + 1.5}, CellState::kOccupied);
-    }
-  }
-  return hall;
-}
-
-Pose2 turned_about_the_middle(const Pose2& pose, int quarters) {
-  const Pose2 middle_from_map = inverse(Pose2{6.0, 6.0, 0.0});
-  return Pose2{6.0, 6.0, 0.5 * std::numbers::pi * quarters} * middle_from_map * pose;
-}
 
 /// A robot that drives in circles; `believed` is where it is thought to be, carried along by exact wheels.
 class Round {
@@ -143,6 +129,40 @@ int scans_until_met_again(int images) {
 TEST(Rivals, AreHeardOfAtOnceWhereAPlaceThatLooksAlikeWasMetBefore) {
   EXPECT_EQ(scans_until_met_again(0), 100);
   EXPECT_LE(scans_until_met_again(16), 10);
+}
+
+/// A robot that slips and is believed 0.6 m beside where it is, until images of its true place speak against that.
+void slipped_until_heard_of(Round& round) {
+  round.rivals().start_believing();
+  for (int i = 0; i < 100; ++i) (void)round.step(round.truth() * kMotion);
+  Pose2 believed = round.truth() * Pose2{0.0, 0.6, 0.0};
+  for (int i = 0; i < 50; ++i) {
+    believed = believed * kMotion;
+    if (round.step(believed).carried_share > 0.5) return;
+  }
+  ADD_FAILURE() << "no image is heard of";
+}
+
+RivalsParams without_probes_nearby() {
+  RivalsParams params;
+  params.probes_nearby = 0;
+  return params;
+}
+
+TEST(Rivals, BeginAnewToSpeakOfACarryingOnceASlipHasBeenMended) {
+  const OccupancyGrid map = symmetric_hall();
+  Round round{map, map, {6.0, 4.0, 0.0}, 2, without_probes_nearby()};
+  slipped_until_heard_of(round);
+  round.rivals().start_believing_in(round.truth());
+  EXPECT_LT(round.rivals().report().carried_share, 0.01);
+  EXPECT_LT(round.step(round.truth() * kMotion).carried_share, 0.01);
+}
+
+TEST(Rivals, BeginAnewToSpeakOfACarryingWhereTheBelievedPoseIsCorrected) {
+  const OccupancyGrid map = symmetric_hall();
+  Round round{map, map, {6.0, 4.0, 0.0}, 2, without_probes_nearby()};
+  slipped_until_heard_of(round);
+  EXPECT_LT(round.step(round.truth() * kMotion).carried_share, 0.01);
 }
 
 /// A robot that knew where it was and has been carried to another room.
