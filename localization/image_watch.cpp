@@ -80,16 +80,13 @@ void ImageWatch::admit(const Pose2& rough, const Seen& seen) {
   const Pose2 pose = settled(seen.field, seen.ends, rough);
   if (bank_.knows(pose) || is_within(pose, seen.map_from_believed, effort_.nearby_m, effort_.nearby_rad)) return;
   if (mean_log_likelihood(seen.field, seen.ends, {}, pose) < own_fit_ - kFitsNearlyAsWell) return;
-  const double ahead =
-      bank_.params().evidence_beams *
-      seen.stack.ahead_lately(seen.stack.log_likelihoods(seen.field, pose, seen.joined_from_robot),
-                              seen.stack.log_likelihoods(seen.field, seen.map_from_believed, seen.joined_from_robot));
-  const Comparison now = compared(seen.field, seen.ends, {}, pose, seen.map_from_believed, 1.0);
+  const Comparison lately = seen.stack.compared_lately(seen.field, pose, seen.map_from_believed, seen.joined_from_robot,
+                                                       bank_.params().evidence_beams);
   bank_.admit({.map_from_robot = pose,
-               .log_evidence = bank_.places().front().log_evidence + ahead,
+               .log_evidence = bank_.places().front().log_evidence + lately.ahead(),
                .log_prior = std::log(effort_.prior),
-               .since_carried = seen.telling * ahead,
-               .lost_since = now.gained > 0.0 ? seen.telling * ahead * now.lost / now.gained : 0.0});
+               .since_carried = seen.telling * lately.ahead(),
+               .lost_since = seen.telling * lately.lost});
 }
 
 }  // namespace deltamap::localization

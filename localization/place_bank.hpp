@@ -43,6 +43,7 @@ struct Place {
 struct Comparison {
   double gained = 0.0;  ///< log evidence from beams that fit the place better
   double lost = 0.0;    ///< from beams that fit the other one better
+  [[nodiscard]] double ahead() const { return gained - lost; }
 };
 
 /// Mean over the beams of weight · ln p(z) with the robot at the pose; no weights: all 1. 0 without beams.

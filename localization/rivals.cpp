@@ -189,9 +189,10 @@ double Rivals::ahead_of(const ScanStack::Sums& its, const ScanStack::Sums& other
   return bank_.params().evidence_beams * ahead;
 }
 
-double Rivals::since_carried(const ScanStack::Sums& its, const ScanStack::Sums& others) const {
-  if (!believing_) return 0.0;
-  return usual_misfit_.telling() * bank_.params().evidence_beams * stack_.ahead_lately(its, others);
+Comparison Rivals::brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
+  if (!believing_ || bank_.places().empty()) return {};
+  const double beams = usual_misfit_.telling() * bank_.params().evidence_beams;
+  return stack_.compared_lately(field, pose, bank_.places().front().map_from_robot, joined, beams);
 }
 
 void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined) {
@@ -205,11 +206,13 @@ void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> pose
     if (bank_.knows(pose)) continue;
     const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
     double ahead = ahead_of(its, others);
+    const Comparison brought = ahead > 0.0 ? brought_by(field, pose, joined) : Comparison{};
     if (believing_) ahead = std::clamp(ahead, -kFarthestBehind, params_.most_ahead);
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + (proven && !believing_ ? std::min(0.0, ahead) : ahead),
                  .log_prior = log_prior_unbelieved(pose) + (proven ? kOverlooked : 0.0),
-                 .since_carried = since_carried(its, others)});
+                 .since_carried = brought.ahead(),
+                 .lost_since = brought.lost});
   }
 }
 
@@ -267,10 +270,12 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   }
   const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
   const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
+  const Comparison brought = brought_by(field, pose, joined);
   bank_.admit({.map_from_robot = pose,
                .log_evidence = own.log_evidence + std::clamp(ahead_of(its, owns), -kFarthestBehind, params_.most_ahead),
                .log_prior = std::log(elsewhere_prior_),
-               .since_carried = since_carried(its, owns)});
+               .since_carried = brought.ahead(),
+               .lost_since = brought.lost});
 }
 
 void Rivals::write_report() {

@@ -97,8 +97,9 @@ class Rivals {
   /// By how much log evidence the scans of the last metres speak for a pose, of which they say `its`, against another.
   /// While a pose is believed, only those since the robot may have been carried off: since when they speak for it most.
   [[nodiscard]] double ahead_of(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
-  /// Likewise what a place brings with it, had the robot been carried there lately; 0 where nothing is believed.
-  [[nodiscard]] double since_carried(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
+  /// What a place that has only now come to mind brings with it, had the robot been carried there lately; nothing where
+  /// no pose is believed.
+  [[nodiscard]] Comparison brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/angle.hpp"
-#include "localization/place_bank.hpp"
 
 namespace deltamap::localization {
 
@@ -46,11 +45,21 @@ ScanStack::Sums ScanStack::log_likelihoods(const LikelihoodField& field, const P
   return sums;
 }
 
-double ScanStack::ahead_lately(const Sums& its, const Sums& others) const {
+Comparison ScanStack::compared_lately(const LikelihoodField& field, const Pose2& place, const Pose2& other,
+                                      const Pose2& joined_from_robot, double evidence_beams) const {
   constexpr std::size_t kLately = 6;
-  double ahead = 0.0;
-  for (std::size_t k = 0; k < std::min(count_, kLately); ++k) ahead = std::max(ahead, its[k] - others[k]);
-  return ahead;
+  Comparison sum;
+  Comparison most;
+  for (std::size_t back = 0; back < std::min(count_, kLately); ++back) {
+    const Kept& kept = newest_but(back);
+    const Pose2 now_from_then = motion_between(joined_from_robot, kept.joined_from_robot);
+    const Comparison then =
+        compared(field, kept.ends, kept.weights, place * now_from_then, other * now_from_then, evidence_beams);
+    sum.gained += then.gained;
+    sum.lost += then.lost;
+    if (sum.ahead() > most.ahead()) most = sum;
+  }
+  return most;
 }
 
 }  // namespace deltamap::localization

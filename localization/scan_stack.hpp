@@ -10,6 +10,7 @@
 
 #include "localization/deskew.hpp"
 #include "localization/likelihood_field.hpp"
+#include "localization/place_bank.hpp"
 #include "localization/surface_novelty.hpp"
 
 namespace deltamap::localization {
@@ -37,9 +38,11 @@ class ScanStack {
   [[nodiscard]] Sums log_likelihoods(const LikelihoodField& field, const Pose2& map_from_robot,
                                      const Pose2& joined_from_robot) const;
 
-  /// By how much the newest scans speak for a place against another, since when they speak for it most. Older ones lie
-  /// too far back for a robot that has just been carried, and among hundreds of places chance favours one. >= 0
-  [[nodiscard]] double ahead_lately(const Sums& its, const Sums& others) const;
+  /// What the newest scans say of a place beside another, since when they speak for it most; nothing where they never
+  /// do. Older ones lie too far back for a robot that has just been carried, and among hundreds of places chance
+  /// favours one.
+  [[nodiscard]] Comparison compared_lately(const LikelihoodField& field, const Pose2& place, const Pose2& other,
+                                           const Pose2& joined_from_robot, double evidence_beams) const;
 
  private:
   struct Kept {

@@ -165,6 +165,46 @@ TEST(Rivals, BeginAnewToSpeakOfACarryingWhereTheBelievedPoseIsCorrected) {
   EXPECT_LT(round.step(round.truth() * kMotion).carried_share, 0.01);
 }
 
+/// The share of a place where the robot may have been carried, in a hall of four quarters that look alike but for what
+/// `map` and `world` have beside, at the scan with which such places are found.
+double share_of_newcomers(const OccupancyGrid& map, const OccupancyGrid& world) {
+  RivalsParams params;
+  params.probes = 0;
+  params.probes_nearby = 0;
+  params.images = 0;
+  params.carried_prior = 0.3;
+  Round round{map, world, {6.0, 4.0, 0.0}, 2, params};
+  round.rivals().start_believing();
+  for (int i = 0; i < 30; ++i) (void)round.step(round.truth() * kMotion);
+  round.rivals().suspect(true);
+  for (int i = 0; i < 40; ++i) {
+    const RivalReport& report = round.step(round.truth() * kMotion);
+    if (report.listed > 0) return report.carried_share;
+  }
+  ADD_FAILURE() << "none is found";
+  return 0.0;
+}
+
+/// The screen between two corners, a quarter turn about the middle of the hall further on for each of `quarters`.
+void put_screen(OccupancyGrid& grid, const Point2& low, const Point2& high, int quarters) {
+  const Point2 one = turned_about_the_middle({low.x(), low.y(), 0.0}, quarters).position();
+  const Point2 other = turned_about_the_middle({high.x(), high.y(), 0.0}, quarters).position();
+  test::fill_box(grid, one.cwiseMin(other), one.cwiseMax(other), CellState::kOccupied);
+}
+
+TEST(Rivals, HoldAgainstANewcomerWhatItLosesWhereTheBelievedPoseFits) {
+  OccupancyGrid map = symmetric_hall();
+  OccupancyGrid world = map;
+  // Has come, where the next quarter has always had one.
+  put_screen(world, {10.6, 3.5}, {10.9, 8.5}, 0);
+  put_screen(map, {10.6, 3.5}, {10.9, 8.5}, 1);
+  EXPECT_GT(share_of_newcomers(map, world), 0.4);
+  // Has always been here, and not in the next quarter.
+  put_screen(world, {1.0, 4.5}, {1.3, 5.5}, 0);
+  put_screen(map, {1.0, 4.5}, {1.3, 5.5}, 0);
+  EXPECT_EQ(share_of_newcomers(map, world), 0.0);
+}
+
 /// A robot that knew where it was and has been carried to another room.
 double share_when_heard_of(Round& round, RivalReport& report) {
   round.rivals().start_believing();
