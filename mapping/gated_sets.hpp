@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What passes the write gate: finished sets wait a moment for a sign that their last scans were wrong; those that rest
-// on a pose that has proven wrong are marked, and what such a pose has written lately is ordered back.
+// What passes the write gate: finished sets wait a moment for a sign that their last scans were wrong, and longer where
+// the robot may be elsewhere; those that rest on a pose that has proven wrong are marked, and what such a pose has
+// written lately is ordered back.
 #pragma once
 
 #include <deque>
@@ -38,6 +39,7 @@ class GatedSets {
   std::deque<ScanSet> due_;                  // orders and marked sets
   std::optional<Timestamp> last_handed_on_;  // end of the newest set that may have been written
   Timestamp now_;
+  double rival_share_ = 0.0;
 };
 
 }  // namespace deltamap::mapping

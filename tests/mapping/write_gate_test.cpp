@@ -281,7 +281,9 @@ class Sets : public testing::Test {
   std::vector<ScanSet> on(double duration_s) {
     std::vector<ScanSet> handed_on;
     for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
-      sets.observe(robot.next());
+      TrackedScan tracked = robot.next();
+      tracked.estimate.belief.rival_share = rival_share;
+      sets.observe(tracked);
       while (auto set = sets.next()) handed_on.push_back(*std::move(set));
     }
     return handed_on;
@@ -299,6 +301,7 @@ class Sets : public testing::Test {
   }
 
   StraightDrive robot;
+  double rival_share = 0.0;
   GatedSets sets{{}};
 };
 
@@ -311,6 +314,16 @@ TEST_F(Sets, WaitAMomentAndAreHandedOn) {
   EXPECT_FALSE(handed_on[0].pose_in_doubt);
   EXPECT_GT(handed_on[0].covariance(0, 0), 0.0);
   EXPECT_FALSE(handed_on[0].settled) << "5 m: all is provisional";
+}
+
+TEST_F(Sets, WaitOnWhileAnotherPlaceIsConceivable) {
+  (void)on(10.0);
+  end_set(5.0, 1);
+  rival_share = 0.02;
+  EXPECT_TRUE(on(10.0).empty());
+  EXPECT_TRUE(sets.lets_vote()) << "so little does not shut the gate";
+  rival_share = 0.0;
+  EXPECT_EQ(on(kPeriod_s).size(), 1u);
 }
 
 TEST_F(Sets, AreRefusedWhereThePoseProvesWrongWhileTheyWait) {
