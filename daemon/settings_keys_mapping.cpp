@@ -119,6 +119,8 @@ void add_gate(mapping::WriteGateParams& gate, Keys& keys) {
                             "of doubt without a proof, until what is provisional is withdrawn"));
   keys.push_back(number_key(at + "hold_s", gate.hold_s, "s", 0.0, 60.0,
                             "a finished set waits so long for a sign that the pose was wrong"));
+  keys.push_back(number_key(at + "hold_rival_share", gate.hold_rival_share, "", 0.0, 1.0,
+                            "of the belief: while another place holds more, it waits on"));
   keys.push_back(number_key(at + "provisional_m", gate.provisional.way_m, "m", 0.0, 1000.0,
                             "the robot must have driven until what was written is settled, …"));
   keys.push_back(number_key(at + "provisional_s", gate.provisional.time_s, "s", 0.0, 3600.0,

@@ -8,10 +8,6 @@ namespace {
 
 constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late
 
-/// Of the belief: while another place holds more, sets wait on. Far too little to shut the gate, but a robot that has
-/// been carried to where hardly a beam misses is told by little more, and to wait costs no vote.
-constexpr double kConceivable = 0.005;
-
 }  // namespace
 
 void GatedSets::observe(const TrackedScan& tracked) {
@@ -57,7 +53,7 @@ void GatedSets::take(std::optional<ScanSet> set, const TrackedScan& tracked) {
 
 bool GatedSets::is_due(const ScanSet& set) const {
   if (!params_.enabled) return true;
-  return gate_.is_open() && rival_share_ <= kConceivable && seconds(now_ - set.ended) >= params_.hold_s;
+  return gate_.is_open() && rival_share_ <= params_.hold_rival_share && seconds(now_ - set.ended) >= params_.hold_s;
 }
 
 std::optional<ScanSet> GatedSets::next() {
