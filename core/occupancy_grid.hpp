@@ -21,6 +21,13 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
+/// As std::floor, at a quarter of its instructions where the processor has none for it. Far beyond all integers the
+/// answer is some integer that no grid has.
+[[nodiscard]] inline int rounded_down(double value) {
+  const int towards_zero = static_cast<int>(value);
+  return static_cast<int>(static_cast<unsigned>(towards_zero) - (value < towards_zero ? 1U : 0U));
+}
+
 /// Where a grid lies in its map frame: no rotation.
 struct GridGeometry {
   int width = 0;              ///< columns
@@ -29,12 +36,13 @@ struct GridGeometry {
   Point2 origin{0.0, 0.0};    ///< lower left corner of cell (0, 0), m, map frame
 
   [[nodiscard]] bool contains(Cell cell) const {
-    return cell.column >= 0 && cell.row >= 0 && cell.column < width && cell.row < height;
+    return static_cast<unsigned>(cell.column) < static_cast<unsigned>(width) &&
+           static_cast<unsigned>(cell.row) < static_cast<unsigned>(height);
   }
   /// The cell whose area holds the point; it may lie outside the grid.
   [[nodiscard]] Cell cell_at(const Point2& point_in_map) const {
-    return {static_cast<int>(std::floor((point_in_map.x() - origin.x()) / resolution_m)),
-            static_cast<int>(std::floor((point_in_map.y() - origin.y()) / resolution_m))};
+    return {rounded_down((point_in_map.x() - origin.x()) / resolution_m),
+            rounded_down((point_in_map.y() - origin.y()) / resolution_m)};
   }
   [[nodiscard]] Point2 centre_of(Cell cell) const {
     return {origin.x() + (cell.column + 0.5) * resolution_m, origin.y() + (cell.row + 0.5) * resolution_m};

@@ -29,6 +29,7 @@ class DoubtMask {
  public:
   DoubtMask(const GridGeometry& map, const std::vector<CellVerdict>& verdicts, const EvidenceUpdateParams& params) {
     std::vector<CellChange> places;
+    places.reserve(verdicts.size());
     for (const CellVerdict& verdict : verdicts) places.push_back({.cell = verdict.cell});
     box_ = grown(bounding_box(places), std::max(params.added_reach_cells, params.removed_reach_cells), map);
     flags_.assign(box_.empty() ? 0 : static_cast<std::size_t>(box_.width()) * static_cast<std::size_t>(box_.height()),
@@ -136,6 +137,7 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
       starts.push_back({cell.column + side.column, cell.row + side.row});
   }
   std::vector<Point2> robot_was;
+  robot_was.reserve(scans.size());
   for (const PlacedScan& scan : scans) robot_was.push_back(scan.map_from_robot.position());
   for (const Cell& cell : hidden_floor(draft.map(), starts, robot_was, most_hidden_m2)) {
     draft.set(cell, CellState::kUnknown);
@@ -202,7 +204,9 @@ MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set, const Ev
     return refused(Refusal::kImplausible);
   }
 
-  RayCounts counts{map.geometry(), box_seen(map.geometry(), placement.scans, params.longest_m)};
+  const CellBox in_doubt = grown(mask.box(), kDrawnAheadReach, map.geometry());
+  RayCounts counts{map.geometry(), box_seen(map.geometry(), placement.scans, params.longest_m, in_doubt)};
+  counts.look_at(in_doubt);
   // Only what is in doubt can be seen through, and specks, which beams pass by.
   counts.stop_at(map, [&](Cell cell) {
     return !mask.may_be_removed(cell) && awareness::group_size(map, cell, kLeastOpaqueCells) == kLeastOpaqueCells;

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/box_walk.hpp"
 #include "core/grid_ray.hpp"
 #include "core/points_in_map.hpp"
-#include "mapping/box_walk.hpp"
 
 namespace deltamap::mapping {
 namespace {
@@ -37,6 +37,26 @@ void for_each_beam(const PlacedScan& scan, double longest_m, Visit&& visit) {
       visit(beam_in_map(in_map, scan.tracked->rays[i], longest_m));
     }
   }
+}
+
+/// Does the way from one point to the other touch the box?
+bool touches(const GridGeometry& map, const CellBox& box, const Point2& from, const Point2& to) {
+  double first = 0.0;  // shares of the way: in the box from here …
+  double last = 1.0;   // … to here
+  const auto cut = [&](double start, double delta, double low, double high) {
+    if (delta == 0.0) {
+      if (start < low || start > high) last = -1.0;
+      return;
+    }
+    const auto [in, out] = std::minmax({(low - start) / delta, (high - start) / delta});
+    first = std::max(first, in);
+    last = std::min(last, out);
+  };
+  const Point2 way = to - from;
+  const double r = map.resolution_m;
+  cut(from.x(), way.x(), map.origin.x() + box.first.column * r, map.origin.x() + box.last.column * r);
+  cut(from.y(), way.y(), map.origin.y() + box.first.row * r, map.origin.y() + box.last.row * r);
+  return first <= last;
 }
 
 }  // namespace
@@ -100,18 +120,21 @@ void RayCounts::add_beam_from_outside(const Point2& from, const Point2& end, dou
 
 void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
   for_each_beam(scan, longest_m, [&](const BeamInMap& beam) {
+    if (part_ && !touches(map_, *part_, beam.from, beam.end)) return;
     const bool is_inside = box_.contains(map_.cell_at(beam.from));
     const auto count = is_inside ? &RayCounts::add_beam : &RayCounts::add_beam_from_outside;
     (this->*count)(beam.from, beam.end, beam.length_m - clear_m, beam.hits);
   });
 }
 
-CellBox box_seen(const GridGeometry& map, std::span<const PlacedScan> scans, double longest_m) {
+CellBox box_seen(const GridGeometry& map, std::span<const PlacedScan> scans, double longest_m,
+                 const std::optional<CellBox>& part) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Point2 low{kFar, kFar};
   Point2 high{-kFar, -kFar};
   for (const PlacedScan& scan : scans) {
     for_each_beam(scan, longest_m, [&](const BeamInMap& beam) {
+      if (part && !touches(map, *part, beam.from, beam.end)) return;
       low = low.cwiseMin(beam.from).cwiseMin(beam.end);
       high = high.cwiseMax(beam.from).cwiseMax(beam.end);
     });

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,9 @@ class RayCounts {
   /// its pose, or the surface, is not what it seems. `stops(cell)` is asked at most once a cell; `walls` must outlive
   /// the counts. To be told before the first beam.
   void stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> stops);
+
+  /// Beams that do not come into this part are not counted. To be told before the first beam.
+  void look_at(const CellBox& part) { part_ = part; }
 
   /// Counts the beams that have a range; those longer than `longest_m` only as passing, up to there. A pass is clear
   /// where the beam goes on for `clear_m`.
@@ -97,6 +101,7 @@ class RayCounts {
 
   GridGeometry map_;
   CellBox box_;
+  std::optional<CellBox> part_;      // that beams have to come into
   std::vector<Mark> marks_;          // by cell of the box
   std::unique_ptr<Count[]> counts_;  // likewise; of no value where unseen: most cells are, and need not be cleared
   std::unique_ptr<std::uint32_t[]> seen_;  // cells by index, in the order in which they were
@@ -105,7 +110,8 @@ class RayCounts {
   std::function<bool(Cell)> stops_;
 };
 
-/// The part of the map that the scans' beams touch, up to `longest_m`.
-[[nodiscard]] CellBox box_seen(const GridGeometry& map, std::span<const PlacedScan> scans, double longest_m);
+/// The part of the map that the scans' beams touch, up to `longest_m`; of those alone that come into `part`, if given.
+[[nodiscard]] CellBox box_seen(const GridGeometry& map, std::span<const PlacedScan> scans, double longest_m,
+                               const std::optional<CellBox>& part = std::nullopt);
 
 }  // namespace deltamap::mapping

@@ -34,12 +34,14 @@ std::optional<Point2> normal_of(const PlaceSums& sums) {
   const double xx = sums.xx / sums.count - mean_x * mean_x;
   const double xy = sums.xy / sums.count - mean_x * mean_y;
   const double yy = sums.yy / sums.count - mean_y * mean_y;
-  const double spread = std::hypot(xx - yy, 2.0 * xy);
+  const double spread = std::sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy);
   const double larger = 0.5 * (xx + yy + spread);
   const double smaller = 0.5 * (xx + yy - spread);
   if (larger <= 0.0 || smaller > kMostRoundness * larger) return std::nullopt;
-  const double along_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
-  return Point2{-std::sin(along_rad), std::cos(along_rad)};
+  // The line runs at half the angle whose cosine is (xx - yy) / spread and whose sine is 2 xy / spread.
+  const double cosine2 = 0.5 * (1.0 + (xx - yy) / spread);
+  const double sine2 = 0.5 * (1.0 - (xx - yy) / spread);
+  return Point2{-std::copysign(std::sqrt(std::max(0.0, sine2)), xy), std::sqrt(std::max(0.0, cosine2))};
 }
 
 GridGeometry table_around(std::span<const SurfacePoint> points, double cell_m, double reach_m) {
@@ -66,7 +68,7 @@ std::vector<Point2> ray_ends(const TrackedScan& tracked, double longest_m) {
   for (std::size_t i = 0; i < count; ++i) {
     const Beam& beam = tracked.scan.beams[i];
     if (beam.kind != BeamKind::kRange || static_cast<double>(beam.range_m) > longest_m) continue;
-    ends.push_back(tracked.rays[i].end.cast<double>());
+    ends.emplace_back(tracked.rays[i].end.cast<double>());
   }
   return ends;
 }

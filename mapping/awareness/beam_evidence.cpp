@@ -127,6 +127,7 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
   const bool silent = !speaks(tracked.estimate, tracked.turn_rate_rad_per_s, params);
   const PoseDeviation deviation = pose_deviation(tracked.estimate, tracked.turn_rate_rad_per_s, params);
   const BeamJudge judge{map, clear, deviation, params};
+  const double range_deviation2 = params.range_deviation_m * params.range_deviation_m;
   const double farthest_m =
       std::min(params.most_range_m, std::sqrt(std::max(0.0, params.most_aside_m * params.most_aside_m -
                                                                 deviation.position_m * deviation.position_m)) /
@@ -150,7 +151,8 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
       beam.end = beam.from + (beam.end - beam.from) * (farthest_m / beam.length_m);
       beam.length_m = farthest_m;
     }
-    beam.interval_m = params.deviations * std::hypot(deviation.aside_m(beam.length_m), params.range_deviation_m);
+    const double aside_m = deviation.aside_m(beam.length_m);
+    beam.interval_m = params.deviations * std::sqrt(aside_m * aside_m + range_deviation2);
 
     judge.collect_passed(beam);
     beam.ends_off_map =

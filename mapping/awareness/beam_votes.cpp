@@ -7,12 +7,6 @@
 
 namespace deltamap::mapping::awareness {
 
-void BeamVotes::mark(std::size_t index, Marks what) {
-  Marks& marks = marks_[index];
-  if (marks == 0) marked_.push_back(static_cast<std::uint32_t>(index));
-  marks |= what;
-}
-
 /// The surface that the beam met may lie in the block beside.
 void BeamVotes::mark_still_there(Cell end, const ClearSpace& clear) {
   const GridGeometry& blocks = clear.blocks();

@@ -44,7 +44,11 @@ class BeamVotes {
   static constexpr Marks kNewHere = 1, kNothingNew = 2, kGone = 4, kStillThere = 8, kWatchedEnd = 16,
                          kLookedAround = 32;
 
-  void mark(std::size_t block, Marks what);
+  [[gnu::always_inline]] void mark(std::size_t block, Marks what) {
+    Marks& marks = marks_[block];
+    if (marks == 0) marked_.push_back(static_cast<std::uint32_t>(block));
+    marks |= what;
+  }
   void mark_beam(const BeamVerdict& beam, const VotedMap& map);
   void mark_still_there(Cell end, const ClearSpace& clear);
   void mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face);

@@ -34,8 +34,11 @@ class ClearSpace {
   [[nodiscard]] const GridGeometry& blocks() const { return blocks_; }
   /// No cell within so many rows and columns of this one, which lies on the map, is occupied; 0: who knows.
   [[nodiscard]] int clear_cells_around(Cell cell) const {
-    return (distance({cell.column / cells_per_block_, cell.row / cells_per_block_}) - 1) * cells_per_block_;
+    return clear_cells_around_block({cell.column / cells_per_block_, cell.row / cells_per_block_});
   }
+  /// Likewise for each cell of a block.
+  [[nodiscard]] int clear_cells_around_block(Cell block) const { return (distance(block) - 1) * cells_per_block_; }
+  [[nodiscard]] int cells_per_block() const { return cells_per_block_; }
 
  private:
   [[nodiscard]] bool has_occupied_cell(const OccupancyGrid& map, Cell block) const;
@@ -92,13 +95,23 @@ void walk_surfaces(const OccupancyGrid& map, const ClearSpace& clear, const Poin
   // A little less than a cell, so that rounding does not carry a leap across one border more.
   const double per_leapt_cell_m = (1.0 - 1e-9) * std::min(x.per_cell_m, y.per_cell_m);
 
+  // Leaps go from block to block: dividing by the cells of a block each time takes longer than all the rest.
+  const double blocks_per_cell = 1.0 / clear.cells_per_block();
+  const Point2 start_block = start * blocks_per_cell;
+  const Point2 blocks_per_m{x.cells_per_m * blocks_per_cell, y.cells_per_m * blocks_per_cell};
+
   double way_m = 0.0;  // the beam is in the cell there
   Cell cell = first;
   while (geometry.contains(cell)) {
     int clear_cells = clear.clear_cells_around(cell);
     if (clear_cells >= kLeastLeap) {
-      way_m += clear_cells * per_leapt_cell_m;
-      if (!(way_m < length_m)) return;
+      while (clear_cells >= kLeastLeap) {
+        way_m += clear_cells * per_leapt_cell_m;
+        if (!(way_m < length_m)) return;
+        const Point2 place = start_block + way_m * blocks_per_m;
+        const Cell block{static_cast<int>(place.x()), static_cast<int>(place.y())};
+        clear_cells = clear.blocks().contains(block) ? clear.clear_cells_around_block(block) : 0;
+      }
       cell = {x.cell_at(way_m), y.cell_at(way_m)};
       continue;
     }

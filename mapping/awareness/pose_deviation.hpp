@@ -15,7 +15,11 @@ struct PoseDeviation {
   double heading_rad = 0.0;
 
   /// How far aside a beam may lie from where the pose puts it, at a distance from the laser, 1 σ.
-  [[nodiscard]] double aside_m(double distance_m) const { return std::hypot(position_m, distance_m * heading_rad); }
+  [[nodiscard]] double aside_m(double distance_m) const {
+    const double turned_m = distance_m * heading_rad;
+    return std::sqrt(position_m * position_m +
+                     turned_m * turned_m);  // asked for each beam: hypot costs ten times as much
+  }
 };
 
 /// The estimate's own deviation with the floors of the parameters.

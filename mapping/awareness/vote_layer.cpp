@@ -15,8 +15,8 @@ VoteLayer::VoteLayer(const VoteLayerParams& params, const GridGeometry& map) : p
   cells_per_block_ = std::max(1, static_cast<int>(std::lround(params.block_m / map.resolution_m)));
   blocks_ = {(map.width + cells_per_block_ - 1) / cells_per_block_,
              (map.height + cells_per_block_ - 1) / cells_per_block_, map.resolution_m * cells_per_block_, map.origin};
-  tiles_across_ = static_cast<std::size_t>(blocks_.width / kTileSide + 1);
-  const std::size_t tiles_up = static_cast<std::size_t>(blocks_.height / kTileSide + 1);
+  tiles_across_ = static_cast<unsigned>(blocks_.width) / kTileSide + 1;
+  const std::size_t tiles_up = static_cast<unsigned>(blocks_.height) / kTileSide + 1;
   open_.assign(blocks_.cell_count(), 0);
   squares_ = {blocks_.width / kSquareSide + 1, blocks_.height / kSquareSide + 1, blocks_.resolution_m * kSquareSide,
               blocks_.origin};
@@ -71,10 +71,11 @@ void VoteLayer::set_open(Cell block, int bits) {
 }
 
 void VoteLayer::empty_tile(Tile& tile) {
-  const Cell first{static_cast<int>(tile.place % tiles_across_) * kTileSide,
-                   static_cast<int>(tile.place / tiles_across_) * kTileSide};
-  for (int row = first.row; row < std::min(first.row + kTileSide, blocks_.height); ++row) {
-    for (int column = first.column; column < std::min(first.column + kTileSide, blocks_.width); ++column) {
+  const int side = kTileSide;
+  const Cell first{static_cast<int>(tile.place % tiles_across_) * side,
+                   static_cast<int>(tile.place / tiles_across_) * side};
+  for (int row = first.row; row < std::min(first.row + side, blocks_.height); ++row) {
+    for (int column = first.column; column < std::min(first.column + side, blocks_.width); ++column) {
       set_open({column, row}, 0);
     }
   }
@@ -83,18 +84,19 @@ void VoteLayer::empty_tile(Tile& tile) {
 
 void VoteLayer::vote(Question question, Cell block, bool yes, std::uint32_t now_ms) {
   Ballot& ballot = tile_for(block, now_ms).ballots[static_cast<std::size_t>(question)][slot_of(block)];
-  if (is_void(ballot, now_ms)) ballot.yes = 0.0F;
+  if (ballot.yes > 0.0F && is_void(ballot, now_ms)) ballot.yes = 0.0F;
   const auto most = static_cast<float>(params_.most_votes);
   const auto left = static_cast<float>(1.0 - params_.wear);
   if (yes) {
     if (ballot.yes < 0.5F) ballot.first_ms = now_ms;
     ballot.yes = std::min(most, ballot.yes + 1.0F);
     ballot.no *= left;
-    set_open(block, open_[blocks_.index_of(block)] | bit_of(question));
+    if (!is_open(question, block)) set_open(block, open_[blocks_.index_of(block)] | bit_of(question));
   } else {
     ballot.no = std::min(most, ballot.no + 1.0F);
     ballot.yes *= left;
-    if (ballot.no >= most && ballot.yes < kNobody) set_open(block, open_[blocks_.index_of(block)] & ~bit_of(question));
+    if (ballot.no >= most && ballot.yes < kNobody && is_open(question, block))
+      set_open(block, open_[blocks_.index_of(block)] & ~bit_of(question));
   }
   ballot.last_ms = now_ms;
 }

@@ -5,10 +5,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <deque>
 #include <span>
 #include <vector>
 
+#include "core/box_walk.hpp"
 #include "core/grid_patch.hpp"
 #include "core/grid_ray.hpp"
 #include "core/occupancy_grid.hpp"
@@ -21,7 +22,7 @@ struct VoteLayerParams {
   double most_votes = 20.0;  ///< a side holds at most so many; > 0
   double forget_s = 300.0;   ///< yes votes on a ballot without votes for so long are void; > 0
   std::uint32_t most_tiles =
-      1024;  ///< of 16 × 16 blocks, 8 kB each; beyond, the tile that was voted on least recently goes
+      4096;  ///< of 8 × 8 blocks, 2 kB each; beyond, the tile that was voted on least recently goes
 };
 
 enum class Question : std::uint8_t {
@@ -56,7 +57,7 @@ class VoteLayer {
     return (open_[blocks_.index_of(block)] & bit_of(question)) != 0;
   }
   /// `visit(Cell block)` for those that the segment touches in which somebody has said "added"; most of the way there
-  /// is none, and it is passed in squares of many blocks.
+  /// is none, and it is passed in squares of many blocks. `from` lies on the map, or none is visited.
   template <typename Visit>
   void walk_open(const Point2& from, const Point2& to, Visit&& visit) const;
   /// Without the yes votes that are void by now.
@@ -69,7 +70,7 @@ class VoteLayer {
   void reset(const CellBox& cells);
 
  private:
-  static constexpr int kTileSide = 16;
+  static constexpr unsigned kTileSide = 8;
   static constexpr int kSquareSide = 8;
   struct Tile {
     Ballot ballots[2][kTileSide * kTileSide];
@@ -81,12 +82,11 @@ class VoteLayer {
     return static_cast<std::uint8_t>(1U << static_cast<unsigned>(question));
   }
   [[nodiscard]] std::size_t place_of(Cell block) const {
-    return static_cast<std::size_t>(block.row / kTileSide) * tiles_across_ +
-           static_cast<std::size_t>(block.column / kTileSide);
+    return static_cast<unsigned>(block.row) / kTileSide * tiles_across_ +
+           static_cast<unsigned>(block.column) / kTileSide;
   }
   [[nodiscard]] static std::size_t slot_of(Cell block) {
-    return static_cast<std::size_t>(block.row % kTileSide) * kTileSide +
-           static_cast<std::size_t>(block.column % kTileSide);
+    return static_cast<unsigned>(block.row) % kTileSide * kTileSide + static_cast<unsigned>(block.column) % kTileSide;
   }
   void set_open(Cell block, int bits);
   [[nodiscard]] Tile& tile_for(Cell block, std::uint32_t now_ms);
@@ -101,7 +101,7 @@ class VoteLayer {
   GridGeometry squares_;               // of kSquareSide × kSquareSide blocks
   std::vector<std::uint8_t> opened_;   // blocks in a square in which somebody has said "added"
   std::vector<std::int32_t> tile_of_;  // index into tiles_, -1 = none
-  std::vector<Tile> tiles_;
+  std::deque<Tile> tiles_;             // never moved: growing costs no second copy
 };
 
 template <typename Visit>
@@ -114,16 +114,22 @@ void VoteLayer::walk_open(const Point2& from, const Point2& to, Visit&& visit) c
       return true;
     });
   };
-  std::optional<Point2> since;  // where the squares began that have open blocks
-  walk_ray(squares_, from, to, [&](Cell square, double entered_m) {
-    const bool is_empty = !squares_.contains(square) || opened_[squares_.index_of(square)] == 0;
-    if (is_empty == !since) return true;
-    const Point2 here = entered_m > 0.0 ? Point2{from + (to - from) * (entered_m / length_m)} : from;
-    if (since) walk_blocks(*since, here);
-    since = is_empty ? std::nullopt : std::optional{here};
-    return true;
-  });
-  if (since) walk_blocks(*since, to);
+  if (!squares_.contains(squares_.cell_at(from))) return;
+  BoxWalk walk{squares_, {{0, 0}, {squares_.width, squares_.height}}, from, to};
+  const auto has_none = [&](std::size_t square) { return opened_[square] == 0; };
+  const auto goes_on = [&] { return !walk.is_at_end() && walk.goes_on(); };
+  const auto here = [&] { return Point2{from + (to - from) * (walk.entered_m() / length_m)}; };
+  bool is_on_way = true;
+  while (is_on_way) {
+    walk.strides(length_m, has_none);
+    if (has_none(walk.index())) {
+      is_on_way = goes_on();
+      continue;
+    }
+    const Point2 since = walk.entered_m() > 0.0 ? here() : from;
+    while (is_on_way && !has_none(walk.index())) is_on_way = goes_on();
+    walk_blocks(since, is_on_way ? here() : to);
+  }
 }
 
 }  // namespace deltamap::mapping::awareness

@@ -106,5 +106,46 @@ TEST(RayCounts, AreThoseOfAPlainWalkWhereTheLaserIsOutsideTheMapToo) {
   }
 }
 
+TEST(RayCounts, OfAPartAreThoseOfTheWholeThere) {
+  Random random{9};
+  const OccupancyGrid walls = strewn_walls(random);
+  for (int round = 0; round < 20; ++round) {
+    const TrackedScan scan = random_scan(random);
+    const PlacedScan placed{&scan, {random.uniform(-2.5, 4.5), random.uniform(1.5, 6.5), random.uniform(-3.1, 3.1)}};
+    const Cell first{static_cast<int>(random.uniform(0.0, 70.0)), static_cast<int>(random.uniform(0.0, 50.0))};
+    const CellBox part{first, {first.column + 8, first.row + 5}};
+    RayCounts counts{kMap, box_seen(kMap, {&placed, 1}, kLongest_m, part)};
+    counts.stop_at(walls, is_opaque);
+    counts.look_at(part);
+    counts.add(placed, kLongest_m, kClear_m);
+    const std::vector<RayCount> plain = plain_counts(placed, walls);
+    for (int row = part.first.row; row < part.last.row; ++row) {
+      for (int column = part.first.column; column < part.last.column; ++column) {
+        const RayCount& whole = plain[kMap.index_of({column, row})];
+        if (!counts.box().contains({column, row})) {
+          EXPECT_EQ(whole.seen(), 0);
+          continue;
+        }
+        EXPECT_EQ((counts[{column, row}].hits), whole.hits);
+        EXPECT_EQ((counts[{column, row}].clear_passes), whole.clear_passes);
+      }
+    }
+  }
+}
+
+TEST(RayCounts, OfAPartLeaveOutTheBeamsBesideIt) {
+  TrackedScan scan;
+  scan.rays = {{{0.0F, 0.0F}, {4.0F, 0.0F}}, {{0.0F, 0.0F}, {0.0F, 4.0F}}};
+  scan.scan.beams = {{4.0F, 0.0F, BeamKind::kRange}, {4.0F, 0.0F, BeamKind::kRange}};
+  const PlacedScan placed{&scan, {-2.95, 1.05, 0.0}};
+  const CellBox part{{20, 0}, {25, 1}};  // ahead of the laser
+  RayCounts counts{kMap, box_seen(kMap, {&placed, 1}, kLongest_m)};
+  counts.look_at(part);
+  counts.add(placed, kLongest_m, kClear_m);
+  EXPECT_EQ((counts[{22, 0}].passes), 1);
+  EXPECT_EQ((counts[{0, 20}].passes), 0);
+  EXPECT_EQ(box_seen(kMap, {&placed, 1}, kLongest_m, part).last.row, 1);
+}
+
 }  // namespace
 }  // namespace deltamap::mapping

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 namespace deltamap::mapping::alignment {
 namespace {
@@ -24,6 +27,21 @@ TEST(NearestSurface, HasNoAnswerForAPlaceHoweverFarAway) {
     EXPECT_EQ(kSurface.nearest({1.0 - away_m, 2.0}), nullptr) << away_m;
     EXPECT_EQ(kSurface.nearest({1.0, 2.0 + away_m}), nullptr) << away_m;
     EXPECT_EQ(kSurface.nearest({1.0, 2.0 - away_m}), nullptr) << away_m;
+  }
+}
+
+TEST(Surface, HasTheNormalOfItsLineInEveryDirection) {
+  for (int degrees = 0; degrees < 180; degrees += 5) {
+    const double along_rad = degrees * std::numbers::pi / 180.0;
+    const Point2 along{std::cos(along_rad), std::sin(along_rad)};
+    std::vector<Point2> ends;
+    for (int i = 0; i < 5; ++i) ends.push_back(Point2{3.0, 4.0} + 0.05 * i * along);
+    const std::vector<SurfacePoint> surface = surface_of(ends);
+    ASSERT_EQ(surface.size(), ends.size()) << degrees;
+    for (const SurfacePoint& point : surface) {
+      EXPECT_NEAR(point.normal.dot(along), 0.0, 1e-6) << degrees;
+      EXPECT_NEAR(point.normal.norm(), 1.0, 1e-9) << degrees;
+    }
   }
 }
 

@@ -12,7 +12,7 @@
 #include "core/grid_patch.hpp"
 #include "core/occupancy_grid.hpp"
 
-namespace deltamap::mapping {
+namespace deltamap {
 
 class BoxWalk {
  public:
@@ -138,4 +138,4 @@ class BoxWalk {
   double entered_m_ = 0.0;
 };
 
-}  // namespace deltamap::mapping
+}  // namespace deltamap
