@@ -181,6 +181,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
     sort_unique(blocks);
     // Keyframes from before a thing went would draw it again: what was freed counts from now on.
     const bool added = question == Question::kAdded;
+    if (!added) watched_.begin_anew(blocks, now_ms_);
     watched_.watch(blocks, added ? params_.reach_blocks : 0, added ? region_first_ms : now_ms_);
     first_ms = std::min(first_ms, region_first_ms);
     handed_on = merged(std::move(handed_on), blocks);

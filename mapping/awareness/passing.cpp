@@ -32,7 +32,8 @@ bool Passing::is_small_and_apart(const std::vector<ProvenBlock>& region, const V
   const OccupancyGrid& map = view.map;
   const CellBox box = box_of(region, view.votes);
   if (std::max(box.width(), box.height()) * map.resolution_m() >= params_.small_m) return false;
-  const CellBox around = grown(box, static_cast<int>(params_.apart_m / map.resolution_m()), map.geometry());
+  const CellBox around =
+      grown(box, static_cast<int>(std::lround(params_.apart_m / map.resolution_m())), map.geometry());
   int unknown = 0;
   for (int row = around.first.row; row < around.last.row; ++row) {
     for (int column = around.first.column; column < around.last.column; ++column) {

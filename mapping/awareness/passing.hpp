@@ -18,7 +18,7 @@ struct PassingParams {
   double persistence_s = 120.0;  ///< votes on a small free-standing thing, or on what toggles, must span at least so
                                  ///< long; >= 0 (mapping.persistence_s)
   double small_m = 1.0;          ///< wider is no small thing; >= 0
-  double apart_m = 0.3;          ///< free-standing: farther than this from every surface of the map, …
+  double apart_m = 0.25;         ///< free-standing: farther than this from every surface of the map, …
   double most_unknown_around = 0.4;  ///< … and on known floor: no larger share of what is around it is unknown; [0, 1]
   FlipParams flips;
 };

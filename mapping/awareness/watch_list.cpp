@@ -18,7 +18,6 @@ void WatchList::forget(std::vector<Region>::iterator region) {
 
 void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms) {
   if (blocks.empty() || params_.looks == 0 || params_.most_watched == 0) return;
-  if (regions_.size() >= params_.most_watched) forget(regions_.begin());
   Region region{{{}, first_ms}, 0, params_.first_look, params_.looks};
   std::vector<std::uint32_t>& wide = region.look.blocks;
   for (const std::uint32_t index : blocks) {
@@ -32,8 +31,19 @@ void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_block
   }
   std::sort(wide.begin(), wide.end());
   wide.erase(std::unique(wide.begin(), wide.end()), wide.end());
+  if (regions_.size() >= params_.most_watched) forget(regions_.begin());
   for (const std::uint32_t index : wide) ++watchers_[index];
   regions_.push_back(std::move(region));
+}
+
+void WatchList::begin_anew(const std::vector<std::uint32_t>& blocks, std::uint32_t now_ms) {
+  for (Region& region : regions_) {
+    const std::vector<std::uint32_t>& own = region.look.blocks;
+    const bool overlaps = std::any_of(blocks.begin(), blocks.end(), [&](std::uint32_t index) {
+      return std::binary_search(own.begin(), own.end(), index);
+    });
+    if (overlaps) region.look.first_ms = now_ms;
+  }
 }
 
 void WatchList::see(std::vector<std::uint32_t> ends) {
@@ -49,8 +59,11 @@ void WatchList::see(std::vector<std::uint32_t> ends) {
 }
 
 std::optional<Look> WatchList::due_look() {
-  const auto due = std::find_if(regions_.begin(), regions_.end(),
-                                [](const Region& region) { return region.seen >= region.next_look; });
+  auto due = regions_.end();
+  for (auto region = regions_.begin(); region != regions_.end(); ++region) {
+    if (region->seen < region->next_look) continue;
+    if (due == regions_.end() || region->looks_left > due->looks_left) due = region;
+  }
   if (due == regions_.end()) return std::nullopt;
   Look look = due->look;
   due->seen = 0;

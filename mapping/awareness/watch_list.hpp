@@ -32,12 +32,15 @@ class WatchList {
   /// Watches the blocks and those within `margin_blocks` of them.
   void watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms);
 
+  /// What keyframes saw of these blocks (sorted) before does not count for later looks.
+  void begin_anew(const std::vector<std::uint32_t>& blocks, std::uint32_t now_ms);
+
   [[nodiscard]] bool is_watched(Cell block) const { return watchers_[geometry_.index_of(block)] > 0; }
 
   /// The watched blocks in which a keyframe's beams ended.
   void see(std::vector<std::uint32_t> ends);
 
-  /// The first region that enough keyframes have seen.
+  /// Of the regions that enough keyframes have seen, the one with the fewest looks so far.
   [[nodiscard]] std::optional<Look> due_look();
 
  private:

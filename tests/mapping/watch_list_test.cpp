@@ -59,5 +59,27 @@ TEST_F(Watched, IsEachRegionByItself) {
   EXPECT_EQ(look->blocks, (std::vector<std::uint32_t>{45}));
 }
 
+TEST_F(Watched, IsNotKeptWaitingByWhatHasBeenLookedAtBefore) {
+  list.watch({45}, 0, 0);
+  EXPECT_EQ(keyframes_until_look({45}), 8);
+  list.watch({66}, 0, 0);
+  for (int seen = 0; seen < 24; ++seen) list.see({45, 66});
+  const auto look = list.due_look();
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->blocks, (std::vector<std::uint32_t>{66}));
+}
+
+TEST_F(Watched, BeginsAnewWhereSomethingWent) {
+  list.watch({45, 46}, 0, 1'000);
+  list.watch({66}, 0, 2'000);
+  list.begin_anew({46, 47}, 9'000);
+  for (int seen = 0; seen < 8; ++seen) list.see({45, 66});
+  const auto first = list.due_look();
+  const auto second = list.due_look();
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->first_ms, 9'000u);
+  EXPECT_EQ(second->first_ms, 2'000u);
+}
+
 }  // namespace
 }  // namespace deltamap::mapping::awareness
