@@ -131,13 +131,16 @@ struct CellVerdict {
 
 enum class MappingMethod : std::uint8_t { kPaper, kEvidence };
 
+/// Scans that outlive their stage: shared by whom they are handed to, without their maps.
+using KeptScans = std::vector<std::shared_ptr<const TrackedScan>>;
+
 /// S(k): the scans of one Δ-phase (paper §3.2), ready to become a revision.
 struct ScanSet {
   std::uint32_t phase = 0;  ///< number of the Δ-phase, from 1
   MappingMethod method = MappingMethod::kEvidence;
   Timestamp began;
   Timestamp ended;
-  std::vector<TrackedScan> scans;     ///< in order of time; all of one odometry epoch
+  KeptScans scans;                    ///< in order of time; all of one odometry epoch
   std::vector<CellVerdict> verdicts;  ///< evidence: the cells to write, judged at the localizer's poses; paper: empty
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the set ended
   bool pose_in_doubt = false;        ///< the pose did not hold over the whole set: nothing of it may be written

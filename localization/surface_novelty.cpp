@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace deltamap::localization {
 namespace {
 
 constexpr double kPatchM = 0.5;
-constexpr std::int32_t kAcross = 256;                // patches of the torus: 128 m
+constexpr int kAcrossBits = 8;
+constexpr std::int32_t kAcross = 1 << kAcrossBits;   // patches of the torus: 128 m
 constexpr std::uint32_t kForgottenAfterScans = 150;  // odometry has drifted by a patch since
 
 constexpr float kMostOfAScan = 0.25F;  // of its beams together: one view may look like another
@@ -25,8 +27,10 @@ SurfaceNovelty::Patch& SurfaceNovelty::patch_at(double x_m, double y_m) {
   const auto column = static_cast<std::int32_t>(std::floor(x_m / kPatchM));
   const auto row = static_cast<std::int32_t>(std::floor(y_m / kPatchM));
   Patch& patch = patches_[wrapped(row) * kAcross + wrapped(column)];
-  if (patch.column != column || patch.row != row || scan_ - patch.met_at > kForgottenAfterScans)
-    patch = {column, row, 0, scan_};
+  const auto column_turn = static_cast<std::int8_t>(column >> kAcrossBits);
+  const auto row_turn = static_cast<std::int8_t>(row >> kAcrossBits);
+  if (patch.column_turn != column_turn || patch.row_turn != row_turn || scan_ - patch.met_at > kForgottenAfterScans)
+    patch = {column_turn, row_turn, 0, scan_};
   patch.met_at = scan_;
   return patch;
 }
@@ -39,7 +43,7 @@ std::span<const float> SurfaceNovelty::weights(const BeamEnds& ends, const Pose2
     const Point2 end = joined_from_robot * Point2{static_cast<double>(ends.x_m[i]), static_cast<double>(ends.y_m[i])};
     Patch& patch = patch_at(end.x(), end.y());
     weights_[i] = 1.0F / (1.0F + static_cast<float>(patch.beams));
-    ++patch.beams;
+    if (patch.beams < std::numeric_limits<std::uint16_t>::max()) ++patch.beams;
     sum += weights_[i];
   }
   const float most = kMostOfAScan * static_cast<float>(ends.size());

@@ -25,9 +25,9 @@ class SurfaceNovelty {
 
  private:
   struct Patch {
-    std::int32_t column = 0;
-    std::int32_t row = 0;
-    std::uint32_t beams = 0;
+    std::int8_t column_turn = 0;  ///< how often the torus has been gone round, modulo 256: 32 km
+    std::int8_t row_turn = 0;
+    std::uint16_t beams = 0;
     std::uint32_t met_at = 0;  ///< scan that met it last
   };
   [[nodiscard]] Patch& patch_at(double x_m, double y_m);

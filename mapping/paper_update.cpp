@@ -13,7 +13,7 @@ OccupancyGrid drawn(const ScanSet& set, const alignment::ScanAlignment& aligned,
                     const alignment::LocalMapParams& params) {
   std::vector<const TrackedScan*> scans;
   scans.reserve(aligned.scans.size());
-  for (const std::size_t scan : aligned.scans) scans.push_back(&set.scans[scan]);
+  for (const std::size_t scan : aligned.scans) scans.push_back(set.scans[scan].get());
   return alignment::local_map(scans, aligned.map_from_robot, lattice, params);
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "core/points_in_map.hpp"
@@ -87,13 +88,13 @@ std::size_t points_near(const alignment::NearestSurface& surface, const std::vec
 
 }  // namespace
 
-Placement placed_scans(const OccupancyGrid& map, const std::vector<TrackedScan>& scans,
-                       const std::function<bool(Cell)>& is_in_doubt, const PlacementParams& params) {
+Placement placed_scans(const OccupancyGrid& map, const KeptScans& scans, const std::function<bool(Cell)>& is_in_doubt,
+                       const PlacementParams& params) {
   std::vector<PlacedScan> guesses;
   std::vector<std::vector<Point2>> ends;
-  for (const TrackedScan& tracked : scans) {
-    guesses.push_back({&tracked, tracked.estimate.map_from_robot});
-    ends.push_back(alignment::ray_ends(tracked, params.longest_m));
+  for (const std::shared_ptr<const TrackedScan>& tracked : scans) {
+    guesses.push_back({tracked.get(), tracked->estimate.map_from_robot});
+    ends.push_back(alignment::ray_ends(*tracked, params.longest_m));
   }
   const alignment::NearestSurface surface = surface_around(map, guesses, ends, is_in_doubt, params);
 

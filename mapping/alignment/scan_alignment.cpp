@@ -97,13 +97,13 @@ bool odometry_is_usable(const TrackedScan& before, const TrackedScan& after) {
 
 }  // namespace
 
-std::optional<ScanAlignment> scan_alignment(std::span<const TrackedScan> scans, const ScanAlignmentParams& params) {
+std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAlignmentParams& params) {
   assert(params.matches_per_scan > 0 && params.most_scans > 1 && "parameters out of range");
   ScanAlignment alignment;
   alignment.scans = thinned(scans.size(), params.most_scans);
   if (alignment.scans.size() < 2) return std::nullopt;
   const auto count = static_cast<std::uint32_t>(alignment.scans.size());
-  const auto scan_at = [&](std::uint32_t i) -> const TrackedScan& { return scans[alignment.scans[i]]; };
+  const auto scan_at = [&](std::uint32_t i) -> const TrackedScan& { return *scans[alignment.scans[i]]; };
 
   std::vector<Pose2> guesses;
   std::vector<MatchableScan> ready;

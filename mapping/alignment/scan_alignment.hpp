@@ -5,7 +5,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -41,7 +40,6 @@ struct ScanAlignment {
 };
 
 /// Nothing where the network does not settle or too few scans match.
-[[nodiscard]] std::optional<ScanAlignment> scan_alignment(std::span<const TrackedScan> scans,
-                                                          const ScanAlignmentParams& params);
+[[nodiscard]] std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAlignmentParams& params);
 
 }  // namespace deltamap::mapping::alignment

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/awareness/delta_phase.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace deltamap::mapping::awareness {
@@ -37,7 +38,7 @@ void DeltaPhase::abandon() {
 
 std::optional<ScanSet> DeltaPhase::observe(const TrackedScan& tracked, double r_d) {
   const Timestamp time = tracked.scan.time;
-  if (open_ && !set_.scans.empty() && set_.scans.back().odometry_epoch != tracked.odometry_epoch) return close(time);
+  if (open_ && !set_.scans.empty() && set_.scans.back()->odometry_epoch != tracked.odometry_epoch) return close(time);
   if (tracked.estimate.state != LocalizerState::kTracking) {
     if (open_) abandon();
     return std::nullopt;
@@ -49,8 +50,9 @@ std::optional<ScanSet> DeltaPhase::observe(const TrackedScan& tracked, double r_
     set_.began = time;
   }
   if (open_ && is_worth_keeping(tracked, r_d)) {
-    set_.scans.push_back(tracked);
-    set_.scans.back().estimate.map.reset();  // the phase outlives the map that the pose was computed on
+    const auto kept = std::make_shared<TrackedScan>(tracked);
+    kept->estimate.map.reset();  // the phase outlives the map that the pose was computed on
+    set_.scans.push_back(kept);
   }
   return std::nullopt;
 }

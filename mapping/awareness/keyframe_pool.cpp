@@ -9,23 +9,24 @@
 namespace deltamap::mapping::awareness {
 
 bool KeyframePool::is_due(const TrackedScan& tracked) const {
-  return kept_.empty() || is_next_keyframe(params_, place_of(kept_.back().tracked), place_of(tracked));
+  return kept_.empty() || is_next_keyframe(params_, place_of(*kept_.back().tracked), place_of(tracked));
 }
 
 void KeyframePool::keep(const TrackedScan& tracked, std::vector<std::uint32_t> blocks) {
-  if (!kept_.empty() && kept_.back().tracked.odometry_epoch != tracked.odometry_epoch) kept_.clear();
+  if (!kept_.empty() && kept_.back().tracked->odometry_epoch != tracked.odometry_epoch) kept_.clear();
   if (kept_.size() >= params_.most_kept) kept_.pop_front();
-  kept_.push_back({tracked, std::move(blocks)});
-  kept_.back().tracked.estimate.map.reset();  // a keyframe outlives the map that its pose was computed on
+  const auto kept = std::make_shared<TrackedScan>(tracked);
+  kept->estimate.map.reset();  // a keyframe outlives the map that its pose was computed on
+  kept_.push_back({kept, std::move(blocks)});
 }
 
-std::vector<TrackedScan> KeyframePool::that_saw(const std::vector<std::uint32_t>& blocks, Timestamp since) const {
+KeptScans KeyframePool::that_saw(const std::vector<std::uint32_t>& blocks, Timestamp since) const {
   if (blocks.empty()) return {};
   std::vector<bool> asked(*std::max_element(blocks.begin(), blocks.end()) + 1, false);
   for (const std::uint32_t block : blocks) asked[block] = true;
-  std::vector<TrackedScan> scans;
+  KeptScans scans;
   for (auto keyframe = kept_.rbegin(); keyframe != kept_.rend() && scans.size() < params_.most_in_set; ++keyframe) {
-    if (keyframe->tracked.scan.time < since) break;
+    if (keyframe->tracked->scan.time < since) break;
     const bool saw = std::any_of(keyframe->blocks.begin(), keyframe->blocks.end(),
                                  [&](std::uint32_t block) { return block < asked.size() && asked[block]; });
     if (saw) scans.push_back(keyframe->tracked);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -20,8 +21,8 @@ struct KeyframeParams {
 };
 
 struct Keyframe {
-  TrackedScan tracked;                ///< without its map
-  std::vector<std::uint32_t> blocks;  ///< that it voted on
+  std::shared_ptr<const TrackedScan> tracked;  ///< without its map
+  std::vector<std::uint32_t> blocks;           ///< that it voted on
 };
 
 class KeyframePool {
@@ -32,7 +33,7 @@ class KeyframePool {
   /// Keeps the scan, and forgets the oldest and those of another odometry epoch.
   void keep(const TrackedScan& tracked, std::vector<std::uint32_t> blocks);
   /// The newest keyframes since `since` that voted on one of the blocks, in order of time.
-  [[nodiscard]] std::vector<TrackedScan> that_saw(const std::vector<std::uint32_t>& blocks, Timestamp since) const;
+  [[nodiscard]] KeptScans that_saw(const std::vector<std::uint32_t>& blocks, Timestamp since) const;
 
  private:
   KeyframeParams params_;

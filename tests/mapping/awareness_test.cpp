@@ -133,7 +133,7 @@ TEST_F(PaperPhases, EndWhereTheOdometryJumps) {
   for (int i = 0; i < 50; ++i) (void)send(0.1);
   const auto set = send(0.1, 400.0, LocalizerState::kTracking, 1);
   ASSERT_TRUE(set);
-  for (const TrackedScan& tracked : set->scans) EXPECT_EQ(tracked.odometry_epoch, 0u);
+  for (const auto& kept : set->scans) EXPECT_EQ(kept->odometry_epoch, 0u);
 }
 
 TEST_F(PaperPhases, DrawTheSameScansFromTheSameSeed) {
@@ -145,7 +145,7 @@ TEST_F(PaperPhases, DrawTheSameScansFromTheSameSeed) {
     std::optional<ScanSet> set;
     for (int i = 0; i < 20 && !set; ++i) set = send(0.9);
     std::vector<std::uint32_t> kept;
-    for (const TrackedScan& tracked : set->scans) kept.push_back(tracked.scan.number);
+    for (const auto& scan : set->scans) kept.push_back(scan->scan.number);
     return kept;
   };
   const auto once = numbers(1);

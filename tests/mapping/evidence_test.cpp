@@ -11,6 +11,7 @@
 #include "mapping/store_scan.hpp"
 #include "tests/support/drawn_hall.hpp"
 #include "tests/support/drawn_scan.hpp"
+#include "tests/support/kept_scans.hpp"
 
 namespace deltamap::mapping {
 namespace {
@@ -202,17 +203,17 @@ TEST_F(EvidenceUpdate, WritesOnlyAroundTheVerdicts) {
 
 TEST_F(EvidenceUpdate, BringsDisplacedScansBackOntoTheMap) {
   const MapUpdate straight = map_update(map, set, {});
-  for (TrackedScan& tracked : set.scans) tracked.estimate.map_from_robot.y -= 0.08;
+  test::change_each(set.scans, [](TrackedScan& tracked) { tracked.estimate.map_from_robot.y -= 0.08; });
   const MapUpdate displaced = map_update(map, set, {});
   ASSERT_TRUE(displaced.accepted());
   EXPECT_NEAR(displaced.map_from_local.y - straight.map_from_local.y, 0.08, 0.03);
 }
 
 TEST_F(EvidenceUpdate, RefusesScansThatContradictTheirOwnPoses) {
-  for (TrackedScan& tracked : set.scans) {
+  test::change_each(set.scans, [](TrackedScan& tracked) {
     tracked.estimate.map_from_robot.y -= 0.25;
     tracked.estimate.covariance = Eigen::Vector3d{1e-6, 1e-6, 1e-6}.asDiagonal();
-  }
+  });
   const MapUpdate update = map_update(map, set, {});
   EXPECT_EQ(update.refusal, Refusal::kImplausible);
   EXPECT_TRUE(update.changes.empty());

@@ -8,6 +8,7 @@
 #include "mapping/map_update_params.hpp"
 #include "mapping/merge/contour_score.hpp"
 #include "tests/support/drawn_hall.hpp"
+#include "tests/support/kept_scans.hpp"
 #include "tests/support/seen_scan.hpp"
 
 namespace deltamap::mapping {
@@ -26,7 +27,7 @@ ScanSet phase_in(const OccupancyGrid& world, int scans, std::uint64_t seed, cons
     const Pose2 about{9.0, 7.0, 0.0};
     scan.estimate.map_from_robot = about * error * inverse(about) * test::disturbed(pose, 0.03, 0.01, random);
     scan.estimate.covariance = Eigen::Vector3d{0.0009, 0.0009, 0.0001}.asDiagonal();
-    set.scans.push_back(std::move(scan));
+    set.scans.push_back(std::make_shared<const TrackedScan>(std::move(scan)));
   }
   return set;
 }
@@ -71,9 +72,9 @@ TEST(PaperUpdate, RefusesScansThatDoNotAlign) {
   const OccupancyGrid hall = test::drawn_hall(0.05);
   ScanSet set = phase_in(hall, 10, 3);
   Random random{4};
-  for (TrackedScan& scan : set.scans) {
+  test::change_each(set.scans, [&](TrackedScan& scan) {
     for (RayInRobot& ray : scan.rays) ray.end *= static_cast<float>(random.uniform(0.2, 1.0));
-  }
+  });
   EXPECT_EQ(paper_update(hall, set, {}).refusal, Refusal::kNoAlignment);
 }
 

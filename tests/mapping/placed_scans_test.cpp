@@ -6,6 +6,7 @@
 
 #include "tests/support/drawn_hall.hpp"
 #include "tests/support/drawn_scan.hpp"
+#include "tests/support/kept_scans.hpp"
 
 namespace deltamap::mapping {
 namespace {
@@ -28,7 +29,7 @@ TEST(PlacedScans, ComeOntoAWallOnTheBorderOfTheMapFromAPoseTooNearToIt) {
         test::drawn_scan(*room, room, {place.x(), place.y(), heading_rad}, 0.0, random, {.range_deviation_m = 0.0});
     tracked.estimate.map_from_robot.x += kOff_m * ahead.x();
     tracked.estimate.map_from_robot.y += kOff_m * ahead.y();
-    const Placement placement = placed_scans(*room, {tracked}, [](Cell) { return false; }, {});
+    const Placement placement = placed_scans(*room, test::kept({tracked}), [](Cell) { return false; }, {});
     ASSERT_EQ(placement.scans.size(), 1U);
     EXPECT_LT(placement.mean_correction.position().dot(ahead), -0.6 * kOff_m) << "heading " << heading_rad;
   }

@@ -9,6 +9,7 @@
 #include "mapping/merge/acceptance.hpp"
 #include "mapping/merge/contour_score.hpp"
 #include "tests/support/drawn_hall.hpp"
+#include "tests/support/kept_scans.hpp"
 #include "tests/support/seen_scan.hpp"
 
 namespace deltamap::mapping::alignment {
@@ -91,7 +92,7 @@ TEST(ScanAlignment, BringsScansTogetherBetterThanTheLocalizerHadThem) {
   Random random{4};
   std::vector<Pose2> truth;
   const std::vector<TrackedScan> scans = drive(hall, &truth, random);
-  const auto alignment = scan_alignment(scans, {});
+  const auto alignment = scan_alignment(test::kept(scans), {});
   ASSERT_TRUE(alignment);
   ASSERT_EQ(alignment->scans.size(), scans.size());
   EXPECT_GE(alignment->matches, 2 * scans.size());
@@ -114,7 +115,7 @@ TEST(ScanAlignment, ThinsTooManyScansEvenly) {
   const std::vector<TrackedScan> scans = drive(hall, &truth, random);
   ScanAlignmentParams params;
   params.most_scans = 9;
-  const auto alignment = scan_alignment(scans, params);
+  const auto alignment = scan_alignment(test::kept(scans), params);
   ASSERT_TRUE(alignment);
   EXPECT_EQ(alignment->scans, (std::vector<std::size_t>{0, 3, 6, 9, 12, 15, 18, 21, 24}));
 }
@@ -130,7 +131,7 @@ TEST(ScanAlignment, LeavesOutScansThatOnlyAPoorOdometryHolds) {
     scans.push_back(test::seen_scan(hall, pose, 0.01, random, 6.0));
     scans.back().odom_from_robot = is_apart ? Pose2{0.0, 0.0, 0.6} * pose : pose;
   }
-  const auto alignment = scan_alignment(scans, {});
+  const auto alignment = scan_alignment(test::kept(scans), {});
   ASSERT_TRUE(alignment);
   EXPECT_EQ(alignment->scans, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(alignment->map_from_robot.size(), 7U);
@@ -145,7 +146,7 @@ TEST(ScanAlignment, HasNoAnswerForScansThatDoNotOverlap) {
     scans.push_back(test::seen_scan(hall, {1.0 + 3.5 * i, 7.0, 2.0 * i}, 0.01, random));
     for (auto& ray : scans.back().rays) ray.end *= 1.0F + 0.5F * static_cast<float>(random.uniform());
   }
-  EXPECT_FALSE(scan_alignment(scans, {}));
+  EXPECT_FALSE(scan_alignment(test::kept(scans), {}));
   EXPECT_FALSE(scan_alignment({}, {}));
 }
 
