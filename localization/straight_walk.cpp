@@ -2,7 +2,6 @@
 #include "localization/straight_walk.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace deltamap::localization {
@@ -28,7 +27,7 @@ Met first_met(const OccupancyGrid& map, const Point2& from, const Point2& along,
   if (until_m <= after_m) return {};
   const GridGeometry& geometry = map.geometry();
   const Point2 start = (from + after_m * along - geometry.origin) / geometry.resolution_m;
-  Cell cell{static_cast<int>(std::floor(start.x())), static_cast<int>(std::floor(start.y()))};
+  Cell cell{rounded_down(start.x()), rounded_down(start.y())};
   if (!geometry.contains(cell)) return {CellState::kUnknown, cell};
 
   const double until = (until_m - after_m) / geometry.resolution_m;

@@ -2,7 +2,6 @@
 #include "localization/surface_novelty.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace deltamap::localization {
@@ -24,8 +23,8 @@ SurfaceNovelty::SurfaceNovelty() : patches_(static_cast<std::size_t>(kAcross) * 
 void SurfaceNovelty::clear() { std::fill(patches_.begin(), patches_.end(), Patch{}); }
 
 SurfaceNovelty::Patch& SurfaceNovelty::patch_at(double x_m, double y_m) {
-  const auto column = static_cast<std::int32_t>(std::floor(x_m / kPatchM));
-  const auto row = static_cast<std::int32_t>(std::floor(y_m / kPatchM));
+  const auto column = rounded_down(x_m / kPatchM);
+  const auto row = rounded_down(y_m / kPatchM);
   Patch& patch = patches_[wrapped(row) * kAcross + wrapped(column)];
   const auto column_turn = static_cast<std::int8_t>(column >> kAcrossBits);
   const auto row_turn = static_cast<std::int8_t>(row >> kAcrossBits);

@@ -52,8 +52,8 @@ AxisSpectra axis_spectra(std::span<const PointInCells> contour, double turn_rad,
   std::vector<int> columns(contour.size());
   std::vector<int> rows(contour.size());
   for (std::size_t i = 0; i < contour.size(); ++i) {
-    columns[i] = static_cast<int>(std::floor(c * contour[i].x - s * contour[i].y + to_first));
-    rows[i] = static_cast<int>(std::floor(s * contour[i].x + c * contour[i].y + to_first));
+    columns[i] = rounded_down(c * contour[i].x - s * contour[i].y + to_first);
+    rows[i] = rounded_down(s * contour[i].x + c * contour[i].y + to_first);
   }
   return {counted(columns, pixels_per_cell), counted(rows, pixels_per_cell)};
 }

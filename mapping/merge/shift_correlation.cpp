@@ -118,8 +118,8 @@ std::vector<CellMotion> ShiftCorrelation::best_shifts(double turn_rad, int n) co
   cv::Mat picture = cv::Mat::zeros(s.rows, s.columns, CV_32F);
   const auto draw = [&](const std::vector<PointInCells>& points, float value) {
     for (const PointInCells& p : points) {
-      int x = static_cast<int>(std::floor(cosine * p.x - sine * p.y));
-      int y = static_cast<int>(std::floor(sine * p.x + cosine * p.y));
+      int x = rounded_down(cosine * p.x - sine * p.y);
+      int y = rounded_down(sine * p.x + cosine * p.y);
       x += x < 0 ? s.columns : 0;
       y += y < 0 ? s.rows : 0;
       // Of a local map much larger than the map, what lies farther than the picture fits nowhere.
