@@ -11,9 +11,6 @@ void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(whole_key("localization.particles.max", particles.max, "", 10, 200000, "most particles"));
   keys.push_back(number_key("localization.particles.resample_below", particles.resample_below, "", 0.0, 1.0,
                             "share of the particles below which N_eff (Eq. 5) calls for resampling"));
-  keys.push_back(
-      number_key("localization.particles.depleted_below", particles.depleted_below, "", 0.0, 1.0,
-                 "share of the particles; where fewer carry the weight and the best is a slip, all slip; 0: never"));
   keys.push_back(number_key("localization.particles.evidence_beams", particles.evidence_beams, "", 0.1, 1000.0,
                             "independent beams that a whole scan counts as"));
   keys.push_back(number_key("localization.particles.kld_error", particles.kld_error, "", 0.001, 1.0,

@@ -56,6 +56,16 @@ bool has_free_side(const OccupancyGrid& map, Cell cell) {
          map.at({cell.column, cell.row - 1}) == CellState::kFree;
 }
 
+/// A single row or column of cells between unknown space: the face of a thing that stands beside another. Once one of
+/// them is taken away, and not yet off the map, beams end there.
+bool is_thin(const OccupancyGrid& map, Cell cell) {
+  const auto is_between = [&](int columns, int rows) {
+    return map.at({cell.column + columns, cell.row + rows}) != CellState::kOccupied &&
+           map.at({cell.column - columns, cell.row - rows}) != CellState::kOccupied;
+  };
+  return is_between(1, 0) || is_between(0, 1);
+}
+
 /// The bytes of one window, in two passes: down each column the distance to the nearest contour, then along each row
 /// the least sum of squares. Exact, and blind to anything farther than the reach: that makes windows equal to the
 /// whole.
@@ -153,6 +163,7 @@ std::array<float, 256> distances_of_steps(const StepTable& table, double resolut
 
 bool is_contour(const OccupancyGrid& map, Cell cell) {
   if (map.at(cell) != CellState::kOccupied) return false;
+  if (is_thin(map, cell)) return true;
   for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
     for (int column = cell.column - 1; column <= cell.column + 1; ++column) {
       const CellState neighbour = map.at({column, row});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/motion_model.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,6 +14,16 @@ constexpr double kDirectionIsNoiseM = 0.010;
 double turned_rad(double rot_rad) { return std::min(std::abs(rot_rad), std::numbers::pi - std::abs(rot_rad)); }
 
 }  // namespace
+
+PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad) {
+  const Eigen::Matrix2d map_from_robot = Eigen::Rotation2Dd{heading_rad}.toRotationMatrix();
+  const Eigen::Vector2d deviations_m{params.slip_m, kSlipSideways * params.slip_m};
+  PoseCovariance of = PoseCovariance::Zero();
+  of.topLeftCorner<2, 2>() =
+      map_from_robot * deviations_m.array().square().matrix().asDiagonal() * map_from_robot.transpose();
+  of(2, 2) = params.slip_rad * params.slip_rad;
+  return of;
+}
 
 TurnDriveTurn turn_drive_turn(const Pose2& motion) {
   const double trans_m = std::hypot(motion.x, motion.y);

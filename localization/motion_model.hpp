@@ -25,6 +25,12 @@ struct MotionModelParams {
   double slip_rad = radians(5.0);  ///< likewise of the heading, rad; > 0
 };
 
+/// Deviation of a slip across the robot's way, as a share of that along it.
+inline constexpr double kSlipSideways = 0.25;
+
+/// Of a robot's pose in the map once its wheels have slipped, by the model.
+[[nodiscard]] PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad);
+
 /// A motion between two odometry poses: turn, drive, turn.
 struct TurnDriveTurn {
   double rot1_rad = 0.0;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kOneInSlips = 16;  // particles that are drawn as if the wheels had slipped
 
 Pose2 drawn_slip(const MotionModelParams& model, double share, Random& random) {
-  return {random.normal(share * model.slip_m), random.normal(0.25 * share * model.slip_m),
+  return {random.normal(share * model.slip_m), random.normal(share * kSlipSideways * model.slip_m),
           random.normal(share * model.slip_rad)};
 }
 
@@ -64,18 +64,23 @@ void ParticleFilter::let_some_slip(const MotionModelParams& model) {
   }
 }
 
-void ParticleFilter::let_all_slip(const MotionModelParams& model) { slip_around(particles_.pose(best()), model, 1.0); }
-
-void ParticleFilter::let_chosen_slip(const MotionModelParams& model, double share) {
-  const Pose2 kept = particles_.pose(best());
-  draw(particles_.size());
-  slip_around(kept, model, share);
+void ParticleFilter::propose_slips(std::span<const Pose2> map_from_robot) {
+  if (!first_slip_) return;
+  std::size_t i = *first_slip_;
+  for (const Pose2& pose : map_from_robot) {
+    if (i >= particles_.size()) return;
+    particles_.set_pose(i, pose);
+    i += kOneInSlips;
+  }
 }
 
-void ParticleFilter::slip_around(const Pose2& kept, const MotionModelParams& model, double share) {
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
+bool ParticleFilter::best_has_slipped() const { return first_slip_ && best() % kOneInSlips == *first_slip_; }
+
+void ParticleFilter::spread_chosen(const MotionModelParams& model, double share) {
+  const Pose2 kept = particles_.pose(best());
+  draw(particles_.size());
+  for (std::size_t i = 1; i < particles_.size(); ++i) {
     particles_.set_pose(i, particles_.pose(i) * drawn_slip(model, share, random_));
-    particles_.log_weight[i] = 0.0;
   }
   particles_.set_pose(0, kept);
 }
@@ -108,12 +113,6 @@ double ParticleFilter::n_eff() const { return effective_sample_size(particles_.w
 std::size_t ParticleFilter::best() const {
   return static_cast<std::size_t>(std::max_element(particles_.weight.begin(), particles_.weight.end()) -
                                   particles_.weight.begin());
-}
-
-bool ParticleFilter::rests_on_few_slips() const {
-  return first_slip_ && params_.depleted_below > 0.0 &&
-         n_eff() < params_.depleted_below * static_cast<double>(particles_.size()) &&
-         best() % kOneInSlips == *first_slip_;
 }
 
 bool ParticleFilter::resample_if_needed(std::size_t occupied_cells) {

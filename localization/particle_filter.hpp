@@ -21,7 +21,6 @@ struct ParticleFilterParams {
   int min = 500;                 ///< fewest particles; 10..max
   int max = 5000;                ///< most particles: what global localization starts with; min..200000
   double resample_below = 0.5;   ///< share of the particles below which N_eff calls for resampling; 0..1
-  double depleted_below = 0.0;   ///< share below which a slip is not believed for one of them alone; 0..1, 0 = never
   double evidence_beams = 20.0;  ///< independent beams that a scan counts as; > 0: neighbours see the same things
   double kld_error = 0.05;       ///< bound of the approximation error that sets the number of particles; > 0 (ε)
   double kld_quantile = 2.33;    ///< of the normal distribution, how surely the bound holds; > 0 (z)
@@ -54,12 +53,14 @@ class ParticleFilter {
   /// N_eff (Eq. 5) of the accumulated weights.
   [[nodiscard]] double n_eff() const;
 
-  /// Hardly any particle carries weight, and the best was drawn as slipped in the last move: too few were to trust it.
-  [[nodiscard]] bool rests_on_few_slips() const;
-  /// Moves all but the best as if the wheels had just slipped; weights are forgotten.
-  void let_all_slip(const MotionModelParams& model);
-  /// The same with those that are drawn by their weights, by a share of the usual slip.
-  void let_chosen_slip(const MotionModelParams& model, double share);
+  /// Moves some of those that were drawn as slipped in the last move there, one to each pose; to be called before they
+  /// are weighed.
+  void propose_slips(std::span<const Pose2> map_from_robot);
+  /// The best was drawn as slipped in the last move.
+  [[nodiscard]] bool best_has_slipped() const;
+  /// Draws anew by the weights, and moves all but the best by a share of a usual slip: few were to tell how far off
+  /// that one may be.
+  void spread_chosen(const MotionModelParams& model, double share);
   /// Draws anew where N_eff is low; as many particles as `occupied_cells` cells call for. True where it did.
   bool resample_if_needed(std::size_t occupied_cells);
 
@@ -69,7 +70,6 @@ class ParticleFilter {
  private:
   void accumulate(std::size_t beams, double evidence_beams);
   [[nodiscard]] std::size_t best() const;
-  void slip_around(const Pose2& kept, const MotionModelParams& model, double share);
   void draw(std::size_t count);
   void let_some_slip(const MotionModelParams& model);
   void normalize_weights();

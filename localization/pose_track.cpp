@@ -51,6 +51,11 @@ RefinedPose PoseTrack::before_scan(const ScanInstant& now, const Hypothesis& par
   return {particles.map_from_robot, particles.covariance};
 }
 
+std::optional<Pose2> PoseTrack::carried_to(const ScanInstant& now) const {
+  if (!last_) return std::nullopt;
+  return last_->believed.map_from_robot * step_to(now).motion;
+}
+
 void PoseTrack::after_scan(const ScanInstant& now, const RefinedPose& believed) {
   if (last_) wheels_.learn(step_to(now).motion, believed);
   last_ = Last{now, believed};

@@ -31,6 +31,9 @@ class PoseTrack {
   /// particles' own where they disagree or nothing came before.
   [[nodiscard]] RefinedPose before_scan(const ScanInstant& now, const Hypothesis& particles);
 
+  /// The last estimate, carried by the wheels; none after forget().
+  [[nodiscard]] std::optional<Pose2> carried_to(const ScanInstant& now) const;
+
   /// What the scan made of it.
   void after_scan(const ScanInstant& now, const RefinedPose& believed);
 

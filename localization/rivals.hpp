@@ -34,7 +34,7 @@ struct RivalsParams {
   double winning_share = 0.98;   ///< of the belief at which another place is believed instead; 0.5..1
   double wins_after_m = 1.0;     ///< driven since it was found before another place may win, m; >= 0
   double beats_by = 12.0;        ///< log evidence of clearly better, whatever the odds before; > 0
-  double held_by = 8.0;          ///< more log evidence against a pose that proven tiles hold; >= 0
+  double held_by = 16.0;         ///< more log evidence against a pose that proven tiles hold; >= 0
   double most_ahead = 10.0;      ///< log evidence that a place may be found with ahead of the believed one; >= 0
   double equal_within = 4.0;     ///< log evidence of about as well; > 0
   int refined_a_scan = 4;        ///< places that are slid to their best fit at a scan while tracking; >= 0

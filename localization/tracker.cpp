@@ -9,7 +9,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kCloser = 0.25;  // share of a slip
+constexpr double kAroundSlip = 0.1;  // of a usual slip: how far that one is spread which a scan led to
 
 std::int32_t misfit_at(const Pose2& map_from_robot, const Tracker::Seen& seen) {
   return seen.beam_model != nullptr ? seen.beam_model->misfit_steps(seen.ends, seen.robot_from_laser, map_from_robot)
@@ -22,13 +22,15 @@ Tracker::Tracker(const TrackerParams& params, std::uint64_t seed)
     : params_{params},
       filter_{params.particles, seed},
       track_{params.track, params.motion},
-      hypotheses_{params.hypothesis} {}
+      hypotheses_{params.hypothesis},
+      slip_finder_{params.motion, params.refinement} {}
 
 RefinedPose Tracker::start_around(const InitialPose& pose) {
   filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
   best_ = hypotheses_.best(filter_.particles());
   drawn_anew_ = false;
   track_.forget();
+  slip_finder_.forget();
   last_update_.reset();
   return {best_.map_from_robot, best_.covariance};
 }
@@ -61,8 +63,13 @@ Tracker::Answer Tracker::update(const Seen& seen, const MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
   if (last_update_) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
   last_update_ = seen.now;
+  const std::span<const Pose2> slips_that_fit = sees ? slips(seen) : std::span<const Pose2>{};
+  filter_.propose_slips(slips_that_fit);
   std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};
-  if (sees && filter_.rests_on_few_slips()) misfits = weighed_after_slip(seen);
+  if (!slips_that_fit.empty() && filter_.best_has_slipped()) {
+    filter_.spread_chosen(params_.motion, kAroundSlip);
+    misfits = weighed(seen);
+  }
   Answer answer;
   answer.n_eff = filter_.n_eff();
   best_ = hypotheses_.best(filter_.particles());
@@ -94,13 +101,10 @@ std::span<const std::int32_t> Tracker::weighed(const Seen& seen) {
   return filter_.weigh_by([&](const Pose2& pose) { return misfit_at(pose, seen); }, seen.ends.size(), evidence_beams);
 }
 
-/// After a slip a single particle may happen to fit better than all others and yet lie a third of a metre off: before
-/// one is believed all of them slip, and those that fit then once more, less far.
-std::span<const std::int32_t> Tracker::weighed_after_slip(const Seen& seen) {
-  filter_.let_all_slip(params_.motion);
-  (void)weighed(seen);
-  filter_.let_chosen_slip(params_.motion, kCloser);
-  return weighed(seen);
+std::span<const Pose2> Tracker::slips(const Seen& seen) {
+  const std::optional<Pose2> by_wheels = track_.carried_to(seen.now);
+  if (!by_wheels) return {};
+  return slip_finder_.slips(seen.field, seen.ends, *by_wheels, beam_share(seen));
 }
 
 double Tracker::mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const {
@@ -124,11 +128,15 @@ double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) co
 
 /// The pose where the scan fits best.
 RefinedPose Tracker::slid(const Seen& seen, const RefinedPose& prior) {
-  const double beam_share = std::min(1.0, params_.particles.evidence_beams / static_cast<double>(seen.ends.size()));
   const Refinement found =
-      refined(seen.field, seen.ends, prior, best_.covariance, errors_, beam_share, params_.refinement);
+      refined(seen.field, seen.ends, prior, best_.covariance, errors_, beam_share(seen), params_.refinement);
   errors_ = found.errors;
+  slip_finder_.learn(seen.field, seen.ends, found.pose.map_from_robot);
   return found.pose;
+}
+
+double Tracker::beam_share(const Seen& seen) const {
+  return std::min(1.0, params_.particles.evidence_beams / static_cast<double>(seen.ends.size()));
 }
 
 void Tracker::draw_anew_if_needed() {

@@ -15,6 +15,7 @@
 #include "localization/pose_refinement.hpp"
 #include "localization/pose_track.hpp"
 #include "localization/scan_instant.hpp"
+#include "localization/slip_finder.hpp"
 #include "localization/start_pose.hpp"
 
 namespace deltamap::localization {
@@ -71,7 +72,8 @@ class Tracker {
   Answer follow(const Seen& seen, const MotionSince& since);
   [[nodiscard]] bool update_due(const MotionSince& since) const;
   [[nodiscard]] std::span<const std::int32_t> weighed(const Seen& seen);
-  [[nodiscard]] std::span<const std::int32_t> weighed_after_slip(const Seen& seen);
+  [[nodiscard]] std::span<const Pose2> slips(const Seen& seen);
+  [[nodiscard]] double beam_share(const Seen& seen) const;
   [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const;
   [[nodiscard]] double mean_over_some_members(const Seen& seen, const Pose2& motion) const;
   [[nodiscard]] RefinedPose slid(const Seen& seen, const RefinedPose& prior);
@@ -83,6 +85,7 @@ class Tracker {
   HypothesisFinder hypotheses_;
   Hypothesis best_;
   BeamErrors errors_;
+  SlipFinder slip_finder_;
   std::optional<ScanInstant> last_update_;
   bool drawn_anew_ = false;  ///< the particles, so that `hypotheses_` must look at them again
 };

@@ -14,10 +14,9 @@
 namespace deltamap::mapping::awareness {
 
 struct BeamEvidenceParams {
-  double deviations = 2.0;  ///< half width of the interval in σ; > 0
-  double least_position_deviation_m =
-      0.025;  ///< floor added to the pose's σ: particle filters are too sure of themselves
-  double least_heading_deviation_rad = 0.006;  ///< floor added to the heading's σ
+  double deviations = 2.0;                     ///< half width of the interval in σ; > 0
+  double least_position_deviation_m = 0.01;    ///< floor added to the pose's σ: estimates are too sure of themselves
+  double least_heading_deviation_rad = 0.004;  ///< floor added to the heading's σ
   double range_deviation_m = 0.015;            ///< of the laser, σ_r
   double clock_deviation_s = 0.01;             ///< times the turn rate is added to the heading's σ
   double most_position_deviation_m = 0.3;      ///< poses worse than this say nothing

@@ -52,6 +52,18 @@ TEST(Contour, IsTheRimOfASolidBlockOnly) {
   EXPECT_FALSE(is_contour(map, {0, 0}));
 }
 
+TEST(Contour, IsASingleRowOfCellsBetweenUnknownSpace) {
+  const OccupancyGrid map = test::drawn_grid({"      ",  //
+                                              " #### ",  //
+                                              "      ",  //
+                                              " #### ",  //
+                                              " #### ",  //
+                                              "      "});
+  EXPECT_TRUE(is_contour(map, {2, 4}));
+  EXPECT_FALSE(is_contour(map, {2, 2}));
+  EXPECT_FALSE(is_contour(map, {2, 1}));
+}
+
 TEST(Contour, ReachesAcrossOneUnknownCellToFreeSpaceButNotFarther) {
   const OccupancyGrid map = test::drawn_grid({"     ",  //
                                               "##   ",  //
@@ -59,8 +71,8 @@ TEST(Contour, ReachesAcrossOneUnknownCellToFreeSpaceButNotFarther) {
                                               ". ...",  //
                                               "     "});
   EXPECT_TRUE(is_contour(map, {0, 3}));
-  const OccupancyGrid far = test::drawn_grid({"#", " ", " ", "."});
-  EXPECT_FALSE(is_contour(far, {0, 3}));
+  const OccupancyGrid far = test::drawn_grid({"###", "###", "   ", "   ", "..."});
+  EXPECT_FALSE(is_contour(far, {1, 3}));
   EXPECT_FALSE(is_contour(test::drawn_grid({"###", "###", "###"}), {1, 1}));
 }
 

@@ -67,81 +67,56 @@ TEST(ParticleFilter, ResamplesToEqualWeightsAndAsManyAsTheCellsCallFor) {
   EXPECT_EQ(filter.particles().size(), 100u);
 }
 
-double distance_of_mean_m(const ParticleFilter& filter, const Point2& truth) {
-  Point2 mean{0.0, 0.0};
-  for (std::size_t i = 0; i < filter.particles().size(); ++i) {
-    mean += filter.particles().weight[i] * filter.particles().pose(i).position();
-  }
-  return (mean - truth).norm();
+std::size_t heaviest(const ParticleFilter& filter) {
+  const std::vector<double>& weights = filter.particles().weight;
+  return static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
 }
 
-TEST(ParticleFilter, FindsTheRobotAfterASlipFarMoreCloselyWhereAllParticlesSlip) {
+TEST(ParticleFilter, BelievesAProposedSlipThatFitsFarBetterThanWhatTheWheelsTell) {
   const OccupancyGrid map = room();
   const LikelihoodField field{map, {}};
   const Pose2 truth{2.0, 2.0, 0.5};
   const BeamEnds ends = ends_from(map, truth);
-  const MotionModelParams motion;
-  double few_m = 0.0;
-  double all_m = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    ParticleFilter filter{{.min = 500, .max = 500, .depleted_below = 0.05}, seed};
+    ParticleFilter filter{{.min = 500, .max = 500}, seed};
     filter.start_around({1.8, 2.0, 0.6}, 0.005, 0.002);
-    filter.move({}, 0.0, motion);
+    filter.move({}, 0.0, {});
+    filter.propose_slips(std::vector<Pose2>{{1.7, 2.0, 0.7}, truth});
     (void)filter.weigh(field, ends, 60.0);
-    EXPECT_TRUE(filter.rests_on_few_slips());
-    few_m += distance_of_mean_m(filter, truth.position());
-    filter.let_all_slip(motion);
-    (void)filter.weigh(field, ends, 60.0);
-    filter.let_chosen_slip(motion, 0.25);
-    (void)filter.weigh(field, ends, 60.0);
-    all_m += distance_of_mean_m(filter, truth.position());
+    EXPECT_TRUE(filter.best_has_slipped());
+    EXPECT_LT(distance_between(filter.particles().pose(heaviest(filter)), truth), 0.06);
   }
-  EXPECT_LT(all_m, 0.4 * few_m);
-  EXPECT_LT(all_m / 20.0, map.resolution_m());
 }
 
-TEST(ParticleFilter, KeepsTheBestWhereAllOthersSlip) {
+TEST(ParticleFilter, HasNotSlippedWhereTheWheelsAreRightOrSlipsAreNeverBelieved) {
+  const OccupancyGrid map = room();
+  const LikelihoodField field{map, {}};
+  const Pose2 truth{2.0, 2.0, 0.5};
+  const BeamEnds ends = ends_from(map, truth);
+  const auto has_slipped = [&](const Pose2& start, const MotionModelParams& motion) {
+    ParticleFilter filter{{.min = 500, .max = 500}, 1};
+    filter.start_around(start, 0.005, 0.002);
+    filter.move({}, 0.0, motion);
+    filter.propose_slips(std::vector<Pose2>{truth});
+    (void)filter.weigh(field, ends, 60.0);
+    return filter.best_has_slipped();
+  };
+  EXPECT_FALSE(has_slipped(truth, {}));
+  EXPECT_FALSE(has_slipped({1.8, 2.0, 0.6}, {.slip_probability = 0.0}));
+  EXPECT_TRUE(has_slipped({1.8, 2.0, 0.6}, {}));
+}
+
+TEST(ParticleFilter, KeepsTheBestWhereTheChosenAreSpread) {
   const OccupancyGrid map = room();
   const LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 500, .max = 500}, 1};
   filter.start_around({1.9, 2.0, 0.56}, 0.1, 0.05);
-  for (const bool again : {false, true}) {
-    (void)filter.weigh(field, ends_from(map, {2.0, 2.0, 0.5}), 60.0);
-    const std::vector<double>& weights = filter.particles().weight;
-    const auto heaviest = std::max_element(weights.begin(), weights.end()) - weights.begin();
-    const Pose2 best = filter.particles().pose(static_cast<std::size_t>(heaviest));
-    if (again) {
-      filter.let_chosen_slip({}, 0.25);
-    } else {
-      filter.let_all_slip({});
-    }
-    EXPECT_EQ(filter.particles().pose(0), best);
-    EXPECT_NE(filter.particles().pose(1), best);
-  }
-}
-
-TEST(ParticleFilter, RestsOnFewSlipsOnlyWhereAFewSlipsAreTheBest) {
-  const OccupancyGrid map = room();
-  const LikelihoodField field{map, {}};
-  const BeamEnds ends = ends_from(map, {2.0, 2.0, 0.5});
-  const auto rests = [&](const ParticleFilterParams& params, const MotionModelParams& motion, std::uint64_t seed) {
-    ParticleFilter filter{params, seed};
-    filter.start_around({1.8, 2.0, 0.6}, 0.005, 0.002);
-    filter.move({}, 0.0, motion);
-    (void)filter.weigh(field, ends, 60.0);
-    return filter.rests_on_few_slips();
-  };
-  const ParticleFilterParams few{.min = 500, .max = 500, .depleted_below = 0.05};
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    EXPECT_TRUE(rests(few, {}, seed));
-    EXPECT_FALSE(rests({.min = 500, .max = 500, .depleted_below = 0.0}, {}, seed));
-    EXPECT_FALSE(rests(few, {.slip_probability = 0.0}, seed));
-  }
-  ParticleFilter spread{few, 1};  // far apart and never slipped: few fit, for another reason
-  spread.start_around({1.8, 2.0, 0.6}, 0.5, 0.5);
-  (void)spread.weigh(field, ends, 60.0);
-  EXPECT_LT(spread.n_eff(), 25.0);
-  EXPECT_FALSE(spread.rests_on_few_slips());
+  (void)filter.weigh(field, ends_from(map, {2.0, 2.0, 0.5}), 60.0);
+  const Pose2 best = filter.particles().pose(heaviest(filter));
+  filter.spread_chosen({}, 0.1);
+  EXPECT_EQ(filter.particles().pose(0), best);
+  EXPECT_NE(filter.particles().pose(1), best);
+  EXPECT_EQ(filter.particles().size(), 500u);
 }
 
 TEST(ParticleFilter, CountsAScanTheSameWhateverItsNumberOfBeams) {
