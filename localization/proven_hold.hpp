@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far proven tiles hold the believed pose: the share of the last scans in which nearly all beams that are expected
+// How far proven tiles hold the believed pose: the share of the last scans in which most beams that are expected
 // on them end there. A place that fits better elsewhere has to outdo that.
 #pragma once
 
@@ -21,7 +21,7 @@ class ProvenHold {
 
  private:
   static constexpr std::uint32_t kLeastExpected = 20;
-  static constexpr double kHeld = 0.9;  // of the beams: what stands in front of a proven tile counts against it
+  static constexpr double kHeld = 0.75;  // of the beams: a thing that has gone, or stands in front, has proven tiles too
   static constexpr double kShareOfAScan = 0.1;
   double share_ = 0.0;
 };

@@ -9,7 +9,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kAroundSlip = 0.1;  // of a usual slip: how far that one is spread which a scan led to
+constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are spread once a slip fits best
 
 std::int32_t misfit_at(const Pose2& map_from_robot, const Tracker::Seen& seen) {
   return seen.beam_model != nullptr ? seen.beam_model->misfit_steps(seen.ends, seen.robot_from_laser, map_from_robot)

@@ -65,12 +65,13 @@ TEST(Contour, IsASingleRowOfCellsBetweenUnknownSpace) {
 }
 
 TEST(Contour, ReachesAcrossOneUnknownCellToFreeSpaceButNotFarther) {
-  const OccupancyGrid map = test::drawn_grid({"     ",  //
-                                              "##   ",  //
+  const OccupancyGrid map = test::drawn_grid({"###  ",  //
+                                              "###  ",  //
                                               "     ",  //
                                               ". ...",  //
                                               "     "});
   EXPECT_TRUE(is_contour(map, {0, 3}));
+  EXPECT_FALSE(is_contour(map, {0, 4}));
   const OccupancyGrid far = test::drawn_grid({"###", "###", "   ", "   ", "..."});
   EXPECT_FALSE(is_contour(far, {1, 3}));
   EXPECT_FALSE(is_contour(test::drawn_grid({"###", "###", "###"}), {1, 1}));

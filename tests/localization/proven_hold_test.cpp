@@ -16,6 +16,12 @@ TEST(ProvenHold, GrowsWithScansThatFitAndFallsWithinASecondOfOthers) {
   EXPECT_EQ(hold.share(), 0.0);
 }
 
+TEST(ProvenHold, StaysWhereAThingHasGoneThatHadProven) {
+  ProvenHold hold;
+  for (int i = 0; i < 50; ++i) hold.observe({.expected = 29, .fit = 24, .beyond = 5});
+  EXPECT_GT(hold.share(), 0.95);
+}
+
 TEST(ProvenHold, LearnsNothingFromAFewBeams) {
   ProvenHold hold;
   for (int i = 0; i < 50; ++i) hold.observe({.expected = 10, .fit = 10});
