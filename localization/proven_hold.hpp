@@ -21,7 +21,8 @@ class ProvenHold {
 
  private:
   static constexpr std::uint32_t kLeastExpected = 20;
-  static constexpr double kHeld = 0.75;  // of the beams: a thing that has gone, or stands in front, has proven tiles too
+  static constexpr double kHeld =
+      0.75;  // of the beams: a thing that has gone, or stands in front, has proven tiles too
   static constexpr double kShareOfAScan = 0.1;
   double share_ = 0.0;
 };
