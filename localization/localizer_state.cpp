@@ -119,7 +119,7 @@ RefinedPose Localizer::State::search(const ScanInstant& now) {
   const RivalReport& report = rivals.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
   if (const std::optional<Place> place = rivals.best_place()) {
     best = {place->map_from_robot, place->covariance, place->share};
-    if (ends.size() > 0) w_avg = mean_likelihood(misfit_steps(field, ends, best.map_from_robot), ends.size());
+    if (ends.size() > 0) w_avg = mean_likelihood(field, ends, best.map_from_robot);
   }
   n_eff = report.effective_places;
   if (given_up) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/motion_model.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,14 +14,19 @@ double turned_rad(double rot_rad) { return std::min(std::abs(rot_rad), std::numb
 
 }  // namespace
 
+PoseCovariance covariance_along(double direction_rad, double along_m2, double aside_m2, double turn_rad2) {
+  const Eigen::Vector2d along{std::cos(direction_rad), std::sin(direction_rad)};
+  const Eigen::Vector2d aside{-along.y(), along.x()};
+  PoseCovariance covariance = PoseCovariance::Zero();
+  covariance.topLeftCorner<2, 2>() = along_m2 * along * along.transpose() + aside_m2 * aside * aside.transpose();
+  covariance(2, 2) = turn_rad2;
+  return covariance;
+}
+
 PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad) {
-  const Eigen::Matrix2d map_from_robot = Eigen::Rotation2Dd{heading_rad}.toRotationMatrix();
-  const Eigen::Vector2d deviations_m{params.slip_m, kSlipSideways * params.slip_m};
-  PoseCovariance of = PoseCovariance::Zero();
-  of.topLeftCorner<2, 2>() =
-      map_from_robot * deviations_m.array().square().matrix().asDiagonal() * map_from_robot.transpose();
-  of(2, 2) = params.slip_rad * params.slip_rad;
-  return of;
+  const double aside_m = kSlipSideways * params.slip_m;
+  return covariance_along(heading_rad, params.slip_m * params.slip_m, aside_m * aside_m,
+                          params.slip_rad * params.slip_rad);
 }
 
 TurnDriveTurn turn_drive_turn(const Pose2& motion) {

@@ -28,6 +28,9 @@ struct MotionModelParams {
 /// Deviation of a slip across the robot's way, as a share of that along it.
 inline constexpr double kSlipSideways = 0.25;
 
+/// Of a pose that errs along a direction of the map, across it and in its heading, each for itself: variances.
+[[nodiscard]] PoseCovariance covariance_along(double direction_rad, double along_m2, double aside_m2, double turn_rad2);
+
 /// Of a robot's pose in the map once its wheels have slipped, by the model.
 [[nodiscard]] PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/slip_finder.hpp"
 
-#include <cmath>
-
 #include "localization/weighing.hpp"
 
 namespace deltamap::localization {
@@ -13,28 +11,25 @@ constexpr double kFitsAgainAbove = 0.9;
 constexpr double kNewestFit = 0.1;                                                    // share in the usual one
 constexpr double kTurnsOfSlip[] = {0.0, -0.3, 0.3, -0.6, 0.6, -1.0, 1.0, -1.6, 1.6};  // deviations, to slide from
 
-double fit_at(const LikelihoodField& field, const BeamEnds& ends, const Pose2& map_from_robot) {
-  return mean_likelihood(misfit_steps(field, ends, map_from_robot), ends.size());
-}
-
 }  // namespace
 
 std::span<const Pose2> SlipFinder::slips(const LikelihoodField& field, const BeamEnds& ends, const Pose2& by_wheels,
                                          double beam_share) {
   slips_.clear();
-  if (motion_.slip_probability <= 0.0 || fit_at(field, ends, by_wheels) >= kSuddenBelow * usual_fit_) return slips_;
+  if (motion_.slip_probability <= 0.0 || mean_likelihood(field, ends, by_wheels) >= kSuddenBelow * usual_fit_)
+    return slips_;
   const PoseCovariance spread = slip_covariance(motion_, by_wheels.theta);
   for (const double turn : kTurnsOfSlip) {
     const double heading = wrapped_angle(by_wheels.theta + turn * motion_.slip_rad);
     const RefinedPose from{{by_wheels.x, by_wheels.y, heading}, spread};
     const Pose2 slid = refined(field, ends, from, beam_share, refinement_).map_from_robot;
-    if (fit_at(field, ends, slid) >= kFitsAgainAbove * usual_fit_) slips_.push_back(slid);
+    if (mean_likelihood(field, ends, slid) >= kFitsAgainAbove * usual_fit_) slips_.push_back(slid);
   }
   return slips_;
 }
 
 void SlipFinder::learn(const LikelihoodField& field, const BeamEnds& ends, const Pose2& believed) {
-  const double fit = fit_at(field, ends, believed);
+  const double fit = mean_likelihood(field, ends, believed);
   usual_fit_ += (usual_fit_ > 0.0 ? kNewestFit : 1.0) * (fit - usual_fit_);
 }
 

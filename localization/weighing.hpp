@@ -22,5 +22,10 @@ namespace deltamap::localization {
 
 /// exp(mean of ln p(z)) for a sum over `beams` ends; in (0, 1]. beams > 0.
 [[nodiscard]] double mean_likelihood(std::int64_t steps, std::size_t beams);
+/// The same of a scan with the robot at the pose. `ends` must not be empty.
+[[nodiscard]] inline double mean_likelihood(const LikelihoodField& field, const BeamEnds& ends,
+                                            const Pose2& map_from_robot) {
+  return mean_likelihood(misfit_steps(field, ends, map_from_robot), ends.size());
+}
 
 }  // namespace deltamap::localization

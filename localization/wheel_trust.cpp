@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "localization/motion_model.hpp"
+
 namespace deltamap::localization {
 namespace {
 
@@ -38,12 +40,7 @@ PoseCovariance WheelTrust::added(const Pose2& motion, double heading_rad) const 
                                            params_.turn_per_root_turn_rad * params_.turn_per_root_turn_rad * turn_rad);
   const double aside_m2 = 0.25 * along_m2 + turn_rad2 * way_m * way_m / 3.0;
   const double direction_rad = heading_rad + (way_m > 0.0 ? std::atan2(motion.y, motion.x) : 0.0);
-  const Eigen::Vector2d along{std::cos(direction_rad), std::sin(direction_rad)};
-  const Eigen::Vector2d aside{-along.y(), along.x()};
-  PoseCovariance covariance = PoseCovariance::Zero();
-  covariance.topLeftCorner<2, 2>() = along_m2 * along * along.transpose() + aside_m2 * aside * aside.transpose();
-  covariance(2, 2) = turn_rad2;
-  return covariance;
+  return covariance_along(direction_rad, along_m2, aside_m2, turn_rad2);
 }
 
 void WheelTrust::learn(const Pose2& motion, const RefinedPose& believed) {

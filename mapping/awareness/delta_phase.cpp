@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/awareness/delta_phase.hpp"
 
-#include <memory>
 #include <utility>
+
+#include "mapping/awareness/kept_scan.hpp"
 
 namespace deltamap::mapping::awareness {
 namespace {
@@ -50,9 +51,7 @@ std::optional<ScanSet> DeltaPhase::observe(const TrackedScan& tracked, double r_
     set_.began = time;
   }
   if (open_ && is_worth_keeping(tracked, r_d)) {
-    const auto kept = std::make_shared<TrackedScan>(tracked);
-    kept->estimate.map.reset();  // the phase outlives the map that the pose was computed on
-    set_.scans.push_back(kept);
+    set_.scans.push_back(kept_scan(tracked));
   }
   return std::nullopt;
 }

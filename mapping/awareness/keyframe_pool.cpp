@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mapping/awareness/keyframe_choice.hpp"
+#include "mapping/awareness/kept_scan.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -15,9 +16,7 @@ bool KeyframePool::is_due(const TrackedScan& tracked) const {
 void KeyframePool::keep(const TrackedScan& tracked, std::vector<std::uint32_t> blocks) {
   if (!kept_.empty() && kept_.back().tracked->odometry_epoch != tracked.odometry_epoch) kept_.clear();
   if (kept_.size() >= params_.most_kept) kept_.pop_front();
-  const auto kept = std::make_shared<TrackedScan>(tracked);
-  kept->estimate.map.reset();  // a keyframe outlives the map that its pose was computed on
-  kept_.push_back({kept, std::move(blocks)});
+  kept_.push_back({kept_scan(tracked), std::move(blocks)});
 }
 
 KeptScans KeyframePool::that_saw(const std::vector<std::uint32_t>& blocks, Timestamp since) const {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/cast_ends.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -17,12 +17,6 @@ OccupancyGrid room() {
   test::fill_box(map, {0.2, 0.2}, {5.8, 3.8}, CellState::kFree);
   test::fill_box(map, {4.0, 1.0}, {4.6, 1.4}, CellState::kOccupied);
   return map;
-}
-
-BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
-  Random random{4};
-  const Scan scan = test::cast_scan(map, map_from_robot, {}, {}, random);
-  return scoring_ends(scan, deskewed(scan, {}), 0);
 }
 
 TEST(ParticleFilter, StartsAroundAPoseWithTheFewestParticles) {
@@ -40,7 +34,7 @@ TEST(ParticleFilter, AccumulatesWeightsUntilItResamples) {
   const LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 300, .max = 300, .resample_below = 0.0}, 1};
   filter.start_around({2.0, 2.0, 0.5}, 0.2, 0.1);
-  const BeamEnds ends = ends_from(map, {2.0, 2.0, 0.5});
+  const BeamEnds ends = test::cast_ends(map, {2.0, 2.0, 0.5});
   double last = filter.n_eff();
   for (int i = 0; i < 4; ++i) {
     (void)filter.weigh(field, ends, 5.0);
@@ -57,12 +51,12 @@ TEST(ParticleFilter, ResamplesToEqualWeightsAndAsManyAsTheCellsCallFor) {
   const LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 100, .max = 2000, .resample_below = 1.0}, 1};
   filter.start_around({2.0, 2.0, 0.5}, 0.2, 0.1);
-  (void)filter.weigh(field, ends_from(map, {2.0, 2.0, 0.5}), 20.0);
+  (void)filter.weigh(field, test::cast_ends(map, {2.0, 2.0, 0.5}), 20.0);
   EXPECT_TRUE(filter.resample_if_needed(60));
   EXPECT_GT(filter.particles().size(), 800u);
   EXPECT_LE(filter.particles().size(), 2000u);
   EXPECT_NEAR(filter.n_eff(), static_cast<double>(filter.particles().size()), 1e-6);
-  (void)filter.weigh(field, ends_from(map, {2.0, 2.0, 0.5}), 20.0);
+  (void)filter.weigh(field, test::cast_ends(map, {2.0, 2.0, 0.5}), 20.0);
   EXPECT_TRUE(filter.resample_if_needed(1));
   EXPECT_EQ(filter.particles().size(), 100u);
 }
@@ -76,7 +70,7 @@ TEST(ParticleFilter, BelievesAProposedSlipThatFitsFarBetterThanWhatTheWheelsTell
   const OccupancyGrid map = room();
   const LikelihoodField field{map, {}};
   const Pose2 truth{2.0, 2.0, 0.5};
-  const BeamEnds ends = ends_from(map, truth);
+  const BeamEnds ends = test::cast_ends(map, truth);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     ParticleFilter filter{{.min = 500, .max = 500}, seed};
     filter.start_around({1.8, 2.0, 0.6}, 0.005, 0.002);
@@ -92,7 +86,7 @@ TEST(ParticleFilter, HasNotSlippedWhereTheWheelsAreRightOrSlipsAreNeverBelieved)
   const OccupancyGrid map = room();
   const LikelihoodField field{map, {}};
   const Pose2 truth{2.0, 2.0, 0.5};
-  const BeamEnds ends = ends_from(map, truth);
+  const BeamEnds ends = test::cast_ends(map, truth);
   const auto has_slipped = [&](const Pose2& start, const MotionModelParams& motion) {
     ParticleFilter filter{{.min = 500, .max = 500}, 1};
     filter.start_around(start, 0.005, 0.002);
@@ -111,7 +105,7 @@ TEST(ParticleFilter, KeepsTheBestWhereTheChosenAreSpread) {
   const LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 500, .max = 500}, 1};
   filter.start_around({1.9, 2.0, 0.56}, 0.1, 0.05);
-  (void)filter.weigh(field, ends_from(map, {2.0, 2.0, 0.5}), 60.0);
+  (void)filter.weigh(field, test::cast_ends(map, {2.0, 2.0, 0.5}), 60.0);
   const Pose2 best = filter.particles().pose(heaviest(filter));
   filter.spread_chosen({}, 0.1);
   EXPECT_EQ(filter.particles().pose(0), best);
@@ -122,7 +116,7 @@ TEST(ParticleFilter, KeepsTheBestWhereTheChosenAreSpread) {
 TEST(ParticleFilter, CountsAScanTheSameWhateverItsNumberOfBeams) {
   const OccupancyGrid map = room();
   const LikelihoodField field{map, {}};
-  const BeamEnds all = ends_from(map, {2.0, 2.0, 0.5});
+  const BeamEnds all = test::cast_ends(map, {2.0, 2.0, 0.5});
   BeamEnds twice = all;
   twice.x_m.insert(twice.x_m.end(), all.x_m.begin(), all.x_m.end());
   twice.y_m.insert(twice.y_m.end(), all.y_m.begin(), all.y_m.end());
@@ -139,7 +133,7 @@ TEST(ParticleFilter, KeepsAStandingRobotsParticlesApart) {
   const LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 300, .max = 300}, 1};
   filter.start_around({2.0, 2.0, 0.5}, 0.1, 0.05);
-  const BeamEnds ends = ends_from(map, {2.0, 2.0, 0.5});
+  const BeamEnds ends = test::cast_ends(map, {2.0, 2.0, 0.5});
   for (int i = 0; i < 300; ++i) {
     filter.move({}, 0.0, {});
     (void)filter.weigh(field, ends, 20.0);

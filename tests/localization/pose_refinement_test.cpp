@@ -5,17 +5,14 @@
 
 #include <cmath>
 
-#include "core/random.hpp"
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/cast_ends.hpp"
 #include "tests/support/pillar_room.hpp"
 
 namespace deltamap::localization {
 namespace {
 
 BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
-  Random random{4};
-  const Scan scan = test::cast_scan(map, map_from_robot, {}, {.noise_m = 0.005}, random);
-  return scoring_ends(scan, deskewed(scan, {}), 0);
+  return test::cast_ends(map, map_from_robot, {.noise_m = 0.005});
 }
 
 TEST(Refinement, SlidesAPoseToWhereTheScanFits) {
@@ -36,9 +33,7 @@ TEST(Refinement, SlidesAPoseToWhereTheScanFits) {
 TEST(Refinement, DoesNotSlideAlongACorridorThatShowsNoEnd) {
   OccupancyGrid corridor{{800, 60, 0.05, {-20.0, -1.5}}, CellState::kOccupied};
   test::fill_box(corridor, {-20.0, -1.0}, {20.0, 1.0}, CellState::kFree);
-  Random random{4};
-  const Scan scan = test::cast_scan(corridor, {0.0, 0.0, 0.0}, {}, {.max_range_m = 8.0}, random);
-  const BeamEnds ends = scoring_ends(scan, deskewed(scan, {}), 0);
+  const BeamEnds ends = test::cast_ends(corridor, {0.0, 0.0, 0.0}, {.max_range_m = 8.0});
   const PoseCovariance spread = Eigen::Vector3d{0.04, 0.01, 0.001}.asDiagonal();
   const RefinedPose found =
       refined(LikelihoodField{corridor, {}}, ends, {{0.1, 0.05, 0.02}, spread}, 0.1, {.steps = 10, .prior_share = 1.0});

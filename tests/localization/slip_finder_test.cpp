@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "core/angle.hpp"
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/cast_ends.hpp"
+#include "tests/support/pillar_room.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -15,32 +16,17 @@ namespace {
 constexpr double kBeamShare = 20.0 / 181.0;
 const Pose2 kStands{2.0, 2.0, 0.5};
 
-OccupancyGrid room() {
-  OccupancyGrid map{{160, 120, 0.05, {-1.0, -1.0}}, CellState::kOccupied};
-  test::fill_box(map, {0.2, 0.2}, {5.8, 3.8}, CellState::kFree);
-  test::fill_box(map, {4.0, 1.0}, {4.6, 1.4}, CellState::kOccupied);
-  return map;
-}
-
-BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot) {
-  Random random{4};
-  const Scan scan = test::cast_scan(map, map_from_robot, {}, {}, random);
-  return scoring_ends(scan, deskewed(scan, {}), 0);
-}
-
 class SlipFinderInARoom : public testing::Test {
  protected:
-  explicit SlipFinderInARoom(const MotionModelParams& motion = {}) : finder_{motion, {}} {
-    finder_.learn(field_, ends_, kStands);
-  }
+  SlipFinderInARoom() { finder_.learn(field_, ends_, kStands); }
   [[nodiscard]] std::span<const Pose2> slips_from(const Pose2& by_wheels) {
     return finder_.slips(field_, ends_, by_wheels, kBeamShare);
   }
 
-  OccupancyGrid map_ = room();
+  OccupancyGrid map_ = test::pillar_room();
   LikelihoodField field_{map_, {}};
-  BeamEnds ends_ = ends_from(map_, kStands);
-  SlipFinder finder_;
+  BeamEnds ends_ = test::cast_ends(map_, kStands);
+  SlipFinder finder_{{}, {}};
 };
 
 TEST_F(SlipFinderInARoom, FindsWhereTheRobotStandsAfterUsualSlips) {
@@ -66,17 +52,14 @@ TEST_F(SlipFinderInARoom, FindsNoneBeforeItHasLearnedHowScansFit) {
 TEST_F(SlipFinderInARoom, FindsNoneWhereTheWorldHasChangedAndNothingNearFitsAsBefore) {
   OccupancyGrid changed = map_;
   test::fill_box(changed, {2.6, 1.9}, {3.0, 3.2}, CellState::kOccupied);
-  ends_ = ends_from(changed, kStands);
+  ends_ = test::cast_ends(changed, kStands);
   EXPECT_TRUE(slips_from(kStands).empty());
 }
 
-TEST(SlipFinder, FindsNoneWhereSlipsAreNeverBelieved) {
-  const OccupancyGrid map = room();
-  const LikelihoodField field{map, {}};
-  const BeamEnds ends = ends_from(map, kStands);
-  SlipFinder finder{{.slip_probability = 0.0}, {}};
-  finder.learn(field, ends, kStands);
-  EXPECT_TRUE(finder.slips(field, ends, kStands * Pose2{0.1, 0.0, 0.1}, kBeamShare).empty());
+TEST_F(SlipFinderInARoom, FindsNoneWhereSlipsAreNeverBelieved) {
+  finder_ = SlipFinder{{.slip_probability = 0.0}, {}};
+  finder_.learn(field_, ends_, kStands);
+  EXPECT_TRUE(slips_from(kStands * Pose2{0.1, 0.0, 0.1}).empty());
 }
 
 }  // namespace
