@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "mapping/awareness/keyframe_choice.hpp"
 #include "mapping/awareness/kept_scan.hpp"
+#include "mapping/awareness/keyframe_choice.hpp"
 
 namespace deltamap::mapping::awareness {
 
