@@ -79,10 +79,11 @@ void Actor::walk(double dt_s, const Surroundings& around) {
   map_from_body_ = next;
 }
 
-/// A fork-lift turns on the spot before it goes on.
+/// A fork-lift turns on the spot before it goes on at a corner; where it was blocked it backs out as it came.
 Pose2 Actor::step_towards(const Point2& aim, double dt_s) const {
   const Point2 way = aim - map_from_body_.position();
-  const double bearing_rad = std::atan2(way.y(), way.x());
+  const Point2 ahead = backs_ ? Point2{-way} : way;
+  const double bearing_rad = std::atan2(ahead.y(), ahead.x());
   const double off_rad = turn_between(map_from_body_.theta, bearing_rad);
   Pose2 next = map_from_body_;
   const double most_rad = kTurnRate_rad_per_s * dt_s;
@@ -117,6 +118,7 @@ bool Actor::is_blocked(const Pose2& next, const Surroundings& around) const {
 }
 
 void Actor::reach_aim() {
+  backs_ = false;
   if (gate_leg_ == GateLeg::kOut) {
     mood_ = Mood::kAway;
     leaving_ = false;
@@ -148,6 +150,7 @@ void Actor::come_back(const Surroundings& around) {
 
 void Actor::turn_back() {
   blocked_s_ = 0.0;
+  backs_ = params_.is_forklift && !backs_;
   if (gate_leg_ == GateLeg::kNone) {
     beat_.turn_back();
   } else {

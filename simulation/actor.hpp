@@ -77,6 +77,7 @@ class Actor {
   Mood mood_ = Mood::kWalking;
   GateLeg gate_leg_ = GateLeg::kNone;
   bool leaving_ = false;
+  bool backs_ = false;   // a fork-lift, tail first
   double left_s_ = 0.0;  // of the walk, the stop or the time outside
   double blocked_s_ = 0.0;
 };

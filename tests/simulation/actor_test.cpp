@@ -145,6 +145,23 @@ TEST(Actor, TurnsBackBeforeOthersAndShutDoors) {
   EXPECT_GT(farthest_x, 13.0);
 }
 
+TEST(ForkLiftActor, BacksOutWhereItIsBlocked) {
+  const RayCaster world{hall()};
+  const std::vector<Circle> others{{{10, 10}, 0.2}};
+  Actor actor{truck(), Random{3}};
+  double farthest_x = 0.0;
+  double backed_m = 0.0;
+  for (double t = 0.0; t < 600.0; t += kStep_s) {
+    const double before_x = actor.box().centre.x();
+    actor.move(kStep_s, {world, kFarAway, others, {}});
+    farthest_x = std::max(farthest_x, before_x);
+    backed_m += std::max(0.0, before_x - actor.box().centre.x());
+    ASSERT_NEAR(actor.box().theta_rad, 0.0, 1e-9) << "it never turns";
+  }
+  EXPECT_GT(farthest_x, 7.0);
+  EXPECT_GT(backed_m, 4.0);
+}
+
 TEST(ForkLiftActor, LooksWhereItGoesAndIsSeenAsABox) {
   Actor actor{truck(), Random{1}};
   const Box box = actor.box();
