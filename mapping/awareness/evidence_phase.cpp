@@ -127,8 +127,8 @@ void EvidencePhase::add_verdicts(Question question, Cell block, std::vector<Cell
   }
 }
 
-/// The block starts anew: were the map update to refuse, it has to be proven again.
-void EvidencePhase::hand_on(Question question, Cell block) {
+/// Were the map update to refuse, the block has to be proven again.
+void EvidencePhase::begin_anew(Question question, Cell block) {
   layer_.reset(question, block);
   std::erase_if(waiting_,
                 [&](const ProvenBlock& proven) { return proven.question == question && proven.block == block; });
@@ -155,6 +155,63 @@ bool EvidencePhase::is_large_enough(const std::vector<ProvenBlock>& region) cons
   });
 }
 
+bool EvidencePhase::is_settled(const std::vector<ProvenBlock>& region) const {
+  const auto [oldest, newest] = std::minmax_element(
+      region.begin(), region.end(), [](const ProvenBlock& a, const ProvenBlock& b) { return a.since_ms < b.since_ms; });
+  return 1e-3 * (now_ms_ - newest->since_ms) >= params_.settle_s ||
+         1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s;
+}
+
+/// Something that this run itself has written is gone.
+bool EvidencePhase::is_young(const std::vector<ProvenBlock>& region) const {
+  return region.front().question == Question::kRemoved &&
+         std::all_of(region.begin(), region.end(), [&](const ProvenBlock& one) { return young_.is_young(one.block); });
+}
+
+/// Beams from afar pass but a part of somebody who stood there, or of what is left of a wall: it goes as a whole.
+void EvidencePhase::add_remains(std::vector<CellVerdict>& gone, Blocks& blocks) const {
+  std::vector<Cell> cells;
+  for (const CellVerdict& verdict : gone) {
+    if (specks_.is_of_speck(verdict.cell)) cells.push_back(verdict.cell);
+  }
+  for (const Cell& cell : specks_.whole(cells)) {
+    if (std::find(cells.begin(), cells.end(), cell) != cells.end()) continue;
+    gone.push_back({cell, CellState::kFree});
+    blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(layer_.block_of(cell))));
+  }
+}
+
+EvidencePhase::Handed EvidencePhase::hand_on(const std::vector<ProvenBlock>& region,
+                                             std::vector<CellVerdict>& verdicts) {
+  const Question question = region.front().question;
+  Handed handed{.blocks = {}, .first_ms = now_ms_};
+  std::vector<CellVerdict> own;
+  for (const Cell& block : with_joining_blocks(region)) {
+    handed.first_ms = std::min(handed.first_ms, layer_.ballot(question, block, now_ms_).first_ms);
+    add_verdicts(question, block, own);
+    handed.blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
+    passing_.note(handed.blocks.back(), question, now_ms_);
+    begin_anew(question, block);
+  }
+  if (question == Question::kRemoved) add_remains(own, handed.blocks);
+  verdicts.insert(verdicts.end(), own.begin(), own.end());
+  sort_unique(handed.blocks);
+  return handed;
+}
+
+/// Keyframes from before a thing went would draw it again: what was freed counts from now on. Who has come and gone
+/// within this run passes: his place is not looked at again.
+void EvidencePhase::keep_in_view(const std::vector<ProvenBlock>& region, const Handed& handed) {
+  if (is_young(region)) {
+    watched_.forget(handed.blocks);
+  } else if (region.front().question == Question::kRemoved) {
+    watched_.begin_anew(handed.blocks, now_ms_);
+    watched_.watch(handed.blocks, 0, now_ms_);
+  } else {
+    watched_.watch(handed.blocks, params_.reach_blocks, handed.first_ms);
+  }
+}
+
 std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
   std::erase_if(waiting_, [&](const ProvenBlock& proven) { return !is_proven(proven.question, proven.block); });
   ScanSet set;
@@ -162,29 +219,12 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
   Blocks handed_on;
   std::uint32_t first_ms = now_ms_;
   for (const std::vector<ProvenBlock>& region : connected_regions(waiting_, params_.reach_blocks)) {
-    const auto [oldest, newest] =
-        std::minmax_element(region.begin(), region.end(),
-                            [](const ProvenBlock& a, const ProvenBlock& b) { return a.since_ms < b.since_ms; });
-    const bool settled = 1e-3 * (now_ms_ - newest->since_ms) >= params_.settle_s ||
-                         1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s;
-    if (!settled || !is_large_enough(region) || passing_.is_passing(region, {*map_, layer_, young_, now_ms_})) continue;
-    const Question question = region.front().question;
-    Blocks blocks;
-    std::uint32_t region_first_ms = now_ms_;
-    for (const Cell& block : with_joining_blocks(region)) {
-      region_first_ms = std::min(region_first_ms, layer_.ballot(question, block, now_ms_).first_ms);
-      add_verdicts(question, block, set.verdicts);
-      blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(block)));
-      passing_.note(blocks.back(), question, now_ms_);
-      hand_on(question, block);
-    }
-    sort_unique(blocks);
-    // Keyframes from before a thing went would draw it again: what was freed counts from now on.
-    const bool added = question == Question::kAdded;
-    if (!added) watched_.begin_anew(blocks, now_ms_);
-    watched_.watch(blocks, added ? params_.reach_blocks : 0, added ? region_first_ms : now_ms_);
-    first_ms = std::min(first_ms, region_first_ms);
-    handed_on = merged(std::move(handed_on), blocks);
+    if (!is_settled(region) || !is_large_enough(region)) continue;
+    if (!is_young(region) && passing_.is_passing(region, {*map_, layer_, now_ms_})) continue;
+    const Handed handed = hand_on(region, set.verdicts);
+    keep_in_view(region, handed);
+    first_ms = std::min(first_ms, handed.first_ms);
+    handed_on = merged(std::move(handed_on), handed.blocks);
   }
   sort_unique(handed_on);
   return with_scans(std::move(set), handed_on, first_ms);

@@ -60,6 +60,11 @@ class EvidencePhase {
   [[nodiscard]] TemporaryLayer& temporary() { return temporary_; }
 
  private:
+  /// What was handed on of a region: its blocks, sorted, and when the first vote for them was cast.
+  struct Handed {
+    Blocks blocks;
+    std::uint32_t first_ms = 0;
+  };
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void count_beams();
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
@@ -67,9 +72,14 @@ class EvidencePhase {
   [[nodiscard]] bool is_proven(Question question, Cell block) const;
   [[nodiscard]] double least_share(Question question) const;
   [[nodiscard]] std::optional<ScanSet> settled_regions(Timestamp time);
+  [[nodiscard]] bool is_settled(const std::vector<ProvenBlock>& region) const;
+  [[nodiscard]] bool is_young(const std::vector<ProvenBlock>& region) const;
+  Handed hand_on(const std::vector<ProvenBlock>& region, std::vector<CellVerdict>& verdicts);
+  void add_remains(std::vector<CellVerdict>& gone, Blocks& blocks) const;
+  void keep_in_view(const std::vector<ProvenBlock>& region, const Handed& handed);
   [[nodiscard]] std::vector<Cell> with_joining_blocks(const std::vector<ProvenBlock>& region);
   void add_verdicts(Question question, Cell block, std::vector<CellVerdict>& verdicts) const;
-  void hand_on(Question question, Cell block);
+  void begin_anew(Question question, Cell block);
   [[nodiscard]] std::optional<ScanSet> another_look(Timestamp time);
   [[nodiscard]] std::optional<ScanSet> with_scans(ScanSet set, const Blocks& blocks, std::uint32_t first_ms);
 

@@ -7,12 +7,6 @@
 namespace deltamap::mapping::awareness {
 namespace {
 
-/// Something that this run itself has written is gone.
-bool is_young(const std::vector<ProvenBlock>& region, const YoungBlocks& young) {
-  return region.front().question == Question::kRemoved &&
-         std::all_of(region.begin(), region.end(), [&](const ProvenBlock& one) { return young.is_young(one.block); });
-}
-
 CellBox box_of(const std::vector<ProvenBlock>& region, const VoteLayer& votes) {
   CellBox box = votes.cells_of(region.front().block);
   for (const ProvenBlock& proven : region) {
@@ -60,7 +54,6 @@ double Passing::flips_beyond(Cell block, const View& view) const {
 
 /// Who goes on toggling has to last twice as long each time.
 bool Passing::is_passing(const std::vector<ProvenBlock>& region, const View& view) const {
-  if (is_young(region, view.young)) return false;  // it goes at once, and has to last the longer when it comes again
   double most_flips = -1.0;
   std::ptrdiff_t toggling = 0;
   double longest_s = 0.0;

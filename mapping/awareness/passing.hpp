@@ -10,7 +10,6 @@
 #include "mapping/awareness/evidence_regions.hpp"
 #include "mapping/awareness/flip_memory.hpp"
 #include "mapping/awareness/vote_layer.hpp"
-#include "mapping/awareness/young_blocks.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -34,7 +33,6 @@ class Passing {
   struct View {
     const OccupancyGrid& map;
     const VoteLayer& votes;
-    const YoungBlocks& young;
     std::uint32_t now_ms;
   };
   /// Has the region not been voted for long enough to tell it from what only passes?

@@ -116,6 +116,17 @@ std::vector<Cell> Specks::missed(const TrackedScan& tracked, std::span<const Bea
   return cells;
 }
 
+std::vector<Cell> Specks::whole(std::span<const Cell> some) const {
+  std::vector<Cell> cells;
+  for (const Speck& speck : specks_) {
+    const bool is_touched = std::any_of(some.begin(), some.end(), [&](Cell cell) {
+      return is_of_speck(cell) && std::find(speck.cells.begin(), speck.cells.end(), cell) != speck.cells.end();
+    });
+    if (is_touched) cells.insert(cells.end(), speck.cells.begin(), speck.cells.end());
+  }
+  return cells;
+}
+
 bool Specks::is_missed(Speck& speck, Look look) const {
   if (look == Look::kNothing) return false;
   speck.thin_looks = look == Look::kThrough ? speck.thin_looks + 1 : 0;

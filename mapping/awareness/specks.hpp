@@ -33,6 +33,9 @@ class Specks {
 
   [[nodiscard]] bool is_of_speck(Cell cell) const { return (flags_[geometry_.index_of(cell)] & kOfSpeck) != 0; }
 
+  /// All cells of the specks that any of these cells belongs to.
+  [[nodiscard]] std::vector<Cell> whole(std::span<const Cell> some) const;
+
   /// The cells of all specks that the beams of a scan would have met, and have not: every beam that may have passed
   /// there ends clearly beyond. From farther away, where the fan has gaps, it takes several scans in which the best
   /// pose sends a beam right through. `beams`: the verdicts on `tracked`.

@@ -132,6 +132,14 @@ TEST_F(Gone, IsNoSpeckThatHasGrownIntoASurface) {
   EXPECT_FALSE(specks.is_of_speck(surface.geometry().cell_at({4.02, 5.02})));
 }
 
+TEST_F(Gone, IsASpeckAsAWhole) {
+  known(room(), speck);
+  const Cell corner = speck.geometry().cell_at({4.02, 5.02});
+  const std::vector<Cell> wall{speck.geometry().cell_at({9.82, 5.0})};
+  EXPECT_EQ(specks.whole(std::vector<Cell>{corner}).size(), 4U);
+  EXPECT_TRUE(specks.whole(wall).empty());
+}
+
 /// By hand: is the group of this cell small, and none of it in a small group of the first map?
 bool is_small_and_new(const OccupancyGrid& first, const OccupancyGrid& map, Cell cell, int most_cells) {
   const auto group_of = [&](const OccupancyGrid& grid, Cell start) {

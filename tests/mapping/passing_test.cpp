@@ -23,8 +23,7 @@ class Passes : public testing::Test {
     return region;
   }
   [[nodiscard]] bool is_passing(const std::vector<ProvenBlock>& region) {
-    const ClearSpace clear{map, votes.cells_per_block()};
-    return passing.is_passing(region, {map, votes, YoungBlocks{clear, votes.cells_per_block()}, now_ms});
+    return passing.is_passing(region, {map, votes, now_ms});
   }
   void fill_rows(int first, int last, CellState state) {
     for (int row = first; row < last; ++row)

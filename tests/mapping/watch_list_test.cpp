@@ -81,5 +81,16 @@ TEST_F(Watched, BeginsAnewWhereSomethingWent) {
   EXPECT_EQ(second->first_ms, 2'000u);
 }
 
+TEST_F(Watched, IsForgottenWhereWhatCameHasGoneAgain) {
+  list.watch({45, 46}, 0, 0);
+  list.watch({46, 47}, 0, 0);
+  list.watch({66}, 0, 0);
+  list.forget({46});
+  EXPECT_FALSE(list.is_watched(blocks.cell_of(45)));
+  EXPECT_FALSE(list.is_watched(blocks.cell_of(47)));
+  EXPECT_EQ(keyframes_until_look({45, 46, 47}), 0);
+  EXPECT_EQ(keyframes_until_look({66}), 8);
+}
+
 }  // namespace
 }  // namespace deltamap::mapping::awareness
