@@ -65,6 +65,7 @@ class EvidencePhase {
     Blocks blocks;
     std::uint32_t first_ms = 0;
   };
+
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void count_beams();
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;

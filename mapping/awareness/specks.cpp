@@ -120,7 +120,7 @@ std::vector<Cell> Specks::whole(std::span<const Cell> some) const {
   std::vector<Cell> cells;
   for (const Speck& speck : specks_) {
     const bool is_touched = std::any_of(some.begin(), some.end(), [&](Cell cell) {
-      return is_of_speck(cell) && std::find(speck.cells.begin(), speck.cells.end(), cell) != speck.cells.end();
+      return std::find(speck.cells.begin(), speck.cells.end(), cell) != speck.cells.end();
     });
     if (is_touched) cells.insert(cells.end(), speck.cells.begin(), speck.cells.end());
   }

@@ -11,9 +11,9 @@ constexpr std::uint32_t kMostBetween = 40;  // keyframes: a surface may be met f
 
 }  // namespace
 
-std::vector<WatchList::Region>::iterator WatchList::forget(std::vector<Region>::iterator region) {
+void WatchList::forget(std::vector<Region>::iterator region) {
   for (const std::uint32_t index : region->look.blocks) --watchers_[index];
-  return regions_.erase(region);
+  regions_.erase(region);
 }
 
 void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms) {
@@ -36,21 +36,24 @@ void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_block
   regions_.push_back(std::move(region));
 }
 
-bool WatchList::overlaps(const Region& region, const std::vector<std::uint32_t>& blocks) {
-  const std::vector<std::uint32_t>& own = region.look.blocks;
-  return std::any_of(blocks.begin(), blocks.end(),
-                     [&](std::uint32_t index) { return std::binary_search(own.begin(), own.end(), index); });
-}
-
 void WatchList::begin_anew(const std::vector<std::uint32_t>& blocks, std::uint32_t now_ms) {
   for (Region& region : regions_) {
-    if (overlaps(region, blocks)) region.look.first_ms = now_ms;
+    const std::vector<std::uint32_t>& own = region.look.blocks;
+    const bool overlaps = std::any_of(blocks.begin(), blocks.end(), [&](std::uint32_t index) {
+      return std::binary_search(own.begin(), own.end(), index);
+    });
+    if (overlaps) region.look.first_ms = now_ms;
   }
 }
 
 void WatchList::forget(const std::vector<std::uint32_t>& blocks) {
-  for (auto region = regions_.end(); region != regions_.begin();) {
-    if (overlaps(*--region, blocks)) region = forget(region);
+  for (auto region = regions_.begin(); region != regions_.end();) {
+    std::erase_if(region->look.blocks, [&](std::uint32_t index) {
+      const bool is_forgotten = std::binary_search(blocks.begin(), blocks.end(), index);
+      if (is_forgotten) --watchers_[index];
+      return is_forgotten;
+    });
+    region = region->look.blocks.empty() ? regions_.erase(region) : region + 1;
   }
 }
 

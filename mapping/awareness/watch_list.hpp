@@ -35,7 +35,7 @@ class WatchList {
   /// What keyframes saw of these blocks (sorted) before does not count for later looks.
   void begin_anew(const std::vector<std::uint32_t>& blocks, std::uint32_t now_ms);
 
-  /// Regions that overlap these blocks (sorted) are not to be looked at again.
+  /// These blocks (sorted) are not to be looked at again.
   void forget(const std::vector<std::uint32_t>& blocks);
 
   [[nodiscard]] bool is_watched(Cell block) const { return watchers_[geometry_.index_of(block)] > 0; }
@@ -53,8 +53,7 @@ class WatchList {
     std::uint32_t next_look = 0;
     std::uint32_t looks_left = 0;
   };
-  std::vector<Region>::iterator forget(std::vector<Region>::iterator region);
-  [[nodiscard]] static bool overlaps(const Region& region, const std::vector<std::uint32_t>& blocks);
+  void forget(std::vector<Region>::iterator region);
 
   WatchParams params_;
   GridGeometry geometry_;

@@ -254,6 +254,7 @@ Plan endurance() {
                            .arrange = every(seconds)});
   plan.asked.push_back({"", "error_p99_m", Over::kMost, {}, "m"});
   plan.asked.push_back({"", "skill", Over::kLeast, {}});
+  plan.asked.push_back({"every", "cells_written_astray", Over::kMost, {.most = 0.0}});
   return plan;
 }
 
@@ -266,7 +267,8 @@ Plan live_map() {
           {{"80m", "error_rms_m", Over::kMost, {.most = 0.03}, "m"},
            {"8m", "error_rms_m", Over::kMost, {.most = 0.08}, "m", "nobody survives; always-on SLAM: 21 m"},
            {"", "not_tracking", Over::kMost, {.most = 0.0}},
-           {"", "recall", Over::kMean, {.least = 0.95}}}};
+           {"", "recall", Over::kMean, {.least = 0.95}},
+           {"", "cells_written_astray", Over::kMost, {.most = 0.0}}}};
 }
 
 Plan passers() {
@@ -278,7 +280,8 @@ Plan passers() {
            {"", "passer_ghosts_of_override", Over::kMost, {.most = 0.01}},
            {"", "skill", Over::kLeast, {}},
            {"", "walls_kept", Over::kLeast, {.least = 1.0}},
-           {"", "error_p99_m", Over::kMost, {.most = 0.2}, "m"}}};
+           {"", "error_p99_m", Over::kMost, {.most = 0.2}, "m"},
+           {"", "cells_written_astray", Over::kMost, {.most = 0.0}}}};
 }
 
 Plan standing_still() {
@@ -296,7 +299,8 @@ Plan standing_still() {
                 }}},
           {{"", "writes_per_cell_hour", Over::kMost, {.most = 0.1}},
            {"", "most_writes_of_a_cell", Over::kMost, {}},
-           {"", "walls_kept", Over::kLeast, {.least = 1.0}}}};
+           {"", "walls_kept", Over::kLeast, {.least = 1.0}},
+           {"", "cells_written_astray", Over::kMost, {.most = 0.0}}}};
 }
 
 Plan creeping() {
@@ -306,7 +310,8 @@ Plan creeping() {
           {{"", "wall_drift_m", Over::kMost, {.most = 0.02}, "m"},
            {"", "error_mean_m", Over::kMost, {.most = 0.05}, "m"},
            {"", "error_p99_m", Over::kMost, {.most = 0.20}, "m"},
-           {"", "skill", Over::kLeast, {}}}};
+           {"", "skill", Over::kLeast, {}},
+           {"", "cells_written_astray", Over::kMost, {.most = 0.0}}}};
 }
 
 Plan changed_start() {
@@ -324,8 +329,10 @@ Plan changed_start() {
   plan.asked = {{"25%", "skill", Over::kLeast, {}},
                 {"50%", "skill", Over::kLeast, {.least = 0.8}},
                 {"75%", "skill", Over::kLeast, {}},
-                {"", "not_tracking", Over::kMost, {}},
-                {"", "error_p99_m", Over::kMost, {}, "m"}};
+                {"", "longest_start_check_s", Over::kMost, {.most = 5.0}, "s"},
+                {"", "not_tracking", Over::kMost, {.most = 0.0}},
+                {"", "error_p99_m", Over::kMost, {}, "m"},
+                {"", "cells_written_astray", Over::kMost, {.most = 0.0}}};
   return plan;
 }
 
