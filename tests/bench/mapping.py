@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What mapping costs a scan of 180 or 181 beams, in instructions that callgrind counts: Δ-awareness, averaged over all scans,
 and the updates of the map beside it. On the real log `intel`, whose map lacks nothing, and in a simulated hall where a
-container comes or goes each minute. Called by ./dev bench mapping.
+container comes or goes each minute. Writes docs/results/mapping.md. Called by ./dev bench mapping.
 
-  mapping.py [--quick]    --quick: two minutes of the hall alone"""
+  mapping.py [--quick]    --quick: two minutes of the hall alone, into build/"""
 import argparse, re, subprocess, sys
 
-from measuring import DATA, OUT, ROOT, TOOL, mark, row, unpacked
+from measuring import DATA, OUT, ROOT, TOOL, mark, row, run, table_lines, unpacked
 
 AWARENESS = "deltamap::mapping::StoreScan::observe("
 UPDATE = "deltamap::daemon::MapStep::update("
@@ -60,10 +60,11 @@ def rows_of(where, measure):
 
 
 def intel():
-    log = unpacked("intel.log", OUT / "data")
-    capture = OUT / "data/intel.pcapng"
-    subprocess.run([TOOL, "import", "carmen", log, capture], check=True, stdout=subprocess.DEVNULL)
-    return measured("intel", "replay", capture, "--map", DATA / "maps/ref_intel.yaml", "--config", ROOT / "config/pioneer.yaml",
+    capture = OUT / "intel.pcapng"
+    if not capture.exists():
+        run(TOOL, "import", "carmen", unpacked("logs/intel.log"), capture)
+    unpacked("maps/ref_intel.pgm")
+    return measured("intel", "replay", capture, "--map", unpacked("maps/ref_intel.yaml"), "--config", ROOT / "config/pioneer.yaml",
                     "--out", OUT / "intel-mapping", "--set", "laser.mount.x_m=0", "--initial-pose", KNOWN_START)
 
 
@@ -77,12 +78,18 @@ def main():
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     rows = rows_of("simulated hall", hall(2 if quick else 10))
-    if not quick and (DATA / "intel.log.xz").exists():
+    if not quick and (DATA / "logs/intel.log.xz").exists():
         rows += rows_of("`intel`", intel())
     elif not quick:
-        print("mapping.py: no intel.log.xz in %s (DELTAMAP_DATA): NOT measured on it" % DATA, file=sys.stderr)
+        print("mapping.py: no logs/intel.log.xz in %s (DELTAMAP_DATA): NOT measured on it" % DATA, file=sys.stderr)
     for one in rows:
         print("%-10s %s: %s (%s)" % (mark(one), one["figure"], one["ours"], one["target"]), flush=True)
+    if quick:
+        OUT.mkdir(parents=True, exist_ok=True)
+    target = OUT / "mapping.md" if quick else ROOT / "docs/results/mapping.md"
+    revision = run("git", "describe", "--always", "--dirty").strip()
+    target.write_text("\n".join(["# What mapping costs a scan", "", "Written by `./dev bench mapping` at %s." % revision, "",
+                                 *table_lines(rows)]) + "\n")
     raise SystemExit(0 if all(one["met"] is not False for one in rows) else 1)
 
 
