@@ -314,6 +314,19 @@ Plan creeping() {
            {"", "cells_written_astray", Over::kMost, {.most = 0.0}}}};
 }
 
+Plan fast() {
+  return {"fast",
+          "An hour at 1.5 m/s, a container a minute: few looks must do",
+          {{.name = "hall",
+            .scenario = "hall.yaml",
+            .minutes = 60.0,
+            .seeds = 2,
+            .methods = {"evidence"},
+            .arrange = [](simulation::VirtualDriveParams& drive,
+                          simulation::Scenario&) { drive.route.speed_m_per_s = 1.5; }}},
+          std::vector<Asked>{{"", "skill", Over::kLeast, {}}} + asked_of_lasting_drives("")};
+}
+
 Plan changed_start() {
   Plan plan{"changed-start", "Begun in a hall of which 25, 50 or 75 % has changed since M_0", {}, {}};
   for (const double share : {0.25, 0.5, 0.75}) {
@@ -341,7 +354,7 @@ Plan changed_start() {
 std::vector<std::unique_ptr<Experiment>> changing_world_experiments() {
   std::vector<std::unique_ptr<Experiment>> all;
   for (Plan& plan : std::vector<Plan>{table2(), seven_hours(), endurance(), live_map(), passers(), standing_still(),
-                                      creeping(), changed_start()})
+                                      creeping(), changed_start(), fast()})
     all.push_back(std::make_unique<ChangingWorld>(std::move(plan)));
   return all;
 }

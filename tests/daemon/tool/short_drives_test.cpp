@@ -48,6 +48,16 @@ TEST(ShortDrive, FollowsAContainerAMinute) {  // table2, fig10-12
   EXPECT_LE(of.at("hall: wall_drift_m, most"), 0.02);
 }
 
+TEST(ShortDrive, FollowsChangesAtThreeTimesTheSpeed) {  // fast
+  Figures of = figures_of("fast", "evidence", 10.0);
+  EXPECT_GE(of.at("hall: skill, least"), 0.75);
+  EXPECT_LE(of.at("hall: error_p99_m, most"), 0.2);
+  EXPECT_GE(of.at("hall: recall, mean"), 0.8);
+  EXPECT_LE(of.at("hall: follow_median_s, mean"), 8.0);
+  EXPECT_EQ(of.at("hall: cells_written_astray, most"), 0.0);
+  EXPECT_EQ(of.at("hall: walls_kept, least"), 1.0);
+}
+
 TEST(ShortDrive, WritesLittleOfWhomItMeets) {  // passers; the paper's method draws 0.7 of the override rule's ghosts
   Figures of = figures_of("passers", "evidence", 10.0);
   EXPECT_LE(of.at("passers: passer_ghosts_of_override, most"), 0.1);
