@@ -139,6 +139,8 @@ Report Gate::report(const std::vector<Outcome>& outcomes) const {
                               gated.sum("cells_astray"), "", Target{.most = 0.0}});
     report.figures.push_back(
         {place + ": of them still there 60 s later", gated.sum("cells_astray_that_stood"), "", Target{.most = 0.0}});
+    report.figures.push_back({place + ": cells drawn from scans taken so far off", gated.sum("cells_drawn_astray"), "",
+                              Target{.most = 0.0}});
     report.figures.push_back({place + ": the same without the gate", open.sum("cells_astray"), ""});
     report.figures.push_back(
         {place + ": still there 60 s later, without the gate", open.sum("cells_astray_that_stood"), ""});

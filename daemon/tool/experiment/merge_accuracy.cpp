@@ -143,6 +143,7 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
   };
   add("transforms", "transforms", "", std::nullopt);
   add("mean acceptance", "acceptance", "", std::nullopt, prior == "with" ? "prototype 0.9994" : "");
+  add("surface agreement, mean", "agreement", "", std::nullopt);
   add("acceptance short of the true pose's own, mean", "short_of_truth", "", Target{.most = 0.0003});
   add("acceptance short of the true pose's own, worst", "most_short_of_truth", "", Target{.most = 0.001});
   add("off, mean", "off_cells", "cells", Target{.most = 0.1});

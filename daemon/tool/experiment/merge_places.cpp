@@ -111,6 +111,7 @@ MergeMeasure measured(const MergePlace& place, const LocalMap& local, const Pose
   MergeMeasure measure;
   measure.acceptance = acceptance_at(map_from_local);
   measure.true_acceptance = acceptance_at(truth);
+  measure.agreement = merge::surface_agreement(place.map, local.grid, map_from_local);
   measure.off_cells =
       (map_from_local * cells.middle_in_local() - truth * cells.middle_in_local()).norm() / kMergeResolution_m;
   measure.turn_deg = std::abs(degrees(turn_between(truth.theta, map_from_local.theta)));

@@ -44,6 +44,7 @@ struct LocalMap {
 struct MergeMeasure {
   double acceptance = 0.0;       ///< Eq. 11 at the pose found
   double true_acceptance = 0.0;  ///< Eq. 11 at the true pose: what the best merge would reach, but for chance
+  double agreement = 0.0;        ///< share of the local contour found again at the pose found
   double off_cells = 0.0;        ///< at the local map's middle
   double turn_deg = 0.0;
 };

@@ -19,13 +19,13 @@ double greatest(const std::vector<double>& values) {
 }  // namespace
 
 ScanTable empty_merge_table() {
-  return ScanTable{
-      {"true_turn_deg", "acceptance", "true_acceptance", "off_cells", "turn_error_deg", "refused", "taken_ms"}};
+  return ScanTable{{"true_turn_deg", "acceptance", "true_acceptance", "agreement", "off_cells", "turn_error_deg",
+                    "refused", "taken_ms"}};
 }
 
 void add_merge(ScanTable& merges, double true_turn_deg, const MergeMeasure& measure, bool is_refused, double taken_ms) {
-  merges.add({true_turn_deg, measure.acceptance, measure.true_acceptance, measure.off_cells, measure.turn_deg,
-              is_refused ? 1.0 : 0.0, taken_ms});
+  merges.add({true_turn_deg, measure.acceptance, measure.true_acceptance, measure.agreement, measure.off_cells,
+              measure.turn_deg, is_refused ? 1.0 : 0.0, taken_ms});
 }
 
 std::vector<double> shortfalls(const ScanTable& merges) {
@@ -63,6 +63,7 @@ std::vector<std::pair<std::string, double>> merge_numbers(const ScanTable& merge
           {"acceptance", mean_of(acceptance)},
           {"least_acceptance", acceptance.empty() ? 0.0 : *std::min_element(acceptance.begin(), acceptance.end())},
           {"true_acceptance", mean_of(true_acceptance)},
+          {"agreement", mean_of(merges.column("agreement"))},
           {"short_of_truth", mean_of(shortfall)},
           {"most_short_of_truth", greatest(shortfall)},
           {"right", right / all},
