@@ -124,6 +124,19 @@ TEST(Evidence, IgnoresAPersonWhoWalks) {
   EXPECT_EQ(count_of(*drive.map, CellState::kOccupied), count_of(hall(), CellState::kOccupied));
 }
 
+TEST(Evidence, DrawsAPersonWhoStandsForMinutesAndFreesHimWithinSeconds) {
+  Drive drive{hall()};
+  const auto drawn = [&] {
+    return count_of(*drive.map, CellState::kOccupied) - count_of(hall(), CellState::kOccupied);
+  };
+  drive.through(always(hall_with({10.0, 7.5}, {10.35, 7.8}, CellState::kOccupied)), 110.0);
+  EXPECT_EQ(drawn(), 0);
+  drive.through(always(hall_with({10.0, 7.5}, {10.35, 7.8}, CellState::kOccupied)), 60.0);
+  EXPECT_GT(drawn(), 3);
+  drive.through(always(hall()), 15.0);
+  EXPECT_EQ(drawn(), 0);
+}
+
 TEST(Evidence, IgnoresADoorThatFlickers) {
   Drive drive{hall()};
   drive.through(
