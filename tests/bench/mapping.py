@@ -5,14 +5,14 @@ and the updates of the map beside it. On the real log `intel`, whose map lacks n
 container comes or goes each minute. Writes docs/results/mapping.md. Called by ./dev bench mapping.
 
   mapping.py [--quick]    --quick: two minutes of the hall alone, into build/"""
-import argparse, re, subprocess, sys
+import argparse, re, subprocess
 
-from measuring import DATA, OUT, ROOT, TOOL, mark, row, run, table_lines, unpacked
+from measuring import OUT, ROOT, TOOL, mark, row, run, table_lines, unpacked
+from on_intel import KNOWN_START, missing_data, recording
 
 AWARENESS = "deltamap::mapping::StoreScan::observe("
 UPDATE = "deltamap::daemon::MapStep::update("
 MOST = 500e3
-KNOWN_START = "9.442,-3.389,-156.2"
 
 
 def costs(profile):
@@ -60,11 +60,8 @@ def rows_of(where, measure):
 
 
 def intel():
-    capture = OUT / "intel.pcapng"
-    if not capture.exists():
-        run(TOOL, "import", "carmen", unpacked("logs/intel.log"), capture)
     unpacked("maps/ref_intel.pgm")
-    return measured("intel", "replay", capture, "--map", unpacked("maps/ref_intel.yaml"), "--config", ROOT / "config/pioneer.yaml",
+    return measured("intel", "replay", recording(), "--map", unpacked("maps/ref_intel.yaml"), "--config", ROOT / "config/pioneer.yaml",
                     "--out", OUT / "intel-mapping", "--set", "laser.mount.x_m=0", "--initial-pose", KNOWN_START)
 
 
@@ -78,14 +75,10 @@ def main():
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     rows = rows_of("simulated hall", hall(2 if quick else 10))
-    if not quick and (DATA / "logs/intel.log.xz").exists():
-        rows += rows_of("`intel`", intel())
-    elif not quick:
-        print("mapping.py: no logs/intel.log.xz in %s (DELTAMAP_DATA): NOT measured on it" % DATA, file=sys.stderr)
+    if not quick:
+        rows += missing_data() or rows_of("`intel`", intel())
     for one in rows:
         print("%-10s %s: %s (%s)" % (mark(one), one["figure"], one["ours"], one["target"]), flush=True)
-    if quick:
-        OUT.mkdir(parents=True, exist_ok=True)
     target = OUT / "mapping.md" if quick else ROOT / "docs/results/mapping.md"
     revision = run("git", "describe", "--always", "--dirty").strip()
     target.write_text("\n".join(["# What mapping costs a scan", "", "Written by `./dev bench mapping` at %s." % revision, "",

@@ -30,4 +30,14 @@ struct ToolRun {
   return run;
 }
 
+/// One seed of an experiment on the project's own scenarios; `more` options follow.
+[[nodiscard]] inline ToolRun run_experiment(const std::string& name, const std::string& out, const std::string& minutes,
+                                            const std::vector<std::string>& more) {
+  std::vector<std::string> words{
+      "experiment", name,    "--out",     out, "--scenarios", DELTAMAP_SOURCE_DIR "/config/scenarios",
+      "--minutes",  minutes, "--repeats", "1"};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_deltamap(words);
+}
+
 }  // namespace deltamap::test

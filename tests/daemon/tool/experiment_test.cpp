@@ -23,16 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kScenarios = DELTAMAP_SOURCE_DIR "/config/scenarios";
-
 using test::run_deltamap;
 using test::ToolRun;
 
 ToolRun experiment(const std::string& name, const fs::path& out, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> words{"experiment", name,        "--out", out.string(), "--scenarios",
-                                 kScenarios,   "--minutes", "0.1",   "--repeats",  "1"};
-  words.insert(words.end(), more.begin(), more.end());
-  return run_deltamap(words);
+  return test::run_experiment(name, out.string(), "0.1", more);
 }
 
 std::string content_of(const fs::path& file) {
