@@ -30,6 +30,8 @@ struct Odometry {
   std::uint8_t front_bumpers = 0;  ///< a bit a segment
   std::uint8_t rear_bumpers = 0;   ///< a bit a segment
   double battery_v = 0.0;
+  bool low_battery = false;       ///< at or below what the controller's configuration calls low
+  std::uint16_t fault_flags = 0;  ///< as the controller reports them; 0: no fault, or a controller that reports none
 };
 
 /// What a beam brought back (protocols.md B4). Only a range frees cells or scores a pose by default.
@@ -49,8 +51,10 @@ struct Scan {
   std::uint32_t number = 0;  ///< counts decoded scans from 0
   double first_bearing_rad = 0.0;
   double bearing_step_rad = 0.0;
-  double max_range_m = 0.0;  ///< longest range that the configuration lets pass; longer ones are kBeyondMaximum
-  Pose2 robot_from_laser;    ///< the mount
+  double max_range_m = 0.0;   ///< longest range that the configuration lets pass; longer ones are kBeyondMaximum
+  Pose2 robot_from_laser;     ///< the mount
+  std::uint8_t severity = 0;  ///< of the laser's status: 0 ok, 1 info, 2 warning, 3 error, 4 fatal (protocols.md B6)
+  bool implausible = false;   ///< the laser itself flags its values as implausible (protocols.md B6, bit 6)
   std::vector<Beam> beams;
 
   [[nodiscard]] double bearing_rad(std::size_t beam) const {
