@@ -123,6 +123,8 @@ std::optional<Scan> scan_from(const Measurement& measurement, const ScanFormat& 
   scan.bearing_step_rad = radians(fan->step_deg);
   scan.max_range_m = format.max_range_m > 0.0 ? std::min(format.max_range_m, mode_max_m) : mode_max_m;
   scan.robot_from_laser = format.robot_from_laser;
+  scan.severity = measurement.status & kSeverityBits;
+  scan.implausible = (measurement.status & kImplausibleBit) != 0;
   scan.beams.reserve(measurement.words.size());
   for (unsigned i = 0; i < measurement.words.size(); ++i) {
     Beam beam = decoded_beam(measurement.words[i], *coding, metres_per_word, scan.max_range_m);

@@ -111,14 +111,13 @@ void Lms200Session::take_scan(const Telegram& telegram, Lms200Output& out) {
     ++content_counts_.malformed;
     return;
   }
-  constexpr std::uint8_t kDirtyWindow = 0x80;  // B6
-  constexpr std::uint8_t kSeverity = 0x07;
-  const auto health = static_cast<std::uint8_t>(measurement->status & (kDirtyWindow | kSeverity));
+  constexpr std::uint8_t kHealthBits = kSeverityBits | kImplausibleBit | kDirtyWindowBit;
+  const auto health = static_cast<std::uint8_t>(measurement->status & kHealthBits);
   if (health != scan_health_) {
     scan_health_ = health;
-    const bool is_dirty = (health & kDirtyWindow) != 0;
-    out.output.log.push_back("laser status severity=" + std::to_string(health & kSeverity) +
-                             (is_dirty ? " window=dirty" : ""));
+    out.output.log.push_back("laser status severity=" + std::to_string(health & kSeverityBits) +
+                             ((health & kImplausibleBit) != 0 ? " values=implausible" : "") +
+                             ((health & kDirtyWindowBit) != 0 ? " window=dirty" : ""));
   }
   const std::optional<std::uint8_t> measured_in = measuring_mode(telegram.received);
   if (!measured_in) return;

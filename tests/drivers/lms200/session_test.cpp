@@ -271,6 +271,28 @@ TEST(Lms200Listening, AssumesTheWantedModeWhereARecordingNeverTellsIt) {
   EXPECT_FLOAT_EQ(scans[0].beams[0].range_m, 9.0F);
 }
 
+TEST(Lms200Listening, PassesOnWhatTheLaserSaysOfItsHealthAndTellsEachChangeOnce) {
+  Lms200Session listener{{.baud = 500000}, SessionMode::kListenOnly};
+  (void)listener.on_bytes(status_reply(DeviceStatus{}), Timestamp{});
+  Measurement measurement;
+  measurement.words.assign(181, 1500);
+  std::vector<std::string> log;
+  const auto hear = [&](std::uint8_t status) {
+    measurement.status = status;
+    Lms200Output out = listener.on_bytes(encoded_measurement(measurement), Timestamp{});
+    log.insert(log.end(), out.output.log.begin(), out.output.log.end());
+    return out.scans.at(0);
+  };
+  EXPECT_EQ(hear(kNormalStatus).severity, 0);
+  EXPECT_EQ(hear(0x14).severity, 4);
+  const Scan implausible = hear(0xD0);
+  EXPECT_EQ(implausible.severity, 0);
+  EXPECT_TRUE(implausible.implausible);
+  (void)hear(0xD0);
+  EXPECT_EQ(log, (std::vector<std::string>{"laser status severity=4",
+                                           "laser status severity=0 values=implausible window=dirty"}));
+}
+
 TEST(Lms200Listening, LearnsTheLineSpeedFromTheStatusUnlessTheRecordingSaysIt) {
   DeviceStatus status;
   status.baud_code = *baud_code(500000);
