@@ -20,7 +20,10 @@ unsigned known_baud_or_throw(unsigned baud) {
 }  // namespace
 
 Lms200Session::Lms200Session(const Lms200Params& params, SessionMode mode)
-    : params_{params}, mode_{mode}, decoder_{Sender::kDevice, known_baud_or_throw(params.baud)} {
+    : params_{params},
+      mode_{mode},
+      decoder_{Sender::kDevice, known_baud_or_throw(params.baud)},
+      home_baud_{params.baud} {
   if (!is_possible(params.variant)) {
     throw std::invalid_argument("laser variant " + name_of(params.variant) +
                                 " is unknown: 180/1, 180/0.5, 100/1, 100/0.5 or 100/0.25");
@@ -32,10 +35,13 @@ Lms200Session::Lms200Session(const Lms200Params& params, SessionMode mode)
 
 Lms200Output Lms200Session::on_bytes(std::span<const std::uint8_t> bytes, Timestamp stamp) {
   Lms200Output out;
-  for (const Telegram& telegram : decoder_.decode(bytes, stamp)) {
+  const std::uint64_t errors_before = decoder_.counts().errors();
+  const std::vector<Telegram> telegrams = decoder_.decode(bytes, stamp);
+  for (const Telegram& telegram : telegrams) {
     take_telegram(telegram, out);
     if (mode_ == SessionMode::kLive && state_ != State::kIdle) answer(telegram, stamp, out);
   }
+  if (telegrams.empty()) take_no_telegram(decoder_.counts().errors() > errors_before, stamp);
   return finished(std::move(out));
 }
 

@@ -42,11 +42,11 @@ VirtualLms200::VirtualLms200(const Lms200Setup& setup, Timestamp power_on, Rando
       permanent_baud_{setup.permanent_baud} {
   configuration_.set_units(setup.units);
   configuration_.set_measuring_mode(setup.measuring_mode);
-  if (!setup.is_up) begin_start_up(power_on);
+  if (!setup.is_up) begin_start_up(power_on, setup.start_up_s);
 }
 
 void VirtualLms200::receive(std::span<const std::uint8_t> bytes, unsigned host_baud, Timestamp now) {
-  if (up_at_) return;
+  if (up_at_ || now < silent_until_) return;
   if (now - last_host_byte_ > duration_from_seconds(kHostPause_s)) (void)decoder_.finish();
   last_host_byte_ = now;
   const auto damaged_before = decoder_.counts().bad_checksum;
@@ -205,13 +205,20 @@ void VirtualLms200::give(const Answer& answer) {
   if (answer.restarts) cut_power(line_.idle_at());
 }
 
-void VirtualLms200::cut_power(Timestamp now) {
+void VirtualLms200::cut_power(Timestamp now, std::optional<double> start_up_s) {
   line_.interrupt(now);
-  begin_start_up(now);
+  begin_start_up(now, start_up_s.value_or(setup_.start_up_s));
 }
 
-void VirtualLms200::begin_start_up(Timestamp now) {
-  up_at_ = now + duration_from_seconds(setup_.start_up_s);
+void VirtualLms200::fall_silent(Timestamp now, Timestamp until, bool ends_stream) {
+  line_.interrupt(now);
+  answers_.clear();
+  silent_until_ = until;
+  if (ends_stream) streaming_ = scan_wanted_ = false;
+}
+
+void VirtualLms200::begin_start_up(Timestamp now, double start_up_s) {
+  up_at_ = now + duration_from_seconds(start_up_s);
   mirror_start_ = now;
   answers_.clear();
   baud_change_at_.reset();
@@ -231,7 +238,7 @@ Duration VirtualLms200::scan_duration() const { return duration_from_seconds(var
 Timestamp VirtualLms200::next_scan_end() const {
   // The scan must end when the line is free, must have begun after the last one ended, and scans begin where the mirror
   // passes its start.
-  Timestamp free = line_.idle_at();
+  Timestamp free = std::max(line_.idle_at(), silent_until_);
   if (last_scan_end_) free = std::max(free, *last_scan_end_ + scan_duration());
   if (!answers_.empty()) free = std::max(free, answers_.back().at + Duration{1});
   const auto scans = (std::max(free, mirror_start_ + scan_duration()) - mirror_start_ + scan_duration() - Duration{1}) /

@@ -54,8 +54,11 @@ class VirtualLms200 {
   }
   [[nodiscard]] std::optional<Timestamp> next_event() const;
 
-  void cut_power(Timestamp now);              ///< off and on again: back to 9600 unless permanent, 90h when up
-  void nack_next_request() { ++naks_owed_; }  ///< as a disturbed line would make it
+  /// Off and on again: back to 9600 unless permanent, 90h when up; after as long as it was set up for, unless told.
+  void cut_power(Timestamp now, std::optional<double> start_up_s = {});
+  /// Neither hears nor speaks until then, as behind a loose contact. Its stream goes on afterwards, or has ended.
+  void fall_silent(Timestamp now, Timestamp until, bool ends_stream);
+  void nack_next_request() { ++naks_owed_; }                       ///< as a disturbed line would make it
   void set_status_byte(std::uint8_t status) { status_ = status; }  ///< of the scans, B6
 
   [[nodiscard]] bool is_streaming() const { return streaming_; }
@@ -80,7 +83,7 @@ class VirtualLms200 {
   [[nodiscard]] Answer configuration_answer(const drivers::lms200::Telegram& telegram, Timestamp now);
   [[nodiscard]] std::vector<std::uint8_t> status_frame() const;
   void give(const Answer& answer);
-  void begin_start_up(Timestamp now);
+  void begin_start_up(Timestamp now, double start_up_s);
   void set_baud(unsigned baud);
   void send_scan(Timestamp end, const Measure& measure);
   /// When the first scan will be complete that finds the line free.
@@ -95,6 +98,7 @@ class VirtualLms200 {
   drivers::lms200::ScanVariant variant_;
   Timestamp mirror_start_;          // a turn begins here and every 13.32 ms
   std::optional<Timestamp> up_at_;  // still silent until then
+  Timestamp silent_until_{};
   std::deque<Answer> answers_;
   std::optional<Timestamp> baud_change_at_;
   unsigned baud_after_ = 0;

@@ -183,19 +183,70 @@ TEST_F(Lms200SessionTest, SetsTheLaserUpAgainWhenItSaysThatItHasStarted) {
   EXPECT_EQ(name_of(laser.variant), "180/0.5") << "volatile: set again";
 }
 
-TEST_F(Lms200SessionTest, FailsWhenScansStopAndComesBackWithNumbersThatGoOn) {
+TEST_F(Lms200SessionTest, FindsALaserAgainThatHasLostPowerWithNumbersThatGoOn) {
   ASSERT_TRUE(stream());
   line.run_for(1.0);
   const std::size_t before = line.messages.size();
   laser.power_on_at = line.now;  // its message comes at 9600 and is garbage here
-  line.run_for(6.0);
-  ASSERT_TRUE(line.failed);
-  EXPECT_EQ(*line.failed, "laser has sent no scan for 2000 ms");
-  line.failed.reset();
+  ASSERT_TRUE(line.run_until([&] { return line.messages.size() > before + 1; }, 2.5));
+  EXPECT_FALSE(line.failed);
+  expect_streaming_as_wanted();
+  EXPECT_EQ(line.messages.back().number, line.messages.size() - 1);
+}
+
+TEST_F(Lms200SessionTest, GoesOnWithAStreamThatComesAgainWithoutSettingItUp) {
   ASSERT_TRUE(stream());
   line.run_for(1.0);
-  ASSERT_GT(line.messages.size(), before);
-  EXPECT_EQ(line.messages.back().number, line.messages.size() - 1);
+  const std::size_t before = line.messages.size();
+  const std::size_t starts = times_heard(command::kSetMode);
+  laser.silent_until = line.now + std::chrono::seconds{4};
+  line.run_for(4.0);
+  EXPECT_FALSE(session.is_streaming());
+  EXPECT_TRUE(line.has_logged("laser has sent no scan for 2000 ms"));
+  ASSERT_TRUE(line.run_until([&] { return line.messages.size() > before + 2; }, 2.0));
+  line.run_for(1.0);
+  EXPECT_TRUE(line.has_logged("laser streams again silence_ms=4"));
+  EXPECT_EQ(times_heard(command::kSetMode), starts);
+  EXPECT_EQ(times_heard(command::kSetVariant), 1u);
+  EXPECT_GE(times_heard(command::kRequestStatus), 1u) << "its status is looked at";
+  EXPECT_TRUE(session.is_streaming());
+}
+
+TEST_F(Lms200SessionTest, SetsUpALaserThatStreamsOtherwiseThanAgreedAfterASilence) {
+  ASSERT_TRUE(stream());
+  line.run_for(1.0);
+  laser.silent_until = line.now + std::chrono::seconds{4};
+  laser.variant = {180, 100};
+  line.run_for(6.5);
+  expect_streaming_as_wanted();
+}
+
+TEST_F(Lms200SessionTest, BelievesNoScanOnANewPortBeforeTheStatusHasToldTheMode) {
+  ASSERT_TRUE(stream());
+  line.run_for(1.0);
+  const std::size_t before = line.messages.size();
+  const auto heard = times_heard(command::kRequestStatus);
+  line.carry_out(session.start(line.now));  // the port was lost and is open again; the laser streams on
+  ASSERT_TRUE(line.run_until([&] { return line.messages.size() > before; }, 2.0));
+  EXPECT_GE(times_heard(command::kRequestStatus), heard + 1);
+  EXPECT_TRUE(session.is_streaming());
+}
+
+TEST_F(Lms200SessionTest, RepeatsEveryRequestThatGetsANak) {
+  constexpr double kUndisturbedS = 5.0;  // from the search at 38400 to the first scan
+  for (int nth = 0; nth < 14; ++nth) {
+    for (const int naks : {1, 3, 10}) {
+      laser = FakeLaser{9600};
+      laser.nak_from_request = nth;
+      laser.naks_to_send = naks;
+      session = TestedSession{Lms200Params{}, SessionMode::kLive};
+      line.messages.clear();
+      const Timestamp begin = line.now;
+      ASSERT_TRUE(stream(20.0)) << nth;
+      EXPECT_LT(seconds(line.now - begin), kUndisturbedS + 0.1 * naks) << naks << " from request " << nth;
+      EXPECT_EQ(laser.writes, 1);
+    }
+  }
 }
 
 TEST_F(Lms200SessionTest, ComesUpThroughNoiseBetweenTelegrams) {
