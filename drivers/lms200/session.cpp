@@ -41,7 +41,10 @@ Lms200Output Lms200Session::on_bytes(std::span<const std::uint8_t> bytes, Timest
     take_telegram(telegram, out);
     if (mode_ == SessionMode::kLive && state_ != State::kIdle) answer(telegram, stamp, out);
   }
-  if (telegrams.empty()) take_no_telegram(decoder_.counts().errors() > errors_before, stamp);
+  if (telegrams.empty()) {
+    take_no_telegram(decoder_.counts().errors() > errors_before, stamp);
+    if (mode_ == SessionMode::kLive && state_ != State::kStreaming) diagnose(bytes, out);
+  }
   return finished(std::move(out));
 }
 

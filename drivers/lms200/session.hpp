@@ -13,6 +13,7 @@
 #include "core/messages.hpp"
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
+#include "drivers/line_diagnosis.hpp"
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/configuration.hpp"
 #include "drivers/lms200/measurement.hpp"
@@ -125,6 +126,7 @@ class Lms200Session {
   void answer_watch(const Telegram& telegram, Timestamp now, Lms200Output& out);
   void answer_stream(const Telegram& telegram, Timestamp now, Lms200Output& out);
   void take_no_telegram(bool was_garbage, Timestamp now);
+  void diagnose(std::span<const std::uint8_t> bytes, Lms200Output& out);
   void ask_whether_as_agreed(Timestamp now, Lms200Output& out);
   void resume(bool is_checked, Timestamp now, Lms200Output& out);
   [[nodiscard]] unsigned visited_baud() const;
@@ -139,7 +141,8 @@ class Lms200Session {
   Lms200Params params_;
   SessionMode mode_;
   TelegramDecoder decoder_;
-  DecoderCounts content_counts_;  // malformed and unknown, on top of the decoder's own
+  LineDiagnosis diagnosis_{Device::kLaser};  // of the line since the laser was last heard
+  DecoderCounts content_counts_;             // malformed and unknown, on top of the decoder's own
   std::uint32_t next_scan_number_ = 0;
   bool was_told_baud_ = false;  // a recording says it itself
 

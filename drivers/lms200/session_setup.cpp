@@ -28,6 +28,7 @@ Lms200Output Lms200Session::start(Timestamp now) {
   known_mode_.reset();  // whoever is on the line now may measure in another one: no scan before its status
   if (mode_ == SessionMode::kListenOnly) return out;
   writes_ = 0;
+  diagnosis_.reset();
   search_began_ = now;
   last_scan_ = now;
   silence_told_ = !agreement_;
@@ -107,7 +108,7 @@ void Lms200Session::next_baud(Timestamp now, Lms200Output& out) {
     return;
   }
   attempt_ = 0;
-  out.output.log.push_back("laser does not answer; listening whether it starts up");
+  out.output.log.push_back("laser does not answer; listening whether it starts up; " + diagnosis_.phrase());
   begin_watch(now, out);
 }
 

@@ -25,6 +25,7 @@ void Lms200Session::begin_watch(Timestamp now, Lms200Output& out) {
   may_change_baud_ = true;
   may_change_variant_ = true;
   search_from(home_baud_);
+  if (agreement_) diagnosis_.reset();  // else the first round has heard something
   check_at_.reset();
   unanswered_ = 0;
   visits_ = 0;
@@ -66,7 +67,7 @@ void Lms200Session::end_visit(Timestamp now, Lms200Output& out) {
   if (now - search_began_ >= duration_from_seconds(params_.power_on_wait_s)) {
     std::string tried;
     for (const unsigned baud : bauds_) tried += (tried.empty() ? "" : ", ") + std::to_string(baud);
-    fail("laser does not answer at " + tried + " baud", out);
+    fail("laser does not answer at " + tried + " baud: " + diagnosis_.phrase(), out);
     return;
   }
   if (!it_speaks_) {
@@ -132,6 +133,12 @@ void Lms200Session::take_no_telegram(bool was_garbage, Timestamp now) {
   was_garbage_ = was_garbage_ || was_garbage;
   if (state_ != State::kWatching || it_speaks_) return;
   deadline_ = was_garbage ? std::min(visit_end_, now + duration_from_seconds(kLongestPauseS)) : visit_end_;
+}
+
+void Lms200Session::diagnose(std::span<const std::uint8_t> bytes, Lms200Output& out) {
+  const bool was_swapped = diagnosis_.is_swapped();
+  diagnosis_.hear(bytes);
+  if (diagnosis_.is_swapped() && !was_swapped) out.output.log.push_back(diagnosis_.phrase());
 }
 
 double Lms200Session::scan_timeout_s() const {

