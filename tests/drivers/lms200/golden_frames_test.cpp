@@ -6,6 +6,7 @@
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
 #include "drivers/lms200/telegram.hpp"
+#include "tests/support/figure.hpp"
 #include "tests/support/golden_frames.hpp"
 #include "tests/support/hex.hpp"
 
@@ -63,6 +64,7 @@ std::vector<std::uint8_t> request_like(const json& fields) {
 }
 
 TEST(LmsFrames, AStreamOfThemIsCutWhereTheyEnd) {
+  std::size_t frames = 0;
   for (const char* name : {"lms_requests", "lms_replies", "lms_scans"}) {
     const auto stream = golden_stream(name);
     const bool is_host = std::string(name) == "lms_requests";
@@ -80,7 +82,9 @@ TEST(LmsFrames, AStreamOfThemIsCutWhereTheyEnd) {
         EXPECT_EQ(t.status, frame.fields["state"]) << frame.name();
       }
     }
+    frames += telegrams.size();
   }
+  test::tell_figure("lms_frames", static_cast<double>(frames));
 }
 
 TEST(LmsFrames, RequestsHaveTheirBytes) {

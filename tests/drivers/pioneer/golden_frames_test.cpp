@@ -9,6 +9,7 @@
 #include "drivers/pioneer/extra_packets.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/pioneer/status.hpp"
+#include "tests/support/figure.hpp"
 #include "tests/support/golden_frames.hpp"
 #include "tests/support/hex.hpp"
 
@@ -102,6 +103,7 @@ void expect_both_ways(const GoldenFrame& frame, Decode decode, Encode encode, Fi
 }
 
 TEST(PioneerFrames, AStreamOfThemIsCutWhereTheyEnd) {
+  std::size_t frames = 0;
   for (const char* name : {"arcos_commands", "arcos_packets"}) {
     const auto stream = golden_stream(name);
     const auto packets = packets_of(stream.bytes);
@@ -109,7 +111,9 @@ TEST(PioneerFrames, AStreamOfThemIsCutWhereTheyEnd) {
     for (std::size_t i = 0; i < packets.size(); ++i) {
       EXPECT_EQ(hex_of(encoded_packet(packets[i].data)), hex_of(stream.frames[i].bytes)) << stream.frames[i].name();
     }
+    frames += packets.size();
   }
+  test::tell_figure("arcos_frames", static_cast<double>(frames));
 }
 
 TEST(PioneerFrames, CommandsHaveTheirNamesArgumentsAndBytes) {
