@@ -11,7 +11,7 @@ import argparse, json, os, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import paper_figures
-from measuring import DATA, ROOT, TOOL, processor, row_of_figure, run, settings_text, table_lines
+from measuring import DATA, ROOT, TOOL, processor, row_of_figure, run, table_lines, told
 
 OUT = ROOT / "build/experiments"
 OF_THE_LOCALIZER = {"hall", "stale-map", "verdict"}  # ./dev bench localization
@@ -36,7 +36,8 @@ def section(part):
     judged = [row["met"] for row in rows if row["met"] is not None]
     met = " %d of %d met." % (sum(judged), len(judged)) if judged else ""
     # Measured before summaries named their program: the script's own revision.
-    program = "version %s, commit %s, %s" % (summary["version"], summary["commit"], settings_text(summary["settings"])) \
+    program = "version %s, commit %s, settings %s: %s" % (
+        summary["version"], summary["commit"], summary["settings"]["fingerprint"], told(summary["settings"])) \
         if "commit" in summary else "at " + part["revision"]
     lines = ["## " + summary["experiment"], "",
              "%s. %d runs from seed %d%s, %s.%s" % (part["what"], summary["runs"], summary["seed"], ", quick" if summary["quick"] else "", program, met), ""]

@@ -66,7 +66,7 @@ class Writer(unittest.TestCase):
         made_by = {"version": "0.1.0", "commit": "ccc3", "settings": {"fingerprint": "00ff", "changed": {"mapping.method": "paper"}}}
         with mock.patch.dict(globals(), summary=lambda *what: {**known(*what), **made_by}):
             self.write()
-        self.assertIn('from seed 3, version 0.1.0, commit ccc3, settings 00ff: as delivered, but mapping.method: "paper". 1 of 1 met.', self.text())
+        self.assertIn('from seed 3, version 0.1.0, commit ccc3, settings 00ff: mapping.method: "paper". 1 of 1 met.', self.text())
 
     def test_leaves_the_report_alone_when_quick(self):
         self.revision = "aaa1"

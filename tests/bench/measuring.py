@@ -4,7 +4,7 @@ import pathlib, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import project
-from project import DATA, ROOT, processor, provenance, run, settings_section, settings_text
+from project import DATA, ROOT, processor, provenance, run, settings_section, told
 
 OUT = ROOT / "build/bench-localization"
 TOOL = ROOT / "build/release/bin/deltamap"

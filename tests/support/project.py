@@ -30,21 +30,23 @@ def provenance():
     return "deltamap %s on %s, %d processors" % (version(), processor(), os.cpu_count())
 
 
-def settings_text(settings):
-    """The `settings` of a report.json or summary.json, in one line."""
-    changed = ", ".join("%s: %s" % (key, json.dumps(value, ensure_ascii=False)) for key, value in settings["changed"].items())
-    return "settings %s: as delivered%s" % (settings["fingerprint"], ", but " + changed if changed else "")
+PLACES = {"robot.port", "laser.port", "map.file", "map.store", "control.socket", "recording.file"}
+
+
+def told(settings):
+    """The changed settings of a report.json or summary.json without seed and places, in one line."""
+    changed = {key: value for key, value in settings["changed"].items() if key not in PLACES | {"seed"}}
+    return ", ".join("%s: %s" % (key, json.dumps(value, ensure_ascii=False)) for key, value in changed.items()) or "as delivered"
 
 
 def settings_section(files):
     """The lines that tell with which settings the runs of a table were made, from their report.json or summary.json; runs that
-    differ by their seed alone share a line."""
+    differ by their seed or by where their files are share a line."""
     groups = {}
     for file in files:
-        changed = dict(json.loads(file.read_text()).get("settings", {}).get("changed", {"settings": "not told: an older program"}))
-        seed = changed.pop("seed", 1)
-        text = ", ".join("%s: %s" % (key, json.dumps(value, ensure_ascii=False)) for key, value in changed.items())
-        groups.setdefault(text or "as delivered", []).append((file.parent.name if file.parent.name != "run" else file.parents[1].name, seed))
+        settings = json.loads(file.read_text()).get("settings", {"changed": {"settings": "not told by an older program"}})
+        name = file.parents[1 if file.parent.name == "run" else 0].name
+        groups.setdefault(told(settings), []).append((name, settings["changed"].get("seed", 1)))
     lines = ["## Settings", "", "What is not listed is as delivered (`config/default.yaml` of that commit).", ""]
     return lines + ["- %s (seeds %s): %s" % (", ".join(name for name, _ in runs), ", ".join(str(seed) for seed in sorted({seed for _, seed in runs})), text)
                     for text, runs in groups.items()]
