@@ -3,6 +3,7 @@
 
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -120,6 +122,31 @@ PortHolders holders_of(const std::string& path, int except_descriptor) {
     if (holds == true) holders.seen.push_back(holder_of(*pid));
   }
   return holders;
+}
+
+std::optional<PortHolder> locker_of(const std::string& path) {
+  struct stat device {};
+  if (::stat(path.c_str(), &device) != 0) return std::nullopt;
+  std::ifstream locks{"/proc/locks"};
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words{line};
+    std::string number, kind, mode, access, pid, file;
+    words >> number >> kind >> mode >> access >> pid >> file;
+    const auto colon = file.rfind(':');
+    const bool is_same_node = colon != std::string::npos && file.substr(colon + 1) == std::to_string(device.st_ino);
+    if (kind != "FLOCK" || !is_same_node) continue;
+    char* minor_at = nullptr;
+    const auto major_number = std::strtoul(file.c_str(), &minor_at, 16);
+    const auto minor_number = std::strtoul(minor_at + 1, nullptr, 16);
+    if (major_number != major(device.st_dev) || minor_number != minor(device.st_dev)) continue;
+    if (const auto holder = number_in(pid)) return holder_of(*holder);
+  }
+  return std::nullopt;
+}
+
+PortHolders lockers_or_holders_of(const std::string& path, int except_descriptor) {
+  if (const auto locker = locker_of(path)) return {{*locker}, true};
+  return holders_of(path, except_descriptor);
 }
 
 std::optional<PortHolder> lock_file_holder(const std::string& path, const std::string& lock_folder) {

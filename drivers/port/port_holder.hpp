@@ -31,6 +31,12 @@ struct PortHolders {
 /// The processes that have the device at `path` open; one descriptor of this process does not count.
 [[nodiscard]] PortHolders holders_of(const std::string& path, int except_descriptor = -1);
 
+/// Those of them that have locked it (flock), where any has: a pseudo-terminal's other end keeps it open as well.
+[[nodiscard]] PortHolders lockers_or_holders_of(const std::string& path, int except_descriptor = -1);
+/// By the kernel's table of locks.
+[[nodiscard]] std::optional<PortHolder> locker_of(const std::string& path);
+
+inline constexpr const char* kLockFolder = "/var/lock";
 /// The living process that a lock file LCK..NAME in `lock_folder` names, NAME as in `path` or where its link leads.
 [[nodiscard]] std::optional<PortHolder> lock_file_holder(const std::string& path, const std::string& lock_folder);
 

@@ -38,31 +38,9 @@ std::optional<speed_t> speed_of(unsigned baud) {
   return std::nullopt;
 }
 
-/// Devices 136 to 143 are the slaves of pseudo-terminals (kernel's devices.txt).
-bool is_pseudo_terminal(int descriptor) {
+bool is_open_pseudo_terminal(int descriptor) {
   struct stat status {};
-  return ::fstat(descriptor, &status) == 0 && major(status.st_rdev) >= 136 && major(status.st_rdev) <= 143;
-}
-
-constexpr const char* kLockFolder = "/var/lock";
-
-std::string busy(const PortHolders& holders) { return "is busy: " + holders.told(); }
-
-std::string reason_of(const std::string& path, int error, int own_descriptor = -1) {
-  switch (error) {
-    case ENOENT:
-    case ENODEV:
-    case ENXIO:
-      return "is missing (" + std::generic_category().message(error) + "): not plugged in or switched on?";
-    case EBUSY:
-    case EWOULDBLOCK:
-      return busy(holders_of(path, own_descriptor));
-    case EACCES:
-    case EPERM:
-      return "is forbidden (" + std::generic_category().message(error) + "): " + way_to_permission(path);
-    default:
-      return "cannot be opened: " + std::generic_category().message(error);
-  }
+  return ::fstat(descriptor, &status) == 0 && is_pseudo_terminal(status.st_rdev);
 }
 
 /// 8N1, nothing translated, no flow control, no modem lines.
@@ -99,27 +77,46 @@ std::string own_exclusively(const std::string& path, int descriptor) {
   if (const auto holder = lock_file_holder(path, kLockFolder)) {
     return "is busy: " + holder->told() + " has a lock file in " + kLockFolder;
   }
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return reason_of(path, errno, descriptor);
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return why_not_opened(path, errno, descriptor);
   if (is_exclusive(descriptor)) {
     const PortHolders holders = holders_of(path, descriptor);
-    if (!holders.seen.empty() || !holders.saw_all) return busy(holders) + " for itself alone";
+    if (!holders.seen.empty() || !holders.saw_all) return "is busy: " + holders.told() + " for itself alone";
   }
-  if (is_pseudo_terminal(descriptor) || ::ioctl(descriptor, TIOCEXCL) == 0) return "";
-  return reason_of(path, errno, descriptor);
+  if (is_open_pseudo_terminal(descriptor) || ::ioctl(descriptor, TIOCEXCL) == 0) return "";
+  return why_not_opened(path, errno, descriptor);
 }
 
 }  // namespace
 
+bool is_pseudo_terminal(dev_t number) { return major(number) >= 136 && major(number) <= 143; }
+
+std::string why_not_opened(const std::string& path, int error, int own_descriptor) {
+  switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+      return "is missing (" + std::generic_category().message(error) + "): not plugged in or switched on?";
+    case EBUSY:
+    case EWOULDBLOCK:
+      return "is busy: " + lockers_or_holders_of(path, own_descriptor).told();
+    case EACCES:
+    case EPERM:
+      return "is forbidden (" + std::generic_category().message(error) + "): " + way_to_permission(path);
+    default:
+      return "cannot be opened: " + std::generic_category().message(error);
+  }
+}
+
 OpenedTerminal open_terminal(const std::string& path, unsigned baud) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return {-1, path + " " + reason_of(path, errno)};
+  if (descriptor < 0) return {-1, path + " " + why_not_opened(path, errno)};
   const auto refuse = [&](const std::string& why) {
     ::close(descriptor);
     return OpenedTerminal{-1, path + " " + why};
   };
   if (::isatty(descriptor) != 1) return refuse("is not a serial port");
   if (const std::string why = own_exclusively(path, descriptor); !why.empty()) return refuse(why);
-  if (!set_raw(descriptor)) return refuse(reason_of(path, errno));
+  if (!set_raw(descriptor)) return refuse(why_not_opened(path, errno));
   ask_for_low_latency(descriptor);
   if (const std::string why = set_line_speed(descriptor, baud); !why.empty()) {
     close_terminal(descriptor);
@@ -130,7 +127,7 @@ OpenedTerminal open_terminal(const std::string& path, unsigned baud) {
 }
 
 void close_terminal(int descriptor) {
-  if (!is_pseudo_terminal(descriptor)) (void)::ioctl(descriptor, TIOCNXCL);  // there it would be another program's
+  if (!is_open_pseudo_terminal(descriptor)) (void)::ioctl(descriptor, TIOCNXCL);  // there it would be another program's
   ::close(descriptor);
 }
 

@@ -92,7 +92,10 @@ TEST_F(RefusedPort, TakesAPortThatAnotherProgramHasOpenWithoutClaimingIt) {
 TEST_F(RefusedPort, LeavesAnExclusiveModeThatCameLaterToItsOwner) {
   const OpenedTerminal own = open_terminal(path_, 9600);
   ASSERT_GE(own.descriptor, 0) << own.refused;
-  hold_elsewhere([](int device) { return ::ioctl(device, TIOCEXCL) == 0; });
+  hold_elsewhere([&](int device) {
+    ::close(own.descriptor);  // the child's copy of it
+    return ::ioctl(device, TIOCEXCL) == 0;
+  });
   close_terminal(own.descriptor);
   expect_the_other_is_named(refusal());
 }
