@@ -21,6 +21,7 @@
 #include "drivers/pioneer/command_queue.hpp"
 #include "drivers/pioneer/config_packet.hpp"
 #include "drivers/pioneer/extra_packets.hpp"
+#include "drivers/pioneer/motion_limits.hpp"
 #include "drivers/pioneer/odometry.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/session.hpp"
@@ -69,6 +70,8 @@ class PioneerSession {
   /// What the robot said about itself, once it did.
   [[nodiscard]] const std::optional<RobotIdentity>& identity() const { return identity_; }
   [[nodiscard]] const std::optional<ConfigPacket>& config() const { return config_; }
+  /// How the robot comes to rest without us, by what its controller has confirmed.
+  [[nodiscard]] StoppingLimits stopping_limits() const { return stopping_limits_of(config_); }
 
  private:
   enum class State {
