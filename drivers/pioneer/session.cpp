@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kMmPerMetre = 1000.0;
 constexpr double kCheckIntervalS = 1.0;
-constexpr int kMaxRequests = 5;  // of one state, before we take the robot as it is
+constexpr double kEmergencyRepeatS = 0.1;  // a SIP cycle: the next one shows whether the robot stands
+constexpr int kMaxRequests = 5;            // of one state, before we take the robot as it is
 
 RobotModel model_or_throw(const std::string& name) {
   const std::optional<RobotModel> model = model_named(name);
@@ -153,7 +154,9 @@ void PioneerSession::keep_alive(Timestamp now, PioneerOutput& out) {
   }
   if (now < next_pulse_) return;
   next_pulse_ = now + pulse_interval();
-  if (set_point_) {
+  if (emergency_stop_) {
+    push_emergency_stop(now);
+  } else if (set_point_) {
     push_set_points();
   } else if (queue_.is_empty()) {
     queue_.push({CommandNumber::kPulse, {}});
@@ -187,6 +190,7 @@ PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) 
       std::clamp(command.turn_rate_rad_per_s, -params_.max_turn_rate_rad_per_s, params_.max_turn_rate_rad_per_s);
   const bool is_number = std::isfinite(wanted.speed_m_per_s) && std::isfinite(wanted.turn_rate_rad_per_s);
   if (!is_number) return stop_driving(now);
+  emergency_stop_.reset();
   const bool is_new = !set_point_ || set_point_->speed_m_per_s != wanted.speed_m_per_s ||
                       set_point_->turn_rate_rad_per_s != wanted.turn_rate_rad_per_s;
   set_point_ = wanted;
@@ -195,6 +199,25 @@ PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) 
     next_pulse_ = now + pulse_interval();
   }
   return finished(now, std::move(out));
+}
+
+PioneerOutput PioneerSession::emergency_stop(Timestamp now) {
+  PioneerOutput out;
+  if (mode_ == SessionMode::kListenOnly || state_ != State::kConnected) return finished(now, std::move(out));
+  const bool moves = newest_sip_ && (newest_sip_->left_mm_per_s != 0 || newest_sip_->right_mm_per_s != 0);
+  const bool is_due = !emergency_stop_ || (moves && now - *emergency_stop_ >= duration_from_seconds(kEmergencyRepeatS));
+  if (is_due) push_emergency_stop(now);
+  return finished(now, std::move(out));
+}
+
+void PioneerSession::push_emergency_stop(Timestamp now) {
+  set_point_.reset();
+  queue_.drop(CommandNumber::kVel);
+  queue_.drop(CommandNumber::kRvel);
+  queue_.drop(CommandNumber::kEstop);
+  queue_.push({CommandNumber::kEstop, {}});
+  emergency_stop_ = now;
+  next_pulse_ = now + pulse_interval();
 }
 
 PioneerOutput PioneerSession::stop_driving(Timestamp now) {

@@ -60,6 +60,9 @@ class PioneerSession {
   /// A set point, repeated until the next one, stop_driving() or close(). Ignored unless connected.
   [[nodiscard]] PioneerOutput drive(const DriveCommand& command, Timestamp now);
   [[nodiscard]] PioneerOutput stop_driving(Timestamp now);
+  /// ESTOP: stops it as fast as its motors can, whatever deceleration is set. To be called as long as it holds: ESTOP
+  /// goes out again until SIPs show that the robot stands, then in place of the pulse. Ended by drive().
+  [[nodiscard]] PioneerOutput emergency_stop(Timestamp now);
   /// Stops the robot and takes leave; nothing is sent after it.
   [[nodiscard]] PioneerOutput close(Timestamp now);
 
@@ -107,6 +110,7 @@ class PioneerSession {
   void keep_alive(Timestamp now, PioneerOutput& out);
   void bring_robot_to_wanted_state();
   void push_set_points();
+  void push_emergency_stop(Timestamp now);
   void fail(std::string reason, Timestamp now, PioneerOutput& out);
   [[nodiscard]] Duration watchdog() const;
   [[nodiscard]] Duration pulse_interval() const;
@@ -138,6 +142,7 @@ class PioneerSession {
   Timestamp next_pulse_;
   Timestamp next_check_;
   std::optional<DriveCommand> set_point_;
+  std::optional<Timestamp> emergency_stop_;  // when ESTOP went out last, while the robot is held by it
   int config_requests_ = 0;
   int sonar_requests_ = 0;
   int enable_requests_ = 0;
