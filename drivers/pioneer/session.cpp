@@ -158,7 +158,9 @@ void PioneerSession::keep_alive(Timestamp now, PioneerOutput& out) {
   }
   if (now < next_pulse_) return;
   next_pulse_ = now + pulse_interval();
-  if (set_point_) {
+  if (emergency_stop_) {
+    push_emergency_stop(now);
+  } else if (set_point_) {
     push_set_points();
   } else if (queue_.is_empty()) {
     queue_.push({CommandNumber::kPulse, {}});

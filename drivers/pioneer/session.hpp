@@ -63,6 +63,9 @@ class PioneerSession {
   /// A set point, repeated until the next one, stop_driving() or close(). Ignored unless connected.
   [[nodiscard]] PioneerOutput drive(const DriveCommand& command, Timestamp now);
   [[nodiscard]] PioneerOutput stop_driving(Timestamp now);
+  /// ESTOP: stops it as fast as its motors can, whatever deceleration is set. To be called as long as it holds: ESTOP
+  /// goes out again until SIPs show that the robot stands, then in place of the pulse. Ended by drive().
+  [[nodiscard]] PioneerOutput emergency_stop(Timestamp now);
   /// A person lets it drive, or makes it stand, until a person says otherwise.
   [[nodiscard]] PioneerOutput switch_drive(bool on, Timestamp now);
   /// Stops the robot and takes leave: on_time() sends what must keep its distance; nothing is sent after it.
@@ -123,6 +126,7 @@ class PioneerSession {
   void bring_limits(PioneerOutput& out);
   void bring_motors();
   void push_set_points();
+  void push_emergency_stop(Timestamp now);
   void leave(std::optional<std::string> reason);
   [[nodiscard]] Duration watchdog() const;
   [[nodiscard]] Duration pulse_interval() const;
@@ -164,6 +168,7 @@ class PioneerSession {
   Timestamp next_pulse_;
   Timestamp next_check_;
   std::optional<DriveCommand> set_point_;
+  std::optional<Timestamp> emergency_stop_;  // when ESTOP went out last, while the robot is held by it
   int limit_requests_ = 0;
   int sonar_requests_ = 0;
   int disable_requests_ = 0;

@@ -174,6 +174,7 @@ void PioneerSession::begin_connection(Timestamp now, PioneerOutput& out) {
   switch_tried_ = false;
   next_check_ = now;
   next_pulse_ = now + pulse_interval();
+  emergency_stop_.reset();
   set_point_.reset();
   push_set_points();
 }

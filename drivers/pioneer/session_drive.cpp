@@ -12,8 +12,9 @@ namespace deltamap::drivers::pioneer {
 namespace {
 
 constexpr double kMmPerMetre = 1000.0;
-constexpr int kMaxRequests = 5;                   // of one state, before we take the robot as it is
-constexpr Duration kEchoOfEnable{1'000'000'000};  // a command, a SIP cycle and both on the line, with room for a queue
+constexpr int kMaxRequests = 5;                    // of one state, before we take the robot as it is
+constexpr Duration kEchoOfEnable{1'000'000'000};   // a command, a SIP cycle and both on the line, with room for a queue
+constexpr Duration kEmergencyRepeat{100'000'000};  // a SIP cycle: the next one shows whether the robot stands
 constexpr Duration kEchoOfDisable{500'000'000};
 
 std::string limits_line(const char* what, const StoppingLimits& limits) {
@@ -121,6 +122,7 @@ PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) 
       std::clamp(wanted.turn_rate_rad_per_s, -limits.max_turn_rate_rad_per_s, limits.max_turn_rate_rad_per_s);
   const bool is_number = std::isfinite(wanted.speed_m_per_s) && std::isfinite(wanted.turn_rate_rad_per_s);
   if (!is_number) return stop_driving(now);
+  emergency_stop_.reset();
   const bool is_new = !set_point_ || set_point_->speed_m_per_s != wanted.speed_m_per_s ||
                       set_point_->turn_rate_rad_per_s != wanted.turn_rate_rad_per_s;
   set_point_ = wanted;
@@ -129,6 +131,25 @@ PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) 
     next_pulse_ = now + pulse_interval();
   }
   return finished(now, std::move(out));
+}
+
+PioneerOutput PioneerSession::emergency_stop(Timestamp now) {
+  PioneerOutput out;
+  if (mode_ == SessionMode::kListenOnly || state_ != State::kConnected) return finished(now, std::move(out));
+  const bool moves = newest_sip_ && (newest_sip_->left_mm_per_s != 0 || newest_sip_->right_mm_per_s != 0);
+  const bool is_due = !emergency_stop_ || (moves && now - *emergency_stop_ >= kEmergencyRepeat);
+  if (is_due) push_emergency_stop(now);
+  return finished(now, std::move(out));
+}
+
+void PioneerSession::push_emergency_stop(Timestamp now) {
+  set_point_.reset();
+  queue_.drop(CommandNumber::kVel);
+  queue_.drop(CommandNumber::kRvel);
+  queue_.drop(CommandNumber::kEstop);
+  queue_.push_first({CommandNumber::kEstop, {}});
+  emergency_stop_ = now;
+  next_pulse_ = now + pulse_interval();
 }
 
 PioneerOutput PioneerSession::stop_driving(Timestamp now) {

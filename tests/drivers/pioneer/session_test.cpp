@@ -267,6 +267,39 @@ TEST_F(PioneerSessionTest, ClampsSetPointsAndRefusesThoseThatAreNoNumbers) {
   EXPECT_EQ(robot.turn_rate, 0);
 }
 
+TEST_F(PioneerSessionTest, StopsInAnEmergencyUntilTheRobotStandsAndHoldsItThere) {
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+  ASSERT_TRUE(connect());
+  ASSERT_TRUE(line.run_until([&] { return robot.motors_on; }, 3.0));
+  line.carry_out(session.drive({line.now, 0.3, 0.2}, line.now));
+  ASSERT_TRUE(line.run_until([&] { return robot.moves; }, 1.0));
+  const std::size_t before = times_obeyed(CommandNumber::kEstop);
+  robot.sip.left_mm_per_s = robot.sip.right_mm_per_s = 300;
+  line.run_for(0.2);  // its SIPs say so
+  robot.is_deaf = true;
+  line.carry_out(session.emergency_stop(line.now));
+  line.run_for(0.15);
+  robot.is_deaf = false;  // the first was lost
+  line.carry_out(session.emergency_stop(line.now));
+  line.run_for(0.05);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEstop), before + 1);
+  EXPECT_FALSE(robot.moves);
+  robot.sip.left_mm_per_s = robot.sip.right_mm_per_s = 0;
+  line.run_for(0.2);
+  const std::size_t stood = robot.obeyed.size();
+  for (int i = 0; i < 60; ++i) {  // 3 s, beyond its watchdog
+    line.carry_out(session.emergency_stop(line.now));
+    line.run_for(0.05);
+  }
+  EXPECT_FALSE(robot.watchdog_has_stopped);
+  for (std::size_t i = stood; i < robot.obeyed.size(); ++i) {
+    EXPECT_EQ(robot.obeyed[i].number, CommandNumber::kEstop) << i;  // and no old set point among them
+  }
+  EXPECT_LE(robot.obeyed.size() - stood, 8u);
+  line.carry_out(session.drive({line.now, 0.3, 0.2}, line.now));  // the one that it had before
+  EXPECT_TRUE(line.run_until([&] { return robot.moves; }, 1.0));
+}
+
 TEST_F(PioneerSessionTest, DoesNotEnableMotorsAgainAfterTheStopButton) {
   use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
