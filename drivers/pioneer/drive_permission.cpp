@@ -52,7 +52,8 @@ void DrivePermission::observe(const MotorReport& report) {
       switch_ = DriveSwitch::kOn;
     }
   }
-  motors_on_ = report.motors_on;
+  // A robot that goes on telling so has not heard our CLOSE: then it was a button.
+  if (!went_off || !report.may_be_our_disable) motors_on_ = report.motors_on;
 }
 
 }  // namespace deltamap::drivers::pioneer

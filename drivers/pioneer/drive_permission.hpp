@@ -47,13 +47,17 @@ class DrivePermission {
 
   void operator_switches(bool on) { switch_ = on ? DriveSwitch::kOn : DriveSwitch::kOffByOperator; }
   void observe(const MotorReport& report);
+  /// ENABLE 1 goes out: whether the motors are on is open until the next SIP.
+  void enable_is_sent() { motors_on_.reset(); }
+  /// No SIP has shown the motors on in time: lost on the line, or a person was faster.
+  void enable_had_no_effect() { switch_off_at_robot(); }
 
  private:
   void switch_off_at_robot();
 
   bool is_configured_;
   DriveSwitch switch_;
-  std::optional<bool> motors_on_;  // by the SIP before; nothing: none in this run
+  std::optional<bool> motors_on_;  // by the SIP before; nothing: none in this run, or none since ENABLE 1
   bool came_on_late_ = false;
 };
 

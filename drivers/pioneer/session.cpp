@@ -153,7 +153,7 @@ void PioneerSession::keep_alive(Timestamp now, PioneerOutput& out) {
     return leave("robot has been silent for " + std::to_string(std::lround(params_.sip_timeout_s * 1e3)) + " ms");
   }
   if (now >= next_check_) {
-    bring_robot_to_wanted_state(out);
+    bring_robot_to_wanted_state(now, out);
     next_check_ = now + duration_from_seconds(kCheckIntervalS);
   }
   if (now < next_pulse_) return;
@@ -218,6 +218,7 @@ void PioneerSession::write_due(Timestamp now, PioneerOutput& out) {
   while (const std::optional<Command> command = queue_.take_due(now, baud())) {
     const bool enables = *command == Command{CommandNumber::kEnable, 1};
     if (enables) enable_sent_ = now;
+    if (enables) permission_.enable_is_sent();
     enable_was_sent_ = enable_was_sent_ || enables;
     if (*command == Command{CommandNumber::kEnable, 0} || command->number == CommandNumber::kClose) disable_sent_ = now;
     out.output.requests.push_back({PortRequest::Kind::kWrite, encoded_command(*command), 0});

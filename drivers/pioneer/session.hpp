@@ -122,9 +122,9 @@ class PioneerSession {
   // The connection (live).
   void answer_while_connected(const Packet& packet, Timestamp now, PioneerOutput& out);
   void keep_alive(Timestamp now, PioneerOutput& out);
-  void bring_robot_to_wanted_state(PioneerOutput& out);
+  void bring_robot_to_wanted_state(Timestamp now, PioneerOutput& out);
   void bring_limits(PioneerOutput& out);
-  void bring_motors();
+  void bring_motors(Timestamp now, PioneerOutput& out);
   void push_set_points();
   void push_emergency_stop(Timestamp now);
   void leave(std::optional<std::string> reason);

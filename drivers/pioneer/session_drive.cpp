@@ -72,7 +72,7 @@ PioneerOutput PioneerSession::switch_drive(bool on, Timestamp now) {
 }
 
 /// Commands are never acknowledged: they are repeated until SIPs and CONFIGpac show their effect (A1).
-void PioneerSession::bring_robot_to_wanted_state(PioneerOutput& out) {
+void PioneerSession::bring_robot_to_wanted_state(Timestamp now, PioneerOutput& out) {
   bring_limits(out);
   if (!newest_sip_) return;
   const bool sonar_is_on = newest_sip_->has(sip_flag::kSonarArrays);
@@ -80,7 +80,7 @@ void PioneerSession::bring_robot_to_wanted_state(PioneerOutput& out) {
     ++sonar_requests_;
     queue_.push({CommandNumber::kSonar, params_.sonar ? 1 : 0});
   }
-  bring_motors();
+  bring_motors(now, out);
 }
 
 void PioneerSession::bring_limits(PioneerOutput& out) {
@@ -101,11 +101,15 @@ void PioneerSession::bring_limits(PioneerOutput& out) {
 
 /// ENABLE 1 is sent once, not until it shows: motors that are off in the next SIP may have been switched off again by a
 /// person who was faster than the SIP.
-void PioneerSession::bring_motors() {
+void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
   const bool motors_are_on = newest_sip_->has(sip_flag::kMotorsEnabled);
   if (permission_.must_disable() && motors_are_on && disable_requests_ < kMaxRequests) {
     ++disable_requests_;
     queue_.push({CommandNumber::kEnable, 0});
+  }
+  if (!motors_are_on && enable_was_sent_ && permission_.holds() && now - *enable_sent_ >= kEchoOfEnable) {
+    permission_.enable_had_no_effect();
+    out.output.log.push_back("robot motors did not come on: press MOTORS, or `deltamap ctl drive wander`");
   }
   if (motors_are_on || enable_was_sent_ || !permission_.holds() || stop_button_is_pressed()) return;
   queue_.drop(CommandNumber::kEnable);
