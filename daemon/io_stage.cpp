@@ -5,6 +5,8 @@
 #include <boost/asio/post.hpp>
 #include <chrono>
 
+#include "daemon/stop_log.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -112,21 +114,26 @@ struct IoStage::State {
   void send_allowed_motion() {
     if (!robot.is_open() || !robot.session().is_connected()) return;
     const Timestamp now = drivers::port::port_clock_now();
+    const auto limits = robot.session().stopping_limits();
+    safety.set_stopping_behaviour(
+        {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
     const navigation::AllowedMotion motion = safety.allowed(now);
     wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(motion.stop));
+    if (const auto line = stop_log.line(motion.stop)) wiring.log(*line);
+    if (motion.brake_hard) return robot.handle(robot.session().emergency_stop(now));
     robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
   }
 
   void let_drive(bool may_drive) {
     if (!drives) return;
     wiring.telemetry.drives.set(may_drive);
-    if (may_drive) return;
+    if (may_drive) return safety.let_drive_again();
     safety.release();
     send_allowed_motion();
   }
 
-  void take(const DriveCommand& command) {
-    if (wiring.telemetry.drives.value()) safety.command(command, drivers::port::port_clock_now());
+  void take(const DriveCommand& command, navigation::StopReason held_by) {
+    if (wiring.telemetry.drives.value()) safety.command(command, drivers::port::port_clock_now(), held_by);
   }
 
   void close() {
@@ -142,6 +149,7 @@ struct IoStage::State {
   Wiring wiring;
   bool drives;  // by the settings
   navigation::Safety safety;
+  StopLog stop_log;
   asio::steady_timer safety_timer;
   asio::steady_timer farewell_timer{loop};
   DeviceLink<PioneerSession, PioneerOutput> robot;
@@ -164,8 +172,8 @@ void IoStage::stop() {
   asio::post(state_->loop, [this] { state_->close(); });
 }
 
-void IoStage::post(const DriveCommand& command) {
-  asio::post(state_->loop, [state = state_.get(), command] { state->take(command); });
+void IoStage::post(const DriveCommand& command, navigation::StopReason held_by) {
+  asio::post(state_->loop, [state = state_.get(), command, held_by] { state->take(command, held_by); });
 }
 
 void IoStage::let_drive(bool may_drive) {

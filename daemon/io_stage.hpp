@@ -34,8 +34,8 @@ class IoStage {
   void run();
   /// Any thread: the robot is stopped and both devices let go; run() returns soon after.
   void stop();
-  /// Any thread. Not listened to while nobody may drive.
-  void post(const DriveCommand& command);
+  /// Any thread. Not listened to while nobody may drive. `held_by`: why the pilot itself does not drive now.
+  void post(const DriveCommand& command, navigation::StopReason held_by = navigation::StopReason::kNone);
   /// Any thread. The pilot may drive (again), or must not: the robot is then told to stand at once. Where the settings
   /// say that nobody drives, nothing happens: no velocity is ever sent.
   void let_drive(bool may_drive);
