@@ -38,10 +38,19 @@ void add_robot(RobotSettings& robot, Keys& keys) {
                           {{"0", 0}, {"19200", 19200}, {"38400", 38400}, {"57600", 57600}, {"115200", 115200}},
                           "switched to once connected, where the robot allows it; 0 stays"));
   keys.push_back(not_for_results(flag_key("robot.sonar", session.sonar, "keep the sonar on")));
-  keys.push_back(not_for_results(number_key("robot.max_speed_m_per_s", session.max_speed_m_per_s, "m/s", 0.01, 2.2,
-                                            "set points are clamped to it")));
-  keys.push_back(not_for_results(degrees_key("robot.max_turn_rate_deg_per_s", session.max_turn_rate_rad_per_s, 1.0,
-                                             500.0, "set points are clamped to it")));
+  keys.push_back(not_for_results(number_key("robot.max_speed_m_per_s", session.limits.max_speed_m_per_s, "m/s", 0.01,
+                                            2.2, "set points are clamped to it")));
+  keys.push_back(not_for_results(degrees_key("robot.max_turn_rate_deg_per_s", session.limits.max_turn_rate_rad_per_s,
+                                             1.0, 500.0, "set points are clamped to it")));
+  auto& limits = session.limits;
+  keys.push_back(not_for_results(number_key("robot.acceleration_m_per_s2", limits.acceleration_m_per_s2, "m/s^2", 0.05,
+                                            2.0, "what the controller is set to")));
+  keys.push_back(not_for_results(number_key("robot.deceleration_m_per_s2", limits.deceleration_m_per_s2, "m/s^2", 0.1,
+                                            2.0, "what the controller is set to, for its own stops too")));
+  keys.push_back(not_for_results(degrees_key("robot.turn_acceleration_deg_per_s2", limits.turn_acceleration_rad_per_s2,
+                                             10.0, 300.0, "what the controller is set to")));
+  keys.push_back(not_for_results(degrees_key("robot.turn_deceleration_deg_per_s2", limits.turn_deceleration_rad_per_s2,
+                                             10.0, 300.0, "what the controller is set to, for its own stops too")));
   keys.push_back(not_for_results(number_key("robot.pulse_interval_s", session.pulse_interval_s, "s", 0.05, 1.5,
                                             "the robot hears from us at least this often")));
   keys.push_back(not_for_results(number_key("robot.sip_timeout_s", session.sip_timeout_s, "s", 0.2, 60.0,

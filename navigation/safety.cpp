@@ -64,11 +64,15 @@ void Safety::let_drive_again() {
   for (StopLatch& latch : latches_) latch.release();
 }
 
+StopReason Safety::waits_for() const {
+  const auto held = std::find_if(latches_.begin(), latches_.end(), [](const StopLatch& l) { return l.is_held(); });
+  return held == latches_.end() ? StopReason::kNone : held->reason();
+}
+
 // --- what forbids to move at all ---
 
 StopReason Safety::blocking_state(Timestamp now) const {
-  const auto held = std::find_if(latches_.begin(), latches_.end(), [](const StopLatch& l) { return l.is_held(); });
-  if (held != latches_.end()) return held->reason();
+  if (const StopReason held = waits_for(); held != StopReason::kNone) return held;
   if (const StopReason silent = silence(now); silent != StopReason::kNone) return silent;
   if (odometry_->stop_button) return StopReason::kStopButton;
   if (!odometry_->motors_enabled) return StopReason::kMotorsOff;

@@ -56,6 +56,8 @@ class Safety {
   /// A person said drive (`deltamap ctl drive wander`; Safety sees the MOTORS button itself): stops whose cause is gone
   /// end.
   void let_drive_again();
+  /// What a person has yet to answer; kNone where nothing.
+  [[nodiscard]] StopReason waits_for() const;
   /// The laser session tells what its variant and baud give.
   void set_nominal_scan_period(double period_s) { params_.nominal_scan_period_s = period_s; }
   /// The robot's session tells what its controller has confirmed.

@@ -110,6 +110,7 @@ class DrivenSimulation {
     drivers::pioneer::PioneerParams params;
     params.fast_baud = 38400;
     params.enable_motors = true;
+    params.drive_switch = drivers::pioneer::DriveSwitch::kOn;
     params.max_speed_m_per_s = 0.7;
     params.max_turn_rate_rad_per_s = radians(80.0);
     return params;
