@@ -7,6 +7,7 @@
 
 #include "daemon/kept_drive.hpp"
 #include "daemon/kept_pose.hpp"
+#include "daemon/stop_log.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -134,8 +135,13 @@ struct IoStage::State {
   void send_allowed_motion() {
     if (!robot.is_open() || !robot.session().is_connected()) return;
     const Timestamp now = drivers::port::port_clock_now();
+    const auto limits = robot.session().stopping_limits();
+    safety.set_stopping_behaviour(
+        {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
     const navigation::AllowedMotion motion = safety.allowed(now);
     wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(motion.stop));
+    if (const auto line = stop_log.line(motion.stop)) wiring.log(*line);
+    if (motion.brake_hard) return robot.handle(robot.session().emergency_stop(now));
     robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
   }
 
@@ -145,11 +151,16 @@ struct IoStage::State {
     }
     robot.handle(robot.session().switch_drive(may_drive, drivers::port::port_clock_now()));
     if (drives && !may_drive) send_allowed_motion();
-    return {ticket, true, may_drive ? "wanders from the next scan on" : "the robot is told to stand"};
+    if (!may_drive) return {ticket, true, "the robot is told to stand"};
+    safety.let_drive_again();
+    const navigation::StopReason held_by = safety.waits_for();
+    if (held_by == navigation::StopReason::kNone) return {ticket, true, "wanders from the next scan on"};
+    return {ticket, false, "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
   }
 
-  void take(const DriveCommand& command) {
-    if (robot.session().permission().holds()) safety.command(command, drivers::port::port_clock_now());
+  void take(const DriveCommand& command, navigation::StopReason held_by) {
+    if (!robot.session().permission().holds()) return;
+    safety.command(command, drivers::port::port_clock_now(), held_by);
   }
 
   void close() {
@@ -166,6 +177,7 @@ struct IoStage::State {
   bool drives;  // by the settings
   KeptDrive kept;
   navigation::Safety safety;
+  StopLog stop_log;
   asio::steady_timer safety_timer;
   asio::steady_timer farewell_timer{loop};
   DeviceLink<PioneerSession, PioneerOutput> robot;
@@ -188,8 +200,8 @@ void IoStage::stop() {
   asio::post(state_->loop, [this] { state_->close(); });
 }
 
-void IoStage::post(const DriveCommand& command) {
-  asio::post(state_->loop, [state = state_.get(), command] { state->take(command); });
+void IoStage::post(const DriveCommand& command, navigation::StopReason held_by) {
+  asio::post(state_->loop, [state = state_.get(), command, held_by] { state->take(command, held_by); });
 }
 
 void IoStage::let_drive(bool may_drive, std::uint64_t ticket) {

@@ -36,8 +36,8 @@ class IoStage {
   void run();
   /// Any thread: the robot is stopped and both devices let go; run() returns soon after.
   void stop();
-  /// Any thread. Not listened to while nobody may drive.
-  void post(const DriveCommand& command);
+  /// Any thread. Not listened to while nobody may drive. `held_by`: why the pilot itself does not drive now.
+  void post(const DriveCommand& command, navigation::StopReason held_by = navigation::StopReason::kNone);
   /// Any thread. A person lets the pilot drive (again), or not: the robot is then told to stand at once. Kept on disk
   /// before it is answered. Where the settings say that nobody drives, no velocity is ever sent.
   void let_drive(bool may_drive, std::uint64_t ticket);

@@ -150,7 +150,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .tracked_scans = tracked_scans,
                     .recorder = recorder.from_localization(),
                     .telemetry = telemetry,
-                    .drive = [this](const DriveCommand& command) { io.post(command); },
+                    .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       store_scan{settings.mapping.store_scan, settings.seed},
       map_step{settings, options.start},

@@ -99,17 +99,23 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
   add(choice_key("navigation.mode", settings.mode,
                  {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}, {"patrol", DriveMode::kPatrol}},
                  "who drives; off: motors are never enabled; patrol is not built yet"));
+  add(flag_key("navigation.drive_without_pose", settings.drive_without_pose,
+               "also while the pose is unknown, lost or called wrong; a robot that must find itself needs it"));
   auto& safety = settings.safety;
   add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
                  "swing circle around the axle"));
   add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0, "kept between the hull and everything"));
   add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s2", 0.05, 5.0,
-                 "what the controller brakes with"));
+                 "braking that is counted on at most; the controller's own where that is less"));
   add(number_key("navigation.safety.reaction_s", safety.reaction_s, "s", 0.0, 2.0, "from a decision to the wheels"));
   add(number_key("navigation.safety.command_life_s", safety.command_life_s, "s", 0.05, 2.0,
                  "a drive command older than that is void"));
   add(number_key("navigation.safety.odometry_life_s", safety.odometry_life_s, "s", 0.1, 5.0,
                  "silence of the robot after which it must stand"));
+  add(number_key("navigation.safety.low_battery_s", safety.low_battery_s, "s", 0.0, 600.0,
+                 "low for so long ends driving: not the sag of a motor that starts"));
+  add(number_key("navigation.safety.plausible_s", safety.plausible_s, "s", 0.0, 60.0,
+                 "of scans that are not flagged as implausible, before it goes on"));
   add(number_key("navigation.safety.max_speed_m_per_s", safety.max_speed_m_per_s, "m/s", 0.01, 2.2,
                  "whatever the pilot wants"));
   add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,

@@ -47,7 +47,7 @@ struct Drive {
     daemon.start();
     daemon.run(6.0 + random.uniform());
     EXPECT_TRUE(daemon.operator_says(true));
-    daemon.run(2.0 + 6.0 * random.uniform());
+    daemon.run(random.uniform(2.0, 20.0));
   }
   [[nodiscard]] double between(double least, double most) { return random.uniform(least, most); }
 
@@ -103,7 +103,8 @@ class Persons {
     if (!is_off()) return;
     if (!moves) stands_ = true;
     if (moves && stands_) violations += 1;
-    if (moves && seconds(now - off_since_) > 4.5) violations += 1;  // watchdog 2 s, then braked from 0.4 m/s at 0.3 m/s^2
+    if (moves && seconds(now - off_since_) > 4.5)
+      violations += 1;  // watchdog 2 s, then braked from 0.4 m/s at 0.3 m/s^2
   }
 
   [[nodiscard]] bool is_off() const { return button_off_ || operator_off_; }

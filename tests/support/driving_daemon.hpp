@@ -115,6 +115,7 @@ class DrivingDaemon {
     if (!process_ || (on && process_->robot.session().stop_button_is_pressed())) return false;
     process_->robot.obey(process_->robot.session().switch_drive(on, devices_.now()), devices_.now());
     process_->obey_permission();
+    if (on) process_->safety.let_drive_again();
     return true;
   }
 
@@ -211,8 +212,13 @@ class DrivingDaemon {
   void drive(Timestamp now) {
     if (now < process_->next_safety || !is_connected()) return;
     process_->next_safety = now + std::chrono::milliseconds{50};
+    PioneerSession& robot = process_->robot.session();
+    const auto limits = robot.stopping_limits();
+    process_->safety.set_stopping_behaviour(
+        {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
     const navigation::AllowedMotion motion = process_->safety.allowed(now);
-    process_->robot.obey(process_->robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now),
+    process_->robot.obey(motion.brake_hard ? robot.emergency_stop(now)
+                                           : robot.drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now),
                          now);
   }
 
