@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/port/port_check.hpp"
 
+#include <grp.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
@@ -10,13 +11,15 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-
-#include "drivers/port/terminal.hpp"
+#include <system_error>
 
 namespace deltamap::drivers::port {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Devices 136 to 143 are the slaves of pseudo-terminals (kernel's devices.txt).
+bool is_pseudo_terminal(dev_t number) { return major(number) >= 136 && major(number) <= 143; }
 
 /// The kernel lists each device by its number; pseudo-terminals (kernel's devices.txt) are not among them.
 bool is_serial(const struct stat& device) {
@@ -26,6 +29,13 @@ bool is_serial(const struct stat& device) {
   const auto number = std::to_string(major(device.st_rdev)) + ":" + std::to_string(minor(device.st_rdev));
   const fs::path subsystem = fs::read_symlink("/sys/dev/char/" + number + "/subsystem", error);
   return error ? !fs::exists("/sys/dev/char", error) : subsystem.filename() == "tty";
+}
+
+std::string way_in(const struct stat& device) {
+  const group* owner = ::getgrgid(device.st_gid);
+  const bool group_may = (device.st_mode & S_IRGRP) != 0 && (device.st_mode & S_IWGRP) != 0;
+  if (group_may && owner != nullptr) return std::string("join the group '") + owner->gr_name + "'";
+  return "its owner alone may open it";
 }
 
 std::string process_text(const std::string& pid) {
@@ -81,10 +91,12 @@ PortCheck check_port(const std::string& path) {
   struct stat device {};
   if (::stat(path.c_str(), &device) != 0) {
     const int error = errno;
-    return {error == EACCES ? State::kForbidden : State::kMissing, path + " " + why_not_opened(path, error)};
+    const std::string why = " (" + std::generic_category().message(error) + ")";
+    if (error == EACCES) return {State::kForbidden, path + " is forbidden" + why};
+    return {State::kMissing, path + " is missing" + why + ": not plugged in or switched on?"};
   }
   if (!is_serial(device)) return {State::kNotSerial, path + " is not a serial port"};
-  if (::access(path.c_str(), R_OK | W_OK) != 0) return {State::kForbidden, path + " " + why_not_opened(path, EACCES)};
+  if (::access(path.c_str(), R_OK | W_OK) != 0) return {State::kForbidden, path + " is forbidden: " + way_in(device)};
   std::string holder = locking_process(device);
   if (holder.empty() && !is_pseudo_terminal(device.st_rdev)) holder = opening_process(device);
   if (!holder.empty()) return {State::kBusy, path + " is busy: " + holder + " has it open"};
