@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/port/port_check.hpp"
 
-#include <grp.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <system_error>
+
+#include "drivers/port/port_holder.hpp"
+#include "drivers/port/terminal.hpp"
 
 namespace deltamap::drivers::port {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Devices 136 to 143 are the slaves of pseudo-terminals (kernel's devices.txt).
-bool is_pseudo_terminal(dev_t number) { return major(number) >= 136 && major(number) <= 143; }
 
 /// The kernel lists each device by its number; pseudo-terminals (kernel's devices.txt) are not among them.
 bool is_serial(const struct stat& device) {
@@ -31,57 +26,15 @@ bool is_serial(const struct stat& device) {
   return error ? !fs::exists("/sys/dev/char", error) : subsystem.filename() == "tty";
 }
 
-std::string way_in(const struct stat& device) {
-  const group* owner = ::getgrgid(device.st_gid);
-  const bool group_may = (device.st_mode & S_IRGRP) != 0 && (device.st_mode & S_IWGRP) != 0;
-  if (group_may && owner != nullptr) return std::string("join the group '") + owner->gr_name + "'";
-  return "its owner alone may open it";
-}
-
-std::string process_text(const std::string& pid) {
-  std::string name;
-  std::getline(std::ifstream("/proc/" + pid + "/comm"), name);
-  return (name.empty() ? "a process" : name) + " (process " + pid + ")";
-}
-
-/// Who has locked it: a pseudo-terminal's other end keeps it open as well, and is no rival.
-std::string locking_process(const struct stat& device) {
-  std::ifstream locks("/proc/locks");
-  for (std::string line; std::getline(locks, line);) {
-    std::istringstream words(line);
-    std::string number, kind, mode, access, pid, file;
-    words >> number >> kind >> mode >> access >> pid >> file;
-    const auto colon = file.rfind(':');
-    if (kind != "FLOCK" || colon == std::string::npos || file.substr(colon + 1) != std::to_string(device.st_ino))
-      continue;
-    char* minor_at = nullptr;
-    const auto major_number = std::strtoul(file.c_str(), &minor_at, 16);
-    const auto minor_number = std::strtoul(minor_at + 1, nullptr, 16);
-    if (major_number == major(device.st_dev) && minor_number == minor(device.st_dev)) return process_text(pid);
+/// Empty where nobody has it; a pseudo-terminal's other end keeps it open as well, and is no rival.
+std::string busy(const std::string& path, dev_t number) {
+  if (const auto holder = lock_file_holder(path, kLockFolder)) {
+    return holder->told() + " has a lock file in " + kLockFolder;
   }
-  return "";
-}
-
-bool has_open(const fs::path& process, const struct stat& device) {
-  std::error_code error;
-  for (fs::directory_iterator file{process / "fd", error}, end; !error && file != end; file.increment(error)) {
-    struct stat open_file {};
-    if (::stat(file->path().c_str(), &open_file) == 0 && S_ISCHR(open_file.st_mode) &&
-        open_file.st_rdev == device.st_rdev)
-      return true;
-  }
-  return false;
-}
-
-/// As far as this user may look: root sees every process, others their own.
-std::string opening_process(const struct stat& device) {
-  std::error_code error;
-  for (fs::directory_iterator process{"/proc", error}, end; !error && process != end; process.increment(error)) {
-    const std::string pid = process->path().filename();
-    if (pid.find_first_not_of("0123456789") != std::string::npos || pid == std::to_string(::getpid())) continue;
-    if (has_open(process->path(), device)) return process_text(pid);
-  }
-  return "";
+  if (const auto holder = locker_of(path)) return holder->told() + " has it open";
+  if (is_pseudo_terminal(number)) return "";
+  const PortHolders holders = holders_of(path);
+  return holders.seen.empty() ? "" : holders.told();
 }
 
 }  // namespace
@@ -91,15 +44,13 @@ PortCheck check_port(const std::string& path) {
   struct stat device {};
   if (::stat(path.c_str(), &device) != 0) {
     const int error = errno;
-    const std::string why = " (" + std::generic_category().message(error) + ")";
-    if (error == EACCES) return {State::kForbidden, path + " is forbidden" + why};
-    return {State::kMissing, path + " is missing" + why + ": not plugged in or switched on?"};
+    return {error == EACCES ? State::kForbidden : State::kMissing, path + " " + why_not_opened(path, error)};
   }
   if (!is_serial(device)) return {State::kNotSerial, path + " is not a serial port"};
-  if (::access(path.c_str(), R_OK | W_OK) != 0) return {State::kForbidden, path + " is forbidden: " + way_in(device)};
-  std::string holder = locking_process(device);
-  if (holder.empty() && !is_pseudo_terminal(device.st_rdev)) holder = opening_process(device);
-  if (!holder.empty()) return {State::kBusy, path + " is busy: " + holder + " has it open"};
+  if (::access(path.c_str(), R_OK | W_OK) != 0) return {State::kForbidden, path + " " + why_not_opened(path, EACCES)};
+  if (const std::string why = busy(path, device.st_rdev); !why.empty()) {
+    return {State::kBusy, path + " is busy: " + why};
+  }
   return {State::kReady, path + " is free"};
 }
 
