@@ -126,11 +126,12 @@ struct Pipeline::State {
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{std::move(wanted)},
-      control{control_desk(settings, {.map = options.start.map->geometry(),
-                                      .commands = commands,
-                                      .telemetry = telemetry,
-                                      .let_drive = [this](bool may_drive) { io.let_drive(may_drive); },
-                                      .log = options.log})},
+      control{control_desk(
+          settings, {.map = options.start.map->geometry(),
+                     .commands = commands,
+                     .telemetry = telemetry,
+                     .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
+                     .log = options.log})},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),
@@ -147,7 +148,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
           .sensors = sensors,
           .recorder = recorder.from_io(),
           .telemetry = telemetry,
-          .log = options.log}},
+          .log = options.log,
+          .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       localization{settings,
                    options.start,
                    options.first_map,
@@ -158,7 +160,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .tracked_scans = tracked_scans,
                     .recorder = recorder.from_localization(),
                     .telemetry = telemetry,
-                    .drive = [this](const DriveCommand& command) { io.post(command); },
+                    .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       store_scan{settings.mapping.store_scan, settings.seed},
       map_step{settings, options.start},
@@ -349,7 +351,7 @@ RunReport Pipeline::stop() {
   report.wire = s.io.counts();
   if (s.options.out) {
     LineFile file{*s.options.out / "report.json"};
-    file.write(json_text(report));
+    file.write(json_text(report, s.settings));
     file.flush();
   }
   return report;

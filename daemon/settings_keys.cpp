@@ -38,10 +38,19 @@ void add_robot(RobotSettings& robot, Keys& keys) {
                           {{"0", 0}, {"19200", 19200}, {"38400", 38400}, {"57600", 57600}, {"115200", 115200}},
                           "switched to once connected, where the robot allows it; 0 stays"));
   keys.push_back(not_for_results(flag_key("robot.sonar", session.sonar, "keep the sonar on")));
-  keys.push_back(not_for_results(number_key("robot.max_speed_m_per_s", session.max_speed_m_per_s, "m/s", 0.01, 2.2,
-                                            "set points are clamped to it")));
-  keys.push_back(not_for_results(degrees_key("robot.max_turn_rate_deg_per_s", session.max_turn_rate_rad_per_s, 1.0,
-                                             500.0, "set points are clamped to it")));
+  keys.push_back(not_for_results(number_key("robot.max_speed_m_per_s", session.limits.max_speed_m_per_s, "m/s", 0.01,
+                                            2.2, "set points are clamped to it")));
+  keys.push_back(not_for_results(degrees_key("robot.max_turn_rate_deg_per_s", session.limits.max_turn_rate_rad_per_s,
+                                             1.0, 500.0, "set points are clamped to it")));
+  auto& limits = session.limits;
+  keys.push_back(not_for_results(number_key("robot.acceleration_m_per_s2", limits.acceleration_m_per_s2, "m/s^2", 0.05,
+                                            2.0, "what the controller is set to")));
+  keys.push_back(not_for_results(number_key("robot.deceleration_m_per_s2", limits.deceleration_m_per_s2, "m/s^2", 0.1,
+                                            2.0, "what the controller is set to, for its own stops too")));
+  keys.push_back(not_for_results(degrees_key("robot.turn_acceleration_deg_per_s2", limits.turn_acceleration_rad_per_s2,
+                                             10.0, 300.0, "what the controller is set to")));
+  keys.push_back(not_for_results(degrees_key("robot.turn_deceleration_deg_per_s2", limits.turn_deceleration_rad_per_s2,
+                                             10.0, 300.0, "what the controller is set to, for its own stops too")));
   keys.push_back(not_for_results(number_key("robot.pulse_interval_s", session.pulse_interval_s, "s", 0.05, 1.5,
                                             "the robot hears from us at least this often")));
   keys.push_back(not_for_results(number_key("robot.sip_timeout_s", session.sip_timeout_s, "s", 0.2, 60.0,
@@ -84,23 +93,38 @@ void add_laser(LaserSettings& laser, Keys& keys) {
                                             "silence after which the laser counts as gone")));
 }
 
-void add_navigation(NavigationSettings& settings, Keys& keys) {
+/// `patrol` has its name already, and nothing behind it.
+SettingKey drive_mode_key(navigation::DriveMode& mode) {
   using navigation::DriveMode;
+  SettingKey key = choice_key("navigation.mode", mode, {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}},
+                              "who drives; off: motors are never enabled");
+  key.assign = [assign = key.assign](const SettingValue& value) -> std::optional<std::string> {
+    const bool is_patrol = value.kind == SettingValue::Kind::kScalar && value.items.front() == "patrol";
+    return is_patrol ? "off or wander (patrol does not exist yet)" : assign(value);
+  };
+  return key;
+}
+
+void add_navigation(NavigationSettings& settings, Keys& keys) {
   const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
-  add(choice_key("navigation.mode", settings.mode,
-                 {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}, {"patrol", DriveMode::kPatrol}},
-                 "who drives; off: motors are never enabled; patrol is not built yet"));
+  add(drive_mode_key(settings.mode));
+  add(flag_key("navigation.drive_without_pose", settings.drive_without_pose,
+               "also while the pose is unknown, lost or called wrong; a robot that must find itself needs it"));
   auto& safety = settings.safety;
   add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
                  "swing circle around the axle"));
   add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0, "kept between the hull and everything"));
   add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s2", 0.05, 5.0,
-                 "what the controller brakes with"));
+                 "braking that is counted on at most; the controller's own where that is less"));
   add(number_key("navigation.safety.reaction_s", safety.reaction_s, "s", 0.0, 2.0, "from a decision to the wheels"));
   add(number_key("navigation.safety.command_life_s", safety.command_life_s, "s", 0.05, 2.0,
                  "a drive command older than that is void"));
   add(number_key("navigation.safety.odometry_life_s", safety.odometry_life_s, "s", 0.1, 5.0,
                  "silence of the robot after which it must stand"));
+  add(number_key("navigation.safety.low_battery_s", safety.low_battery_s, "s", 0.0, 600.0,
+                 "low for so long ends driving: not the sag of a motor that starts"));
+  add(number_key("navigation.safety.plausible_s", safety.plausible_s, "s", 0.0, 60.0,
+                 "of scans that are not flagged as implausible, before it goes on"));
   add(number_key("navigation.safety.max_speed_m_per_s", safety.max_speed_m_per_s, "m/s", 0.01, 2.2,
                  "whatever the pilot wants"));
   add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,
@@ -172,9 +196,6 @@ std::optional<std::string> contradiction_in(const Settings& settings) {
   }
   if (localizer.field.unknown_likelihood < localizer.field.random_share) {
     return "'localization.field.unknown_likelihood' must not lie below 'localization.field.random_share'";
-  }
-  if (settings.navigation.mode == navigation::DriveMode::kPatrol) {
-    return "'navigation.mode: patrol' is not built yet: off or wander";
   }
   const auto& wander = settings.navigation.wander;
   if (wander.shortest_leg_s > wander.longest_leg_s) {

@@ -52,7 +52,7 @@ void run(ReplayOptions& options) {
   }
   if (report.cut) std::cerr << "deltamap: warning: " << report.cut->text << '\n';
   if (options.as_json)
-    std::cout << json_text(report);
+    std::cout << json_text(report, options.job.settings);
   else
     print_summary(report);
 }

@@ -279,9 +279,17 @@ TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
 
 TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
+  settings_.map.store = folder_.path() / "kept.sqlite";
+  const auto kept = [&] { return content_of(folder_.path() / "kept.drive.json"); };
   run([&](const test::SimulatedPorts& ports) {
+    EXPECT_FALSE(moves(ports)) << "nobody has said anything yet";
+    EXPECT_EQ(status()["drive"], "off");
+    EXPECT_EQ(status()["drive_switch"], "unknown");
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     EXPECT_TRUE(comes_true([&] { return moves(ports); }));
+    EXPECT_EQ(kept(), "{\"drive\":\"on\"}\n");
     EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
+    EXPECT_EQ(kept(), "{\"drive\":\"off by the operator\"}\n") << "on disk when it is answered";
     EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "no command"; }));
     EXPECT_EQ(status()["drive"], "off");
     const std::size_t stopped = ports.commands().size();
@@ -291,6 +299,13 @@ TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
     EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     EXPECT_TRUE(comes_true([&] { return moves(ports, stopped); }));
     EXPECT_EQ(status()["drive"], "wander");
+    EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
+  });
+  run([&](const test::SimulatedPorts& ports) {
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 10));
+    EXPECT_FALSE(moves(ports)) << "a restart is no person";
+    EXPECT_EQ(status()["drive_switch"], "off by the operator");
   });
 }
 

@@ -37,6 +37,7 @@ start() {
 }
 
 start first --initial-pose 1,2,0
+"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander
 sleep 10
 "$bin/deltamap" ctl --socket "$out/ctl.sock" drive off
 sleep 3  # it stands, and the pose that is kept is of now
@@ -45,8 +46,13 @@ kill -9 "$daemon" && wait "$daemon" 2>/dev/null || true
 [[ -s $out/store.pose.json ]] || fail "no pose was kept"
 
 start second --set localization.initial_pose=null --set recording.file="$out/second.pcapng"
-sleep 8
+sleep 2
+"$bin/deltamap" ctl --socket "$out/ctl.sock" status --json >"$out/stands.json"
+grep -q '"drive_switch":"off by the operator"' "$out/stands.json" || fail "what an operator switched off is on again"
+"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander
+sleep 6
 "$bin/deltamap" ctl --socket "$out/ctl.sock" status --json >"$out/status.json"
+grep -q '"drive":"wander"' "$out/status.json" || fail "it does not drive though an operator has said so"
 kill "$daemon" && wait "$daemon" || fail "the second daemon did not end well"
 grep -q 'begins at the pose that was kept' "$out/second.log" || fail "the pose that was kept is not used"
 grep -q '"state":"tracking"' "$out/status.json" || fail "the robot is not found again"

@@ -6,6 +6,8 @@
 
 #include "daemon/tool/decoded_frame.hpp"
 #include "daemon/tool/run_tool.hpp"
+#include "drivers/lms200/command.hpp"
+#include "drivers/lms200/value_selection.hpp"
 #include "tests/support/golden_vectors.hpp"
 #include "tests/support/hex.hpp"
 
@@ -71,6 +73,54 @@ TEST(Decode, ReadsRangesInTheModeThatIsGiven) {
   const auto fields = nlohmann::json::parse(outcome.printed)["frames"][0]["fields"];
   EXPECT_EQ(fields["beams_m"], (nlohmann::json{"1.000", "2.000", "not valid", "dazzled", "beyond maximum"}));
   EXPECT_EQ(fields["words"][1], 10192);
+}
+
+TEST(Decode, NamesTheCodesOfEveryMeasuringMode) {
+  struct Case {
+    const char* mode;
+    unsigned first;  // x..F7
+  };
+  for (const Case& c : {Case{"0", 0x1FF7}, Case{"3", 0x3FF7}, Case{"6", 0x7FF7}, Case{"15", 0x7FF7}}) {
+    drivers::lms200::Measurement measurement;
+    for (const unsigned after : {0u, 3u, 4u, 6u, 7u, 8u}) {
+      measurement.words.push_back(static_cast<std::uint16_t>(c.first + after));
+    }
+    const std::string hex = tests::hex_of(encoded_measurement(measurement));
+    const Outcome outcome = run({"laser", hex.c_str(), "--measuring-mode", c.mode, "--json"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.complained;
+    EXPECT_EQ(
+        nlohmann::json::parse(outcome.printed)["frames"][0]["fields"]["beams_m"],
+        (nlohmann::json{"beyond maximum", "channel 1 error", "signal too weak", "overflow", "dazzled", "not valid"}))
+        << c.mode;
+  }
+}
+
+TEST(Decode, NamesTheTelegramsOfSelectedValues) {
+  using namespace drivers::lms200;
+  using Kind = ValueSelection::Kind;
+  std::vector<std::uint8_t> line;
+  const auto add = [&](const std::vector<std::uint8_t>& frame) { line.insert(line.end(), frame.begin(), frame.end()); };
+  add(selection_request({Kind::kSubRange, 1, {{1, 2}}}, true));
+  add(selection_request({Kind::kMean, 4, {}}, false));
+  add(selection_request({Kind::kEverySecond, 1, {}}, false));
+  Measurement measurement;
+  measurement.words = {100, 200};
+  add(encoded_selected_values({4, std::nullopt, measurement}));
+  add(encoded_selected_values({std::nullopt, ValueRange{1, 2}, measurement}));
+  add(encoded_selected_values({4, ValueRange{1, 2}, measurement}));
+  add(encoded_reflecting_ranges({{{1, 2}, measurement, {7, 8}}}));
+  add(counters_reply({1200, 300}));
+  add(configuration_2_reply());
+  add(permanent_baud_reply(true, false));
+  const auto stream = decoded_laser_stream(line, 0x00);
+  EXPECT_EQ(names_of(stream), (std::vector<std::string>{"set mode", "request mean scan", "request scan", "mean scan",
+                                                        "sub-range", "mean sub-range", "ranges with reflectivity",
+                                                        "counters", "configuration 2", "permanent baud"}));
+  for (std::size_t i = 0; i < stream.frames.size(); ++i) {
+    const auto& fields = stream.frames[i].fields;
+    const bool is_raw = std::any_of(fields.begin(), fields.end(), [](const auto& f) { return f.first == "data"; });
+    EXPECT_EQ(is_raw, stream.frames[i].name == "configuration 2") << stream.frames[i].name << ": its fields are told";
+  }
 }
 
 TEST(Decode, PrintsTextForPeople) {
