@@ -11,8 +11,9 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <stdexcept>
+
+#include "core/shortest_text.hpp"
 
 namespace deltamap {
 namespace {
@@ -52,8 +53,10 @@ double number(const YAML::Node& map, const std::string& key, const std::filesyst
 
 MapKeys parse_keys(const std::filesystem::path& file) {
   YAML::Node map;
+  const std::string text = read_bytes(file);
+  if (is_carmen_map(file, text)) refuse(file, "is a CARMEN map; give a map_server map (YAML and PGM)");
   try {
-    map = YAML::Load(read_bytes(file));
+    map = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     refuse(file, "line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
@@ -158,14 +161,21 @@ std::string pgm_of(const OccupancyGrid& grid) {
 }
 
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
-  std::ostringstream yaml;
-  yaml.precision(17);
-  yaml << "image: " << image << "\nresolution: " << grid.resolution_m() << "\norigin: [" << grid.geometry().origin.x()
-       << ", " << grid.geometry().origin.y() << ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-  return yaml.str();
+  const Point2& origin = grid.geometry().origin;
+  return "image: " + image + "\nresolution: " + shortest_text(grid.resolution_m()) + "\norigin: [" +
+         shortest_text(origin.x()) + ", " + shortest_text(origin.y()) +
+         ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 }
 
 }  // namespace
+
+bool is_carmen_map(const std::filesystem::path& file, std::string_view first_bytes) {
+  constexpr std::size_t kLongestHeader = 4096;  // lines of comment come before the magic word
+  if (first_bytes.starts_with("\x1F\x8B")) {
+    return file.extension() == ".map" || file.stem().extension() == ".map";  // of X.map and X.map.gz
+  }
+  return first_bytes.substr(0, kLongestHeader).find("CARMENMAPFILE") != std::string_view::npos;
+}
 
 OccupancyGrid read_grid(const std::filesystem::path& yaml_file) {
   const MapKeys keys = parse_keys(yaml_file);

@@ -13,9 +13,12 @@
 #include <vector>
 
 #include "core/messages.hpp"
+#include "drivers/port/log_cut.hpp"
 #include "mapping/write_gate.hpp"
 
 namespace deltamap::daemon {
+
+struct Settings;
 
 /// The robot's pose in the map at the time of a scan's first beam.
 struct TrajectoryPoint {
@@ -108,10 +111,14 @@ struct RunReport {
   double latency_max_s = 0.0;
   std::string journal;  ///< replay: "obeyed", "none" or why it was not obeyed
   std::uint32_t journal_differences = 0;
+  std::uint32_t commands = 0;                 ///< replay: of an operator, obeyed
+  std::string began;                          ///< replay: what of the recorded run's beginning is used, or why not
+  std::optional<drivers::port::LogCut> cut;   ///< replay: where the recording ends before its file does
   std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
 };
 
-[[nodiscard]] std::string json_text(const RunReport& report);
+/// `settings` are those of the run: they stand in the report, with version and commit.
+[[nodiscard]] std::string json_text(const RunReport& report, const Settings& settings);
 
 /// Highest resident set of this process so far.
 [[nodiscard]] std::uint64_t peak_resident_bytes();
