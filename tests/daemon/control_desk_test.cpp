@@ -76,6 +76,34 @@ TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedByTheReplayBitForBit) {
             content_of(folder_.path() / "live/trajectory.tum"));
 }
 
+TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedWithOtherSettingsAndAnotherSeed) {
+  const Pose2 far{5.0, 4.6, 0.0};  // in the middle of the drive, 1.7 m from it at least
+  const auto nearest_to_far = [&](const std::string& run) {
+    std::ifstream lines(folder_.path() / run / "trajectory.tum");
+    double nearest_m = 1e9;
+    for (double t, x, y; lines >> t >> x >> y; lines.ignore(1000, '\n')) {
+      nearest_m = std::min(nearest_m, std::hypot(x - far.x, y - far.y));
+    }
+    return nearest_m;
+  };
+  (void)run_live(3ms, [&](const Pipeline&) {
+    ASSERT_TRUE(reached_scan(20));
+    EXPECT_EQ(asked({Request::Kind::kPause, {}})["ok"], true);
+    ASSERT_TRUE(reached_scan(60));
+    EXPECT_EQ(asked({Request::Kind::kRelocalize, far})["ok"], true);
+  });
+  settings_.seed = 2;
+  settings_.localizer.beams = 90;
+  const RunReport again = replay("live.pcapng", "replayed");
+  EXPECT_EQ(again.journal, "not obeyed: other settings or map");
+  EXPECT_EQ(again.commands, 2u);
+  EXPECT_EQ(again.phases, 0u) << "mapping was paused before the box came";
+  EXPECT_LT(nearest_to_far("replayed"), 0.7);
+
+  (void)replay("drive.pcapng", "untouched");
+  EXPECT_GT(nearest_to_far("untouched"), 1.5);
+}
+
 TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame) {
   settings_.mapping.store_scan.gate.provisional.time_s = 60.0;  // the whole drive
   const RunReport live = run_live(2ms, [&](const Pipeline& pipeline) {
