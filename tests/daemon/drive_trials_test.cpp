@@ -77,6 +77,8 @@ class Persons {
   void release_stop() {
     drive_.simulation.robot().release_stop_button();
     holds_stop_ = false;
+    // Let go before any SIP: only motors that went off tell it, and those of a robot that waits are off anyway.
+    if (is_open_ && waited_ && drive_.daemon.last_odometry() < pressed_) give_up();
   }
   void say(bool on) {
     if (!drive_.daemon.operator_says(on)) return;
@@ -96,9 +98,7 @@ class Persons {
     const bool was_heard = seconds(drive_.daemon.last_odometry() - pressed_) > 0.25;
     if (was_heard) is_open_ = false;
     if (is_open_ && !holds_stop_ && !drive_.simulation.robot().is_connected()) {
-      // Reset or closed before any SIP could tell: nothing on the wire says it any more.
-      is_open_ = button_off_ = false;
-      ++unknowable;
+      give_up();
     }
     if (!is_off()) return;
     if (!moves) stands_ = true;
@@ -115,9 +115,15 @@ class Persons {
  private:
   void switch_off() {
     pressed_ = drive_.simulation.now();
+    waited_ = !drive_.simulation.robot().is_connected();
     is_open_ = true;
     if (!is_off()) begin_standing();
     button_off_ = true;
+  }
+  /// Reset or closed before any SIP could tell: nothing on the wire says it any more.
+  void give_up() {
+    is_open_ = button_off_ = false;
+    ++unknowable;
   }
   void begin_standing() {
     off_since_ = drive_.simulation.now();
@@ -130,6 +136,7 @@ class Persons {
   bool operator_off_ = false;
   bool stands_ = false;
   bool holds_stop_ = false;
+  bool waited_ = false;   // for a connection, when it was pressed
   bool is_open_ = false;  // pressed, and no SIP has told it yet
   Timestamp looked_{};
   Timestamp pressed_{};
