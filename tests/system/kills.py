@@ -79,11 +79,12 @@ class Trial:
         self.daemon = None
 
     def start(self):
-        settings = {"robot.port": self.out / "robot", "laser.port": self.out / "sim/laser", "map.file": self.out / "m0.yaml",
+        pose = "null" if self.daemon else "[1,2,0]"  # later it is where the run before has kept it
+        settings = {"localization.initial_pose": pose, "robot.port": self.out / "robot", "laser.port": self.out / "sim/laser", "map.file": self.out / "m0.yaml",
                     "map.store": self.out / "store.sqlite", "control.socket": self.out / "ctl.sock"}
         options = [part for key, value in settings.items() for part in ("--set", "%s=%s" % (key, value))]
         self.daemon = subprocess.Popen([self.bin / "deltamapd", "--config", ROOT / "config/simulation.yaml",
-                                        "--initial-pose", "1,2,0", *options], cwd=ROOT, stderr=open(self.out / "daemon.log", "a"))
+                                        *options], cwd=ROOT, stderr=open(self.out / "daemon.log", "a"))
 
     def ask(self, *words):
         done = subprocess.run([self.bin / "deltamap", "ctl", "--socket", self.out / "ctl.sock", "--json", *words],
