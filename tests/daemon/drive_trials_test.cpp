@@ -9,6 +9,7 @@
 #include "core/random.hpp"
 #include "simulation/simulation.hpp"
 #include "tests/support/driving_daemon.hpp"
+#include "tests/support/figure.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap {
@@ -204,7 +205,7 @@ TEST_P(RandomSequences, NeverMoveARobotThatAPersonHasSwitchedOff) {
   EXPECT_GT(offs, 40);
   EXPECT_GT(drove, 2) << "a person is obeyed the other way as well";
   EXPECT_LT(unknowable, offs / 3);
-  std::cout << "switched off " << offs << " times, unheard before a reset " << unknowable << " times\n";
+  test::tell_figure("switched_off_in_shard", offs, "times");
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSequences, testing::Range(std::uint64_t{0}, kShards));
@@ -257,8 +258,8 @@ TEST_P(RandomKills, LeaveTheRobotStandingBeforeItTouchesAnythingAndItIsSoonBack)
     EXPECT_TRUE(drive.simulation.robot().motors_enabled()) << "seed " << seed << ": nobody has switched it off";
     ++trials;
   }
-  std::cout << "longest_m=" << longest_m << " late=" << late << " touched=" << touched << " of " << trials << "\n";
-  RecordProperty("longest_travel_mm", static_cast<int>(1000.0 * longest_m));
+  test::tell_figure("longest_way_after_kill_in_shard", longest_m, "m");
+  EXPECT_EQ(touched, 0);
   EXPECT_GT(moving, trials / 3);
   EXPECT_LE(late, trials / 20);
 }
@@ -290,7 +291,8 @@ TEST(PulledCables, AreForgottenWithinThreeSecondsInNinetyFiveOfAHundred) {
   for (const double time_s : times_s) late += time_s > 3.0 ? 1 : 0;
   longest_s = *std::max_element(times_s.begin(), times_s.end());
   std::nth_element(times_s.begin(), times_s.begin() + 50, times_s.end());
-  std::cout << "median_s=" << times_s[50] << " longest_s=" << longest_s << " late=" << late << "\n";
+  test::tell_figure("back_median", times_s[50], "s");
+  test::tell_figure("back_longest", longest_s, "s");
   EXPECT_EQ(times_s.size(), 100u);
   EXPECT_LE(late, 5);
 }
