@@ -9,7 +9,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 LATE_S = 3.0
 SOON = 0.95          # share of the trials that are not late
 STANDS_S = 4.5       # watchdog 2 s, then braked
-FARTHEST_M = 1.0     # 0.4 m/s for 2 s and a SIP cycle, then braked at 1 m/s^2
+FARTHEST_M = 1.3     # the pilot's 0.5 m/s for 2 s and two SIP cycles, then braked at 1 m/s^2
 
 
 class Cable(threading.Thread):
