@@ -29,6 +29,7 @@ void LineDiagnosis::hear(std::span<const std::uint8_t> bytes) {
 void LineDiagnosis::reset() {
   recent_.clear();
   heard_any_ = false;
+  heard_own_ = false;
   is_swapped_ = false;
 }
 
@@ -57,6 +58,7 @@ std::string LineDiagnosis::phrase() const {
     return expected_ == Device::kRobot ? "the ports are swapped: the laser speaks on the robot's port"
                                        : "the ports are swapped: the robot speaks on the laser's port";
   }
+  if (heard_own_) return "it was heard, but does not do what it is asked";
   return heard_any_ ? "garbage came: another device, or a bad cable" : "no bytes came: switched off, or not connected";
 }
 

@@ -55,6 +55,7 @@ void Lms200Session::on_baud(unsigned baud) {
 
 void Lms200Session::take_telegram(const Telegram& telegram, Lms200Output& out) {
   if (telegram.kind != Telegram::Kind::kTelegram) return;
+  diagnosis_.hear_own_frame();
   switch (telegram.command) {
     case response::kScan:
       take_scan(telegram, out);

@@ -42,7 +42,11 @@ PioneerSession::PioneerSession(const PioneerParams& params, SessionMode mode)
 
 PioneerOutput PioneerSession::on_bytes(std::span<const std::uint8_t> bytes, Timestamp stamp) {
   PioneerOutput out;
-  for (const Packet& packet : decoder_.decode(bytes, stamp)) {
+  const std::vector<Packet> packets = decoder_.decode(bytes, stamp);
+  const bool searches = mode_ == SessionMode::kLive && state_ != State::kConnected;
+  if (packets.empty() && searches) diagnosis_.hear(bytes);
+  for (const Packet& packet : packets) {
+    diagnosis_.hear_own_frame();
     take_packet(packet, stamp, out);
     if (mode_ == SessionMode::kListenOnly) continue;
     if (state_ == State::kConnected) {

@@ -18,6 +18,7 @@
 #include "core/messages.hpp"
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
+#include "drivers/line_diagnosis.hpp"
 #include "drivers/pioneer/baud_search.hpp"
 #include "drivers/pioneer/command.hpp"
 #include "drivers/pioneer/command_queue.hpp"
@@ -160,6 +161,8 @@ class PioneerSession {
   int tries_ = 0;     // of this probe
   int closings_ = 0;  // in this search
   std::uint8_t sync_step_ = 0;
+  LineDiagnosis diagnosis_{Device::kRobot};
+  bool was_in_vain_ = false;          // the last search found no robot: a laser is asked for, too
   std::uint64_t garbage_before_ = 0;  // bytes, before SYNC0 went out
   Timestamp deadline_;                // of the present step
 

@@ -37,13 +37,20 @@ PioneerOutput PioneerSession::start(Timestamp now) {
   probes_ = baud_search(idle_baud_, connected_baud_);
   probe_ = 0;
   closings_ = 0;
+  diagnosis_.reset();
   probe(now, out);
   return finished(now, std::move(out));
 }
 
 void PioneerSession::probe(Timestamp now, PioneerOutput& out) {
-  if (probe_ == probes_.size()) return leave("robot does not answer at " + listed(probes_) + " baud");
+  if (probe_ == probes_.size()) {
+    was_in_vain_ = true;
+    return leave("robot does not answer at " + listed(probes_) + " baud: " + diagnosis_.phrase());
+  }
   set_baud(probes_[probe_].baud, out);
+  if (was_in_vain_) {
+    out.output.requests.push_back({PortRequest::Kind::kWrite, LineDiagnosis::question_to_a_laser(), 0});
+  }
   tries_ = 0;
   begin_quieting();
   deadline_ = now + kQuietTime;
@@ -164,6 +171,7 @@ void PioneerSession::begin_connection(Timestamp now, PioneerOutput& out) {
                              (by_operator ? "" : "press MOTORS, or ") + "`deltamap ctl drive wander`");
   }
   state_ = State::kConnected;
+  was_in_vain_ = false;
   connected_baud_ = baud();
   last_sip_ = now;
   limit_requests_ = 0;

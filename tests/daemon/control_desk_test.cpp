@@ -277,6 +277,30 @@ TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
   });
 }
 
+TEST_F(DriveTest, WithoutAPoseItStandsAndSaysWhy) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  settings_.initial_pose.reset();
+  run([&](const test::SimulatedPorts& ports) {
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "pose unknown"; }));
+    const std::size_t from = ports.commands().size();
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 10));
+    EXPECT_FALSE(moves(ports, from));
+  });
+}
+
+TEST_F(DriveTest, WithoutAPoseItDrivesWhereTheSettingsSaySo) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  settings_.navigation.drive_without_pose = true;
+  settings_.initial_pose.reset();
+  run([&](const test::SimulatedPorts& ports) {
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "none"; }));
+    EXPECT_TRUE(comes_true([&] { return moves(ports); }));
+  });
+}
+
 TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   settings_.map.store = folder_.path() / "kept.sqlite";

@@ -61,6 +61,12 @@ TEST(LineDiagnosis, NeverBelievesADamagedFrameOrRandomBytes) {
   }
 }
 
+TEST(LineDiagnosis, DoesNotCallADeviceAbsentThatWasHeard) {
+  LineDiagnosis diagnosis{Device::kRobot};
+  diagnosis.hear_own_frame();
+  EXPECT_TRUE(diagnosis.phrase().starts_with("it was heard"));
+}
+
 TEST(LineDiagnosis, BeginsAnewWithEachSearch) {
   LineDiagnosis diagnosis = after(Device::kRobot, kFromLaser, 64);
   diagnosis.reset();

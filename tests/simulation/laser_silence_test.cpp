@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iostream>
+#include <cmath>
 
 #include "core/random.hpp"
 #include "drivers/lms200/session.hpp"
 #include "simulation/devices/virtual_lms200.hpp"
+#include "tests/support/figure.hpp"
 
 namespace deltamap::simulation::devices {
 namespace {
@@ -138,13 +139,12 @@ TEST_P(LaserSilence, EndsWithinTwoSeconds) {
   EXPECT_EQ(line.laser().variant(), tested.variant);
   std::sort(delays_s.begin(), delays_s.end());
   const auto ms = [&](double share) {
-    return static_cast<int>(1e3 * delays_s[static_cast<std::size_t>(share * (kSilences - 1))]);
+    return std::round(1e3 * delays_s[static_cast<std::size_t>(share * (kSilences - 1))]);
   };
-  RecordProperty("median_ms", ms(0.5));
-  RecordProperty("p95_ms", ms(0.95));
-  RecordProperty("worst_ms", ms(1.0));
-  std::cout << tested.name << ": ms from speaking again to a scan: median " << ms(0.5) << ", 95 % " << ms(0.95)
-            << ", worst " << ms(1.0) << '\n';
+  const std::string name{tested.name};
+  test::tell_figure(name + "_median", ms(0.5), "ms");
+  test::tell_figure(name + "_p95", ms(0.95), "ms");
+  test::tell_figure(name + "_worst", ms(1.0), "ms");
 }
 
 constexpr lms200::ScanVariant kCoarse{180, 100};

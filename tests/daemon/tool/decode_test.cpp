@@ -2,6 +2,7 @@
 // `deltamap decode`, run in-process.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "daemon/tool/decoded_frame.hpp"
@@ -77,21 +78,23 @@ TEST(Decode, ReadsRangesInTheModeThatIsGiven) {
 
 TEST(Decode, NamesTheCodesOfEveryMeasuringMode) {
   struct Case {
-    const char* mode;
+    std::uint8_t mode;
     unsigned first;  // x..F7
   };
-  for (const Case& c : {Case{"0", 0x1FF7}, Case{"3", 0x3FF7}, Case{"6", 0x7FF7}, Case{"15", 0x7FF7}}) {
+  for (const Case& c : {Case{0x00, 0x1FF7}, Case{0x03, 0x3FF7}, Case{0x06, 0x7FF7}, Case{0x0F, 0x7FF7}}) {
     drivers::lms200::Measurement measurement;
     for (const unsigned after : {0u, 3u, 4u, 6u, 7u, 8u}) {
       measurement.words.push_back(static_cast<std::uint16_t>(c.first + after));
     }
-    const std::string hex = tests::hex_of(encoded_measurement(measurement));
-    const Outcome outcome = run({"laser", hex.c_str(), "--measuring-mode", c.mode, "--json"});
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.complained;
-    EXPECT_EQ(
-        nlohmann::json::parse(outcome.printed)["frames"][0]["fields"]["beams_m"],
-        (nlohmann::json{"beyond maximum", "channel 1 error", "signal too weak", "overflow", "dazzled", "not valid"}))
-        << c.mode;
+    const auto stream = decoded_laser_stream(encoded_measurement(measurement), c.mode);
+    ASSERT_EQ(stream.frames.size(), 1u);
+    const auto& fields = stream.frames[0].fields;
+    const auto beams = std::find_if(fields.begin(), fields.end(), [](const auto& f) { return f.first == "beams_m"; });
+    ASSERT_NE(beams, fields.end());
+    EXPECT_EQ(std::get<std::vector<std::string>>(beams->second),
+              (std::vector<std::string>{"beyond maximum", "channel 1 error", "signal too weak", "overflow", "dazzled",
+                                        "not valid"}))
+        << int{c.mode};
   }
 }
 

@@ -95,8 +95,36 @@ TEST_F(PioneerSessionTest, NamesTheSpeedsItTriedWhenNobodyAnswers) {
   robot.is_deaf = true;
   EXPECT_FALSE(connect(60.0));
   ASSERT_TRUE(line.failed);
-  EXPECT_EQ(*line.failed, "robot does not answer at 9600, 38400, 115200, 19200, 57600 baud");
+  EXPECT_EQ(*line.failed,
+            "robot does not answer at 9600, 38400, 115200, 19200, 57600 baud: no bytes came: switched off, or not "
+            "connected");
   EXPECT_FALSE(line.wake_at);
+}
+
+TEST_F(PioneerSessionTest, FindsALaserOnItsPortInTheSecondSearch) {
+  robot.is_deaf = true;
+  const auto question = LineDiagnosis::question_to_a_laser();
+  const auto times_asked = [&] {
+    return std::count_if(line.written.begin(), line.written.end(), [&](const auto& w) { return w.bytes == question; });
+  };
+  EXPECT_FALSE(connect(60.0));
+  EXPECT_EQ(times_asked(), 0) << "nothing foreign goes to a robot that may be about to answer";
+  line.failed.reset();
+  line.start();
+  ASSERT_TRUE(line.run_until([&] { return times_asked() > 0; }, 5.0));
+  const auto type = tests::bytes_from_hex("06 02801700ba4c4d533230303b3330313036333b5630322e313020102261");
+  line.carry_out(session.on_bytes(type, line.now));
+  line.run_for(60.0);
+  ASSERT_TRUE(line.failed);
+  EXPECT_TRUE(line.failed->ends_with("baud: the ports are swapped: the laser speaks on the robot's port"));
+}
+
+TEST_F(PioneerSessionTest, ConnectsToARobotThatWakesUpWhileALaserIsAskedFor) {
+  robot.is_deaf = true;
+  EXPECT_FALSE(connect(60.0));
+  line.failed.reset();
+  robot.is_deaf = false;
+  EXPECT_TRUE(connect());
 }
 
 TEST_F(PioneerSessionTest, StopsALeftOverRobotBeforeAnythingCouldMakeItResume) {
