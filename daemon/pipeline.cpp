@@ -43,6 +43,7 @@ std::optional<mapping::MapStore> begun_store(const std::filesystem::path& file, 
 
 /// What the run begins from: enough for a replay to obey its journal.
 std::vector<std::string> first_notes(const Settings& settings, const Pipeline::Options& options) {
+  if (settings.recording.file.empty()) return {};
   const std::uint64_t map = grid_hash(*options.start.map);
   std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, options.memory})};
   for (std::string& note : begin_notes({options.first_map, options.memory, options.start})) {
