@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "core/occupancy_grid.hpp"
-#include "core/replace_file.hpp"  // for those who still look for it here
 
 namespace deltamap {
 

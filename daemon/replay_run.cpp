@@ -9,6 +9,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/journal.hpp"
 #include "daemon/latency_histogram.hpp"
+#include "daemon/line_file.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recording_decoder.hpp"
@@ -70,6 +71,8 @@ class Replay {
     const RunIdentity identity{settings_fingerprint(job.settings), grid_hash(*start.map)};
     if (!journal_.run())
       report_.journal = "none";
+    else if (journal_.has_gap())
+      report_.journal = "not obeyed: records are missing";
     else if (journal_.run()->memory != 0)
       report_.journal = "not obeyed: it began with a pose that was kept";
     else if (*journal_.run() != identity)
@@ -213,7 +216,7 @@ void Replay::update_map(const ScanSet& set) {
   MapStep::Result result = map_.update(set);
   changes_.write(json_line(result.note));
   keep(store_, result, map_.method());
-  report_.changes.push_back(std::move(result.note));
+  report_.changes.add(result.note);
   if (!result.revision) return;
   revisions_->push(std::move(*result.revision));
 }
