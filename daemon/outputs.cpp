@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/replace_file.hpp"
+#include "daemon/provenance.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -32,8 +33,9 @@ std::string tum_line(const TrajectoryPoint& point) {
   return {line, static_cast<std::size_t>(length)};
 }
 
-std::string json_text(const RunReport& report) {
+std::string json_text(const RunReport& report, const Settings& settings) {
   Json json;
+  add_provenance(json, settings);
   const ScanCounts& scans = report.scans;
   json["scans"] = scans.decoded;
   json["localized"] = scans.localized;

@@ -329,7 +329,7 @@ RunReport Pipeline::stop() {
   report.latency_p99_s = s.localization.latency().quantile_s(0.99);
   report.latency_max_s = s.localization.latency().max_s();
   report.wire = s.io.counts();
-  if (s.options.out) replace_file(*s.options.out / "report.json", json_text(report));
+  if (s.options.out) replace_file(*s.options.out / "report.json", json_text(report, s.settings));
   return report;
 }
 

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -18,6 +17,7 @@
 
 #include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
+#include "daemon/check_config.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/kept_stability.hpp"
@@ -25,8 +25,12 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
 #include "daemon/settings.hpp"
+#include "daemon/start_banner.hpp"
 #include "daemon/start_error.hpp"
+#include "daemon/state_folders.hpp"
+#include "daemon/stop_signals.hpp"
 #include "daemon/store_opening.hpp"
+#include "daemon/version.hpp"
 #include "mapping/store_error.hpp"
 
 namespace deltamap::daemon {
@@ -71,12 +75,20 @@ class Console {
 };
 
 void add_options(CLI::App& app, CommandLine& line) {
+  app.set_version_flag("--version", "deltamapd " + version_text());
   app.add_option("--config", line.config, "settings, YAML")->required();
   app.add_option("--set", line.overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   app.add_option("--out", line.out, "also write trajectory.tum, map, changes.jsonl and report.json into this folder");
   app.add_option("--initial-pose", line.initial_pose, "X,Y,DEG of the robot in the map at the first scan");
-  auto* check = app.add_flag("--check-config", line.check_only, "read the settings and end");
+  auto* check = app.add_flag("--check-config", line.check_only, "look at settings, map, store and ports, and end");
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
+}
+
+void tell_start(const Settings& settings, const CommandLine& line, const GridGeometry& map,
+                std::optional<std::uint32_t> revision, Console& console) {
+  for (const std::string& text : start_banner(settings, line.config, map, revision)) {
+    console.log(spdlog::level::info, text);
+  }
 }
 
 /// Where the run before has left the robot; a pose that a person gave goes before it.
@@ -105,21 +117,6 @@ void remember_stability(const Settings& settings, const mapping::MapStore& store
   }
   options.start.stability = without(answer.kept->record, settings.localizer.judgement.stability, changes);
   options.memory ^= answer.fingerprint;
-}
-
-// Everything that would end the program without a word to the robot. A terminal that goes away (SIGHUP), or a supply
-// that fails (SIGPWR), is a reason to stop; there is nothing to be reloaded.
-constexpr std::array kStopSignals{SIGTERM, SIGINT,  SIGHUP,    SIGQUIT, SIGUSR1,   SIGUSR2, SIGPWR,
-                                  SIGALRM, SIGPOLL, SIGVTALRM, SIGPROF, SIGSTKFLT, SIGXCPU};
-// A write that fails says so itself; a robot that drives is not put to sleep from the keyboard.
-constexpr std::array kIgnoredSignals{SIGPIPE, SIGXFSZ, SIGTSTP, SIGTTIN, SIGTTOU};
-
-sigset_t stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : kStopSignals) sigaddset(&signals, signal);
-  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) sigaddset(&signals, signal);
-  return signals;
 }
 
 /// Until a signal to stop comes, or a stage fails.
@@ -164,10 +161,7 @@ std::filesystem::path folder_to_write(const std::string& out, const std::filesys
 }
 
 /// The store and what an earlier run has left beside it.
-std::optional<FileLock> take_store(const Settings& settings, const OccupancyGrid& first, Pipeline::Options& options,
-                                   Console& console) {
-  if (settings.map.store.empty()) return std::nullopt;
-  OpenedStore opened = open_store(settings.map.store, first);
+void take_store(OpenedStore& opened, const Settings& settings, Pipeline::Options& options, Console& console) {
   for (const std::string& warning : opened.warnings) console.log(spdlog::level::warn, warning);
   options.start = std::move(opened.start);
   if (options.start.revision > 0) {
@@ -176,7 +170,6 @@ std::optional<FileLock> take_store(const Settings& settings, const OccupancyGrid
   remember_pose(settings, options, console);
   if (opened.store.store) remember_stability(settings, *opened.store.store, options, console);
   options.store = std::move(opened.store);
-  return std::move(opened.lock);
 }
 
 /// What is no good in settings or map shows only here, too.
@@ -194,18 +187,28 @@ std::unique_ptr<Pipeline> begun(const Settings& settings, Pipeline::Options opti
   }
 }
 
+/// --check-config
+int check(const Settings& settings, const CommandLine& line) {
+  const auto findings = check_config(settings, line.config, line.out);
+  std::cout << text_of(findings);
+  return has_error(findings) ? 2 : 0;
+}
+
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
-  const sigset_t signals = stop_signals();
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // all threads begin with it: only watch() takes them
-  for (const int signal : kIgnoredSignals) (void)std::signal(signal, SIG_IGN);
+  take_signals();  // all threads begin with them blocked: only watch() takes them
 
   Pipeline::Options options;
   const OccupancyGrid first = first_map(settings, line);
   options.first_map = grid_hash(first);
   options.start.map = std::make_shared<const OccupancyGrid>(first);
+  make_state_folders(settings, line.config);
   if (!line.out.empty()) options.out = folder_to_write(line.out, settings.map.file);
-  const std::optional<FileLock> store_lock = take_store(settings, first, options, console);
+  std::optional<OpenedStore> store;
+  if (!settings.map.store.empty()) store = open_store(settings.map.store, first);
+  const auto revision = store ? std::optional{store->start.revision} : std::nullopt;
+  tell_start(settings, line, first.geometry(), revision, console);
+  if (store) take_store(*store, settings, options, console);
   std::atomic<bool> failed{false};
   options.log = [&console](const std::string& text) { console.log(spdlog::level::info, text); };
   options.failed = [&console, &failed](const std::string& text) {
@@ -242,7 +245,8 @@ int run_daemon(int argc, const char* const* argv) {
     if (!line.initial_pose.empty()) line.overrides.push_back("localization.initial_pose=[" + line.initial_pose + "]");
     const Settings settings = read_settings(line.config, line.overrides);
     if (line.print_only) std::cout << settings_as_yaml(settings);
-    return line.print_only || line.check_only ? 0 : run_pipeline(settings, line);
+    if (line.check_only) return check(settings, line);
+    return line.print_only ? 0 : run_pipeline(settings, line);
   } catch (const SettingsError& error) {
     std::cerr << "deltamapd: " << error.what() << '\n';
     return 2;

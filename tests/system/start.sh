@@ -33,9 +33,9 @@ expect 2 "map.file" --set map.file=
 expect 2 "none.yaml: No such file" --set map.file="$out/none.yaml"
 expect 2 "bad.yaml: key 'resolution' is missing" --set map.file="$out/bad.yaml"
 expect 2 "is no folder" --out "$out/file/run"
-expect 2 "is no folder" --set map.store="$out/missing/store.sqlite"
+expect 2 "is no folder" --set map.store="$out/file/store.sqlite"
 expect 2 "is a directory" --set map.store="$out"
-expect 2 "is no folder" --set recording.file="$out/missing/bytes.pcapng"
+expect 2 "is no folder" --set recording.file="$out/file/bytes.pcapng"
 expect 2 "map.fiel" --set map.fiel=x
 
 mkdir "$out/run"
