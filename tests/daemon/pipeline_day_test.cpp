@@ -13,6 +13,7 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/store_opening.hpp"
 #include "simulation/start_map.hpp"
+#include "tests/support/figure.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/virtual_ports.hpp"
 
@@ -46,6 +47,12 @@ Sample sample_at(double passed_s) {
   return {passed_s, megabytes(static_cast<double>(heap.uordblks + heap.hblkhd)), resident_mb()};
 }
 
+void show(const Sample& sample) {
+  std::printf("after %5.2f h: heap %6.2f MB, resident %6.2f MB\n", sample.passed_s / kHour_s, sample.heap_mb,
+              sample.resident_mb);
+  (void)std::fflush(stdout);
+}
+
 struct Day {
   std::vector<Sample> samples;  ///< evenly over the drive
   RunReport report;
@@ -68,6 +75,7 @@ Day driven(const test::TemporaryFolder& folder, double hours, std::size_t sample
                                  total_s * static_cast<double>(day.samples.size() + 1) / static_cast<double>(samples);
                              if (passed_s < next_s) return true;
                              day.samples.push_back(sample_at(passed_s));
+                             show(day.samples.back());
                              if (day.samples.size() < samples) return true;
                              over.set_value();
                              return false;
@@ -103,10 +111,6 @@ TEST(PipelineDay, HoldsNoMoreInMemoryInTheLastHourThanAfterTheFirstQuarter) {
   const double hours = hours_to_drive();
   const auto samples = static_cast<std::size_t>(std::max(8.0, hours));
   const Day day = driven(folder, hours, samples);
-  for (const Sample& sample : day.samples) {
-    std::printf("after %5.2f h: heap %6.2f MB, resident %6.2f MB\n", sample.passed_s / kHour_s, sample.heap_mb,
-                sample.resident_mb);
-  }
   const RunReport& report = day.report;
   std::printf(
       "scans=%lu lost=%.0f s revisions=%lu refused=%lu tracked_lost=%lu recording_lost=%lu\n",
@@ -124,6 +128,7 @@ TEST(PipelineDay, HoldsNoMoreInMemoryInTheLastHourThanAfterTheFirstQuarter) {
   };
   const double early_mb = mean_heap_mb(samples / 4, samples / 2);
   const double late_mb = mean_heap_mb(samples - samples / 4, samples);
+  test::tell_figure("growth_of_the_heap", late_mb - early_mb, "MB");
   EXPECT_LT(late_mb - early_mb, 1.5) << "growth of the heap";
   EXPECT_LT(day.samples.back().resident_mb - day.samples[samples / 2].resident_mb, 4.0);
 }
