@@ -59,7 +59,8 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
 void LiveRecording::go_on() {
   if (!writer_) {
     writer_.emplace(options_.file, drivers::port::FirstBauds{bauds_[0], bauds_[1]});
-    writer_->write(note_at(last_stamp_, options_.first_note));
+    for (const std::string& note : options_.first_notes) writer_->write(note_at(last_stamp_, note));
+    options_.first_notes.clear();
   }
   if (!has_gap_) return;
   writer_->write(note_at(last_stamp_, kGapNote));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/file_lock.hpp"
 #include "daemon/retrying_output.hpp"
@@ -21,7 +22,7 @@ class LiveRecording {
   struct Options {
     std::filesystem::path file;  ///< an older file is kept as NAME.previous.pcapng
     drivers::port::FirstBauds bauds;
-    std::string first_note;  ///< what the run begins from
+    std::vector<std::string> first_notes;  ///< what the run begins from
     Timestamp began;
     double max_gigabytes = 0.0;
   };

@@ -21,6 +21,14 @@ using Json = nlohmann::ordered_json;
 double unix_seconds(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
 double milliseconds(double seconds) { return seconds * 1e3; }
 
+Json as_json(const std::optional<drivers::port::LogCut>& cut) {
+  if (!cut) return {{"cut", false}};
+  Json json{{"cut", true}, {"byte", cut->byte}, {"unread_bytes", cut->unread_bytes}, {"last_record_time", nullptr}};
+  if (cut->last_record) json["last_record_time"] = unix_seconds(*cut->last_record);
+  json["warning"] = cut->text;
+  return json;
+}
+
 }  // namespace
 
 std::string tum_line(const TrajectoryPoint& point) {
@@ -77,8 +85,12 @@ std::string json_text(const RunReport& report, const Settings& settings) {
                         {"p50", milliseconds(report.latency_p50_s)},
                         {"p99", milliseconds(report.latency_p99_s)},
                         {"max", milliseconds(report.latency_max_s)}};
-  if (!report.journal.empty())
-    json["journal"] = {{"state", report.journal}, {"differences", report.journal_differences}};
+  if (!report.journal.empty()) {
+    json["journal"] = {
+        {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
+    json["began"] = report.began;
+    json["recording"] = as_json(report.cut);
+  }
   json["wire"] = report.wire;
   return json.dump(2) + "\n";
 }

@@ -24,7 +24,7 @@ Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
   if (!options.recording.empty()) {
     recording_.emplace(LiveRecording::Options{.file = options.recording,
                                               .bauds = options.bauds,
-                                              .first_note = options.first_note,
+                                              .first_notes = options.first_notes,
                                               .began = options.began,
                                               .max_gigabytes = options.max_gigabytes},
                        telemetry, warn);

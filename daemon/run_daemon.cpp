@@ -84,9 +84,9 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
 }
 
-void tell_start(const Settings& settings, const CommandLine& line, const GridGeometry& map,
-                std::optional<std::uint32_t> revision, Console& console) {
-  for (const std::string& text : start_banner(settings, line.config, map, revision)) {
+void tell_start(const Settings& settings, const CommandLine& line, const StartMap& start, Console& console) {
+  const auto revision = settings.map.store.empty() ? std::nullopt : std::optional{start.revision};
+  for (const std::string& text : start_banner(settings, line.config, start.map->geometry(), revision)) {
     console.log(spdlog::level::info, text);
   }
 }
@@ -163,7 +163,6 @@ std::filesystem::path folder_to_write(const std::string& out, const std::filesys
 /// The store and what an earlier run has left beside it.
 void take_store(OpenedStore& opened, const Settings& settings, Pipeline::Options& options, Console& console) {
   for (const std::string& warning : opened.warnings) console.log(spdlog::level::warn, warning);
-  options.start = std::move(opened.start);
   if (options.start.revision > 0) {
     console.log(spdlog::level::info, "map store: goes on with revision=" + std::to_string(options.start.revision));
   }
@@ -206,8 +205,8 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   if (!line.out.empty()) options.out = folder_to_write(line.out, settings.map.file);
   std::optional<OpenedStore> store;
   if (!settings.map.store.empty()) store = open_store(settings.map.store, first);
-  const auto revision = store ? std::optional{store->start.revision} : std::nullopt;
-  tell_start(settings, line, first.geometry(), revision, console);
+  if (store) options.start = std::move(store->start);
+  tell_start(settings, line, options.start, console);
   if (store) take_store(*store, settings, options, console);
   std::atomic<bool> failed{false};
   options.log = [&console](const std::string& text) { console.log(spdlog::level::info, text); };

@@ -121,7 +121,7 @@ drivers::port::ByteRecord record_at(double time_s, std::uint8_t byte) {
 class Recording : public Saving {
  protected:
   [[nodiscard]] LiveRecording::Options options() const {
-    return {.file = file, .bauds = {9600, 9600}, .first_note = "run", .began = at_s(0), .max_gigabytes = 1.0};
+    return {.file = file, .bauds = {9600, 9600}, .first_notes = {"run"}, .began = at_s(0), .max_gigabytes = 1.0};
   }
   /// The notes, and "laser 7" for the laser's bytes 7.
   [[nodiscard]] std::vector<std::string> told() const {
@@ -132,7 +132,7 @@ class Recording : public Saving {
                         ? "laser " + std::to_string(record->bytes[0]) + " at " + std::to_string(record->baud)
                         : record->note);
     }
-    EXPECT_FALSE(reader.cut()) << *reader.cut();
+    EXPECT_FALSE(reader.cut()) << reader.cut()->text;
     return all;
   }
   fs::path file = folder.path() / "bytes.pcapng";

@@ -43,6 +43,8 @@ reached() {
   done
   fail "$1 does not reach $2"
 }
+reached localized 1 60
+"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null
 reached newest_revision 1 100
 
 dd if=/dev/zero of="$disk/filler" bs=4k 2>/dev/null || true

@@ -59,6 +59,7 @@ stopped TERM
 simulator=$!
 for _ in $(seq 100); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
 start "$out"
+"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null
 sleep 8
 [[ $("$bin/deltamap" ctl --socket "$out/ctl.sock" status --json) == *'"drive":"wander"'* ]] || fail "it does not drive"
 kill -s HUP "$daemon"
