@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cassert>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -70,6 +71,16 @@ class Channel {
       if (auto item = take()) return item;
     }
   }
+
+  /// Receiver only. As receive(), but nothing too where none comes within the period.
+  template <typename Rep, typename Period>
+  [[nodiscard]] std::optional<T> receive_within(const std::chrono::duration<Rep, Period>& period) {
+    if (auto item = try_receive()) return item;
+    (void)filled_.try_acquire_for(period);
+    return take();
+  }
+  /// Nothing is sent any more; what was sent before may still be there.
+  [[nodiscard]] bool is_closed() const { return closed_.load(std::memory_order_acquire); }
 
   [[nodiscard]] std::size_t capacity() const { return slot_count_ - 1; }
   /// Items that found the channel full or closed. Any thread.
