@@ -21,7 +21,7 @@ Localizer::~Localizer() = default;
 Localizer::Localizer(Localizer&&) noexcept = default;
 Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
-void Localizer::observe(const Odometry& odometry) { state_->odometry.add(odometry); }
+void Localizer::observe(const Odometry& odometry) { state_->take(odometry); }
 
 TrackedScan Localizer::observe(Scan scan) {
   State& state = *state_;
