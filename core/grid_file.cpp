@@ -11,8 +11,9 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <stdexcept>
+
+#include "core/shortest_text.hpp"
 
 namespace deltamap {
 namespace {
@@ -158,11 +159,10 @@ std::string pgm_of(const OccupancyGrid& grid) {
 }
 
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
-  std::ostringstream yaml;
-  yaml.precision(17);
-  yaml << "image: " << image << "\nresolution: " << grid.resolution_m() << "\norigin: [" << grid.geometry().origin.x()
-       << ", " << grid.geometry().origin.y() << ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-  return yaml.str();
+  const Point2& origin = grid.geometry().origin;
+  return "image: " + image + "\nresolution: " + shortest_text(grid.resolution_m()) + "\norigin: [" +
+         shortest_text(origin.x()) + ", " + shortest_text(origin.y()) +
+         ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "daemon/provenance.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -67,8 +69,9 @@ void LineFile::check() const {
   if (!out_) throw std::runtime_error(file_.string() + ": cannot write");
 }
 
-std::string json_text(const RunReport& report) {
+std::string json_text(const RunReport& report, const Settings& settings) {
   Json json;
+  add_provenance(json, settings);
   const ScanCounts& scans = report.scans;
   json["scans"] = scans.decoded;
   json["localized"] = scans.localized;

@@ -17,6 +17,8 @@
 
 namespace deltamap::daemon {
 
+struct Settings;
+
 /// The robot's pose in the map at the time of a scan's first beam.
 struct TrajectoryPoint {
   Timestamp time;
@@ -111,7 +113,8 @@ struct RunReport {
   std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
 };
 
-[[nodiscard]] std::string json_text(const RunReport& report);
+/// `settings` are those of the run: they stand in the report, with version and commit.
+[[nodiscard]] std::string json_text(const RunReport& report, const Settings& settings);
 
 /// Highest resident set of this process so far.
 [[nodiscard]] std::uint64_t peak_resident_bytes();

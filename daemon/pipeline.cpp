@@ -339,7 +339,7 @@ RunReport Pipeline::stop() {
   report.wire = s.io.counts();
   if (s.options.out) {
     LineFile file{*s.options.out / "report.json"};
-    file.write(json_text(report));
+    file.write(json_text(report, s.settings));
     file.flush();
   }
   return report;

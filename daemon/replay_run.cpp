@@ -257,7 +257,7 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   report.peak_resident_bytes = peak_resident_bytes();
   LineFile file{staging.path() / "report.json"};
-  file.write(json_text(report));
+  file.write(json_text(report, job.settings));
   file.flush();
   staging.commit();
   return report;

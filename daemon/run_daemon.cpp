@@ -13,12 +13,16 @@
 #include <mutex>
 
 #include "core/grid_file.hpp"
+#include "daemon/check_config.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/kept_stability.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
 #include "daemon/settings.hpp"
+#include "daemon/start_banner.hpp"
+#include "daemon/state_folders.hpp"
+#include "daemon/version.hpp"
 #include "mapping/map_store.hpp"
 
 namespace deltamap::daemon {
@@ -63,12 +67,21 @@ class Console {
 };
 
 void add_options(CLI::App& app, CommandLine& line) {
+  app.set_version_flag("--version", "deltamapd " + version_text());
   app.add_option("--config", line.config, "settings, YAML")->required();
   app.add_option("--set", line.overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   app.add_option("--out", line.out, "also write trajectory.tum, map, changes.jsonl and report.json into this folder");
   app.add_option("--initial-pose", line.initial_pose, "X,Y,DEG of the robot in the map at the first scan");
-  auto* check = app.add_flag("--check-config", line.check_only, "read the settings and end");
+  auto* check = app.add_flag("--check-config", line.check_only, "look at settings, map, store and ports, and end");
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
+}
+
+void tell_start(const Settings& settings, const CommandLine& line, const GridGeometry& map,
+                const mapping::MapStore* store, Console& console) {
+  const auto revision = store != nullptr ? std::optional{store->newest()} : std::nullopt;
+  for (const std::string& text : start_banner(settings, line.config, map, revision)) {
+    console.log(spdlog::level::info, text);
+  }
 }
 
 /// The newest revision of this map, or M_0 itself.
@@ -129,6 +142,13 @@ void watch(const Pipeline& pipeline, Console& console) {
   }
 }
 
+/// --check-config
+int check(const Settings& settings, const CommandLine& line) {
+  const auto findings = check_config(settings, line.config, line.out);
+  std::cout << text_of(findings);
+  return has_error(findings) ? 2 : 0;
+}
+
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
   const sigset_t signals = stop_signals();
@@ -138,10 +158,12 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
 
   OccupancyGrid first = read_grid(settings.map.file);
   std::optional<mapping::MapStore> store;
+  make_state_folders(settings, line.config);
   if (!settings.map.store.empty()) store.emplace(settings.map.store, first);
 
   Pipeline::Options options;
   options.first_map = grid_hash(first);
+  tell_start(settings, line, first.geometry(), store ? &*store : nullptr, console);
   options.start = start_map(std::move(first), store ? &*store : nullptr, console);
   if (store) {
     remember_pose(settings, options, console);
@@ -190,7 +212,8 @@ int run_daemon(int argc, const char* const* argv) {
     if (!line.initial_pose.empty()) line.overrides.push_back("localization.initial_pose=[" + line.initial_pose + "]");
     const Settings settings = read_settings(line.config, line.overrides);
     if (line.print_only) std::cout << settings_as_yaml(settings);
-    return line.print_only || line.check_only ? 0 : run_pipeline(settings, line);
+    if (line.check_only) return check(settings, line);
+    return line.print_only ? 0 : run_pipeline(settings, line);
   } catch (const SettingsError& error) {
     std::cerr << "deltamapd: " << error.what() << '\n';
     return 2;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/shortest_text.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -17,12 +19,6 @@ std::optional<Number> parsed(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), last, value);
   if (error != std::errc{} || end != last) return std::nullopt;
   return value;
-}
-
-std::string shortest(double value) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return error == std::errc{} ? std::string(buffer, end) : "0";
 }
 
 // 10° is kept as 0.17453292519943295 rad and must be written as 10 again.
@@ -53,7 +49,7 @@ SettingKey scaled_key(std::string name, double& field, double file_per_field, st
                  .text = {},
                  .assign = {}};
   key.text = [&field, file_per_field] {
-    return file_per_field == 1.0 ? shortest(field) : rounded(field * file_per_field);
+    return file_per_field == 1.0 ? shortest_text(field) : rounded(field * file_per_field);
   };
   key.assign = [&field, file_per_field, low, high,
                 limits = key.limits](const SettingValue& value) -> std::optional<std::string> {
@@ -123,7 +119,7 @@ SettingKey pose_key(std::string name, std::optional<Pose2>& field, std::string m
                  .assign = {}};
   key.text = [&field]() -> std::string {
     if (!field) return "null";
-    return "[" + shortest(field->x) + ", " + shortest(field->y) + ", " + rounded(degrees(field->theta)) + "]";
+    return "[" + shortest_text(field->x) + ", " + shortest_text(field->y) + ", " + rounded(degrees(field->theta)) + "]";
   };
   key.assign = [&field](const SettingValue& value) -> std::optional<std::string> {
     if (value.kind == SettingValue::Kind::kNull) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One key of the configuration: its name, the field that it sets, unit, range and meaning. A list of these serves
-// reading,
-// --print-config, the settings' fingerprint and the test that holds config/default.yaml against the defaults in code.
+// reading, --print-config, the settings' fingerprint and the test that holds config/default.yaml against the defaults
+// in code.
 #pragma once
 
 #include <cstdint>

@@ -175,6 +175,19 @@ std::string settings_as_yaml(const Settings& settings) {
   return yaml;
 }
 
+std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings) {
+  Settings copy = settings;
+  Settings as_delivered;
+  const auto ours = keys_of(copy);
+  const auto delivered = keys_of(as_delivered);
+  std::vector<std::pair<std::string, std::string>> changed;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    const std::string text = ours[i].text();
+    if (text != delivered[i].text()) changed.emplace_back(ours[i].name, text);
+  }
+  return changed;
+}
+
 std::uint64_t settings_fingerprint(const Settings& settings) {
   Settings copy = settings;
   std::string all;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/pose2.hpp"
@@ -101,6 +102,9 @@ class SettingsError : public std::runtime_error {
 
 /// All settings as a YAML file with unit, range and meaning of every key: --print-config and config/default.yaml.
 [[nodiscard]] std::string settings_as_yaml(const Settings& settings);
+
+/// Key and value, as YAML, of everything that is not as delivered, in the order of config/default.yaml.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings);
 
 /// Names everything that decides what comes out of the same bytes: ports, files and recording are left out.
 [[nodiscard]] std::uint64_t settings_fingerprint(const Settings& settings);

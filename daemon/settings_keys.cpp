@@ -84,12 +84,21 @@ void add_laser(LaserSettings& laser, Keys& keys) {
                                             "silence after which the laser counts as gone")));
 }
 
-void add_navigation(NavigationSettings& settings, Keys& keys) {
+/// `patrol` has its name already, and nothing behind it.
+SettingKey drive_mode_key(navigation::DriveMode& mode) {
   using navigation::DriveMode;
+  SettingKey key = choice_key("navigation.mode", mode, {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}},
+                              "who drives; off: motors are never enabled");
+  key.assign = [assign = key.assign](const SettingValue& value) -> std::optional<std::string> {
+    const bool is_patrol = value.kind == SettingValue::Kind::kScalar && value.items.front() == "patrol";
+    return is_patrol ? "off or wander (patrol does not exist yet)" : assign(value);
+  };
+  return key;
+}
+
+void add_navigation(NavigationSettings& settings, Keys& keys) {
   const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
-  add(choice_key("navigation.mode", settings.mode,
-                 {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}, {"patrol", DriveMode::kPatrol}},
-                 "who drives; off: motors are never enabled; patrol is not built yet"));
+  add(drive_mode_key(settings.mode));
   auto& safety = settings.safety;
   add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
                  "swing circle around the axle"));
@@ -172,9 +181,6 @@ std::optional<std::string> contradiction_in(const Settings& settings) {
   }
   if (localizer.field.unknown_likelihood < localizer.field.random_share) {
     return "'localization.field.unknown_likelihood' must not lie below 'localization.field.random_share'";
-  }
-  if (settings.navigation.mode == navigation::DriveMode::kPatrol) {
-    return "'navigation.mode: patrol' is not built yet: off or wander";
   }
   const auto& wander = settings.navigation.wander;
   if (wander.shortest_leg_s > wander.longest_leg_s) {

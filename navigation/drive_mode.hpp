@@ -9,25 +9,16 @@
 namespace deltamap::navigation {
 
 enum class DriveMode : std::uint8_t {
-  kOff,     ///< nobody: motors are left as they are, no velocity is sent
-  kWander,  ///< reactive, needs no pose
-  kPatrol   ///< to where change is least known
+  kOff,    ///< nobody: motors are left as they are, no velocity is sent
+  kWander  ///< reactive, needs no pose
 };
 
 [[nodiscard]] constexpr std::string_view name_of(DriveMode mode) {
-  switch (mode) {
-    case DriveMode::kWander:
-      return "wander";
-    case DriveMode::kPatrol:
-      return "patrol";
-    case DriveMode::kOff:
-      break;
-  }
-  return "off";
+  return mode == DriveMode::kWander ? "wander" : "off";
 }
 
 [[nodiscard]] constexpr std::optional<DriveMode> drive_mode_named(std::string_view name) {
-  for (const DriveMode mode : {DriveMode::kOff, DriveMode::kWander, DriveMode::kPatrol}) {
+  for (const DriveMode mode : {DriveMode::kOff, DriveMode::kWander}) {
     if (name == name_of(mode)) return mode;
   }
   return std::nullopt;

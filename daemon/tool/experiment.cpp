@@ -73,7 +73,7 @@ void run(const ExperimentOptions& given) {
   options.mapping = settings.mapping;
   experiment::expect_writable(given.out);
   experiment::Results results{
-      chosen->name(), chosen->what(), options.seed, options.quick, chosen->runs(options), {}, {}};
+      chosen->name(), chosen->what(), options.seed, options.quick, chosen->runs(options), {}, {}, settings};
   std::erase_if(results.runs,
                 [&](const experiment::Run& one) { return one.name.find(given.only) == std::string::npos; });
   if (results.runs.empty())

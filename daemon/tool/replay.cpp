@@ -51,7 +51,7 @@ void run(ReplayOptions& options) {
     });
   }
   if (options.as_json)
-    std::cout << json_text(report);
+    std::cout << json_text(report, options.job.settings);
   else
     print_summary(report);
 }

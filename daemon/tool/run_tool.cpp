@@ -8,11 +8,13 @@
 
 #include "daemon/settings.hpp"
 #include "daemon/tool/subcommands.hpp"
+#include "daemon/version.hpp"
 
 namespace deltamap::daemon::tool {
 
 int run_tool(int argc, const char* const* argv) {
   CLI::App app{"deltamap: keeps a robot localized in a map that follows the world", "deltamap"};
+  app.set_version_flag("--version", "deltamap " + version_text());
   app.require_subcommand(1);
   add_ctl(app);
   add_experiment(app);

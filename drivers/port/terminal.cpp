@@ -36,10 +36,9 @@ std::optional<speed_t> speed_of(unsigned baud) {
   return std::nullopt;
 }
 
-/// Devices 136 to 143 are the slaves of pseudo-terminals (kernel's devices.txt).
-bool is_pseudo_terminal(int descriptor) {
+bool is_open_pseudo_terminal(int descriptor) {
   struct stat status {};
-  return ::fstat(descriptor, &status) == 0 && major(status.st_rdev) >= 136 && major(status.st_rdev) <= 143;
+  return ::fstat(descriptor, &status) == 0 && is_pseudo_terminal(status.st_rdev);
 }
 
 std::string group_of(const std::string& path) {
@@ -51,23 +50,6 @@ std::string group_of(const std::string& path) {
   struct group* found = nullptr;
   (void)::getgrgid_r(status.st_gid, &owner, names.data(), names.size(), &found);
   return found != nullptr && status.st_gid != 0 ? found->gr_name : "dialout";
-}
-
-std::string reason_of(const std::string& path, int error) {
-  switch (error) {
-    case ENOENT:
-    case ENODEV:
-    case ENXIO:
-      return "is missing (" + std::generic_category().message(error) + "): not plugged in or switched on?";
-    case EBUSY:
-    case EWOULDBLOCK:
-      return "is busy: another program has it open";
-    case EACCES:
-    case EPERM:
-      return "is forbidden (" + std::generic_category().message(error) + "): join the group '" + group_of(path) + "'";
-    default:
-      return "cannot be opened: " + std::generic_category().message(error);
-  }
 }
 
 /// 8N1, nothing translated, no flow control, no modem lines.
@@ -94,21 +76,40 @@ void ask_for_low_latency(int descriptor) {
 /// exclusive after a crash for as long as the simulator holds its other end, so there the lock must do.
 bool own_exclusively(int descriptor) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return false;
-  return is_pseudo_terminal(descriptor) || ::ioctl(descriptor, TIOCEXCL) == 0;
+  return is_open_pseudo_terminal(descriptor) || ::ioctl(descriptor, TIOCEXCL) == 0;
 }
 
 }  // namespace
 
+bool is_pseudo_terminal(dev_t number) { return major(number) >= 136 && major(number) <= 143; }
+
+std::string why_not_opened(const std::string& path, int error) {
+  switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+      return "is missing (" + std::generic_category().message(error) + "): not plugged in or switched on?";
+    case EBUSY:
+    case EWOULDBLOCK:
+      return "is busy: another program has it open";
+    case EACCES:
+    case EPERM:
+      return "is forbidden (" + std::generic_category().message(error) + "): join the group '" + group_of(path) + "'";
+    default:
+      return "cannot be opened: " + std::generic_category().message(error);
+  }
+}
+
 OpenedTerminal open_terminal(const std::string& path, unsigned baud) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return {-1, path + " " + reason_of(path, errno)};
+  if (descriptor < 0) return {-1, path + " " + why_not_opened(path, errno)};
   const auto refuse = [&](const std::string& why) {
     ::close(descriptor);
     return OpenedTerminal{-1, path + " " + why};
   };
   if (::isatty(descriptor) != 1) return refuse("is not a serial port");
-  if (!own_exclusively(descriptor)) return refuse(reason_of(path, errno));
-  if (!set_raw(descriptor)) return refuse(reason_of(path, errno));
+  if (!own_exclusively(descriptor)) return refuse(why_not_opened(path, errno));
+  if (!set_raw(descriptor)) return refuse(why_not_opened(path, errno));
   ask_for_low_latency(descriptor);
   if (const std::string why = set_line_speed(descriptor, baud); !why.empty()) {
     close_terminal(descriptor);

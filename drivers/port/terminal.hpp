@@ -2,6 +2,8 @@
 // What a serial port asks of the kernel's terminal layer: open and own the device, set the line, look at its queue.
 #pragma once
 
+#include <sys/types.h>
+
 #include <string>
 
 namespace deltamap::drivers::port {
@@ -12,6 +14,12 @@ struct OpenedTerminal {
   std::string refused;
 };
 [[nodiscard]] OpenedTerminal open_terminal(const std::string& path, unsigned baud);
+
+/// What follows a device's name in a refusal: the system's error, and what to do about it.
+[[nodiscard]] std::string why_not_opened(const std::string& path, int error);
+
+/// By its device number: devices 136 to 143 are the slaves of pseudo-terminals (kernel's devices.txt).
+[[nodiscard]] bool is_pseudo_terminal(dev_t number);
 
 /// Gives the device free for others and closes it.
 void close_terminal(int descriptor);

@@ -10,7 +10,8 @@ measured and at which revision is kept in experiments.json beside it. Called by 
 import argparse, json, os, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from measuring import DATA, ROOT, TOOL, processor, row_of_figure, run, table_lines
+import paper_figures
+from measuring import DATA, ROOT, TOOL, processor, row_of_figure, run, table_lines, told
 
 OUT = ROOT / "build/experiments"
 OF_THE_LOCALIZER = {"hall", "stale-map", "verdict"}  # ./dev bench localization
@@ -34,9 +35,12 @@ def section(part):
     rows = [row_of_figure(figure) for figure in summary["figures"]]
     judged = [row["met"] for row in rows if row["met"] is not None]
     met = " %d of %d met." % (sum(judged), len(judged)) if judged else ""
+    # Measured before summaries named their program: the script's own revision.
+    program = "version %s, commit %s, settings %s: %s" % (
+        summary["version"], summary["commit"], summary["settings"]["fingerprint"], told(summary["settings"])) \
+        if "commit" in summary else "at " + part["revision"]
     lines = ["## " + summary["experiment"], "",
-             "%s. %d runs from seed %d%s, at %s.%s" % (part["what"], summary["runs"], summary["seed"],
-                                                        ", quick" if summary["quick"] else "", part["revision"], met), ""]
+             "%s. %d runs from seed %d%s, %s.%s" % (part["what"], summary["runs"], summary["seed"], ", quick" if summary["quick"] else "", program, met), ""]
     return lines + table_lines(rows, "paper, others")
 
 
@@ -91,6 +95,9 @@ def main():
         # At once: who interrupts a long run keeps what was done.
         kept.write_text(json.dumps(parts, indent=1, ensure_ascii=False) + "\n")
         report.write_text(markdown(list(parts.values())))
+    page = ROOT / "docs/paper.md"
+    if not arguments.quick and page.exists() and all(name in parts for *_, name in paper_figures.ROWS):
+        paper_figures.write(page, kept)
     print("written: %s; pages in %s" % (report.relative_to(ROOT), folder.relative_to(ROOT)))
     raise SystemExit(0 if all(part["summary"]["met"] for part in parts.values()) else 1)
 

@@ -60,6 +60,14 @@ class Writer(unittest.TestCase):
         self.assertIn("The second. 2 runs from seed 3, at bbb2. 1 of 1 met.", self.text())
         self.assertLess(self.text().index("## one"), self.text().index("## two"))
 
+    def test_names_program_and_settings_where_the_summary_does(self):
+        self.revision = "aaa1"
+        known = summary
+        made_by = {"version": "0.1.0", "commit": "ccc3", "settings": {"fingerprint": "00ff", "changed": {"mapping.method": "paper"}}}
+        with mock.patch.dict(globals(), summary=lambda *what: {**known(*what), **made_by}):
+            self.write()
+        self.assertIn('from seed 3, version 0.1.0, commit ccc3, settings 00ff: mapping.method: "paper". 1 of 1 met.', self.text())
+
     def test_leaves_the_report_alone_when_quick(self):
         self.revision = "aaa1"
         self.write("--quick")

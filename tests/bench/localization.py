@@ -9,7 +9,7 @@ import argparse, json, os, pathlib, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import localizer_cost, on_experiments, on_intel
-from measuring import OUT, ROOT, mark, processor, run, table_lines
+from measuring import OUT, ROOT, mark, provenance, run, settings_section, table_lines
 
 # In the order of the table. Each answers a list of rows.
 PARTS = {
@@ -25,17 +25,21 @@ PARTS = {
 }
 
 
+def made_by():
+    return sorted(file for name in ("report", "summary") for file in (OUT / "runs").glob("*/%s.json" % name))
+
+
 def markdown(parts):
     revisions = sorted({part["revision"] for part in parts.values()})
     lines = ["# The localizer, measured", "",
-             "Written by `./dev bench localization` at %s on %s. Times are CPU time of one thread, medians; peers' figures were"
-             % (", ".join(revisions), processor()),
+             "Written by `./dev bench localization` at %s: %s. Times are CPU time of one thread, medians; peers' figures were"
+             % (", ".join(revisions), provenance()),
              "measured on one machine on the same logs with 500 particles and 60 beams. Instructions are those that callgrind counts:",
              "they repeat on any processor that has AVX2 (32-bit build: on any). Load of the machine at the end: %.1f on %d processors."
              % (os.getloadavg()[0], os.cpu_count()), ""]
     lines += table_lines([row for part in parts.values() for row in part["rows"]])
     judged = [row["met"] for part in parts.values() for row in part["rows"] if row["met"] is not None]
-    lines += ["", "%d of %d met." % (sum(judged), len(judged)), ""]
+    lines += ["", "%d of %d met." % (sum(judged), len(judged)), "", *settings_section(made_by()), ""]
     return "\n".join(lines)
 
 

@@ -7,7 +7,7 @@ container comes or goes each minute. Writes docs/results/mapping.md. Called by .
   mapping.py [--quick]    --quick: two minutes of the hall alone, into build/"""
 import argparse, re, subprocess
 
-from measuring import OUT, ROOT, TOOL, mark, row, run, table_lines, unpacked
+from measuring import OUT, ROOT, TOOL, mark, provenance, row, settings_section, table_lines, unpacked
 from on_intel import KNOWN_START, missing_data, recording
 
 AWARENESS = "deltamap::mapping::StoreScan::observe("
@@ -70,6 +70,11 @@ def hall(minutes):
                     "--out", OUT / "hall-mapping")
 
 
+def made_by(quick):
+    files = [OUT / "hall-mapping/summary.json"] + ([] if quick or missing_data() else [OUT / "intel-mapping/report.json"])
+    return [file for file in files if file.exists()]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true")
@@ -80,9 +85,8 @@ def main():
     for one in rows:
         print("%-10s %s: %s (%s)" % (mark(one), one["figure"], one["ours"], one["target"]), flush=True)
     target = OUT / "mapping.md" if quick else ROOT / "docs/results/mapping.md"
-    revision = run("git", "describe", "--always", "--dirty").strip()
-    target.write_text("\n".join(["# What mapping costs a scan", "", "Written by `./dev bench mapping` at %s." % revision, "",
-                                 *table_lines(rows)]) + "\n")
+    target.write_text("\n".join(["# What mapping costs a scan", "", "Written by `./dev bench mapping`: %s." % provenance(), "",
+                                 *table_lines(rows), "", *settings_section(made_by(quick))]) + "\n")
     raise SystemExit(0 if all(one["met"] is not False for one in rows) else 1)
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the programs that measure and write tables share: programs run, data unpacked, rows and tables."""
-import pathlib, platform, sys
+import pathlib, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import project
-from project import DATA, ROOT, run
+from project import DATA, ROOT, processor, provenance, run, settings_section, told
 
 OUT = ROOT / "build/bench-localization"
 TOOL = ROOT / "build/release/bin/deltamap"
@@ -56,10 +56,3 @@ def table_lines(rows, others="peers"):
         texts = [in_a_cell(row[name]) for name in ("figure", "peers", "ours", "target")]
         lines.append("| %s | %s |" % (" | ".join(texts), mark(row)))
     return lines
-
-
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()

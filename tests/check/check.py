@@ -4,10 +4,10 @@
 
   check.py [--quick] [--keep] [--only NAME]     --quick: one short demo, one seed; for trying the check itself
                                                 --keep: do not play demos again that the last check has played"""
-import argparse, concurrent.futures, filecmp, json, os, pathlib, platform, shutil, sys
+import argparse, concurrent.futures, filecmp, json, pathlib, shutil, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from project import DATA, ROOT, run, unpacked
+from project import DATA, ROOT, provenance, run, settings_section, unpacked
 
 TOOLS = DATA.parent / "tools"
 BIN = ROOT / "build/release/bin"
@@ -164,9 +164,9 @@ def main():
         if arguments.only in (None, name):
             check()
     if not arguments.quick and not arguments.only:
-        revision = run("git", "describe", "--always", "--dirty").strip()
-        text = "# Figures promised and measured\n\nWritten by `./dev check` at %s on %s, %d processors.\n\n%s\n" % (
-            revision, platform.processor() or platform.machine(), os.cpu_count(), table.markdown())
+        reports = sorted([*OUT.glob("*/report.json"), *OUT.glob("*/run/report.json")])
+        text = "# Figures promised and measured\n\nWritten by `./dev check`: %s.\n\n%s\n\n%s\n" % (
+            provenance(), table.markdown(), "\n".join(settings_section(reports)))
         (ROOT / "docs/results/check.md").write_text(text)
     raise SystemExit(0 if all(row[4] for row in table.rows) else 1)
 

@@ -29,6 +29,19 @@ TEST(GridFile, ReadsWhatItWrote) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.yaml.part"));
 }
 
+TEST(GridFile, WritesNumbersAsPeopleDoAndReadsThemBackExactly) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "map.yaml";
+  write_grid(test::drawn_grid({"#"}, 0.05, {-12.3, 7.0}), file);
+  std::ifstream written(file);
+  EXPECT_EQ((std::string{std::istreambuf_iterator<char>(written), {}}),
+            "image: map.pgm\nresolution: 0.05\norigin: [-12.3, 7, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
+            "free_thresh: 0.196\n");
+  const OccupancyGrid awkward = test::drawn_grid({"#"}, 1.0 / 3.0, {-12.3 - 3 * 0.05, 1e-17});
+  write_grid(awkward, file);
+  EXPECT_EQ(read_grid(file), awkward);
+}
+
 TEST(GridFile, ReadsForeignShadesAndComments) {
   const test::TemporaryFolder folder;
   folder.write("m.pgm", std::string("P5\n# by another hand\n3 1\n# again\n100\n") + "\x00" + "\x64" + "\x32");

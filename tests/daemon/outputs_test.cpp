@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "daemon/latency_histogram.hpp"
+#include "daemon/settings.hpp"
+#include "daemon/version.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::daemon {
@@ -14,6 +18,25 @@ TEST(Trajectory, ALineHasTheExactTimeAndTheHeadingAsQuaternion) {
             "976052857.123456789 1.500000 -2.250000 0 0 0 0.707106781 0.707106781\n");
   EXPECT_EQ(tum_line({timestamp_from_ns(5'000'000'007), {}}),
             "5.000000007 0.000000 0.000000 0 0 0 0.000000000 1.000000000\n");
+}
+
+TEST(Report, SaysWhichProgramMadeItWithWhichSettings) {
+  const Settings settings = parse_settings("{seed: 7, laser: {variant: 100/1}, map: {store: \"a b\"}}", "f");
+  const auto report = nlohmann::json::parse(json_text(RunReport{}, settings));
+  EXPECT_EQ(report["version"], version());
+  EXPECT_EQ(report["commit"], commit());
+  EXPECT_EQ(report["settings"]["changed"],
+            nlohmann::json::parse(R"({"seed": 7, "laser.variant": "100/1", "map.store": "a b"})"));
+  EXPECT_EQ(report["settings"]["fingerprint"].get<std::string>().size(), 16u);
+  const auto as_delivered = nlohmann::json::parse(json_text(RunReport{}, Settings{}));
+  EXPECT_TRUE(as_delivered["settings"]["changed"].empty());
+  EXPECT_NE(as_delivered["settings"]["fingerprint"], report["settings"]["fingerprint"]);
+}
+
+TEST(Version, HasNumberCommitCompilerAndBits) {
+  EXPECT_EQ(version_text().find(std::string(version()) + " (commit " + std::string(commit()) + ", "), 0u);
+  EXPECT_TRUE(version_text().ends_with(" bit)")) << version_text();
+  EXPECT_FALSE(commit().empty());
 }
 
 TEST(StagingFolder, WhatIsNotCommittedDisappears) {

@@ -132,8 +132,9 @@ TEST(Settings, EveryKeyThatScriptsSetIsKnown) {
 }
 
 TEST(Settings, PatrolIsRefusedUntilItIsBuilt) {
-  EXPECT_EQ(error_of("navigation: {mode: patrol}"),
-            "robot.yaml: 'navigation.mode: patrol' is not built yet: off or wander");
+  const std::string why = "'navigation.mode' needs off or wander (patrol does not exist yet), not 'patrol'";
+  EXPECT_EQ(error_of("seed: 1\nnavigation:\n  mode: patrol\n"), "robot.yaml:3: " + why);
+  EXPECT_EQ(error_of("", {"navigation.mode=patrol"}), "--set navigation.mode=patrol: " + why);
 }
 
 TEST(Settings, AKeyGivenTwiceIsRefused) {

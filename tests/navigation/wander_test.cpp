@@ -165,7 +165,7 @@ TEST(Wander, DrivesTheSameWayAgainFromTheSameSeed) {
 TEST(DriveMode, IsKnownByItsNameInTheSettings) {
   EXPECT_EQ(drive_mode_named("off"), DriveMode::kOff);
   EXPECT_EQ(drive_mode_named("wander"), DriveMode::kWander);
-  EXPECT_EQ(drive_mode_named("patrol"), DriveMode::kPatrol);
+  EXPECT_EQ(drive_mode_named("patrol"), std::nullopt);
   EXPECT_EQ(drive_mode_named("Wander"), std::nullopt);
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts that measure share: where project and real data lie, programs run, data unpacked."""
-import lzma, os, pathlib, shutil, subprocess
+import json, lzma, os, pathlib, platform, shutil, subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("DELTAMAP_DATA", ROOT.parent / "shared" / "data"))
@@ -11,6 +11,45 @@ def run(*command):
     if done.returncode:
         raise SystemExit("%s\nfailed with %d:\n%s%s" % (" ".join(map(str, command)), done.returncode, done.stdout, done.stderr))
     return done.stdout
+
+
+def version():
+    """"0.1.0 (commit fc42533, GCC 12.2.0, 64 bit)": of the programs that are measured."""
+    return run(ROOT / "build/release/bin/deltamap", "--version").strip().removeprefix("deltamap ")
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def provenance():
+    """What stands at the head of a table: which programs were measured, and on what."""
+    return "deltamap %s on %s, %d processors" % (version(), processor(), os.cpu_count())
+
+
+PLACES = {"robot.port", "laser.port", "map.file", "map.store", "control.socket", "recording.file"}
+
+
+def told(settings):
+    """The changed settings of a report.json or summary.json without seed and places, in one line."""
+    changed = {key: value for key, value in settings["changed"].items() if key not in PLACES | {"seed"}}
+    return ", ".join("%s: %s" % (key, json.dumps(value, ensure_ascii=False)) for key, value in changed.items()) or "as delivered"
+
+
+def settings_section(files):
+    """The lines that tell with which settings the runs of a table were made, from their report.json or summary.json; runs that
+    differ by their seed or by where their files are share a line."""
+    groups = {}
+    for file in files:
+        settings = json.loads(file.read_text()).get("settings", {"changed": {"settings": "not told by an older program"}})
+        name = file.parents[1 if file.parent.name == "run" else 0].name
+        groups.setdefault(told(settings), []).append((name, settings["changed"].get("seed", 1)))
+    lines = ["## Settings", "", "What is not listed is as delivered (`config/default.yaml` of that commit).", ""]
+    return lines + ["- %s (seeds %s): %s" % (", ".join(name for name, _ in runs), ", ".join(str(seed) for seed in sorted({seed for _, seed in runs})), text)
+                    for text, runs in groups.items()]
 
 
 def unpacked(name, folder):

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "daemon/provenance.hpp"
+
 namespace deltamap::daemon::tool::experiment {
 namespace {
 
@@ -75,11 +77,12 @@ std::string scans_csv(const ScanTable& scans) {
 }
 
 std::string summary_json(const Results& results) {
-  Json summary{{"experiment", results.name},
-               {"seed", results.seed},
-               {"quick", results.quick},
-               {"runs", results.runs.size()},
-               {"figures", Json::array()}};
+  Json summary{{"experiment", results.name}};
+  add_provenance(summary, results.settings);
+  summary["seed"] = results.seed;
+  summary["quick"] = results.quick;
+  summary["runs"] = results.runs.size();
+  summary["figures"] = Json::array();
   bool all_met = true;
   for (const Figure& figure : results.report.figures) {
     Json json{{"name", figure.name}, {"value", number_of(figure.value)}, {"unit", figure.unit}};

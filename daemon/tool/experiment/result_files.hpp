@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/settings.hpp"
 #include "daemon/tool/experiment/experiment.hpp"
 
 namespace deltamap::daemon::tool::experiment {
@@ -19,6 +20,7 @@ struct Results {
   std::vector<Run> runs;
   std::vector<Outcome> outcomes;  ///< of each run
   Report report;
+  Settings settings{};  ///< of the localizer and of mapping; an experiment may set some of them itself
 };
 
 /// Throws std::runtime_error where nothing can be written there.

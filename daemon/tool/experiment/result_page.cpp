@@ -4,6 +4,7 @@
 
 #include "daemon/tool/experiment/result_files.hpp"
 #include "daemon/tool/experiment/svg_chart.hpp"
+#include "daemon/version.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 namespace {
@@ -62,6 +63,18 @@ std::string table_html(const TextTable& table) {
   return html + "</table>\n";
 }
 
+/// "deltamap 0.1.0, commit fc42533; settings as delivered, but seed: 2"
+std::string provenance_text(const Settings& settings) {
+  std::string text =
+      "deltamap " + std::string(version()) + ", commit " + std::string(commit()) + "; settings as delivered";
+  const char* before = ", but ";
+  for (const auto& [key, value] : changed_settings(settings)) {
+    text += before + key + ": " + value;
+    before = ", ";
+  }
+  return text + ".";
+}
+
 }  // namespace
 
 std::string page_html(const Results& results) {
@@ -69,6 +82,7 @@ std::string page_html(const Results& results) {
   html += "<title>" + escaped(results.name) + "</title></head><body>\n<h1>" + escaped(results.name) + "</h1>\n";
   html += "<p>" + escaped(results.what) + ". " + std::to_string(results.runs.size()) + " runs from seed " +
           std::to_string(results.seed) + (results.quick ? ", quick" : "") + ".</p>\n";
+  html += "<p>" + escaped(provenance_text(results.settings)) + "</p>\n";
   html += figures_html(results.report);
   for (const TextTable& table : results.report.tables) html += table_html(table);
   for (const Chart& chart : results.report.charts) html += "<h2>" + escaped(chart.title) + "</h2>\n" + svg_of(chart);

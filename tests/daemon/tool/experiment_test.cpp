@@ -15,6 +15,7 @@
 #include "daemon/tool/experiment/result_files.hpp"
 #include "daemon/tool/experiment/svg_chart.hpp"
 #include "daemon/tool/experiment/weakest_axis.hpp"
+#include "daemon/version.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/tool_run.hpp"
 
@@ -61,6 +62,17 @@ TEST(Experiment, EachLeavesATableASummaryAndAPage) {
     EXPECT_EQ(page.find("src="), std::string::npos) << "a page stands alone";
     EXPECT_EQ(page.find("http"), std::string::npos) << "a page stands alone";
   }
+}
+
+TEST(Experiment, SummaryAndPageSayWhichProgramMadeThemWithWhichSettings) {
+  const experiment::Results results{"name", "what", 1,  false,
+                                    {},     {},     {}, parse_settings("{mapping: {method: paper}}", "f")};
+  const auto summary = nlohmann::json::parse(experiment::summary_json(results));
+  EXPECT_EQ(summary["version"], version());
+  EXPECT_EQ(summary["commit"], commit());
+  EXPECT_EQ(summary["settings"]["changed"], nlohmann::json::parse(R"({"mapping.method": "paper"})"));
+  const std::string told = "commit " + std::string(commit()) + "; settings as delivered, but mapping.method: paper.";
+  EXPECT_NE(experiment::page_html(results).find(told), std::string::npos);
 }
 
 /// A table without the columns whose names end in _ms or _mb.

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// --check-config: what a start would find, without starting. Reads the map whole, opens a copy of the store, looks at
+// the ports from outside. Makes, changes and disturbs nothing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/settings.hpp"
+
+namespace deltamap::daemon {
+
+struct Finding {
+  enum class Level : std::uint8_t { kOk, kWarning, kError } level = Level::kOk;
+  std::string about;  ///< "map", "store", "robot", …
+  std::string text;   ///< one line
+};
+
+/// In the order of a start. An absent device is a warning: the daemon waits for it. An error: it could not start, or
+/// would wait for what only a person can mend. `out` is the folder of --out; empty: none.
+[[nodiscard]] std::vector<Finding> check_config(const Settings& settings, const std::string& config,
+                                                const std::string& out);
+
+[[nodiscard]] bool has_error(const std::vector<Finding>& findings);
+
+/// A line each, and one that sums up.
+[[nodiscard]] std::string text_of(const std::vector<Finding>& findings);
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The folders of what a run leaves: map.store, recording.file, control.socket. A fresh machine has none of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "daemon/settings.hpp"
+
+namespace deltamap::daemon {
+
+/// Makes those that are missing, where this user may. Throws SettingsError, with what to do, where the one of map.store
+/// cannot be had: only a person can mend that. The others are told by whoever opens the file.
+void make_state_folders(const Settings& settings, const std::string& config);
+
+/// Empty where `file` could be written into its folder, which may have to be made first; else the reason. Makes
+/// nothing.
+[[nodiscard]] std::string why_no_folder_for(const std::filesystem::path& file);
+
+/// One line: why map.store cannot be kept, and the ways out. `why` is from why_no_folder_for().
+[[nodiscard]] std::string store_refusal(const Settings& settings, const std::string& config, const std::string& why);
+
+}  // namespace deltamap::daemon

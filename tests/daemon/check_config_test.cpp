@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/check_config.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/grid_file.hpp"
+#include "daemon/start_banner.hpp"
+#include "daemon/state_folders.hpp"
+#include "daemon/version.hpp"
+#include "mapping/map_store.hpp"
+#include "tests/support/drawn_grid.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+using Level = Finding::Level;
+
+/// A machine with a map and nothing else.
+class CheckConfig : public testing::Test {
+ protected:
+  CheckConfig() {
+    write_grid(first_, folder_.path() / "hall.yaml");
+    settings_.map.file = folder_.path() / "hall.yaml";
+    settings_.map.store = folder_.path() / "state/store.sqlite";
+    settings_.robot.port = "/nowhere/robot";
+    settings_.laser.port = "/nowhere/laser";
+  }
+  [[nodiscard]] Finding finding(const std::string& about) const {
+    for (const Finding& one : check_config(settings_, "robot.yaml", "")) {
+      if (one.about == about) return one;
+    }
+    return {Level::kError, about, "nothing was found"};
+  }
+  [[nodiscard]] bool would_start() const { return !has_error(check_config(settings_, "robot.yaml", "")); }
+  /// Every file below the folder with size and time of its last change.
+  [[nodiscard]] std::map<fs::path, std::pair<std::uintmax_t, fs::file_time_type>> files() const {
+    std::map<fs::path, std::pair<std::uintmax_t, fs::file_time_type>> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) {
+      all[entry.path()] = {entry.is_regular_file() ? entry.file_size() : 0, entry.last_write_time()};
+    }
+    return all;
+  }
+  void write_store() const {
+    fs::create_directories(folder_.path() / "state");
+    mapping::MapStore store{settings_.map.store, first_};
+    OccupancyGrid changed = first_;
+    changed.set({0, 0}, CellState::kFree);
+    MapRevision revision;
+    revision.number = 1;
+    revision.changes = changes_between(first_, changed);
+    revision.map = std::make_shared<const OccupancyGrid>(std::move(changed));
+    store.append(revision, {});
+    store.append_refusal({}, {});
+  }
+
+  test::TemporaryFolder folder_;
+  OccupancyGrid first_ = test::drawn_grid({"#. ", " .#"}, 0.05, {0.0, 0.0});
+  Settings settings_;
+};
+
+TEST_F(CheckConfig, ReadsTheMapWholeAndCountsItsCells) {
+  EXPECT_EQ(finding("map").text, settings_.map.file + ": 3 x 2 cells of 0.05 m: 2 free, 2 occupied, 2 unknown");
+  fs::resize_file(folder_.path() / "hall.pgm", fs::file_size(folder_.path() / "hall.pgm") - 1);
+  EXPECT_EQ(finding("map").level, Level::kError);
+  EXPECT_NE(finding("map").text.find("cut short"), std::string::npos);
+  EXPECT_FALSE(would_start());
+  settings_.map.file.clear();
+  EXPECT_EQ(finding("map").text, "robot.yaml: 'map.file' names no map");
+}
+
+TEST_F(CheckConfig, AbsentDevicesAreWaitedFor) {
+  EXPECT_EQ(finding("robot").level, Level::kWarning);
+  EXPECT_EQ(finding("laser").text.find("/nowhere/laser is missing"), 0u) << finding("laser").text;
+  EXPECT_TRUE(would_start());
+}
+
+TEST_F(CheckConfig, AFileInPlaceOfAPortIsAnError) {
+  settings_.laser.port = settings_.map.file;
+  EXPECT_EQ(finding("laser").text, settings_.map.file + " is not a serial port");
+  EXPECT_FALSE(would_start());
+}
+
+TEST_F(CheckConfig, TellsTheRevisionsOfAStoreAndTouchesNothing) {
+  EXPECT_EQ(finding("store").text, settings_.map.store + ": will be made");
+  EXPECT_FALSE(fs::exists(folder_.path() / "state"));
+  write_store();
+  const auto before = files();
+  EXPECT_EQ(finding("store").text, settings_.map.store + ": newest revision of this map 1, 1 refusals");
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(CheckConfig, ReadsWhatAKilledDaemonHasLeftInTheLog) {
+  fs::create_directories(folder_.path() / "state");
+  const std::string living = settings_.map.store;
+  settings_.map.store = folder_.path() / "state/killed.sqlite";
+  write_store();
+  mapping::MapStore open{settings_.map.store, first_};  // keeps the log
+  open.append_refusal({}, {});
+  for (const char* part : {"", "-wal"}) fs::copy_file(settings_.map.store + part, living + part);
+  settings_.map.store = living;
+  EXPECT_EQ(finding("store").text, living + ": newest revision of this map 1, 2 refusals");
+  EXPECT_TRUE(would_start());
+}
+
+TEST_F(CheckConfig, AForeignStoreIsNamedByItsOwnPath) {
+  fs::create_directories(folder_.path() / "state");
+  (void)folder_.write("state/store.sqlite", std::string(5000, 'x'));
+  EXPECT_EQ(finding("store").level, Level::kError);
+  EXPECT_EQ(finding("store").text.find(settings_.map.store + ": "), 0u) << finding("store").text;
+}
+
+TEST_F(CheckConfig, AStoreWhoseFolderCannotBeIsAnErrorWithTheCure) {
+  settings_.map.store = settings_.map.file + "/store.sqlite";
+  EXPECT_EQ(finding("store").level, Level::kError);
+  EXPECT_NE(finding("store").text.find("--set map.store=FILE"), std::string::npos) << finding("store").text;
+  EXPECT_FALSE(would_start());
+  EXPECT_THROW(make_state_folders(settings_, "robot.yaml"), SettingsError);
+}
+
+TEST_F(CheckConfig, AnOutFolderThatHoldsTheMapIsAnError) {
+  settings_.map.file = folder_.path() / "map.yaml";
+  write_grid(first_, settings_.map.file);
+  EXPECT_TRUE(has_error(check_config(settings_, "robot.yaml", folder_.path())));
+  EXPECT_FALSE(has_error(check_config(settings_, "robot.yaml", folder_.path() / "run")));
+}
+
+TEST_F(CheckConfig, SumsUpInOneLine) {
+  const std::string text = text_of(check_config(settings_, "robot.yaml", ""));
+  EXPECT_NE(text.find("warning  robot     /nowhere/robot is missing"), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with("\nit would start\n")) << text;
+}
+
+TEST_F(CheckConfig, AStartMakesTheFoldersThatAreMissing) {
+  settings_.recording.file = folder_.path() / "recordings/run.pcapng";
+  settings_.control.socket = folder_.path() / "sockets/ctl.sock";
+  make_state_folders(settings_, "robot.yaml");
+  for (const char* name : {"state", "recordings", "sockets"}) EXPECT_TRUE(fs::is_directory(folder_.path() / name));
+  settings_.control.socket = settings_.map.file + "/ctl.sock";
+  EXPECT_NO_THROW(make_state_folders(settings_, "robot.yaml")) << "a daemon without ctl does its work";
+}
+
+TEST_F(CheckConfig, ALogBeginsWithWhatRuns) {
+  const auto lines = start_banner(settings_, "robot.yaml", first_.geometry(), 12);
+  EXPECT_EQ(lines[0], "deltamapd " + version_text());
+  EXPECT_EQ(lines[1].find("settings: file=robot.yaml changed=4 fingerprint="), 0u) << lines[1];
+  EXPECT_EQ(lines[2], "map: file=" + settings_.map.file + " size=3 x 2 cells of 0.05 m");
+  EXPECT_EQ(lines[3], "store: file=" + settings_.map.store + " revision=12");
+  EXPECT_EQ(lines[4], "ports: robot=/nowhere/robot laser=/nowhere/laser laser_baud=38400");
+  EXPECT_EQ(lines[5], "drive: mode=off");
+}
+
+}  // namespace
+}  // namespace deltamap::daemon
