@@ -9,6 +9,7 @@
 
 #include "core/grid_file.hpp"
 #include "daemon/control/client.hpp"
+#include "daemon/localization_step.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/provenance.hpp"
 #include "daemon/start_banner.hpp"
@@ -64,6 +65,7 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
     OccupancyGrid grid = read_grid(settings.map.file);
     findings.push_back(
         {Level::kOk, "map", settings.map.file + ": " + size_text(grid.geometry()) + ": " + cells_text(grid)});
+    require_pose_on(grid.geometry(), settings);
     return grid;
   } catch (const std::exception& error) {
     findings.push_back({Level::kError, "map", error.what()});

@@ -246,6 +246,7 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   const double began_cpu_s = process_cpu_s();
   const StartMap start{std::make_shared<const OccupancyGrid>(read_grid(job.map)), 0};
   require_map_elsewhere(job.map, job.out);
+  require_pose_on(start.map->geometry(), job.settings);
   StagingFolder staging{job.out};
   RunReport report;
   {

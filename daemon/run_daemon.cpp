@@ -165,6 +165,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   options.first_map = grid_hash(first);
   tell_start(settings, line, first.geometry(), store ? &*store : nullptr, console);
   options.start = start_map(std::move(first), store ? &*store : nullptr, console);
+  require_pose_on(options.start.map->geometry(), settings);
   if (store) {
     remember_pose(settings, options, console);
     remember_stability(settings, *store, options, console);

@@ -72,6 +72,8 @@ void Localizer::relocalize(const InitialPose& pose) { state_->start_at(pose); }
 
 const RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
 
+std::optional<double> Localizer::fit() const { return state_->newest_fit; }
+
 const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 
 StabilityRecord Localizer::stability() const { return state_->judgement.stability().record(); }

@@ -208,6 +208,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
   seen.fit = explained_share(field, ends, believed.map_from_robot);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
+  newest_fit = blind ? std::nullopt : std::optional{seen.fit};
   if (check.under_way()) return blind ? void() : judge_start(seen.fit);
   const LocalizerState before = monitor.state();
   const Belief& belief = judgement.observe({.map = *map,

@@ -43,10 +43,11 @@ struct Localizer::State {
     Pose2 map_from_robot;
     Pose2 joined_from_robot;
   };
-  std::optional<GivenUp> given_up;  ///< where the robot was last believed to be, while a search has only begun
-  Hypothesis best;                  ///< of the particles, or the place that leads a search
-  double w_avg = 1.0;               ///< of that; before any scan nothing speaks against the pose
-  double n_eff = 0.0;               ///< of the particles, or of a search's places
+  std::optional<GivenUp> given_up;   ///< where the robot was last believed to be, while a search has only begun
+  Hypothesis best;                   ///< of the particles, or the place that leads a search
+  double w_avg = 1.0;                ///< of that; before any scan nothing speaks against the pose
+  std::optional<double> newest_fit;  ///< explained_share() of the newest scan at the estimate
+  double n_eff = 0.0;                ///< of the particles, or of a search's places
   ProvenHold proven_hold;
 
   // How a pose comes to be believed, and ceases to be.

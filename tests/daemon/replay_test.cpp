@@ -3,6 +3,7 @@
 // nothing left behind.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "core/grid_file.hpp"
@@ -118,6 +119,15 @@ TEST_F(ReplayTest, AForeignMapIsNamedAndLeavesNothing) {
   ReplayJob wrong = job();
   wrong.map = folder_.write("wrong.yaml", "hello\n");
   EXPECT_TRUE(error_of(wrong).starts_with("wrong.yaml: ")) << error_of(wrong);
+  expect_nothing_left();
+}
+
+TEST_F(ReplayTest, AStartPoseOffTheMapIsWrongUsage) {
+  ReplayJob off = job();
+  for (const double far : {500.0, 1e300, std::nan("")}) {
+    off.settings.initial_pose = Pose2{far, 500.0, 0.0};
+    EXPECT_THROW((void)run_replay(off, [](double) { return true; }), SettingsError) << far;
+  }
   expect_nothing_left();
 }
 
