@@ -53,8 +53,10 @@ double number(const YAML::Node& map, const std::string& key, const std::filesyst
 
 MapKeys parse_keys(const std::filesystem::path& file) {
   YAML::Node map;
+  const std::string text = read_bytes(file);
+  if (is_carmen_map(file, text)) refuse(file, "is a CARMEN map; give a map_server map (YAML and PGM)");
   try {
-    map = YAML::Load(read_bytes(file));
+    map = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     refuse(file, "line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
@@ -166,6 +168,14 @@ std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
 }
 
 }  // namespace
+
+bool is_carmen_map(const std::filesystem::path& file, std::string_view first_bytes) {
+  constexpr std::size_t kLongestHeader = 4096;  // lines of comment come before the magic word
+  if (first_bytes.starts_with("\x1F\x8B")) {
+    return file.extension() == ".map" || file.stem().extension() == ".map";  // of X.map and X.map.gz
+  }
+  return first_bytes.substr(0, kLongestHeader).find("CARMENMAPFILE") != std::string_view::npos;
+}
 
 OccupancyGrid read_grid(const std::filesystem::path& yaml_file) {
   const MapKeys keys = parse_keys(yaml_file);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/occupancy_grid.hpp"
 
@@ -12,6 +13,10 @@ namespace deltamap {
 /// Reads NAME.yaml and the image that it names. Cells are occupied above occupied_thresh, free below free_thresh, else
 /// unknown. Throws std::runtime_error: one line that names the file and the place (a rotated origin is refused).
 [[nodiscard]] OccupancyGrid read_grid(const std::filesystem::path& yaml_file);
+
+/// A map as CARMEN keeps it, told by the first bytes of the file (by its name where they are compressed): no map_server
+/// map, and no log.
+[[nodiscard]] bool is_carmen_map(const std::filesystem::path& file, std::string_view first_bytes);
 
 /// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a
 /// temporary file that is synced and renamed. Throws std::runtime_error naming the file.

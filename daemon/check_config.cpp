@@ -9,6 +9,8 @@
 
 #include "core/grid_file.hpp"
 #include "daemon/control/client.hpp"
+#include "daemon/kept_drive.hpp"
+#include "daemon/kept_pose.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/provenance.hpp"
@@ -63,9 +65,9 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
   try {
     if (settings.map.file.empty()) throw std::runtime_error(config + ": 'map.file' names no map");
     OccupancyGrid grid = read_grid(settings.map.file);
+    require_pose_on(grid.geometry(), settings);
     findings.push_back(
         {Level::kOk, "map", settings.map.file + ": " + size_text(grid.geometry()) + ": " + cells_text(grid)});
-    require_pose_on(grid.geometry(), settings);
     return grid;
   } catch (const std::exception& error) {
     findings.push_back({Level::kError, "map", error.what()});
@@ -122,10 +124,16 @@ Finding port_finding(const std::string& about, const std::string& path) {
   return {port.state == State::kMissing ? Level::kWarning : Level::kError, about, port.text};
 }
 
+/// Whether it would drive is a person's word, which a run before has kept.
 Finding drive_finding(const Settings& settings) {
+  const std::string mode(name_of(settings.navigation.mode));
   if (settings.navigation.mode == navigation::DriveMode::kOff)
-    return {Level::kOk, "drive", "off: it never moves the robot"};
-  return {Level::kOk, "drive", std::string(name_of(settings.navigation.mode)) + ": it will drive the robot"};
+    return {Level::kOk, "drive", mode + ": it never moves the robot"};
+  const KeptDrive kept{settings.map.store.empty() ? fs::path{} : memory_places(settings.map.store).drive};
+  if (!kept.why_unknown().empty()) return {Level::kWarning, "drive", mode + ": " + kept.why_unknown()};
+  const std::string told(drivers::pioneer::name_of(kept.value()));
+  const bool drives = kept.value() == KeptDrive::DriveSwitch::kOn;
+  return {Level::kOk, "drive", mode + ": the switch is " + told + (drives ? ": it would drive" : ": it would stand")};
 }
 
 /// A file that is written as the run goes; without it the daemon goes on.

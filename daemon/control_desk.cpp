@@ -28,9 +28,9 @@ void ControlDesk::answer(const std::string& line, control::Server::Reply reply) 
     case Request::Kind::kStatus:
       return reply(status_json_line(wiring_.telemetry, settings_, seconds(drivers::port::port_clock_now() - began_)));
     case Request::Kind::kDriveOff:
-      return reply(drive(false));
+      return drive(false, request, std::move(reply));
     case Request::Kind::kDriveWander:
-      return reply(drive(true));
+      return drive(true, request, std::move(reply));
     case Request::Kind::kPause:
       return command(Command::Kind::kPause, request, std::move(reply));
     case Request::Kind::kResume:
@@ -44,12 +44,13 @@ void ControlDesk::answer(const std::string& line, control::Server::Reply reply) 
   }
 }
 
-std::string ControlDesk::drive(bool may_drive) {
+void ControlDesk::drive(bool may_drive, const Request& request, control::Server::Reply reply) {
   if (may_drive && settings_.navigation.mode != navigation::DriveMode::kWander) {
-    return error_line("'navigation.mode' is not wander: this daemon never drives");
+    return reply(error_line("'navigation.mode' is not wander: this daemon never drives"));
   }
-  wiring_.let_drive(may_drive);
-  return done_line(may_drive ? "wanders from the next scan on" : "the robot is told to stand");
+  const std::uint64_t ticket = next_ticket_++;
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+  wiring_.let_drive(may_drive, ticket);
 }
 
 void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {

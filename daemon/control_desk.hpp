@@ -21,7 +21,7 @@ class ControlDesk {
     GridGeometry map;  ///< where a robot can be
     Channel<Command>& commands;
     const Telemetry& telemetry;
-    std::function<void(bool may_drive)> let_drive;
+    std::function<void(bool may_drive, std::uint64_t ticket)> let_drive;
     std::function<void(const std::string&)> log;
   };
   /// Listens from now on. Throws control::AlreadyServed, or std::runtime_error with one line that names the socket.
@@ -39,7 +39,7 @@ class ControlDesk {
     control::Server::Reply reply;
   };
   void answer(const std::string& line, control::Server::Reply reply);
-  [[nodiscard]] std::string drive(bool may_drive);
+  void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
   void command(Command::Kind kind, const control::Request& request, control::Server::Reply reply);
 
   Settings settings_;

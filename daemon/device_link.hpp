@@ -49,6 +49,7 @@ class DeviceLink {
     auto answer = hooks_.open(loop_, id_, session_.baud());
     if (!answer.port) return retry(answer.refused);
     is_heard_ = true;
+    reconnect_.opened();
     port_ = std::make_unique<drivers::port::RecordingPort>(
         std::move(answer.port), id_, [this](drivers::port::ByteRecord&& record) { keep(std::move(record)); },
         drivers::port::port_clock_now);
@@ -69,9 +70,10 @@ class DeviceLink {
 
   /// What another part of the io thread made the session answer.
   void handle(Output out) {
+    // What stops a robot waits for nothing that its owner does about it.
+    for (const drivers::PortRequest& request : out.output.requests) perform(request);
     hooks_.on_messages(out);
     for (const std::string& line : out.output.log) log(line);
-    for (const drivers::PortRequest& request : out.output.requests) perform(request);
     if (out.output.failed) return fail(*out.output.failed);
     wake_at(out.output.wake_at);
   }
@@ -81,16 +83,13 @@ class DeviceLink {
     if (const auto line = reconnect_.connected()) log(*line);
   }
 
-  /// Says farewell to the device; nothing is read or tried again after it.
+  /// Says farewell to the device, at the pace that it can take; nothing is read or tried again after it.
   void close() {
     closed_ = true;
     is_heard_ = false;
     retry_timer_.cancel();
     wake_timer_.cancel();
-    if (!port_) return;
-    for (const drivers::PortRequest& request : session_.close(drivers::port::port_clock_now()).output.requests) {
-      perform(request);
-    }
+    if (port_) say_farewell(session_.close(drivers::port::port_clock_now()));
   }
 
   [[nodiscard]] Session& session() { return session_; }
@@ -102,6 +101,14 @@ class DeviceLink {
   void keep(drivers::port::ByteRecord&& record) {
     const bool came_in = !record.bytes.empty() && record.direction == drivers::port::Direction::kIn;
     if (is_heard_ || !came_in) hooks_.record(std::move(record));
+  }
+
+  void say_farewell(const Output& out) {
+    for (const drivers::PortRequest& request : out.output.requests) perform(request);
+    if (!out.output.wake_at || out.output.failed) return;
+    call_at(*out.output.wake_at, [this] {
+      if (port_) say_farewell(session_.on_time(drivers::port::port_clock_now()));
+    });
   }
 
   void take(std::span<const std::uint8_t> bytes, Timestamp stamp) {
@@ -120,9 +127,16 @@ class DeviceLink {
   void wake_at(const std::optional<Timestamp>& time) {
     wake_timer_.cancel();
     if (!time || closed_) return;
-    wake_timer_.expires_after(std::max(Duration{0}, *time - drivers::port::port_clock_now()));
-    wake_timer_.async_wait([this](const boost::system::error_code& error) {
-      if (!error && !closed_ && port_) handle(session_.on_time(drivers::port::port_clock_now()));
+    call_at(*time, [this] {
+      if (!closed_ && port_) handle(session_.on_time(drivers::port::port_clock_now()));
+    });
+  }
+
+  template <typename Call>
+  void call_at(Timestamp time, Call call) {
+    wake_timer_.expires_after(std::max(Duration{0}, time - drivers::port::port_clock_now()));
+    wake_timer_.async_wait([call](const boost::system::error_code& error) {
+      if (!error) call();
     });
   }
 

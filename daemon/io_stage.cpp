@@ -5,6 +5,10 @@
 #include <boost/asio/post.hpp>
 #include <chrono>
 
+#include "daemon/kept_drive.hpp"
+#include "daemon/kept_pose.hpp"
+#include "daemon/stop_log.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -18,10 +22,17 @@ using drivers::port::PortId;
 constexpr std::chrono::milliseconds kSafetyPeriod{50};  // twice a controller cycle (protocols.md A6)
 constexpr std::chrono::milliseconds kFarewell{300};     // for the last packets to leave at 9600 baud
 
-drivers::pioneer::PioneerParams robot_params(const Settings& settings) {
+drivers::pioneer::PioneerParams robot_params(const Settings& settings, const KeptDrive& kept) {
   auto params = settings.robot.session;
   params.enable_motors = settings.navigation.mode != navigation::DriveMode::kOff;
+  params.drive_switch = kept.value();
   return params;
+}
+
+/// A replay keeps nothing.
+KeptDrive kept_drive(const Settings& settings, drivers::SessionMode mode) {
+  return KeptDrive{mode == drivers::SessionMode::kLive ? memory_places(settings.map.store).drive
+                                                       : std::filesystem::path{}};
 }
 
 PortOpener serial_opener(const Settings& settings) {
@@ -36,11 +47,12 @@ struct IoStage::State {
   State(const Settings& settings, Wiring given)
       : wiring{std::move(given)},
         drives{settings.navigation.mode != navigation::DriveMode::kOff},
+        kept{kept_drive(settings, wiring.mode)},
         safety{settings.navigation.safety},
         safety_timer{loop},
         robot{loop,
               PortId::kRobot,
-              PioneerSession{robot_params(settings), wiring.mode},
+              PioneerSession{robot_params(settings, kept), wiring.mode},
               {opener(settings), recorder(), [this](PioneerOutput& out) { take(out); },
                [this] { wiring.telemetry.robot_up.set(false); }, wiring.log}},
         laser{loop,
@@ -48,7 +60,8 @@ struct IoStage::State {
               Lms200Session{settings.laser.session, wiring.mode},
               {opener(settings), recorder(), [this](Lms200Output& out) { take(out); },
                [this] { wiring.telemetry.laser_up.set(false); }, wiring.log}} {
-    wiring.telemetry.drives.set(drives);
+    if (drives && !kept.why_unknown().empty()) wiring.log(kept.why_unknown());
+    obey_permission();
   }
 
   [[nodiscard]] PortOpener opener(const Settings& settings) {
@@ -75,6 +88,16 @@ struct IoStage::State {
     const bool up = robot.session().is_connected();
     if (up && !telemetry.robot_up.value()) robot.tell_connected();
     telemetry.robot_up.set(up);
+    obey_permission();
+  }
+
+  /// Who may drive is the session's to say (drive_permission): it hears the buttons. What it says is kept and obeyed.
+  void obey_permission() {
+    const drivers::pioneer::DrivePermission& permission = robot.session().permission();
+    if (!permission.holds()) safety.release();
+    wiring.telemetry.drives.set(permission.holds());
+    wiring.telemetry.drive_switch.set(static_cast<std::uint8_t>(permission.drive_switch()));
+    if (const std::string line = kept.keep(permission.drive_switch()); !line.empty()) wiring.log(line);
   }
 
   void take(Lms200Output& out) {
@@ -112,21 +135,32 @@ struct IoStage::State {
   void send_allowed_motion() {
     if (!robot.is_open() || !robot.session().is_connected()) return;
     const Timestamp now = drivers::port::port_clock_now();
+    const auto limits = robot.session().stopping_limits();
+    safety.set_stopping_behaviour(
+        {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
     const navigation::AllowedMotion motion = safety.allowed(now);
     wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(motion.stop));
+    if (const auto line = stop_log.line(motion.stop)) wiring.log(*line);
+    if (motion.brake_hard) return robot.handle(robot.session().emergency_stop(now));
     robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
   }
 
-  void let_drive(bool may_drive) {
-    if (!drives) return;
-    wiring.telemetry.drives.set(may_drive);
-    if (may_drive) return;
-    safety.release();
-    send_allowed_motion();
+  CommandOutcome let_drive(bool may_drive, std::uint64_t ticket) {
+    if (may_drive && robot.session().stop_button_is_pressed()) {
+      return {ticket, false, "the STOP button is pressed: let it go first"};
+    }
+    robot.handle(robot.session().switch_drive(may_drive, drivers::port::port_clock_now()));
+    if (drives && !may_drive) send_allowed_motion();
+    if (!may_drive) return {ticket, true, "the robot is told to stand"};
+    safety.let_drive_again();
+    const navigation::StopReason held_by = safety.waits_for();
+    if (held_by == navigation::StopReason::kNone) return {ticket, true, "wanders from the next scan on"};
+    return {ticket, false, "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
   }
 
-  void take(const DriveCommand& command) {
-    if (wiring.telemetry.drives.value()) safety.command(command, drivers::port::port_clock_now());
+  void take(const DriveCommand& command, navigation::StopReason held_by) {
+    if (!robot.session().permission().holds()) return;
+    safety.command(command, drivers::port::port_clock_now(), held_by);
   }
 
   void close() {
@@ -141,7 +175,9 @@ struct IoStage::State {
   std::atomic<std::int64_t> asked_ns{0};  // port clock; 0: the loop owes no answer
   Wiring wiring;
   bool drives;  // by the settings
+  KeptDrive kept;
   navigation::Safety safety;
+  StopLog stop_log;
   asio::steady_timer safety_timer;
   asio::steady_timer farewell_timer{loop};
   DeviceLink<PioneerSession, PioneerOutput> robot;
@@ -164,12 +200,15 @@ void IoStage::stop() {
   asio::post(state_->loop, [this] { state_->close(); });
 }
 
-void IoStage::post(const DriveCommand& command) {
-  asio::post(state_->loop, [state = state_.get(), command] { state->take(command); });
+void IoStage::post(const DriveCommand& command, navigation::StopReason held_by) {
+  asio::post(state_->loop, [state = state_.get(), command, held_by] { state->take(command, held_by); });
 }
 
-void IoStage::let_drive(bool may_drive) {
-  asio::post(state_->loop, [state = state_.get(), may_drive] { state->let_drive(may_drive); });
+void IoStage::let_drive(bool may_drive, std::uint64_t ticket) {
+  asio::post(state_->loop, [state = state_.get(), may_drive, ticket] {
+    const CommandOutcome outcome = state->let_drive(may_drive, ticket);
+    if (state->wiring.answer) state->wiring.answer(outcome);
+  });
 }
 
 double IoStage::silence_s() const {

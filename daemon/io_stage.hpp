@@ -8,6 +8,7 @@
 
 #include "core/channel.hpp"
 #include "core/messages.hpp"
+#include "daemon/command.hpp"
 #include "daemon/device_link.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/settings.hpp"
@@ -24,6 +25,7 @@ class IoStage {
     RecorderInput& recorder;
     Telemetry& telemetry;
     std::function<void(const std::string&)> log;
+    std::function<void(const CommandOutcome&)> answer{};  ///< to an operator who said who drives; may be empty
   };
   IoStage(const Settings& settings, Wiring wiring);
   ~IoStage();
@@ -34,11 +36,11 @@ class IoStage {
   void run();
   /// Any thread: the robot is stopped and both devices let go; run() returns soon after.
   void stop();
-  /// Any thread. Not listened to while nobody may drive.
-  void post(const DriveCommand& command);
-  /// Any thread. The pilot may drive (again), or must not: the robot is then told to stand at once. Where the settings
-  /// say that nobody drives, nothing happens: no velocity is ever sent.
-  void let_drive(bool may_drive);
+  /// Any thread. Not listened to while nobody may drive. `held_by`: why the pilot itself does not drive now.
+  void post(const DriveCommand& command, navigation::StopReason held_by = navigation::StopReason::kNone);
+  /// Any thread. A person lets the pilot drive (again), or not: the robot is then told to stand at once. Kept on disk
+  /// before it is answered. Where the settings say that nobody drives, no velocity is ever sent.
+  void let_drive(bool may_drive, std::uint64_t ticket);
 
   /// Any one thread, now and then: for how long the loop owes an answer to an earlier call. It takes many small turns:
   /// one that hangs shows in that no other comes.

@@ -151,9 +151,4 @@ std::optional<std::uint32_t> Journal::closing_scan(std::uint32_t phase) const {
   return found == closed_.end() ? std::nullopt : std::optional{found->second};
 }
 
-std::span<const Decision> Journal::commands_before(std::uint32_t scan) const {
-  const auto found = commands_.find(scan);
-  return found == commands_.end() ? std::span<const Decision>{} : found->second;
-}
-
 }  // namespace deltamap::daemon

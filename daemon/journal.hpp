@@ -8,7 +8,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +20,7 @@ namespace deltamap::daemon {
 struct RunIdentity {
   std::uint64_t settings = 0;  ///< settings_fingerprint(), which holds seed and initial pose too
   std::uint64_t map = 0;       ///< grid_hash() of the map that the run starts on
-  std::uint64_t memory = 0;    ///< of what an earlier run has left besides (pose, stability); a replay has none: 0
+  std::uint64_t memory = 0;    ///< of what an earlier run has left besides (pose, stability); 0: nothing
   friend bool operator==(const RunIdentity&, const RunIdentity&) = default;
 };
 
@@ -69,8 +68,8 @@ class Journal {
   /// The scan at which a Δ-phase ended in the recorded run.
   [[nodiscard]] std::optional<std::uint32_t> closing_scan(std::uint32_t phase) const;
   [[nodiscard]] std::size_t closed_phases() const { return closed_.size(); }
-  /// What the operator asked for before the scan, in order.
-  [[nodiscard]] std::span<const Decision> commands_before(std::uint32_t scan) const;
+  /// What the operator asked for, by the scan before which it was done, in order.
+  [[nodiscard]] const std::map<std::uint32_t, std::vector<Decision>>& commands() const { return commands_; }
 
  private:
   std::optional<RunIdentity> run_;

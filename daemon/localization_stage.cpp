@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
+#include "navigation/pose_stop.hpp"
 #include "navigation/remembered_obstacles.hpp"
 
 namespace deltamap::daemon {
@@ -34,6 +35,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
                                      Wiring wiring)
     : wiring_{std::move(wiring)},
       step_{settings, start},
+      drives_without_pose_{settings.navigation.drive_without_pose},
       mapping_enabled_{settings.mapping.enabled},
       first_revision_{start.revision},
       first_map_{first_map},
@@ -105,7 +107,7 @@ void LocalizationStage::localize(Scan scan) {
   (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
   keep_now_and_then(tracked.scan.time);
-  if (pilot_) wiring_.drive(pilot_->step(tracked, obstacles_beside(tracked)));
+  if (pilot_) pilot(tracked);
   if (!mapping_enabled_ || is_paused_ || wiring_.tracked_scans.try_send(std::move(tracked))) return;
   wiring_.telemetry.tracked_lost.add(1);
   note({Kind::kTrackedLost, number, 0});
@@ -126,6 +128,13 @@ void LocalizationStage::take_things(std::uint32_t scan) {
   note({Kind::kThings, scan, newest->number});
   things_ = newest;
   step_.apply(std::move(newest));
+}
+
+void LocalizationStage::pilot(const TrackedScan& tracked) {
+  using navigation::StopReason;
+  const StopReason held_by = drives_without_pose_ ? StopReason::kNone : navigation::pose_stop(tracked.estimate);
+  if (held_by != StopReason::kNone) return wiring_.drive({tracked.scan.time, 0.0, 0.0}, held_by);
+  wiring_.drive(pilot_->step(tracked, obstacles_beside(tracked)), held_by);
 }
 
 std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& tracked) const {

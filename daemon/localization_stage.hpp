@@ -17,6 +17,7 @@
 #include "daemon/settings.hpp"
 #include "daemon/stage.hpp"
 #include "daemon/telemetry.hpp"
+#include "navigation/stop_reason.hpp"
 #include "navigation/wander.hpp"
 
 namespace deltamap::daemon {
@@ -31,7 +32,8 @@ class LocalizationStage {
     Channel<TrackedScan>& tracked_scans;
     RecorderInput& recorder;
     Telemetry& telemetry;
-    std::function<void(const DriveCommand&)> drive;     ///< what the pilot wants
+    /// What the pilot wants, or why it does not drive.
+    std::function<void(const DriveCommand&, navigation::StopReason)> drive;
     std::function<void(const CommandOutcome&)> answer;  ///< never waits
   };
   /// Throws std::runtime_error where the map has no free cell.
@@ -51,6 +53,7 @@ class LocalizationStage {
   void localize(Scan scan);
   void take_revisions(std::uint32_t scan);
   void take_things(std::uint32_t scan);
+  void pilot(const TrackedScan& tracked);
   /// For the pilot: what stands there although the scan does not show it.
   [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked) const;
   void take_commands(std::uint32_t scan);
@@ -72,6 +75,7 @@ class LocalizationStage {
   Wiring wiring_;
   LocalizationStep step_;
   std::optional<navigation::Wander> pilot_;
+  bool drives_without_pose_;
   LatencyHistogram latency_;
   Workload workload_;
   bool mapping_enabled_;

@@ -36,6 +36,14 @@ Json as_json(const ChangeNote& change) {
   return json;
 }
 
+Json as_json(const std::optional<drivers::port::LogCut>& cut) {
+  if (!cut) return {{"cut", false}};
+  Json json{{"cut", true}, {"byte", cut->byte}, {"unread_bytes", cut->unread_bytes}, {"last_record_time", nullptr}};
+  if (cut->last_record) json["last_record_time"] = unix_seconds(*cut->last_record);
+  json["warning"] = cut->text;
+  return json;
+}
+
 }  // namespace
 
 std::string tum_line(const TrajectoryPoint& point) {
@@ -116,8 +124,12 @@ std::string json_text(const RunReport& report, const Settings& settings) {
                         {"p50", milliseconds(report.latency_p50_s)},
                         {"p99", milliseconds(report.latency_p99_s)},
                         {"max", milliseconds(report.latency_max_s)}};
-  if (!report.journal.empty())
-    json["journal"] = {{"state", report.journal}, {"differences", report.journal_differences}};
+  if (!report.journal.empty()) {
+    json["journal"] = {
+        {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
+    json["began"] = report.began;
+    json["recording"] = as_json(report.cut);
+  }
   json["wire"] = report.wire;
   return json.dump(2) + "\n";
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
+#include "drivers/port/log_cut.hpp"
 #include "mapping/write_gate.hpp"
 
 namespace deltamap::daemon {
@@ -110,6 +111,9 @@ struct RunReport {
   double latency_max_s = 0.0;
   std::string journal;  ///< replay: "obeyed", "none" or why it was not obeyed
   std::uint32_t journal_differences = 0;
+  std::uint32_t commands = 0;                 ///< replay: of an operator, obeyed
+  std::string began;                          ///< replay: what of the recorded run's beginning is used, or why not
+  std::optional<drivers::port::LogCut> cut;   ///< replay: where the recording ends before its file does
   std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
 };
 

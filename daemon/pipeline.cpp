@@ -14,6 +14,7 @@
 #include "daemon/map_step.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/revision_keeper.hpp"
+#include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "mapping/store_scan.hpp"
@@ -38,6 +39,16 @@ std::optional<mapping::MapStore> begun_store(const std::filesystem::path& file, 
   if (!configured.empty() && std::filesystem::equivalent(file, configured, ignored)) return std::nullopt;
   for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part, ignored);
   return mapping::MapStore{file, start};
+}
+
+/// What the run begins from: enough for a replay to obey its journal.
+std::vector<std::string> first_notes(const Settings& settings, const Pipeline::Options& options) {
+  const std::uint64_t map = grid_hash(*options.start.map);
+  std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, options.memory})};
+  for (std::string& note : begin_notes({options.first_map, options.memory, options.start})) {
+    notes.push_back(std::move(note));
+  }
+  return notes;
 }
 
 /// Nothing where the settings name no socket. A daemon that cannot be commanded still does its work; but not beside
@@ -115,16 +126,16 @@ struct Pipeline::State {
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{std::move(wanted)},
-      control{control_desk(settings, {.map = options.start.map->geometry(),
-                                      .commands = commands,
-                                      .telemetry = telemetry,
-                                      .let_drive = [this](bool may_drive) { io.let_drive(may_drive); },
-                                      .log = options.log})},
+      control{control_desk(
+          settings, {.map = options.start.map->geometry(),
+                     .commands = commands,
+                     .telemetry = telemetry,
+                     .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
+                     .log = options.log})},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),
-                .first_note =
-                    note_of(RunIdentity{settings_fingerprint(settings), grid_hash(*options.start.map), options.memory}),
+                .first_notes = first_notes(settings, options),
                 .max_gigabytes = settings.recording.max_gigabytes,
                 .trajectory = in_folder(options.out, "trajectory.tum"),
                 .localization = in_folder(options.out, "localization.csv"),
@@ -137,7 +148,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
           .sensors = sensors,
           .recorder = recorder.from_io(),
           .telemetry = telemetry,
-          .log = options.log}},
+          .log = options.log,
+          .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       localization{settings,
                    options.start,
                    options.first_map,
@@ -148,7 +160,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .tracked_scans = tracked_scans,
                     .recorder = recorder.from_localization(),
                     .telemetry = telemetry,
-                    .drive = [this](const DriveCommand& command) { io.post(command); },
+                    .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       store_scan{settings.mapping.store_scan, settings.seed},
       map_step{settings, options.start},

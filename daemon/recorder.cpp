@@ -36,7 +36,7 @@ Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
     recording_.emplace(options.recording, options.bauds);
     telemetry_.records.set(true);
   }
-  write(options.first_note);
+  for (const std::string& note : options.first_notes) write(note);
   if (!options.trajectory.empty()) trajectory_.emplace(options.trajectory);
   if (options.localization.empty()) return;
   localization_.emplace(options.localization);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <semaphore>
 #include <variant>
+#include <vector>
 
 #include "core/channel.hpp"
 #include "daemon/journal.hpp"
@@ -52,8 +53,8 @@ class Recorder {
   struct Options {
     std::filesystem::path recording;  ///< empty: none; an older file is kept as NAME.previous.pcapng
     drivers::port::FirstBauds bauds;
-    Timestamp began;         ///< now
-    std::string first_note;  ///< what the run begins from
+    Timestamp began;                       ///< now
+    std::vector<std::string> first_notes;  ///< what the run begins from
     double max_gigabytes = 0.0;
     std::filesystem::path trajectory{};    ///< empty: none
     std::filesystem::path localization{};  ///< localization.csv; empty: none

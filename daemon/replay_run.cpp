@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "core/grid_file.hpp"
 #include "daemon/journal.hpp"
@@ -12,6 +13,7 @@
 #include "daemon/localization_step.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recording_decoder.hpp"
+#include "daemon/replay_start.hpp"
 #include "daemon/revision_keeper.hpp"
 #include "daemon/revision_queue.hpp"
 #include "daemon/stage.hpp"
@@ -39,48 +41,27 @@ class CpuTimer {
   double began_s_;
 };
 
-void require_whole(const ReplayPort& port) {
-  if (port.cut()) throw std::runtime_error(*port.cut());
-}
-
-/// Reads the recording once for its notes alone, so that what is wrong with it shows before anything is done.
-Journal journal_of(const ReplayJob& job) {
-  ReplayPort port{job.recording, ReplayWindow{job.from_s, job.to_s}};
-  Journal journal;
-  while (const auto replayed = port.next()) {
-    if (!replayed->record.note.empty()) journal.read(replayed->record.note);
-  }
-  require_whole(port);
-  return journal;
-}
-
 class Replay {
  public:
-  Replay(const ReplayJob& job, const StartMap& start, const std::filesystem::path& out)
+  Replay(const ReplayJob& job, const RecordedRun& recorded, const ReplayStart& begun, const std::filesystem::path& out)
       : job_{job},
-        journal_{journal_of(job)},
-        localization_{job.settings, start},
+        journal_{recorded.journal},
+        is_cut_{recorded.cut.has_value()},
+        obeys_{begun.journal == "obeyed"},
+        next_command_{journal_.commands().begin()},
+        first_revision_{begun.start.revision},
+        localization_{job.settings, begun.start},
         store_scan_{job.settings.mapping.store_scan, job.settings.seed},
-        map_{job.settings, start},
-        store_{out / "map_store.sqlite", *start.map},
+        map_{job.settings, begun.start},
+        revisions_{obeys_ ? &journal_ : nullptr, job.map_delay_s, begun.start.revision},
+        things_{obeys_ ? &journal_ : nullptr},
+        store_{out / "map_store.sqlite", *begun.start.map},
         trajectory_{out / "trajectory.tum"},
         localization_log_{out / "localization.csv"},
         changes_{out / "changes.jsonl"} {
     localization_log_.write(csv_header());
-    const RunIdentity identity{settings_fingerprint(job.settings), grid_hash(*start.map)};
-    if (!journal_.run())
-      report_.journal = "none";
-    else if (journal_.run()->memory != 0)
-      report_.journal = "not obeyed: it began with a pose that was kept";
-    else if (*journal_.run() != identity)
-      report_.journal = "not obeyed: other settings or map";
-    else if (job.from_s > 0.0)
-      report_.journal = "not obeyed: another start";
-    else
-      report_.journal = "obeyed";
-    obeys_ = report_.journal == "obeyed";
-    revisions_ = std::make_unique<RevisionQueue>(obeys_ ? &journal_ : nullptr, job.map_delay_s);
-    things_ = std::make_unique<ThingsQueue>(obeys_ ? &journal_ : nullptr);
+    report_.began = begun.began;
+    report_.journal = begun.journal;
   }
 
   void run(const ReplayProgress& progress);
@@ -94,14 +75,18 @@ class Replay {
   void update_map(const ScanSet& set);
 
   const ReplayJob& job_;
-  Journal journal_;
-  bool obeys_ = false;
+  const Journal& journal_;
+  bool is_cut_;  // its last notes are missing
+  bool obeys_;
+  decltype(Journal{}.commands().begin()) next_command_;
+  bool has_begun_ = false;
   bool is_paused_ = false;
+  std::uint32_t first_revision_;
   LocalizationStep localization_;
   mapping::StoreScan store_scan_;
   MapStep map_;
-  std::unique_ptr<RevisionQueue> revisions_;
-  std::unique_ptr<ThingsQueue> things_;
+  RevisionQueue revisions_;
+  ThingsQueue things_;
   mapping::MapStore store_;
   LineFile trajectory_;
   LineFile localization_log_;
@@ -133,8 +118,11 @@ void Replay::run(const ReplayProgress& progress) {
     const double done = static_cast<double>(port.read_bytes()) / static_cast<double>(port.size_bytes());
     if (!scans.empty() && !progress(done)) throw std::runtime_error("interrupted");
   }
-  require_whole(port);
-  if (report_.scans.decoded == 0) throw std::runtime_error(job_.recording.string() + ": holds no scan in this window");
+  report_.cut = port.cut();
+  if (report_.scans.decoded == 0) {
+    throw std::runtime_error(report_.cut ? report_.cut->text + "; no scan lies before that"
+                                         : job_.recording.string() + ": holds no scan in this window");
+  }
   report_.wire = decoder.counts();
 }
 
@@ -162,9 +150,9 @@ void Replay::take(Scan&& scan) {
   std::optional<TrackedScan> tracked;
   {
     const CpuTimer timer{report_.cpu.localization_s};
-    while (const auto revision = revisions_->next_before(scan)) localization_.apply(*revision);
-    if (auto things = things_->next_before(scan.number)) localization_.apply(std::move(things));
-    if (obeys_) obey_commands_before(scan.number);
+    while (const auto revision = revisions_.next_before(scan)) localization_.apply(*revision);
+    if (auto things = things_.next_before(scan.number)) localization_.apply(std::move(things));
+    obey_commands_before(scan.number);
     tracked = localization_.observe(std::move(scan));
     step_times_.add(timer.elapsed_s());
   }
@@ -177,13 +165,20 @@ void Replay::take(Scan&& scan) {
   if (job_.settings.mapping.enabled && !is_paused_) look_for_changes(*tracked);
 }
 
+/// What the operator did is an input as the bytes are: obeyed whatever becomes of the journal.
 void Replay::obey_commands_before(std::uint32_t scan) {
-  for (const Decision& command : journal_.commands_before(scan)) {
-    if (command.kind == Decision::Kind::kRelocalized) localization_.relocalize(command.map_from_robot);
-    if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
-    if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
-    if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
+  for (; next_command_ != journal_.commands().end() && next_command_->first <= scan; ++next_command_) {
+    const bool is_of_before = !has_begun_ && next_command_->first < scan;  // the window begins later
+    for (const Decision& command : next_command_->second) {
+      ++report_.commands;
+      if (command.kind == Decision::Kind::kRelocalized && !is_of_before)
+        localization_.relocalize(command.map_from_robot);
+      if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
+      if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
+      if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
+    }
   }
+  has_begun_ = true;
 }
 
 void Replay::look_for_changes(const TrackedScan& tracked) {
@@ -195,12 +190,14 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
   {
     const CpuTimer timer{report_.cpu.awareness_s};
     set = store_scan_.observe(tracked);
-    things_->push(store_scan_.temporary());
+    things_.push(store_scan_.temporary());
   }
   if (!set) return;
   if (set->withdraw_from) return update_map(*set);
   ++report_.phases;
-  if (obeys_ && journal_.closing_scan(set->phase) != tracked.scan.number) ++report_.journal_differences;
+  const auto closing = journal_.closing_scan(set->phase);
+  const bool is_unknown = !closing && is_cut_;
+  if (obeys_ && !is_unknown && closing != tracked.scan.number) ++report_.journal_differences;
   if (obeys_ && journal_.set_was_lost(set->phase)) {
     ++report_.scans.sets_lost;
     return;
@@ -212,10 +209,10 @@ void Replay::update_map(const ScanSet& set) {
   const CpuTimer timer{report_.cpu.map_update_s};
   MapStep::Result result = map_.update(set);
   changes_.write(json_line(result.note));
-  keep(store_, result, map_.method());
+  keep(store_, result, map_.method(), first_revision_);
   report_.changes.push_back(std::move(result.note));
   if (!result.revision) return;
-  revisions_->push(std::move(*result.revision));
+  revisions_.push(std::move(*result.revision));
 }
 
 RunReport Replay::finish(const std::filesystem::path& out) {
@@ -244,13 +241,15 @@ RunReport Replay::finish(const std::filesystem::path& out) {
 RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   const auto began = std::chrono::steady_clock::now();
   const double began_cpu_s = process_cpu_s();
-  const StartMap start{std::make_shared<const OccupancyGrid>(read_grid(job.map)), 0};
+  auto given = std::make_shared<const OccupancyGrid>(read_grid(job.map));
   require_map_elsewhere(job.map, job.out);
-  require_pose_on(start.map->geometry(), job.settings);
+  const RecordedRun recorded = recorded_run(job);
+  const ReplayStart begun = replay_start(recorded, job, std::move(given));
+  require_pose_on(begun.start.map->geometry(), job.settings);
   StagingFolder staging{job.out};
   RunReport report;
   {
-    Replay replay{job, start, staging.path()};
+    Replay replay{job, recorded, begun, staging.path()};
     replay.run(progress);
     report = replay.finish(staging.path());
   }

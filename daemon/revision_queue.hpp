@@ -15,8 +15,10 @@ namespace deltamap::daemon {
 
 class RevisionQueue {
  public:
-  /// `journal` may be null: then `delay_s` counts.
-  RevisionQueue(const Journal* journal, double delay_s) : journal_{journal}, delay_s_{delay_s} {}
+  /// `journal` may be null: then `delay_s` counts. It counts revisions from `numbers_before` on, the one that the run
+  /// starts on.
+  RevisionQueue(const Journal* journal, double delay_s, std::uint32_t numbers_before = 0)
+      : journal_{journal}, delay_s_{delay_s}, numbers_before_{numbers_before} {}
 
   void push(MapRevision revision) { waiting_.push_back(std::move(revision)); }
 
@@ -32,11 +34,12 @@ class RevisionQueue {
   [[nodiscard]] bool is_due(const MapRevision& revision, const Scan& scan) const {
     if (journal_ == nullptr) return seconds(scan.time - revision.time) >= delay_s_;
     const auto newest = journal_->revision_before(scan.number);
-    return newest && revision.number <= *newest;
+    return newest && revision.number - numbers_before_ <= *newest;
   }
 
   const Journal* journal_;
   double delay_s_;
+  std::uint32_t numbers_before_;
   std::deque<MapRevision> waiting_;
 };
 

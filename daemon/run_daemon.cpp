@@ -76,10 +76,9 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
 }
 
-void tell_start(const Settings& settings, const CommandLine& line, const GridGeometry& map,
-                const mapping::MapStore* store, Console& console) {
-  const auto revision = store != nullptr ? std::optional{store->newest()} : std::nullopt;
-  for (const std::string& text : start_banner(settings, line.config, map, revision)) {
+void tell_start(const Settings& settings, const CommandLine& line, const StartMap& start, Console& console) {
+  const auto revision = settings.map.store.empty() ? std::nullopt : std::optional{start.revision};
+  for (const std::string& text : start_banner(settings, line.config, start.map->geometry(), revision)) {
     console.log(spdlog::level::info, text);
   }
 }
@@ -163,9 +162,9 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
 
   Pipeline::Options options;
   options.first_map = grid_hash(first);
-  tell_start(settings, line, first.geometry(), store ? &*store : nullptr, console);
   options.start = start_map(std::move(first), store ? &*store : nullptr, console);
   require_pose_on(options.start.map->geometry(), settings);
+  tell_start(settings, line, options.start, console);
   if (store) {
     remember_pose(settings, options, console);
     remember_stability(settings, *store, options, console);

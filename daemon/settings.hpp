@@ -48,6 +48,7 @@ struct MappingSettings {
 
 struct NavigationSettings {
   navigation::DriveMode mode = navigation::DriveMode::kOff;
+  bool drive_without_pose = false;  ///< while the localizer searches, is lost or calls its pose wrong
   navigation::SafetyParams safety;
   navigation::WanderParams wander;
 };

@@ -38,10 +38,19 @@ void add_robot(RobotSettings& robot, Keys& keys) {
                           {{"0", 0}, {"19200", 19200}, {"38400", 38400}, {"57600", 57600}, {"115200", 115200}},
                           "switched to once connected, where the robot allows it; 0 stays"));
   keys.push_back(not_for_results(flag_key("robot.sonar", session.sonar, "keep the sonar on")));
-  keys.push_back(not_for_results(number_key("robot.max_speed_m_per_s", session.max_speed_m_per_s, "m/s", 0.01, 2.2,
-                                            "set points are clamped to it")));
-  keys.push_back(not_for_results(degrees_key("robot.max_turn_rate_deg_per_s", session.max_turn_rate_rad_per_s, 1.0,
-                                             500.0, "set points are clamped to it")));
+  keys.push_back(not_for_results(number_key("robot.max_speed_m_per_s", session.limits.max_speed_m_per_s, "m/s", 0.01,
+                                            2.2, "set points are clamped to it")));
+  keys.push_back(not_for_results(degrees_key("robot.max_turn_rate_deg_per_s", session.limits.max_turn_rate_rad_per_s,
+                                             1.0, 500.0, "set points are clamped to it")));
+  auto& limits = session.limits;
+  keys.push_back(not_for_results(number_key("robot.acceleration_m_per_s2", limits.acceleration_m_per_s2, "m/s^2", 0.05,
+                                            2.0, "what the controller is set to")));
+  keys.push_back(not_for_results(number_key("robot.deceleration_m_per_s2", limits.deceleration_m_per_s2, "m/s^2", 0.1,
+                                            2.0, "what the controller is set to, for its own stops too")));
+  keys.push_back(not_for_results(degrees_key("robot.turn_acceleration_deg_per_s2", limits.turn_acceleration_rad_per_s2,
+                                             10.0, 300.0, "what the controller is set to")));
+  keys.push_back(not_for_results(degrees_key("robot.turn_deceleration_deg_per_s2", limits.turn_deceleration_rad_per_s2,
+                                             10.0, 300.0, "what the controller is set to, for its own stops too")));
   keys.push_back(not_for_results(number_key("robot.pulse_interval_s", session.pulse_interval_s, "s", 0.05, 1.5,
                                             "the robot hears from us at least this often")));
   keys.push_back(not_for_results(number_key("robot.sip_timeout_s", session.sip_timeout_s, "s", 0.2, 60.0,
@@ -99,17 +108,23 @@ SettingKey drive_mode_key(navigation::DriveMode& mode) {
 void add_navigation(NavigationSettings& settings, Keys& keys) {
   const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
   add(drive_mode_key(settings.mode));
+  add(flag_key("navigation.drive_without_pose", settings.drive_without_pose,
+               "also while the pose is unknown, lost or called wrong; a robot that must find itself needs it"));
   auto& safety = settings.safety;
   add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
                  "swing circle around the axle"));
   add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0, "kept between the hull and everything"));
   add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s2", 0.05, 5.0,
-                 "what the controller brakes with"));
+                 "braking that is counted on at most; the controller's own where that is less"));
   add(number_key("navigation.safety.reaction_s", safety.reaction_s, "s", 0.0, 2.0, "from a decision to the wheels"));
   add(number_key("navigation.safety.command_life_s", safety.command_life_s, "s", 0.05, 2.0,
                  "a drive command older than that is void"));
   add(number_key("navigation.safety.odometry_life_s", safety.odometry_life_s, "s", 0.1, 5.0,
                  "silence of the robot after which it must stand"));
+  add(number_key("navigation.safety.low_battery_s", safety.low_battery_s, "s", 0.0, 600.0,
+                 "low for so long ends driving: not the sag of a motor that starts"));
+  add(number_key("navigation.safety.plausible_s", safety.plausible_s, "s", 0.0, 60.0,
+                 "of scans that are not flagged as implausible, before it goes on"));
   add(number_key("navigation.safety.max_speed_m_per_s", safety.max_speed_m_per_s, "m/s", 0.01, 2.2,
                  "whatever the pilot wants"));
   add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/angle.hpp"
+#include "drivers/pioneer/drive_permission.hpp"
 #include "navigation/drive_mode.hpp"
 #include "navigation/safety.hpp"
 
@@ -100,6 +101,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["drops"] = drops_json(t);
   json["ports"] = {{"robot", t.robot_up.value() ? "up" : "down"}, {"laser", t.laser_up.value() ? "up" : "down"}};
   json["drive"] = t.drives.value() ? navigation::name_of(settings.navigation.mode) : "off";
+  json["drive_switch"] = drivers::pioneer::name_of(static_cast<drivers::pioneer::DriveSwitch>(t.drive_switch.value()));
   json["stopped_by"] = navigation::name_of(static_cast<navigation::StopReason>(t.stop_reason.value()));
   json["battery_v"] = t.battery_v.value();
   json["latency_ms"] = t.latency_s.value() * 1e3;

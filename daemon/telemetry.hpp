@@ -55,7 +55,8 @@ struct GateGauges {
 struct Telemetry {
   // io thread
   Gauge<bool> robot_up, laser_up;
-  Gauge<bool> drives;  ///< the pilot's commands are listened to
+  Gauge<bool> drives;                ///< the pilot's commands are listened to
+  Gauge<std::uint8_t> drive_switch;  ///< drivers::pioneer::DriveSwitch: what a person said last
   Gauge<double> battery_v;
   Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason
   Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;

@@ -48,6 +48,7 @@ std::vector<Point2> obstacles_of(const Scan& scan, const ObstacleParams& params)
   };
   for (std::size_t i = 0; i < scan.beams.size(); ++i) {
     if (scan.beams[i].kind == BeamKind::kRange) add(i, static_cast<double>(scan.beams[i].range_m));
+    if (scan.beams[i].kind == BeamKind::kBeyondMaximum) add(i, scan.max_range_m);
     if (!is_unseen(scan.beams[i])) continue;
     std::size_t last = i;
     while (last + 1 < scan.beams.size() && is_unseen(scan.beams[last + 1])) ++last;

@@ -13,8 +13,8 @@ namespace deltamap::navigation {
 struct ObstacleParams {
   /// A gap of beams without an answer (not valid, dazzled, other) can hide something of this width anywhere beyond
   /// width / angle of the gap; there it counts as an obstacle. A single lost beam thus never stops the robot, a laser
-  /// that sees nothing ahead does. Beams "beyond maximum" are clear: the laser knows that nothing answered in range. m,
-  /// > 0
+  /// that sees nothing ahead does. A beam "beyond maximum" is clear up to that maximum and ends there: of what lies
+  /// behind it says nothing. m, > 0
   double hidden_width_m = 0.15;
 };
 

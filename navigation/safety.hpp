@@ -1,53 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last word before any velocity goes to the robot, spoken in the io thread: stops for an obstacle nearer than the
-// stop distance, a stale laser, bumpers, a stall, the stop button, an expired command. Reads no clock and starts
+// The last word before any velocity goes to the robot, spoken in the io thread. A speed is allowed only where the robot
+// would come to rest within what the laser has seen free although nobody spoke to it any more from now on. Bumpers, a
+// stall, faults, a low battery, a laser in error, an unknown pose and silence stop it. Reads no clock and starts
 // nothing by itself.
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <optional>
-#include <string_view>
+#include <span>
 #include <vector>
 
 #include "core/angle.hpp"
 #include "core/messages.hpp"
+#include "navigation/coasting.hpp"
 #include "navigation/free_path.hpp"
+#include "navigation/stop_latch.hpp"
+#include "navigation/stop_reason.hpp"
 
 namespace deltamap::navigation {
 
 struct SafetyParams {
   double robot_radius_m = 0.26;          ///< swing circle of the P3-DX around its axle; > 0
   double margin_m = 0.08;                ///< kept between the hull and everything; >= 0
-  double deceleration_m_per_s2 = 0.3;    ///< what the controller brakes with (P3-DX flash default); > 0
+  double deceleration_m_per_s2 = 0.3;    ///< counted on at most (P3-DX flash default); > 0
   double reaction_s = 0.1;               ///< from this decision to the wheels: one controller cycle; >= 0
   double command_life_s = 0.3;           ///< a command older than that is void; > 0
   double nominal_scan_period_s = 0.107;  ///< laser stale after three of these; 180/1° at 38400 (protocols.md B7); > 0
   double odometry_life_s = 0.5;          ///< five controller cycles without a packet: the link is gone; > 0
+  double low_battery_s = 3.0;            ///< low for so long: not the sag of a motor that starts; >= 0
+  double plausible_s = 2.0;              ///< of scans that are not flagged, before it goes on; >= 0
   double max_speed_m_per_s = 0.7;        ///< > 0
   double max_turn_rate_rad_per_s = radians(80.0);  ///< > 0
   ObstacleParams obstacles{};
 };
-
-enum class StopReason : std::uint8_t {
-  kNone,
-  kNoCommand,       ///< nobody drives
-  kCommandExpired,  ///< the pilot has fallen silent
-  kNoOdometry,      ///< the robot has fallen silent
-  kStopButton,
-  kMotorsOff,
-  kBumper,
-  kStalled,
-  kStaleLaser,
-  kReverse,  ///< backwards is where the laser does not look
-  kObstacle
-};
-[[nodiscard]] std::string_view name_of(StopReason reason);
 
 /// What may be sent now. Where `stop` is set, forward speed is zero; an obstacle ahead still lets the robot turn away.
 struct AllowedMotion {
   double speed_m_per_s = 0.0;
   double turn_rate_rad_per_s = 0.0;
   StopReason stop = StopReason::kNone;
+  bool brake_hard = false;  ///< as fast as the robot can, not as gently as it is set to
 };
 
 class Safety {
@@ -55,14 +47,21 @@ class Safety {
   explicit Safety(const SafetyParams& params) : params_{params} {}
 
   void observe(const Scan& scan);
-  void observe(const Odometry& odometry) { odometry_ = odometry; }
+  void observe(const Odometry& odometry);
   /// A command's life counts from its arrival here: at 38400 baud a scan of 0.5° is 0.22 s old when it can be decided
-  /// on.
-  void command(const DriveCommand& command, Timestamp now);
+  /// on. `held_by`: why the pilot itself must not drive now.
+  void command(const DriveCommand& command, Timestamp now, StopReason held_by = StopReason::kNone);
   /// Forgets the command: the mode went to off.
   void release() { command_.reset(); }
+  /// A person said drive (`deltamap ctl drive wander`; Safety sees the MOTORS button itself): stops whose cause is gone
+  /// end.
+  void let_drive_again();
+  /// What a person has yet to answer; kNone where nothing.
+  [[nodiscard]] StopReason waits_for() const;
   /// The laser session tells what its variant and baud give.
   void set_nominal_scan_period(double period_s) { params_.nominal_scan_period_s = period_s; }
+  /// The robot's session tells what its controller has confirmed.
+  void set_stopping_behaviour(const StoppingBehaviour& behaviour) { stopping_ = behaviour; }
 
   /// Ask before every pulse.
   [[nodiscard]] AllowedMotion allowed(Timestamp now) const;
@@ -76,15 +75,30 @@ class Safety {
   struct HeldCommand {
     DriveCommand command;
     Timestamp received;
+    StopReason held_by;
   };
+  enum Latched : std::size_t { kBumper, kStalled, kControllerFault, kLowBattery, kLaserError };
+
   [[nodiscard]] StopReason blocking_state(Timestamp now) const;
-  [[nodiscard]] double safe_speed(const SeenScan& scan, double speed_m_per_s, double turn_rate_rad_per_s,
-                                  Timestamp now) const;
+  [[nodiscard]] StopReason silence(Timestamp now) const;
+  [[nodiscard]] bool is_battery_low(const Odometry& odometry);
+  [[nodiscard]] Motion motion_now() const;
+  [[nodiscard]] Coasting coasting(const Motion& at_first, const Motion& then, double blind_s) const;
+  [[nodiscard]] bool coasts_clear(const Motion& command, double radius_m, double blind_s) const;
+  [[nodiscard]] bool can_stop_ahead(double blind_s) const;
+  [[nodiscard]] double safe_share(const Motion& wished, double blind_s) const;
 
   SafetyParams params_;
+  StoppingBehaviour stopping_;
   std::optional<SeenScan> scan_;
   std::optional<Odometry> odometry_;
   std::optional<HeldCommand> command_;
+  std::optional<Timestamp> low_battery_since_;
+  std::optional<Timestamp> implausible_at_;  // the newest scan that was flagged
+  bool motors_were_on_ = false;              // in this odometry epoch
+  std::array<StopLatch, 5> latches_{StopLatch{StopReason::kBumper}, StopLatch{StopReason::kStalled},
+                                    StopLatch{StopReason::kControllerFault}, StopLatch{StopReason::kLowBattery},
+                                    StopLatch{StopReason::kLaserError}};
 };
 
 }  // namespace deltamap::navigation

@@ -157,7 +157,8 @@ void Simulation::take_place(const std::vector<Change>& changes, Timestamp now) {
 std::vector<Beam> Simulation::measure(const devices::SweepRequest& request) {
   Sweep sweep;
   for (unsigned beam = 0; beam < request.variant.values(); ++beam) {
-    const double angle_deg = request.variant.first_angle_deg() + 0.01 * request.variant.resolution_centideg * beam;
+    const double angle_deg = request.variant.first_angle_deg() + request.first_angle_shift_deg +
+                             0.01 * request.variant.resolution_centideg * beam;
     sweep.bearings_rad.push_back(radians(angle_deg - 90.0));
     sweep.offsets_s.push_back(lms200::beam_offset_s(request.variant, beam));
   }

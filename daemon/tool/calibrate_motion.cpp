@@ -47,6 +47,7 @@ struct Drive {
   double turned_rad = 0.0;
   std::size_t scans = 0;
   std::size_t sure_scans = 0;
+  std::optional<drivers::port::LogCut> cut;  ///< the recording ends there
 };
 
 bool is_sure(const Estimate& estimate) {
@@ -82,7 +83,7 @@ Drive driven(const CalibrateOptions& options, const Settings& settings) {
     decoder.feed(replayed->record, sinks);
     progress.show(port.read_bytes());
   }
-  if (port.cut()) throw std::runtime_error(*port.cut());
+  drive.cut = port.cut();
   drive.segments = pairs.segments();
   for (const auto& segment : drive.segments) {
     drive.driven_m += segment.driven_m;
@@ -151,7 +152,8 @@ void print_json(const MotionCalibration& as_they_are, const MotionCalibration& c
     motion[key.key]["enough"] = !is_vague(as_they_are.of(key.source));
     motion_corrected[key.key] = json_of(corrected.of(key.source), key.unit);
   }
-  const Json all{{"segments", drive.segments.size()},
+  const Json all{{"cut", drive.cut ? Json(drive.cut->text) : Json(nullptr)},
+                 {"segments", drive.segments.size()},
                  {"driven_m", drive.driven_m},
                  {"turned_deg", degrees(drive.turned_rad)},
                  {"outlier_share", as_they_are.outlier_share},
@@ -187,6 +189,7 @@ void run(CalibrateOptions& options) {
   const Settings settings = options.config.empty() ? parse_settings("", "defaults", options.overrides)
                                                    : read_settings(options.config, options.overrides);
   const Drive drive = driven(options, settings);
+  if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
   require_enough(drive, options.recording);
   const MotionCalibration as_they_are = localization::fitted_motion(drive.segments, Systematic::kLeftIn);
   const MotionCalibration corrected = localization::fitted_motion(drive.segments, Systematic::kTakenOut);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/tool/carmen_log.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -10,11 +12,14 @@
 #include <system_error>
 #include <utility>
 
+#include "core/grid_file.hpp"
+
 namespace deltamap::daemon::tool {
 namespace {
 
 constexpr std::size_t kMaxLineBytes = 1u << 20;  // a scan of 361 values takes 3 kB
 constexpr int kMaxReadings = 65536;
+constexpr std::array kTimeWords{"time stamp", "host", "logger time"};
 constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // the year 2255: a Timestamp ends soon after
 
 /// Takes the words of a line one by one; says what was expected where one is missing or broken.
@@ -57,9 +62,50 @@ class Words {
     return value;
   }
 
-  /// Seconds in decimal digits to whole nanoseconds: a double would round them at a tenth of a microsecond.
+  Pose2 pose(const char* name) {
+    const double x = finite(name);
+    const double y = finite(name);
+    return {x, y, wrapped_angle(finite(name))};
+  }
+
+  [[nodiscard]] bool at_end() const { return text_.find_first_not_of(" \t\r") == std::string_view::npos; }
+
+  /// The words after a record's own: stamp, host, logger's time. Some logs have no stamp, or nothing at all.
+  CarmenTimes times() {
+    CarmenTimes times;
+    for (Words left = *this; !left.at_end() && times.words < 3; ++times.words) (void)left.word("time");
+    if (times.words == 0) return times;
+    Words ahead = *this;
+    const bool has_stamp = number_in(ahead.word("time stamp")).has_value();
+    if (has_stamp || ahead.at_end()) times.stamp = time("time stamp");
+    if (has_stamp && !at_end()) (void)word("host");
+    if (!has_stamp) *this = ahead;  // that word was the host
+    const auto logger_s = at_end() ? std::nullopt : number_in(word("logger time"));
+    if (logger_s && std::abs(*logger_s) < static_cast<double>(kMaxSeconds)) {
+      times.logger = duration_from_seconds(*logger_s);
+    }
+    return times;
+  }
+
+ private:
+  static std::optional<double> number_in(std::string_view word) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool is_whole = error == std::errc{} && end == word.data() + word.size() && std::isfinite(value);
+    return is_whole ? std::optional{value} : std::nullopt;
+  }
+
+  /// Seconds in decimal digits to whole nanoseconds: a double would round them at a tenth of a microsecond. Only
+  /// "1.13486e+09" has no more digits than a double.
   Timestamp time(const char* name) {
     const std::string_view found = word(name);
+    if (found.find_first_of("eE") != std::string_view::npos) {
+      const auto value_s = number_in(found);
+      if (!value_s || *value_s < 0.0 || *value_s > static_cast<double>(kMaxSeconds)) {
+        refuse_word(name, found, "a time in seconds");
+      }
+      return Timestamp{} + duration_from_seconds(*value_s);
+    }
     const char* const last = found.data() + found.size();
     std::int64_t whole_s = 0;
     auto [at, error] = std::from_chars(found.data(), last, whole_s);
@@ -73,13 +119,6 @@ class Words {
     return timestamp_from_ns(whole_s * 1'000'000'000 + fraction_ns);
   }
 
-  Pose2 pose(const char* name) {
-    const double x = finite(name);
-    const double y = finite(name);
-    return {x, y, wrapped_angle(finite(name))};
-  }
-
- private:
   [[noreturn]] void refuse_word(const char* name, std::string_view found, const char* expected) const {
     refuse(std::string("'") + name + "' must be " + expected + ", not '" + std::string(found.substr(0, 40)) + "'");
   }
@@ -95,11 +134,6 @@ std::vector<double> ranges(Words& words, int count) {
     if (!std::isfinite(range_m) || range_m < 0.0) range_m = 0.0;
   }
   return ranges_m;
-}
-
-void skip_host_and_logger_time(Words& words) {
-  (void)words.word("host");
-  (void)words.word("logger time");
 }
 
 /// FLASER states only the number of its values: CARMEN takes 101, 201 and 401 for the 100° variants of the LMS and all
@@ -123,8 +157,7 @@ CarmenScan read_flaser(Words& words) {
   poses.odom_from_laser = words.pose("laser pose");
   poses.odom_from_robot = words.pose("robot pose");
   scan.poses = poses;
-  scan.time = words.time("time stamp");
-  skip_host_and_logger_time(words);
+  scan.times = words.times();
   return scan;
 }
 
@@ -152,8 +185,7 @@ CarmenScan read_configured_scan(Words& words) {
 
 CarmenScan read_rawlaser(Words& words) {
   CarmenScan scan = read_configured_scan(words);
-  scan.time = words.time("time stamp");
-  skip_host_and_logger_time(words);
+  scan.times = words.times();
   return scan;
 }
 
@@ -164,8 +196,7 @@ CarmenScan read_robotlaser(Words& words) {
   poses.odom_from_robot = words.pose("robot pose");
   scan.poses = poses;
   for (const char* name : {"tv", "rv", "forward safety", "side safety", "turn axis"}) (void)words.number(name);
-  scan.time = words.time("time stamp");
-  skip_host_and_logger_time(words);
+  scan.times = words.times();
   return scan;
 }
 
@@ -175,8 +206,7 @@ CarmenOdometry read_odometry(Words& words) {
   odometry.speed_m_per_s = words.finite("tv");
   odometry.turn_rate_rad_per_s = words.finite("rv");
   (void)words.number("acceleration");
-  odometry.time = words.time("time stamp");
-  skip_host_and_logger_time(words);
+  odometry.times = words.times();
   return odometry;
 }
 
@@ -194,19 +224,25 @@ std::optional<CarmenRecord> read_record(std::string_view kind, Words& words) {
 
 }  // namespace
 
-CarmenLog::CarmenLog(std::filesystem::path file) : file_{std::move(file)} {
+Timestamp CarmenClock::time_of(const CarmenTimes& times) const {
+  if (!by_logger) return times.stamp.value_or(Timestamp{});
+  return times.logger ? std::max(Timestamp{}, logger_began + *times.logger) : Timestamp{};
+}
+
+CarmenLog::CarmenLog(std::filesystem::path file, const CarmenClock& clock) : file_{std::move(file)}, clock_{clock} {
   if (std::filesystem::is_directory(file_)) refuse_file(file_, "is a directory");
   in_.open(file_, std::ios::binary);
   if (!in_) refuse_file(file_, std::generic_category().message(errno));
-  std::string magic(6, '\0');
-  in_.read(magic.data(), 6);
-  magic.resize(static_cast<std::size_t>(in_.gcount()));
-  if (magic.empty()) refuse_file(file_, "line 1: the file is empty");
-  if (magic == std::string("\xFD"
-                           "7zXZ\0",
-                           6))
+  std::string head(4096, '\0');
+  in_.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in_.gcount()));
+  if (head.empty()) refuse_file(file_, "line 1: the file is empty");
+  if (is_carmen_map(file_, head)) refuse_file(file_, "is a CARMEN map, not a log");
+  if (head.starts_with(std::string("\xFD"
+                                   "7zXZ\0",
+                                   6)))
     refuse_file(file_, "is xz-compressed; unpack it first (xz -dk)");
-  if (magic.starts_with("\x1F\x8B")) refuse_file(file_, "is gzip-compressed; unpack it first (gunzip -k)");
+  if (head.starts_with("\x1F\x8B")) refuse_file(file_, "is gzip-compressed; unpack it first (gunzip -k)");
   in_.clear();
   in_.seekg(0, std::ios::end);
   size_bytes_ = static_cast<std::uint64_t>(in_.tellg());
@@ -215,34 +251,70 @@ CarmenLog::CarmenLog(std::filesystem::path file) : file_{std::move(file)} {
 
 bool CarmenLog::read_line() {
   text_.clear();
-  char c = '\0';
+  is_text_ = true;
+  is_ended_ = false;
+  const std::uint64_t before = read_bytes_;
   std::streambuf& bytes = *in_.rdbuf();
-  for (;;) {
+  while (!is_ended_) {
     const int next = bytes.sbumpc();
     if (next == std::char_traits<char>::eof()) break;
     ++read_bytes_;
-    c = static_cast<char>(next);
-    if (c == '\n') break;
-    if (c == '\0' || text_.size() == kMaxLineBytes) {
-      throw std::runtime_error(file_.string() + ":" + std::to_string(line_ + 1) + ": not a CARMEN log (not text)");
-    }
-    text_ += c;
+    is_ended_ = next == '\n';
+    is_text_ = is_text_ && next != '\0' && text_.size() < kMaxLineBytes;
+    if (!is_ended_ && is_text_) text_ += static_cast<char>(next);
   }
-  const bool found = c == '\n' || !text_.empty();
+  const bool found = read_bytes_ > before;
   if (found) ++line_;
   return found;
 }
 
-std::optional<CarmenRecord> CarmenLog::next() {
+std::optional<CarmenRecord> CarmenLog::record_of_line() {
+  const std::string place = file_.string() + ":" + std::to_string(line_);
+  if (!is_text_) throw std::runtime_error(place + ": not a CARMEN log (not text)");
+  const std::string_view text{text_};
+  const std::size_t kind_end = std::min(text.find_first_of(" \t\r"), text.size());
+  Words words{text.substr(kind_end), place};
+  const std::string_view kind = text.substr(0, kind_end);
+  auto record = read_record(kind, words);
+  if (!record) return std::nullopt;
+  std::visit(
+      [&](auto& held) {
+        const std::size_t usual = time_words_.emplace(kind, held.times.words).first->second;
+        if (held.times.words < usual)
+          words.refuse(std::string("cut short: '") + kTimeWords[held.times.words] + "' is missing");
+        // The number that a line breaks off in may be a wrong one.
+        const bool is_whole = held.times.stamp && held.times.logger && !clock_.by_logger;
+        if (!is_ended_ && !is_whole) words.refuse("cut short: its end is missing");
+        held.line = line_;
+        held.time = clock_.time_of(held.times);
+      },
+      *record);
+  return record;
+}
+
+/// After a broken line.
+bool CarmenLog::record_follows() {
   while (read_line()) {
-    const std::string_view text{text_};
-    const std::size_t kind_end = std::min(text.find_first_of(" \t\r"), text.size());
-    Words words{text.substr(kind_end), file_.string() + ":" + std::to_string(line_)};
-    auto record = read_record(text.substr(0, kind_end), words);
-    if (!record) continue;
-    ++records_;
-    std::visit([this](auto& held) { held.line = line_; }, *record);
-    return record;
+    try {
+      if (record_of_line()) return true;
+    } catch (const std::runtime_error&) {  // broken as well
+    }
+  }
+  return false;
+}
+
+std::optional<CarmenRecord> CarmenLog::next() {
+  try {
+    while (!cut_ && read_line()) {
+      auto record = record_of_line();
+      if (!record) continue;
+      ++records_;
+      return record;
+    }
+  } catch (const std::runtime_error& broken) {
+    const std::string why = broken.what();
+    if (records_ == 0 || record_follows()) throw;
+    cut_ = why + "; the log ends there, the " + std::to_string(records_) + " scans and poses before it are used";
   }
   if (records_ == 0) {
     throw std::runtime_error(file_.string() + ":" + std::to_string(line_) +

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <sstream>
 #include <stdexcept>
+#include <type_traits>
 
 #include "core/angle.hpp"
+#include "daemon/tool/carmen_words.hpp"
 #include "daemon/tool/progress.hpp"
 
 namespace deltamap::daemon::tool {
@@ -15,7 +19,10 @@ namespace {
 using drivers::lms200::ScanVariant;
 using drivers::lms200::Units;
 
-constexpr double kNoReturnShare = 0.003;     // CONTRACT.md: of the beams, before the largest value counts as no return
+constexpr double kNoReturnShare = 0.003;  // CONTRACT.md: of the beams, before the largest values count as no return
+constexpr double kNoReturnWidthM =
+    0.15;  // CONTRACT.md: so far below the largest one; a cluster of codes is 0.11 m wide
+constexpr double kDecimalTolerance = 1e-9;   // m
 constexpr double kMultipleTolerance = 1e-6;  // of a centimetre: what parsing decimals may cost
 constexpr std::int64_t kLongestWord = 0x7FFF;
 
@@ -28,11 +35,10 @@ class RangeCensus {
     ++beams_;
     const double range_cm = range_m * 100.0;
     all_are_centimetres_ = all_are_centimetres_ && std::abs(range_cm - std::round(range_cm)) < kMultipleTolerance;
-    if (range_m > largest_m_) {
-      largest_m_ = range_m;
-      largest_count_ = 0;
+    if (range_m > 0.0 && (largest_.empty() || range_m >= lowest_of(largest_.rbegin()->first))) {
+      ++largest_[range_m];
+      largest_.erase(largest_.begin(), largest_.lower_bound(lowest_of(largest_.rbegin()->first)));
     }
-    if (range_m == largest_m_) ++largest_count_;
     note_word(longest_cm_, word_of(range_m, 100.0));
     note_word(longest_mm_, word_of(range_m, 1000.0));
   }
@@ -43,20 +49,35 @@ class RangeCensus {
     const std::int64_t longest = units() == Units::kCentimetre ? longest_cm_ : longest_mm_;
     return longest <= 0x1FFF ? 0x00 : longest <= 0x3FFF ? 0x04 : 0x06;
   }
-  [[nodiscard]] double largest_m() const { return largest_m_; }
-  [[nodiscard]] double largest_share() const {
-    return beams_ == 0 ? 0.0 : static_cast<double>(largest_count_) / static_cast<double>(beams_);
+  /// The values near the largest one, where they are many. Where that is a code of the scanner, its codes alone: ranges
+  /// may be as long.
+  void find_no_return(CarmenSurvey& survey) const {
+    const double words_per_m = units() == Units::kCentimetre ? 100.0 : 1000.0;
+    const auto is_code = [&](double range_m) { return is_scanner_code(word_of(range_m, words_per_m)); };
+    const bool codes_alone = !largest_.empty() && is_code(largest_.rbegin()->first);
+    std::size_t count = 0;
+    std::optional<double> lowest_m;
+    for (const auto& [range_m, beams] : largest_) {
+      if (codes_alone && !is_code(range_m)) continue;
+      if (!lowest_m) lowest_m = range_m;
+      count += beams;
+    }
+    const double share = static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, beams_));
+    if (!lowest_m || share < kNoReturnShare) return;
+    survey.no_return_m = lowest_m;
+    survey.no_return_up_to_m = largest_.rbegin()->first;
+    survey.no_return_share = share;
   }
 
  private:
+  static double lowest_of(double largest_m) { return largest_m - kNoReturnWidthM - kDecimalTolerance; }
   static void note_word(std::int64_t& longest, std::int64_t word) {
     if (word <= kLongestWord) longest = std::max(longest, word);  // longer ones become "beyond maximum" in any mode
   }
 
   std::size_t beams_ = 0;
   bool all_are_centimetres_ = true;
-  double largest_m_ = 0.0;
-  std::size_t largest_count_ = 0;
+  std::map<double, std::size_t> largest_;  // beams by range, for the ranges near the largest one
   std::int64_t longest_cm_ = 0;
   std::int64_t longest_mm_ = 0;
 };
@@ -77,6 +98,55 @@ void add_scan(CarmenSurvey& survey, RangeCensus& census, const CarmenScan& scan)
   for (const double range_m : scan.ranges_m) census.add(range_m);
 }
 
+/// How well each of the two times tells the scans of a log apart.
+class ClockCensus {
+ public:
+  void add(const CarmenTimes& times, bool is_scan) {
+    if (!first_) first_ = times;
+    has_stamps_ = has_stamps_ && times.stamp;
+    has_logger_ = has_logger_ && times.logger;
+    if (!is_scan) return;
+    ++scans_;
+    same_stamp_ += scans_ > 1 && times.stamp == last_.stamp ? 1 : 0;
+    same_logger_ += scans_ > 1 && times.logger == last_.logger ? 1 : 0;
+    last_ = times;
+  }
+  void choose(CarmenSurvey& survey) const {
+    const bool stamps_serve = has_stamps_ && 2 * same_stamp_ <= scans_;
+    const bool logger_serves = has_logger_ && 2 * same_logger_ <= scans_;
+    if (stamps_serve) return;
+    if (!logger_serves) {
+      survey.no_clock = has_stamps_ ? std::to_string(same_stamp_) + " of " + std::to_string(scans_) +
+                                          " scans have the time stamp of the one before"
+                                    : "its lines have no time stamp";
+      return;
+    }
+    // The first line keeps its stamp, as far as it tells.
+    survey.clock.by_logger = true;
+    survey.clock.logger_began =
+        first_->stamp ? *first_->stamp - *first_->logger : Timestamp{} + std::max(Duration{0}, -*first_->logger);
+  }
+
+ private:
+  std::optional<CarmenTimes> first_;
+  CarmenTimes last_;
+  bool has_stamps_ = true;
+  bool has_logger_ = true;
+  std::size_t scans_ = 0;
+  std::size_t same_stamp_ = 0;
+  std::size_t same_logger_ = 0;
+};
+
+void find_clock(CarmenSurvey& survey, const std::filesystem::path& log) {
+  CarmenLog lines{log};
+  ClockCensus census;
+  while (const auto record = lines.next()) {
+    std::visit([&](const auto& held) { census.add(held.times, std::is_same_v<decltype(held), const CarmenScan&>); },
+               *record);
+  }
+  census.choose(survey);
+}
+
 }  // namespace
 
 ScanVariant nearest_variant(const CarmenScan& scan) {
@@ -93,9 +163,10 @@ ScanVariant nearest_variant(const CarmenScan& scan) {
 }
 
 CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> no_return_m) {
-  CarmenLog lines{log};
-  Progress progress{"looking through " + log.filename().string(), lines.size_bytes()};
   CarmenSurvey survey;
+  find_clock(survey, log);
+  CarmenLog lines{log, survey.clock};
+  Progress progress{"looking through " + log.filename().string(), lines.size_bytes()};
   RangeCensus census;
   while (const auto record = lines.next()) {
     progress.show(lines.read_bytes());
@@ -106,6 +177,7 @@ CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> n
       survey.odometry.push_back({odometry.time, odometry.odom_from_robot});
     }
   }
+  survey.cut = lines.cut();
   if (survey.scans == 0) throw std::runtime_error(log.string() + ": no scan from the first line to the last");
   std::stable_sort(survey.odometry.begin(), survey.odometry.end(),
                    [](const TimedPose& a, const TimedPose& b) { return a.time < b.time; });
@@ -113,11 +185,25 @@ CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> n
   survey.measuring_mode = census.measuring_mode();
   if (no_return_m) {
     if (*no_return_m > 0.0) survey.no_return_m = no_return_m;
-  } else if (census.largest_share() >= kNoReturnShare) {
-    survey.no_return_m = census.largest_m();
-    survey.no_return_share = census.largest_share();
+  } else {
+    census.find_no_return(survey);
   }
   return survey;
+}
+
+std::string no_return_line(const CarmenSurvey& survey) {
+  if (!survey.no_return_m) return "";
+  std::ostringstream line;
+  line << "no return: ";
+  if (survey.no_return_share == 0.0) {
+    line << *survey.no_return_m << " m and more, as given";
+  } else {
+    line << "the log's largest value" << (*survey.no_return_m < survey.no_return_up_to_m ? "s " : " ");
+    if (*survey.no_return_m < survey.no_return_up_to_m) line << *survey.no_return_m << " to ";
+    line << survey.no_return_up_to_m << " m, " << 100.0 * survey.no_return_share
+         << " % of the beams (--no-return R overrides)";
+  }
+  return line.str();
 }
 
 }  // namespace deltamap::daemon::tool

@@ -18,6 +18,11 @@ constexpr double kMostWords = 1e9;  // far beyond any code: keeps the rounding d
 
 }  // namespace
 
+bool is_scanner_code(std::int64_t word) {
+  return std::any_of(kFirstCodes.begin(), kFirstCodes.end(),
+                     [&](std::int64_t first) { return word >= first && word < first + kCodes; });
+}
+
 CarmenWords::CarmenWords(const CarmenScan& scan, const CarmenSurvey& survey)
     : words_per_m_{survey.units == drivers::lms200::Units::kCentimetre ? 100.0 : 1000.0},
       first_code_{drivers::lms200::range_coding(survey.measuring_mode).value().beyond_maximum} {

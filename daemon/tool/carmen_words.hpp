@@ -11,6 +11,9 @@
 
 namespace deltamap::daemon::tool {
 
+/// One of the codes that an LMS200 sends in place of a range, in any measuring mode (B4).
+[[nodiscard]] bool is_scanner_code(std::int64_t word);
+
 class CarmenWords {
  public:
   CarmenWords(const CarmenScan& scan, const CarmenSurvey& survey);

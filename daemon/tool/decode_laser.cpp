@@ -6,6 +6,7 @@
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
 #include "drivers/lms200/telegram.hpp"
+#include "drivers/lms200/value_selection.hpp"
 
 namespace deltamap::daemon::tool {
 namespace {
@@ -34,33 +35,42 @@ void add_scan(const Measurement& measurement, std::optional<std::uint8_t> measur
   fields.emplace_back("words", std::vector<std::int64_t>(measurement.words.begin(), measurement.words.end()));
   const std::optional<RangeCoding> coding = measuring_mode ? range_coding(*measuring_mode) : std::nullopt;
   if (!coding) return;
-  constexpr double kNoLimit = 1e9;
   std::vector<std::string> beams;
   for (const std::uint16_t word : measurement.words) {
-    const Beam beam = decoded_beam(word, *coding, measurement.metres_per_word(), kNoLimit);
-    switch (beam.kind) {
-      case BeamKind::kRange: {
-        const unsigned value = word & coding->range_mask;
-        std::string metres = std::to_string(value * measurement.metres_per_word());
-        metres.resize(metres.find('.') + 4);
-        beams.push_back(metres);
-        break;
-      }
-      case BeamKind::kBeyondMaximum:
-        beams.emplace_back("beyond maximum");
-        break;
-      case BeamKind::kNotValid:
-        beams.emplace_back("not valid");
-        break;
-      case BeamKind::kDazzled:
-        beams.emplace_back("dazzled");
-        break;
-      case BeamKind::kOther:
-        beams.emplace_back("other");
-        break;
-    }
+    beams.push_back(code_name(word, *coding).value_or(""));
+    if (!beams.back().empty()) continue;
+    const unsigned value = word & coding->range_mask;
+    std::string metres = std::to_string(value * measurement.metres_per_word());
+    metres.resize(metres.find('.') + 4);
+    beams.back() = value > 0 ? metres : "not valid";
   }
   fields.emplace_back("beams_m", beams);
+}
+
+void add_range(const ValueRange& range, NamedFields& fields) {
+  fields.emplace_back("from", whole(range.from));
+  fields.emplace_back("to", whole(range.to));
+}
+
+void add_selected(const SelectedValues& selected, std::optional<std::uint8_t> measuring_mode, NamedFields& fields) {
+  if (selected.mean_of) fields.emplace_back("mean_of", whole(*selected.mean_of));
+  if (selected.range) add_range(*selected.range, fields);
+  add_scan(selected.measurement, measuring_mode, fields);
+}
+
+void add_reflecting(const std::vector<ReflectingRange>& parts, std::optional<std::uint8_t> measuring_mode,
+                    NamedFields& fields) {
+  fields.emplace_back("ranges", whole(static_cast<std::int64_t>(parts.size())));
+  for (const ReflectingRange& part : parts) {
+    add_range(part.range, fields);
+    add_scan(part.measurement, measuring_mode, fields);
+    fields.emplace_back("reflectivity", std::vector<std::int64_t>(part.reflectivity.begin(), part.reflectivity.end()));
+  }
+}
+
+void add_selection(const ValueSelection& selection, NamedFields& fields) {
+  if (selection.mean_of > 1) fields.emplace_back("mean_of", whole(selection.mean_of));
+  for (const ValueRange& range : selection.ranges) add_range(range, fields);
 }
 
 void add_configuration(const Configuration& configuration, NamedFields& fields) {
@@ -95,6 +105,16 @@ void add_status(const DeviceStatus& status, NamedFields& fields) {
 bool add_reply(const Telegram& telegram, std::optional<std::uint8_t> measuring_mode, NamedFields& fields) {
   if (const auto measurement = decoded_measurement(telegram)) {
     add_scan(*measurement, measuring_mode, fields);
+  } else if (const auto selected = decoded_selected_values(telegram)) {
+    add_selected(*selected, measuring_mode, fields);
+  } else if (const auto parts = decoded_reflecting_ranges(telegram)) {
+    add_reflecting(*parts, measuring_mode, fields);
+  } else if (const auto counters = decoded_counters(telegram)) {
+    fields.emplace_back("hours", whole(counters->hours));
+    fields.emplace_back("switch_ons", whole(counters->switch_ons));
+  } else if (const auto permanent = decoded_permanent_baud_reply(telegram)) {
+    fields.emplace_back("accepted", permanent->accepted);
+    fields.emplace_back("permanent", permanent->is_permanent);
   } else if (const auto status = decoded_status(telegram)) {
     add_status(*status, fields);
   } else if (const auto configuration = decoded_configuration(telegram)) {
@@ -125,10 +145,16 @@ bool add_request(const Telegram& telegram, NamedFields& fields) {
   } else if (telegram.command == command::kSetMode && !telegram.data.empty()) {
     const std::uint8_t mode = telegram.data[0];
     fields.emplace_back("mode", whole(mode));
+    fields.emplace_back("meaning", mode_name(mode));
     if (const auto baud = baud_of_mode(mode)) fields.emplace_back("baud", whole(*baud));
     if (mode == mode::kInstallation)
       fields.emplace_back("password", text_of({telegram.data.begin() + 1, telegram.data.end()}));
-    return mode == mode::kInstallation || telegram.data.size() == 1;
+    const auto selection = requested_selection(telegram);
+    if (selection) add_selection(*selection, fields);
+    return mode == mode::kInstallation || telegram.data.size() == 1 || selection;
+  } else if (const auto selection = requested_selection(telegram)) {
+    if (telegram.command == command::kRequestScan) fields.emplace_back("which", whole(telegram.data[0]));
+    add_selection(*selection, fields);
   } else {
     return telegram.data.empty();
   }

@@ -98,12 +98,8 @@ void print_text(const CarmenImport& done, const std::string& recording) {
   std::cout << recording << ": " << survey.scans << " scans as " << name_of(survey.variant) << " in "
             << (centimetres ? "cm" : "mm") << ", " << done.poses << " odometry packets, poses from "
             << pose_source(survey) << '\n';
-  if (survey.no_return_m && survey.no_return_share > 0.0) {
-    std::cout << "no return: the log's largest value " << *survey.no_return_m << " m, "
-              << 100.0 * survey.no_return_share << " % of the beams (--no-return R overrides)\n";
-  } else if (survey.no_return_m) {
-    std::cout << "no return: " << *survey.no_return_m << " m and more, as given\n";
-  }
+  if (const std::string line = no_return_line(survey); !line.empty()) std::cout << line << '\n';
+  if (survey.clock.by_logger) std::cout << "times: the logger's, since the time stamps do not tell the scans apart\n";
   if (survey.doubled_scans > 0) {
     std::cout << survey.doubled_scans << " scans without a pose left out: the log's other scans carry poses\n";
   }
@@ -122,9 +118,12 @@ void print_json(const CarmenImport& done, const std::string& recording) {
                               {"poses_from", pose_source(survey)},
                               {"no_return_m", nullptr},
                               {"no_return_share", survey.no_return_share},
+                              {"times_from", survey.clock.by_logger ? "logger" : "time stamps"},
+                              {"cut", nullptr},
                               {"scans_left_out", survey.doubled_scans},
                               {"gaps", done.gaps}};
   if (survey.no_return_m) json["no_return_m"] = *survey.no_return_m;
+  if (survey.cut) json["cut"] = *survey.cut;
   std::cout << json.dump(2) << '\n';
 }
 
@@ -135,7 +134,11 @@ CarmenImport import_carmen(const fs::path& log, const fs::path& recording, std::
   if (fs::equivalent(log, recording, ignored)) throw std::runtime_error(recording.string() + ": is the log itself");
   CarmenImport done;
   done.survey = survey_of(log, no_return_m);
-  CarmenLog lines{log};
+  if (!done.survey.no_clock.empty()) {
+    throw std::runtime_error(log.string() + ": cannot be imported without times: " + done.survey.no_clock +
+                             ", and the logger's times do not help (`map from-poses` needs none)");
+  }
+  CarmenLog lines{log, done.survey.clock};
   Draft draft{recording};
   drivers::port::ByteLogWriter writer{draft.path(), {kImportBaud, kImportBaud}};
   CarmenBytes bytes{done.survey, [&](const drivers::port::ByteRecord& record) { writer.write(record); }};
@@ -161,14 +164,11 @@ void add_import_carmen(CLI::App& import) {
   CLI::App& command = *import.add_subcommand("carmen", "a CARMEN log as the bytes of a P3-DX and an LMS200");
   command.add_option("LOG", options->log, "CARMEN log (FLASER, ROBOTLASER1, RAWLASER1, ODOM)")->required();
   command.add_option("OUT", options->recording, "recording to write (.pcapng)")->required();
-  command
-      .add_option("--no-return", options->no_return_m,
-                  "ranges of this many metres and more are no return (0: only the scanner's own codes are); "
-                  "default: the log's largest value, where at least 0.3 % of the beams have it")
-      ->check(CLI::NonNegativeNumber);
+  command.add_option("--no-return", options->no_return_m, kNoReturnHelp)->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "print the result as JSON");
   command.callback([options] {
     const CarmenImport done = import_carmen(options->log, options->recording, options->no_return_m);
+    if (done.survey.cut) std::cerr << "deltamap: warning: " << *done.survey.cut << '\n';
     options->json ? print_json(done, options->recording) : print_text(done, options->recording);
   });
 }

@@ -39,7 +39,7 @@ struct Bounds {
 /// Calls visit(laser, end) in the map's frame for every valid range of the log; answers the number of scans.
 template <typename Visit>
 std::size_t for_each_beam(const fs::path& log, const CarmenSurvey& survey, const std::string& doing, Visit&& visit) {
-  CarmenLog lines{log};
+  CarmenLog lines{log, survey.clock};
   Progress progress{doing + " " + log.filename().string(), lines.size_bytes()};
   std::size_t scans = 0;
   while (const auto record = lines.next()) {
@@ -96,9 +96,10 @@ OccupancyGrid grid_of(const GridGeometry& geometry, const std::vector<CellCount>
 }  // namespace
 
 MapFromPoses map_from_poses(const fs::path& log, const MapFromPosesParams& params) {
-  const CarmenSurvey survey = survey_of(log, std::nullopt);
-  if (!survey.scans_carry_poses) throw std::runtime_error(log.string() + ": no scan carries a laser pose");
   MapFromPoses made;
+  made.survey = survey_of(log, params.no_return_m);
+  const CarmenSurvey& survey = made.survey;
+  if (!survey.scans_carry_poses) throw std::runtime_error(log.string() + ": no scan carries a laser pose");
   Bounds bounds;
   made.scans = for_each_beam(log, survey, "measuring", [&](const Point2& laser, const Point2& end) {
     bounds.include(laser);
@@ -139,17 +140,26 @@ void add_map_from_poses(CLI::App& map) {
   command.add_option("--resolution", options->params.resolution_m, "side of a cell, m")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();
+  command.add_option("--no-return", options->params.no_return_m, kNoReturnHelp)->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "print the result as JSON");
   command.callback([options] {
     const MapFromPoses made = map_from_poses(options->log, options->params);
+    if (made.survey.cut) std::cerr << "deltamap: warning: " << *made.survey.cut << '\n';
     write_grid(made.grid, options->yaml);
     const std::size_t occupied = count_of(made.grid, CellState::kOccupied);
     const std::size_t free = count_of(made.grid, CellState::kFree);
     if (options->json) {
-      std::cout << nlohmann::ordered_json{{"map", options->yaml},         {"scans", made.scans},
-                                          {"beams", made.beams},          {"width", made.grid.width()},
-                                          {"height", made.grid.height()}, {"resolution_m", made.grid.resolution_m()},
-                                          {"occupied_cells", occupied},   {"free_cells", free}}
+      const auto& no_return_m = made.survey.no_return_m;
+      std::cout << nlohmann::ordered_json{{"map", options->yaml},
+                                          {"scans", made.scans},
+                                          {"beams", made.beams},
+                                          {"width", made.grid.width()},
+                                          {"height", made.grid.height()},
+                                          {"resolution_m", made.grid.resolution_m()},
+                                          {"occupied_cells", occupied},
+                                          {"free_cells", free},
+                                          {"no_return_m", no_return_m ? nlohmann::ordered_json(*no_return_m) : nullptr},
+                                          {"no_return_share", made.survey.no_return_share}}
                        .dump(2)
                 << '\n';
       return;
@@ -157,6 +167,7 @@ void add_map_from_poses(CLI::App& map) {
     std::cout << options->yaml << ": " << made.grid.width() << " x " << made.grid.height() << " cells of "
               << made.grid.resolution_m() << " m from " << made.scans << " scans, " << occupied << " occupied, " << free
               << " free\n";
+    if (const std::string line = no_return_line(made.survey); !line.empty()) std::cout << line << '\n';
   });
 }
 

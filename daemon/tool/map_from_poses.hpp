@@ -5,8 +5,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 
 #include "core/occupancy_grid.hpp"
+#include "daemon/tool/carmen_survey.hpp"
 
 namespace deltamap::daemon::tool {
 
@@ -15,16 +17,18 @@ struct MapFromPosesParams {
   double occupied_ratio = 0.25;  ///< a cell is occupied where at least this share of its beams ended in it; (0, 1]
   unsigned least_hits = 2;       ///< and at least so many: one alone is a passer-by or an edge; >= 1
   double margin_m = 0.5;         ///< of unknown cells around everything that was seen; >= 0
+  std::optional<double> no_return_m{};  ///< stands in for the log's largest values (carmen_survey.hpp)
 };
 
 struct MapFromPoses {
   OccupancyGrid grid;
   std::size_t scans = 0;
   std::size_t beams = 0;  ///< with a valid range
+  CarmenSurvey survey;
 };
 
 /// Throws std::runtime_error: one line that names the log and the place (a scan without a pose, no valid range, too
-/// large).
+/// large). A log that was cut is used up to the cut; times are not looked at.
 [[nodiscard]] MapFromPoses map_from_poses(const std::filesystem::path& log, const MapFromPosesParams& params);
 
 }  // namespace deltamap::daemon::tool

@@ -32,7 +32,7 @@ void print_summary(const RunReport& report) {
             << report.changes.size() - accepted << " refused, lost " << report.time_lost_s << " s, "
             << report.cpu_total_s / scans * 1e3 << " ms CPU a scan, peak "
             << static_cast<double>(report.peak_resident_bytes) / (1024.0 * 1024.0) << " MB, journal " << report.journal
-            << '\n';
+            << "; began with " << report.began << '\n';
 }
 
 void run(ReplayOptions& options) {
@@ -50,6 +50,7 @@ void run(ReplayOptions& options) {
       return !interrupted;
     });
   }
+  if (report.cut) std::cerr << "deltamap: warning: " << report.cut->text << '\n';
   if (options.as_json)
     std::cout << json_text(report, options.job.settings);
   else

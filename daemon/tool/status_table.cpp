@@ -93,7 +93,8 @@ std::string status_table(const std::string& reply_line) {
   text += scans_line(s);
   text += line("ports", "robot %s (%.1f V), laser %s", word(s, "/ports/robot").c_str(), number(s, "/battery_v"),
                word(s, "/ports/laser").c_str());
-  text += line("drive", "%s, stopped by: %s", word(s, "/drive").c_str(), word(s, "/stopped_by").c_str());
+  text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),
+               word(s, "/stopped_by").c_str());
   text += line("running", "%.0f s", number(s, "/since_start_s"));
   if (s.contains("recording") && s["recording"].is_object()) {
     text += line("recording", "%s, %.1f MB%s", word(s, "/recording/file").c_str(), number(s, "/recording/bytes") * 1e-6,

@@ -34,11 +34,15 @@ constexpr auto kNames = std::to_array<NamedTelegram>({
     {command::kRequestStatus, "request status"},
     {command::kRequestErrors, "request errors"},
     {command::kRequestCounters, "request counters"},
+    {command::kRequestMean, "request mean scan"},
+    {command::kRequestSubRange, "request sub-range"},
+    {command::kRequestMeanSubRange, "request mean sub-range"},
     {command::kRequestType, "request type"},
     {command::kSetVariant, "set variant"},
     {command::kSetPermanentBaud, "set permanent baud"},
     {command::kReadConfiguration, "read configuration"},
     {command::kWriteConfiguration, "write configuration"},
+    {command::kReadConfiguration2, "read configuration 2"},
     {response::kPowerOn, "power-on"},
     {response::kReset, "reset confirmed"},
     {response::kRefused, "refused"},
@@ -49,12 +53,39 @@ constexpr auto kNames = std::to_array<NamedTelegram>({
     {response::kCounters, "counters"},
     {response::kMeanScan, "mean scan"},
     {response::kSubRange, "sub-range"},
+    {response::kMeanSubRange, "mean sub-range"},
+    {response::kReflectivity, "ranges with reflectivity"},
+    {response::kConfiguration2, "configuration 2"},
     {response::kType, "type"},
     {response::kVariant, "variant"},
     {response::kPermanentBaud, "permanent baud"},
     {response::kConfiguration, "configuration"},
     {response::kConfigurationWritten, "configuration written"},
 });
+
+constexpr auto kModeNames = std::to_array<NamedTelegram>({
+    {mode::kInstallation, "installation"},
+    {mode::kDiagnostic, "diagnostic"},
+    {mode::kStreamAll, "stream of all values"},
+    {mode::kOnRequest, "on request"},
+    {mode::kStreamMean, "stream of means"},
+    {mode::kStreamSubRange, "stream of a sub-range"},
+    {mode::kStreamMeanSubRange, "stream of means of a sub-range"},
+    {mode::kStreamPartial, "stream of partial scans"},
+    {mode::kStreamReflectivity, "stream of ranges with reflectivity"},
+    {mode::kTestPassword, "test of the password"},
+    {mode::kBaud38400, "38400 baud"},
+    {mode::kBaud19200, "19200 baud"},
+    {mode::kBaud9600, "9600 baud"},
+    {mode::kBaud500000, "500000 baud"},
+});
+
+template <typename Names>
+std::string name_in(const Names& names, std::uint8_t code, const char* unnamed) {
+  const auto* found =
+      std::find_if(names.begin(), names.end(), [&](const NamedTelegram& named) { return named.code == code; });
+  return found != names.end() ? found->name : unnamed + std::to_string(code);
+}
 
 std::vector<std::uint8_t> request(std::uint8_t code, const FieldWriter& data = {}) {
   return encoded_request(code, data.written());
@@ -151,8 +182,13 @@ std::vector<std::uint8_t> variant_reply(bool accepted, const ScanVariant& active
                FieldWriter{}.u8(accepted ? kAccepted : 0).u16(active.angle_deg).u16(active.resolution_centideg));
 }
 
-std::vector<std::uint8_t> permanent_baud_reply(bool accepted) {
-  return reply(response::kPermanentBaud, FieldWriter{}.u8(accepted ? kAccepted : 0));
+std::vector<std::uint8_t> permanent_baud_reply(bool accepted, bool is_permanent) {
+  return reply(response::kPermanentBaud, FieldWriter{}.u8(accepted ? kAccepted : 0).u8(is_permanent ? 1 : 0));
+}
+
+std::vector<std::uint8_t> configuration_2_reply() {
+  constexpr std::size_t kSize = 84;
+  return reply(response::kConfiguration2, FieldWriter{}.bytes(std::vector<std::uint8_t>(kSize, 0)));
 }
 
 std::vector<std::uint8_t> configuration_reply(const Configuration& configuration) {
@@ -179,6 +215,15 @@ std::optional<VariantReply> decoded_variant_reply(const Telegram& telegram) {
   return fields->is_good() ? std::optional{answer} : std::nullopt;
 }
 
+std::optional<PermanentBaudReply> decoded_permanent_baud_reply(const Telegram& telegram) {
+  std::optional<FieldReader> fields = fields_of(telegram, response::kPermanentBaud);
+  if (!fields) return std::nullopt;
+  PermanentBaudReply answer;
+  answer.accepted = fields->u8() == kAccepted;
+  answer.is_permanent = fields->u8() == 1;
+  return fields->is_good() ? std::optional{answer} : std::nullopt;
+}
+
 std::optional<Configuration> decoded_configuration(const Telegram& telegram) {
   if (telegram.kind != Telegram::Kind::kTelegram || telegram.command != response::kConfiguration) return std::nullopt;
   if (telegram.data.size() < Configuration::kSize) return std::nullopt;
@@ -194,10 +239,8 @@ std::optional<WriteReply> decoded_write_reply(const Telegram& telegram) {
   return WriteReply{telegram.data[0] == kAccepted, *active};
 }
 
-std::string telegram_name(std::uint8_t code) {
-  const auto* found =
-      std::find_if(kNames.begin(), kNames.end(), [&](const NamedTelegram& n) { return n.code == code; });
-  return found != kNames.end() ? found->name : "command " + std::to_string(code);
-}
+std::string mode_name(std::uint8_t mode) { return name_in(kModeNames, mode, "mode "); }
+
+std::string telegram_name(std::uint8_t code) { return name_in(kNames, code, "command "); }
 
 }  // namespace deltamap::drivers::lms200

@@ -22,11 +22,15 @@ inline constexpr std::uint8_t kRequestScan = 0x30;
 inline constexpr std::uint8_t kRequestStatus = 0x31;
 inline constexpr std::uint8_t kRequestErrors = 0x32;
 inline constexpr std::uint8_t kRequestCounters = 0x35;
+inline constexpr std::uint8_t kRequestMean = 0x36;
+inline constexpr std::uint8_t kRequestSubRange = 0x37;
 inline constexpr std::uint8_t kRequestType = 0x3A;
 inline constexpr std::uint8_t kSetVariant = 0x3B;
+inline constexpr std::uint8_t kRequestMeanSubRange = 0x3F;
 inline constexpr std::uint8_t kSetPermanentBaud = 0x66;
 inline constexpr std::uint8_t kReadConfiguration = 0x74;
 inline constexpr std::uint8_t kWriteConfiguration = 0x77;
+inline constexpr std::uint8_t kReadConfiguration2 = 0x7B;
 }  // namespace command
 
 namespace response {
@@ -42,9 +46,12 @@ inline constexpr std::uint8_t kMeanScan = 0xB6;
 inline constexpr std::uint8_t kSubRange = 0xB7;
 inline constexpr std::uint8_t kType = 0xBA;
 inline constexpr std::uint8_t kVariant = 0xBB;
+inline constexpr std::uint8_t kMeanSubRange = 0xBF;
 inline constexpr std::uint8_t kPermanentBaud = 0xE6;
 inline constexpr std::uint8_t kConfiguration = 0xF4;
+inline constexpr std::uint8_t kReflectivity = 0xF5;
 inline constexpr std::uint8_t kConfigurationWritten = 0xF7;
+inline constexpr std::uint8_t kConfiguration2 = 0xFB;
 }  // namespace response
 
 /// First data byte of 20h.
@@ -55,7 +62,9 @@ inline constexpr std::uint8_t kStreamAll = 0x24;
 inline constexpr std::uint8_t kOnRequest = 0x25;
 inline constexpr std::uint8_t kStreamMean = 0x26;
 inline constexpr std::uint8_t kStreamSubRange = 0x27;
+inline constexpr std::uint8_t kStreamMeanSubRange = 0x28;
 inline constexpr std::uint8_t kStreamPartial = 0x2A;
+inline constexpr std::uint8_t kStreamReflectivity = 0x2B;
 inline constexpr std::uint8_t kTestPassword = 0x30;
 inline constexpr std::uint8_t kBaud38400 = 0x40;
 inline constexpr std::uint8_t kBaud19200 = 0x41;
@@ -97,8 +106,11 @@ inline constexpr std::uint8_t kAccepted = 0x01;
 [[nodiscard]] std::vector<std::uint8_t> mode_reply(bool switched);
 [[nodiscard]] std::vector<std::uint8_t> type_reply(std::string_view type);
 [[nodiscard]] std::vector<std::uint8_t> variant_reply(bool accepted, const ScanVariant& active);
-[[nodiscard]] std::vector<std::uint8_t> permanent_baud_reply(bool accepted);
+/// With the setting that now counts.
+[[nodiscard]] std::vector<std::uint8_t> permanent_baud_reply(bool accepted, bool is_permanent);
 [[nodiscard]] std::vector<std::uint8_t> configuration_reply(const Configuration& configuration);
+/// An LMS200 has nothing to say in it: 84 zeros.
+[[nodiscard]] std::vector<std::uint8_t> configuration_2_reply();
 [[nodiscard]] std::vector<std::uint8_t> configuration_written_reply(bool accepted, const Configuration& active);
 
 // What a host reads out of an answer; nullopt where it is of another kind or too short.
@@ -110,6 +122,13 @@ struct VariantReply {
 };
 [[nodiscard]] std::optional<VariantReply> decoded_variant_reply(const Telegram& telegram);
 
+struct PermanentBaudReply {
+  bool accepted = false;
+  bool is_permanent = false;
+};
+/// From E6h.
+[[nodiscard]] std::optional<PermanentBaudReply> decoded_permanent_baud_reply(const Telegram& telegram);
+
 /// From F4h.
 [[nodiscard]] std::optional<Configuration> decoded_configuration(const Telegram& telegram);
 
@@ -119,6 +138,9 @@ struct WriteReply {
 };
 /// From F7h.
 [[nodiscard]] std::optional<WriteReply> decoded_write_reply(const Telegram& telegram);
+
+/// "all values as a stream", "installation", "38400 baud", ... of a first data byte of 20h; "mode 99" where unknown.
+[[nodiscard]] std::string mode_name(std::uint8_t mode);
 
 /// "set mode", "scan", ...; "command 99" where B3 does not list it. For requests and answers.
 [[nodiscard]] std::string telegram_name(std::uint8_t command_or_response);

@@ -19,6 +19,9 @@ constexpr unsigned kUnitShift = 14;
 constexpr unsigned kUnknownUnit = 3;
 
 // The codes, counted from "beyond maximum" (x..F7).
+constexpr unsigned kChannelErrorAfterMaximum = 0x3;
+constexpr unsigned kSignalTooWeakAfterMaximum = 0x4;
+constexpr unsigned kOverflowAfterMaximum = 0x6;
 constexpr unsigned kDazzledAfterMaximum = 0x7;
 constexpr unsigned kNotValidAfterMaximum = 0x8;
 
@@ -74,16 +77,17 @@ double Measurement::metres_per_word() const {
   return kMetres[unit_code];
 }
 
-std::optional<Measurement> decoded_measurement(const Telegram& telegram) {
-  if (telegram.kind != Telegram::Kind::kTelegram || telegram.command != response::kScan) return std::nullopt;
-  FieldReader fields{telegram.data};
+std::size_t words_announced(std::span<const std::uint8_t> data) { return FieldReader{data}.u16() & kCountMask; }
+
+std::optional<Measurement> measurement_from(std::span<const std::uint8_t> data, std::uint8_t status) {
+  FieldReader fields{data};
   const unsigned head = fields.u16();
   const std::size_t count = head & kCountMask;
   Measurement measurement;
   measurement.unit_code = static_cast<std::uint8_t>(head >> kUnitShift);
   measurement.is_partial = (head & kPartialFlag) != 0;
   measurement.partial_number = static_cast<std::uint8_t>(head >> kPartialNumberShift & 3u);
-  measurement.status = telegram.status;
+  measurement.status = status;
   const bool has_indices = fields.left() == 2 * count + 2;
   const bool fits = fields.is_good() && (fields.left() == 2 * count || has_indices);
   if (!fits || measurement.unit_code == kUnknownUnit) return std::nullopt;
@@ -96,7 +100,7 @@ std::optional<Measurement> decoded_measurement(const Telegram& telegram) {
   return measurement;
 }
 
-std::vector<std::uint8_t> encoded_measurement(const Measurement& measurement) {
+std::vector<std::uint8_t> measurement_data(const Measurement& measurement) {
   const auto count = static_cast<unsigned>(measurement.words.size());
   assert(count <= kCountMask && measurement.partial_number < 4 && "the count word has 10 and 2 bits for them");
   FieldWriter data;
@@ -104,7 +108,16 @@ std::vector<std::uint8_t> encoded_measurement(const Measurement& measurement) {
            (measurement.is_partial ? kPartialFlag : 0u) | static_cast<unsigned>(measurement.unit_code) << kUnitShift);
   for (const std::uint16_t word : measurement.words) data.u16(word);
   if (measurement.indices) data.u8(measurement.indices->scan).u8(measurement.indices->telegram);
-  return encoded_reply(response::kScan, data.written(), measurement.status);
+  return data.written();
+}
+
+std::optional<Measurement> decoded_measurement(const Telegram& telegram) {
+  if (telegram.kind != Telegram::Kind::kTelegram || telegram.command != response::kScan) return std::nullopt;
+  return measurement_from(telegram.data, telegram.status);
+}
+
+std::vector<std::uint8_t> encoded_measurement(const Measurement& measurement) {
+  return encoded_reply(response::kScan, measurement_data(measurement), measurement.status);
 }
 
 std::optional<Scan> scan_from(const Measurement& measurement, const ScanFormat& format, Timestamp first_byte,
@@ -123,6 +136,8 @@ std::optional<Scan> scan_from(const Measurement& measurement, const ScanFormat& 
   scan.bearing_step_rad = radians(fan->step_deg);
   scan.max_range_m = format.max_range_m > 0.0 ? std::min(format.max_range_m, mode_max_m) : mode_max_m;
   scan.robot_from_laser = format.robot_from_laser;
+  scan.severity = measurement.status & kSeverityBits;
+  scan.implausible = (measurement.status & kImplausibleBit) != 0;
   scan.beams.reserve(measurement.words.size());
   for (unsigned i = 0; i < measurement.words.size(); ++i) {
     Beam beam = decoded_beam(measurement.words[i], *coding, metres_per_word, scan.max_range_m);
@@ -142,11 +157,31 @@ Beam decoded_beam(std::uint16_t word, const RangeCoding& coding, double metres_p
   return {.range_m = static_cast<float>(range_m), .kind = BeamKind::kRange};
 }
 
+std::optional<std::string> code_name(std::uint16_t word, const RangeCoding& coding) {
+  const unsigned value = word & coding.range_mask;
+  if (value < coding.beyond_maximum) return std::nullopt;
+  switch (value - coding.beyond_maximum) {
+    case 0:
+      return "beyond maximum";
+    case kChannelErrorAfterMaximum:
+      return "channel 1 error";
+    case kSignalTooWeakAfterMaximum:
+      return "signal too weak";
+    case kOverflowAfterMaximum:
+      return "overflow";
+    case kDazzledAfterMaximum:
+      return "dazzled";
+    case kNotValidAfterMaximum:
+      return "not valid";
+    default:
+      return "code " + std::to_string(value);
+  }
+}
+
 std::uint16_t encoded_beam(const Beam& beam, const RangeCoding& coding, double metres_per_word) {
   const auto code = [&](unsigned after_maximum) {
     return static_cast<std::uint16_t>(coding.beyond_maximum + after_maximum);
   };
-  constexpr unsigned kSignalTooWeakAfterMaximum = 0x4;  // x..FB
   switch (beam.kind) {
     case BeamKind::kBeyondMaximum:
       return code(0);

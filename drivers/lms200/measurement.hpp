@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -39,6 +41,12 @@ struct Measurement {
 /// The whole telegram.
 [[nodiscard]] std::vector<std::uint8_t> encoded_measurement(const Measurement& measurement);
 
+/// The data of such a telegram alone, which others have after fields of their own (value_selection.hpp).
+[[nodiscard]] std::optional<Measurement> measurement_from(std::span<const std::uint8_t> data, std::uint8_t status);
+[[nodiscard]] std::vector<std::uint8_t> measurement_data(const Measurement& measurement);
+/// How many words its head announces; 0 where there is none.
+[[nodiscard]] std::size_t words_announced(std::span<const std::uint8_t> data);
+
 /// What a measurement does not say about itself.
 struct ScanFormat {
   std::uint8_t measuring_mode = 0;  ///< byte 5 of the configuration: the mask follows from it, not from the units (B4)
@@ -54,6 +62,8 @@ struct ScanFormat {
 /// Range and kind of one word; the beam's time is left to the caller.
 [[nodiscard]] Beam decoded_beam(std::uint16_t word, const RangeCoding& coding, double metres_per_word,
                                 double max_range_m);
+/// What a word says that is no range: "not valid", "overflow", ... (B4); nullopt for ranges.
+[[nodiscard]] std::optional<std::string> code_name(std::uint16_t word, const RangeCoding& coding);
 /// The word that makes scan_from answer this beam: for simulator and import. Ranges are rounded to the unit; 0 and
 /// ranges that reach into the codes become "beyond maximum".
 [[nodiscard]] std::uint16_t encoded_beam(const Beam& beam, const RangeCoding& coding, double metres_per_word);

@@ -20,7 +20,10 @@ unsigned known_baud_or_throw(unsigned baud) {
 }  // namespace
 
 Lms200Session::Lms200Session(const Lms200Params& params, SessionMode mode)
-    : params_{params}, mode_{mode}, decoder_{Sender::kDevice, known_baud_or_throw(params.baud)} {
+    : params_{params},
+      mode_{mode},
+      decoder_{Sender::kDevice, known_baud_or_throw(params.baud)},
+      home_baud_{params.baud} {
   if (!is_possible(params.variant)) {
     throw std::invalid_argument("laser variant " + name_of(params.variant) +
                                 " is unknown: 180/1, 180/0.5, 100/1, 100/0.5 or 100/0.25");
@@ -32,9 +35,15 @@ Lms200Session::Lms200Session(const Lms200Params& params, SessionMode mode)
 
 Lms200Output Lms200Session::on_bytes(std::span<const std::uint8_t> bytes, Timestamp stamp) {
   Lms200Output out;
-  for (const Telegram& telegram : decoder_.decode(bytes, stamp)) {
+  const std::uint64_t errors_before = decoder_.counts().errors();
+  const std::vector<Telegram> telegrams = decoder_.decode(bytes, stamp);
+  for (const Telegram& telegram : telegrams) {
     take_telegram(telegram, out);
     if (mode_ == SessionMode::kLive && state_ != State::kIdle) answer(telegram, stamp, out);
+  }
+  if (telegrams.empty()) {
+    take_no_telegram(decoder_.counts().errors() > errors_before, stamp);
+    if (mode_ == SessionMode::kLive && state_ != State::kStreaming) diagnose(bytes, out);
   }
   return finished(std::move(out));
 }
@@ -46,6 +55,7 @@ void Lms200Session::on_baud(unsigned baud) {
 
 void Lms200Session::take_telegram(const Telegram& telegram, Lms200Output& out) {
   if (telegram.kind != Telegram::Kind::kTelegram) return;
+  diagnosis_.hear_own_frame();
   switch (telegram.command) {
     case response::kScan:
       take_scan(telegram, out);
@@ -111,14 +121,13 @@ void Lms200Session::take_scan(const Telegram& telegram, Lms200Output& out) {
     ++content_counts_.malformed;
     return;
   }
-  constexpr std::uint8_t kDirtyWindow = 0x80;  // B6
-  constexpr std::uint8_t kSeverity = 0x07;
-  const auto health = static_cast<std::uint8_t>(measurement->status & (kDirtyWindow | kSeverity));
+  constexpr std::uint8_t kHealthBits = kSeverityBits | kImplausibleBit | kDirtyWindowBit;
+  const auto health = static_cast<std::uint8_t>(measurement->status & kHealthBits);
   if (health != scan_health_) {
     scan_health_ = health;
-    const bool is_dirty = (health & kDirtyWindow) != 0;
-    out.output.log.push_back("laser status severity=" + std::to_string(health & kSeverity) +
-                             (is_dirty ? " window=dirty" : ""));
+    out.output.log.push_back("laser status severity=" + std::to_string(health & kSeverityBits) +
+                             ((health & kImplausibleBit) != 0 ? " values=implausible" : "") +
+                             ((health & kDirtyWindowBit) != 0 ? " window=dirty" : ""));
   }
   const std::optional<std::uint8_t> measured_in = measuring_mode(telegram.received);
   if (!measured_in) return;

@@ -14,23 +14,32 @@ namespace {
 
 constexpr std::array<unsigned, 4> kSearchOrder{38400, 9600, 500000, 19200};  // B8
 constexpr double kStopPauseS = 0.1;                                          // B8: then what was on the line is through
+constexpr double kStatusTimeoutS = 0.4;                                      // 160 bytes take 0.25 s at 9600 (B1)
 constexpr double kSettlePauseS = 0.45;    // B3: 75 to 434 ms until usable at a new baud
 constexpr double kPauseAfterNakS = 0.04;  // B1: at least 30 ms
-constexpr double kPowerOnListenS = 10.0;  // then search again: its power-on message may come at another baud
 constexpr int kMaxInterruptions = 10;
+constexpr int kMaxNaks = 10;
 constexpr int kMaxWrites = 2;  // the EEPROM stands some thousands
 
 }  // namespace
 
 Lms200Output Lms200Session::start(Timestamp now) {
   Lms200Output out;
+  known_mode_.reset();  // whoever is on the line now may measure in another one: no scan before its status
   if (mode_ == SessionMode::kListenOnly) return out;
-  search_from(params_.baud);
   writes_ = 0;
-  may_change_baud_ = true;
-  may_change_variant_ = true;
+  diagnosis_.reset();
   search_began_ = now;
-  try_baud(now, out);
+  last_scan_ = now;
+  silence_told_ = !agreement_;
+  if (agreement_) {
+    begin_watch(now, out);
+  } else {
+    may_change_baud_ = true;
+    may_change_variant_ = true;
+    search_from(params_.baud);
+    try_baud(now, out);
+  }
   return finished(std::move(out));
 }
 
@@ -46,15 +55,15 @@ Lms200Session::Step Lms200Session::step_of(State state) const {
     case State::kStopping:
       return {mode_request(mode::kOnRequest), kStopPauseS, 1};
     case State::kProbing:
-      return {status_request(), 0.6, 3};
-    case State::kAwaitingPowerOn:
-      return {{}, kPowerOnListenS, 1};
+      return {status_request(), kStatusTimeoutS, 3};
+    case State::kWatching:
+      return {status_request(), kStatusTimeoutS + (baud() == home_baud_ ? nominal_period_s() : 0.0), 1};
     case State::kSettingBaud:
       return {baud_request(params_.baud), 1.0, 3};
     case State::kSettling:
       return {{}, kSettlePauseS, 1};
     case State::kSettingVariant:
-      return {variant_request(params_.variant), 3.0, 3};
+      return {variant_request(params_.variant), 1.5, 4};
     case State::kReadingConfiguration:
     case State::kVerifyingConfiguration:
       return {configuration_request(), 1.0, 4};
@@ -74,6 +83,7 @@ Lms200Session::Step Lms200Session::step_of(State state) const {
 void Lms200Session::begin_step(State state, Timestamp now, Lms200Output& out) {
   state_ = state;
   tries_ = 0;
+  naks_ = 0;
   send_step(now, out);
 }
 
@@ -81,6 +91,7 @@ void Lms200Session::send_step(Timestamp now, Lms200Output& out) {
   Step step = step_of(state_);
   const Duration on_the_line = line_time(step.request.size(), baud());
   ++tries_;
+  repeats_after_nak_ = false;
   deadline_ = now + on_the_line + duration_from_seconds(step.timeout_s);
   if (!step.request.empty()) write(std::move(step.request), out);
 }
@@ -97,16 +108,8 @@ void Lms200Session::next_baud(Timestamp now, Lms200Output& out) {
     return;
   }
   attempt_ = 0;
-  if (now - search_began_ < duration_from_seconds(params_.power_on_wait_s)) {
-    out.output.log.push_back("laser does not answer; listening whether it starts up");
-    constexpr unsigned kPowerOnBaud = 9600;
-    set_baud(kPowerOnBaud, out);
-    begin_step(State::kAwaitingPowerOn, now, out);
-    return;
-  }
-  std::string tried;
-  for (const unsigned baud : bauds_) tried += (tried.empty() ? "" : ", ") + std::to_string(baud);
-  fail("laser does not answer at " + tried + " baud", out);
+  out.output.log.push_back("laser does not answer; listening whether it starts up; " + diagnosis_.phrase());
+  begin_watch(now, out);
 }
 
 Lms200Output Lms200Session::on_time(Timestamp now) {
@@ -117,8 +120,14 @@ Lms200Output Lms200Session::on_time(Timestamp now) {
 
 void Lms200Session::time_out(Timestamp now, Lms200Output& out) {
   if (now < deadline_) return;
-  if (state_ == State::kStreaming) {
-    fail("laser has sent no scan for " + std::to_string(std::lround(scan_timeout_s() * 1e3)) + " ms", out);
+  if (repeats_after_nak_) {
+    --tries_;  // what was not understood has not been tried
+    send_step(now, out);
+  } else if (state_ == State::kStreaming) {
+    search_began_ = now;
+    begin_watch(now, out);
+  } else if (state_ == State::kWatching) {
+    end_visit(now, out);
   } else if (state_ == State::kStopping) {
     out.output.requests.push_back({PortRequest::Kind::kDiscardInput, {}, 0});
     begin_step(State::kProbing, now, out);
@@ -135,9 +144,6 @@ void Lms200Session::give_up_step(Timestamp now, Lms200Output& out) {
   switch (state_) {
     case State::kProbing:
       next_baud(now, out);
-      break;
-    case State::kAwaitingPowerOn:
-      try_baud(now, out);
       break;
     case State::kSettingBaud:  // it may have changed and its answer got lost: look everywhere, then stay there
       may_change_baud_ = false;
@@ -159,18 +165,26 @@ void Lms200Session::give_up_step(Timestamp now, Lms200Output& out) {
 void Lms200Session::answer(const Telegram& telegram, Timestamp now, Lms200Output& out) {
   if (telegram.kind == Telegram::Kind::kAck) return;
   if (telegram.kind == Telegram::Kind::kNak) {
-    const bool asks_again = state_ != State::kStreaming && tries_ < step_of(state_).tries;
-    if (asks_again) deadline_ = std::min(deadline_, now + duration_from_seconds(kPauseAfterNakS));
+    answer_nak(now);
   } else if (telegram.command == response::kPowerOn) {
-    // It is at this baud, with all that was volatile forgotten.
+    // It is at this baud and silent, with all that was volatile forgotten.
     search_from(baud());
     search_began_ = now;
     may_change_baud_ = true;
     may_change_variant_ = true;
-    try_baud(now, out);
+    begin_step(State::kProbing, now, out);
   } else {
+    it_speaks_ = true;
     answer_step(telegram, now, out);
   }
+}
+
+/// What the laser could not read is sent again (B1), more often than what it does not answer: it is there.
+void Lms200Session::answer_nak(Timestamp now) {
+  const bool has_asked = state_ != State::kStreaming && !step_of(state_).request.empty();
+  if (!has_asked) return;
+  repeats_after_nak_ = ++naks_ <= kMaxNaks;
+  deadline_ = std::min(deadline_, now + duration_from_seconds(kPauseAfterNakS));
 }
 
 void Lms200Session::answer_step(const Telegram& telegram, Timestamp now, Lms200Output& out) {
@@ -205,18 +219,17 @@ void Lms200Session::answer_step(const Telegram& telegram, Timestamp now, Lms200O
       break;
     case State::kStarting:
       if (mode_was_switched(telegram) == true || telegram.command == response::kScan) {
-        out.output.log.push_back("laser streams baud=" + std::to_string(baud()) +
-                                 " variant=" + (known_variant_ ? name_of(*known_variant_) : "?"));
-        state_ = State::kStreaming;
-        deadline_ = now + duration_from_seconds(scan_timeout_s());
+        begin_stream(now, out);
       }
       break;
     case State::kStreaming:
-      if (telegram.command == response::kScan) deadline_ = now + duration_from_seconds(scan_timeout_s());
+      answer_stream(telegram, now, out);
+      break;
+    case State::kWatching:
+      answer_watch(telegram, now, out);
       break;
     case State::kIdle:
     case State::kStopping:
-    case State::kAwaitingPowerOn:
     case State::kSettling:
       break;
   }
@@ -277,6 +290,20 @@ void Lms200Session::compare_configuration(Timestamp now, Lms200Output& out) {
   begin_step(State::kStarting, now, out);
 }
 
+void Lms200Session::begin_stream(Timestamp now, Lms200Output& out) {
+  out.output.log.push_back("laser streams baud=" + std::to_string(baud()) +
+                           " variant=" + (known_variant_ ? name_of(*known_variant_) : "?"));
+  if (known_mode_ && known_variant_ && known_configuration_) {
+    agreement_ = Agreement{*known_mode_, *known_variant_, known_configuration_->units()};
+  }
+  home_baud_ = baud();
+  check_at_.reset();
+  last_scan_ = now;
+  was_garbage_ = false;
+  state_ = State::kStreaming;
+  deadline_ = now + patience_with_stream();
+}
+
 Lms200Output Lms200Session::close(Timestamp) {
   Lms200Output out;
   if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
@@ -288,11 +315,6 @@ Lms200Output Lms200Session::close(Timestamp) {
 void Lms200Session::fail(std::string reason, Lms200Output& out) {
   state_ = State::kIdle;
   out.output.failed = std::move(reason);
-}
-
-double Lms200Session::scan_timeout_s() const {
-  constexpr double kPeriods = 5.0;
-  return std::max(params_.scan_timeout_s, kPeriods * nominal_period_s());
 }
 
 void Lms200Session::write(std::vector<std::uint8_t> bytes, Lms200Output& out) {

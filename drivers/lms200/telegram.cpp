@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "drivers/byte_fields.hpp"
+#include "drivers/checksums.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {
@@ -19,16 +20,7 @@ std::vector<std::uint8_t> with_crc(const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-std::uint16_t crc16(std::span<const std::uint8_t> bytes) {
-  unsigned crc = 0;
-  unsigned previous = 0;
-  for (const std::uint8_t byte : bytes) {
-    crc = (crc & 0x8000u) != 0 ? ((crc & 0x7FFFu) << 1) ^ 0x8005u : crc << 1;
-    crc ^= previous << 8 | byte;
-    previous = byte;
-  }
-  return static_cast<std::uint16_t>(crc);
-}
+std::uint16_t crc16(std::span<const std::uint8_t> bytes) { return lms200_crc(bytes); }
 
 std::vector<std::uint8_t> encoded_request(std::uint8_t command, std::span<const std::uint8_t> data,
                                           std::uint8_t address) {

@@ -19,6 +19,11 @@ inline constexpr std::size_t kMaxLength = 808;       ///< largest length field: 
 inline constexpr std::size_t kFrameOverhead = 6;     ///< STX, address, length, CRC
 inline constexpr std::uint8_t kNormalStatus = 0x10;  ///< no fault, device type 6
 
+// The status byte (B6).
+inline constexpr std::uint8_t kSeverityBits = 0x07;  ///< 0 ok, 1 info, 2 warning, 3 error, 4 fatal
+inline constexpr std::uint8_t kImplausibleBit = 0x40;
+inline constexpr std::uint8_t kDirtyWindowBit = 0x80;
+
 enum class Sender { kHost, kDevice };
 
 struct Telegram {

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/pioneer/command_queue.hpp"
 
+#include <utility>
+
 #include "drivers/received_bytes.hpp"
 
 namespace deltamap::drivers::pioneer {
 
-std::optional<std::vector<std::uint8_t>> CommandQueue::take_due(Timestamp now, unsigned baud) {
+std::optional<Command> CommandQueue::take_due(Timestamp now, unsigned baud) {
   constexpr Duration kGap{5'000'000};
   if (waiting_.empty() || now < free_at_) return std::nullopt;
-  std::vector<std::uint8_t> frame = encoded_command(waiting_.front());
+  Command command = std::move(waiting_.front());
   waiting_.pop_front();
-  free_at_ = now + line_time(frame.size(), baud) + kGap;
+  free_at_ = now + line_time(encoded_command(command).size(), baud) + kGap;
   last_sent_ = now;
-  return frame;
+  return command;
 }
 
 void CommandQueue::drop(CommandNumber number) {

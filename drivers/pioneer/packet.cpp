@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "drivers/checksums.hpp"
+
 namespace deltamap::drivers::pioneer {
 namespace {
 
@@ -20,13 +22,7 @@ std::size_t next_header(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-std::uint16_t checksum(std::span<const std::uint8_t> data) {
-  unsigned sum = 0;
-  std::size_t i = 0;
-  for (; i + 1 < data.size(); i += 2) sum = (sum + (static_cast<unsigned>(data[i]) << 8 | data[i + 1])) & 0xFFFFu;
-  if (i < data.size()) sum ^= data[i];
-  return static_cast<std::uint16_t>(sum);
-}
+std::uint16_t checksum(std::span<const std::uint8_t> data) { return pioneer_checksum(data); }
 
 std::vector<std::uint8_t> encoded_packet(std::span<const std::uint8_t> data) {
   assert(!data.empty() && data.size() <= kMaxData && "a packet holds 1 to 202 data bytes");

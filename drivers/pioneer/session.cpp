@@ -13,9 +13,8 @@
 namespace deltamap::drivers::pioneer {
 namespace {
 
-constexpr double kMmPerMetre = 1000.0;
 constexpr double kCheckIntervalS = 1.0;
-constexpr int kMaxRequests = 5;  // of one state, before we take the robot as it is
+constexpr double kVoltsPerDecivolt = 0.1;
 
 RobotModel model_or_throw(const std::string& name) {
   const std::optional<RobotModel> model = model_named(name);
@@ -36,14 +35,19 @@ PioneerSession::PioneerSession(const PioneerParams& params, SessionMode mode)
     : params_{params},
       mode_{mode},
       decoder_{known_baud_or_throw(params.baud)},
-      odometry_{model_or_throw(params.model)} {
-  if (params.fast_baud != 0) (void)known_baud_or_throw(params.fast_baud);
-}
+      odometry_{model_or_throw(params.model)},
+      permission_{params.enable_motors, params.drive_switch},
+      idle_baud_{params.baud},
+      connected_baud_{params.fast_baud == 0 ? params.baud : known_baud_or_throw(params.fast_baud)} {}
 
 PioneerOutput PioneerSession::on_bytes(std::span<const std::uint8_t> bytes, Timestamp stamp) {
   PioneerOutput out;
-  for (const Packet& packet : decoder_.decode(bytes, stamp)) {
-    take_packet(packet, out);
+  const std::vector<Packet> packets = decoder_.decode(bytes, stamp);
+  const bool searches = mode_ == SessionMode::kLive && state_ != State::kConnected;
+  if (packets.empty() && searches) diagnosis_.hear(bytes);
+  for (const Packet& packet : packets) {
+    diagnosis_.hear_own_frame();
+    take_packet(packet, stamp, out);
     if (mode_ == SessionMode::kListenOnly) continue;
     if (state_ == State::kConnected) {
       answer_while_connected(packet, stamp, out);
@@ -51,15 +55,16 @@ PioneerOutput PioneerSession::on_bytes(std::span<const std::uint8_t> bytes, Time
       answer_while_connecting(packet, stamp, out);
     }
   }
+  notice_another_speed(stamp);
   return finished(stamp, std::move(out));
 }
 
 void PioneerSession::on_baud(unsigned baud) { decoder_.set_baud(baud); }
 
-void PioneerSession::take_packet(const Packet& packet, PioneerOutput& out) {
+void PioneerSession::take_packet(const Packet& packet, Timestamp now, PioneerOutput& out) {
   const std::uint8_t type = packet.type();
   if (is_sip(type)) {
-    take_sip(packet, out);
+    take_sip(packet, now, out);
   } else if (type == kSync2) {
     take_identity(packet, out);
   } else if (type == kConfigPacket) {
@@ -69,15 +74,21 @@ void PioneerSession::take_packet(const Packet& packet, PioneerOutput& out) {
   }
 }
 
-void PioneerSession::take_sip(const Packet& packet, PioneerOutput& out) {
-  newest_sip_ = decoded_sip(packet.data);
-  if (!newest_sip_) {
+void PioneerSession::take_sip(const Packet& packet, Timestamp now, PioneerOutput& out) {
+  const std::optional<Sip> sip = decoded_sip(packet.data);
+  if (!sip) {
     ++content_counts_.malformed;
     return;
   }
+  newest_sip_ = sip;
   if (newest_sip_->sonar_is_cut) ++content_counts_.malformed;
   const std::chrono::milliseconds latency{config_ ? config_->kinematics_delay_ms : 0};
-  out.odometry.push_back(odometry_.observe(*newest_sip_, packet.first_byte - latency));
+  Odometry odometry = odometry_.observe(*newest_sip_, packet.first_byte - latency);
+  odometry.low_battery =
+      config_ && odometry.battery_v > 0.0 && odometry.battery_v <= kVoltsPerDecivolt * config_->low_battery_decivolts;
+  odometry.fault_flags = newest_sip_->fault_flags.value_or(0);
+  out.odometry.push_back(odometry);
+  if (mode_ == SessionMode::kLive) watch_motors(now, out);
 }
 
 void PioneerSession::take_identity(const Packet& packet, PioneerOutput& out) {
@@ -95,11 +106,12 @@ void PioneerSession::take_identity(const Packet& packet, PioneerOutput& out) {
 }
 
 void PioneerSession::take_config(const Packet& packet, PioneerOutput& out) {
-  config_ = decoded_config(packet.data);
-  if (!config_) {
+  std::optional<ConfigPacket> config = decoded_config(packet.data);
+  if (!config) {
     ++content_counts_.malformed;
     return;
   }
+  config_ = std::move(config);
   use_model_of(config_->subtype, out);
 }
 
@@ -115,12 +127,10 @@ void PioneerSession::answer_while_connected(const Packet& packet, Timestamp now,
   const std::uint8_t type = packet.type();
   if (is_sip(type)) {
     last_sip_ = now;
-    const bool motors_are_on = newest_sip_ && newest_sip_->has(sip_flag::kMotorsEnabled);
-    const bool button = newest_sip_ && newest_sip_->has(sip_flag::kStopButton);
-    if (motors_are_on || button) may_enable_ = false;  // enabled once, or forbidden by a hand: never again by us
   } else if (type == kSync0) {
     // Only a robot that waits for a connection echoes PULSE as SYNC0.
-    fail("robot was reset: it waits for a connection", now, out);
+    state_ = State::kQuieting;
+    leave("robot was reset: it waits for a connection");
   } else if (type == kConfigPacket && config_) {
     // Its watchdog may be shorter than we thought.
     next_pulse_ = std::min(next_pulse_, queue_.last_sent().value_or(now) + pulse_interval());
@@ -136,7 +146,7 @@ PioneerOutput PioneerSession::on_time(Timestamp now) {
     keep_alive(now, out);
   } else if (state_ == State::kSwitching) {
     if (now >= deadline_ && queue_.is_empty()) continue_switch(now, out);
-  } else {
+  } else if (state_ != State::kLeaving) {
     time_out_while_connecting(now, out);
   }
   return finished(now, std::move(out));
@@ -144,95 +154,37 @@ PioneerOutput PioneerSession::on_time(Timestamp now) {
 
 void PioneerSession::keep_alive(Timestamp now, PioneerOutput& out) {
   if (now - last_sip_ >= duration_from_seconds(params_.sip_timeout_s)) {
-    fail("robot has been silent for " + std::to_string(std::lround(params_.sip_timeout_s * 1e3)) + " ms", now, out);
-    return;
+    return leave("robot has been silent for " + std::to_string(std::lround(params_.sip_timeout_s * 1e3)) + " ms");
   }
   if (now >= next_check_) {
-    bring_robot_to_wanted_state();
+    bring_robot_to_wanted_state(now, out);
     next_check_ = now + duration_from_seconds(kCheckIntervalS);
   }
   if (now < next_pulse_) return;
   next_pulse_ = now + pulse_interval();
-  if (set_point_) {
+  if (emergency_stop_) {
+    push_emergency_stop(now);
+  } else if (set_point_) {
     push_set_points();
   } else if (queue_.is_empty()) {
     queue_.push({CommandNumber::kPulse, {}});
   }
 }
 
-/// Commands are never acknowledged: they are repeated until SIPs show their effect (A1).
-void PioneerSession::bring_robot_to_wanted_state() {
-  if (!config_ && config_requests_ < kMaxRequests) {
-    ++config_requests_;
-    queue_.push({CommandNumber::kConfig, 1});
-  }
-  if (!newest_sip_) return;
-  const bool sonar_is_on = newest_sip_->has(sip_flag::kSonarArrays);
-  if (sonar_is_on != params_.sonar && sonar_requests_ < kMaxRequests) {
-    ++sonar_requests_;
-    queue_.push({CommandNumber::kSonar, params_.sonar ? 1 : 0});
-  }
-  if (may_enable_ && enable_requests_ < kMaxRequests) {
-    ++enable_requests_;
-    queue_.push({CommandNumber::kEnable, 1});
-  }
-}
-
-PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) {
-  PioneerOutput out;
-  if (mode_ == SessionMode::kListenOnly || state_ != State::kConnected) return finished(now, std::move(out));
-  DriveCommand wanted = command;
-  wanted.speed_m_per_s = std::clamp(command.speed_m_per_s, -params_.max_speed_m_per_s, params_.max_speed_m_per_s);
-  wanted.turn_rate_rad_per_s =
-      std::clamp(command.turn_rate_rad_per_s, -params_.max_turn_rate_rad_per_s, params_.max_turn_rate_rad_per_s);
-  const bool is_number = std::isfinite(wanted.speed_m_per_s) && std::isfinite(wanted.turn_rate_rad_per_s);
-  if (!is_number) return stop_driving(now);
-  const bool is_new = !set_point_ || set_point_->speed_m_per_s != wanted.speed_m_per_s ||
-                      set_point_->turn_rate_rad_per_s != wanted.turn_rate_rad_per_s;
-  set_point_ = wanted;
-  if (is_new) {
-    push_set_points();
-    next_pulse_ = now + pulse_interval();
-  }
-  return finished(now, std::move(out));
-}
-
-PioneerOutput PioneerSession::stop_driving(Timestamp now) {
-  PioneerOutput out;
-  if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
-  if (set_point_ && (state_ == State::kConnected || state_ == State::kSwitching)) {
-    set_point_ = DriveCommand{now, 0.0, 0.0};
-    push_set_points();
-    set_point_.reset();
-  }
-  return finished(now, std::move(out));
-}
-
-void PioneerSession::push_set_points() {
-  const double speed = set_point_ ? set_point_->speed_m_per_s : 0.0;
-  const double turn_rate = set_point_ ? set_point_->turn_rate_rad_per_s : 0.0;
-  queue_.drop(CommandNumber::kVel);
-  queue_.drop(CommandNumber::kRvel);
-  queue_.push({CommandNumber::kVel, static_cast<int>(std::lround(speed * kMmPerMetre))});
-  queue_.push({CommandNumber::kRvel, static_cast<int>(std::lround(degrees(turn_rate)))});
-}
-
 PioneerOutput PioneerSession::close(Timestamp now) {
   PioneerOutput out;
   if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
-  queue_.clear();
-  begin_quieting(now);
-  write_all(now, out);
-  state_ = State::kIdle;
-  return out;
+  leave(std::nullopt);
+  return finished(now, std::move(out));
 }
 
-void PioneerSession::fail(std::string reason, Timestamp now, PioneerOutput& out) {
-  queue_.clear();
-  begin_quieting(now);  // the robot may still hear us
-  write_all(now, out);
-  state_ = State::kIdle;
-  out.output.failed = std::move(reason);
+/// Only a robot that we have opened hears CLOSE; one that waits for a connection may take it amiss.
+void PioneerSession::leave(std::optional<std::string> reason) {
+  const bool was_opened = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
+  push_stop();
+  if (was_opened) queue_.push({CommandNumber::kClose, {}});
+  state_ = State::kLeaving;
+  left_for_ = std::move(reason);
 }
 
 Duration PioneerSession::watchdog() const {
@@ -256,13 +208,6 @@ void PioneerSession::set_baud(unsigned baud, PioneerOutput& out) {
   out.output.requests.push_back({PortRequest::Kind::kSetBaud, {}, baud});
 }
 
-void PioneerSession::write_all(Timestamp now, PioneerOutput& out) {
-  while (const std::optional<Timestamp> due = queue_.next_due()) {
-    std::optional<std::vector<std::uint8_t>> frame = queue_.take_due(std::max(now, *due), baud());
-    out.output.requests.push_back({PortRequest::Kind::kWrite, std::move(*frame), 0});
-  }
-}
-
 void PioneerSession::write_due(Timestamp now, PioneerOutput& out) {
   // A9: after a silence of ours the watchdog may have stopped the robot, and any packet but these two resumes what it
   // was told before. Half of the watchdog's time leaves room for a packet that is lost.
@@ -274,23 +219,37 @@ void PioneerSession::write_due(Timestamp now, PioneerOutput& out) {
     set_point_.reset();
     push_set_points();
   }
-  while (std::optional<std::vector<std::uint8_t>> frame = queue_.take_due(now, baud())) {
-    out.output.requests.push_back({PortRequest::Kind::kWrite, std::move(*frame), 0});
+  while (const std::optional<Command> command = queue_.take_due(now, baud())) {
+    const bool enables = *command == Command{CommandNumber::kEnable, 1};
+    if (enables) enable_sent_ = now;
+    if (enables) permission_.enable_is_sent();
+    enable_was_sent_ = enable_was_sent_ || enables;
+    if (*command == Command{CommandNumber::kEnable, 0} || command->number == CommandNumber::kClose) disable_sent_ = now;
+    out.output.requests.push_back({PortRequest::Kind::kWrite, encoded_command(*command), 0});
   }
+}
+
+Timestamp PioneerSession::next_wake() const {
+  Timestamp wake_at = deadline_;
+  if (state_ == State::kConnected) {
+    wake_at = std::min({next_pulse_, next_check_, last_sip_ + duration_from_seconds(params_.sip_timeout_s)});
+  }
+  const std::optional<Timestamp> due = queue_.next_due();
+  if (!due) return wake_at;
+  const bool waits_for_queue = state_ == State::kQuieting || state_ == State::kClosing || state_ == State::kSwitching ||
+                               state_ == State::kLeaving;
+  return waits_for_queue ? *due : std::min(wake_at, *due);
 }
 
 PioneerOutput PioneerSession::finished(Timestamp now, PioneerOutput out) {
   if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
   write_due(now, out);
-  Timestamp wake_at = deadline_;
-  if (state_ == State::kConnected) {
-    wake_at = std::min({next_pulse_, next_check_, last_sip_ + duration_from_seconds(params_.sip_timeout_s)});
+  if (state_ == State::kLeaving && queue_.is_empty()) {
+    state_ = State::kIdle;
+    out.output.failed = std::exchange(left_for_, std::nullopt);
+  } else {
+    out.output.wake_at = next_wake();
   }
-  if (const std::optional<Timestamp> due = queue_.next_due()) {
-    const bool waits_for_queue = state_ == State::kQuieting || state_ == State::kSwitching;
-    wake_at = waits_for_queue ? *due : std::min(wake_at, *due);
-  }
-  out.output.wake_at = wake_at;
   return out;
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "drivers/port/byte_record.hpp"
+#include "drivers/port/log_cut.hpp"
 
 namespace deltamap::drivers::port {
 
@@ -61,13 +62,13 @@ class ByteLogReader {
   /// Throws std::runtime_error "FILE: byte N: why" where the file is missing, empty, foreign or ends inside its header.
   explicit ByteLogReader(std::filesystem::path file);
 
-  /// The next record; nothing at the end or where the file was cut (ask cut()). Throws std::runtime_error "FILE: byte
-  /// N: why" at a damaged block or one of a foreign interface.
+  /// The next record; nothing at the end, or at the first block after the header that is not whole (ask cut()). Throws
+  /// std::runtime_error "FILE: byte N: why" where the header is not whole, and at a block of a foreign interface.
   [[nodiscard]] std::optional<ByteRecord> next();
 
-  /// Where the file was cut: one line "FILE: byte N: cut short…", N the first byte of the incomplete block. Nothing
-  /// while no cut has been met.
-  [[nodiscard]] const std::optional<std::string>& cut() const { return cut_; }
+  /// Where the file was cut: "FILE: byte N: cut short…", N the first byte of the block that is incomplete or damaged.
+  /// Nothing while no cut has been met.
+  [[nodiscard]] const std::optional<LogCut>& cut() const { return cut_; }
 
   [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
   [[nodiscard]] std::uint64_t read_bytes() const { return at_; }
@@ -79,9 +80,19 @@ class ByteLogReader {
     std::int64_t ticks_per_s = 1'000'000;  // pcapng's default
     std::int64_t offset_s = 0;
   };
+  /// A block that is incomplete or damaged: nothing after it can be found.
+  struct Damage {
+    std::string why;
+  };
   [[noreturn]] void refuse(const std::string& why) const;
-  /// Reads the next whole block into body_ and answers its type; nothing at the end or at a cut.
+  /// Sections and both interfaces have been described.
+  [[nodiscard]] bool header_is_whole() const { return met_[0] && met_[1]; }
+  void end_at_cut(const std::string& why);
+  /// Throws Damage.
+  [[nodiscard]] std::optional<ByteRecord> next_record();
+  /// Reads the next whole block into body_ and answers its type; nothing at the end. Throws Damage.
   [[nodiscard]] std::optional<std::uint32_t> next_block();
+  [[nodiscard]] std::uint32_t read_block_head();
   void begin_section();
   [[nodiscard]] Interface read_interface() const;
   [[nodiscard]] ByteRecord read_packet();
@@ -94,7 +105,9 @@ class ByteLogReader {
   std::vector<std::uint8_t> body_;  // without type and lengths
   std::vector<Interface> interfaces_;
   std::array<bool, 2> met_{};  // which of our interfaces, by PortId
-  std::optional<std::string> cut_;
+  std::optional<Timestamp> first_record_;
+  std::optional<Timestamp> last_record_;
+  std::optional<LogCut> cut_;
 };
 
 }  // namespace deltamap::drivers::port

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
+#include <ctime>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -32,6 +34,19 @@ std::int64_t ticks_per_second(std::uint8_t resolution) {
   return ticks;
 }
 
+/// "2026-11-23T00:40:10.123Z"
+std::string utc_text(Timestamp time) {
+  const std::int64_t ms = unix_ns(time) / 1'000'000;
+  const auto whole_s = static_cast<std::time_t>(ms / 1000);
+  std::tm calendar{};
+  (void)gmtime_r(&whole_s, &calendar);
+  char day[32];
+  char text[48];
+  (void)std::strftime(day, sizeof day, "%Y-%m-%dT%H:%M:%S", &calendar);
+  (void)std::snprintf(text, sizeof text, "%s.%03dZ", day, static_cast<int>(ms % 1000));
+  return text;
+}
+
 }  // namespace
 
 ByteLogReader::ByteLogReader(std::filesystem::path file) : file_{std::move(file)} {
@@ -42,50 +57,68 @@ ByteLogReader::ByteLogReader(std::filesystem::path file) : file_{std::move(file)
   size_bytes_ = static_cast<std::uint64_t>(in_.tellg());
   in_.seekg(0);
   if (size_bytes_ == 0) refuse("the file is empty");
-  const auto type = next_block();
-  if (!type) throw std::runtime_error(*cut_);
+  try {
+    (void)next_block();
+  } catch (const Damage& damage) {
+    refuse("not a whole recording: " + damage.why);
+  }
 }
 
 void ByteLogReader::refuse(const std::string& why) const {
   throw std::runtime_error(file_.string() + ": byte " + std::to_string(block_at_) + ": " + why);
 }
 
-std::optional<std::uint32_t> ByteLogReader::next_block() {
-  if (cut_ || at_ == size_bytes_) return std::nullopt;
-  block_at_ = at_;
-  const auto cut = [this](const std::string& why) {
-    cut_ = file_.string() + ": byte " + std::to_string(block_at_) + ": cut short, " + why;
-    return std::nullopt;
-  };
+void ByteLogReader::end_at_cut(const std::string& why) {
+  LogCut cut{block_at_, size_bytes_ - block_at_, last_record_, {}};
+  cut.text = file_.string() + ": byte " + std::to_string(cut.byte) + ": cut short, " + why + "; " +
+             std::to_string(cut.unread_bytes) + " bytes are left out, ";
+  if (last_record_) {
+    char after[32];
+    (void)std::snprintf(after, sizeof after, "%.3f", seconds(*last_record_ - *first_record_));
+    cut.text += "the last whole record is of " + utc_text(*last_record_) + ", " + after + " s after the first";
+  } else {
+    cut.text += "no record is whole";
+  }
+  cut_ = std::move(cut);
+}
+
+std::uint32_t ByteLogReader::read_block_head() {
   const std::uint64_t left = size_bytes_ - at_;
   std::array<std::uint8_t, 12> head{};
   const auto head_size = static_cast<std::size_t>(std::min<std::uint64_t>(left, at_ == 0 ? 12 : 8));
   in_.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head_size));
-  if (!in_) refuse("cannot be read");
+  if (!in_) throw Damage{"the block cannot be read"};
   if (at_ == 0) {
     constexpr std::array<std::uint8_t, 4> kMagic{0x0A, 0x0D, 0x0D, 0x0A};
     const std::size_t seen = std::min<std::size_t>(head_size, kMagic.size());
     if (!std::equal(kMagic.begin(), kMagic.begin() + seen, head.begin())) refuse("not a recording (pcapng)");
+    if (pcapng::number_at<std::uint32_t>(head, 8) == pcapng::kSwappedByteOrderMagic) {
+      refuse("a big-endian recording is not supported");
+    }
     in_.seekg(8);
   }
-  if (left < 12) return cut("a block needs at least 12 bytes, " + std::to_string(left) + " are left");
-  const auto type = pcapng::number_at<std::uint32_t>(head, 0);
+  if (left < 12) throw Damage{"a block needs at least 12 bytes, " + std::to_string(left) + " are left"};
   const auto length = pcapng::number_at<std::uint32_t>(head, 4);
-  if (at_ == 0 && pcapng::number_at<std::uint32_t>(head, 8) == pcapng::kSwappedByteOrderMagic) {
-    refuse("a big-endian recording is not supported");
-  }
   if (length < 12 || length % 4 != 0 || length > kMaxBlockBytes) {
-    refuse("damaged: a block cannot be " + std::to_string(length) + " bytes long");
+    throw Damage{"a block cannot be " + std::to_string(length) + " bytes long"};
   }
   if (left < length) {
-    return cut("the block needs " + std::to_string(length) + " bytes, " + std::to_string(left) + " are left");
+    throw Damage{"the block needs " + std::to_string(length) + " bytes, " + std::to_string(left) + " are left"};
   }
   body_.resize(length - 12);
+  return pcapng::number_at<std::uint32_t>(head, 0);
+}
+
+std::optional<std::uint32_t> ByteLogReader::next_block() {
+  if (at_ == size_bytes_) return std::nullopt;
+  block_at_ = at_;
+  const std::uint32_t type = read_block_head();
   std::array<std::uint8_t, 4> tail{};
   in_.read(reinterpret_cast<char*>(body_.data()), static_cast<std::streamsize>(body_.size()));
   in_.read(reinterpret_cast<char*>(tail.data()), 4);
-  if (!in_) refuse("cannot be read");
-  if (pcapng::number_at<std::uint32_t>(tail, 0) != length) refuse("damaged: the two lengths of a block differ");
+  if (!in_) throw Damage{"the block cannot be read"};
+  const std::size_t length = body_.size() + 12;
+  if (pcapng::number_at<std::uint32_t>(tail, 0) != length) throw Damage{"the two lengths of a block differ"};
   at_ += length;
   if (type == pcapng::kSectionHeader) begin_section();
   return type;
@@ -98,7 +131,7 @@ void ByteLogReader::begin_section() {
 }
 
 ByteLogReader::Interface ByteLogReader::read_interface() const {
-  if (body_.size() < kInterfaceHeaderBytes) refuse("damaged: an interface description is too short");
+  if (body_.size() < kInterfaceHeaderBytes) throw Damage{"an interface description is too short"};
   Interface interface;
   std::span<const std::uint8_t> options = std::span(body_).subspan(kInterfaceHeaderBytes);
   while (const auto option = pcapng::take_option(options)) {
@@ -120,21 +153,21 @@ ByteLogReader::Interface ByteLogReader::read_interface() const {
 }
 
 ByteRecord ByteLogReader::read_packet() {
-  if (body_.size() < kPacketHeaderBytes) refuse("damaged: a packet is too short");
+  if (body_.size() < kPacketHeaderBytes) throw Damage{"a packet is too short"};
   const auto number = pcapng::number_at<std::uint32_t>(body_, 0);
-  if (number >= interfaces_.size()) refuse("damaged: a packet of an interface that was not described");
+  if (number >= interfaces_.size()) throw Damage{"a packet of an interface that was not described"};
   Interface& interface = interfaces_[number];
   if (!interface.port) refuse("not a recording: a packet of an interface that is neither robot nor laser");
   const auto size = pcapng::number_at<std::uint32_t>(body_, 12);
   if (size > body_.size() || kPacketHeaderBytes + pcapng::padded_size(size) > body_.size()) {
-    refuse("damaged: a packet is longer than its block");
+    throw Damage{"a packet is longer than its block"};
   }
 
   const std::uint64_t ticks =
       (std::uint64_t{pcapng::number_at<std::uint32_t>(body_, 4)} << 32) | pcapng::number_at<std::uint32_t>(body_, 8);
   const auto per_s = static_cast<std::uint64_t>(interface.ticks_per_s);
   const std::int64_t whole_s = static_cast<std::int64_t>(ticks / per_s) + interface.offset_s;
-  if (whole_s < 0 || whole_s > 9'000'000'000) refuse("damaged: a time stamp lies outside all time");
+  if (whole_s < 0 || whole_s > 9'000'000'000) throw Damage{"a time stamp lies outside all time"};
   ByteRecord record;
   record.port = *interface.port;
   record.stamp = timestamp_from_ns(whole_s * kNsPerSecond +
@@ -157,7 +190,7 @@ ByteRecord ByteLogReader::read_packet() {
   return record;
 }
 
-std::optional<ByteRecord> ByteLogReader::next() {
+std::optional<ByteRecord> ByteLogReader::next_record() {
   while (const auto type = next_block()) {
     if (*type == pcapng::kInterfaceDescription) {
       interfaces_.push_back(read_interface());
@@ -166,8 +199,24 @@ std::optional<ByteRecord> ByteLogReader::next() {
       return read_packet();
     }
   }
+  return std::nullopt;
+}
+
+std::optional<ByteRecord> ByteLogReader::next() {
+  if (cut_) return std::nullopt;
+  try {
+    if (auto record = next_record()) {
+      if (!first_record_) first_record_ = record->stamp;
+      last_record_ = record->stamp;
+      return record;
+    }
+  } catch (const Damage& damage) {
+    if (!header_is_whole()) refuse("not a whole recording: " + damage.why);
+    end_at_cut(damage.why);
+    return std::nullopt;
+  }
   for (const PortId port : {PortId::kRobot, PortId::kLaser}) {
-    if (cut_ || met_[static_cast<std::size_t>(port)]) continue;
+    if (met_[static_cast<std::size_t>(port)]) continue;
     block_at_ = at_;
     refuse("not a recording: no interface is named " + std::string(name_of(port)));
   }

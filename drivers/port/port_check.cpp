@@ -6,11 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "drivers/port/port_holder.hpp"
 #include "drivers/port/terminal.hpp"
 
 namespace deltamap::drivers::port {
@@ -28,50 +26,15 @@ bool is_serial(const struct stat& device) {
   return error ? !fs::exists("/sys/dev/char", error) : subsystem.filename() == "tty";
 }
 
-std::string process_text(const std::string& pid) {
-  std::string name;
-  std::getline(std::ifstream("/proc/" + pid + "/comm"), name);
-  return (name.empty() ? "a process" : name) + " (process " + pid + ")";
-}
-
-/// Who has locked it: a pseudo-terminal's other end keeps it open as well, and is no rival.
-std::string locking_process(const struct stat& device) {
-  std::ifstream locks("/proc/locks");
-  for (std::string line; std::getline(locks, line);) {
-    std::istringstream words(line);
-    std::string number, kind, mode, access, pid, file;
-    words >> number >> kind >> mode >> access >> pid >> file;
-    const auto colon = file.rfind(':');
-    if (kind != "FLOCK" || colon == std::string::npos || file.substr(colon + 1) != std::to_string(device.st_ino))
-      continue;
-    char* minor_at = nullptr;
-    const auto major_number = std::strtoul(file.c_str(), &minor_at, 16);
-    const auto minor_number = std::strtoul(minor_at + 1, nullptr, 16);
-    if (major_number == major(device.st_dev) && minor_number == minor(device.st_dev)) return process_text(pid);
+/// Empty where nobody has it; a pseudo-terminal's other end keeps it open as well, and is no rival.
+std::string busy(const std::string& path, dev_t number) {
+  if (const auto holder = lock_file_holder(path, kLockFolder)) {
+    return holder->told() + " has a lock file in " + kLockFolder;
   }
-  return "";
-}
-
-bool has_open(const fs::path& process, const struct stat& device) {
-  std::error_code error;
-  for (fs::directory_iterator file{process / "fd", error}, end; !error && file != end; file.increment(error)) {
-    struct stat open_file {};
-    if (::stat(file->path().c_str(), &open_file) == 0 && S_ISCHR(open_file.st_mode) &&
-        open_file.st_rdev == device.st_rdev)
-      return true;
-  }
-  return false;
-}
-
-/// As far as this user may look: root sees every process, others their own.
-std::string opening_process(const struct stat& device) {
-  std::error_code error;
-  for (fs::directory_iterator process{"/proc", error}, end; !error && process != end; process.increment(error)) {
-    const std::string pid = process->path().filename();
-    if (pid.find_first_not_of("0123456789") != std::string::npos || pid == std::to_string(::getpid())) continue;
-    if (has_open(process->path(), device)) return process_text(pid);
-  }
-  return "";
+  if (const auto holder = locker_of(path)) return holder->told() + " has it open";
+  if (is_pseudo_terminal(number)) return "";
+  const PortHolders holders = holders_of(path);
+  return holders.seen.empty() ? "" : holders.told();
 }
 
 }  // namespace
@@ -85,9 +48,9 @@ PortCheck check_port(const std::string& path) {
   }
   if (!is_serial(device)) return {State::kNotSerial, path + " is not a serial port"};
   if (::access(path.c_str(), R_OK | W_OK) != 0) return {State::kForbidden, path + " " + why_not_opened(path, EACCES)};
-  std::string holder = locking_process(device);
-  if (holder.empty() && !is_pseudo_terminal(device.st_rdev)) holder = opening_process(device);
-  if (!holder.empty()) return {State::kBusy, path + " is busy: " + holder + " has it open"};
+  if (const std::string why = busy(path, device.st_rdev); !why.empty()) {
+    return {State::kBusy, path + " is busy: " + why};
+  }
   return {State::kReady, path + " is free"};
 }
 

@@ -6,7 +6,7 @@
 namespace deltamap::drivers::port {
 
 Reconnect::Pause Reconnect::failed(std::string reason, Timestamp now) {
-  pause_s_ = failures_ == 0 ? params_.first_pause_s : std::min(pause_s_ * params_.growth, params_.longest_pause_s);
+  pause_s_ = pause_s_ == 0.0 ? params_.first_pause_s : std::min(pause_s_ * params_.growth, params_.longest_pause_s);
   ++failures_;
   Pause pause{now + duration_from_seconds(pause_s_), std::nullopt};
   if (reason != told_) {
@@ -20,6 +20,7 @@ std::optional<std::string> Reconnect::connected() {
   if (failures_ == 0) return std::nullopt;
   std::string log = "connected again after " + std::to_string(failures_) + (failures_ == 1 ? " failure" : " failures");
   failures_ = 0;
+  pause_s_ = 0.0;
   told_.clear();
   return log;
 }

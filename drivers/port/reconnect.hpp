@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When to try a device again, and what to say about it: the pause grows from try to try up to a cap, and a reason is
-// told once, not at every try. Knows no port and no timer.
+// When to try a device again, and what to say about it: the pause grows up to a cap while the port does not even open,
+// and a reason is told once, not at every try. Knows no port and no timer.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@
 namespace deltamap::drivers::port {
 
 struct ReconnectParams {
-  double first_pause_s = 0.5;    ///< after the first failure; > 0
+  double first_pause_s = 0.5;    ///< after the first failure, and whenever the port had opened; > 0
   double growth = 2.0;           ///< of the pause from try to try; >= 1
-  double longest_pause_s = 8.0;  ///< >= first_pause_s
+  double longest_pause_s = 1.0;  ///< >= first_pause_s; looking for a device costs little, waiting for it much
 };
 
 class Reconnect {
@@ -27,6 +27,9 @@ class Reconnect {
   };
   [[nodiscard]] Pause failed(std::string reason, Timestamp now);
 
+  /// The port is open: the device may be back, so the next pause is a short one.
+  void opened() { pause_s_ = 0.0; }
+
   /// The device works (its session is up, not merely its port open). Answers what to log where it had failed before.
   [[nodiscard]] std::optional<std::string> connected();
 
@@ -35,7 +38,7 @@ class Reconnect {
 
  private:
   ReconnectParams params_;
-  double pause_s_ = 0.0;
+  double pause_s_ = 0.0;  // the last one; 0: begin with the first
   int failures_ = 0;
   std::string told_;
 };

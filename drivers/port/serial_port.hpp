@@ -14,8 +14,8 @@ class io_context;
 
 namespace deltamap::drivers::port {
 
-/// Either a port, or one line that names the device and why it cannot be used: missing, busy, forbidden (with the group
-/// to join), not a serial port, a baud that it does not know.
+/// Either a port, or one line that names the device and why it cannot be used: missing, busy (by which process),
+/// forbidden (and who may), not a serial port, a baud that it does not know.
 struct SerialPortAnswer {
   std::unique_ptr<BytePort> port;
   std::string refused;

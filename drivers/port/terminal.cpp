@@ -2,7 +2,6 @@
 #include "drivers/port/terminal.hpp"
 
 #include <fcntl.h>
-#include <grp.h>
 #include <linux/serial.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
@@ -16,6 +15,9 @@
 #include <optional>
 #include <system_error>
 #include <utility>
+
+#include "drivers/port/port_holder.hpp"
+#include "drivers/port/port_permission.hpp"
 
 namespace deltamap::drivers::port {
 namespace {
@@ -41,17 +43,6 @@ bool is_open_pseudo_terminal(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && is_pseudo_terminal(status.st_rdev);
 }
 
-std::string group_of(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return "dialout";
-  if ((status.st_mode & S_IRGRP) == 0 || (status.st_mode & S_IWGRP) == 0) return "dialout";
-  std::array<char, 4096> names{};
-  struct group owner {};
-  struct group* found = nullptr;
-  (void)::getgrgid_r(status.st_gid, &owner, names.data(), names.size(), &found);
-  return found != nullptr && status.st_gid != 0 ? found->gr_name : "dialout";
-}
-
 /// 8N1, nothing translated, no flow control, no modem lines.
 bool set_raw(int descriptor) {
   termios line{};
@@ -72,18 +63,34 @@ void ask_for_low_latency(int descriptor) {
   (void)::ioctl(descriptor, TIOCSSERIAL, &settings);
 }
 
-/// The lock keeps out our own kind, root's too; TIOCEXCL keeps out everyone else. A pseudo-terminal would stay
-/// exclusive after a crash for as long as the simulator holds its other end, so there the lock must do.
-bool own_exclusively(int descriptor) {
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return false;
-  return is_open_pseudo_terminal(descriptor) || ::ioctl(descriptor, TIOCEXCL) == 0;
+/// Root is let in where another program has made the device exclusive, and must go by itself. A pseudo-terminal may be
+/// exclusive still although nobody has it open.
+bool is_exclusive(int descriptor) {
+  int exclusive = 0;
+  return ::ioctl(descriptor, TIOCGEXCL, &exclusive) == 0 && exclusive != 0;
+}
+
+/// Empty where the device is now ours. The lock keeps out our own kind, root's too; TIOCEXCL keeps out everyone else. A
+/// pseudo-terminal would stay exclusive after a crash for as long as the simulator holds its other end, so there the
+/// lock must do.
+std::string own_exclusively(const std::string& path, int descriptor) {
+  if (const auto holder = lock_file_holder(path, kLockFolder)) {
+    return "is busy: " + holder->told() + " has a lock file in " + kLockFolder;
+  }
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return why_not_opened(path, errno, descriptor);
+  if (is_exclusive(descriptor)) {
+    const PortHolders holders = holders_of(path, descriptor);
+    if (!holders.seen.empty() || !holders.saw_all) return "is busy: " + holders.told() + " for itself alone";
+  }
+  if (is_open_pseudo_terminal(descriptor) || ::ioctl(descriptor, TIOCEXCL) == 0) return "";
+  return why_not_opened(path, errno, descriptor);
 }
 
 }  // namespace
 
 bool is_pseudo_terminal(dev_t number) { return major(number) >= 136 && major(number) <= 143; }
 
-std::string why_not_opened(const std::string& path, int error) {
+std::string why_not_opened(const std::string& path, int error, int own_descriptor) {
   switch (error) {
     case ENOENT:
     case ENODEV:
@@ -91,10 +98,10 @@ std::string why_not_opened(const std::string& path, int error) {
       return "is missing (" + std::generic_category().message(error) + "): not plugged in or switched on?";
     case EBUSY:
     case EWOULDBLOCK:
-      return "is busy: another program has it open";
+      return "is busy: " + lockers_or_holders_of(path, own_descriptor).told();
     case EACCES:
     case EPERM:
-      return "is forbidden (" + std::generic_category().message(error) + "): join the group '" + group_of(path) + "'";
+      return "is forbidden (" + std::generic_category().message(error) + "): " + way_to_permission(path);
     default:
       return "cannot be opened: " + std::generic_category().message(error);
   }
@@ -108,7 +115,7 @@ OpenedTerminal open_terminal(const std::string& path, unsigned baud) {
     return OpenedTerminal{-1, path + " " + why};
   };
   if (::isatty(descriptor) != 1) return refuse("is not a serial port");
-  if (!own_exclusively(descriptor)) return refuse(why_not_opened(path, errno));
+  if (const std::string why = own_exclusively(path, descriptor); !why.empty()) return refuse(why);
   if (!set_raw(descriptor)) return refuse(why_not_opened(path, errno));
   ask_for_low_latency(descriptor);
   if (const std::string why = set_line_speed(descriptor, baud); !why.empty()) {
@@ -120,7 +127,7 @@ OpenedTerminal open_terminal(const std::string& path, unsigned baud) {
 }
 
 void close_terminal(int descriptor) {
-  (void)::ioctl(descriptor, TIOCNXCL);
+  if (!is_open_pseudo_terminal(descriptor)) (void)::ioctl(descriptor, TIOCNXCL);  // there it would be another program's
   ::close(descriptor);
 }
 

@@ -15,8 +15,9 @@ struct OpenedTerminal {
 };
 [[nodiscard]] OpenedTerminal open_terminal(const std::string& path, unsigned baud);
 
-/// What follows a device's name in a refusal: the system's error, and what to do about it.
-[[nodiscard]] std::string why_not_opened(const std::string& path, int error);
+/// What follows a device's name in a refusal: the system's error, and what to do about it. A descriptor of this process
+/// does not count among those that keep the device busy.
+[[nodiscard]] std::string why_not_opened(const std::string& path, int error, int own_descriptor = -1);
 
 /// By its device number: devices 136 to 143 are the slaves of pseudo-terminals (kernel's devices.txt).
 [[nodiscard]] bool is_pseudo_terminal(dev_t number);

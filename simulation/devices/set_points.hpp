@@ -32,6 +32,11 @@ class SetPoints {
   /// Standing still as fast as the set decelerations allow.
   [[nodiscard]] DriveTarget standstill() const;
 
+  // The limits in force (A5: SETV, SETRV, SETA, SETRA).
+  [[nodiscard]] double max_speed_m_per_s() const { return max_speed_m_per_s_; }
+  [[nodiscard]] double max_turn_rate_rad_per_s() const { return max_turn_rate_rad_per_s_; }
+  [[nodiscard]] const DriveTarget& rates() const { return limits_; }
+
   /// The heading that is being held, if one is.
   [[nodiscard]] std::optional<double> heading_rad() const { return heading_rad_; }
 

@@ -8,6 +8,7 @@
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
+#include "simulation/devices/scan_telegram.hpp"
 
 namespace deltamap::simulation::devices {
 namespace {
@@ -18,6 +19,9 @@ namespace mode = lms200::mode;
 
 constexpr const char* kType = "LMS200;301063;V02.30 ";
 constexpr unsigned kDefaultBaud = 9600;
+constexpr std::uint32_t kHoursOfOperation = 1200;
+constexpr std::uint16_t kSwitchOns = 300;
+constexpr lms200::ScanVariant kPartialVariant{180, 100};  // one raster, whatever the variant (B6)
 // How long the real device takes to answer (B3, measured there).
 constexpr double kAcknowledgeDelay_s = 0.001;
 constexpr double kAnswerDelay_s = 0.010;
@@ -42,11 +46,11 @@ VirtualLms200::VirtualLms200(const Lms200Setup& setup, Timestamp power_on, Rando
       permanent_baud_{setup.permanent_baud} {
   configuration_.set_units(setup.units);
   configuration_.set_measuring_mode(setup.measuring_mode);
-  if (!setup.is_up) begin_start_up(power_on);
+  if (!setup.is_up) begin_start_up(power_on, setup.start_up_s);
 }
 
 void VirtualLms200::receive(std::span<const std::uint8_t> bytes, unsigned host_baud, Timestamp now) {
-  if (up_at_) return;
+  if (up_at_ || now < silent_until_) return;
   if (now - last_host_byte_ > duration_from_seconds(kHostPause_s)) (void)decoder_.finish();
   last_host_byte_ = now;
   const auto damaged_before = decoder_.counts().bad_checksum;
@@ -70,8 +74,10 @@ void VirtualLms200::take(const lms200::Telegram& telegram, Timestamp now) {
     return;
   }
   line_.send(std::vector{lms200::kAckByte}, acknowledged);
-  if (telegram.command == command::kRequestScan && mode_of(telegram) == 0x01) {
-    scan_wanted_ = true;  // the next complete scan is the answer
+  sweeps_.clear();
+  const auto wanted = telegram.command != command::kSetMode ? lms200::requested_selection(telegram) : std::nullopt;
+  if (wanted && can_send(*wanted)) {
+    wanted_ = *wanted;  // what is measured next is the answer
     return;
   }
   answers_.push_back(answer_to(telegram, now));
@@ -97,7 +103,11 @@ VirtualLms200::Answer VirtualLms200::answer_to(const lms200::Telegram& telegram,
     case command::kSetPermanentBaud:
       if (mode_of(telegram) > 1) break;
       permanent_baud_ = mode_of(telegram) == 1;
-      return {soon, lms200::permanent_baud_reply(true), {}};
+      return {soon, lms200::permanent_baud_reply(true, permanent_baud_), {}};
+    case command::kRequestCounters:
+      return {soon, lms200::counters_reply({kHoursOfOperation, kSwitchOns}), {}};
+    case command::kReadConfiguration2:
+      return {soon, lms200::configuration_2_reply(), {}};
     case command::kReset: {
       Answer answer{soon, lms200::encoded_reply(lms200::response::kReset, {}), {}};
       answer.restarts = true;
@@ -123,23 +133,35 @@ VirtualLms200::Answer VirtualLms200::mode_answer(const lms200::Telegram& telegra
         return answer;
       }
       installing_ = true;
-      streaming_ = false;
+      stream_.reset();
       return answer;
     case mode::kTestPassword:
       answer.bytes = lms200::mode_reply(lms200::has_right_password(telegram));
       return answer;
-    case mode::kStreamAll:
-      installing_ = false;
-      answer.starts_stream = true;
-      return answer;
     case mode::kDiagnostic:
     case mode::kOnRequest:
-      installing_ = streaming_ = false;
+      installing_ = false;
+      stream_.reset();
       return answer;
     default:
-      answer.bytes = lms200::refused_reply();
-      return answer;
+      return stream_answer(telegram, std::move(answer));
   }
+}
+
+VirtualLms200::Answer VirtualLms200::stream_answer(const lms200::Telegram& telegram, Answer answer) {
+  const auto wanted = lms200::requested_selection(telegram);
+  if (!wanted || !can_send(*wanted)) {
+    answer.bytes = lms200::refused_reply();
+    return answer;
+  }
+  installing_ = false;
+  stream_mode_ = mode_of(telegram);
+  answer.starts_stream = *wanted;
+  return answer;
+}
+
+bool VirtualLms200::can_send(const lms200::ValueSelection& selection) const {
+  return can_be_sent(selection, selection.is_partial() ? kPartialVariant.values() : variant_.values());
 }
 
 VirtualLms200::Answer VirtualLms200::variant_answer(const lms200::Telegram& telegram, Timestamp now) {
@@ -163,7 +185,7 @@ VirtualLms200::Answer VirtualLms200::configuration_answer(const lms200::Telegram
 
 std::vector<std::uint8_t> VirtualLms200::status_frame() const {
   lms200::DeviceStatus status;
-  status.operating_mode = installing_ ? mode::kInstallation : streaming_ ? mode::kStreamAll : mode::kOnRequest;
+  status.operating_mode = installing_ ? mode::kInstallation : stream_ ? stream_mode_ : mode::kOnRequest;
   status.measuring_mode = configuration_.measuring_mode();
   status.scan_angle_deg = variant_.angle_deg;
   status.resolution_centideg = variant_.resolution_centideg;
@@ -189,7 +211,7 @@ void VirtualLms200::advance(Timestamp now, const Measure& measure) {
     answers_.pop_front();
     give(answer);
   }
-  while ((streaming_ || scan_wanted_) && !up_at_ && next_scan_end() <= now) send_scan(next_scan_end(), measure);
+  while ((stream_ || wanted_) && !up_at_ && next_sweep_end() <= now) sweep(next_sweep_end(), measure);
 }
 
 void VirtualLms200::give(const Answer& answer) {
@@ -199,25 +221,38 @@ void VirtualLms200::give(const Answer& answer) {
     baud_after_ = *answer.baud_after;
   }
   if (answer.starts_stream) {
-    streaming_ = true;
-    last_scan_end_.reset();
+    stream_ = answer.starts_stream;
+    sweeps_.clear();
+    last_sweep_end_.reset();
   }
   if (answer.restarts) cut_power(line_.idle_at());
 }
 
-void VirtualLms200::cut_power(Timestamp now) {
+void VirtualLms200::cut_power(Timestamp now, std::optional<double> start_up_s) {
   line_.interrupt(now);
-  begin_start_up(now);
+  begin_start_up(now, start_up_s.value_or(setup_.start_up_s));
 }
 
-void VirtualLms200::begin_start_up(Timestamp now) {
-  up_at_ = now + duration_from_seconds(setup_.start_up_s);
+void VirtualLms200::fall_silent(Timestamp now, Timestamp until, bool ends_stream) {
+  line_.interrupt(now);
+  answers_.clear();
+  silent_until_ = until;
+  sweeps_.clear();
+  wanted_.reset();
+  if (ends_stream) stream_.reset();
+}
+
+void VirtualLms200::begin_start_up(Timestamp now, double start_up_s) {
+  up_at_ = now + duration_from_seconds(start_up_s);
   mirror_start_ = now;
   answers_.clear();
   baud_change_at_.reset();
-  streaming_ = scan_wanted_ = installing_ = false;
+  installing_ = false;
+  stream_.reset();
+  wanted_.reset();
+  sweeps_.clear();
   variant_ = setup_.variant;
-  last_scan_end_.reset();
+  last_sweep_end_.reset();
   if (!permanent_baud_) set_baud(kDefaultBaud);
 }
 
@@ -226,40 +261,57 @@ void VirtualLms200::set_baud(unsigned baud) {
   decoder_.set_baud(baud);
 }
 
-Duration VirtualLms200::scan_duration() const { return duration_from_seconds(variant_.scan_duration_s()); }
+lms200::ScanVariant VirtualLms200::swept() const { return selection().is_partial() ? kPartialVariant : variant_; }
 
-Timestamp VirtualLms200::next_scan_end() const {
-  // The scan must end when the line is free, must have begun after the last one ended, and scans begin where the mirror
-  // passes its start.
-  Timestamp free = line_.idle_at();
-  if (last_scan_end_) free = std::max(free, *last_scan_end_ + scan_duration());
-  if (!answers_.empty()) free = std::max(free, answers_.back().at + Duration{1});
-  const auto scans = (std::max(free, mirror_start_ + scan_duration()) - mirror_start_ + scan_duration() - Duration{1}) /
-                     scan_duration();
-  return mirror_start_ + scans * scan_duration();
+/// The four rasters follow one another turn by turn.
+std::uint8_t VirtualLms200::raster(Timestamp end) const {
+  constexpr int kRasters = 4;
+  const auto turns = (end - mirror_start_) / duration_from_seconds(lms200::kMirrorTurnS);
+  return static_cast<std::uint8_t>((turns - 1) % kRasters);
 }
 
-void VirtualLms200::send_scan(Timestamp end, const Measure& measure) {
+Timestamp VirtualLms200::next_sweep_end() const {
+  const Duration duration = duration_from_seconds(swept().scan_duration_s());
+  if (!sweeps_.empty()) return *last_sweep_end_ + duration;
+  // It must end when the line is free, must have begun after the last one ended, and sweeps begin where the mirror
+  // passes its start.
+  Timestamp free = std::max(line_.idle_at(), silent_until_);
+  if (last_sweep_end_) free = std::max(free, *last_sweep_end_ + duration);
+  if (!answers_.empty()) free = std::max(free, answers_.back().at + Duration{1});
+  const auto sweeps = (std::max(free, mirror_start_ + duration) - mirror_start_ + duration - Duration{1}) / duration;
+  return mirror_start_ + sweeps * duration;
+}
+
+void VirtualLms200::sweep(Timestamp end, const Measure& measure) {
+  const lms200::ValueSelection selected = selection();
   const auto coding = lms200::range_coding(configuration_.measuring_mode());
   assert(coding && "a mode without ranges is never accepted");
-  const bool in_mm = configuration_.units() == lms200::Units::kMillimetre;
-  const double metres_per_word = in_mm ? 0.001 : 0.01;
-  const SweepRequest request{end - scan_duration(), variant_, metres_per_word * (coding->beyond_maximum - 1)};
-  const std::vector<Beam> beams = measure(request);
-  assert(beams.size() == variant_.values() && "a beam for each value");
+  const double metres_per_word = configuration_.units() == lms200::Units::kMillimetre ? 0.001 : 0.01;
+  constexpr double kRasterStep_deg = 0.25;
+  const SweepRequest request{end - duration_from_seconds(swept().scan_duration_s()), swept(),
+                             metres_per_word * (coding->beyond_maximum - 1),
+                             selected.is_partial() ? kRasterStep_deg * raster(end) : 0.0};
+  sweeps_.push_back(measure(request));
+  assert(sweeps_.back().size() == swept().values() && "a beam for each value");
+  last_sweep_end_ = end;
+  if (sweeps_.size() == selected.mean_of) send_sweeps(selected, end);
+}
 
-  lms200::Measurement measurement;
-  measurement.unit_code = in_mm ? 1 : 0;
-  measurement.status = status_;
-  for (const Beam& beam : beams) measurement.words.push_back(lms200::encoded_beam(beam, *coding, metres_per_word));
+void VirtualLms200::send_sweeps(const lms200::ValueSelection& selected, Timestamp end) {
+  lms200::Measurement head;
+  head.unit_code = configuration_.units() == lms200::Units::kMillimetre ? 1 : 0;
+  head.status = status_;
+  head.is_partial = selected.is_partial();
+  if (head.is_partial) head.partial_number = raster(end);
   if (configuration_.sends_real_time_indices()) {
     const auto turns = (end - mirror_start_) / duration_from_seconds(lms200::kMirrorTurnS);
-    measurement.indices = lms200::Measurement::Indices{static_cast<std::uint8_t>(turns & 0xFF), telegram_index_};
+    head.indices = lms200::Measurement::Indices{static_cast<std::uint8_t>(turns & 0xFF), telegram_index_};
   }
   ++telegram_index_;
-  line_.send(lms200::encoded_measurement(measurement), end);
-  last_scan_end_ = end;
-  scan_wanted_ = false;
+  const auto coding = lms200::range_coding(configuration_.measuring_mode());
+  line_.send(scan_telegram(selected, sweeps_, *coding, std::move(head)), end);
+  sweeps_.clear();
+  wanted_.reset();
 }
 
 std::optional<Timestamp> VirtualLms200::next_event() const {
@@ -268,7 +320,7 @@ std::optional<Timestamp> VirtualLms200::next_event() const {
   if (up_at_) consider(*up_at_);
   if (!answers_.empty()) consider(answers_.front().at);
   if (baud_change_at_) consider(*baud_change_at_);
-  if ((streaming_ || scan_wanted_) && !up_at_) consider(next_scan_end());
+  if ((stream_ || wanted_) && !up_at_) consider(next_sweep_end());
   return next;
 }
 

@@ -15,6 +15,7 @@
 #include "core/messages.hpp"
 #include "drivers/lms200/configuration.hpp"
 #include "drivers/lms200/telegram.hpp"
+#include "drivers/lms200/value_selection.hpp"
 #include "drivers/lms200/variant.hpp"
 #include "simulation/devices/serial_line.hpp"
 
@@ -34,7 +35,8 @@ struct Lms200Setup {
 struct SweepRequest {
   Timestamp begin;  ///< of the first beam
   drivers::lms200::ScanVariant variant;
-  double max_range_m = 0.0;  ///< the farthest that the measuring mode can tell
+  double max_range_m = 0.0;            ///< the farthest that the measuring mode can tell
+  double first_angle_shift_deg = 0.0;  ///< of all beams, counter-clockwise: a raster of an interlaced scan
 };
 
 class VirtualLms200 {
@@ -54,11 +56,14 @@ class VirtualLms200 {
   }
   [[nodiscard]] std::optional<Timestamp> next_event() const;
 
-  void cut_power(Timestamp now);              ///< off and on again: back to 9600 unless permanent, 90h when up
-  void nack_next_request() { ++naks_owed_; }  ///< as a disturbed line would make it
+  /// Off and on again: back to 9600 unless permanent, 90h when up; after as long as it was set up for, unless told.
+  void cut_power(Timestamp now, std::optional<double> start_up_s = {});
+  /// Neither hears nor speaks until then, as behind a loose contact. Its stream goes on afterwards, or has ended.
+  void fall_silent(Timestamp now, Timestamp until, bool ends_stream);
+  void nack_next_request() { ++naks_owed_; }                       ///< as a disturbed line would make it
   void set_status_byte(std::uint8_t status) { status_ = status; }  ///< of the scans, B6
 
-  [[nodiscard]] bool is_streaming() const { return streaming_; }
+  [[nodiscard]] bool is_streaming() const { return stream_.has_value(); }
   [[nodiscard]] unsigned baud() const { return line_.baud(); }
   [[nodiscard]] const drivers::lms200::Configuration& configuration() const { return configuration_; }
   [[nodiscard]] const drivers::lms200::ScanVariant& variant() const { return variant_; }
@@ -68,24 +73,30 @@ class VirtualLms200 {
   struct Answer {
     Timestamp at;
     std::vector<std::uint8_t> bytes;
-    std::optional<unsigned> baud_after;  // takes effect once the answer has left
-    bool starts_stream = false;
+    std::optional<unsigned> baud_after{};  // takes effect once the answer has left
+    std::optional<drivers::lms200::ValueSelection> starts_stream{};
     bool restarts = false;  // reset: silence, then 90h
   };
 
   void take(const drivers::lms200::Telegram& telegram, Timestamp now);
   [[nodiscard]] Answer answer_to(const drivers::lms200::Telegram& telegram, Timestamp now);
   [[nodiscard]] Answer mode_answer(const drivers::lms200::Telegram& telegram, Timestamp now);
+  [[nodiscard]] Answer stream_answer(const drivers::lms200::Telegram& telegram, Answer answer);
   [[nodiscard]] Answer variant_answer(const drivers::lms200::Telegram& telegram, Timestamp now);
   [[nodiscard]] Answer configuration_answer(const drivers::lms200::Telegram& telegram, Timestamp now);
   [[nodiscard]] std::vector<std::uint8_t> status_frame() const;
   void give(const Answer& answer);
-  void begin_start_up(Timestamp now);
+  void begin_start_up(Timestamp now, double start_up_s);
   void set_baud(unsigned baud);
-  void send_scan(Timestamp end, const Measure& measure);
-  /// When the first scan will be complete that finds the line free.
-  [[nodiscard]] Timestamp next_scan_end() const;
-  [[nodiscard]] Duration scan_duration() const;
+  void sweep(Timestamp end, const Measure& measure);
+  void send_sweeps(const drivers::lms200::ValueSelection& selection, Timestamp end);
+  [[nodiscard]] const drivers::lms200::ValueSelection& selection() const { return wanted_ ? *wanted_ : *stream_; }
+  [[nodiscard]] bool can_send(const drivers::lms200::ValueSelection& selection) const;
+  /// What one sweep of the present selection measures.
+  [[nodiscard]] drivers::lms200::ScanVariant swept() const;
+  [[nodiscard]] std::uint8_t raster(Timestamp end) const;
+  /// When the next sweep will be complete: the first of a telegram finds the line free, the others follow it.
+  [[nodiscard]] Timestamp next_sweep_end() const;
 
   Lms200Setup setup_;
   Random random_;
@@ -95,13 +106,16 @@ class VirtualLms200 {
   drivers::lms200::ScanVariant variant_;
   Timestamp mirror_start_;          // a turn begins here and every 13.32 ms
   std::optional<Timestamp> up_at_;  // still silent until then
+  Timestamp silent_until_{};
   std::deque<Answer> answers_;
   std::optional<Timestamp> baud_change_at_;
   unsigned baud_after_ = 0;
   Timestamp last_host_byte_{};
-  std::optional<Timestamp> last_scan_end_;
-  bool streaming_ = false;
-  bool scan_wanted_ = false;  // one, by 30h
+  std::optional<Timestamp> last_sweep_end_;
+  std::optional<drivers::lms200::ValueSelection> stream_;
+  std::uint8_t stream_mode_ = 0;
+  std::optional<drivers::lms200::ValueSelection> wanted_;  // once, by 30h, 36h, 37h or 3Fh
+  std::vector<std::vector<Beam>> sweeps_;                  // of the telegram to come: the first of a mean
   bool installing_ = false;
   bool permanent_baud_ = false;
   int naks_owed_ = 0;

@@ -32,6 +32,13 @@ std::int16_t heading_units(double heading_rad) {
   return static_cast<std::int16_t>(std::lround(units));
 }
 
+bool is_limit(const Command& command) {
+  return command.number == CommandNumber::kSetV || command.number == CommandNumber::kSetRv ||
+         command.number == CommandNumber::kSetA || command.number == CommandNumber::kSetRa;
+}
+
+std::uint16_t whole(double value) { return static_cast<std::uint16_t>(std::lround(value)); }
+
 std::int16_t millimetres(double metres) { return static_cast<std::int16_t>(std::lround(1000.0 * metres)); }
 
 }  // namespace
@@ -86,6 +93,7 @@ void VirtualPioneer::synchronize(const Command& command, Timestamp now) {
 }
 
 void VirtualPioneer::obey(const Command& command, Timestamp now) {
+  if (!setup_.takes_limits && is_limit(command)) return;
   if (set_points_.take(command, motion_)) return;
   const int value = command.integer_or(1);
   switch (command.number) {
@@ -200,6 +208,7 @@ pioneer::Sip VirtualPioneer::sip(Timestamp now, const Sonar& sonar) {
   sip.battery_x10_decivolts = static_cast<std::uint16_t>(battery_decivolts);
   sip.charge_state = std::uint8_t{0};
   sip.turn_rate_decideg_per_s = static_cast<std::int16_t>(std::lround(10.0 * degrees(motion_.turn_rate_rad_per_s)));
+  sip.fault_flags = fault_flags_;
   return sip;
 }
 
@@ -251,6 +260,12 @@ std::vector<std::uint8_t> VirtualPioneer::config_frame() const {
   config.front_sonar = setup_.sonars > 0 ? 1 : 0;
   config.rear_sonar = setup_.sonars > 8 ? 1 : 0;
   config.front_bumpers = config.rear_bumpers = setup_.has_bumpers ? kBumperSegments : 0;
+  config.trans_vel_max = whole(1000.0 * set_points_.max_speed_m_per_s());
+  config.rot_vel_max = whole(degrees(set_points_.max_turn_rate_rad_per_s()));
+  config.trans_acc = whole(1000.0 * set_points_.rates().acceleration_m_per_s2);
+  config.trans_decel = whole(1000.0 * set_points_.rates().deceleration_m_per_s2);
+  config.rot_acc = whole(degrees(set_points_.rates().turn_acceleration_rad_per_s2));
+  config.rot_decel = whole(degrees(set_points_.rates().turn_deceleration_rad_per_s2));
   config.auto_baud = setup_.can_change_baud ? 1 : 0;
   config.firmware_version = "2.9";
   return pioneer::encoded_config(config);

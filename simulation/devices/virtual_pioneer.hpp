@@ -29,6 +29,7 @@ struct PioneerSetup {
   int sonars = 8;  ///< 0, 8 or 16
   bool has_bumpers = false;
   bool can_change_baud = true;  ///< AUTOBAUD 1: honours HOSTBAUD
+  bool takes_limits = true;     ///< SETV, SETRV, SETA, SETRA are obeyed
 };
 
 class VirtualPioneer {
@@ -58,6 +59,7 @@ class VirtualPioneer {
   void reset(Timestamp now);  ///< power cycle: pose 0, nobody connected, motors off
   void press_stop_button() { motors_enabled_ = false, stop_button_ = true; }
   void release_stop_button() { stop_button_ = false; }
+  void fail(std::uint16_t fault_flags) { fault_flags_ = fault_flags; }
   void press_motors_button() { motors_enabled_ = !motors_enabled_ && !stop_button_; }
 
   [[nodiscard]] bool is_connected() const { return state_ == State::kConnected; }
@@ -98,6 +100,7 @@ class VirtualPioneer {
   bool encoder_stream_ = false;
   bool io_stream_ = false;
   int sonar_fired_ = 0;
+  std::uint16_t fault_flags_ = 0;
   std::optional<int> fake_battery_decivolts_;
   WheelMotion motion_;       // with the pose as the controller counts it, from its last zero
   Pose2 wheels_from_robot_;  // with the pose as the wheels counted it since power-on

@@ -29,6 +29,13 @@ TEST(GridFile, ReadsWhatItWrote) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.yaml.part"));
 }
 
+TEST(GridFile, NamesAMapOfCarmen) {
+  const test::TemporaryFolder folder;
+  const std::string told = ": is a CARMEN map; give a map_server map (YAML and PGM)";
+  EXPECT_NE(refusal(folder.write("site.map", "\x1F\x8B\x08")).find("site.map" + told), std::string::npos);
+  EXPECT_NE(refusal(folder.write("unpacked", "####\nCARMENMAPFILEv020")).find("unpacked" + told), std::string::npos);
+}
+
 TEST(GridFile, WritesNumbersAsPeopleDoAndReadsThemBackExactly) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "map.yaml";

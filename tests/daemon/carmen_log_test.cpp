@@ -76,14 +76,29 @@ TEST(CarmenLog, TakesTheBearingsOfFlaserFromTheNumberOfItsValues) {
   EXPECT_NEAR(step_deg(91), 2.0, 1e-12);
 }
 
-TEST(CarmenLog, NamesFileAndLineOfACutOrBrokenLine) {
+TEST(CarmenLog, ReadsALogThatWasCutUpToTheCutAndSaysWhere) {
   const test::TemporaryFolder folder;
-  for (std::size_t kept = 7; kept + 7 < kFlaser.size(); ++kept) {
-    if (kFlaser[kept - 1] == ' ' || kept < kFlaser.find("nohost")) {
-      EXPECT_NE(refusal(folder.write("cut.log", kOdometry + kFlaser.substr(0, kept))).find("cut.log:2: "),
-                std::string::npos)
-          << kept;
+  for (const std::string& tail : {std::string(), std::string(3000, '\0'), std::string("\xFF\xFE\n\x01 FLA\n\0", 10)}) {
+    for (std::size_t kept = 7; kept < kFlaser.find(" 2690.3"); ++kept) {
+      CarmenLog log{folder.write("cut.log", kOdometry + kFlaser + kFlaser.substr(0, kept) + tail)};
+      EXPECT_TRUE(log.next() && log.next()) << kept;
+      EXPECT_FALSE(log.next()) << kept;
+      EXPECT_FALSE(log.next()) << kept;
+      ASSERT_TRUE(log.cut()) << kept;
+      EXPECT_NE(log.cut()->find("cut.log:3: "), std::string::npos) << *log.cut();
+      EXPECT_NE(log.cut()->find("; the log ends there, the 2 scans and poses before it are used"), std::string::npos);
     }
+  }
+  CarmenLog whole{folder.write("whole.log", kOdometry + kFlaser.substr(0, kFlaser.size() - 1))};
+  EXPECT_TRUE(whole.next() && whole.next());
+  EXPECT_FALSE(whole.next() || whole.cut()) << "a last line may lack its line feed";
+}
+
+TEST(CarmenLog, NamesFileAndLineOfABrokenLineThatOthersFollow) {
+  const test::TemporaryFolder folder;
+  for (std::size_t kept = 7; kept < kFlaser.find(" 2690.3"); ++kept) {
+    const auto file = folder.write("cut.log", kOdometry + kFlaser + kFlaser.substr(0, kept) + "\n" + kFlaser);
+    EXPECT_NE(refusal(file).find("cut.log:3: "), std::string::npos) << kept;
   }
   EXPECT_NE(refusal(folder.write("word.log", "FLASER 2 1 x 0 0 0 0 0 0 1 h 1\n"))
                 .find("word.log:1: 'range' must be a number, not 'x'"),
@@ -94,6 +109,23 @@ TEST(CarmenLog, NamesFileAndLineOfACutOrBrokenLine) {
             std::string::npos);
   EXPECT_NE(refusal(folder.write("pose.log", "ODOM nan 0 0 0 0 0 3 h 1\n")).find("pose.log:1: 'pose' is not finite"),
             std::string::npos);
+}
+
+TEST(CarmenLog, ReadsTimesAsFarAsALineHasThem) {
+  const test::TemporaryFolder folder;
+  const std::string line = "FLASER 2 1 2 0 0 0 0 0 0";
+  const auto times_of = [&](const std::string& end) {
+    return std::get<CarmenScan>(records(folder.write("a.log", line + end + "\n")).at(0)).times;
+  };
+  EXPECT_EQ(times_of(" 1.13486e+09 host 9.283348").stamp, timestamp_from_ns(1'134'860'000'000'000'000));
+  EXPECT_EQ(times_of(" 1.13486e+09 host 9.283348").logger, Duration{9'283'348'000});
+  EXPECT_EQ(times_of(" 3e2").stamp, timestamp_from_ns(300'000'000'000));
+  EXPECT_EQ(times_of(" nohost -0.5").logger, Duration{-500'000'000});
+  EXPECT_FALSE(times_of(" nohost -0.5").stamp);
+  EXPECT_FALSE(times_of("").stamp || times_of("").logger);
+  const CarmenClock clock{true, timestamp_from_ns(5'000'000'000)};
+  CarmenLog log{folder.write("b.log", line + " 1.13486e+09 host 2.5\n"), clock};
+  EXPECT_EQ(std::get<CarmenScan>(log.next().value()).time, timestamp_from_ns(7'500'000'000));
 }
 
 TEST(CarmenLog, SaysPlainlyWhatAForeignFileIs) {
@@ -108,6 +140,12 @@ TEST(CarmenLog, SaysPlainlyWhatAForeignFileIs) {
             std::string::npos);
   EXPECT_NE(refusal(folder.write("binary.log", std::string("ab\n\0\1", 5))).find("binary.log:2: not a CARMEN log"),
             std::string::npos);
+  const std::string map = "####\n# a map\n####\nCARMENMAPFILEv020 \xb8";
+  EXPECT_NE(refusal(folder.write("unpacked", map)).find("unpacked: is a CARMEN map, not a log"), std::string::npos);
+  for (const char* name : {"site.map", "site.map.gz"}) {
+    EXPECT_NE(refusal(folder.write(name, "\x1F\x8B\x08")).find(": is a CARMEN map, not a log"), std::string::npos);
+  }
+  EXPECT_NE(refusal(folder.write("a.log.gz", "\x1F\x8B\x08")).find("is gzip-compressed"), std::string::npos);
   EXPECT_NE(refusal(folder.write("text.log", "hello\nworld\n")).find("text.log:2: not a CARMEN log"),
             std::string::npos);
 }

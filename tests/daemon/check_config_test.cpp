@@ -9,6 +9,8 @@
 #include <map>
 
 #include "core/grid_file.hpp"
+#include "daemon/kept_drive.hpp"
+#include "daemon/kept_pose.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/state_folders.hpp"
 #include "daemon/version.hpp"
@@ -140,6 +142,17 @@ TEST_F(CheckConfig, AnOutFolderThatHoldsTheMapIsAnError) {
   write_grid(first_, settings_.map.file);
   EXPECT_TRUE(has_error(check_config(settings_, "robot.yaml", folder_.path())));
   EXPECT_FALSE(has_error(check_config(settings_, "robot.yaml", folder_.path() / "run")));
+}
+
+TEST_F(CheckConfig, TellsWhetherItWouldDrive) {
+  EXPECT_EQ(finding("drive").text, "off: it never moves the robot");
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  EXPECT_EQ(finding("drive").text, "wander: the switch is unknown: it would stand");
+  fs::create_directories(folder_.path() / "state");
+  EXPECT_EQ(KeptDrive{memory_places(settings_.map.store).drive}.keep(KeptDrive::DriveSwitch::kOn), "");
+  EXPECT_EQ(finding("drive").text, "wander: the switch is on: it would drive");
+  (void)folder_.write(memory_places(settings_.map.store).drive, "not a switch");
+  EXPECT_EQ(finding("drive").level, Level::kWarning);
 }
 
 TEST_F(CheckConfig, SumsUpInOneLine) {

@@ -76,6 +76,34 @@ TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedByTheReplayBitForBit) {
             content_of(folder_.path() / "live/trajectory.tum"));
 }
 
+TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedWithOtherSettingsAndAnotherSeed) {
+  const Pose2 far{5.0, 4.6, 0.0};  // in the middle of the drive, 1.7 m from it at least
+  const auto nearest_to_far = [&](const std::string& run) {
+    std::ifstream lines(folder_.path() / run / "trajectory.tum");
+    double nearest_m = 1e9;
+    for (double t, x, y; lines >> t >> x >> y; lines.ignore(1000, '\n')) {
+      nearest_m = std::min(nearest_m, std::hypot(x - far.x, y - far.y));
+    }
+    return nearest_m;
+  };
+  (void)run_live(3ms, [&](const Pipeline&) {
+    ASSERT_TRUE(reached_scan(20));
+    EXPECT_EQ(asked({Request::Kind::kPause, {}})["ok"], true);
+    ASSERT_TRUE(reached_scan(60));
+    EXPECT_EQ(asked({Request::Kind::kRelocalize, far})["ok"], true);
+  });
+  settings_.seed = 2;
+  settings_.localizer.beams = 90;
+  const RunReport again = replay("live.pcapng", "replayed");
+  EXPECT_EQ(again.journal, "not obeyed: other settings or map");
+  EXPECT_EQ(again.commands, 2u);
+  EXPECT_EQ(again.phases, 0u) << "mapping was paused before the box came";
+  EXPECT_LT(nearest_to_far("replayed"), 0.7);
+
+  (void)replay("drive.pcapng", "untouched");
+  EXPECT_GT(nearest_to_far("untouched"), 1.5);
+}
+
 TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame) {
   settings_.mapping.store_scan.gate.provisional.time_s = 60.0;  // the whole drive
   const RunReport live = run_live(2ms, [&](const Pipeline& pipeline) {
@@ -297,9 +325,17 @@ TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
 
 TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
+  settings_.map.store = folder_.path() / "kept.sqlite";
+  const auto kept = [&] { return content_of(folder_.path() / "kept.drive.json"); };
   run([&](const test::SimulatedPorts& ports) {
+    EXPECT_FALSE(moves(ports)) << "nobody has said anything yet";
+    EXPECT_EQ(status()["drive"], "off");
+    EXPECT_EQ(status()["drive_switch"], "unknown");
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     EXPECT_TRUE(comes_true([&] { return moves(ports); }));
+    EXPECT_EQ(kept(), "{\"drive\":\"on\"}\n");
     EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
+    EXPECT_EQ(kept(), "{\"drive\":\"off by the operator\"}\n") << "on disk when it is answered";
     EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "no command"; }));
     EXPECT_EQ(status()["drive"], "off");
     const std::size_t stopped = ports.commands().size();
@@ -309,6 +345,13 @@ TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
     EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     EXPECT_TRUE(comes_true([&] { return moves(ports, stopped); }));
     EXPECT_EQ(status()["drive"], "wander");
+    EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
+  });
+  run([&](const test::SimulatedPorts& ports) {
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 10));
+    EXPECT_FALSE(moves(ports)) << "a restart is no person";
+    EXPECT_EQ(status()["drive_switch"], "off by the operator");
   });
 }
 

@@ -205,6 +205,94 @@ TEST(ImportCarmen, TakesTheLargestValueForNoReturnOnlyWhereManyBeamsHaveIt) {
   EXPECT_EQ(told.scans[0].beams[1].kind, BeamKind::kBeyondMaximum);
 }
 
+/// What some logs have in place of one code: 51.05 to 51.16 m.
+std::string log_with_cluster(std::size_t in_cluster) {
+  std::string log;
+  for (std::size_t scan = 0; scan < 10; ++scan) {
+    std::vector<std::string> ranges(181, "3.21");
+    ranges[0] = "50.99";  // 0.17 m below the largest value
+    for (std::size_t i = 0; i < in_cluster; ++i)
+      ranges[10 + i] = "51." + std::to_string(105 + (scan + i) % 12).substr(1);
+    log += flaser(ranges, "0 0 0", std::to_string(scan));
+  }
+  return log;
+}
+
+TEST(ImportCarmen, TakesAClusterOfLargestValuesForNoReturn) {
+  const test::TemporaryFolder folder;
+  const Decoded many = imported(folder, log_with_cluster(10));  // 5.5 % of the beams, no single value has 0.5 %
+  for (const Scan& scan : many.scans) {
+    EXPECT_EQ(scan.beams[0].kind, BeamKind::kRange);
+    for (std::size_t i = 10; i < 20; ++i) EXPECT_EQ(scan.beams[i].kind, BeamKind::kBeyondMaximum) << i;
+  }
+  const CarmenSurvey survey = survey_of(folder.path() / "a.log", std::nullopt);
+  EXPECT_EQ(survey.no_return_m, 51.05);
+  EXPECT_EQ(survey.no_return_up_to_m, 51.16);
+  EXPECT_NEAR(survey.no_return_share, 10.0 / 181.0, 1e-9);
+  EXPECT_EQ(no_return_line(survey).find("no return: the log's largest values 51.05 to 51.16 m, 5.52"), 0u)
+      << no_return_line(survey);
+  EXPECT_EQ(imported(folder, log_with_cluster(10), 60.0).scans[0].beams[10].kind, BeamKind::kRange);
+
+  std::string few = log_with_cluster(0);
+  few.replace(few.find("3.21"), 4, "51.16");  // 1 of 1810 beams
+  EXPECT_EQ(imported(folder, few).scans[0].beams[1].kind, BeamKind::kRange);
+}
+
+TEST(ImportCarmen, KeepsRangesJustBelowTheScannersCodes) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> ranges(181, "8.100");  // mm, 8 m mode: a wall there is as good as any
+  for (std::size_t i = 0; i < 20; ++i) ranges[i] = i % 2 == 0 ? "8.183" : "8.191";
+  const Decoded all = imported(folder, flaser(ranges, "0 0 0", "1"));
+  EXPECT_EQ(all.measurements[0].words[0], 0x1FF7);
+  EXPECT_EQ(all.measurements[0].words[1], 0x1FFF);
+  EXPECT_EQ(all.scans[0].beams[100].kind, BeamKind::kRange);
+  EXPECT_EQ(survey_of(folder.path() / "a.log", std::nullopt).no_return_m, 8.183);
+}
+
+TEST(ImportCarmen, TakesTheLoggersTimesWhereTheStampsTellNothing) {
+  const test::TemporaryFolder folder;
+  std::string log;
+  for (int i = 0; i < 8; ++i) {
+    std::string line = fan(180, "1.07", "2.5", std::to_string(0.05 * i) + " 0 0", "1.13486e+09");
+    line.replace(line.rfind(" 0\n"), 3, " " + std::to_string(4.0 + 0.2 * i) + "\n");
+    log += line;
+  }
+  const Decoded all = imported(folder, log);
+  ASSERT_EQ(all.scans.size(), 8u);
+  for (std::size_t i = 0; i < all.scans.size(); ++i) {
+    const Timestamp expected = timestamp_from_ns(1'134'860'000'000'000'000) + Duration{200'000'000} * i;
+    EXPECT_NEAR(seconds(all.scans[i].time - expected), 0.0, kTimeToleranceS) << i;
+  }
+  // One stamp, and a logger that says nothing: no times.
+  const std::string same = fan(180, "1.07", "2.5", "0 0 0", "1.13486e+09");
+  try {
+    (void)import_carmen(folder.write("same.log", same + same + same), folder.path() / "b.pcapng", {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("same.log: cannot be imported without times: 2 of 3 scans have the time "),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(ImportCarmen, UsesALogThatWasCutInItsLastLineUpToThere) {
+  const test::TemporaryFolder folder;
+  const std::string good = fan(180, "1.07", "2.50", "0 0 0", "1") + fan(180, "1.07", "2.50", "0 0 0", "1.1");
+  const std::string cut = folder.write("cut.log", good + good.substr(0, 300));
+  const CarmenImport done = import_carmen(cut, folder.path() / "cut.pcapng", std::nullopt);
+  EXPECT_EQ(done.survey.scans, 2u);
+  ASSERT_TRUE(done.survey.cut);
+  EXPECT_NE(done.survey.cut->find("cut.log:3: "), std::string::npos) << *done.survey.cut;
+  EXPECT_EQ(decoded(folder.path() / "cut.pcapng").scans.size(), 2u);
+  const std::string out = (folder.path() / "again.pcapng").string();
+  const char* arguments[] = {"deltamap", "import", "carmen", cut.c_str(), out.c_str()};
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run_tool(5, arguments), 0);
+  (void)testing::internal::GetCapturedStdout();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("deltamap: warning: " + cut + ":3: "), std::string::npos);
+}
+
 TEST(ImportCarmen, ResamplesOtherScannersToTheNearestVariant) {
   const test::TemporaryFolder folder;
   // 511 beams over 255°: what lies behind ±90° falls away, what the log states as maximum is no return.
@@ -264,7 +352,8 @@ TEST(ImportCarmen, LeavesNothingBehindWhereTheLogIsBad) {
   const std::string good = fan(180, "1.07", "2.50", "0 0 0", "1");
   EXPECT_NE(refusal("").find("bad.log: line 1: the file is empty"), std::string::npos);
   EXPECT_NE(refusal("some text\n").find("bad.log:1: not a CARMEN log"), std::string::npos);
-  EXPECT_NE(refusal(good + good.substr(0, 300)).find("bad.log:2: cut short"), std::string::npos);
+  EXPECT_NE(refusal(good + good.substr(0, 300) + "\n" + good).find("bad.log:2: "), std::string::npos);
+  EXPECT_NE(refusal(good.substr(0, 300)).find("bad.log:1: "), std::string::npos);
   EXPECT_NE(refusal("ODOM 0 0 0 0 0 0 1 host 0\n").find("bad.log: no scan"), std::string::npos);
   EXPECT_THROW((void)import_carmen(folder.write("good.log", good), folder.path() / "no" / "out.pcapng", {}),
                std::runtime_error);
@@ -295,7 +384,7 @@ TEST(ImportCarmen, GivesBackTheTimesAndRangesOfRealLogs) {
   if (!std::filesystem::exists(data / "logs" / "intel.log.xz")) GTEST_SKIP() << "no real logs in " << data;
   if (std::system("command -v xz > /dev/null 2>&1") != 0) GTEST_SKIP() << "xz is not installed";
   const test::TemporaryFolder folder;
-  for (const std::string name : {"intel", "wean3", "duke", "uma_loc", "p3dx0"}) {
+  for (const std::string name : {"intel", "wean3", "duke", "aces", "uma_loc", "uma_map", "p3dx0"}) {
     const auto log = folder.path() / (name + ".log");
     ASSERT_EQ(std::system(
                   ("xz -dc '" + (data / "logs" / (name + ".log.xz")).string() + "' > '" + log.string() + "'").c_str()),

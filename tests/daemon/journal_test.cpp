@@ -49,7 +49,7 @@ TEST(Journal, AnswersWhatWasDecidedInTheNewestRun) {
   EXPECT_EQ(journal.things_before(9), 5u);
   EXPECT_FALSE(journal.things_before(8));
   EXPECT_EQ(journal.closing_scan(4), 8u);
-  EXPECT_TRUE(journal.commands_before(9).empty());
+  EXPECT_TRUE(journal.commands().empty());
 }
 
 TEST(Journal, KeepsTheOperatorsCommandsInTheirOrder) {
@@ -59,10 +59,9 @@ TEST(Journal, KeepsTheOperatorsCommandsInTheirOrder) {
   Journal journal;
   for (const Decision& decision : {first, second, third}) journal.read(note_of(decision));
   journal.read(note_of({Kind::kResumed, 10, 0}));
-  const auto commands = journal.commands_before(9);
-  EXPECT_EQ(std::vector<Decision>(commands.begin(), commands.end()), (std::vector<Decision>{first, second, third}));
-  ASSERT_EQ(journal.commands_before(10).size(), 1u);
-  EXPECT_EQ(journal.commands_before(10).front().kind, Kind::kResumed);
+  EXPECT_EQ(journal.commands().at(9), (std::vector<Decision>{first, second, third}));
+  ASSERT_EQ(journal.commands().at(10).size(), 1u);
+  EXPECT_EQ(journal.commands().at(10).front().kind, Kind::kResumed);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <sstream>
 
 #include "core/grid_file.hpp"
 #include "daemon/tool/run_tool.hpp"
@@ -69,6 +70,54 @@ TEST(MapFromPoses, WritesAMapThroughTheTool) {
   EXPECT_EQ(run_tool(7, arguments), 0);
   EXPECT_NE(testing::internal::GetCapturedStdout().find("from 24 scans"), std::string::npos);
   EXPECT_EQ(read_grid(yaml), map_from_poses(log, {}).grid);
+}
+
+TEST(MapFromPoses, NeedsNoTimesAndReadsALogUpToItsCut) {
+  const test::TemporaryFolder folder;
+  const std::string log = room_log();
+  const OccupancyGrid expected = map_from_poses(folder.write("room.log", log), {}).grid;
+  const auto with_ends = [&](const std::string& end) {
+    std::string changed;
+    std::istringstream lines{log};
+    for (std::string line; std::getline(lines, line);) {
+      line.resize(line.rfind(' ', line.rfind(" host") - 1));  // up to the poses
+      changed += line + end + "\n";
+    }
+    return changed;
+  };
+  for (const char* end : {"", " nohost 3.5", " 1.13486e+09 nohost 0", " 1.13486e+09"}) {
+    const std::string changed = with_ends(end);
+    EXPECT_EQ(map_from_poses(folder.write("other.log", changed), {}).grid, expected) << end;
+    const std::string half = changed.substr(0, changed.rfind("FLASER"));
+    const MapFromPoses cut = map_from_poses(folder.write("cut.log", half + "FLASER 181 1.5 2.5"), {});
+    EXPECT_EQ(cut.grid, map_from_poses(folder.write("half.log", half), {}).grid) << end;
+    ASSERT_TRUE(cut.survey.cut) << end;
+    EXPECT_NE(cut.survey.cut->find("cut.log:24: "), std::string::npos) << *cut.survey.cut;
+  }
+  // A pose that the cut has shortened is no pose.
+  const std::string bare = with_ends("");
+  EXPECT_TRUE(map_from_poses(folder.write("pose.log", bare.substr(0, bare.size() - 4)), {}).survey.cut);
+}
+
+TEST(MapFromPoses, LeavesOutWhatIsNoReturn) {
+  const test::TemporaryFolder folder;
+  std::string log = room_log();
+  int count = 0;  // a cluster of codes in place of one
+  for (std::size_t at; (at = log.find("8.191")) != std::string::npos; ++count) {
+    log.replace(at, 5, "7." + std::to_string(105 + count % 12).substr(1));
+  }
+  const std::string file = folder.write("room.log", log);
+  const MapFromPoses made = map_from_poses(file, {});
+  EXPECT_LT(made.grid.geometry().width, 120);
+  EXPECT_EQ(made.survey.no_return_m, 7.05);
+  EXPECT_GT(map_from_poses(file, {.no_return_m = 0.0}).grid.geometry().width, 200) << "spokes";
+  EXPECT_LT(map_from_poses(file, {.no_return_m = 2.0}).beams, made.beams);
+  const std::string yaml = (folder.path() / "room.yaml").string();
+  const char* arguments[] = {"deltamap", "map", "from-poses", file.c_str(), yaml.c_str(), "--no-return", "7"};
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(run_tool(7, arguments), 0);
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("no return: 7 m and more, as given"), std::string::npos);
+  EXPECT_EQ(read_grid(yaml), made.grid);
 }
 
 TEST(MapFromPoses, SaysWhyItCannot) {

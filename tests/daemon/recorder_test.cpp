@@ -18,7 +18,7 @@ TEST(Recorder, KeepsTheRecordingOfTheRunBefore) {
     const Recorder recorder{{.recording = file,
                              .bauds = {9600, 38400},
                              .began = timestamp_from_ns(1'700'000'000'000'000'000),
-                             .first_note = "run",
+                             .first_notes = {"run"},
                              .max_gigabytes = 1.0,
                              .trajectory = {}},
                             telemetry,
@@ -36,7 +36,7 @@ TEST(Recorder, NamesTheRecordingThatItCannotBegin) {
   const Recorder::Options options{.recording = folder.path() / "missing" / "bytes.pcapng",
                                   .bauds = {},
                                   .began = timestamp_from_ns(1'700'000'000'000'000'000),
-                                  .first_note = "run",
+                                  .first_notes = {"run"},
                                   .max_gigabytes = 1.0,
                                   .trajectory = {}};
   try {

@@ -63,12 +63,18 @@ TEST(FreePath, LetsARobotThatAlreadyTouchesDriveAway) {
 }
 
 TEST(Obstacles, AreWhereTheBeamsEndInTheRobotsFrame) {
-  Scan scan = scan_of(3, BeamKind::kBeyondMaximum, 0.0F);
-  scan.beams[1] = {2.0F, 0.0F, BeamKind::kRange};
+  Scan scan = scan_of(1, BeamKind::kRange, 2.0F);
+  scan.first_bearing_rad = scan.bearing_step_rad = 0.0;
   scan.robot_from_laser = {0.25, 0.0, std::numbers::pi / 2.0};
   const auto obstacles = obstacles_of(scan, {});
-  ASSERT_EQ(obstacles.size(), 1u);  // beyond maximum is clear
+  ASSERT_EQ(obstacles.size(), 1u);
   EXPECT_NEAR((obstacles[0] - Point2{0.25, 2.0}).norm(), 0.0, 1e-6);
+}
+
+TEST(Obstacles, BeginWhereABeamBeyondTheMaximumIsNoLongerSure) {
+  Scan scan = scan_of(181, BeamKind::kBeyondMaximum, 0.0F);
+  scan.max_range_m = 2.5;
+  EXPECT_NEAR(free_path_m(obstacles_of(scan, {}), 0.0, kRadiusM, kMostM), 2.5 - kRadiusM, 0.01);
 }
 
 TEST(Obstacles, CountAGapWhereItIsWideEnoughToHideOne) {

@@ -72,6 +72,7 @@ class Host {
   static pioneer::PioneerParams robot_params() {
     pioneer::PioneerParams params;
     params.enable_motors = true;
+    params.drive_switch = pioneer::DriveSwitch::kOn;
     return params;
   }
   static lms200::Lms200Params laser_params(unsigned baud) {

@@ -115,6 +115,54 @@ TEST(VirtualPioneer, WatchdogStopsItAndAnyPacketResumesTheOldSetPoints) {
   EXPECT_NEAR(rig.robot.demand().turn_rate_rad_per_s, radians(-20), 1e-9);
 }
 
+TEST(VirtualPioneer, KeepsToTheLimitsThatItWasGivenReportsThemAndForgetsThemAtClose) {
+  Rig rig;
+  rig.connect();
+  for (const Command& command : std::vector<Command>{{CommandNumber::kSetV, 400},
+                                                     {CommandNumber::kSetRv, 50},
+                                                     {CommandNumber::kSetA, -1000},
+                                                     {CommandNumber::kSetRa, -150},
+                                                     {CommandNumber::kEnable, 1},
+                                                     {CommandNumber::kVel, 900}})
+    rig.send(command);
+  EXPECT_NEAR(rig.robot.demand().speed_m_per_s, 0.4, 1e-9);
+  const auto told = [&rig] {
+    rig.send({CommandNumber::kConfig, 1});
+    for (const auto& packet : rig.pass(0.4)) {
+      if (packet.type() == pioneer::kConfigPacket) return pioneer::decoded_config(packet.data);
+    }
+    return std::optional<pioneer::ConfigPacket>{};
+  };
+  auto config = told();
+  ASSERT_TRUE(config);
+  EXPECT_EQ(config->trans_vel_max, 400);
+  EXPECT_EQ(config->rot_vel_max, 50);
+  EXPECT_EQ(config->trans_acc, 300);
+  EXPECT_EQ(config->trans_decel, 1000);
+  EXPECT_EQ(config->rot_decel, 150);
+  (void)rig.pass(2.1);
+  ASSERT_TRUE(rig.robot.watchdog_has_fired());
+  EXPECT_NEAR(rig.robot.demand().deceleration_m_per_s2, 1.0, 1e-9) << "its own stop too";
+  rig.send({CommandNumber::kSetA, -300});
+  rig.send({CommandNumber::kEstop, {}});
+  EXPECT_GT(rig.robot.demand().deceleration_m_per_s2, 1.9) << "ESTOP brakes as it can";
+  rig.send({CommandNumber::kClose, {}});
+  (void)rig.pass(0.3);
+  rig.connect();
+  config = told();
+  ASSERT_TRUE(config);
+  EXPECT_EQ(config->trans_vel_max, 750);
+  EXPECT_EQ(config->trans_decel, 300);
+}
+
+TEST(VirtualPioneer, TellsItsFaults) {
+  Rig rig;
+  rig.connect();
+  EXPECT_EQ(rig.next_sip()->fault_flags, 0);
+  rig.robot.fail(0x0010);
+  EXPECT_EQ(rig.next_sip()->fault_flags, 0x0010);
+}
+
 TEST(VirtualPioneer, MovesOnlyWithMotorsEnabledAndTheStopButtonDisablesThem) {
   Rig rig;
   rig.connect();

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <sstream>
 
 #include "core/grid_file.hpp"
 #include "daemon/pipeline.hpp"
@@ -17,14 +16,9 @@
 #include "tests/support/scripted_drive.hpp"
 #include "tests/support/scripted_port.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace deltamap::test {
-
-inline std::string content_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 inline std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -70,6 +64,7 @@ class PipelineFixture : public testing::Test {
     auto played = ports.played();
     std::filesystem::create_directories(folder_.path() / "live");
     daemon::Pipeline::Options live = options();
+    prepare_(live);
     live.out = folder_.path() / "live";
     live.mode = drivers::SessionMode::kListenOnly;
     live.open = [&ports](boost::asio::io_context& loop, drivers::port::PortId id, unsigned) {
@@ -100,6 +95,7 @@ class PipelineFixture : public testing::Test {
 
   TemporaryFolder folder_;
   daemon::Settings settings_;
+  std::function<void(daemon::Pipeline::Options&)> prepare_ = [](daemon::Pipeline::Options&) {};  ///< of run_live()
 };
 
 }  // namespace deltamap::test

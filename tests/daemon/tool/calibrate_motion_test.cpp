@@ -74,6 +74,20 @@ TEST_F(CalibrateMotion, FindsTheScaleOfTheWheelsAndOffersTheKeys) {
     EXPECT_GE(json["motion"][key]["value"].get<double>(), 0.0) << key;
   }
   EXPECT_GT(json["motion"]["metre_per_metre"]["value"].get<double>(), 0.03) << "must cover the scale";
+  EXPECT_TRUE(json["cut"].is_null());
+}
+
+TEST_F(CalibrateMotion, UsesARecordingThatWasCutUpToTheCut) {
+  record(900, true);
+  const auto whole = std::filesystem::file_size(file("drive.pcapng"));
+  std::filesystem::resize_file(file("drive.pcapng"), whole * 3 / 4 + 1);
+  std::filesystem::resize_file(file("drive.pcapng"), whole);  // the rest is zeros
+  const ToolRun calibrated = calibrate();
+  ASSERT_EQ(calibrated.exit_code, 0) << calibrated.errors;
+  const auto json = nlohmann::json::parse(calibrated.output);
+  EXPECT_GT(json["driven_m"].get<double>(), 15.0);
+  EXPECT_NE(json["cut"].get<std::string>().find("drive.pcapng: byte "), std::string::npos);
+  EXPECT_NE(calibrated.errors.find("deltamap: warning: "), std::string::npos) << calibrated.errors;
 }
 
 TEST_F(CalibrateMotion, RefusesARobotThatStandsInOneLine) {

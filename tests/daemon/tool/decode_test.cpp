@@ -2,10 +2,13 @@
 // `deltamap decode`, run in-process.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "daemon/tool/decoded_frame.hpp"
 #include "daemon/tool/run_tool.hpp"
+#include "drivers/lms200/command.hpp"
+#include "drivers/lms200/value_selection.hpp"
 #include "tests/support/golden_vectors.hpp"
 #include "tests/support/hex.hpp"
 
@@ -71,6 +74,56 @@ TEST(Decode, ReadsRangesInTheModeThatIsGiven) {
   const auto fields = nlohmann::json::parse(outcome.printed)["frames"][0]["fields"];
   EXPECT_EQ(fields["beams_m"], (nlohmann::json{"1.000", "2.000", "not valid", "dazzled", "beyond maximum"}));
   EXPECT_EQ(fields["words"][1], 10192);
+}
+
+TEST(Decode, NamesTheCodesOfEveryMeasuringMode) {
+  struct Case {
+    std::uint8_t mode;
+    unsigned first;  // x..F7
+  };
+  for (const Case& c : {Case{0x00, 0x1FF7}, Case{0x03, 0x3FF7}, Case{0x06, 0x7FF7}, Case{0x0F, 0x7FF7}}) {
+    drivers::lms200::Measurement measurement;
+    for (const unsigned after : {0u, 3u, 4u, 6u, 7u, 8u}) {
+      measurement.words.push_back(static_cast<std::uint16_t>(c.first + after));
+    }
+    const auto stream = decoded_laser_stream(encoded_measurement(measurement), c.mode);
+    ASSERT_EQ(stream.frames.size(), 1u);
+    const auto& fields = stream.frames[0].fields;
+    const auto beams = std::find_if(fields.begin(), fields.end(), [](const auto& f) { return f.first == "beams_m"; });
+    ASSERT_NE(beams, fields.end());
+    EXPECT_EQ(std::get<std::vector<std::string>>(beams->second),
+              (std::vector<std::string>{"beyond maximum", "channel 1 error", "signal too weak", "overflow", "dazzled",
+                                        "not valid"}))
+        << int{c.mode};
+  }
+}
+
+TEST(Decode, NamesTheTelegramsOfSelectedValues) {
+  using namespace drivers::lms200;
+  using Kind = ValueSelection::Kind;
+  std::vector<std::uint8_t> line;
+  const auto add = [&](const std::vector<std::uint8_t>& frame) { line.insert(line.end(), frame.begin(), frame.end()); };
+  add(selection_request({Kind::kSubRange, 1, {{1, 2}}}, true));
+  add(selection_request({Kind::kMean, 4, {}}, false));
+  add(selection_request({Kind::kEverySecond, 1, {}}, false));
+  Measurement measurement;
+  measurement.words = {100, 200};
+  add(encoded_selected_values({4, std::nullopt, measurement}));
+  add(encoded_selected_values({std::nullopt, ValueRange{1, 2}, measurement}));
+  add(encoded_selected_values({4, ValueRange{1, 2}, measurement}));
+  add(encoded_reflecting_ranges({{{1, 2}, measurement, {7, 8}}}));
+  add(counters_reply({1200, 300}));
+  add(configuration_2_reply());
+  add(permanent_baud_reply(true, false));
+  const auto stream = decoded_laser_stream(line, 0x00);
+  EXPECT_EQ(names_of(stream), (std::vector<std::string>{"set mode", "request mean scan", "request scan", "mean scan",
+                                                        "sub-range", "mean sub-range", "ranges with reflectivity",
+                                                        "counters", "configuration 2", "permanent baud"}));
+  for (std::size_t i = 0; i < stream.frames.size(); ++i) {
+    const auto& fields = stream.frames[i].fields;
+    const bool is_raw = std::any_of(fields.begin(), fields.end(), [](const auto& f) { return f.first == "data"; });
+    EXPECT_EQ(is_raw, stream.frames[i].name == "configuration 2") << stream.frames[i].name << ": its fields are told";
+  }
 }
 
 TEST(Decode, PrintsTextForPeople) {

@@ -26,11 +26,10 @@ class FakeLaser {
       if (now < silent_until || requests_to_miss-- > 0) continue;
       requests_to_miss = 0;
       const Timestamp is_here = now + line_time(bytes.size(), baud());
-      if (naks_to_send-- > 0) {
+      if (nak_from_request-- <= 0 && naks_to_send-- > 0) {
         send({kNakByte}, is_here);
         continue;
       }
-      naks_to_send = 0;
       heard.push_back(telegram);
       if (!loses_acks) send({kAckByte}, is_here);
       obey(telegram, is_here);
@@ -67,6 +66,7 @@ class FakeLaser {
   bool refuses_baud = false;
   bool loses_baud_answer = false;
   int requests_to_miss = 0;
+  int nak_from_request = 0;  // counted from now
   int naks_to_send = 0;
   Timestamp silent_until = Timestamp::min();
   std::optional<Timestamp> power_on_at;
@@ -135,6 +135,7 @@ class FakeLaser {
 
   [[nodiscard]] DeviceStatus status() const {
     DeviceStatus status;
+    status.operating_mode = is_streaming ? mode::kStreamAll : mode::kOnRequest;
     status.measuring_mode = configuration.measuring_mode();
     status.scan_angle_deg = variant.angle_deg;
     status.resolution_centideg = variant.resolution_centideg;

@@ -160,6 +160,22 @@ TEST(ScanFromMeasurement, CarriesTheMount) {
   EXPECT_EQ(scan_of(measurement_of(181), {.robot_from_laser = mount}).robot_from_laser, mount);
 }
 
+TEST(ScanFromMeasurement, CarriesSeverityAndPlausibilityOfTheStatusByte) {
+  struct Case {
+    std::uint8_t status;
+    unsigned severity;
+    bool implausible;
+  };
+  for (const Case& c : {Case{kNormalStatus, 0, false}, Case{0x12, 2, false}, Case{0x14, 4, false}, Case{0x50, 0, true},
+                        Case{0x54, 4, true}, Case{0xB0, 0, false}, Case{0xFB, 3, true}}) {
+    Measurement measurement = measurement_of(181);
+    measurement.status = c.status;
+    const Scan scan = scan_of(measurement);
+    EXPECT_EQ(scan.severity, c.severity) << int{c.status};
+    EXPECT_EQ(scan.implausible, c.implausible) << int{c.status};
+  }
+}
+
 TEST(EncodedBeam, ComesBackThroughTheCodec) {
   for (const int mode : {0, 3, 6}) {
     const auto measuring_mode = static_cast<std::uint8_t>(mode);

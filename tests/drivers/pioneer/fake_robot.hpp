@@ -3,6 +3,7 @@
 // watchdog that resumes the old set points at the next packet (protocols.md A4, A9).
 #pragma once
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,8 @@ class FakeRobot {
   bool is_mute = false;  ///< SIPs stop
   bool is_deaf = false;  ///< commands are lost
   bool follows_host_baud = true;
+  bool takes_limits = true;
+  unsigned idle_baud = 0;  ///< fallen back to at CLOSE; 0: stays
   int closes_to_lose = 0;
   int sync1_to_garble = 0;  ///< answers of type FF
   int speed = 0;
@@ -129,6 +132,7 @@ class FakeRobot {
         connected = false;
         motors_on = false;
         speed = turn_rate = 0;
+        if (idle_baud != 0) decoder_.set_baud(idle_baud);
         break;
       case CommandNumber::kEstop:
         speed = turn_rate = 0;
@@ -148,6 +152,12 @@ class FakeRobot {
       case CommandNumber::kConfig:
         send(encoded_config(config), now);
         break;
+      case CommandNumber::kSetV:
+      case CommandNumber::kSetRv:
+      case CommandNumber::kSetA:
+      case CommandNumber::kSetRa:
+        if (takes_limits) take_limit(command.number, value);
+        break;
       case CommandNumber::kHostBaud:
         if (follows_host_baud) {
           new_baud_ = baud_of_host_code(value);
@@ -157,6 +167,14 @@ class FakeRobot {
       default:
         break;
     }
+  }
+
+  void take_limit(CommandNumber number, int value) {
+    const auto magnitude = static_cast<std::uint16_t>(std::abs(value));
+    if (number == CommandNumber::kSetV) config.trans_vel_max = magnitude;
+    if (number == CommandNumber::kSetRv) config.rot_vel_max = magnitude;
+    if (number == CommandNumber::kSetA) (value > 0 ? config.trans_acc : config.trans_decel) = magnitude;
+    if (number == CommandNumber::kSetRa) (value > 0 ? config.rot_acc : config.rot_decel) = magnitude;
   }
 
   void send(std::vector<std::uint8_t> bytes, Timestamp now) {

@@ -14,9 +14,10 @@ namespace {
 using tests::bytes_from_hex;
 
 const auto kSync0Frame = bytes_from_hex("fafb03000000");
-const std::vector<std::vector<std::uint8_t>> kQuiet{
-    bytes_from_hex("fafb03370037"), encoded_command({CommandNumber::kVel, 0}),
-    encoded_command({CommandNumber::kRvel, 0}), bytes_from_hex("fafb03020002")};
+const std::vector<std::vector<std::uint8_t>> kQuiet{bytes_from_hex("fafb03370037"),
+                                                    encoded_command({CommandNumber::kVel, 0}),
+                                                    encoded_command({CommandNumber::kRvel, 0})};
+const auto kCloseFrame = bytes_from_hex("fafb03020002");  // SYNC2 has the same bytes
 
 /// What Conversation needs to know about the session.
 struct TestedSession : PioneerSession {
@@ -28,7 +29,7 @@ struct TestedSession : PioneerSession {
 class PioneerSessionTest : public testing::Test {
  protected:
   /// Whatever a test does: until the robot is connected, each SYNC0 (which is a PULSE to a robot that was left
-  /// connected) comes right after ESTOP, VEL 0, RVEL 0 and CLOSE at the same speed.
+  /// connected) comes right after ESTOP, VEL 0 and RVEL 0 at the same speed.
   void TearDown() override {
     std::size_t checked = 0;
     for (const Search& search : searches_) {
@@ -94,8 +95,36 @@ TEST_F(PioneerSessionTest, NamesTheSpeedsItTriedWhenNobodyAnswers) {
   robot.is_deaf = true;
   EXPECT_FALSE(connect(60.0));
   ASSERT_TRUE(line.failed);
-  EXPECT_EQ(*line.failed, "robot does not answer at 9600, 38400, 115200, 19200, 57600 baud");
+  EXPECT_EQ(*line.failed,
+            "robot does not answer at 9600, 38400, 115200, 19200, 57600 baud: no bytes came: switched off, or not "
+            "connected");
   EXPECT_FALSE(line.wake_at);
+}
+
+TEST_F(PioneerSessionTest, FindsALaserOnItsPortInTheSecondSearch) {
+  robot.is_deaf = true;
+  const auto question = LineDiagnosis::question_to_a_laser();
+  const auto times_asked = [&] {
+    return std::count_if(line.written.begin(), line.written.end(), [&](const auto& w) { return w.bytes == question; });
+  };
+  EXPECT_FALSE(connect(60.0));
+  EXPECT_EQ(times_asked(), 0) << "nothing foreign goes to a robot that may be about to answer";
+  line.failed.reset();
+  line.start();
+  ASSERT_TRUE(line.run_until([&] { return times_asked() > 0; }, 5.0));
+  const auto type = tests::bytes_from_hex("06 02801700ba4c4d533230303b3330313036333b5630322e313020102261");
+  line.carry_out(session.on_bytes(type, line.now));
+  line.run_for(60.0);
+  ASSERT_TRUE(line.failed);
+  EXPECT_TRUE(line.failed->ends_with("baud: the ports are swapped: the laser speaks on the robot's port"));
+}
+
+TEST_F(PioneerSessionTest, ConnectsToARobotThatWakesUpWhileALaserIsAskedFor) {
+  robot.is_deaf = true;
+  EXPECT_FALSE(connect(60.0));
+  line.failed.reset();
+  robot.is_deaf = false;
+  EXPECT_TRUE(connect());
 }
 
 TEST_F(PioneerSessionTest, StopsALeftOverRobotBeforeAnythingCouldMakeItResume) {
@@ -107,8 +136,87 @@ TEST_F(PioneerSessionTest, StopsALeftOverRobotBeforeAnythingCouldMakeItResume) {
     ASSERT_TRUE(connect()) << closes_to_lose;
     line.run_for(1.0);
     EXPECT_FALSE(robot.has_ever_moved) << closes_to_lose;
-    EXPECT_EQ(line.has_logged("still connected"), closes_to_lose > 0);
+    EXPECT_TRUE(line.has_logged("still connected"));
   }
+}
+
+TEST_F(PioneerSessionTest, SendsNoCloseToARobotThatWaitsForAConnection) {
+  ASSERT_TRUE(connect());
+  const auto is_close = [](const tests::WrittenBytes& written) { return written.bytes == kCloseFrame; };
+  EXPECT_EQ(std::count_if(line.written.begin(), line.written.end(), is_close), 1) << "SYNC2 alone";
+  robot.connected = false;  // a reset
+  line.run_for(1.0);
+  ASSERT_TRUE(line.failed);
+  EXPECT_EQ(std::count_if(line.written.begin(), line.written.end(), is_close), 1);
+}
+
+TEST_F(PioneerSessionTest, FindsARobotThatWasLeftAtTheFastBaudAndThenWaitsAtItsOwn) {
+  use({.fast_baud = 38400});
+  robot = FakeRobot{38400};
+  robot.be_left_over(300);
+  robot.idle_baud = 9600;
+  ASSERT_TRUE(connect(2.0));
+  EXPECT_EQ(robot.baud(), 9600u);
+  EXPECT_FALSE(robot.has_ever_moved);
+}
+
+TEST_F(PioneerSessionTest, TakesLeaveOfARobotThatHasFallenSilentAtThePaceThatItCanTake) {
+  ASSERT_TRUE(connect());
+  line.run_for(1.0);
+  robot.is_mute = true;
+  line.run_for(3.0);
+  ASSERT_TRUE(line.failed);
+  EXPECT_FALSE(robot.connected) << "it heard us";
+  EXPECT_EQ(robot.lost, 0);
+}
+
+TEST_F(PioneerSessionTest, SetsLimitsAndReadsThemBack) {
+  use({.limits = {.max_speed_m_per_s = 0.5, .deceleration_m_per_s2 = 0.8}});
+  robot.config.watchdog_ms = 700;
+  ASSERT_TRUE(connect());
+  EXPECT_FALSE(session.stopping_limits().is_confirmed);
+  EXPECT_EQ(session.stopping_limits().deceleration_m_per_s2, 0.3) << "as delivered, until it has said otherwise";
+  line.run_for(1.5);
+  EXPECT_EQ(robot.config.trans_vel_max, 500);
+  EXPECT_EQ(robot.config.trans_acc, 300);
+  EXPECT_EQ(robot.config.trans_decel, 800);
+  EXPECT_EQ(robot.config.rot_decel, 150);
+  EXPECT_TRUE(session.stopping_limits().is_confirmed);
+  EXPECT_DOUBLE_EQ(session.stopping_limits().deceleration_m_per_s2, 0.8);
+  EXPECT_DOUBLE_EQ(session.stopping_limits().watchdog_s, 0.7);
+  EXPECT_EQ(times_obeyed(CommandNumber::kSetV), 1u) << "no more once they show";
+  EXPECT_TRUE(line.has_logged("keeps to its limits: deceleration=0.80 m/s^2"));
+}
+
+TEST_F(PioneerSessionTest, GoesByWhatTheControllerReportsWhereItTakesNoLimits) {
+  robot.takes_limits = false;
+  robot.config.trans_decel = 250;
+  ASSERT_TRUE(connect());
+  line.run_for(20.0);
+  EXPECT_EQ(times_obeyed(CommandNumber::kSetV), 5u);
+  EXPECT_DOUBLE_EQ(session.stopping_limits().deceleration_m_per_s2, 0.25);
+  EXPECT_TRUE(line.has_logged("has its own: deceleration=0.25 m/s^2"));
+}
+
+TEST_F(PioneerSessionTest, TellsLowBatteryByTheControllersOwnThresholdAndItsFaults) {
+  robot.config.low_battery_decivolts = 115;
+  robot.sip.battery_decivolts = 116;
+  ASSERT_TRUE(connect());
+  line.run_for(1.0);
+  EXPECT_FALSE(line.messages.back().low_battery);
+  EXPECT_EQ(line.messages.back().fault_flags, 0);
+  robot.sip.battery_decivolts = 115;
+  line.run_for(0.3);
+  EXPECT_TRUE(line.messages.back().low_battery);
+  robot.sip.grip_state = robot.sip.analog_port = robot.sip.analog = std::uint8_t{0};
+  robot.sip.digital_in = robot.sip.digital_out = std::uint8_t{0};
+  robot.sip.battery_x10_decivolts = std::uint16_t{128};
+  robot.sip.charge_state = std::uint8_t{0};
+  robot.sip.turn_rate_decideg_per_s = std::int16_t{0};
+  robot.sip.fault_flags = std::uint16_t{0x0104};
+  line.run_for(0.3);
+  EXPECT_FALSE(line.messages.back().low_battery) << "the finer voltage counts";
+  EXPECT_EQ(line.messages.back().fault_flags, 0x0104);
 }
 
 TEST_F(PioneerSessionTest, StartsOverWhenSyncIsAnsweredWithNonsense) {
@@ -155,7 +263,7 @@ TEST_F(PioneerSessionTest, NeverEnablesMotorsByDefault) {
 }
 
 TEST_F(PioneerSessionTest, EnablesMotorsWhereAllowedAndDrives) {
-  use({.enable_motors = true});
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
   line.run_for(2.0);
   ASSERT_TRUE(robot.motors_on);
@@ -173,7 +281,9 @@ TEST_F(PioneerSessionTest, EnablesMotorsWhereAllowedAndDrives) {
 }
 
 TEST_F(PioneerSessionTest, ClampsSetPointsAndRefusesThoseThatAreNoNumbers) {
-  use({.enable_motors = true, .max_speed_m_per_s = 0.25, .max_turn_rate_rad_per_s = 0.5});
+  use({.enable_motors = true,
+       .drive_switch = DriveSwitch::kOn,
+       .limits = {.max_speed_m_per_s = 0.25, .max_turn_rate_rad_per_s = 0.5}});
   ASSERT_TRUE(connect());
   line.carry_out(session.drive({line.now, 9.0, -9.0}, line.now));
   line.run_for(0.1);
@@ -185,8 +295,41 @@ TEST_F(PioneerSessionTest, ClampsSetPointsAndRefusesThoseThatAreNoNumbers) {
   EXPECT_EQ(robot.turn_rate, 0);
 }
 
+TEST_F(PioneerSessionTest, StopsInAnEmergencyUntilTheRobotStandsAndHoldsItThere) {
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+  ASSERT_TRUE(connect());
+  ASSERT_TRUE(line.run_until([&] { return robot.motors_on; }, 3.0));
+  line.carry_out(session.drive({line.now, 0.3, 0.2}, line.now));
+  ASSERT_TRUE(line.run_until([&] { return robot.moves; }, 1.0));
+  const std::size_t before = times_obeyed(CommandNumber::kEstop);
+  robot.sip.left_mm_per_s = robot.sip.right_mm_per_s = 300;
+  line.run_for(0.2);  // its SIPs say so
+  robot.is_deaf = true;
+  line.carry_out(session.emergency_stop(line.now));
+  line.run_for(0.15);
+  robot.is_deaf = false;  // the first was lost
+  line.carry_out(session.emergency_stop(line.now));
+  line.run_for(0.05);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEstop), before + 1);
+  EXPECT_FALSE(robot.moves);
+  robot.sip.left_mm_per_s = robot.sip.right_mm_per_s = 0;
+  line.run_for(0.2);
+  const std::size_t stood = robot.obeyed.size();
+  for (int i = 0; i < 60; ++i) {  // 3 s, beyond its watchdog
+    line.carry_out(session.emergency_stop(line.now));
+    line.run_for(0.05);
+  }
+  EXPECT_FALSE(robot.watchdog_has_stopped);
+  for (std::size_t i = stood; i < robot.obeyed.size(); ++i) {
+    EXPECT_EQ(robot.obeyed[i].number, CommandNumber::kEstop) << i;  // and no old set point among them
+  }
+  EXPECT_LE(robot.obeyed.size() - stood, 8u);
+  line.carry_out(session.drive({line.now, 0.3, 0.2}, line.now));  // the one that it had before
+  EXPECT_TRUE(line.run_until([&] { return robot.moves; }, 1.0));
+}
+
 TEST_F(PioneerSessionTest, DoesNotEnableMotorsAgainAfterTheStopButton) {
-  use({.enable_motors = true});
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
   line.run_for(2.0);
   ASSERT_TRUE(robot.motors_on);
@@ -202,7 +345,7 @@ TEST_F(PioneerSessionTest, DoesNotEnableMotorsAgainAfterTheStopButton) {
 }
 
 TEST_F(PioneerSessionTest, DoesNotEnableMotorsWhileTheStopButtonIsHeldAtConnection) {
-  use({.enable_motors = true});
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   robot.stop_button = true;
   ASSERT_TRUE(connect());
   line.run_for(5.0);
@@ -210,7 +353,7 @@ TEST_F(PioneerSessionTest, DoesNotEnableMotorsWhileTheStopButtonIsHeldAtConnecti
 }
 
 TEST_F(PioneerSessionTest, StopsTheRobotFirstAfterAGapInItsOwnSending) {
-  use({.enable_motors = true});
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
   line.run_for(2.0);
   line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
@@ -290,14 +433,18 @@ TEST_F(PioneerSessionTest, GoesBackToTheOldSpeedWhereTheRobotDoesNotFollow) {
 }
 
 TEST_F(PioneerSessionTest, TakesItsLeaveWithARobotThatStands) {
-  use({.enable_motors = true});
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
   line.run_for(2.0);
   line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
   line.run_for(1.0);
   line.carry_out(session.close(line.now));
-  EXPECT_EQ(line.written.back().bytes, kQuiet.back());
+  line.run_for(0.3);
+  EXPECT_EQ(line.written.back().bytes, kCloseFrame);
   EXPECT_FALSE(line.wake_at);
+  EXPECT_FALSE(line.failed);
+  EXPECT_FALSE(robot.connected);
+  EXPECT_EQ(robot.lost, 0) << "the farewell keeps its distance (A1)";
   const std::size_t written = line.written.size();
   line.run_for(3.0);
   line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
@@ -308,7 +455,7 @@ TEST_F(PioneerSessionTest, TakesTheModelFromTheRobotAndItsLatencyFromItsConfigur
   robot.identity.subtype = "p3dx";
   robot.config.subtype = "p3dx";
   robot.config.kinematics_delay_ms = 30;
-  use({.enable_motors = true});
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
   line.run_for(3.0);
   const double x_before = line.messages.back().odom_from_robot.x;
@@ -322,7 +469,7 @@ TEST_F(PioneerSessionTest, TakesTheModelFromTheRobotAndItsLatencyFromItsConfigur
 }
 
 TEST_F(PioneerSessionTest, ListeningToTheRecordingGivesTheSameOdometryAndWritesNothing) {
-  use({.enable_motors = true});
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   robot.config.kinematics_delay_ms = 20;
   ASSERT_TRUE(connect());
   line.run_for(1.0);

@@ -55,7 +55,7 @@ std::string refusal(const std::filesystem::path& file) {
     ByteLogReader reader{file};
     while (reader.next()) {
     }
-    return reader.cut().value_or("");
+    return reader.cut() ? reader.cut()->text : "";
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -111,8 +111,29 @@ TEST(ByteLog, CutAtAnyByteGivesAllWholeRecordsAndThePlaceOfTheCut) {
     const std::size_t clean = complete == 0 ? header : ends[complete - 1];
     ASSERT_EQ(reader.cut().has_value(), kept != clean) << kept;
     if (reader.cut()) {
-      EXPECT_NE(reader.cut()->find("cut.pcapng: byte " + std::to_string(clean) + ": cut short"), std::string::npos);
+      EXPECT_NE(reader.cut()->text.find("cut.pcapng: byte " + std::to_string(clean) + ": cut short"),
+                std::string::npos);
     }
+  }
+}
+
+TEST(ByteLog, ADamagedBlockEndsItAsACutDoes) {
+  const test::TemporaryFolder folder;
+  write_log(folder.path() / "a.pcapng");
+  const std::string whole = bytes_of(folder.path() / "a.pcapng");
+  for (const std::string& tail :
+       {std::string(5000, '\0'), std::string(5000, '\xFF'), std::string("\6\0\0\0\7\0\0\0", 8)}) {
+    ByteLogReader reader{folder.write("b.pcapng", whole + tail + whole)};
+    std::size_t count = 0;
+    while (reader.next()) ++count;
+    EXPECT_EQ(count, kRecords.size());
+    ASSERT_TRUE(reader.cut());
+    EXPECT_EQ(reader.cut()->byte, whole.size());
+    EXPECT_EQ(reader.cut()->unread_bytes, tail.size() + whole.size());
+    EXPECT_EQ(reader.cut()->last_record, kRecords.back().stamp);
+    EXPECT_NE(reader.cut()->text.find("the last whole record is of 2000-12-05T22:32:26.500Z, 0.126 s after the first"),
+              std::string::npos)
+        << reader.cut()->text;
   }
 }
 

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/port/port_permission.hpp"
+
+#include <grp.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <vector>
+
+namespace deltamap::drivers::port {
+namespace {
+
+using Names = std::array<char, 4096>;
+
+std::string name_of_group(gid_t id) {
+  Names names{};
+  group entry{};
+  group* found = nullptr;
+  (void)::getgrgid_r(id, &entry, names.data(), names.size(), &found);
+  return found != nullptr ? found->gr_name : std::to_string(id);
+}
+
+std::string name_of_user(uid_t id) {
+  Names names{};
+  passwd entry{};
+  passwd* found = nullptr;
+  (void)::getpwuid_r(id, &entry, names.data(), names.size(), &found);
+  return found != nullptr ? found->pw_name : std::to_string(id);
+}
+
+/// This process has the group's rights.
+bool is_acting_as(gid_t id) {
+  if (::getegid() == id) return true;
+  std::vector<gid_t> groups(static_cast<std::size_t>(std::max(0, ::getgroups(0, nullptr))));
+  (void)::getgroups(static_cast<int>(groups.size()), groups.data());
+  return std::find(groups.begin(), groups.end(), id) != groups.end();
+}
+
+/// The user is listed as a member; a login from before that does not have the group's rights.
+bool is_listed_in(gid_t id) {
+  Names names{};
+  group entry{};
+  group* found = nullptr;
+  (void)::getgrgid_r(id, &entry, names.data(), names.size(), &found);
+  if (found == nullptr) return false;
+  const std::string user = name_of_user(::geteuid());
+  for (char** member = found->gr_mem; *member != nullptr; ++member) {
+    if (user == *member) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string way_to_permission(const std::string& path) {
+  struct stat device {};
+  if (::stat(path.c_str(), &device) != 0) {
+    return "the folder '" + std::filesystem::path{path}.parent_path().string() + "' is closed to user '" +
+           name_of_user(::geteuid()) + "'";
+  }
+  constexpr mode_t kGroupMay = S_IRGRP | S_IWGRP;
+  constexpr mode_t kOwnerMay = S_IRUSR | S_IWUSR;
+  const std::string group = name_of_group(device.st_gid);
+  const std::string owner = name_of_user(device.st_uid);
+  const bool is_owner = ::geteuid() == device.st_uid;
+  const bool group_helps = (device.st_mode & kGroupMay) == kGroupMay && device.st_gid != 0 && !is_owner;
+  if (group_helps && !is_acting_as(device.st_gid)) {
+    if (is_listed_in(device.st_gid)) return "log in again: the group '" + group + "' was joined after this login";
+    return "join the group '" + group + "'";
+  }
+  if ((device.st_mode & kOwnerMay) == kOwnerMay && !is_owner) return "only its owner '" + owner + "' may use it";
+  return "its mode lets nobody but root read and write it (owner '" + owner + "', group '" + group + "')";
+}
+
+}  // namespace deltamap::drivers::port

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "navigation/stop_reason.hpp"
+
+namespace deltamap::navigation {
+
+std::string_view name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::kNone:
+      return "none";
+    case StopReason::kNoCommand:
+      return "no command";
+    case StopReason::kCommandExpired:
+      return "command expired";
+    case StopReason::kNoOdometry:
+      return "no odometry";
+    case StopReason::kNoWatchdog:
+      return "no watchdog";
+    case StopReason::kStopButton:
+      return "stop button";
+    case StopReason::kMotorsOff:
+      return "motors off";
+    case StopReason::kBumper:
+      return "bumper";
+    case StopReason::kStalled:
+      return "stalled";
+    case StopReason::kControllerFault:
+      return "controller fault";
+    case StopReason::kLowBattery:
+      return "low battery";
+    case StopReason::kStaleLaser:
+      return "stale laser";
+    case StopReason::kLaserError:
+      return "laser error";
+    case StopReason::kImplausible:
+      return "implausible scan";
+    case StopReason::kPoseUnknown:
+      return "pose unknown";
+    case StopReason::kLost:
+      return "lost";
+    case StopReason::kPoseWrong:
+      return "pose wrong";
+    case StopReason::kReverse:
+      return "reverse refused";
+    case StopReason::kObstacle:
+      return "obstacle";
+  }
+  return "unknown";
+}
+
+bool waits_for_person(StopReason reason) {
+  switch (reason) {
+    case StopReason::kBumper:
+    case StopReason::kStalled:
+    case StopReason::kControllerFault:
+    case StopReason::kLowBattery:
+    case StopReason::kLaserError:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_told(StopReason reason) {
+  switch (reason) {
+    case StopReason::kNoWatchdog:
+    case StopReason::kImplausible:
+    case StopReason::kPoseUnknown:
+    case StopReason::kLost:
+    case StopReason::kPoseWrong:
+      return true;
+    default:
+      return waits_for_person(reason);
+  }
+}
+
+}  // namespace deltamap::navigation

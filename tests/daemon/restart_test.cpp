@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// A daemon that is started again on what its last run has left, and the replay of that second run from its recording
+// and M_0 alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "daemon/kept_stability.hpp"
+#include "mapping/map_store.hpp"
+#include "tests/support/pipeline_fixture.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RestartTest : public test::PipelineFixture {
+ protected:
+  /// A whole round, in which the box becomes map; then the daemon starts again where it ended.
+  RestartTest() {
+    settings_.map.store = folder_.path() / "store.sqlite";
+    record_drive(kRound_s);
+    (void)run_live(std::chrono::microseconds(1500));
+    fs::rename(folder_.path() / "live", folder_.path() / "first");
+    settings_.initial_pose.reset();
+    record_drive(kDrive_s);
+    prepare_ = [this](Pipeline::Options& options) { begin_where_it_ended(options); };
+    live_ = run_live(std::chrono::microseconds(1500));
+  }
+
+  static constexpr double kRound_s = 30.0;
+
+  void record_drive(double drive_s) {
+    test::write_drive(folder_.path() / "drive.log", drive_s);
+    (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
+  }
+
+  /// As run_daemon() does.
+  void begin_where_it_ended(Pipeline::Options& options) {
+    const mapping::MapStore store{folder_.path() / "first/map_store.sqlite"};
+    ASSERT_GE(store.newest(), 1u) << "the box must have become map";
+    const MemoryPlaces places = memory_places(settings_.map.store);
+    const auto pose = read_kept_pose(places.pose, options.first_map);
+    auto stability = read_kept_stability(places.stability, options.first_map);
+    ASSERT_TRUE(pose.pose) << pose.why_not;
+    ASSERT_TRUE(stability.kept) << stability.why_not;
+    options.start = {std::make_shared<const OccupancyGrid>(store.grid(store.newest())), store.newest()};
+    options.start.remembered = pose.pose->map_from_robot;
+    options.start.stability = stability.kept->record;
+    options.memory = pose.fingerprint ^ stability.fingerprint;
+  }
+
+  [[nodiscard]] std::string first_pose_of(const std::string& run) const {
+    const std::string trajectory = test::content_of(folder_.path() / run / "trajectory.tum");
+    return trajectory.substr(0, trajectory.find('\n'));
+  }
+  [[nodiscard]] double starts_off_m(const std::string& run) const {
+    double t = 0.0;
+    double x = 0.0;
+    double y = 0.0;
+    std::istringstream{first_pose_of(run)} >> t >> x >> y;
+    return std::hypot(x - test::pose_on_drive(0.0).x, y - test::pose_on_drive(0.0).y);
+  }
+
+  RunReport live_;
+};
+
+TEST_F(RestartTest, ItsRecordingGivesTheSameBytesFromTheFirstMapAlone) {
+  EXPECT_EQ(live_.scans.recording_lost, 0u);
+  for (const char* left : {"store.pose.json", "store.stability"}) fs::remove(folder_.path() / left);
+  const RunReport again = replay("live.pcapng", "replayed");
+  EXPECT_EQ(again.began.find("what the recorded run began from: revision="), 0u) << again.began;
+  EXPECT_NE(again.began.find(", kept pose, stability"), std::string::npos) << again.began;
+  EXPECT_EQ(again.journal, "obeyed");
+  EXPECT_EQ(again.journal_differences, 0u);
+  expect_same_files("live", "replayed");
+  EXPECT_LT(starts_off_m("replayed"), 0.3);
+}
+
+TEST_F(RestartTest, WhatItBeganFromIsUsedWithOtherSettingsToo) {
+  settings_.seed = 2;
+  const RunReport again = replay("live.pcapng", "replayed");
+  EXPECT_EQ(again.journal, "not obeyed: other settings or map");
+  EXPECT_EQ(again.began.find("what the recorded run began from: revision="), 0u) << again.began;
+  EXPECT_LT(starts_off_m("replayed"), 0.3);
+
+  settings_.initial_pose = Pose2{2.0, 2.0, 0.0};
+  const RunReport elsewhere = replay("live.pcapng", "elsewhere");
+  EXPECT_EQ(elsewhere.journal, "not obeyed: other settings or map");
+  EXPECT_GT(starts_off_m("elsewhere"), 3.0) << "a pose that is given goes before it";
+}
+
+TEST_F(RestartTest, OnAnotherMapNothingOfItIsUsedAndThatIsSaid) {
+  write_grid(test::small_room(true), folder_.path() / "room.yaml");
+  const RunReport again = replay("live.pcapng", "replayed");
+  EXPECT_EQ(again.began.find("the map alone: the recorded run began from another one, with revision="), 0u)
+      << again.began;
+  EXPECT_EQ(again.journal.find("not obeyed: "), 0u);
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every reason to stop: what brings it about, whether it outlives that, and what ends it.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+
+#include "navigation/pose_stop.hpp"
+#include "navigation/safety.hpp"
+
+namespace deltamap::navigation {
+namespace {
+
+constexpr Timestamp kStart = timestamp_from_ns(1'000'000'000'000);
+constexpr double kTickS = 0.1;
+
+/// A robot that drives through a free hall; each tick brings a SIP, a scan and a command.
+class Drive {
+ public:
+  Drive() {
+    odometry.motors_enabled = true;
+    scan.first_bearing_rad = -std::numbers::pi / 2.0;
+    scan.bearing_step_rad = std::numbers::pi / 180.0;
+    scan.max_range_m = 32.0;
+    scan.beams.assign(181, {6.0F, 0.0F, BeamKind::kRange});
+  }
+
+  AllowedMotion tick() {
+    now = now + duration_from_seconds(kTickS);
+    odometry.time = scan.time = scan.received = now;
+    if (robot_speaks) safety.observe(odometry);
+    if (laser_speaks) safety.observe(scan);
+    if (pilot_speaks) safety.command({now, speed_m_per_s, 0.1}, now, held_by);
+    return safety.allowed(now);
+  }
+  AllowedMotion run_for(double s) {
+    AllowedMotion motion;
+    for (double t = 0.0; t < s; t += kTickS) motion = tick();
+    return motion;
+  }
+  void press_motors_button() {
+    odometry.motors_enabled = false;
+    (void)run_for(0.5);
+    odometry.motors_enabled = true;
+  }
+
+  Safety safety{{}};
+  Odometry odometry;
+  Scan scan;
+  bool robot_speaks = true;
+  bool laser_speaks = true;
+  bool pilot_speaks = true;
+  double speed_m_per_s = 0.3;
+  StopReason held_by = StopReason::kNone;
+  Timestamp now = kStart;
+};
+
+struct Row {
+  StopReason reason;
+  std::function<void(Drive&)> begins;
+  std::function<void(Drive&)> is_over;
+  bool waits_for_person;
+  bool brakes_hard;
+};
+
+std::vector<Row> table() {
+  using Do = std::function<void(Drive&)>;
+  const auto pose = [](LocalizerState state, PoseVerdict verdict) -> Do {
+    return [=](Drive& d) {
+      Estimate estimate;
+      estimate.state = state;
+      estimate.belief.verdict = verdict;
+      d.held_by = pose_stop(estimate);
+    };
+  };
+  const Do tracked = pose(LocalizerState::kTracking, PoseVerdict::kUndecided);
+  const auto right = PoseVerdict::kRight;
+  const auto infinite = std::numeric_limits<double>::infinity();
+  return {
+      {StopReason::kNoCommand, [](Drive& d) { d.pilot_speaks = false, d.safety.release(); },
+       [](Drive& d) { d.pilot_speaks = true; }, false, false},
+      {StopReason::kCommandExpired, [](Drive& d) { d.pilot_speaks = false; }, [](Drive& d) { d.pilot_speaks = true; },
+       false, false},
+      {StopReason::kNoOdometry, [](Drive& d) { d.robot_speaks = false; }, [](Drive& d) { d.robot_speaks = true; },
+       false, false},
+      {StopReason::kNoWatchdog, [=](Drive& d) { d.safety.set_stopping_behaviour({.watchdog_s = infinite}); },
+       [](Drive& d) { d.safety.set_stopping_behaviour({}); }, false, false},
+      {StopReason::kStopButton, [](Drive& d) { d.odometry.stop_button = true; },
+       [](Drive& d) { d.odometry.stop_button = false; }, false, false},
+      {StopReason::kMotorsOff, [](Drive& d) { d.odometry.motors_enabled = false; },
+       [](Drive& d) { d.odometry.motors_enabled = true; }, false, false},
+      {StopReason::kBumper, [](Drive& d) { d.odometry.front_bumpers = 4; },
+       [](Drive& d) { d.odometry.front_bumpers = 0; }, true, true},
+      {StopReason::kBumper, [](Drive& d) { d.odometry.rear_bumpers = 1; },
+       [](Drive& d) { d.odometry.rear_bumpers = 0; }, true, true},
+      {StopReason::kStalled, [](Drive& d) { d.odometry.stalled = true; }, [](Drive& d) { d.odometry.stalled = false; },
+       true, true},
+      {StopReason::kControllerFault, [](Drive& d) { d.odometry.fault_flags = 0x0100; },
+       [](Drive& d) { d.odometry.fault_flags = 0; }, true, false},
+      {StopReason::kLowBattery, [](Drive& d) { d.odometry.low_battery = true; },
+       [](Drive& d) { d.odometry.low_battery = false; }, true, false},
+      {StopReason::kStaleLaser, [](Drive& d) { d.laser_speaks = false; }, [](Drive& d) { d.laser_speaks = true; },
+       false, false},
+      {StopReason::kLaserError, [](Drive& d) { d.scan.severity = 4; }, [](Drive& d) { d.scan.severity = 0; }, true,
+       false},
+      {StopReason::kLaserError, [](Drive& d) { d.scan.severity = 3; }, [](Drive& d) { d.scan.severity = 2; }, true,
+       false},
+      {StopReason::kImplausible, [](Drive& d) { d.scan.implausible = true; },
+       [](Drive& d) { d.scan.implausible = false; }, false, false},
+      {StopReason::kPoseUnknown, pose(LocalizerState::kGlobal, right), tracked, false, false},
+      {StopReason::kLost, pose(LocalizerState::kLost, right), tracked, false, false},
+      {StopReason::kPoseWrong, pose(LocalizerState::kTracking, PoseVerdict::kWrong), tracked, false, false},
+      {StopReason::kReverse, [](Drive& d) { d.speed_m_per_s = -0.1; }, [](Drive& d) { d.speed_m_per_s = 0.3; }, false,
+       false},
+      {StopReason::kObstacle, [](Drive& d) { d.scan.beams[90].range_m = 0.3F; },
+       [](Drive& d) { d.scan.beams[90].range_m = 6.0F; }, false, false},
+  };
+}
+
+constexpr double kLongEnoughS = 4.0;  // for whatever counts time: a low battery, plausible scans
+
+TEST(StopReasons, EachStopsTheRobotAndEndsAsItsRowSays) {
+  for (const Row& row : table()) {
+    SCOPED_TRACE(name_of(row.reason));
+    Drive drive;
+    ASSERT_EQ(drive.run_for(1.0).stop, StopReason::kNone);
+    row.begins(drive);
+    const AllowedMotion motion = drive.run_for(kLongEnoughS);
+    EXPECT_EQ(motion.stop, row.reason) << name_of(motion.stop);
+    EXPECT_EQ(motion.speed_m_per_s, 0.0);
+    EXPECT_EQ(motion.brake_hard, row.brakes_hard);
+    EXPECT_EQ(waits_for_person(row.reason), row.waits_for_person);
+    drive.safety.let_drive_again();
+    EXPECT_EQ(drive.run_for(kLongEnoughS).stop, row.reason) << "while the cause is there, nobody can drive";
+    row.is_over(drive);
+    const StopReason after = drive.run_for(kLongEnoughS).stop;
+    EXPECT_EQ(after, row.waits_for_person ? row.reason : StopReason::kNone) << name_of(after);
+    drive.safety.let_drive_again();
+    EXPECT_EQ(drive.tick().stop, StopReason::kNone);
+  }
+}
+
+TEST(StopReasons, AllWithoutTheObstacleForbidTurningAsWell) {
+  for (const Row& row : table()) {
+    Drive drive;
+    row.begins(drive);
+    const AllowedMotion motion = drive.run_for(kLongEnoughS);
+    EXPECT_EQ(motion.turn_rate_rad_per_s, row.reason == StopReason::kObstacle ? 0.1 : 0.0) << name_of(row.reason);
+  }
+}
+
+TEST(StopReasons, HaveEachTheirOwnNameAndTheirRow) {
+  std::vector<std::string_view> names;
+  for (auto reason = StopReason::kNoCommand; reason <= StopReason::kObstacle;
+       reason = static_cast<StopReason>(static_cast<int>(reason) + 1)) {
+    EXPECT_EQ(std::count(names.begin(), names.end(), name_of(reason)), 0) << name_of(reason);
+    EXPECT_NE(name_of(reason), "unknown");
+    names.push_back(name_of(reason));
+    const auto rows = table();
+    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return row.reason == reason; }))
+        << name_of(reason) << " has no row";
+  }
+}
+
+TEST(StopReasons, ThatWaitForAPersonEndWithTheMotorsButtonOffAndOn) {
+  for (const Row& row : table()) {
+    if (!row.waits_for_person) continue;
+    SCOPED_TRACE(name_of(row.reason));
+    Drive drive;
+    (void)drive.run_for(1.0);
+    row.begins(drive);
+    (void)drive.run_for(kLongEnoughS);
+    drive.press_motors_button();
+    EXPECT_EQ(drive.run_for(kLongEnoughS).stop, row.reason) << "the cause was still there";
+    row.is_over(drive);
+    EXPECT_EQ(drive.run_for(1.0).stop, row.reason);
+    drive.press_motors_button();
+    EXPECT_EQ(drive.run_for(1.0).stop, StopReason::kNone);
+  }
+}
+
+TEST(StopReasons, DoNotEndWhenTheMotorsComeOnAfterAReconnect) {
+  Drive drive;
+  (void)drive.run_for(1.0);
+  drive.odometry.front_bumpers = 1;
+  (void)drive.run_for(0.5);
+  drive.odometry.front_bumpers = 0;
+  drive.odometry.motors_enabled = false;  // reset: another epoch, and the daemon enables them
+  ++drive.odometry.epoch;
+  (void)drive.run_for(1.0);
+  drive.odometry.motors_enabled = true;
+  EXPECT_EQ(drive.run_for(1.0).stop, StopReason::kBumper);
+}
+
+TEST(StopReasons, BumperOfOneSipIsEnough) {
+  Drive drive;
+  (void)drive.run_for(1.0);
+  drive.odometry.front_bumpers = 1;
+  EXPECT_TRUE(drive.tick().brake_hard);
+  drive.odometry.front_bumpers = 0;
+  EXPECT_EQ(drive.run_for(60.0).stop, StopReason::kBumper);
+}
+
+TEST(StopReasons, LowBatteryIsMoreThanTheSagOfAMotorThatStarts) {
+  Drive drive;
+  drive.odometry.low_battery = true;
+  EXPECT_EQ(drive.run_for(2.0).stop, StopReason::kNone);
+  drive.odometry.low_battery = false;
+  EXPECT_EQ(drive.tick().stop, StopReason::kNone);
+  drive.odometry.low_battery = true;
+  EXPECT_EQ(drive.run_for(2.0).stop, StopReason::kNone) << "counted anew";
+  EXPECT_EQ(drive.run_for(2.0).stop, StopReason::kLowBattery);
+}
+
+TEST(StopReasons, ImplausibleScanKeepsItStandingForAWhile) {
+  Drive drive;
+  drive.scan.implausible = true;
+  EXPECT_EQ(drive.tick().stop, StopReason::kImplausible);
+  drive.scan.implausible = false;
+  EXPECT_EQ(drive.run_for(1.5).stop, StopReason::kImplausible);
+  EXPECT_EQ(drive.run_for(1.0).stop, StopReason::kNone);
+}
+
+TEST(StopReasons, WarningsOfTheLaserAreNone) {
+  Drive drive;
+  drive.scan.severity = 2;  // the front window is dirty
+  EXPECT_EQ(drive.run_for(1.0).stop, StopReason::kNone);
+}
+
+}  // namespace
+}  // namespace deltamap::navigation
