@@ -72,15 +72,19 @@ class Channel {
     }
   }
 
-  /// Receiver only. As receive(), but nothing too where none comes within the period.
+  /// Receiver only. As receive(), but nothing as well where none has come for so long: is_drained() tells the two
+  /// apart.
   template <typename Rep, typename Period>
-  [[nodiscard]] std::optional<T> receive_within(const std::chrono::duration<Rep, Period>& period) {
+  [[nodiscard]] std::optional<T> receive_within(const std::chrono::duration<Rep, Period>& patience) {
     if (auto item = try_receive()) return item;
-    (void)filled_.try_acquire_for(period);
+    if (!closed_.load(std::memory_order_acquire)) (void)filled_.try_acquire_for(patience);
     return take();
   }
-  /// Nothing is sent any more; what was sent before may still be there.
-  [[nodiscard]] bool is_closed() const { return closed_.load(std::memory_order_acquire); }
+  /// Receiver only: closed and empty.
+  [[nodiscard]] bool is_drained() const {
+    const bool closed = closed_.load(std::memory_order_acquire);  // before looking: nothing is sent after closing
+    return closed && head_.load(std::memory_order_relaxed) == tail_.load(std::memory_order_acquire);
+  }
 
   [[nodiscard]] std::size_t capacity() const { return slot_count_ - 1; }
   /// Items that found the channel full or closed. Any thread.

@@ -11,6 +11,7 @@
 #include "daemon/control/client.hpp"
 #include "daemon/kept_drive.hpp"
 #include "daemon/kept_pose.hpp"
+#include "daemon/localization_step.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/provenance.hpp"
 #include "daemon/start_banner.hpp"
@@ -65,6 +66,7 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
   try {
     if (settings.map.file.empty()) throw std::runtime_error(config + ": 'map.file' names no map");
     OccupancyGrid grid = read_grid(settings.map.file);
+    require_pose_on(grid.geometry(), settings);
     findings.push_back(
         {Level::kOk, "map", settings.map.file + ": " + size_text(grid.geometry()) + ": " + cells_text(grid)});
     return grid;

@@ -249,11 +249,8 @@ void Pipeline::State::hand_over(ScanSet set) {
 // --- map thread ---
 
 void Pipeline::State::update_maps() {
-  for (;;) {
-    const bool is_last = sets.is_closed();  // before looking: nothing is sent after closing
-    const auto set = sets.receive_within(kRetryPeriod);
-    if (!set && is_last) break;
-    if (set) update_map(*set);
+  while (!sets.is_drained()) {
+    if (const auto set = sets.receive_within(kRetryPeriod)) update_map(*set);
     const Workload::Item item{map_work};
     map_outputs.retry(drivers::port::port_clock_now());
   }

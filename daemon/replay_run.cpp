@@ -246,6 +246,7 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   require_map_elsewhere(job.map, job.out);
   const RecordedRun recorded = recorded_run(job);
   const ReplayStart begun = replay_start(recorded, job, std::move(given));
+  require_pose_on(begun.start.map->geometry(), job.settings);
   StagingFolder staging{job.out};
   RunReport report;
   {

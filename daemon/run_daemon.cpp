@@ -200,6 +200,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   Pipeline::Options options;
   const OccupancyGrid first = first_map(settings, line);
   options.first_map = grid_hash(first);
+  require_pose_on(first.geometry(), settings);
   options.start.map = std::make_shared<const OccupancyGrid>(first);
   make_state_folders(settings, line.config);
   if (!line.out.empty()) options.out = folder_to_write(line.out, settings.map.file);

@@ -49,6 +49,7 @@ void add_estimate(Json& json, const Telemetry& t) {
   json["particles"] = estimate.particles.value();
   json["n_eff"] = estimate.n_eff.value();
   json["w_avg"] = estimate.w_avg.value();
+  json["fit"] = !is_known || t.fit.value() < 0.0 ? Json(nullptr) : Json(t.fit.value());
   json["revision"] = estimate.revision.value();
 }
 

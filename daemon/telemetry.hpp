@@ -68,6 +68,7 @@ struct Telemetry {
   // localization thread
   Gauge<std::uint64_t> localized, dropped, tracked_lost;
   EstimateGauges estimate;
+  Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none came back
   Gauge<double> latency_s;
   Gauge<bool> paused;  ///< by the operator: Δ-mapping sees no scans
   // delta thread

@@ -112,8 +112,8 @@ std::string status_table(const std::string& reply_line) {
   std::string text = line("state", "%s", word(s, "/state").c_str());
   text += pose_line(s);
   text += belief_lines(s);
-  text += line("filter", "%.0f particles, n_eff %.0f, w_avg %.3f", number(s, "/particles"), number(s, "/n_eff"),
-               number(s, "/w_avg"));
+  text += line("filter", "%.0f particles, n_eff %.0f, w_avg %.3f, %.0f %% of the beams fit", number(s, "/particles"),
+               number(s, "/n_eff"), number(s, "/w_avg"), 100.0 * number(s, "/fit"));
   text += map_line(s);
   text += gate_line(s);
   text += scans_line(s);
