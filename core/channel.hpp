@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cassert>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -69,6 +70,20 @@ class Channel {
       filled_.acquire();
       if (auto item = take()) return item;
     }
+  }
+
+  /// Receiver only. As receive(), but nothing as well where none has come for so long: is_drained() tells the two
+  /// apart.
+  template <typename Rep, typename Period>
+  [[nodiscard]] std::optional<T> receive_within(const std::chrono::duration<Rep, Period>& patience) {
+    if (auto item = try_receive()) return item;
+    if (!closed_.load(std::memory_order_acquire)) (void)filled_.try_acquire_for(patience);
+    return take();
+  }
+  /// Receiver only: closed and empty.
+  [[nodiscard]] bool is_drained() const {
+    const bool closed = closed_.load(std::memory_order_acquire);  // before looking: nothing is sent after closing
+    return closed && head_.load(std::memory_order_relaxed) == tail_.load(std::memory_order_acquire);
   }
 
   [[nodiscard]] std::size_t capacity() const { return slot_count_ - 1; }

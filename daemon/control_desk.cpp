@@ -17,7 +17,7 @@ ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
       server_{
           {.socket = settings.control.socket,
            .handle = [this](const std::string& line, control::Server::Reply reply) { answer(line, std::move(reply)); },
-           .late_reply = done_line("waits for the next scan")}} {}
+           .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it")}} {}
 
 void ControlDesk::answer(const std::string& line, control::Server::Reply reply) {
   const control::RequestAnswer answer = control::request_of_line(line);
@@ -56,7 +56,7 @@ void ControlDesk::drive(bool may_drive, const Request& request, control::Server:
 void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
   const std::uint64_t ticket = next_ticket_++;
   if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, ticket})) {
-    return reply(error_line("too many commands wait for a scan already"));
+    return reply(error_line("too many commands wait already"));
   }
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
 }

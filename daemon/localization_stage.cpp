@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/localization_stage.hpp"
 
+#include <chrono>
+#include <cstdio>
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
@@ -11,6 +13,9 @@ namespace deltamap::daemon {
 namespace {
 
 using Kind = Decision::Kind;
+
+constexpr double kNoScan_s = 0.7;                     // without a scan: what an operator asks for is not done
+constexpr std::chrono::milliseconds kLookEvery{200};  // for what an operator asks while no message comes
 
 std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batch) {
   for (std::size_t i = batch.size(); i-- > 0;) {
@@ -36,7 +41,8 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
       first_map_{first_map},
       map_{start.map},
       memory_{settings.memory},
-      is_kept_{!settings.map.store.empty()} {
+      is_kept_{!settings.map.store.empty()},
+      fit_watch_{settings.initial_pose.has_value()} {
   if (settings.navigation.mode == navigation::DriveMode::kWander) {
     pilot_.emplace(settings.navigation.wander, settings.seed);
   }
@@ -45,7 +51,11 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
 void LocalizationStage::run() {
   std::vector<SensorMessage> batch;
   batch.reserve(wiring_.sensors.capacity());
-  while (auto message = wiring_.sensors.receive()) {
+  last_scan_came_ = drivers::port::port_clock_now();
+  while (!wiring_.sensors.is_drained()) {
+    auto message = wiring_.sensors.receive_within(kLookEvery);
+    if (seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s) take_commands_without_scan();
+    if (!message) continue;
     // After a stall the queue is drained: all odometry counts, of the scans only the newest.
     const Workload::Item item{workload_};
     batch.clear();
@@ -82,13 +92,17 @@ void LocalizationStage::pass_over(const Scan& scan) {
 }
 
 void LocalizationStage::localize(Scan scan) {
+  last_scan_came_ = drivers::port::port_clock_now();
   const std::uint32_t number = scan.number;
   take_revisions(number);
   take_things(number);
   take_commands(number);
   TrackedScan tracked = step_.observe(std::move(scan));
   show(tracked.estimate, tracked.scan.received);
+  answer_relocalize(number);
   tell_changes();
+  if (std::string line = fit_watch_.observe(tracked, step_.fit()); !line.empty())
+    (void)wiring_.recorder.send(LogLine{std::move(line)});
   (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
   (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
@@ -134,20 +148,50 @@ void LocalizationStage::take_commands(std::uint32_t scan) {
   while (const auto command = wiring_.commands.try_receive()) {
     if (command->kind == Command::Kind::kSave) {
       save(*command);
+    } else if (command->kind == Command::Kind::kRelocalize) {
+      relocalize(*command, scan);
     } else {
-      wiring_.answer(obey(*command, scan));
+      pause(*command, scan);
     }
   }
 }
 
-CommandOutcome LocalizationStage::obey(const Command& command, std::uint32_t scan) {
-  const std::string from = " from scan " + std::to_string(scan) + " on";
-  if (command.kind == Command::Kind::kRelocalize) {
-    step_.relocalize(command.map_from_robot);
-    note({Kind::kRelocalized, scan, 0, command.map_from_robot});
-    return {command.ticket, true, "the robot starts there with scan " + std::to_string(scan)};
+void LocalizationStage::take_commands_without_scan() {
+  while (const auto command = wiring_.commands.try_receive()) {
+    if (command->kind == Command::Kind::kSave) {
+      save(*command);
+      continue;
+    }
+    const double silent_s = seconds(drivers::port::port_clock_now() - last_scan_came_);
+    char text[96];
+    (void)std::snprintf(text, sizeof text, "not done: no scan has come for %.0f s; look at the laser", silent_s);
+    wiring_.answer({command->ticket, false, text});
   }
-  if (!mapping_enabled_) return {command.ticket, false, "'mapping.enabled' is false: there is nothing to pause"};
+}
+
+void LocalizationStage::relocalize(const Command& command, std::uint32_t scan) {
+  if (relocalized_) wiring_.answer({*relocalized_, false, "another pose has come before the next scan"});
+  relocalized_.reset();
+  const bool is_there = step_.relocalize(command.map_from_robot);
+  note({Kind::kRelocalized, scan, 0, command.map_from_robot});
+  if (is_there) {
+    relocalized_ = command.ticket;
+  } else {
+    wiring_.answer({command.ticket, false, "no free floor lies within 1 m of it: the whole map is searched"});
+  }
+}
+
+void LocalizationStage::answer_relocalize(std::uint32_t scan) {
+  if (!relocalized_) return;
+  wiring_.answer({*relocalized_, true,
+                  "the robot starts there with scan " + std::to_string(scan) + ": " + fit_words(step_.fit())});
+  relocalized_.reset();
+}
+
+void LocalizationStage::pause(const Command& command, std::uint32_t scan) {
+  const std::string from = " from scan " + std::to_string(scan) + " on";
+  if (!mapping_enabled_)
+    return wiring_.answer({command.ticket, false, "'mapping.enabled' is false: there is nothing to pause"});
   is_paused_ = command.kind == Command::Kind::kPause;
   wiring_.telemetry.paused.set(is_paused_);
   if (is_paused_) {  // nobody would notice what leaves
@@ -155,7 +199,7 @@ CommandOutcome LocalizationStage::obey(const Command& command, std::uint32_t sca
     step_.apply(things_);
   }
   note({is_paused_ ? Kind::kPaused : Kind::kResumed, scan, 0});
-  return {command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from};
+  wiring_.answer({command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from});
 }
 
 /// The recorder answers when both are on disk.
@@ -174,6 +218,7 @@ void LocalizationStage::show(const Estimate& estimate, Timestamp received) {
   const double latency_s = seconds(drivers::port::port_clock_now() - received);
   latency_.add(latency_s);
   wiring_.telemetry.localized.add(1);
+  wiring_.telemetry.fit.set(step_.fit().value_or(-1.0));
   wiring_.telemetry.latency_s.set(latency_s);
   wiring_.telemetry.estimate.set(estimate);
 }

@@ -10,6 +10,7 @@
 #include "core/channel.hpp"
 #include "core/messages.hpp"
 #include "daemon/command.hpp"
+#include "daemon/fit_watch.hpp"
 #include "daemon/latency_histogram.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/recorder.hpp"
@@ -56,7 +57,12 @@ class LocalizationStage {
   /// For the pilot: what stands there although the scan does not show it.
   [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked) const;
   void take_commands(std::uint32_t scan);
-  [[nodiscard]] CommandOutcome obey(const Command& command, std::uint32_t scan);
+  /// No scan comes: a save is done, everything else is answered as not done.
+  void take_commands_without_scan();
+  void pause(const Command& command, std::uint32_t scan);
+  void relocalize(const Command& command, std::uint32_t scan);
+  /// How well the scan fits there.
+  void answer_relocalize(std::uint32_t scan);
   void save(const Command& command);
   void show(const Estimate& estimate, Timestamp received);
   void tell_changes();
@@ -82,7 +88,10 @@ class LocalizationStage {
   bool is_kept_;                        // there is a store to keep it beside
   std::optional<Timestamp> pose_kept_;  // nothing until the first scan
   std::optional<Timestamp> stability_kept_;
-  bool has_tracked_ = false;  // until then what an earlier run has kept is the better answer
+  FitWatch fit_watch_;
+  std::optional<std::uint64_t> relocalized_;  // the ticket of a pose that the next scan tells the fit of
+  Timestamp last_scan_came_;                  // or the start of the run
+  bool has_tracked_ = false;                  // until then what an earlier run has kept is the better answer
   std::optional<LocalizerState> told_state_;
   std::optional<PoseVerdict> told_verdict_;
 };

@@ -2,6 +2,7 @@
 #include "daemon/localization_step.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 namespace deltamap::daemon {
@@ -15,6 +16,18 @@ std::optional<localization::InitialPose> initial_pose(const Settings& settings, 
 }
 
 }  // namespace
+
+void require_pose_on(const GridGeometry& map, const Settings& settings) {
+  if (!settings.initial_pose || map.contains(map.cell_at(settings.initial_pose->position()))) return;
+  const Point2 high = map.origin + map.resolution_m * Point2{map.width, map.height};
+  char text[256];
+  (void)std::snprintf(text, sizeof text,
+                      "'localization.initial_pose': %g,%g lies outside the map, which reaches from %g to %g m in x and "
+                      "from %g to %g m in y",
+                      settings.initial_pose->x, settings.initial_pose->y, map.origin.x(), high.x(), map.origin.y(),
+                      high.y());
+  throw SettingsError(text);
+}
 
 LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
     : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
@@ -54,8 +67,10 @@ void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(rev
 
 void LocalizationStep::apply(std::shared_ptr<const TemporaryThings> things) { localizer_.apply(std::move(things)); }
 
-void LocalizationStep::relocalize(const Pose2& map_from_robot) {
+bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
+  const std::uint64_t refused = localizer_.counts().poses_refused;
   localizer_.relocalize(localization::InitialPose{map_from_robot});
+  return localizer_.counts().poses_refused == refused;
 }
 
 std::map<std::string, std::uint64_t> LocalizationStep::counts() const {

@@ -26,6 +26,9 @@ struct StartMap {
   std::optional<localization::StabilityRecord> stability{};  ///< what earlier runs have learned of this map
 };
 
+/// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.
+void require_pose_on(const GridGeometry& map, const Settings& settings);
+
 class LocalizationStep {
  public:
   /// Throws std::runtime_error where the map has no free cell.
@@ -38,11 +41,14 @@ class LocalizationStep {
   void apply(const MapRevision& revision);
   /// What is different from the map for now; null: nothing is known any more.
   void apply(std::shared_ptr<const TemporaryThings> things);
-  /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°).
-  void relocalize(const Pose2& map_from_robot);
+  /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°). False where nobody can stand there: the
+  /// whole map is searched then.
+  bool relocalize(const Pose2& map_from_robot);
 
   /// Of the newest scan that was localized.
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
+  /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
+  [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
   [[nodiscard]] localization::StabilityRecord stability() const { return localizer_.stability(); }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }

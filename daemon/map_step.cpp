@@ -75,7 +75,8 @@ MapStep::Result MapStep::withdraw(const ScanSet& order) {
   OccupancyGrid map = *newest_.map;
   std::vector<std::uint32_t> withdrawn;
   while (!provisional_.empty() && provisional_.back().time >= *order.withdraw_from) {
-    map = patched(std::move(map), mapping::taken_back(map, provisional_.back().changes));
+    const std::vector<CellChange> back = mapping::taken_back(map, provisional_.back().changes);
+    map = patched(std::move(map), back);
     withdrawn.push_back(provisional_.back().number);
     provisional_.pop_back();
   }

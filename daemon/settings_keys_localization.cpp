@@ -19,7 +19,7 @@ void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
                             "how surely the bound holds"));
   keys.push_back(whole_key("localization.beams", localizer.beams, "", 0, 1000, "beams of a scan that score; 0: all"));
   keys.push_back(number_key("localization.gap_s", localizer.gap_s, "s", 0.1, 1e9,
-                            "without a scan, after which the pose must prove itself again"));
+                            "without scan and odometry, after which the pose must prove itself again"));
   auto& update = localizer.update;
   keys.push_back(number_key("localization.update.distance_m", update.distance_m, "m", 0.0, 10.0,
                             "driven until a scan is weighed again"));

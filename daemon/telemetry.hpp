@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/messages.hpp"
+#include "daemon/output_board.hpp"
 #include "mapping/write_gate.hpp"
 
 namespace deltamap::daemon {
@@ -62,10 +63,12 @@ struct Telemetry {
   Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
   // recorder thread
   Gauge<std::uint64_t> recorded_bytes;
-  Gauge<bool> records;  ///< false: never began, or has ended
+  Gauge<bool> records;  ///< false: never began, has ended, or pauses
+  OutputBoard outputs;  ///< recorder and map thread
   // localization thread
   Gauge<std::uint64_t> localized, dropped, tracked_lost;
   EstimateGauges estimate;
+  Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none came back
   Gauge<double> latency_s;
   Gauge<bool> paused;  ///< by the operator: Δ-mapping sees no scans
   // delta thread

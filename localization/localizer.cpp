@@ -21,7 +21,7 @@ Localizer::~Localizer() = default;
 Localizer::Localizer(Localizer&&) noexcept = default;
 Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
-void Localizer::observe(const Odometry& odometry) { state_->odometry.add(odometry); }
+void Localizer::observe(const Odometry& odometry) { state_->take(odometry); }
 
 TrackedScan Localizer::observe(Scan scan) {
   State& state = *state_;
@@ -71,6 +71,8 @@ void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->t
 void Localizer::relocalize(const InitialPose& pose) { state_->start_at(pose); }
 
 const RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
+
+std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 
 const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 

@@ -45,6 +45,8 @@ class Localizer {
   /// What else in the map the scans may mean, as of the last scan.
   [[nodiscard]] const RivalReport& rivals() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
+  /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
+  [[nodiscard]] std::optional<double> fit() const;
 
   /// What of the map has proven to stay, to be kept across restarts.
   [[nodiscard]] StabilityRecord stability() const;

@@ -22,7 +22,7 @@
 namespace deltamap::localization {
 
 struct LocalizerParams {
-  double gap_s = 20.0;  ///< without a scan, after which the pose must prove itself again, s; > 0
+  double gap_s = 20.0;  ///< without scan and odometry, after which the pose must prove itself again, s; > 0
   int beams = 0;        ///< beams of a scan that score, evenly chosen among the valid ones; 0 = all
   ParticleFilterParams particles;
   OdometryBufferParams odometry;

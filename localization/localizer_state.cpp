@@ -15,6 +15,9 @@ constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a perso
 constexpr double kTrustInASearch = 0.5;  // at one that a search has found,
 constexpr double kTrustInNothing = 0.1;  // and before there is any
 
+constexpr double kScansLagS = 0.5;    // a scan is at most so much older than the newest report of the wheels
+constexpr double kScansCeaseS = 5.0;  // without a scan: the particles go along with the wheels, step by step
+
 // A search has only begun: the whole map has been looked at twice at most.
 constexpr double kSearchBeginsM = 1.0;
 const double kSearchBeginsRad = radians(90.0);
@@ -93,11 +96,34 @@ void Localizer::State::doubt(const Pose2& map_from_believed, const ScanInstant& 
   monitor.start(LocalizerState::kGlobal);
 }
 
+void Localizer::State::take(const Odometry& report) {
+  odometry.add(report);
+  if (last_report) silence_s = std::max(silence_s, seconds(report.time - *last_report));
+  last_report = report.time;
+  if (!last_scan || searches()) return;
+  const Timestamp behind = report.time - duration_from_seconds(kScansLagS);
+  if (seconds(behind - *last_scan) < kScansCeaseS) return;
+  const ScanInstant now{behind, odometry.at(behind)};
+  if (now.odometry && !has_jumped(now)) tracker.carry(now);
+}
+
+bool Localizer::State::has_jumped(const ScanInstant& now) const {
+  return now.odometry && last_epoch && now.odometry->epoch != *last_epoch;
+}
+
+bool Localizer::State::covers_the_gap(const ScanInstant& now) const {
+  return now.odometry && !has_jumped(now) && std::max(silence_s, now.odometry->uncovered_s) < params.gap_s;
+}
+
+bool Localizer::State::searches() const { return monitor.state() == LocalizerState::kGlobal && !check.under_way(); }
+
 void Localizer::State::note_oddities(const ScanInstant& now) {
   ++counts.scans;
   counts.scans_without_return += ends.size() == 0 ? 1 : 0;
   counts.scans_without_odometry += now.odometry ? 0 : 1;
-  counts.odometry_epochs += now.odometry && last_epoch && now.odometry->epoch != *last_epoch ? 1 : 0;
+  counts.odometry_epochs += has_jumped(now) ? 1 : 0;
+  const bool is_covered = covers_the_gap(now);
+  silence_s = 0.0;
   if (now.odometry) last_epoch = now.odometry->epoch;
   if (!last_scan) return;
   const double passed_s = seconds(now.time - *last_scan);
@@ -105,14 +131,13 @@ void Localizer::State::note_oddities(const ScanInstant& now) {
     ++counts.clock_fell_back;
     tracker.restart_clock(now.time);
   }
-  if (passed_s < params.gap_s || monitor.state() != LocalizerState::kTracking) return;
+  if (passed_s < params.gap_s || is_covered || monitor.state() != LocalizerState::kTracking) return;
   ++counts.gaps;
   check_pose();
 }
 
 RefinedPose Localizer::State::believed(const ScanInstant& now, const Point2& robot_from_laser) {
-  const bool searching = monitor.state() == LocalizerState::kGlobal && !check.under_way();
-  return searching ? search(now) : track(now, robot_from_laser);
+  return searches() ? search(now) : track(now, robot_from_laser);
 }
 
 RefinedPose Localizer::State::search(const ScanInstant& now) {
@@ -183,6 +208,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
   seen.fit = explained_share(field, ends, believed.map_from_robot);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
+  newest_fit = blind ? std::nullopt : std::optional{seen.fit};
   if (check.under_way()) return blind ? void() : judge_start(seen.fit);
   const LocalizerState before = monitor.state();
   const Belief& belief = judgement.observe({.map = *map,

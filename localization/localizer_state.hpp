@@ -36,15 +36,18 @@ struct Localizer::State {
   std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
-  Pose2 last_joined;  ///< odometry at the last scan
+  Pose2 last_joined;                     ///< odometry at the last scan
+  std::optional<Timestamp> last_report;  ///< of the wheels
+  double silence_s = 0.0;                ///< the longest between two of these since the last scan
   struct GivenUp {
     Pose2 map_from_robot;
     Pose2 joined_from_robot;
   };
-  std::optional<GivenUp> given_up;  ///< where the robot was last believed to be, while a search has only begun
-  Hypothesis best;                  ///< of the particles, or the place that leads a search
-  double w_avg = 1.0;               ///< of that; before any scan nothing speaks against the pose
-  double n_eff = 0.0;               ///< of the particles, or of a search's places
+  std::optional<GivenUp> given_up;   ///< where the robot was last believed to be, while a search has only begun
+  Hypothesis best;                   ///< of the particles, or the place that leads a search
+  double w_avg = 1.0;                ///< of that; before any scan nothing speaks against the pose
+  std::optional<double> newest_fit;  ///< explained_share() of the newest scan at the estimate
+  double n_eff = 0.0;                ///< of the particles, or of a search's places
   ProvenHold proven_hold;
 
   // How a pose comes to be believed, and ceases to be.
@@ -56,6 +59,9 @@ struct Localizer::State {
   RefinedPose believe_in(const Pose2& place, const ScanInstant& now);
   /// The robot is not where it was believed to be; before another place is believed, the whole map is searched.
   void doubt(const Pose2& map_from_believed, const ScanInstant& now);
+
+  /// A report of the wheels: where scans have ceased to come, the particles go along with it.
+  void take(const Odometry& report);
 
   // One scan, in this order.
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
@@ -74,6 +80,12 @@ struct Localizer::State {
   const BeamEnds& weighing_ends(const ScanInstant& now);
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
   [[nodiscard]] bool has_won(const RivalPlace& place, const Pose2& believed) const;
+  /// No pose is believed, nor one being checked.
+  [[nodiscard]] bool searches() const;
+  /// The epoch of the odometry is another one than at the last scan.
+  [[nodiscard]] bool has_jumped(const ScanInstant& now) const;
+  /// Do the wheels tell what has been driven since the last scan?
+  [[nodiscard]] bool covers_the_gap(const ScanInstant& now) const;
   [[nodiscard]] FitMonitor::Observation passed_since_last_scan(const ScanInstant& now) const;
   void judge_start(double fit);
   /// The monitor has changed its mind.

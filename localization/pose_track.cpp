@@ -38,14 +38,25 @@ PoseTrack::Step PoseTrack::step_to(const ScanInstant& now) const {
           jumped ? passed_s : std::min(now.odometry->uncovered_s, passed_s)};
 }
 
-RefinedPose PoseTrack::before_scan(const ScanInstant& now, const Hypothesis& particles) {
-  if (!last_) return {particles.map_from_robot, particles.covariance};
+RefinedPose PoseTrack::expected_at(const ScanInstant& now) const {
   const Step step = step_to(now);
   RefinedPose expected = carried(last_->believed, step.motion, wheels_);
   const double unknown_m = motion_.unknown_speed_m_per_s * step.unknown_s;
   const double unknown_rad = motion_.unknown_turn_rate_rad_per_s * step.unknown_s;
   expected.covariance.diagonal() +=
       Eigen::Vector3d{unknown_m * unknown_m, unknown_m * unknown_m, unknown_rad * unknown_rad};
+  return expected;
+}
+
+void PoseTrack::carry(const ScanInstant& now) {
+  if (!last_) return;
+  last_ = Last{now, expected_at(now)};
+  wheels_.forget_stretch();
+}
+
+RefinedPose PoseTrack::before_scan(const ScanInstant& now, const Hypothesis& particles) {
+  if (!last_) return {particles.map_from_robot, particles.covariance};
+  RefinedPose expected = expected_at(now);
   if (disagreement(expected.map_from_robot, particles) <= params_.agreement * params_.agreement) return expected;
   wheels_.forget_stretch();
   return {particles.map_from_robot, particles.covariance};

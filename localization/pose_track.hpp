@@ -34,6 +34,9 @@ class PoseTrack {
   /// The last estimate, carried by the wheels; none after forget().
   [[nodiscard]] std::optional<Pose2> carried_to(const ScanInstant& now) const;
 
+  /// Goes along with the wheels where no scan tells how good they are.
+  void carry(const ScanInstant& now);
+
   /// What the scan made of it.
   void after_scan(const ScanInstant& now, const RefinedPose& believed);
 
@@ -50,6 +53,8 @@ class PoseTrack {
     double unknown_s = 0.0;
   };
   [[nodiscard]] Step step_to(const ScanInstant& now) const;
+  /// The last estimate, carried by the wheels, and as unsure as they are.
+  [[nodiscard]] RefinedPose expected_at(const ScanInstant& now) const;
 
   PoseTrackParams params_;
   MotionModelParams motion_;

@@ -53,6 +53,17 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
   return answer;
 }
 
+void Tracker::carry(const ScanInstant& now) {
+  if (!last_update_) return;
+  const MotionSince since = motion_since(*last_update_, now, params_.update.time_s);
+  if (!update_due(since)) return;
+  MotionModelParams motion = track_.particle_motion();
+  motion.slip_probability = 0.0;  // only a scan can tell of a slip
+  filter_.move(since.motion, since.unknown_s, motion);
+  last_update_ = now;
+  track_.carry(now);
+}
+
 bool Tracker::update_due(const MotionSince& since) const {
   return !last_update_ || since.motion.position().norm() >= params_.update.distance_m ||
          std::abs(since.motion.theta) >= params_.update.turn_rad || since.passed_s >= params_.update.time_s;

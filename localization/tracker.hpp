@@ -62,6 +62,8 @@ class Tracker {
     double unknown_s = 0.0;       ///< since the last update, not covered by odometry
   };
   Answer observe(const Seen& seen);
+  /// No scan has come for long: the particles and the track go along with the wheels up to this instant.
+  void carry(const ScanInstant& now);
 
   /// The heaviest hypothesis at the last update.
   [[nodiscard]] const Hypothesis& best() const { return best_; }

@@ -15,8 +15,8 @@ namespace {
 constexpr std::uint8_t kPositive = 0x3B;
 constexpr std::uint8_t kNegative = 0x1B;
 constexpr std::uint8_t kString = 0x2B;
-constexpr int kMaxMagnitude = 65535;
-constexpr std::size_t kMaxString = kMaxData - 3;
+[[maybe_unused]] constexpr int kMaxMagnitude = 65535;
+[[maybe_unused]] constexpr std::size_t kMaxString = kMaxData - 3;
 
 constexpr std::array<unsigned, 5> kHostBauds{9600, 19200, 38400, 57600, 115200};
 

@@ -75,6 +75,36 @@ TEST(Channel, GivesWhatIsLeftAfterClosingThenNothing) {
   EXPECT_EQ(channel.receive(), std::nullopt);
 }
 
+TEST(Channel, WaitsNoLongerThanItIsAskedTo) {
+  Channel<int> channel{2};
+  EXPECT_FALSE(channel.receive_within(std::chrono::milliseconds{1}));
+  EXPECT_FALSE(channel.is_drained());
+  EXPECT_TRUE(channel.try_send(7));
+  channel.close();
+  EXPECT_FALSE(channel.is_drained()) << "there is one left";
+  EXPECT_EQ(channel.receive_within(std::chrono::hours{1}), 7);
+  EXPECT_TRUE(channel.is_drained());
+  EXPECT_FALSE(channel.receive_within(std::chrono::hours{1})) << "closed: it waits for nothing";
+}
+
+TEST(Channel, GivesEverythingInOrderToAReceiverThatLooksUpNowAndThen) {
+  constexpr int kCount = 20'000;
+  Channel<int> channel{8};
+  std::jthread sender{[&] {
+    for (int i = 0; i < kCount; ++i) {
+      int item = i;
+      while (!channel.try_send(std::move(item))) std::this_thread::yield();
+    }
+    channel.close();
+  }};
+  int expected = 0;
+  while (!channel.is_drained()) {
+    const auto item = channel.receive_within(std::chrono::milliseconds{200});
+    if (item) ASSERT_EQ(*item, expected++);
+  }
+  EXPECT_EQ(expected, kCount);
+}
+
 TEST(Channel, DestroysWhatNobodyReceived) {
   const auto item = std::make_shared<int>(1);
   {

@@ -77,6 +77,17 @@ TEST_F(CheckConfig, ReadsTheMapWholeAndCountsItsCells) {
   EXPECT_EQ(finding("map").text, "robot.yaml: 'map.file' names no map");
 }
 
+TEST_F(CheckConfig, AStartPoseOffTheMapIsAnErrorThatNamesTheMapsExtent) {
+  settings_.initial_pose = Pose2{0.1, 0.05, 0.0};
+  EXPECT_TRUE(would_start());
+  settings_.initial_pose = Pose2{500.0, 500.0, 0.0};
+  EXPECT_EQ(
+      finding("map").text,
+      "'localization.initial_pose': 500,500 lies outside the map, which reaches from 0 to 0.15 m in x and from 0 to "
+      "0.1 m in y");
+  EXPECT_FALSE(would_start());
+}
+
 TEST_F(CheckConfig, AbsentDevicesAreWaitedFor) {
   EXPECT_EQ(finding("robot").level, Level::kWarning);
   EXPECT_EQ(finding("laser").text.find("/nowhere/laser is missing"), 0u) << finding("laser").text;
@@ -114,8 +125,9 @@ TEST_F(CheckConfig, ReadsWhatAKilledDaemonHasLeftInTheLog) {
 TEST_F(CheckConfig, AForeignStoreIsNamedByItsOwnPath) {
   fs::create_directories(folder_.path() / "state");
   (void)folder_.write("state/store.sqlite", std::string(5000, 'x'));
-  EXPECT_EQ(finding("store").level, Level::kError);
+  EXPECT_EQ(finding("store").level, Level::kWarning);
   EXPECT_EQ(finding("store").text.find(settings_.map.store + ": "), 0u) << finding("store").text;
+  EXPECT_NE(finding("store").text.find("a start would set it aside"), std::string::npos) << finding("store").text;
 }
 
 TEST_F(CheckConfig, AStoreWhoseFolderCannotBeIsAnErrorWithTheCure) {

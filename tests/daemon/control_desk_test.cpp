@@ -115,9 +115,7 @@ TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame
         test::pose_on_drive(0.106 * static_cast<double>(pipeline.telemetry().scans.value())) * Pose2{2.0, 0.0, 0.0};
     EXPECT_EQ(asked({Request::Kind::kRelocalize, far_away})["ok"], true);
   });
-  const auto withdrawn = std::count_if(live.changes.begin(), live.changes.end(),
-                                       [](const ChangeNote& change) { return !change.withdraws.empty(); });
-  EXPECT_EQ(withdrawn, 1);
+  EXPECT_EQ(live.changes.withdrawals(), 1u);
   const RunReport again = replay("live.pcapng", "replayed");
   EXPECT_EQ(again.journal, "obeyed");
   EXPECT_EQ(again.journal_differences, 0u);
@@ -151,14 +149,18 @@ TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
     EXPECT_EQ(told["drive"], "off");
     EXPECT_EQ(told["recording"]["file"], settings_.recording.file);
     EXPECT_EQ(told["recording"]["goes_on"], true);
+    for (const char* output : {"trajectory", "localization", "changes", "map", "history", "recording"}) {
+      EXPECT_EQ(told["outputs"][output]["written"], true) << output << told["outputs"];
+    }
     EXPECT_GT(told["since_start_s"], 0.0);
     EXPECT_EQ(told["drops"].size(), 6u);
 
     testing::internal::CaptureStdout();
     EXPECT_EQ(exit_code({"status"}), 0);
     const std::string table = testing::internal::GetCapturedStdout();
-    for (const char* topic : {"state        tracking", "pose         x=", "belief       pose ",
-                              "map          revision 0", "ports        robot ", "drive        off", "recording    "}) {
+    for (const char* topic :
+         {"state        tracking", "pose         x=", "belief       pose ", "map          revision 0",
+          "ports        robot ", "drive        off", "recording    ", "saving       "}) {
       EXPECT_NE(table.find(topic), std::string::npos) << topic << '\n' << table;
     }
     testing::internal::CaptureStdout();
@@ -199,6 +201,52 @@ TEST_F(ControlDeskTest, GarbageAndWrongRequestsAreAnsweredAndHarmNothing) {
     asks_and_goes.vanish();
   });
   EXPECT_GT(live.scans.localized, 300u);
+}
+
+/// The recording has been played: no scan comes any more, as from a laser that has gone.
+TEST_F(ControlDeskTest, WithoutScansWhatIsNotDoneIsToldWithinASecondAndSaveSavesAnyway) {
+  settings_.map.store = folder_.path() / "kept.sqlite";
+  (void)run_live(0ms, [&](const Pipeline& pipeline) {
+    std::uint64_t localized = 0;
+    ASSERT_TRUE(comes_true([&] { return pipeline.telemetry().scans.value() > 350; }));
+    do {
+      localized = pipeline.telemetry().localized.value();
+      std::this_thread::sleep_for(1200ms);
+    } while (pipeline.telemetry().localized.value() != localized);
+    const auto asked_in_time = [&](const Request& request) {
+      const auto began = std::chrono::steady_clock::now();
+      const Json reply = asked(request);
+      EXPECT_LT(std::chrono::steady_clock::now() - began, 1500ms) << reply;
+      return reply;
+    };
+    for (const Request::Kind kind : {Request::Kind::kPause, Request::Kind::kRelocalize}) {
+      const Json reply = asked_in_time({kind, test::pose_on_drive(0.0)});
+      EXPECT_EQ(reply["ok"], false);
+      EXPECT_EQ(reply["error"].get<std::string>().rfind("not done: no scan has come for ", 0), 0u) << reply;
+    }
+    EXPECT_EQ(status()["mapping"], "on");
+    const Json saved = asked_in_time({Request::Kind::kSave, {}});
+    EXPECT_EQ(saved["ok"], true) << saved;
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "kept.saved.yaml"));
+  });
+}
+
+TEST_F(ControlDeskTest, APoseIsAnsweredWithHowWellItFits) {
+  (void)run_live(3ms, [&](const Pipeline& pipeline) {
+    ASSERT_TRUE(reached_scan(20));
+    const auto message_at = [&](double off_m) {
+      const double driven_s = kDrive_s * static_cast<double>(pipeline.telemetry().scans.value()) / 422.0;
+      const Json reply = asked({Request::Kind::kRelocalize, test::pose_on_drive(driven_s) * Pose2{off_m, 0.0, 0.0}});
+      EXPECT_EQ(reply["ok"], true) << reply;
+      return reply.value("message", "");
+    };
+    const std::string right = message_at(0.0);
+    EXPECT_NE(right.find(" % of its beams fit"), std::string::npos) << right;
+    EXPECT_EQ(right.find("only"), std::string::npos) << right;
+    const std::string wrong = message_at(-1.5);
+    EXPECT_NE(wrong.find("is it the right place, and the right map?"), std::string::npos) << wrong;
+    EXPECT_GT(status()["fit"], 0.0);
+  });
 }
 
 TEST_F(ControlDeskTest, WithoutADaemonTheToolSaysSoInOneLineAndEndsWithOne) {

@@ -3,6 +3,8 @@
 // nothing left behind.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/grid_file.hpp"
 #include "daemon/replay_run.hpp"
 #include "daemon/revision_queue.hpp"
@@ -106,6 +108,15 @@ TEST_F(ReplayTest, AForeignMapIsNamedAndLeavesNothing) {
   ReplayJob wrong = job();
   wrong.map = folder_.write("wrong.yaml", "hello\n");
   EXPECT_TRUE(error_of(wrong).starts_with("wrong.yaml: ")) << error_of(wrong);
+  expect_nothing_left();
+}
+
+TEST_F(ReplayTest, AStartPoseOffTheMapIsWrongUsage) {
+  ReplayJob off = job();
+  for (const double far : {500.0, 1e300, std::nan("")}) {
+    off.settings.initial_pose = Pose2{far, 500.0, 0.0};
+    EXPECT_THROW((void)run_replay(off, [](double) { return true; }), SettingsError) << far;
+  }
   expect_nothing_left();
 }
 

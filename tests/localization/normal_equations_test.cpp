@@ -33,7 +33,8 @@ TEST(NormalEquations, KnowHowADistanceChangesWithThePose) {
   constexpr double kStep = 1e-3;
   int looked_at = 0;
   for (int i = 0; i < 4000; ++i) {
-    const BeamEnds ends = end_at(random.uniform(0.1, 2.0), random.uniform(-0.5, 0.5));
+    const Point2 end{random.uniform(0.1, 2.0), random.uniform(-0.5, 0.5)};
+    const BeamEnds ends = end_at(end.x(), end.y());
     const Pose2 pose{random.uniform(0.3, 4.0), random.uniform(0.6, 3.4), random.uniform(-0.5, 0.5)};
     const OneEnd at = one_end(field, ends, pose);
     const std::array<Pose2, 3> ahead{Pose2{pose.x + kStep, pose.y, pose.theta},
@@ -66,7 +67,8 @@ TEST(NormalEquations, AreTheSumOverTheEndsHoweverManyThereAre) {
   BeamEnds all;
   NormalEquations sum{Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
   for (int count = 1; count <= 11; ++count) {
-    const BeamEnds one = end_at(random.uniform(-1.7, 4.0), random.uniform(-1.4, 2.8));
+    const Point2 end{random.uniform(-1.7, 4.0), random.uniform(-1.4, 2.8)};
+    const BeamEnds one = end_at(end.x(), end.y());
     all.x_m.push_back(one.x_m.front());
     all.y_m.push_back(one.y_m.front());
     const NormalEquations of_one = normal_equations(field, one, pose);

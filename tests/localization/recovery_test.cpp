@@ -43,6 +43,13 @@ class Tour {
     odometry_.odom_from_robot = odometry_.odom_from_robot * measured;
     wait(kScanPeriodS);
   }
+  /// Drives on while no scan comes.
+  void drive_unseen(Localizer& localizer, double seconds) {
+    for (double left_s = seconds; left_s > 0.0; left_s -= kScanPeriodS) {
+      step();
+      localizer.observe(odometry_);
+    }
+  }
   void wait(double seconds) { odometry_.time += duration_from_seconds(seconds); }
   void carry_to(const Pose2& place) {
     truth_ = place;
@@ -52,6 +59,7 @@ class Tour {
     odometry_.odom_from_robot = {};
     ++odometry_.epoch;
   }
+  [[nodiscard]] const Odometry& odometry() const { return odometry_; }
   [[nodiscard]] Scan scan() { return test::cast_scan(world_, truth_, odometry_.time, {}, random_); }
   [[nodiscard]] const Pose2& truth() const { return truth_; }
 
@@ -215,6 +223,76 @@ TEST(BadInput, BlindScansLeaveThePoseUndecided) {
     verdict = localizer.observe(std::move(empty)).estimate.belief.verdict;
   }
   EXPECT_EQ(verdict, PoseVerdict::kUndecided);
+}
+
+/// Up to 25 m of driving and turning; the hall looks alike in places.
+TEST(ScanGap, IsBridgedByTheWheelsAndThePoseStaysTracked) {
+  int strayed = 0;
+  for (const double gap_s : {1.0, 4.0, 10.0, 25.0, 40.0, 60.0}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      Tour tour{seed};
+      Localizer localizer = localizer_at(InitialPose{tour.truth()}, seed);
+      for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
+      tour.drive_unseen(localizer, gap_s);
+      const TrackedScan first = tour.next(localizer);
+      ASSERT_EQ(first.estimate.state, LocalizerState::kTracking) << gap_s << " s, seed " << seed;
+      int wrong = 0;
+      for (int i = 0; i < 50; ++i) wrong += right(tour.next(localizer), tour) ? 0 : 1;
+      if (gap_s < 60.0) {
+        EXPECT_LE(wrong, 15) << gap_s << " s, seed " << seed;
+      }
+      strayed += wrong > 15 ? 1 : 0;
+      EXPECT_EQ(localizer.counts().gaps, 0u);
+      EXPECT_EQ(localizer.counts().poses_refuted, 0u);
+    }
+  }
+  EXPECT_LE(strayed, 1);
+}
+
+/// A view that fits little is no proof against a pose that the wheels have kept.
+TEST(ScanGap, ThePoseIsKeptWhereTheWorldHasChangedMeanwhile) {
+  Tour tour{3};
+  Localizer localizer = localizer_at(InitialPose{tour.truth()}, 3);
+  for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
+  tour.drive_unseen(localizer, 4.0);
+  for (double left_s = 26.0; left_s > 0.0; left_s -= kScanPeriodS) {
+    tour.wait(kScanPeriodS);
+    localizer.observe(tour.odometry());
+  }
+  for (int i = 0; i < 6; ++i) {
+    tour.step();
+    localizer.observe(tour.odometry());
+    Scan scan = tour.scan();  // somebody stands before half of it
+    for (std::size_t k = 0; k < scan.beams.size() / 2; ++k) scan.beams[k] = {0.8F, 0.0F, BeamKind::kRange};
+    ASSERT_TRUE(right(localizer.observe(std::move(scan)), tour)) << i;
+  }
+  EXPECT_EQ(localizer.counts().searches, 0u);
+  EXPECT_EQ(tour.next(localizer).estimate.state, LocalizerState::kTracking);
+}
+
+TEST(ScanGap, WidensThePoseByWhatWasDrivenNotByWhatLiesBetweenItsEnds) {
+  LocalizerParams params;
+  params.motion.slip_probability = 0.0;
+  Localizer localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()), InitialPose{{2.0, 1.0, 0.0}},
+                      1};
+  Odometry odometry = at_rest();
+  Scan blind;
+  const auto deviation_after = [&](double turn_rad) {
+    for (int i = 0; i < 300; ++i) {
+      odometry.time += duration_from_seconds(0.1);
+      odometry.odom_from_robot = odometry.odom_from_robot * Pose2{turn_rad > 0.0 ? 0.04 : 0.0, 0.0, turn_rad};
+      localizer.observe(odometry);
+    }
+    blind.time = odometry.time;
+    const PoseCovariance& c = localizer.observe(blind).estimate.covariance;
+    return std::sqrt(c(0, 0) + c(1, 1));
+  };
+  blind.time = odometry.time;
+  localizer.observe(odometry);
+  (void)localizer.observe(blind);
+  const double standing_m = deviation_after(0.0);
+  const double driving_m = deviation_after(4.0 * std::numbers::pi / 300.0);  // twice round a circle: back where it was
+  EXPECT_GT(driving_m, standing_m + 0.1);
 }
 
 TEST(BadInput, AMinuteOfSilenceMakesThePoseProveItself) {

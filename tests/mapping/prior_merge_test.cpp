@@ -50,7 +50,8 @@ TEST(PriorMerge, FindsTheErrorsThatThePriorAllows) {
   const Pose2 robot{7.0, 6.5, 0.3};
   Random random{1};
   for (int trial = 0; trial < 40; ++trial) {
-    const Pose2 error = guess_from_map(robot.position(), random.normal(0.12), random.normal(0.12), random.normal(0.05));
+    const Pose2 by{random.normal(0.12), random.normal(0.12), random.normal(0.05)};
+    const Pose2 error = guess_from_map(robot.position(), by.x, by.y, by.theta);
     const auto guessed = moved(error, seen_from(hall, robot, random));
     const PriorMerge merge =
         prior_merge(hall, guessed, {error * robot.position(), covariance_of(0.12, 0.05)}, PriorMergeParams{});
@@ -99,7 +100,7 @@ TEST(PriorMerge, RefusesAPlaceThatTheMapDoesNotShow) {
   const OccupancyGrid hall = test::drawn_hall(0.05);
   Random random{4};
   std::vector<Point2> scattered;
-  for (int i = 0; i < 200; ++i) scattered.emplace_back(random.uniform(4.0, 18.0), random.uniform(5.8, 8.2));
+  for (int i = 0; i < 200; ++i) scattered.push_back(Point2{random.uniform(4.0, 18.0), random.uniform(5.8, 8.2)});
   const PriorMerge merge = prior_merge(hall, scattered, {{7.0, 6.5}, covariance_of(0.1, 0.05)}, {});
   EXPECT_EQ(merge.refusal, MergeRefusal::kLowAgreement);
   EXPECT_EQ(merge.map_from_guess, Pose2{});
@@ -143,8 +144,8 @@ TEST(PriorMerge, BringsALocalMapOntoTheMapToATenthOfACell) {
     const OccupancyGrid local = test::moved_grid(other, local_from_map, 0.1);
     const LocalCells cells{local};
     const Point2 middle = inverse(local_from_map) * cells.middle_in_local();
-    const Pose2 error =
-        guess_from_map(middle, random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), random.uniform(-0.05, 0.05));
+    const Pose2 by{random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), random.uniform(-0.05, 0.05)};
+    const Pose2 error = guess_from_map(middle, by.x, by.y, by.theta);
     const Pose2 guess = error * inverse(local_from_map);
     const PriorMerge merge = prior_merge(map, local, guess, covariance_of(0.15, 0.035), {});
     ASSERT_TRUE(merge.accepted()) << trial << ": " << name_of(merge.refusal);

@@ -24,9 +24,10 @@ TEST(ScanMatch, FindsTheMotionBetweenTwoScansWithinItsCovariance) {
     const Pose2 first{random.uniform(6.5, 7.5), random.uniform(6.0, 7.5), random.uniform(-3.0, 3.0)};
     const Pose2 second = test::disturbed(first, 0.4, 0.2, random);
     const ScanMatchingParams params;
-    const auto match = scan_match(matchable(test::seen_scan(hall, first, 0.01, random), params),
-                                  matchable(test::seen_scan(hall, second, 0.01, random), params),
-                                  test::disturbed(motion_between(first, second), 0.1, 0.03, random), params);
+    const TrackedScan from = test::seen_scan(hall, first, 0.01, random);
+    const TrackedScan to = test::seen_scan(hall, second, 0.01, random);
+    const Pose2 guess = test::disturbed(motion_between(first, second), 0.1, 0.03, random);
+    const auto match = scan_match(matchable(from, params), matchable(to, params), guess, params);
     ASSERT_TRUE(match) << trial;
     const Pose2 truth = motion_between(first, second);
     const Eigen::Vector3d error{match->first_from_second.x - truth.x, match->first_from_second.y - truth.y,

@@ -133,7 +133,8 @@ OccupancyGrid drawn_racks(std::uint64_t seed) {
   double y = 2.5;
   while (y < 23.0) {
     const double cross_aisle_m = random.uniform(14.0, 26.0);
-    draw_rack(store, {random.uniform(2.5, 6.0), y}, cross_aisle_m - random.uniform(6.5, 9.0));
+    const double length_m = cross_aisle_m - random.uniform(6.5, 9.0);
+    draw_rack(store, {random.uniform(2.5, 6.0), y}, length_m);
     draw_rack(store, {cross_aisle_m + 1.5, y}, random.uniform(6.0, 35.5 - cross_aisle_m));
     y += random.uniform(3.4, 4.6);
   }
@@ -170,7 +171,9 @@ OccupancyGrid drawn_workshop(std::uint64_t seed) {
     fill_turned(shop, middle + at, size_m, random.uniform(0.0, std::numbers::pi), CellState::kOccupied);
   }
   for (int i = 0; i < 6; ++i) {
-    fill_round(shop, middle + Point2{random.uniform(-9.0, 9.0), random.uniform(-8.0, 8.0)}, random.uniform(0.2, 0.6));
+    const double radius_m = random.uniform(0.2, 0.6);
+    const Point2 at{random.uniform(-9.0, 9.0), random.uniform(-8.0, 8.0)};
+    fill_round(shop, middle + at, radius_m);
   }
   return shop;
 }
