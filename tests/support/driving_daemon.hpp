@@ -28,6 +28,7 @@ class VirtualLink {
 
   template <typename Output>
   void obey(const Output& out, Timestamp now) {
+    if (!is_open()) return;  // no port to write to, as in DeviceLink
     for (const drivers::PortRequest& request : out.output.requests) {
       if (request.kind == drivers::PortRequest::Kind::kWrite) write_(request.bytes, baud_);
       if (request.kind == drivers::PortRequest::Kind::kSetBaud) baud_ = request.baud;
