@@ -85,6 +85,8 @@ class Channel {
     const bool closed = closed_.load(std::memory_order_acquire);  // before looking: nothing is sent after closing
     return closed && head_.load(std::memory_order_relaxed) == tail_.load(std::memory_order_acquire);
   }
+  /// Nothing is sent any more; what was sent before may still be there.
+  [[nodiscard]] bool is_closed() const { return closed_.load(std::memory_order_acquire); }
 
   [[nodiscard]] std::size_t capacity() const { return slot_count_ - 1; }
   /// Items that found the channel full or closed. Any thread.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/grid_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <array>
@@ -13,6 +11,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "core/replace_file.hpp"
 #include "core/shortest_text.hpp"
 
 namespace deltamap {
@@ -205,28 +204,6 @@ void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_fil
   image.replace_extension(".pgm");
   replace_file(image, pgm_of(grid));
   replace_file(yaml_file, yaml_of(grid, image.filename().string()));
-}
-
-void replace_file(const std::filesystem::path& file, const std::string& content) {
-  const std::filesystem::path draft = file.string() + ".part";
-  const auto fail = [&](int out) {
-    const std::string why = std::strerror(errno);
-    if (out >= 0) ::close(out);
-    ::unlink(draft.c_str());
-    refuse(file, "cannot be written: " + why);
-  };
-  const int out = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (out < 0) fail(out);
-  std::size_t written = 0;
-  while (written < content.size()) {
-    const ssize_t n = ::write(out, content.data() + written, content.size() - written);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(out);
-    written += static_cast<std::size_t>(n);
-  }
-  if (::fsync(out) != 0) fail(out);
-  if (::close(out) != 0) fail(-1);
-  if (::rename(draft.c_str(), file.c_str()) != 0) fail(-1);
 }
 
 }  // namespace deltamap

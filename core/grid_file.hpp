@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 
 #include "core/occupancy_grid.hpp"
@@ -21,8 +20,5 @@ namespace deltamap {
 /// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a
 /// temporary file that is synced and renamed. Throws std::runtime_error naming the file.
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
-
-/// Replaces a file whole: the old one stays until the new one is complete on disk. Throws std::runtime_error.
-void replace_file(const std::filesystem::path& file, const std::string& content);
 
 }  // namespace deltamap

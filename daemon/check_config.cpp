@@ -18,6 +18,7 @@
 #include "daemon/state_folders.hpp"
 #include "drivers/port/port_check.hpp"
 #include "mapping/map_store.hpp"
+#include "mapping/store_error.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -87,6 +88,11 @@ void copy_store(const fs::path& store, const fs::path& target) {
 Finding store_content(const std::string& store, const OccupancyGrid& first) {
   const ScratchFolder scratch;
   const fs::path copied = scratch.path() / "store.sqlite";
+  const auto of_the_store = [&](std::string why) {
+    if (const auto at = why.find(copied.string()); at != std::string::npos)
+      why.replace(at, copied.string().size(), store);
+    return why;
+  };
   try {
     copy_store(store, copied);
     const mapping::MapStore copy{copied, first};
@@ -96,11 +102,12 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
                        std::to_string(refusals) + " refusals";
     if (copy.dropped() == 0) return {Level::kOk, "store", text};
     return {Level::kWarning, "store", text + ", " + std::to_string(copy.dropped()) + " damaged revisions are dropped"};
+  } catch (const mapping::StoreError& error) {
+    const bool is_unsound = error.kind == mapping::StoreError::Kind::kUnsound;
+    const std::string why = of_the_store(error.what()) + (is_unsound ? ": a start would set it aside" : "");
+    return {is_unsound ? Level::kWarning : Level::kError, "store", why};
   } catch (const std::exception& error) {
-    std::string why = error.what();
-    if (const auto at = why.find(copied.string()); at != std::string::npos)
-      why.replace(at, copied.string().size(), store);
-    return {Level::kError, "store", why};
+    return {Level::kError, "store", of_the_store(error.what())};
   }
 }
 

@@ -101,6 +101,7 @@ void Journal::read(std::string_view note) {
     run_ = run;
     return;
   }
+  has_gap_ = has_gap_ || note == kGapNote;
   const auto decision = decision_of_note(note);
   if (!decision) return;
   switch (decision->kind) {

@@ -49,6 +49,9 @@ struct Decision {
 [[nodiscard]] std::optional<RunIdentity> run_of_note(std::string_view note);
 [[nodiscard]] std::optional<Decision> decision_of_note(std::string_view note);
 
+/// The note that stands where records are missing: the disk was full or too slow.
+inline constexpr std::string_view kGapNote = "records lost here";
+
 /// All decisions of one recording.
 class Journal {
  public:
@@ -56,6 +59,8 @@ class Journal {
   void read(std::string_view note);
 
   [[nodiscard]] const std::optional<RunIdentity>& run() const { return run_; }
+  /// Bytes or decisions of this run are missing: nothing can be reproduced bit by bit.
+  [[nodiscard]] bool has_gap() const { return has_gap_; }
   /// The newest revision to be taken before the scan; nothing where none is.
   [[nodiscard]] std::optional<std::uint32_t> revision_before(std::uint32_t scan) const;
   /// Likewise of the temporary layer.
@@ -73,6 +78,7 @@ class Journal {
 
  private:
   std::optional<RunIdentity> run_;
+  bool has_gap_ = false;
   std::map<std::uint32_t, std::uint32_t> revisions_;  // scan → revision
   std::map<std::uint32_t, std::uint32_t> things_;     // scan → snapshot
   std::map<std::uint32_t, std::uint32_t> closed_;     // phase → scan

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/grid_file.hpp"
+#include "core/replace_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

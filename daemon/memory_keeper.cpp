@@ -2,25 +2,49 @@
 #include "daemon/memory_keeper.hpp"
 
 #include <exception>
+#include <utility>
 
 #include "core/grid_file.hpp"
+#include "core/replace_file.hpp"
 
 namespace deltamap::daemon {
 
-void MemoryKeeper::keep(const KeptPose& pose) { replace(places_.pose, json_text(pose)); }
+MemoryKeeper::MemoryKeeper(MemoryPlaces places, OutputBoard& board, const RetryingOutput::Warn& warn)
+    : places_{std::move(places)} {
+  if (places_.pose.empty()) return;
+  pose_.emplace(Kept{places_.pose, {"pose", places_.pose, board, warn}, {}});
+  stability_.emplace(Kept{places_.stability, {"stability", places_.stability, board, warn}, {}});
+}
 
-void MemoryKeeper::keep(const KeptStability& stability) { replace(places_.stability, file_text(stability)); }
+void MemoryKeeper::keep(const KeptPose& pose, Timestamp now) {
+  if (pose_) pose_->write(json_text(pose), now);
+}
 
-void MemoryKeeper::replace(const std::filesystem::path& file, const std::string& content) {
-  if (file.empty()) return;
-  try {
-    replace_file(file, content);
-    if (fails_) warn_("pose and stability are kept again: " + file.string());
-    fails_ = false;
-  } catch (const std::exception& error) {
-    if (!fails_) warn_(std::string("pose and stability are not kept: ") + error.what());
-    fails_ = true;
-  }
+void MemoryKeeper::keep(const KeptStability& stability, Timestamp now) {
+  if (stability_) stability_->write(file_text(stability), now);
+}
+
+void MemoryKeeper::retry(Timestamp now) {
+  if (!pose_) return;
+  pose_->retry(now);
+  stability_->retry(now);
+}
+
+void MemoryKeeper::close(Timestamp now) {
+  if (!pose_) return;
+  pose_->output.hurry();
+  stability_->output.hurry();
+  retry(now);
+}
+
+void MemoryKeeper::Kept::write(std::string content, Timestamp now) {
+  waiting = std::move(content);
+  retry(now);
+}
+
+void MemoryKeeper::Kept::retry(Timestamp now) {
+  if (waiting.empty()) return;
+  if (output.attempt(now, [this] { replace_file(file, waiting); })) waiting = {};
 }
 
 CommandOutcome MemoryKeeper::save(const SaveOrder& order) {

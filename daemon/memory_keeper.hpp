@@ -3,14 +3,15 @@
 // stable every minute, pose and map when the operator asks for it.
 #pragma once
 
-#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/occupancy_grid.hpp"
 #include "daemon/command.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/kept_stability.hpp"
+#include "daemon/retrying_output.hpp"
 
 namespace deltamap::daemon {
 
@@ -23,20 +24,28 @@ struct SaveOrder {
 
 class MemoryKeeper {
  public:
-  /// `warn` is told once when nothing can be written, and once when it can again.
-  MemoryKeeper(MemoryPlaces places, std::function<void(const std::string&)> warn)
-      : places_{std::move(places)}, warn_{std::move(warn)} {}
+  MemoryKeeper(MemoryPlaces places, OutputBoard& board, const RetryingOutput::Warn& warn);
 
-  void keep(const KeptPose& pose);
-  void keep(const KeptStability& stability);
+  void keep(const KeptPose& pose, Timestamp now);
+  void keep(const KeptStability& stability, Timestamp now);
+  /// Now and then: what could not be written is tried again, always the newest.
+  void retry(Timestamp now);
+  /// The last attempt.
+  void close(Timestamp now);
   [[nodiscard]] CommandOutcome save(const SaveOrder& order);
 
  private:
-  void replace(const std::filesystem::path& file, const std::string& content);
+  /// One file; its content waits here while it cannot be written.
+  struct Kept {
+    std::filesystem::path file;
+    RetryingOutput output;
+    std::string waiting;
+    void write(std::string content, Timestamp now);
+    void retry(Timestamp now);
+  };
 
   MemoryPlaces places_;
-  std::function<void(const std::string&)> warn_;
-  bool fails_ = false;
+  std::optional<Kept> pose_, stability_;  // nothing where there is no place for them
 };
 
 }  // namespace deltamap::daemon

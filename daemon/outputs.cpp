@@ -6,9 +6,11 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/replace_file.hpp"
 #include "daemon/provenance.hpp"
 
 namespace deltamap::daemon {
@@ -18,23 +20,6 @@ using Json = nlohmann::ordered_json;
 
 double unix_seconds(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
 double milliseconds(double seconds) { return seconds * 1e3; }
-
-Json as_json(const ChangeNote& change) {
-  Json json;
-  json["time"] = unix_seconds(change.time);
-  json["phase"] = change.phase;
-  json["scans"] = change.scans;
-  json["accepted"] = change.revision.has_value();
-  json["revision"] = change.revision ? Json(*change.revision) : Json(nullptr);
-  json["added"] = change.added;
-  json["freed"] = change.freed;
-  json["forgotten"] = change.forgotten;
-  json["box_m"] = {change.box_low.x(), change.box_low.y(), change.box_high.x(), change.box_high.y()};
-  json["acceptance"] = change.acceptance;
-  json["reason"] = change.reason;
-  if (!change.withdraws.empty()) json["withdraws"] = change.withdraws;
-  return json;
-}
 
 Json as_json(const std::optional<drivers::port::LogCut>& cut) {
   if (!cut) return {{"cut", false}};
@@ -56,27 +41,6 @@ std::string tum_line(const TrajectoryPoint& point) {
   return {line, static_cast<std::size_t>(length)};
 }
 
-std::string json_line(const ChangeNote& change) { return as_json(change).dump() + "\n"; }
-
-LineFile::LineFile(std::filesystem::path file)
-    : file_{std::move(file)}, out_{file_, std::ios::binary | std::ios::trunc} {
-  check();
-}
-
-void LineFile::write(const std::string& line) {
-  out_ << line;
-  check();
-}
-
-void LineFile::flush() {
-  out_.flush();
-  check();
-}
-
-void LineFile::check() const {
-  if (!out_) throw std::runtime_error(file_.string() + ": cannot write");
-}
-
 std::string json_text(const RunReport& report, const Settings& settings) {
   Json json;
   add_provenance(json, settings);
@@ -88,21 +52,18 @@ std::string json_text(const RunReport& report, const Settings& settings) {
                    {"odometry_lost", scans.odometry_lost}, {"tracked_lost", scans.tracked_lost},
                    {"sets_lost", scans.sets_lost},         {"recording_lost", scans.recording_lost}};
   json["delta_phases"] = report.phases;
-  Json refusals = Json::object();
   Json revisions = Json::array();
-  for (const ChangeNote& change : report.changes) {
-    if (!change.revision) refusals[change.reason] = refusals.value(change.reason, 0) + 1;
-    if (change.revision) {
-      revisions.push_back({{"number", *change.revision},
-                           {"time", unix_seconds(change.time)},
-                           {"phase", change.phase},
-                           {"added", change.added},
-                           {"freed", change.freed},
-                           {"forgotten", change.forgotten}});
-    }
+  for (const ChangeTally::Revision& revision : report.changes.revisions()) {
+    revisions.push_back({{"number", revision.number},
+                         {"time", unix_seconds(revision.time)},
+                         {"phase", revision.phase},
+                         {"added", revision.added},
+                         {"freed", revision.freed},
+                         {"forgotten", revision.forgotten}});
   }
   json["revisions"] = revisions;
-  json["refusals"] = refusals;
+  json["revisions_total"] = report.changes.accepted();
+  json["refusals"] = report.changes.refusals().empty() ? Json::object() : Json(report.changes.refusals());
   json["time_lost_s"] = report.time_lost_s;
   json["time_global_s"] = report.time_global_s;
   json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
@@ -160,6 +121,7 @@ StagingFolder::StagingFolder(std::filesystem::path target)
   if (std::filesystem::exists(target_) && !std::filesystem::is_directory(target_)) {
     throw std::runtime_error(target_.string() + ": is no folder");
   }
+  if (std::filesystem::exists(target_)) lock_ = lock_of_folder(target_);
   staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
   std::filesystem::create_directories(staging_, error);
   if (error) throw std::runtime_error(staging_.string() + ": cannot create: " + error.message());
@@ -172,8 +134,9 @@ StagingFolder::~StagingFolder() {
 
 void StagingFolder::commit() {
   std::filesystem::create_directories(target_);
+  if (!lock_) lock_ = lock_of_folder(target_);
   for (const auto& entry : std::filesystem::directory_iterator(staging_)) {
-    std::filesystem::rename(entry.path(), target_ / entry.path().filename());
+    move_into_place(entry.path(), target_ / entry.path().filename());
   }
 }
 

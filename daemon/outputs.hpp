@@ -6,13 +6,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "core/file_lock.hpp"
 #include "core/messages.hpp"
+#include "daemon/change_note.hpp"
 #include "drivers/port/log_cut.hpp"
 #include "mapping/write_gate.hpp"
 
@@ -28,40 +28,6 @@ struct TrajectoryPoint {
 
 /// One line of trajectory.tum: "t x y 0 0 0 qz qw" and a line end.
 [[nodiscard]] std::string tum_line(const TrajectoryPoint& point);
-
-/// A Δ that was accepted or refused.
-struct ChangeNote {
-  Timestamp time;  ///< end of the Δ-phase
-  std::uint32_t phase = 0;
-  std::uint32_t scans = 0;
-  std::optional<std::uint32_t> revision;  ///< nothing: refused
-  std::uint32_t added = 0;                ///< cells that became occupied
-  std::uint32_t freed = 0;                ///< cells that became free
-  std::uint32_t forgotten = 0;            ///< cells that became unknown
-  Point2 box_low{0.0, 0.0};               ///< bounding box of the changed cells in the map, m
-  Point2 box_high{0.0, 0.0};
-  double acceptance = 0.0;               ///< Eq. 11
-  std::string reason;                    ///< of a refusal; "withdrawn" of a revision that takes others back; else empty
-  std::vector<std::uint32_t> withdraws;  ///< the revisions that this one takes back
-  PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the phase ended
-};
-
-/// One line of changes.jsonl with its line end.
-[[nodiscard]] std::string json_line(const ChangeNote& change);
-
-/// A text file that is written line by line. Throws std::runtime_error naming the file where the disk is full.
-class LineFile {
- public:
-  explicit LineFile(std::filesystem::path file);
-  void write(const std::string& line);
-  /// Everything so far goes to the kernel.
-  void flush();
-
- private:
-  void check() const;
-  std::filesystem::path file_;
-  std::ofstream out_;
-};
 
 struct ScanCounts {
   std::uint64_t decoded = 0;
@@ -94,7 +60,7 @@ struct VerdictTimes {
 struct RunReport {
   ScanCounts scans;
   std::uint32_t phases = 0;
-  std::vector<ChangeNote> changes;
+  ChangeTally changes;
   double time_lost_s = 0.0;
   double time_global_s = 0.0;
   VerdictTimes verdict_times;
@@ -130,7 +96,7 @@ void require_map_elsewhere(const std::filesystem::path& map, const std::filesyst
 /// committed disappears.
 class StagingFolder {
  public:
-  /// Throws std::runtime_error naming the folder.
+  /// Throws std::runtime_error naming the folder, FileInUse where a daemon writes there.
   explicit StagingFolder(std::filesystem::path target);
   ~StagingFolder();
   StagingFolder(const StagingFolder&) = delete;
@@ -142,6 +108,7 @@ class StagingFolder {
  private:
   std::filesystem::path target_;
   std::filesystem::path staging_;
+  std::optional<FileLock> lock_;
 };
 
 }  // namespace deltamap::daemon

@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
-#include <vector>
 
 #include "core/channel.hpp"
-#include "core/grid_file.hpp"
+#include "core/file_lock.hpp"
+#include "core/replace_file.hpp"
 #include "daemon/control_desk.hpp"
 #include "daemon/gate_watch.hpp"
 #include "daemon/localization_stage.hpp"
+#include "daemon/map_outputs.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recorder.hpp"
-#include "daemon/revision_keeper.hpp"
 #include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
 #include "drivers/port/port_clock.hpp"
@@ -27,22 +27,15 @@ using Kind = Decision::Kind;
 constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even on one processor
 constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
+constexpr std::chrono::seconds kRetryPeriod{1};  // between looks at outputs that could not be written
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
 }
 
-/// A history that begins with this run; nothing where the settings keep theirs in the same file.
-std::optional<mapping::MapStore> begun_store(const std::filesystem::path& file, const OccupancyGrid& start,
-                                             const std::filesystem::path& configured) {
-  std::error_code ignored;
-  if (!configured.empty() && std::filesystem::equivalent(file, configured, ignored)) return std::nullopt;
-  for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part, ignored);
-  return mapping::MapStore{file, start};
-}
-
 /// What the run begins from: enough for a replay to obey its journal.
 std::vector<std::string> first_notes(const Settings& settings, const Pipeline::Options& options) {
+  if (settings.recording.file.empty()) return {};
   const std::uint64_t map = grid_hash(*options.start.map);
   std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, options.memory})};
   for (std::string& note : begin_notes({options.first_map, options.memory, options.start})) {
@@ -66,6 +59,11 @@ std::unique_ptr<ControlDesk> control_desk(const Settings& settings, ControlDesk:
   }
 }
 
+Pipeline::Options with_warnings(Pipeline::Options options) {
+  if (!options.warn) options.warn = options.log;
+  return options;
+}
+
 }  // namespace
 
 struct Pipeline::State {
@@ -85,7 +83,8 @@ struct Pipeline::State {
   Channel<std::shared_ptr<const TemporaryThings>> things{8};  // delta → localization: offered again at the next scan
   Channel<Command> commands{16};  // control → localization: the newest command, and its sender is told
 
-  // The first that touches a file: where another daemon listens at the socket, this one ends before it does harm.
+  // The first that touch a file: where another daemon is at work, this one ends before it does harm.
+  std::optional<FileLock> out_lock;      // of --out
   std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
   Recorder recorder;                     // bytes, decisions, lines → disk
   IoStage io;                            // bytes → Odometry, Scan
@@ -100,10 +99,8 @@ struct Pipeline::State {
   std::uint32_t things_sent = 0;     // number of the newest snapshot that the localizer has been sent
   std::deque<ScanSet> waiting_sets;  // the map thread was busy: offered again at the next scan; one set, and orders
   MapStep map_step;
-  mapping::MapStore* store;                    // of the settings; null after it has failed
-  std::optional<mapping::MapStore> out_store;  // of --out: begins with this run
-  std::optional<LineFile> changes;
-  std::vector<ChangeNote> change_notes;
+  MapOutputs map_outputs;
+  ChangeTally changes;
 
   void tell(const CommandOutcome& outcome) {
     if (control) control->tell(outcome);
@@ -113,7 +110,6 @@ struct Pipeline::State {
   void offer_things();
   void tell_of_gate(const mapping::Awareness& awareness);
   void update_map(const ScanSet& set);
-  void save(const MapStep::Result& result);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
   void end_threads();
 
@@ -125,7 +121,8 @@ struct Pipeline::State {
 
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
-      options{std::move(wanted)},
+      options{with_warnings(std::move(wanted))},
+      out_lock{options.out ? lock_of_folder(*options.out) : std::nullopt},
       control{control_desk(
           settings, {.map = options.start.map->geometry(),
                      .commands = commands,
@@ -141,7 +138,9 @@ Pipeline::State::State(const Settings& given, Options wanted)
                 .localization = in_folder(options.out, "localization.csv"),
                 .memory = memory_places(settings.map.store)},
                telemetry,
-               {.log = options.log, .saved = [this](const CommandOutcome& outcome) { tell(outcome); }}},
+               {.log = options.log,
+                .saved = [this](const CommandOutcome& outcome) { tell(outcome); },
+                .warn = options.warn}},
       io{settings,
          {.open = options.open,
           .mode = options.mode,
@@ -164,12 +163,14 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       store_scan{settings.mapping.store_scan, settings.seed},
       map_step{settings, options.start},
-      store{options.store} {
-  if (options.out) {
-    changes.emplace(*options.out / "changes.jsonl");
-    out_store = begun_store(*options.out / "map_store.sqlite", *options.start.map, settings.map.store);
-    write_grid(*options.start.map, *options.out / "map.yaml");
-  }
+      map_outputs{{.out = options.out,
+                   .store_file = settings.map.store,
+                   .store = std::move(options.store),
+                   .start = {options.start.map, options.start.revision},
+                   .method = map_step.method()},
+                  telemetry.outputs,
+                  options.warn,
+                  drivers::port::port_clock_now()} {
   telemetry.newest_revision.set(options.start.revision);
   telemetry.estimate.revision.set(options.start.revision);
   wall_began_s = seconds(drivers::port::port_clock_now().time_since_epoch());
@@ -248,23 +249,27 @@ void Pipeline::State::hand_over(ScanSet set) {
 // --- map thread ---
 
 void Pipeline::State::update_maps() {
-  while (const auto set = sets.receive()) update_map(*set);
+  for (;;) {
+    const bool is_last = sets.is_closed();  // before looking: nothing is sent after closing
+    const auto set = sets.receive_within(kRetryPeriod);
+    if (!set && is_last) break;
+    if (set) update_map(*set);
+    const Workload::Item item{map_work};
+    map_outputs.retry(drivers::port::port_clock_now());
+  }
   // The delta thread has ended: what it could not hand over is worked off too.
   for (const ScanSet& set : waiting_sets) update_map(set);
+  map_outputs.close(drivers::port::port_clock_now());
 }
 
 void Pipeline::State::update_map(const ScanSet& set) {
   const Workload::Item item{map_work};
   MapStep::Result result = map_step.update(set);
-  if (changes) {
-    changes->write(json_line(result.note));
-    changes->flush();
-  }
-  change_notes.push_back(result.note);
+  changes.add(result.note);
   if (!result.revision) {
     telemetry.refused.add(1);
     options.log("map unchanged: phase=" + std::to_string(set.phase) + " reason=" + result.note.reason);
-    return save(result);
+    return map_outputs.save(result, drivers::port::port_clock_now());
   }
   telemetry.newest_revision.set(result.revision->number);
   if (!result.note.withdraws.empty()) {
@@ -275,19 +280,7 @@ void Pipeline::State::update_map(const ScanSet& set) {
               " freed=" + std::to_string(result.note.freed));
   MapRevision published = *result.revision;
   (void)revisions.try_send(std::move(published));
-  save(result);
-}
-
-void Pipeline::State::save(const MapStep::Result& result) {
-  if (out_store) keep(*out_store, result, map_step.method(), options.start.revision);
-  if (options.out && result.revision) write_grid(*result.revision->map, *options.out / "map.yaml");
-  if (store == nullptr) return;
-  try {
-    keep(*store, result, map_step.method());
-  } catch (const std::exception& error) {
-    options.log(std::string("revisions are kept no longer: ") + error.what());
-    store = nullptr;
-  }
+  map_outputs.save(result, drivers::port::port_clock_now());
 }
 
 // --- start and stop ---
@@ -331,7 +324,7 @@ RunReport Pipeline::stop() {
                   .sets_lost = t.sets_lost.value(),
                   .recording_lost = s.recorder.refused()};
   report.phases = t.phases_closed.value();
-  report.changes = s.change_notes;
+  report.changes = s.changes;
   const LocalizationStep& localization = s.localization.step();
   report.time_lost_s = localization.time_lost_s();
   report.time_global_s = localization.time_global_s();
@@ -349,11 +342,7 @@ RunReport Pipeline::stop() {
   report.latency_p99_s = s.localization.latency().quantile_s(0.99);
   report.latency_max_s = s.localization.latency().max_s();
   report.wire = s.io.counts();
-  if (s.options.out) {
-    LineFile file{*s.options.out / "report.json"};
-    file.write(json_text(report, s.settings));
-    file.flush();
-  }
+  if (s.options.out) replace_file(*s.options.out / "report.json", json_text(report, s.settings));
   return report;
 }
 

@@ -10,9 +10,9 @@
 #include "daemon/io_stage.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/outputs.hpp"
+#include "daemon/revision_keeper.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/telemetry.hpp"
-#include "mapping/map_store.hpp"
 
 namespace deltamap::daemon {
 
@@ -22,15 +22,17 @@ class Pipeline {
     StartMap start;
     std::uint64_t first_map = 0;  ///< grid_hash() of M_0
     std::uint64_t memory = 0;     ///< fingerprint of what else the run begins from (start.remembered); 0: nothing
-    mapping::MapStore* store = nullptr;  ///< takes every revision and refusal in the map thread; outlives the pipeline
+    StoreToKeep store{};          ///< of the settings: takes every revision and refusal in the map thread
     std::optional<std::filesystem::path> out;  ///< an existing folder: the files of a replay, while it runs
     PortOpener open;                           ///< empty: the serial devices of the settings
     drivers::SessionMode mode = drivers::SessionMode::kLive;
     std::function<void(const std::string&)> log;     ///< any thread: a short line
+    std::function<void(const std::string&)> warn{};  ///< likewise, of what is degraded; empty: log
     std::function<void(const std::string&)> failed;  ///< any thread: a stage has ended by an exception
   };
-  /// Begins at once. Throws std::runtime_error where the recording or an output file cannot be begun, or another daemon
-  /// listens at the control socket.
+  /// Begins at once. Throws FileInUse where another program writes its files, control::AlreadyServed where another
+  /// daemon listens at the control socket, std::runtime_error where settings or map are no good. A full disk is no
+  /// reason: saving then pauses.
   Pipeline(const Settings& settings, Options options);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;

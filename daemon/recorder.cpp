@@ -2,45 +2,41 @@
 #include "daemon/recorder.hpp"
 
 #include <chrono>
-#include <stdexcept>
-#include <system_error>
+#include <utility>
+
+#include "drivers/port/port_clock.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 constexpr std::chrono::seconds kFlushPeriod{1};
 
-/// A service that has crashed is started again at once: the recording of the crash must outlive that.
-void keep_previous(const std::filesystem::path& recording) {
-  if (!std::filesystem::is_regular_file(recording)) return;
-  std::filesystem::path previous = recording;
-  previous.replace_extension(".previous" + recording.extension().string());
-  std::error_code error;
-  std::filesystem::rename(recording, previous, error);
-  if (error)
-    throw std::runtime_error(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
-}
-
 }  // namespace
 
 using drivers::port::ByteRecord;
 
 Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
-    : telemetry_{telemetry},
-      hooks_{std::move(hooks)},
-      max_bytes_{options.max_gigabytes * 1e9},
-      memory_{options.memory, hooks_.log},
+    : hooks_{std::move(hooks)},
+      memory_{options.memory, telemetry.outputs, hooks_.warn ? hooks_.warn : hooks_.log},
+      now_{options.began},
       last_stamp_{options.began} {
+  const auto& warn = hooks_.warn ? hooks_.warn : hooks_.log;
   if (!options.recording.empty()) {
-    keep_previous(options.recording);
-    recording_.emplace(options.recording, options.bauds);
-    telemetry_.records.set(true);
+    recording_.emplace(LiveRecording::Options{.file = options.recording,
+                                              .bauds = options.bauds,
+                                              .first_notes = options.first_notes,
+                                              .began = options.began,
+                                              .max_gigabytes = options.max_gigabytes},
+                       telemetry, warn);
   }
-  for (const std::string& note : options.first_notes) write(note);
-  if (!options.trajectory.empty()) trajectory_.emplace(options.trajectory);
-  if (options.localization.empty()) return;
-  localization_.emplace(options.localization);
-  localization_->write(csv_header());
+  const auto begin = [&](std::optional<LiveLines>& lines, const char* name, const std::filesystem::path& file) {
+    if (file.empty()) return;
+    lines.emplace(file, RetryingOutput{name, file, telemetry.outputs, warn});
+    lines->flush(now_);
+  };
+  begin(trajectory_, "trajectory", options.trajectory);
+  begin(localization_, "localization", options.localization);
+  if (localization_) localization_->write(csv_header(), now_);
 }
 
 void Recorder::run() {
@@ -58,7 +54,10 @@ void Recorder::run() {
     if (!found) (void)bell_.try_acquire_for(kFlushPeriod);
   }
   flush();
-  if (recording_) recording_->close();
+  if (trajectory_) trajectory_->close(now_);
+  if (localization_) localization_->close(now_);
+  memory_.close(now_);
+  if (recording_) recording_->close(now_);
 }
 
 void Recorder::close() {
@@ -87,13 +86,13 @@ void Recorder::write(RecorderItem&& item) {
     noted.note = std::move(*note);
     record(noted);
   } else if (const auto* point = std::get_if<TrajectoryPoint>(&item)) {
-    if (trajectory_) trajectory_->write(tum_line(*point));
+    if (trajectory_) trajectory_->write(tum_line(*point), now_);
   } else if (const auto* row = std::get_if<std::unique_ptr<const LocalizationRow>>(&item)) {
-    if (localization_) localization_->write(csv_line(**row));
+    if (localization_) localization_->write(csv_line(**row), now_);
   } else if (const auto* pose = std::get_if<std::unique_ptr<const KeptPose>>(&item)) {
-    memory_.keep(**pose);
+    memory_.keep(**pose, now_);
   } else if (const auto* stability = std::get_if<std::unique_ptr<const KeptStability>>(&item)) {
-    memory_.keep(**stability);
+    memory_.keep(**stability, now_);
   } else if (const auto* order = std::get_if<std::unique_ptr<const SaveOrder>>(&item)) {
     save(**order);
   } else {
@@ -107,32 +106,17 @@ void Recorder::save(const SaveOrder& order) {
 }
 
 void Recorder::record(const ByteRecord& record) {
-  if (!recording_) return;
-  try {
-    recording_->write(record);
-  } catch (const std::exception& error) {
-    return end_recording(error.what());
-  }
-  telemetry_.recorded_bytes.set(recording_->size_bytes());
-  if (static_cast<double>(recording_->size_bytes()) > max_bytes_)
-    end_recording("it has reached recording.max_gigabytes");
-}
-
-void Recorder::end_recording(const std::string& why) {
-  hooks_.log("the recording ends: " + why);
-  telemetry_.records.set(false);
-  recording_.reset();
+  if (recording_) recording_->write(record, now_);
 }
 
 void Recorder::flush() {
-  if (trajectory_) trajectory_->flush();
-  if (localization_) localization_->flush();
+  now_ = drivers::port::port_clock_now();
+  if (trajectory_) trajectory_->flush(now_);
+  if (localization_) localization_->flush(now_);
+  memory_.retry(now_);
   if (!recording_) return;
-  try {
-    recording_->flush();
-  } catch (const std::exception& error) {
-    end_recording(error.what());
-  }
+  if (const std::uint64_t all = refused(); all != std::exchange(refused_before_, all)) recording_->note_loss();
+  recording_->flush(now_);
 }
 
 }  // namespace deltamap::daemon

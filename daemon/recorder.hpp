@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes what must reach the disk (or the log) from the threads that cannot wait for it: chunks of bytes and journal
 // notes for the recording, lines for trajectory.tum and localization.csv, the pose that outlives the run. Where the
-// disk is too slow, a channel fills and refuses, and that is counted.
+// disk is too slow, a channel fills and refuses, and that is counted. Where it is full, saving pauses.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,13 @@
 
 #include "core/channel.hpp"
 #include "daemon/journal.hpp"
+#include "daemon/line_file.hpp"
+#include "daemon/live_recording.hpp"
 #include "daemon/localization_log.hpp"
 #include "daemon/memory_keeper.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/telemetry.hpp"
-#include "drivers/port/byte_log.hpp"
+#include "drivers/port/byte_record.hpp"
 
 namespace deltamap::daemon {
 
@@ -61,10 +63,11 @@ class Recorder {
     MemoryPlaces memory{};                 ///< empty: nothing is kept
   };
   struct Hooks {
-    std::function<void(const std::string&)> log;         ///< a short line, for instance that the recording ends early
+    std::function<void(const std::string&)> log;         ///< a short line
     std::function<void(const CommandOutcome&)> saved{};  ///< a save order is done; may be empty
+    std::function<void(const std::string&)> warn{};      ///< a short line: an output pauses; empty: log
   };
-  /// Throws std::runtime_error where a file cannot be begun.
+  /// Throws FileInUse and StartError as LiveRecording does. A full disk is no reason.
   Recorder(const Options& options, Telemetry& telemetry, Hooks hooks);
 
   // One a thread that sends.
@@ -85,18 +88,18 @@ class Recorder {
   bool drain(RecorderInput& input);
   void write(RecorderItem&& item);
   void record(const drivers::port::ByteRecord& record);
-  void end_recording(const std::string& why);
   void save(const SaveOrder& order);
+  /// Once a second: everything to the disk, and another attempt where one has failed.
   void flush();
 
-  Telemetry& telemetry_;
   Hooks hooks_;
-  double max_bytes_;
-  std::optional<drivers::port::ByteLogWriter> recording_;
-  std::optional<LineFile> trajectory_;
-  std::optional<LineFile> localization_;
+  std::optional<LiveRecording> recording_;
+  std::optional<LiveLines> trajectory_;
+  std::optional<LiveLines> localization_;
   MemoryKeeper memory_;
+  Timestamp now_;  // of the newest look at the clock
   Timestamp last_stamp_;
+  std::uint64_t refused_before_ = 0;
   std::atomic<bool> closed_{false};
   std::counting_semaphore<> bell_{0};
   RecorderInput from_io_{4096, bell_};            // full: bytes are missing from the recording

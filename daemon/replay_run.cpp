@@ -10,6 +10,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/journal.hpp"
 #include "daemon/latency_histogram.hpp"
+#include "daemon/line_file.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/recording_decoder.hpp"
@@ -210,7 +211,7 @@ void Replay::update_map(const ScanSet& set) {
   MapStep::Result result = map_.update(set);
   changes_.write(json_line(result.note));
   keep(store_, result, map_.method(), first_revision_);
-  report_.changes.push_back(std::move(result.note));
+  report_.changes.add(result.note);
   if (!result.revision) return;
   revisions_.push(std::move(*result.revision));
 }

@@ -19,6 +19,7 @@ std::string content_of(const StartMap& start) {
 std::string journal_state(const RecordedRun& recorded, const ReplayJob& job, const RunIdentity& identity) {
   const auto& run = recorded.journal.run();
   if (!run) return "none";
+  if (recorded.journal.has_gap()) return "not obeyed: records are missing";
   if (run->memory != 0 && identity.memory == 0) return "not obeyed: it began with a pose that was kept";
   if (*run != identity) return "not obeyed: other settings or map";
   if (job.from_s > 0.0) return "not obeyed: another start";

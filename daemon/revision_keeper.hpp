@@ -1,25 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts what became of each Δ-phase into a map store: accepted revisions and refusals. Map thread.
+// Puts what became of each Δ-phase into a map store: accepted revisions and refusals. Where the store cannot be
+// written, the newest map waits, and is stored whole as one revision when it can again: the store then holds M_k, and
+// misses only the steps that led to it. Map thread.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "daemon/map_step.hpp"
+#include "daemon/retrying_output.hpp"
 #include "mapping/map_store.hpp"
 
 namespace deltamap::daemon {
 
 /// `numbers_before` is what the store does not count: the revision that the run started on, where the store began with
 /// it. Throws std::runtime_error naming the file.
-inline void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_view method,
-                 std::uint32_t numbers_before = 0) {
-  const ChangeNote& note = result.note;
-  const std::string cause = result.revision && note.reason.empty() ? std::string(method) : note.reason;
-  const mapping::RevisionNote kept{note.phase, note.acceptance, cause, note.covariance};
-  if (!result.revision) return store.append_refusal(note.time, kept);
-  MapRevision revision = *result.revision;
-  revision.number -= numbers_before;
-  store.append(revision, kept);
-}
+void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_view method,
+          std::uint32_t numbers_before = 0);
+
+/// A store that takes a run's revisions, and how to open it where that was not possible yet.
+struct StoreToKeep {
+  std::optional<mapping::MapStore> store{};
+  std::function<mapping::MapStore()> open{};
+  std::string why_not{};             ///< where it is not open
+  std::uint32_t numbers_before = 0;  ///< as keep() has it
+};
+
+class RevisionKeeper {
+ public:
+  /// `method` as MapStep has it.
+  RevisionKeeper(StoreToKeep store, std::string_view method, RetryingOutput output, Timestamp now);
+
+  void take(const MapStep::Result& result, Timestamp now);
+  /// Now and then: what could not be stored is tried again.
+  void retry(Timestamp now);
+  /// The last attempt.
+  void close(Timestamp now);
+
+ private:
+  struct Missed {
+    std::uint32_t first = 0;  ///< number of the oldest that was missed
+    MapStep::Result newest;   ///< its changes are left out
+  };
+  void miss(const MapStep::Result& result);
+  /// Throws std::runtime_error naming the file.
+  void store_missed();
+
+  StoreToKeep to_;
+  std::string method_;
+  RetryingOutput output_;
+  std::optional<Missed> missed_revision_;
+  std::optional<MapStep::Result> missed_refusal_;  // the newest
+};
 
 }  // namespace deltamap::daemon

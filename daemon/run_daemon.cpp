@@ -7,13 +7,18 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <iostream>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <system_error>
 
+#include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
 #include "daemon/check_config.hpp"
+#include "daemon/control/server.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/kept_stability.hpp"
 #include "daemon/outputs.hpp"
@@ -21,9 +26,12 @@
 #include "daemon/service.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/start_banner.hpp"
+#include "daemon/start_error.hpp"
 #include "daemon/state_folders.hpp"
+#include "daemon/stop_signals.hpp"
+#include "daemon/store_opening.hpp"
 #include "daemon/version.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store_error.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -83,16 +91,6 @@ void tell_start(const Settings& settings, const CommandLine& line, const StartMa
   }
 }
 
-/// The newest revision of this map, or M_0 itself.
-StartMap start_map(OccupancyGrid first, const mapping::MapStore* store, Console& console) {
-  if (store != nullptr && store->dropped() > 0) {
-    console.log(spdlog::level::warn, "map store: damaged revisions dropped=" + std::to_string(store->dropped()));
-  }
-  if (store == nullptr || store->newest() == 0) return {std::make_shared<const OccupancyGrid>(std::move(first)), 0};
-  console.log(spdlog::level::info, "map store: goes on with revision=" + std::to_string(store->newest()));
-  return {std::make_shared<const OccupancyGrid>(store->grid(store->newest())), store->newest()};
-}
-
 /// Where the run before has left the robot; a pose that a person gave goes before it.
 void remember_pose(const Settings& settings, Pipeline::Options& options, Console& console) {
   if (settings.initial_pose) return;
@@ -110,21 +108,15 @@ void remember_stability(const Settings& settings, const mapping::MapStore& store
   auto answer = read_kept_stability(memory_places(settings.map.store).stability, options.first_map);
   if (!answer.why_not.empty()) console.log(spdlog::level::warn, "stability is earned anew: " + answer.why_not);
   if (!answer.kept) return;
-  if (answer.kept->revision > store.newest()) {
-    console.log(spdlog::level::warn, "stability is earned anew: it belongs to a revision that the store has lost");
+  std::vector<CellChange> changes;
+  try {
+    changes = changes_between(store.grid(answer.kept->revision), *options.start.map);
+  } catch (const mapping::StoreError& error) {
+    console.log(spdlog::level::warn, std::string("stability is earned anew: ") + error.what());
     return;
   }
-  const auto changes = changes_between(store.grid(answer.kept->revision), *options.start.map);
   options.start.stability = without(answer.kept->record, settings.localizer.judgement.stability, changes);
   options.memory ^= answer.fingerprint;
-}
-
-sigset_t stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  return signals;
 }
 
 /// Until a signal to stop comes, or a stage fails.
@@ -133,11 +125,64 @@ void watch(const Pipeline& pipeline, Console& console) {
   const timespec second{1, 0};
   for (;;) {
     const int signal = sigtimedwait(&signals, nullptr, &second);
-    if (signal == SIGTERM || signal == SIGINT) return;
+    if (signal > 0) return;
     const std::string status = status_line(pipeline.telemetry());
     console.show(status);
     service::tell_status(status);
     if (pipeline.longest_work_s() < kStuck_s) service::feed_watchdog();
+  }
+}
+
+OccupancyGrid first_map(const Settings& settings, const CommandLine& line) {
+  if (settings.map.file.empty()) throw StartError(line.config + ": 'map.file' names no map");
+  try {
+    return read_grid(settings.map.file);
+  } catch (const std::runtime_error& error) {
+    throw StartError(error.what());
+  }
+}
+
+/// Made where there is none.
+std::filesystem::path folder_to_write(const std::string& out, const std::filesystem::path& map) {
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error || !std::filesystem::is_directory(out, error)) {
+    throw StartError(out + ": is no folder" + (error ? ": " + error.message() : std::string{}));
+  }
+  if (::access(out.c_str(), W_OK | X_OK) != 0 && errno != EROFS) {
+    throw StartError(out + ": cannot be written: " + std::generic_category().message(errno));
+  }
+  try {
+    require_map_elsewhere(map, out);
+  } catch (const std::runtime_error& error_) {
+    throw StartError(error_.what());
+  }
+  return out;
+}
+
+/// The store and what an earlier run has left beside it.
+void take_store(OpenedStore& opened, const Settings& settings, Pipeline::Options& options, Console& console) {
+  for (const std::string& warning : opened.warnings) console.log(spdlog::level::warn, warning);
+  if (options.start.revision > 0) {
+    console.log(spdlog::level::info, "map store: goes on with revision=" + std::to_string(options.start.revision));
+  }
+  remember_pose(settings, options, console);
+  if (opened.store.store) remember_stability(settings, *opened.store.store, options, console);
+  options.store = std::move(opened.store);
+}
+
+/// What is no good in settings or map shows only here, too.
+std::unique_ptr<Pipeline> begun(const Settings& settings, Pipeline::Options options) {
+  try {
+    return std::make_unique<Pipeline>(settings, std::move(options));
+  } catch (const control::AlreadyServed&) {
+    throw;
+  } catch (const FileInUse&) {
+    throw;
+  } catch (const std::system_error&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw StartError(error.what());
   }
 }
 
@@ -150,33 +195,20 @@ int check(const Settings& settings, const CommandLine& line) {
 
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
-  const sigset_t signals = stop_signals();
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // all threads begin with it: only watch() takes them
-
-  if (settings.map.file.empty()) throw std::runtime_error(line.config + ": 'map.file' names no map");
-
-  OccupancyGrid first = read_grid(settings.map.file);
-  std::optional<mapping::MapStore> store;
-  make_state_folders(settings, line.config);
-  if (!settings.map.store.empty()) store.emplace(settings.map.store, first);
+  take_signals();  // all threads begin with them blocked: only watch() takes them
 
   Pipeline::Options options;
+  const OccupancyGrid first = first_map(settings, line);
   options.first_map = grid_hash(first);
-  options.start = start_map(std::move(first), store ? &*store : nullptr, console);
+  options.start.map = std::make_shared<const OccupancyGrid>(first);
+  make_state_folders(settings, line.config);
+  if (!line.out.empty()) options.out = folder_to_write(line.out, settings.map.file);
+  std::optional<OpenedStore> store;
+  if (!settings.map.store.empty()) store = open_store(settings.map.store, first);
+  if (store) options.start = std::move(store->start);
   require_pose_on(options.start.map->geometry(), settings);
   tell_start(settings, line, options.start, console);
-  if (store) {
-    remember_pose(settings, options, console);
-    remember_stability(settings, *store, options, console);
-  }
-  options.store = store ? &*store : nullptr;
-  if (!line.out.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(line.out, error);
-    if (error || !std::filesystem::is_directory(line.out)) throw std::runtime_error(line.out + ": is no folder");
-    require_map_elsewhere(settings.map.file, line.out);
-    options.out = line.out;
-  }
+  if (store) take_store(*store, settings, options, console);
   std::atomic<bool> failed{false};
   options.log = [&console](const std::string& text) { console.log(spdlog::level::info, text); };
   options.failed = [&console, &failed](const std::string& text) {
@@ -184,12 +216,13 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
     failed = true;
     (void)kill(getpid(), SIGTERM);
   };
-  Pipeline pipeline{settings, std::move(options)};
+  options.warn = [&console](const std::string& text) { console.log(spdlog::level::warn, text); };
+  const std::unique_ptr<Pipeline> pipeline = begun(settings, std::move(options));
   service::tell_ready();
-  watch(pipeline, console);
+  watch(*pipeline, console);
   service::tell_stopping();
   console.end();
-  const RunReport report = pipeline.stop();
+  const RunReport report = pipeline->stop();
   console.log(spdlog::level::info, "stopped: scans=" + std::to_string(report.scans.decoded) + " phases=" +
                                        std::to_string(report.phases) + " cpu_s=" + std::to_string(report.cpu_total_s));
   return failed ? 1 : 0;
@@ -215,6 +248,9 @@ int run_daemon(int argc, const char* const* argv) {
     if (line.check_only) return check(settings, line);
     return line.print_only ? 0 : run_pipeline(settings, line);
   } catch (const SettingsError& error) {
+    std::cerr << "deltamapd: " << error.what() << '\n';
+    return 2;
+  } catch (const StartError& error) {
     std::cerr << "deltamapd: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {

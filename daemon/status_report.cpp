@@ -80,6 +80,19 @@ Json recording_json(const Telemetry& t, const Settings& settings) {
   return {{"file", settings.recording.file}, {"bytes", t.recorded_bytes.value()}, {"goes_on", t.records.value()}};
 }
 
+/// By name: is it being written, and since when and why not.
+Json outputs_json(const Telemetry& t) {
+  Json json = Json::object();
+  for (const OutputStatus& output : t.outputs.all()) {
+    Json& told = json[output.name];
+    told = {{"file", output.file}, {"written", output.written}, {"lost", output.lost}};
+    if (output.written) continue;
+    told["since"] = static_cast<double>(unix_ns(output.since)) * 1e-9;
+    told["why"] = output.why;
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string status_json_line(const Telemetry& t, const Settings& settings, double since_start_s) {
@@ -107,6 +120,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["latency_ms"] = t.latency_s.value() * 1e3;
   json["since_start_s"] = since_start_s;
   json["recording"] = recording_json(t, settings);
+  json["outputs"] = outputs_json(t);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/messages.hpp"
+#include "daemon/output_board.hpp"
 #include "mapping/write_gate.hpp"
 
 namespace deltamap::daemon {
@@ -62,7 +63,8 @@ struct Telemetry {
   Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
   // recorder thread
   Gauge<std::uint64_t> recorded_bytes;
-  Gauge<bool> records;  ///< false: never began, or has ended
+  Gauge<bool> records;  ///< false: never began, has ended, or pauses
+  OutputBoard outputs;  ///< recorder and map thread
   // localization thread
   Gauge<std::uint64_t> localized, dropped, tracked_lost;
   EstimateGauges estimate;

@@ -3,7 +3,6 @@
 
 #include <sqlite3.h>
 
-#include <stdexcept>
 #include <utility>
 
 namespace deltamap::mapping {
@@ -12,18 +11,57 @@ namespace {
 constexpr int kBusy_ms = 3000;  // another program may be reading or writing
 
 int flags_of(Database::Mode mode) {
-  return SQLITE_OPEN_READWRITE | (mode == Database::Mode::kCreate ? SQLITE_OPEN_CREATE : 0);
+  switch (mode) {
+    case Database::Mode::kCreate:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    case Database::Mode::kExisting:
+      return SQLITE_OPEN_READWRITE;
+    case Database::Mode::kRead:
+      return SQLITE_OPEN_READONLY;
+    case Database::Mode::kReadAsIs:
+      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+  }
+  return 0;
+}
+
+/// A file URI takes parameters; what would end its path is escaped.
+std::string name_of(const std::filesystem::path& file, Database::Mode mode) {
+  if (mode != Database::Mode::kReadAsIs) return file.string();
+  std::string uri = "file:";
+  for (const char letter : std::filesystem::absolute(file).string()) {
+    if (letter == '?' || letter == '#' || letter == '%') {
+      uri += letter == '?' ? "%3f" : letter == '#' ? "%23" : "%25";
+    } else {
+      uri += letter;
+    }
+  }
+  return uri + "?immutable=1";
+}
+
+StoreError::Kind kind_of(int code) {
+  switch (code & 0xFF) {
+    case SQLITE_ERROR:  // tables or columns are missing
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+    case SQLITE_FORMAT:
+      return StoreError::Kind::kUnsound;
+    case SQLITE_READONLY:
+      return StoreError::Kind::kReadOnly;
+    default:
+      return StoreError::Kind::kOther;
+  }
 }
 
 }  // namespace
 
 Database::Database(std::filesystem::path file, Mode mode) : file_{std::move(file)} {
-  const int result = sqlite3_open_v2(file_.c_str(), &handle_, flags_of(mode) | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int result =
+      sqlite3_open_v2(name_of(file_, mode).c_str(), &handle_, flags_of(mode) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (result != SQLITE_OK) {
     const std::string why = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(result);
     sqlite3_close(handle_);
     handle_ = nullptr;
-    fail(why);
+    fail(why, kind_of(result));
   }
   sqlite3_busy_timeout(handle_, kBusy_ms);
 }
@@ -33,10 +71,14 @@ Database::~Database() { sqlite3_close(handle_); }
 Database::Database(Database&& other) noexcept
     : file_{std::move(other.file_)}, handle_{std::exchange(other.handle_, nullptr)} {}
 
-void Database::fail(const std::string& why) const { throw std::runtime_error(file_.string() + ": " + why); }
+void Database::fail(const std::string& why, StoreError::Kind kind) const {
+  throw StoreError(file_.string() + ": " + why, kind);
+}
+
+void Database::fail_by_code() const { fail(sqlite3_errmsg(handle_), kind_of(sqlite3_errcode(handle_))); }
 
 void Database::run(const std::string& sql) {
-  if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail(sqlite3_errmsg(handle_));
+  if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail_by_code();
 }
 
 std::int64_t Database::number(const std::string& sql) {
@@ -51,7 +93,7 @@ std::string Database::text(const std::string& sql) {
 
 Statement::Statement(Database& database, std::string_view sql) : database_{database} {
   if (sqlite3_prepare_v2(database.handle_, sql.data(), static_cast<int>(sql.size()), &handle_, nullptr) != SQLITE_OK) {
-    database.fail(sqlite3_errmsg(database.handle_));
+    database.fail_by_code();
   }
 }
 
@@ -81,7 +123,7 @@ Statement& Statement::bind(std::span<const std::uint8_t> blob) {
 bool Statement::step() {
   const int result = sqlite3_step(handle_);
   if (result == SQLITE_ROW) return true;
-  if (result != SQLITE_DONE) database_.fail(sqlite3_errmsg(database_.handle_));
+  if (result != SQLITE_DONE) database_.fail_by_code();
   return false;
 }
 

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "mapping/store_error.hpp"
+
 struct sqlite3;
 struct sqlite3_stmt;
 
@@ -18,9 +20,10 @@ class Statement;
 
 class Database {
  public:
-  enum class Mode { kCreate, kExisting };
+  /// kReadAsIs looks at the file alone: not at its log, and at nobody's locks.
+  enum class Mode : std::uint8_t { kCreate, kExisting, kRead, kReadAsIs };
 
-  /// Throws std::runtime_error naming the file.
+  /// Throws StoreError, as everything here does.
   Database(std::filesystem::path file, Mode mode);
   ~Database();
   Database(Database&& other) noexcept;
@@ -31,10 +34,13 @@ class Database {
   /// The first column of the first row.
   [[nodiscard]] std::int64_t number(const std::string& sql);
   [[nodiscard]] std::string text(const std::string& sql);
-  [[noreturn]] void fail(const std::string& why) const;
+  [[noreturn]] void fail(const std::string& why, StoreError::Kind kind = StoreError::Kind::kOther) const;
+  /// The file is damaged or no map store.
+  [[noreturn]] void fail_as_unsound(const std::string& why) const { fail(why, StoreError::Kind::kUnsound); }
 
  private:
   friend class Statement;
+  [[noreturn]] void fail_by_code() const;
   std::filesystem::path file_;
   sqlite3* handle_ = nullptr;
 };

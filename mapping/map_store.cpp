@@ -4,88 +4,24 @@
 #include <array>
 #include <bit>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "mapping/database.hpp"
 #include "mapping/map_codec.hpp"
+#include "mapping/store_schema.hpp"
 #include "mapping/taken_back.hpp"
 
 namespace deltamap::mapping {
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x444D4150;  // "DMAP"
-constexpr std::int64_t kSchemaVersion = 2;
 constexpr std::uint32_t kGridEvery = 64;  // revisions between whole grids
-
-constexpr const char* kSchema = R"(
-CREATE TABLE map (hash INTEGER PRIMARY KEY, width INTEGER, height INTEGER, resolution_m REAL, origin_x_m REAL,
-                  origin_y_m REAL, used INTEGER);
-CREATE TABLE revision (id INTEGER PRIMARY KEY, map INTEGER NOT NULL, number INTEGER NOT NULL, refused INTEGER NOT NULL,
-                       time_ns INTEGER, phase INTEGER, acceptance REAL, cause TEXT,
-                       occupied INTEGER, freed INTEGER, unknown INTEGER,
-                       first_column INTEGER, first_row INTEGER, last_column INTEGER, last_row INTEGER,
-                       grid_hash INTEGER, changes BLOB, grid BLOB,
-                       xx_m2 REAL, xy_m2 REAL, xh_m_rad REAL, yy_m2 REAL, yh_m_rad REAL, hh_rad2 REAL);
-CREATE UNIQUE INDEX accepted ON revision (map, number) WHERE refused = 0;
-)";
-
-/// Version 1 kept no pose covariance.
-constexpr const char* kFromVersion1 = R"(
-ALTER TABLE revision ADD COLUMN xx_m2 REAL;
-ALTER TABLE revision ADD COLUMN xy_m2 REAL;
-ALTER TABLE revision ADD COLUMN xh_m_rad REAL;
-ALTER TABLE revision ADD COLUMN yy_m2 REAL;
-ALTER TABLE revision ADD COLUMN yh_m_rad REAL;
-ALTER TABLE revision ADD COLUMN hh_rad2 REAL;
-PRAGMA user_version = 2;
-)";
+constexpr std::uint32_t kRefusals = 1000;
+constexpr std::uint32_t kPruneEvery = 100;  // refusals: looking for the oldest reads through many
 
 /// In the order of the columns.
 constexpr std::array<std::pair<int, int>, 6> kUpperTriangle{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
 
 std::int64_t signed_hash(const OccupancyGrid& grid) { return std::bit_cast<std::int64_t>(grid_hash(grid)); }
-
-/// Throws where the file holds something else, or is broken.
-void check(Database& database) {
-  const std::int64_t id = database.number("PRAGMA application_id");
-  if (id != kApplicationId) database.fail("not a map store");
-  const std::int64_t version = database.number("PRAGMA user_version");
-  if (version < 1 || version > kSchemaVersion) {
-    database.fail("map store of version " + std::to_string(version) + ", not 1 to " + std::to_string(kSchemaVersion));
-  }
-  const std::string sound = database.text("PRAGMA quick_check(1)");
-  if (sound != "ok") database.fail("damaged: " + sound.substr(0, sound.find('\n')));
-}
-
-void bring_up_to_date(Database& database) {
-  if (database.number("PRAGMA user_version") == kSchemaVersion) return;
-  Transaction all{database};
-  if (database.number("PRAGMA user_version") == 1) database.run(kFromVersion1);  // nobody else was faster
-  all.commit();
-}
-
-Database opened(const std::filesystem::path& file, bool create) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) throw std::runtime_error(file.string() + ": is a directory");
-  if (!create && !std::filesystem::exists(file, ignored)) throw std::runtime_error(file.string() + ": no such file");
-  Database database{file, create ? Database::Mode::kCreate : Database::Mode::kExisting};
-  if (create && database.number("SELECT count(*) FROM sqlite_master") == 0) {
-    database.run("PRAGMA journal_mode = WAL");
-    Transaction all{database};
-    if (database.number("SELECT count(*) FROM sqlite_master") == 0) {  // nobody else was faster
-      database.run(kSchema);
-      database.run("PRAGMA application_id = " + std::to_string(kApplicationId));
-      database.run("PRAGMA user_version = " + std::to_string(kSchemaVersion));
-    }
-    all.commit();
-  }
-  check(database);
-  bring_up_to_date(database);
-  database.run("PRAGMA journal_mode = WAL");
-  database.run("PRAGMA synchronous = FULL");
-  return database;
-}
 
 /// Nothing where the columns are empty.
 std::optional<PoseCovariance> covariance_in(const Statement& row, int first_column) {
@@ -120,6 +56,7 @@ struct MapStore::State {
   GridGeometry geometry;
   std::uint32_t newest = 0;
   std::uint32_t dropped = 0;
+  std::uint32_t refusals_since_pruning = 0;
 
   explicit State(Database opened_database) : database{std::move(opened_database)} {}
 
@@ -130,7 +67,7 @@ struct MapStore::State {
     geometry = {
         static_cast<int>(row.number(0)), static_cast<int>(row.number(1)), row.real(2), {row.real(3), row.real(4)}};
     if (geometry.width <= 0 || geometry.height <= 0 || geometry.width > 32767 || geometry.height > 32767) {
-      database.fail("damaged: size of the map");
+      database.fail_as_unsound("damaged: size of the map");
     }
     return true;
   }
@@ -161,11 +98,39 @@ struct MapStore::State {
     database.fail("no revision " + std::to_string(number) + " (newest: " + std::to_string(newest) + ")");
   }
 
+  /// Throws where the revision is no good or was never written.
+  [[noreturn]] void fail_to_restore(std::uint32_t number) {
+    Statement row{database, "SELECT min(number) FROM revision WHERE map = ? AND refused = 0 AND number >= ?"};
+    row.bind(map).bind(std::int64_t{number});
+    if (row.step() && !row.is_null(0) && row.number(0) != std::int64_t{number}) {
+      database.fail("revision " + std::to_string(number) + " was never stored: revision " +
+                    std::to_string(row.number(0)) + " holds it and what came after it");
+    }
+    database.fail_as_unsound("damaged: revision " + std::to_string(number) + " cannot be restored");
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> numbers_after(std::uint32_t number) {
+    Statement rows{database, "SELECT number FROM revision WHERE map = ? AND refused = 0 AND number > ?"};
+    rows.bind(map).bind(std::int64_t{number});
+    std::vector<std::uint32_t> numbers;
+    while (rows.step()) numbers.push_back(static_cast<std::uint32_t>(rows.number(0)));
+    return numbers;
+  }
+
+  void prune_refusals() {
+    refusals_since_pruning = 0;
+    Statement old{database,
+                  "DELETE FROM revision WHERE map = ? AND refused = 1 AND id <= (SELECT id FROM revision WHERE map = ? "
+                  "AND refused = 1 ORDER BY id DESC LIMIT 1 OFFSET ?)"};
+    old.bind(map).bind(map).bind(std::int64_t{kRefusals});
+    old.step();
+  }
+
   [[nodiscard]] std::vector<CellChange> changes_of(std::uint32_t number) {
     Statement row{database, "SELECT changes FROM revision WHERE map = ? AND refused = 0 AND number = ?"};
     row.bind(map).bind(std::int64_t{number});
     auto changes = row.step() ? decoded_changes(row.blob(0), geometry) : std::nullopt;
-    if (!changes) database.fail("damaged: revision " + std::to_string(number) + " cannot be restored");
+    if (!changes) fail_to_restore(number);
     return *std::move(changes);
   }
 
@@ -206,7 +171,7 @@ struct MapStore::State {
     const std::uint32_t written = newest_written();
     newest = written;
     while (!restored(newest)) {
-      if (newest == 0) database.fail("damaged: no revision can be restored");
+      if (newest == 0) database.fail_as_unsound("damaged: no revision can be restored");
       --newest;
     }
     dropped = written - newest;
@@ -227,6 +192,16 @@ struct MapStore::State {
     write(summary, map, {}, encoded_grid(first));
   }
 
+  void append(const MapRevision& revision, const RevisionNote& note, bool whole) {
+    Transaction all{database};
+    if (newest_written() != newest) database.fail("another program writes to this store");
+    write(summary_of(revision.number, revision.time, note, revision.changes), signed_hash(*revision.map),
+          encoded_changes(revision.changes, geometry),
+          whole ? encoded_grid(*revision.map) : std::vector<std::uint8_t>{});
+    all.commit();
+    newest = revision.number;
+  }
+
   void remember_as_last_used() {
     Statement row{database, "UPDATE map SET used = (SELECT max(used) + 1 FROM map) WHERE hash = ?"};
     row.bind(map);
@@ -235,16 +210,18 @@ struct MapStore::State {
 };
 
 MapStore::MapStore(const std::filesystem::path& file, const OccupancyGrid& first)
-    : state_{std::make_unique<State>(opened(file, true))} {
+    : state_{std::make_unique<State>(opened_store(file, Database::Mode::kCreate))} {
   Transaction all{state_->database};
   state_->map = signed_hash(first);
   if (!state_->find_geometry()) state_->begin_history(first);
   state_->remember_as_last_used();
   state_->find_newest_good();
+  state_->prune_refusals();
   all.commit();
 }
 
-MapStore::MapStore(const std::filesystem::path& file) : state_{std::make_unique<State>(opened(file, false))} {
+MapStore::MapStore(const std::filesystem::path& file)
+    : state_{std::make_unique<State>(opened_store(file, Database::Mode::kExisting))} {
   if (state_->database.number("SELECT count(*) FROM map") == 0) state_->database.fail("holds no map yet");
   state_->map = state_->database.number("SELECT hash FROM map ORDER BY used DESC LIMIT 1");
   (void)state_->find_geometry();
@@ -261,7 +238,7 @@ std::uint32_t MapStore::dropped() const { return state_->dropped; }
 OccupancyGrid MapStore::grid(std::uint32_t number) const {
   if (number > state_->newest) state_->fail_as_missing(number);
   auto grid = state_->restored(number);
-  if (!grid) state_->database.fail("damaged: revision " + std::to_string(number) + " cannot be restored");
+  if (!grid) state_->fail_to_restore(number);
   return *std::move(grid);
 }
 
@@ -296,14 +273,17 @@ void MapStore::append(const MapRevision& revision, const RevisionNote& note) {
   if (revision.number != s.newest + 1) {
     s.database.fail("revision " + std::to_string(revision.number) + " does not follow " + std::to_string(s.newest));
   }
-  Transaction all{s.database};
-  if (s.newest_written() != s.newest) s.database.fail("another program writes to this store");
-  const bool whole = revision.number % kGridEvery == 0;
-  s.write(summary_of(revision.number, revision.time, note, revision.changes), signed_hash(*revision.map),
-          encoded_changes(revision.changes, s.geometry),
-          whole ? encoded_grid(*revision.map) : std::vector<std::uint8_t>{});
-  all.commit();
-  s.newest = revision.number;
+  s.append(revision, note, revision.number % kGridEvery == 0);
+}
+
+void MapStore::append_whole(std::uint32_t number, Timestamp time, const OccupancyGrid& map, const RevisionNote& note) {
+  if (number <= newest()) state_->database.fail("revision " + std::to_string(number) + " is older than the newest");
+  MapRevision revision;
+  revision.number = number;
+  revision.time = time;
+  revision.changes = changes_between(grid(newest()), map);
+  revision.map = std::make_shared<const OccupancyGrid>(map);
+  state_->append(revision, note, true);
 }
 
 void MapStore::append_refusal(Timestamp time, const RevisionNote& note) {
@@ -312,7 +292,10 @@ void MapStore::append_refusal(Timestamp time, const RevisionNote& note) {
   refusal.refused = true;
   refusal.time = time;
   refusal.note = note;
+  Transaction all{state_->database};
   state_->write(refusal, 0, {}, {});
+  if (++state_->refusals_since_pruning >= kPruneEvery) state_->prune_refusals();
+  all.commit();
 }
 
 std::uint32_t MapStore::roll_back(std::uint32_t number, Timestamp time) {
@@ -336,7 +319,7 @@ std::uint32_t MapStore::undo(std::uint32_t number, Timestamp time) {
   std::vector<CellChange> delta = changes(number);
   OccupancyGrid map = grid(s.newest);
   std::vector<bool> changed_later(s.geometry.cell_count(), false);
-  for (std::uint32_t later = number + 1; later <= s.newest; ++later) {
+  for (const std::uint32_t later : s.numbers_after(number)) {
     for (const CellChange& change : s.changes_of(later)) changed_later[s.geometry.index_of(change.cell)] = true;
   }
   std::erase_if(delta, [&](const CellChange& change) { return changed_later[s.geometry.index_of(change.cell)]; });

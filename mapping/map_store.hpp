@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The journal of the map on disk (SQLite, write-ahead log): every Δ with its cells before and after, time, pose
 // covariance, acceptance and cause, a whole grid every 64, and what was refused. Histories are told apart by the hash
-// of M_0, so that another map never finds old revisions. Used by one thread.
+// of M_0, so that another map never finds old revisions. Of the refusals the newest 1000 are kept. Used by one thread.
+// What goes wrong is told by a StoreError.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +40,7 @@ struct StoredRevision {
 class MapStore {
  public:
   /// Opens the history of M_0, and begins it where there is none. Revisions at the end that cannot be restored are
-  /// dropped. Throws std::runtime_error: one line that names the file (foreign, damaged, not writable).
+  /// dropped. Throws StoreError: one line that names the file (foreign, damaged, not writable).
   MapStore(const std::filesystem::path& file, const OccupancyGrid& first);
   /// Opens the history that was used last in an existing file, to read or to roll back.
   explicit MapStore(const std::filesystem::path& file);
@@ -57,6 +58,9 @@ class MapStore {
 
   /// The revision must follow the newest one.
   void append(const MapRevision& revision, const RevisionNote& note);
+  /// M_k with everything that has changed since the newest revision, where those between were never written: they are
+  /// missing from now on. The number is higher than the newest.
+  void append_whole(std::uint32_t number, Timestamp time, const OccupancyGrid& map, const RevisionNote& note);
   void append_refusal(Timestamp time, const RevisionNote& note);
   /// What led from M_{k-1} to M_k. Throws as grid() does; M_0 has no changes.
   [[nodiscard]] std::vector<CellChange> changes(std::uint32_t number) const;

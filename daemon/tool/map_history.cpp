@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
 #include "daemon/tool/subcommands.hpp"
 #include "mapping/map_store.hpp"
@@ -138,6 +139,7 @@ void compare(const Options& options) {
 }
 
 void roll_back(const Options& options) {
+  const auto lock = lock_of_file(options.store);  // a daemon that writes there would lose its place
   MapStore store{options.store};
   const std::uint32_t number = store.roll_back(options.number, std::chrono::system_clock::now());
   if (options.json) {
@@ -148,6 +150,7 @@ void roll_back(const Options& options) {
 }
 
 void undo(const Options& options) {
+  const auto lock = lock_of_file(options.store);
   MapStore store{options.store};
   const std::uint32_t number = store.undo(options.number, std::chrono::system_clock::now());
   const std::size_t cells = store.changes(number).size();

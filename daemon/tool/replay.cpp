@@ -25,11 +25,9 @@ struct ReplayOptions {
 };
 
 void print_summary(const RunReport& report) {
-  std::size_t accepted = 0;
-  for (const ChangeNote& change : report.changes) accepted += change.revision ? 1 : 0;
   const double scans = static_cast<double>(report.scans.decoded);
-  std::cout << report.scans.decoded << " scans, " << report.phases << " delta phases, " << accepted << " revisions, "
-            << report.changes.size() - accepted << " refused, lost " << report.time_lost_s << " s, "
+  std::cout << report.scans.decoded << " scans, " << report.phases << " delta phases, " << report.changes.accepted()
+            << " revisions, " << report.changes.refused() << " refused, lost " << report.time_lost_s << " s, "
             << report.cpu_total_s / scans * 1e3 << " ms CPU a scan, peak "
             << static_cast<double>(report.peak_resident_bytes) / (1024.0 * 1024.0) << " MB, journal " << report.journal
             << "; began with " << report.began << '\n';

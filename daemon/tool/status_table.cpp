@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 namespace deltamap::daemon::tool {
@@ -79,6 +80,31 @@ std::string scans_line(const Json& s) {
               number(s, "/localized"), drops, number(s, "/latency_ms"));
 }
 
+std::string utc_clock(double unix_s) {
+  const auto whole = static_cast<std::time_t>(unix_s);
+  std::tm calendar{};
+  char text[32];
+  (void)std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", gmtime_r(&whole, &calendar));
+  return text;
+}
+
+/// All that is well in one line; what is not written in a line of its own.
+std::string outputs_lines(const Json& s) {
+  if (!s.contains("outputs") || !s["outputs"].is_object() || s["outputs"].empty()) return line("saving", "nothing");
+  std::string written;
+  std::string paused;
+  for (const auto& [name, output] : s["outputs"].items()) {
+    if (output.value("written", true)) {
+      written += (written.empty() ? "" : ", ") + name;
+    } else {
+      paused +=
+          line("", "%s",
+               (name + " not since " + utc_clock(number(output, "/since")) + " UTC: " + word(output, "/why")).c_str());
+    }
+  }
+  return line("saving", "%s", written.empty() ? "nothing" : written.c_str()) + paused;
+}
+
 }  // namespace
 
 std::string status_table(const std::string& reply_line) {
@@ -98,9 +124,9 @@ std::string status_table(const std::string& reply_line) {
   text += line("running", "%.0f s", number(s, "/since_start_s"));
   if (s.contains("recording") && s["recording"].is_object()) {
     text += line("recording", "%s, %.1f MB%s", word(s, "/recording/file").c_str(), number(s, "/recording/bytes") * 1e-6,
-                 s.value("/recording/goes_on"_json_pointer, false) ? "" : ", has ended");
+                 s.value("/recording/goes_on"_json_pointer, false) ? "" : ", is not being written");
   }
-  return text;
+  return text + outputs_lines(s);
 }
 
 }  // namespace deltamap::daemon::tool

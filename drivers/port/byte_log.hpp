@@ -36,7 +36,7 @@ class ByteLogWriter {
 
   /// Takes a record (its `baud` is not looked at; the stamp must not lie before 1970). Goes to the disk with flush(),
   /// or when enough has come together. Throws std::runtime_error naming file and reason where the disk is full or gone;
-  /// the file then ends with the last whole block that fit, and the writer takes no more.
+  /// the file then ends with the last whole block that fit, what did not fit is lost, and more may be written after it.
   void write(const ByteRecord& record);
   /// Hands everything to the kernel: a crash of this process loses nothing from before.
   void flush();

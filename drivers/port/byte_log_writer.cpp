@@ -65,13 +65,18 @@ void append_packet(std::vector<std::uint8_t>& out, const ByteRecord& record) {
 }  // namespace
 
 ByteLogWriter::ByteLogWriter(std::filesystem::path file, const FirstBauds& bauds) : file_{std::move(file)} {
-  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("cannot be written", errno);
   waiting_.reserve(kFlushBytes + 4096);
   append_section(waiting_);
   append_interface(waiting_, PortId::kRobot, bauds.robot);
   append_interface(waiting_, PortId::kLaser, bauds.laser);
-  flush();
+  try {
+    flush();
+  } catch (const std::runtime_error&) {
+    ::close(descriptor_);
+    throw;
+  }
 }
 
 ByteLogWriter::~ByteLogWriter() {
@@ -106,8 +111,10 @@ void ByteLogWriter::flush() {
       std::size_t whole = 0;  // keep the blocks that fit, so that the file stays clean
       for (std::size_t next = 0; next <= written; next += pcapng::number_at<std::uint32_t>(waiting_, next + 4))
         whole = next;
-      (void)!::ftruncate(descriptor_, static_cast<off_t>(flushed_bytes_ + whole));
-      fail("cannot be written", reason);
+      flushed_bytes_ += whole;
+      waiting_.clear();
+      (void)!::ftruncate(descriptor_, static_cast<off_t>(flushed_bytes_));
+      throw std::runtime_error(file_.string() + ": cannot be written: " + std::generic_category().message(reason));
     }
     written += static_cast<std::size_t>(n);
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/replace_file.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/temporary_folder.hpp"
 

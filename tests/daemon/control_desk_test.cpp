@@ -115,9 +115,7 @@ TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame
         test::pose_on_drive(0.106 * static_cast<double>(pipeline.telemetry().scans.value())) * Pose2{2.0, 0.0, 0.0};
     EXPECT_EQ(asked({Request::Kind::kRelocalize, far_away})["ok"], true);
   });
-  const auto withdrawn = std::count_if(live.changes.begin(), live.changes.end(),
-                                       [](const ChangeNote& change) { return !change.withdraws.empty(); });
-  EXPECT_EQ(withdrawn, 1);
+  EXPECT_EQ(live.changes.withdrawals(), 1u);
   const RunReport again = replay("live.pcapng", "replayed");
   EXPECT_EQ(again.journal, "obeyed");
   EXPECT_EQ(again.journal_differences, 0u);
@@ -151,14 +149,18 @@ TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
     EXPECT_EQ(told["drive"], "off");
     EXPECT_EQ(told["recording"]["file"], settings_.recording.file);
     EXPECT_EQ(told["recording"]["goes_on"], true);
+    for (const char* output : {"trajectory", "localization", "changes", "map", "history", "recording"}) {
+      EXPECT_EQ(told["outputs"][output]["written"], true) << output << told["outputs"];
+    }
     EXPECT_GT(told["since_start_s"], 0.0);
     EXPECT_EQ(told["drops"].size(), 6u);
 
     testing::internal::CaptureStdout();
     EXPECT_EQ(exit_code({"status"}), 0);
     const std::string table = testing::internal::GetCapturedStdout();
-    for (const char* topic : {"state        tracking", "pose         x=", "belief       pose ",
-                              "map          revision 0", "ports        robot ", "drive        off", "recording    "}) {
+    for (const char* topic :
+         {"state        tracking", "pose         x=", "belief       pose ", "map          revision 0",
+          "ports        robot ", "drive        off", "recording    ", "saving       "}) {
       EXPECT_NE(table.find(topic), std::string::npos) << topic << '\n' << table;
     }
     testing::internal::CaptureStdout();
@@ -320,6 +322,30 @@ TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
     EXPECT_TRUE(reached_scan(scan + 10));
     EXPECT_FALSE(moves(ports));
     EXPECT_EQ(status()["drive"], "off");
+  });
+}
+
+TEST_F(DriveTest, WithoutAPoseItStandsAndSaysWhy) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  settings_.initial_pose.reset();
+  run([&](const test::SimulatedPorts& ports) {
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "pose unknown"; }));
+    const std::size_t from = ports.commands().size();
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 10));
+    EXPECT_FALSE(moves(ports, from));
+  });
+}
+
+TEST_F(DriveTest, WithoutAPoseItDrivesWhereTheSettingsSaySo) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  settings_.navigation.drive_without_pose = true;
+  settings_.initial_pose.reset();
+  run([&](const test::SimulatedPorts& ports) {
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "none"; }));
+    EXPECT_TRUE(comes_true([&] { return moves(ports); }));
   });
 }
 

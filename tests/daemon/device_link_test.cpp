@@ -26,17 +26,33 @@ class FakeSession {
     out.output.failed = "robot has been silent";
     return out;
   }
-  FakeOutput on_time(Timestamp) { return {}; }
-  FakeOutput close(Timestamp) { return {}; }
+  FakeOutput on_time(Timestamp now) { return farewell(now); }
+  FakeOutput close(Timestamp now) {
+    words_left_ = 3;
+    return farewell(now);
+  }
   void on_baud(unsigned) {}
   [[nodiscard]] unsigned baud() const { return 9600; }
+
+ private:
+  /// A word at a time.
+  FakeOutput farewell(Timestamp now) {
+    FakeOutput out;
+    if (words_left_ == 0) return out;
+    out.output.requests.push_back({drivers::PortRequest::Kind::kWrite, {static_cast<std::uint8_t>(words_left_)}, 0});
+    if (--words_left_ > 0) out.output.wake_at = now + std::chrono::milliseconds{5};
+    return out;
+  }
+  int words_left_ = 0;
 };
 
 class FakePort final : public port::BytePort {
  public:
-  explicit FakePort(port::PortHandlers& handlers) : handlers_{handlers} {}
+  FakePort(port::PortHandlers& handlers, std::vector<std::uint8_t>& written) : handlers_{handlers}, written_{written} {}
   void start(port::PortHandlers handlers) override { handlers_ = std::move(handlers); }
-  void write(std::span<const std::uint8_t>) override {}
+  void write(std::span<const std::uint8_t> bytes) override {
+    written_.insert(written_.end(), bytes.begin(), bytes.end());
+  }
   void set_baud(unsigned) override {}
   void discard_input() override {}
   [[nodiscard]] const std::string& name() const override { return name_; }
@@ -44,6 +60,7 @@ class FakePort final : public port::BytePort {
 
  private:
   port::PortHandlers& handlers_;
+  std::vector<std::uint8_t>& written_;
   std::string name_ = "/dev/robot";
 };
 
@@ -51,13 +68,14 @@ class DeviceLinkTest : public testing::Test {
  protected:
   port::SerialPortAnswer opened() {
     if (!refused_.empty()) return {nullptr, refused_};
-    return {std::make_unique<FakePort>(device_), ""};
+    return {std::make_unique<FakePort>(device_, written_), ""};
   }
 
   std::string refused_;
   std::vector<std::string> log_;
   int lost_ = 0;
   port::PortHandlers device_;
+  std::vector<std::uint8_t> written_;
   boost::asio::io_context loop_;
   DeviceLink<FakeSession, FakeOutput> link_{
       loop_,
@@ -88,6 +106,16 @@ TEST_F(DeviceLinkTest, NamesTheDeviceOnceInEveryLine) {
   device_.on_bytes({}, Timestamp{});
   EXPECT_EQ(log_,
             (std::vector<std::string>{"robot has news", "robot: it went away", "robot has been silent; trying again"}));
+}
+
+TEST_F(DeviceLinkTest, AFarewellThatTakesItsTimeIsSentToItsEndAndNothingAfterIt) {
+  link_.open();
+  link_.close();
+  EXPECT_EQ(written_, (std::vector<std::uint8_t>{3}));
+  device_.on_bytes({}, Timestamp{});  // not heard any more
+  loop_.run();
+  EXPECT_EQ(written_, (std::vector<std::uint8_t>{3, 2, 1}));
+  EXPECT_EQ(lost_, 0);
 }
 
 TEST_F(DeviceLinkTest, APortThatHangsUpAfterItsSessionHasFailedIsNoSecondFailure) {

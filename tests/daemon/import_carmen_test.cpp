@@ -205,50 +205,6 @@ TEST(ImportCarmen, TakesTheLargestValueForNoReturnOnlyWhereManyBeamsHaveIt) {
   EXPECT_EQ(told.scans[0].beams[1].kind, BeamKind::kBeyondMaximum);
 }
 
-/// What some logs have in place of one code: 51.05 to 51.16 m.
-std::string log_with_cluster(std::size_t in_cluster) {
-  std::string log;
-  for (std::size_t scan = 0; scan < 10; ++scan) {
-    std::vector<std::string> ranges(181, "3.21");
-    ranges[0] = "50.99";  // 0.17 m below the largest value
-    for (std::size_t i = 0; i < in_cluster; ++i)
-      ranges[10 + i] = "51." + std::to_string(105 + (scan + i) % 12).substr(1);
-    log += flaser(ranges, "0 0 0", std::to_string(scan));
-  }
-  return log;
-}
-
-TEST(ImportCarmen, TakesAClusterOfLargestValuesForNoReturn) {
-  const test::TemporaryFolder folder;
-  const Decoded many = imported(folder, log_with_cluster(10));  // 5.5 % of the beams, no single value has 0.5 %
-  for (const Scan& scan : many.scans) {
-    EXPECT_EQ(scan.beams[0].kind, BeamKind::kRange);
-    for (std::size_t i = 10; i < 20; ++i) EXPECT_EQ(scan.beams[i].kind, BeamKind::kBeyondMaximum) << i;
-  }
-  const CarmenSurvey survey = survey_of(folder.path() / "a.log", std::nullopt);
-  EXPECT_EQ(survey.no_return_m, 51.05);
-  EXPECT_EQ(survey.no_return_up_to_m, 51.16);
-  EXPECT_NEAR(survey.no_return_share, 10.0 / 181.0, 1e-9);
-  EXPECT_EQ(no_return_line(survey).find("no return: the log's largest values 51.05 to 51.16 m, 5.52"), 0u)
-      << no_return_line(survey);
-  EXPECT_EQ(imported(folder, log_with_cluster(10), 60.0).scans[0].beams[10].kind, BeamKind::kRange);
-
-  std::string few = log_with_cluster(0);
-  few.replace(few.find("3.21"), 4, "51.16");  // 1 of 1810 beams
-  EXPECT_EQ(imported(folder, few).scans[0].beams[1].kind, BeamKind::kRange);
-}
-
-TEST(ImportCarmen, KeepsRangesJustBelowTheScannersCodes) {
-  const test::TemporaryFolder folder;
-  std::vector<std::string> ranges(181, "8.100");  // mm, 8 m mode: a wall there is as good as any
-  for (std::size_t i = 0; i < 20; ++i) ranges[i] = i % 2 == 0 ? "8.183" : "8.191";
-  const Decoded all = imported(folder, flaser(ranges, "0 0 0", "1"));
-  EXPECT_EQ(all.measurements[0].words[0], 0x1FF7);
-  EXPECT_EQ(all.measurements[0].words[1], 0x1FFF);
-  EXPECT_EQ(all.scans[0].beams[100].kind, BeamKind::kRange);
-  EXPECT_EQ(survey_of(folder.path() / "a.log", std::nullopt).no_return_m, 8.183);
-}
-
 TEST(ImportCarmen, TakesTheLoggersTimesWhereTheStampsTellNothing) {
   const test::TemporaryFolder folder;
   std::string log;

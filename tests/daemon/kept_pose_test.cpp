@@ -70,34 +70,43 @@ TEST(KeptPose, APoseInAnotherMapOrOfALostRobotIsNotUsed) {
   EXPECT_EQ(refusal(folder, json_text(lost)), "the robot did not know where it was");
 }
 
+Timestamp at_s(double time_s) { return some_pose().time + duration_from_seconds(time_s); }
+
 TEST(MemoryKeeper, KeepsThePoseBesideTheStore) {
   const test::TemporaryFolder folder;
   std::vector<std::string> warnings;
-  MemoryKeeper keeper{memory_places(folder.path() / "map_store.sqlite"),
+  OutputBoard board;
+  MemoryKeeper keeper{memory_places(folder.path() / "map_store.sqlite"), board,
                       [&](const std::string& line) { warnings.push_back(line); }};
-  keeper.keep(some_pose());
+  keeper.keep(some_pose(), at_s(0));
   EXPECT_TRUE(read_kept_pose(folder.path() / "map_store.pose.json", some_pose().first_map).pose);
   EXPECT_TRUE(warnings.empty());
 }
 
-TEST(MemoryKeeper, AFullDiskIsToldOnceAndDoesNotEndTheKeeping) {
+TEST(MemoryKeeper, AFullDiskIsToldOnceAndTheNewestPoseIsKeptWhenThereIsRoom) {
   const test::TemporaryFolder folder;
   std::vector<std::string> warnings;
-  MemoryKeeper keeper{memory_places(folder.path() / "later/map_store.sqlite"),
+  OutputBoard board;
+  MemoryKeeper keeper{memory_places(folder.path() / "later/map_store.sqlite"), board,
                       [&](const std::string& line) { warnings.push_back(line); }};
-  keeper.keep(some_pose());
-  keeper.keep(some_pose());
+  KeptPose newest = some_pose();
+  newest.revision = 8;
+  keeper.keep(some_pose(), at_s(0));
+  keeper.keep(newest, at_s(5));
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_TRUE(warnings[0].starts_with("pose and stability are not kept: ")) << warnings[0];
+  EXPECT_TRUE(warnings[0].starts_with("saving pauses: pose: ")) << warnings[0];
+  EXPECT_FALSE(board.all()[0].written);
   std::filesystem::create_directory(folder.path() / "later");
-  keeper.keep(some_pose());
+  keeper.retry(at_s(8));
   ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_TRUE(warnings[1].starts_with("pose and stability are kept again: ")) << warnings[1];
+  EXPECT_TRUE(warnings[1].starts_with("saving goes on: pose after 8 s: ")) << warnings[1];
+  EXPECT_EQ(read_kept_pose(folder.path() / "later/map_store.pose.json", some_pose().first_map).pose->revision, 8u);
 }
 
 TEST(MemoryKeeper, SavesMapAndPoseAndSaysWhere) {
   const test::TemporaryFolder folder;
-  MemoryKeeper keeper{memory_places(folder.path() / "map_store.sqlite"), [](const std::string&) {}};
+  OutputBoard board;
+  MemoryKeeper keeper{memory_places(folder.path() / "map_store.sqlite"), board, [](const std::string&) {}};
   const auto map = std::make_shared<const OccupancyGrid>(GridGeometry{4, 3, 0.05, {0.0, 0.0}}, CellState::kFree);
   const CommandOutcome outcome = keeper.save({5, some_pose(), map});
   EXPECT_TRUE(outcome.done) << outcome.message;
@@ -107,7 +116,7 @@ TEST(MemoryKeeper, SavesMapAndPoseAndSaysWhere) {
   EXPECT_EQ(read_grid(saved), *map);
   EXPECT_TRUE(read_kept_pose(folder.path() / "map_store.pose.json", some_pose().first_map).pose);
 
-  MemoryKeeper nowhere{memory_places(""), [](const std::string&) {}};
+  MemoryKeeper nowhere{memory_places(""), board, [](const std::string&) {}};
   EXPECT_FALSE(nowhere.save({6, some_pose(), map}).done);
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/latency_histogram.hpp"
+#include "daemon/line_file.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/version.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -71,6 +72,25 @@ TEST(StagingFolder, AFileInPlaceOfTheFolderIsRefusedByName) {
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(error.what(), file.string() + ": is no folder");
   }
+}
+
+TEST(ChangeTally, OfAMonthIsNoLargerThanOfADay) {
+  ChangeTally tally;
+  for (std::uint32_t i = 1; i <= 100'000; ++i) {
+    ChangeNote note;
+    note.reason = i % 3 == 0 ? "no merge" : "too few scans";
+    if (i % 10 == 0) note.revision = i;
+    tally.add(note);
+  }
+  EXPECT_EQ(tally.accepted(), 10'000u);
+  EXPECT_EQ(tally.refused(), 90'000u);
+  EXPECT_EQ(tally.refusals().at("no merge") + tally.refusals().at("too few scans"), 90'000u);
+  EXPECT_EQ(tally.revisions().size(), ChangeTally::kKept);
+  EXPECT_EQ(tally.revisions().back().number, 100'000u);
+  RunReport report;
+  report.changes = tally;
+  EXPECT_LT(json_text(report, Settings{}).size(), 200'000u);
+  EXPECT_NE(json_text(report, Settings{}).find("\"revisions_total\": 10000"), std::string::npos);
 }
 
 TEST(LatencyHistogram, AnswersQuantilesWithinOnePercent) {

@@ -21,9 +21,7 @@ TEST_F(PipelineTest, AnUnhurriedLiveRunAndItsReplayGiveTheSameBytes) {
   EXPECT_EQ(live.scans.lost + live.scans.odometry_lost + live.scans.recording_lost, 0u);
   EXPECT_GT(live.scans.localized, 300u);
   EXPECT_EQ(live.time_lost_s, 0.0);
-  const auto accepted = std::count_if(live.changes.begin(), live.changes.end(),
-                                      [](const ChangeNote& c) { return c.revision.has_value(); });
-  EXPECT_GE(accepted, 1) << "the box must have become map";
+  EXPECT_GE(live.changes.accepted(), 1u) << "the box must have become map";
 
   const RunReport again = replay("live.pcapng", "replayed");
   EXPECT_EQ(again.journal, "obeyed");
@@ -75,9 +73,36 @@ TEST_F(PipelineTest, AnIoThreadThatHangsShowsInTheLongestWork) {
 }
 
 TEST_F(PipelineTest, AReportThatCannotBeWrittenIsAnErrorAndNoCrash) {
-  fs::create_directories(folder_.path() / "live");
-  fs::create_symlink("/dev/full", folder_.path() / "live/report.json");
+  fs::create_directories(folder_.path() / "live/report.json");
   EXPECT_THROW((void)run_live(std::chrono::microseconds(0)), std::runtime_error);
+}
+
+TEST_F(PipelineTest, ASecondDaemonInTheSameFolderOrRecordingEndsBeforeItDoesHarm) {
+  fs::create_directories(folder_.path() / "live");
+  const auto without_devices = [&](bool with_out) {
+    Pipeline::Options wanted = options();
+    if (with_out) wanted.out = folder_.path() / "live";
+    wanted.open = [](boost::asio::io_context&, drivers::port::PortId, unsigned) {
+      return drivers::port::SerialPortAnswer{nullptr, "is missing"};
+    };
+    return wanted;
+  };
+  Pipeline pipeline{settings_, without_devices(true)};
+  const auto refusal = [&](Pipeline::Options other) -> std::string {
+    try {
+      const Pipeline second{settings_, std::move(other)};
+    } catch (const FileInUse& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string holder = " (pid " + std::to_string(getpid()) + ")";
+  EXPECT_NE(refusal(without_devices(false)).find("live.pcapng: is in use by "), std::string::npos);
+  const std::string told = refusal(without_devices(true));
+  EXPECT_NE(told.find("live: is in use by "), std::string::npos) << told;
+  EXPECT_NE(told.find(holder), std::string::npos) << told;
+  EXPECT_FALSE(fs::exists(folder_.path() / "live.previous.pcapng"));
+  (void)pipeline.stop();
 }
 
 TEST_F(PipelineTest, AJournalOfOtherSettingsIsNotObeyed) {

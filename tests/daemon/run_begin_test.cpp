@@ -5,6 +5,7 @@
 
 #include "core/random.hpp"
 #include "daemon/journal.hpp"
+#include "daemon/replay_start.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -90,6 +91,49 @@ TEST(RunBegin, IsIncompleteWhereANoteIsMissingOrDamaged) {
     for (const std::string& note : damaged) reader.read(note);
     EXPECT_TRUE(reader.is_incomplete()) << at;
   }
+}
+
+/// A recording of a run on `begin`, as the daemon begins it with the default settings.
+RecordedRun recorded_run_on(const RunBegin& begin) {
+  RecordedRun recorded;
+  recorded.journal.read(
+      note_of(RunIdentity{settings_fingerprint(Settings{}), grid_hash(*begin.start.map), begin.memory}));
+  for (const std::string& note : begin_notes(begin)) recorded.begin.read(note);
+  return recorded;
+}
+
+TEST(ReplayStart, IsWhatTheRunBeganFromOnTheFirstMapAndOnItsOwn) {
+  RunBegin begin = large_begin();
+  const auto first = std::make_shared<const OccupancyGrid>(begin.start.map->geometry(), CellState::kFree);
+  begin.first_map = grid_hash(*first);
+  const RecordedRun recorded = recorded_run_on(begin);
+  for (const auto& given : {first, begin.start.map}) {
+    const ReplayStart on = replay_start(recorded, ReplayJob{}, given);
+    EXPECT_EQ(on.journal, "obeyed");
+    EXPECT_EQ(on.began, "what the recorded run began from: revision=7, kept pose, stability");
+    EXPECT_EQ(*on.start.map, *begin.start.map);
+    EXPECT_EQ(on.start.revision, 7u);
+    EXPECT_EQ(on.start.remembered, begin.start.remembered);
+  }
+  ReplayJob later;
+  later.from_s = 5.0;
+  const ReplayStart from_later = replay_start(recorded, later, first);
+  EXPECT_EQ(from_later.journal, "not obeyed: another start");
+  EXPECT_FALSE(from_later.start.remembered) << "the robot has driven on";
+  EXPECT_EQ(from_later.start.revision, 7u);
+}
+
+TEST(ReplayStart, OfARecordingThatDoesNotHoldWhatWasKeptIsTheMapAlone) {
+  RunBegin begin = large_begin();
+  RecordedRun recorded = recorded_run_on(begin);
+  recorded.begin.forget();
+  const ReplayStart old = replay_start(recorded, ReplayJob{}, begin.start.map);
+  EXPECT_EQ(old.journal, "not obeyed: it began with a pose that was kept");
+  EXPECT_EQ(old.began, "the map alone: what the recorded run had kept is not in the recording");
+  recorded.begin.read(begin_notes(begin).front());
+  const ReplayStart cut = replay_start(recorded, ReplayJob{}, begin.start.map);
+  EXPECT_EQ(cut.began, "the map alone: what the recorded run began from is damaged");
+  EXPECT_EQ(cut.start.revision, 0u);
 }
 
 }  // namespace

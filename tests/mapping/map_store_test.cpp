@@ -236,6 +236,38 @@ TEST_F(Store, RefusesAFileOfALaterVersion) {
   EXPECT_EQ(complaint([&] { MapStore store{file}; }), file.string() + ": map store of version 3, not 1 to 2");
 }
 
+TEST_F(Store, StoresWholeWhatCouldNotBeStoredStepByStep) {
+  std::vector<OccupancyGrid> maps;
+  {
+    MapStore store{file, first_map()};
+    maps = fill(store, 3);
+    for (std::uint32_t number = 4; number <= 9; ++number) maps.push_back(*revision_after(maps.back(), number).map);
+    store.append_whole(9, timestamp_from_ns(9), maps[9], {.cause = "evidence (4 to 9 in one)"});
+    store.append(revision_after(maps[9], 10), {});
+    EXPECT_NE(complaint([&] { store.append_whole(10, {}, maps[9], {}); }).find("older"), std::string::npos);
+  }
+  MapStore store{file, first_map()};
+  EXPECT_EQ(store.dropped(), 0u);
+  EXPECT_EQ(store.newest(), 10u);
+  EXPECT_EQ(store.grid(3), maps[3]);
+  EXPECT_EQ(store.grid(9), maps[9]);
+  EXPECT_EQ(complaint([&] { (void)store.grid(5); }),
+            file.string() + ": revision 5 was never stored: revision 9 holds it and what came after it");
+  EXPECT_EQ(store.undo(9, {}), 11u);
+}
+
+TEST_F(Store, KeepsTheNewestThousandRefusals) {
+  MapStore store{file, first_map()};
+  fill(store, 2);
+  for (std::uint32_t phase = 0; phase < 1500; ++phase)
+    store.append_refusal(timestamp_from_ns(7), {phase, 0.4, "no merge"});
+  const MapStore again{file, first_map()};
+  const auto history = again.history();
+  ASSERT_EQ(history.size(), 3u + 1000u);
+  EXPECT_EQ(history.back().note.phase, 1499u);
+  EXPECT_EQ(history[3].note.phase, 500u);
+}
+
 TEST(TakenBack, LeavesCellsThatHoldSomethingElse) {
   const OccupancyGrid before = test::drawn_grid({"....", "...."});
   const OccupancyGrid after = test::drawn_grid({"##..", "...."});

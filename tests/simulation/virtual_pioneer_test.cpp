@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/pioneer/config_packet.hpp"
 #include "drivers/pioneer/extra_packets.hpp"
 
 namespace deltamap::simulation::devices {

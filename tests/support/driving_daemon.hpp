@@ -90,6 +90,7 @@ class DrivingDaemon {
     navigation::WanderParams wander;
     std::filesystem::path kept_file;
     std::uint64_t seed = 1;
+    std::function<DriveCommand(const Scan&)> pilot{};  ///< in place of wandering
   };
 
   DrivingDaemon(Devices& devices, Params params) : devices_{devices}, params_{std::move(params)} {
@@ -123,6 +124,7 @@ class DrivingDaemon {
     return process_ && process_->robot.is_open() && process_->robot.session().is_connected();
   }
   [[nodiscard]] Timestamp last_odometry() const { return last_odometry_; }
+  [[nodiscard]] const navigation::AllowedMotion& last_allowed() const { return last_allowed_; }
   [[nodiscard]] const std::optional<Scan>& last_scan() const { return last_scan_; }
   [[nodiscard]] const std::vector<std::string>& log() const { return log_; }
 
@@ -204,7 +206,7 @@ class DrivingDaemon {
       tracked.scan = scan;
       tracked.odom_from_robot = process_->odometry.odom_from_robot;
       tracked.odometry_epoch = process_->odometry.epoch;
-      const DriveCommand wish = process_->pilot.step(tracked);
+      const DriveCommand wish = params_.pilot ? params_.pilot(scan) : process_->pilot.step(tracked);
       if (process_->robot.session().permission().holds()) process_->safety.command(wish, now);
     }
   }
@@ -216,7 +218,7 @@ class DrivingDaemon {
     const auto limits = robot.stopping_limits();
     process_->safety.set_stopping_behaviour(
         {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
-    const navigation::AllowedMotion motion = process_->safety.allowed(now);
+    const navigation::AllowedMotion motion = last_allowed_ = process_->safety.allowed(now);
     process_->robot.obey(motion.brake_hard ? robot.emergency_stop(now)
                                            : robot.drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now),
                          now);
@@ -229,6 +231,7 @@ class DrivingDaemon {
   bool adapter_is_out_ = false;
   Timestamp last_odometry_{};
   std::optional<Scan> last_scan_;
+  navigation::AllowedMotion last_allowed_;
   std::vector<std::string> log_;
 };
 

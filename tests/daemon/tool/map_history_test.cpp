@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
 #include "mapping/map_store.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -102,6 +104,22 @@ TEST_F(MapHistory, TakesARevisionBack) {
   const ToolRun difference = history({file, "diff", "1", "2", "--cells", "--json"});
   EXPECT_EQ(nlohmann::json::parse(difference.output)["changes"],
             (nlohmann::json{{2, 3, "occupied", "unknown"}, {4, 3, "free", "unknown"}}));
+}
+
+TEST_F(MapHistory, OfAStoreInUseIsReadAndNotWritten) {
+  const auto lock = lock_of_file(file);
+  mapping::MapStore store{file, first};  // the daemon
+  for (const std::string what : {"rollback", "undo"}) {
+    const ToolRun run = history({file, what, what == "undo" ? "1" : "0"});
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.errors.find(file + ": is in use by "), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << run.errors;
+  }
+  EXPECT_EQ(history({file, "list"}).exit_code, 0);
+  EXPECT_EQ(history({file, "diff", "0", "1"}).exit_code, 0);
+  EXPECT_EQ(history({file, "export", "1", (folder.path() / "one.yaml").string()}).exit_code, 0);
+  store.append_refusal(timestamp_from_ns(7), {3, 0.2, "implausible"});  // it goes on storing
+  EXPECT_EQ(store.history().size(), 4u);
 }
 
 TEST_F(MapHistory, TellsThePoseCovarianceOfEachRevision) {

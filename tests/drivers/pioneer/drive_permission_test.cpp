@@ -235,6 +235,23 @@ TEST(DrivePermission, MotorsSwitchedOffWhileTheLinkWasSilentOrTheDaemonDeadStayO
   EXPECT_FALSE(dead.robot.motors_on);
 }
 
+TEST(DrivePermission, MotorsSwitchedOffBeforeAnySipHasShownOurEnableStayOff) {
+  Rig rig{true, DriveSwitch::kOffByOperator};
+  rig.robot.is_mute = true;
+  rig.say(true);
+  rig.run(0.1);
+  ASSERT_TRUE(rig.robot.motors_on);
+  rig.line.carry_out(rig.session.on_bytes(encoded_sip(rig.robot.sip), rig.line.now));  // from before the ENABLE
+  rig.press_motors();
+  rig.robot.is_deaf = true;
+  rig.run(3.0);
+  rig.robot.is_mute = rig.robot.is_deaf = false;
+  rig.run(5.0);
+  EXPECT_TRUE(rig.session.is_connected());
+  EXPECT_FALSE(rig.robot.motors_on);
+  EXPECT_EQ(rig.session.permission().drive_switch(), DriveSwitch::kOffAtRobot);
+}
+
 TEST(DrivePermission, AnEnableThatWasStillOnItsWayIsTakenBack) {
   Rig rig{true, DriveSwitch::kOffAtRobot};
   rig.say(true);

@@ -24,6 +24,13 @@ TEST(Reconnect, TellsAReasonOnceAndANewReasonAgain) {
   EXPECT_TRUE(reconnect.failed("/dev/ttyUSB0 is busy", kNow).log);
 }
 
+TEST(Reconnect, PausesShortlyAgainOnceThePortHasOpened) {
+  Reconnect reconnect{{.first_pause_s = 0.5, .growth = 2.0, .longest_pause_s = 8.0}};
+  for (int i = 0; i < 5; ++i) (void)reconnect.failed("missing", kNow);
+  reconnect.opened();
+  EXPECT_EQ(reconnect.failed("does not answer", kNow).try_again_at, kNow + duration_from_seconds(0.5));
+}
+
 TEST(Reconnect, StartsAfreshOnceTheDeviceWorks) {
   Reconnect reconnect{{.first_pause_s = 0.5}};
   EXPECT_FALSE(reconnect.connected());

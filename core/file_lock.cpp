@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/file_lock.hpp"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <system_error>
+#include <utility>
+
+namespace deltamap {
+namespace {
+
+std::string text_in(int descriptor) {
+  std::array<char, 128> text{};
+  const ssize_t size = ::pread(descriptor, text.data(), text.size(), 0);
+  const std::string all{text.data(), static_cast<std::size_t>(size > 0 ? size : 0)};
+  return all.substr(0, all.find('\n'));
+}
+
+/// "deltamapd (pid 123)".
+std::string own_name() {
+  return std::string(program_invocation_short_name) + " (pid " + std::to_string(::getpid()) + ")";
+}
+
+/// The name still leads to the file that was locked: its holder removes it in the end.
+bool is_current(int descriptor, const std::filesystem::path& file) {
+  struct stat locked {};
+  struct stat named {};
+  return ::fstat(descriptor, &locked) == 0 && ::stat(file.c_str(), &named) == 0 && locked.st_ino == named.st_ino &&
+         locked.st_dev == named.st_dev;
+}
+
+[[noreturn]] void fail(const std::filesystem::path& file) {
+  throw std::system_error(errno, std::generic_category(), file.string() + ": cannot be locked");
+}
+
+std::optional<FileLock> locked(const std::filesystem::path& lock_file, const std::string& what) {
+  try {
+    return FileLock{lock_file, what};
+  } catch (const std::system_error& error) {
+    const int reason = error.code().value();
+    if (reason == ENOSPC || reason == EDQUOT || reason == EROFS) return std::nullopt;
+    throw;
+  }
+}
+
+}  // namespace
+
+FileLock::FileLock(std::filesystem::path lock_file, const std::string& what) : file_{std::move(lock_file)} {
+  for (;;) {
+    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (descriptor < 0) fail(file_);
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+      const int reason = errno;
+      const std::string holder = text_in(descriptor);
+      ::close(descriptor);
+      errno = reason;
+      if (reason != EWOULDBLOCK) fail(file_);
+      throw FileInUse(what + ": is in use by " + (holder.empty() ? "another program" : holder));
+    }
+    if (is_current(descriptor, file_)) {
+      descriptor_ = descriptor;
+      break;
+    }
+    ::close(descriptor);
+  }
+  // A full disk has no room for the name: the lock holds without it.
+  const std::string name = own_name() + "\n";
+  if (::ftruncate(descriptor_, 0) == 0) (void)!::pwrite(descriptor_, name.data(), name.size(), 0);
+}
+
+FileLock::~FileLock() {
+  if (descriptor_ < 0) return;
+  ::unlink(file_.c_str());  // while it is held: nobody else removes it
+  ::close(descriptor_);
+}
+
+FileLock::FileLock(FileLock&& other) noexcept
+    : file_{std::move(other.file_)}, descriptor_{std::exchange(other.descriptor_, -1)} {}
+
+FileLock& FileLock::operator=(FileLock&& other) noexcept {
+  std::swap(file_, other.file_);
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+std::optional<FileLock> lock_of_file(const std::filesystem::path& file) {
+  return locked(file.string() + ".lock", file.string());
+}
+
+std::optional<FileLock> lock_of_folder(const std::filesystem::path& folder) {
+  return locked(folder / ".lock", folder.string());
+}
+
+}  // namespace deltamap

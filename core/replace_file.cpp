@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/replace_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+namespace deltamap {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, int reason) {
+  throw std::runtime_error(file.string() + ": cannot be written: " + std::generic_category().message(reason));
+}
+
+/// 0, or why not. A file system that knows no syncing (EINVAL) has done what it can.
+int synced(int descriptor) {
+  if (descriptor < 0) return errno;
+  const int reason = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
+  return ::close(descriptor) == 0 || reason != 0 ? reason : errno;
+}
+
+/// The content and nothing else; 0, or why not.
+int written(const std::filesystem::path& file, const std::string& content) {
+  const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (out < 0) return errno;
+  std::size_t done = 0;
+  while (done < content.size()) {
+    const ssize_t n = ::write(out, content.data() + done, content.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      const int reason = n < 0 ? errno : ENOSPC;
+      ::close(out);
+      return reason;
+    }
+    done += static_cast<std::size_t>(n);
+  }
+  return ::close(out) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+void replace_file(const std::filesystem::path& file, const std::string& content) {
+  const std::filesystem::path draft = file.string() + ".part";
+  if (const int reason = written(draft, content); reason != 0) {
+    ::unlink(draft.c_str());
+    fail(file, reason);
+  }
+  try {
+    move_into_place(draft, file);
+  } catch (const std::runtime_error&) {
+    ::unlink(draft.c_str());
+    throw;
+  }
+}
+
+void move_into_place(const std::filesystem::path& draft, const std::filesystem::path& file) {
+  if (const int reason = synced(::open(draft.c_str(), O_RDONLY | O_CLOEXEC)); reason != 0) fail(file, reason);
+  if (::rename(draft.c_str(), file.c_str()) != 0) fail(file, errno);
+  // The new name is an entry of the folder: without this a power cut may bring the old file back.
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (const int reason = synced(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)); reason != 0) {
+    fail(file, reason);
+  }
+}
+
+}  // namespace deltamap

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts a file in the place of another in one step that survives a power cut: the old one or the new one is there, never
+// half of one. All files that a run replaces go this way.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace deltamap {
+
+/// Replaces a file whole: the old one stays until the new one is complete on disk. Throws std::runtime_error that names
+/// the file.
+void replace_file(const std::filesystem::path& file, const std::string& content);
+
+/// Renames a finished file to its place: its content is on disk before its name, and the name before this returns.
+/// Throws std::runtime_error that names the place.
+void move_into_place(const std::filesystem::path& draft, const std::filesystem::path& file);
+
+}  // namespace deltamap

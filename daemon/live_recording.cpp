@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/live_recording.hpp"
+
+#include <system_error>
+#include <utility>
+
+#include "daemon/journal.hpp"
+#include "daemon/start_error.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using drivers::port::ByteRecord;
+using drivers::port::PortId;
+
+/// A service that has crashed is started again at once: the recording of the crash must outlive that.
+void keep_previous(const std::filesystem::path& recording) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(recording, error)) return;
+  std::filesystem::path previous = recording;
+  previous.replace_extension(".previous" + recording.extension().string());
+  std::filesystem::rename(recording, previous, error);
+  if (error) throw StartError(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
+}
+
+/// A wrong name is no full disk: waiting does not help.
+void require_place(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw StartError(file.string() + ": cannot be written: " + folder.string() + " is no folder");
+  }
+  if (std::filesystem::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
+}
+
+ByteRecord note_at(Timestamp stamp, std::string_view note, PortId port = PortId::kRobot) {
+  ByteRecord record;
+  record.port = port;
+  record.stamp = stamp;
+  record.note = note;
+  return record;
+}
+
+}  // namespace
+
+LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const RetryingOutput::Warn& warn)
+    : options_{std::move(options)},
+      telemetry_{telemetry},
+      output_{"recording", options_.file, telemetry.outputs, warn},
+      log_{warn},
+      bauds_{options_.bauds.robot, options_.bauds.laser},
+      last_stamp_{options_.began} {
+  require_place(options_.file);
+  lock_ = lock_of_file(options_.file);
+  keep_previous(options_.file);
+  attempt(options_.began, [this] { go_on(); });
+}
+
+void LiveRecording::go_on() {
+  if (!writer_) {
+    writer_.emplace(options_.file, drivers::port::FirstBauds{bauds_[0], bauds_[1]});
+    for (const std::string& note : options_.first_notes) writer_->write(note_at(last_stamp_, note));
+    options_.first_notes.clear();
+  }
+  if (!has_gap_) return;
+  writer_->write(note_at(last_stamp_, kGapNote));
+  for (const PortId port : {PortId::kRobot, PortId::kLaser}) {
+    writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds_[static_cast<std::size_t>(port)]), port));
+  }
+  writer_->flush();
+  has_gap_ = false;
+}
+
+void LiveRecording::attempt(Timestamp now, const std::function<void()>& write) {
+  // What was to be written is gone where it failed, and so may be what waited for the disk.
+  if (!output_.attempt(now, write)) has_gap_ = true;
+  telemetry_.records.set(output_.works());
+  if (writer_) telemetry_.recorded_bytes.set(writer_->size_bytes());
+}
+
+void LiveRecording::remember_baud(const ByteRecord& record) {
+  const auto baud = drivers::port::baud_of_note(record.note);
+  if (baud) bauds_[static_cast<std::size_t>(record.port)] = *baud;
+}
+
+void LiveRecording::write(const ByteRecord& record, Timestamp now) {
+  if (ended_) return;
+  last_stamp_ = record.stamp;
+  attempt(now, [&] {
+    go_on();
+    writer_->write(record);
+  });
+  remember_baud(record);
+  if (!output_.works()) return output_.count_lost();
+  if (static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
+  const std::string why = "it has reached recording.max_gigabytes";
+  log_("the recording ends: " + why);
+  ended_ = true;
+  output_.end(now, why);
+  writer_.reset();
+  telemetry_.records.set(false);
+}
+
+void LiveRecording::flush(Timestamp now) {
+  if (ended_) return;
+  attempt(now, [this] {
+    go_on();
+    writer_->flush();
+  });
+}
+
+void LiveRecording::close(Timestamp now) {
+  if (ended_) return;
+  output_.hurry();
+  attempt(now, [this] {
+    go_on();
+    writer_->close();
+  });
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recording of the running daemon. Where the disk is full it pauses, and goes on behind the last whole block when
+// there is room again, with a note of the gap: what was sent in the meantime is lost, and a replay then knows that it
+// cannot reproduce the run.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/file_lock.hpp"
+#include "daemon/retrying_output.hpp"
+#include "daemon/telemetry.hpp"
+#include "drivers/port/byte_log.hpp"
+
+namespace deltamap::daemon {
+
+class LiveRecording {
+ public:
+  struct Options {
+    std::filesystem::path file;  ///< an older file is kept as NAME.previous.pcapng
+    drivers::port::FirstBauds bauds;
+    std::vector<std::string> first_notes;  ///< what the run begins from
+    Timestamp began;
+    double max_gigabytes = 0.0;
+  };
+  /// Throws FileInUse where another daemon records there, StartError where no file can be.
+  LiveRecording(Options options, Telemetry& telemetry, const RetryingOutput::Warn& warn);
+
+  void write(const drivers::port::ByteRecord& record, Timestamp now);
+  /// Records never came here: the channel was full.
+  void note_loss() { has_gap_ = true; }
+  void flush(Timestamp now);
+  /// Flushes, syncs to the disk and closes.
+  void close(Timestamp now);
+
+ private:
+  /// Throws std::runtime_error where it cannot.
+  void go_on();
+  void attempt(Timestamp now, const std::function<void()>& write);
+  void remember_baud(const drivers::port::ByteRecord& record);
+
+  Options options_;
+  Telemetry& telemetry_;
+  RetryingOutput output_;
+  std::function<void(const std::string&)> log_;
+  std::optional<FileLock> lock_;
+  std::optional<drivers::port::ByteLogWriter> writer_;
+  std::array<unsigned, 2> bauds_;  // in force, by PortId
+  Timestamp last_stamp_;
+  bool has_gap_ = false;
+  bool ended_ = false;
+};
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/map_outputs.hpp"
+
+#include <utility>
+
+#include "core/grid_file.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+/// A history that begins with this run.
+StoreToKeep begun_history(const std::filesystem::path& file, const StartMap& start) {
+  std::error_code ignored;
+  for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part, ignored);
+  return {.open =
+              [file, first = start.map] {
+                return mapping::MapStore{file, *first};
+              },
+          .numbers_before = start.revision};
+}
+
+}  // namespace
+
+MapOutputs::MapOutputs(Options options, OutputBoard& board, const RetryingOutput::Warn& warn, Timestamp now) {
+  if (options.out) {
+    const auto changes = *options.out / "changes.jsonl";
+    changes_.emplace(changes, RetryingOutput{"changes", changes, board, warn});
+    changes_->flush(now);
+    const auto map = *options.out / "map.yaml";
+    map_.emplace(MapFile{map, {"map", map, board, warn}, options.start.map});
+    map_->retry(now);
+    const auto history = *options.out / "map_store.sqlite";
+    std::error_code ignored;
+    // Nothing where the settings keep theirs in the same file.
+    if (options.store_file.empty() || !std::filesystem::equivalent(history, options.store_file, ignored)) {
+      history_.emplace(begun_history(history, options.start), options.method,
+                       RetryingOutput{"history", history, board, warn}, now);
+    }
+  }
+  if (options.store_file.empty()) return;
+  store_.emplace(std::move(options.store), options.method, RetryingOutput{"store", options.store_file, board, warn},
+                 now);
+}
+
+void MapOutputs::save(const MapStep::Result& result, Timestamp now) {
+  if (changes_) {
+    changes_->write(json_line(result.note), now);
+    changes_->flush(now);
+  }
+  if (history_) history_->take(result, now);
+  if (map_ && result.revision) {
+    map_->waiting = result.revision->map;
+    map_->retry(now);
+  }
+  if (store_) store_->take(result, now);
+}
+
+void MapOutputs::retry(Timestamp now) {
+  if (changes_) changes_->flush(now);
+  if (map_) map_->retry(now);
+  if (history_) history_->retry(now);
+  if (store_) store_->retry(now);
+}
+
+void MapOutputs::close(Timestamp now) {
+  if (changes_) changes_->close(now);
+  if (map_) {
+    map_->output.hurry();
+    map_->retry(now);
+  }
+  if (history_) history_->close(now);
+  if (store_) store_->close(now);
+}
+
+void MapOutputs::MapFile::retry(Timestamp now) {
+  if (waiting == nullptr) return;
+  if (output.attempt(now, [this] { write_grid(*waiting, yaml); })) waiting.reset();
+}
+
+}  // namespace deltamap::daemon

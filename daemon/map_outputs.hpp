@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the newest map goes besides the localizer: changes.jsonl, map.yaml and the history of --out, and the store of
+// the settings. Each may pause and goes on by itself. Map thread.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/line_file.hpp"
+#include "daemon/map_step.hpp"
+#include "daemon/output_board.hpp"
+#include "daemon/revision_keeper.hpp"
+
+namespace deltamap::daemon {
+
+class MapOutputs {
+ public:
+  struct Options {
+    std::optional<std::filesystem::path> out{};  ///< an existing folder; nothing: no files
+    std::filesystem::path store_file{};          ///< of the settings; empty: none
+    StoreToKeep store{};
+    StartMap start;
+    std::string_view method;
+  };
+  /// Begins the files of --out anew.
+  MapOutputs(Options options, OutputBoard& board, const RetryingOutput::Warn& warn, Timestamp now);
+
+  void save(const MapStep::Result& result, Timestamp now);
+  /// Once a second: what could not be written is tried again.
+  void retry(Timestamp now);
+  /// The last attempt.
+  void close(Timestamp now);
+
+ private:
+  struct MapFile {
+    std::filesystem::path yaml;
+    RetryingOutput output;
+    std::shared_ptr<const OccupancyGrid> waiting;  // null: what is on disk is the newest
+    void retry(Timestamp now);
+  };
+
+  std::optional<LiveLines> changes_;
+  std::optional<MapFile> map_;
+  std::optional<RevisionKeeper> history_;  // of --out: begins with this run
+  std::optional<RevisionKeeper> store_;    // of the settings
+};
+
+}  // namespace deltamap::daemon

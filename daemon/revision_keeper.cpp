@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/revision_keeper.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace deltamap::daemon {
+namespace {
+
+mapping::RevisionNote note_of(const MapStep::Result& result, std::string_view method) {
+  const ChangeNote& note = result.note;
+  const std::string cause = result.revision && note.reason.empty() ? std::string(method) : note.reason;
+  return {note.phase, note.acceptance, cause, note.covariance};
+}
+
+}  // namespace
+
+void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_view method,
+          std::uint32_t numbers_before) {
+  if (!result.revision) return store.append_refusal(result.note.time, note_of(result, method));
+  MapRevision revision = *result.revision;
+  revision.number -= numbers_before;
+  store.append(revision, note_of(result, method));
+}
+
+RevisionKeeper::RevisionKeeper(StoreToKeep store, std::string_view method, RetryingOutput output, Timestamp now)
+    : to_{std::move(store)}, method_{method}, output_{std::move(output)} {
+  if (!to_.store && to_.why_not.empty()) retry(now);
+  if (!to_.why_not.empty()) output_.fail(now, to_.why_not);
+}
+
+void RevisionKeeper::take(const MapStep::Result& result, Timestamp now) {
+  const bool all_stored = to_.store && !missed_revision_ && !missed_refusal_;
+  if (all_stored && output_.attempt(now, [&] { keep(*to_.store, result, method_, to_.numbers_before); })) return;
+  miss(result);
+  retry(now);
+}
+
+void RevisionKeeper::miss(const MapStep::Result& result) {
+  if (!result.revision) {
+    if (missed_refusal_) output_.count_lost();
+    missed_refusal_ = result;
+    return;
+  }
+  const std::uint32_t first = missed_revision_ ? missed_revision_->first : result.revision->number;
+  missed_revision_ = Missed{first, result};
+  missed_revision_->newest.revision->changes.clear();
+  missed_revision_->newest.revision->field_patch = {};
+}
+
+void RevisionKeeper::retry(Timestamp now) {
+  if (to_.store && !missed_revision_ && !missed_refusal_) return;
+  (void)output_.attempt(now, [this] { store_missed(); });
+}
+
+void RevisionKeeper::close(Timestamp now) {
+  output_.hurry();
+  retry(now);
+}
+
+void RevisionKeeper::store_missed() {
+  if (!to_.store) to_.store.emplace(to_.open());
+  mapping::MapStore& store = *to_.store;
+  if (missed_revision_) {
+    const MapRevision& newest = *missed_revision_->newest.revision;
+    mapping::RevisionNote note = note_of(missed_revision_->newest, method_);
+    if (missed_revision_->first < newest.number) {
+      note.cause += " (" + std::to_string(missed_revision_->first - to_.numbers_before) + " to " +
+                    std::to_string(newest.number - to_.numbers_before) + " in one)";
+    }
+    // A store that could be opened only now may hold more than this run knew of.
+    const std::uint32_t number = std::max(newest.number - to_.numbers_before, store.newest() + 1);
+    store.append_whole(number, newest.time, *newest.map, note);
+    missed_revision_.reset();
+  }
+  if (missed_refusal_) {
+    keep(store, *missed_refusal_, method_);
+    missed_refusal_.reset();
+  }
+}
+
+}  // namespace deltamap::daemon

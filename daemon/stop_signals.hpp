@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The signals that a daemon which may be driving a robot does not die of.
+#pragma once
+
+#include <array>
+#include <csignal>
+
+namespace deltamap::daemon {
+
+// Everything that would end the program without a word to the robot. A terminal that goes away (SIGHUP), or a supply
+// that fails (SIGPWR), is a reason to stop; there is nothing to be reloaded.
+inline constexpr std::array kStopSignals{SIGTERM, SIGINT,  SIGHUP,    SIGQUIT, SIGUSR1,   SIGUSR2, SIGPWR,
+                                         SIGALRM, SIGPOLL, SIGVTALRM, SIGPROF, SIGSTKFLT, SIGXCPU};
+// A write that fails says so itself; a robot that drives is not put to sleep from the keyboard.
+inline constexpr std::array kIgnoredSignals{SIGPIPE, SIGXFSZ, SIGTSTP, SIGTTIN, SIGTTOU};
+
+[[nodiscard]] inline sigset_t stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : kStopSignals) sigaddset(&signals, signal);
+  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) sigaddset(&signals, signal);
+  return signals;
+}
+
+/// Before any thread: those that stop are blocked, for whoever waits for them; the others do nothing.
+inline void take_signals() {
+  const sigset_t signals = stop_signals();
+  (void)pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  for (const int signal : kIgnoredSignals) (void)std::signal(signal, SIG_IGN);
+}
+
+}  // namespace deltamap::daemon

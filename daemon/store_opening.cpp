@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/store_opening.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "daemon/start_error.hpp"
+#include "mapping/map_salvage.hpp"
+#include "mapping/store_error.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+using mapping::MapStore;
+using mapping::SalvagedMap;
+using mapping::StoreError;
+
+void require_place(const fs::path& file) {
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!fs::is_directory(folder, error)) {
+    throw StartError(file.string() + ": cannot be written: " + folder.string() + " is no folder");
+  }
+  if (fs::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
+  if (fs::exists(file, error) && ::access(file.c_str(), R_OK) != 0) {
+    throw StartError(file.string() + ": cannot be read: " + std::generic_category().message(errno));
+  }
+}
+
+std::optional<FileLock> lock_of(const fs::path& file) {
+  try {
+    return lock_of_file(file);
+  } catch (const std::system_error&) {  // nothing can be written there: nothing needs to be locked
+    return std::nullopt;
+  }
+}
+
+/// The database with its log, under the first free name NAME.set-aside-1, -2 …; nothing where it cannot be renamed.
+std::optional<fs::path> set_aside(const fs::path& file) {
+  std::error_code error;
+  fs::path aside;
+  int number = 1;
+  do {
+    aside = file.string() + ".set-aside-" + std::to_string(number++);
+  } while (fs::exists(fs::symlink_status(aside, error)));
+  fs::rename(file, aside, error);
+  if (error) return std::nullopt;
+  for (const char* part : {"-wal", "-shm"}) fs::rename(file.string() + part, aside.string() + part, error);
+  return aside;
+}
+
+StartMap start_on(const OccupancyGrid& first, const std::optional<SalvagedMap>& saved) {
+  if (!saved) return {std::make_shared<const OccupancyGrid>(first), 0};
+  return {std::make_shared<const OccupancyGrid>(saved->grid), saved->number};
+}
+
+/// Opens the store, and brings it to where the old one ended.
+MapStore brought_forward(const fs::path& file, const OccupancyGrid& first, const std::optional<SalvagedMap>& saved) {
+  MapStore store{file, first};
+  if (saved && store.newest() < saved->number) {
+    store.append_whole(saved->number, saved->time, saved->grid, {.cause = "saved from a store that was set aside"});
+  }
+  return store;
+}
+
+void take(OpenedStore& opened, MapStore store, const OccupancyGrid& first) {
+  if (store.dropped() > 0) {
+    opened.warnings.push_back("map store: damaged revisions dropped=" + std::to_string(store.dropped()));
+  }
+  const std::uint32_t newest = store.newest();
+  opened.start = {std::make_shared<const OccupancyGrid>(newest == 0 ? first : store.grid(newest)), newest};
+  opened.store.store = std::move(store);
+}
+
+/// The store cannot be used as it is.
+void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGrid& first, const StoreError& reason) {
+  const auto saved = mapping::newest_whole_map(file, first);
+  const auto aside = reason.kind == StoreError::Kind::kOther ? std::nullopt : set_aside(file);
+  opened.start = start_on(first, saved);
+  const std::string from = saved ? "goes on with its revision=" + std::to_string(saved->number)
+                                 : std::string("nothing in it can be restored for this map: begins with the first map");
+  if (aside) {
+    opened.warnings.push_back("map store set aside as " + aside->string() + ": " + reason.what() + "; " + from);
+    try {
+      opened.store.store = brought_forward(file, first, saved);
+      return;
+    } catch (const StoreError& error) {
+      opened.store.why_not = error.what();
+    }
+  } else {
+    opened.warnings.push_back(std::string("map store cannot be written: ") + reason.what() + "; " + from);
+    opened.store.why_not = reason.what();
+  }
+  opened.store.open = [file, saved, first = std::make_shared<const OccupancyGrid>(first)] {
+    return brought_forward(file, *first, saved);
+  };
+}
+
+}  // namespace
+
+OpenedStore open_store(const fs::path& file, const OccupancyGrid& first) {
+  require_place(file);
+  OpenedStore opened;
+  opened.lock = lock_of(file);
+  try {
+    take(opened, MapStore{file, first}, first);
+  } catch (const StoreError& error) {
+    go_on_without(opened, file, first, error);
+  }
+  return opened;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/file_lock.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap {
+namespace {
+
+std::string refusal(const std::filesystem::path& file) {
+  try {
+    (void)lock_of_file(file);
+  } catch (const FileInUse& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FileLock, NamesTheProgramThatHoldsIt) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "store.sqlite";
+  {
+    const auto lock = lock_of_file(file);
+    EXPECT_EQ(refusal(file), file.string() + ": is in use by " + program_invocation_short_name + " (pid " +
+                                 std::to_string(getpid()) + ")");
+  }
+  EXPECT_EQ(refusal(file), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "a lock that was let go leaves nothing behind";
+}
+
+TEST(FileLock, OfAProgramThatWasKilledIsFree) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "store.sqlite";
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto lock = lock_of_file(file);
+    (void)!write(ready[1], "x", 1);
+    pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  EXPECT_NE(refusal(file).find("(pid " + std::to_string(child) + ")"), std::string::npos) << refusal(file);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(std::filesystem::exists(file.string() + ".lock")) << "what a kill leaves behind";
+  EXPECT_EQ(refusal(file), "");
+}
+
+TEST(FileLock, OfAFolderIsOneForAllInIt) {
+  const test::TemporaryFolder folder;
+  const auto lock = lock_of_folder(folder.path());
+  EXPECT_THROW((void)lock_of_folder(folder.path() / "."), FileInUse);
+}
+
+TEST(FileLock, WhereThereIsNoFolderIsAnError) {
+  EXPECT_THROW((void)lock_of_file("/nowhere/store.sqlite"), std::system_error);
+}
+
+}  // namespace
+}  // namespace deltamap

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A disk that is full for half a minute of a drive: saving pauses, localization and mapping go on, and afterwards store,
+# map, recording and lines are whole. Needs root for a file system of its own. usage: full_disk.sh FOLDER-OF-PROGRAMS
+set -euo pipefail
+bin=$(realpath "$1")
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+out=$(mktemp -d)
+disk=$out/disk
+world=config/scenarios/room.yaml
+daemon= simulator=
+end() {
+  for process in $daemon $simulator; do kill -9 "$process" 2>/dev/null || true; done
+  wait 2>/dev/null || true
+  umount "$disk" 2>/dev/null || true
+  rm -rf "$out"
+}
+trap end EXIT
+fail() { echo "full_disk: $1" >&2; cat "$out"/*.log >&2; exit 1; }
+mkdir "$disk"
+if ! mount -t tmpfs -o size=12m tmpfs "$disk" 2>/dev/null; then
+  echo "full_disk: SKIPPED: nothing can be mounted here (run it as root)" >&2
+  exit 77
+fi
+
+"$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
+"$bin/deltamap" sim --world "$world" --links "$out" --seed 1 --change-every 10 --truth "$out/truth.jsonl" 2>"$out/sim.log" &
+simulator=$!
+for _ in $(seq 100); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
+mkdir "$disk/run"
+"$bin/deltamapd" --config config/simulation.yaml --set robot.port="$out/robot" --set laser.port="$out/laser" \
+  --set map.file="$out/m0.yaml" --set map.store="$disk/store.sqlite" --set recording.file="$disk/bytes.pcapng" \
+  --set control.socket="$out/ctl.sock" --set localization.memory.pose_period_s=1 --set mapping.persistence_s=3 \
+  --set localization.memory.stability_period_s=5 --initial-pose 1,2,0 --out "$disk/run" 2>"$out/daemon.log" &
+daemon=$!
+number() { "$bin/deltamap" ctl --socket "$out/ctl.sock" status --json | grep -o "\"$1\":[0-9]*" | head -n 1 | cut -d: -f2; }
+# reached WHAT N SECONDS: a count of the status
+reached() {
+  for _ in $(seq "$3"); do
+    kill -0 "$daemon" 2>/dev/null || fail "the daemon has ended"
+    [[ $(number "$1" 2>/dev/null || echo 0) -ge $2 ]] && return
+    sleep 1
+  done
+  fail "$1 does not reach $2"
+}
+reached localized 1 60
+"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null
+reached newest_revision 1 100
+
+dd if=/dev/zero of="$disk/filler" bs=4k 2>/dev/null || true
+while printf x >>"$disk/filler" 2>/dev/null; do :; done 2>/dev/null
+full_at=$(number newest_revision)
+localized=$(number localized)
+reached newest_revision $((full_at + 2)) 150
+"$bin/deltamap" ctl --socket "$out/ctl.sock" status >"$out/status.log"
+for name in trajectory localization map store history recording pose; do  # a line of changes may fit
+  grep -q " $name not since .* UTC: .*\(No space left\|full\)" "$out/status.log" || fail "$name is not said to pause"
+done
+reached localized $((localized + 100)) 60
+[[ $(grep -c 'warning saving pauses: store' "$out/daemon.log") == 1 ]] || fail "not one warning of the store"
+
+rm "$disk/filler"
+sleep 12
+"$bin/deltamap" ctl --socket "$out/ctl.sock" status >"$out/status.log"
+grep -q ' not since ' "$out/status.log" && fail "saving does not go on"
+kill "$daemon"
+wait "$daemon" || fail "exit code $?"
+daemon=
+
+newest=$("$bin/deltamap" map history "$disk/store.sqlite" list --json | grep '"refused":false' | tail -n 1 |
+  grep -o '"number":[0-9]*' | cut -d: -f2)
+[[ $newest -ge $((full_at + 2)) ]] || fail "the store holds revision $newest of more than $full_at"
+"$bin/deltamap" map history "$disk/store.sqlite" list | grep -q ' in one)' || fail "nothing was stored whole"
+"$bin/deltamap" map history "$disk/store.sqlite" export "$newest" "$out/newest.yaml"
+cmp "$out/newest.pgm" "$disk/run/map.pgm" || fail "the store's newest map is not the map"
+awk 'NF != 8 { exit 1 }' "$disk/run/trajectory.tum" || fail "a line of the trajectory is cut"
+awk -F, 'NR == 1 { n = NF } NF != n { exit 1 }' "$disk/run/localization.csv" || fail "a line of localization.csv is cut"
+scans=$(grep -m 1 -o '^ *"scans": [0-9]*' "$disk/run/report.json" | grep -o '[0-9]*$')
+[[ $(wc -l <"$disk/run/trajectory.tum") == "$scans" ]] || fail "lines were lost although there was room to wait"
+"$bin/deltamap" replay "$disk/bytes.pcapng" --map "$out/m0.yaml" --config config/simulation.yaml --initial-pose 1,2,0 \
+  --out "$out/again" >"$out/replay.log" 2>&1 || fail "the recording cannot be replayed"
+grep -q 'not obeyed: records are missing' "$out/again/report.json" || fail "the replay claims to reproduce"
+echo "full_disk: full from revision $full_at on; afterwards the store holds revision $newest, which is the map"

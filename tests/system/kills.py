@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Real daemon, simulated robot on pseudo-terminals, real time: kills it in mid-drive, or pulls the robot's cable, and
+measures how far the robot goes on unspoken to and how soon it is back. What an operator has switched off must not move
+again. usage: kills.py FOLDER-OF-PROGRAMS [KILLS] [PULLS] [SEED]"""
+import json, math, os, pathlib, pty, random, select, signal, subprocess, sys, tempfile, termios, threading, time, tty
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LATE_S = 3.0
+SOON = 0.95          # share of the trials that are not late
+STANDS_S = 4.5       # watchdog 2 s, then braked
+FARTHEST_M = 1.3     # the pilot's 0.5 m/s for 2 s and two SIP cycles, then braked at 1 m/s^2
+
+
+class Cable(threading.Thread):
+    """Between the simulator's terminal and one of its own; speeds follow. Pulled out, its own end hangs up."""
+
+    def __init__(self, device, link):
+        super().__init__(daemon=True)
+        self.device = os.open(device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        tty.setraw(self.device)
+        self.link, self.host, self.is_in, self.lock = pathlib.Path(link), None, False, threading.Lock()
+        self.plug()
+        self.start()
+
+    def plug(self):
+        with self.lock:
+            self.host, slave = pty.openpty()
+            tty.setraw(slave)
+            self.link.symlink_to(os.ttyname(slave))
+            os.close(slave)  # else a dead daemon's lock would outlive it
+            self.is_in = True
+
+    def pull(self):
+        with self.lock:
+            self.is_in = False
+            self.link.unlink()
+            os.close(self.host)
+
+    def is_open_elsewhere(self):
+        state = select.poll()
+        state.register(self.host, select.POLLOUT)
+        return not any(event & select.POLLHUP for _, event in state.poll(0))
+
+    def run(self):
+        speed = None
+        while True:
+            select.select([self.device], [], [], 0.002)
+            with self.lock:
+                try:
+                    is_open = self.is_in and self.is_open_elsewhere()
+                    if is_open:
+                        now = termios.tcgetattr(self.host)[4]
+                        if now != speed:
+                            settings = termios.tcgetattr(self.device)
+                            settings[4] = settings[5] = speed = now
+                            termios.tcsetattr(self.device, termios.TCSANOW, settings)
+                        if select.select([self.host], [], [], 0)[0]:
+                            os.write(self.device, os.read(self.host, 4096))
+                    if select.select([self.device], [], [], 0)[0]:
+                        data = os.read(self.device, 4096)
+                        if is_open and data:
+                            os.write(self.host, data)
+                except OSError:
+                    pass
+
+
+class Trial:
+    def __init__(self, bin, out, seed):
+        self.bin, self.out, self.random = pathlib.Path(bin).resolve(), pathlib.Path(out), random.Random(seed)
+        world = ["--world", str(ROOT / "config/scenarios/room.yaml")]
+        subprocess.run([self.bin / "deltamap", "sim", *world, "--write-map", self.out / "m0.yaml"], check=True)
+        (self.out / "sim").mkdir()
+        self.sim = subprocess.Popen([self.bin / "deltamap", "sim", *world, "--links", self.out / "sim", "--truth",
+                                     self.out / "truth.jsonl", "--seed", str(seed)], stderr=open(self.out / "sim.log", "w"))
+        while not (self.out / "sim/laser").exists():
+            time.sleep(0.1)
+        self.cable = Cable(self.out / "sim/robot", self.out / "robot")
+        self.daemon = None
+
+    def start(self):
+        pose = "null" if self.daemon else "[1,2,0]"  # later it is where the run before has kept it
+        settings = {"localization.initial_pose": pose, "robot.port": self.out / "robot", "laser.port": self.out / "sim/laser", "map.file": self.out / "m0.yaml",
+                    "map.store": self.out / "store.sqlite", "control.socket": self.out / "ctl.sock"}
+        options = [part for key, value in settings.items() for part in ("--set", "%s=%s" % (key, value))]
+        self.daemon = subprocess.Popen([self.bin / "deltamapd", "--config", ROOT / "config/simulation.yaml",
+                                        *options], cwd=ROOT, stderr=open(self.out / "daemon.log", "a"))
+
+    def ask(self, *words):
+        done = subprocess.run([self.bin / "deltamap", "ctl", "--socket", self.out / "ctl.sock", "--json", *words],
+                              capture_output=True, text=True)
+        return json.loads(done.stdout) if done.stdout else {}
+
+    def time_until_back(self):
+        began = time.monotonic()
+        before = None
+        while time.monotonic() - began < 40.0:
+            status = self.ask("status")
+            count = status.get("odometry", 0)
+            if status.get("ports", {}).get("robot") == "up" and before is not None and count > before:
+                return time.monotonic() - began
+            before = count if status else None
+            time.sleep(0.03)
+        raise SystemExit("the robot did not come back: " + str(self.out))
+
+    def way_since(self, unix_s):
+        """Metres, and whether it still moves."""
+        poses = []
+        for line in open(self.out / "truth.jsonl"):
+            try:
+                row = json.loads(line)
+            except ValueError:
+                continue  # not whole yet
+            if "pose" in row and row["t_ns"] * 1e-9 >= unix_s - 0.1:
+                poses.append(row["pose"][:2])
+        steps = [math.dist(a, b) for a, b in zip(poses, poses[1:])]
+        return sum(steps), sum(steps[-4:]) > 0.004
+
+    def end(self):
+        for process in (self.daemon, self.sim):
+            if process and process.poll() is None:
+                process.send_signal(signal.SIGKILL)
+                process.wait()
+
+
+def main():
+    kills, pulls, seed = (int(value) for value in (sys.argv[2:] + ["3", "3", "1"][len(sys.argv) - 2:]))
+    faults, back_s, ways_m = [], {"crash": [], "cable": []}, []
+    with tempfile.TemporaryDirectory() as out:
+        trial = Trial(sys.argv[1], out, seed)
+        try:
+            trial.start()
+            trial.time_until_back()
+            trial.ask("drive", "wander")
+            for number in range(kills):
+                time.sleep(trial.random.uniform(2.0, 6.0))
+                was_switched_off = number % 3 == 2
+                if was_switched_off:
+                    trial.ask("drive", "off")
+                trial.daemon.send_signal(signal.SIGKILL)
+                killed = time.time()
+                trial.daemon.wait()
+                time.sleep(STANDS_S if number % 2 == 0 else trial.random.uniform(0.0, 2.0))
+                if number % 2 == 0:
+                    way_m, moves = trial.way_since(killed)
+                    ways_m.append(way_m)
+                    if moves or way_m > FARTHEST_M:
+                        faults.append("kill %d: %.2f m%s" % (number, way_m, ", and moves on" if moves else ""))
+                trial.start()
+                back_s["crash"].append(trial.time_until_back())
+                if was_switched_off:
+                    time.sleep(1.0 + STANDS_S)
+                    began = time.time()
+                    time.sleep(2.0)
+                    if trial.way_since(began)[0] > 0.01:
+                        faults.append("kill %d: an operator had switched it off, and it drives" % number)
+                    trial.ask("drive", "wander")
+            for _ in range(pulls):
+                time.sleep(trial.random.uniform(1.0, 4.0))
+                trial.cable.pull()
+                time.sleep(trial.random.uniform(0.5, 12.0))
+                trial.cable.plug()
+                back_s["cable"].append(trial.time_until_back())
+        finally:
+            trial.end()
+    for what, times in back_s.items():
+        late = sum(value > LATE_S for value in times)
+        if times:
+            print("%s: %d trials, back after %.2f s at the median, %.2f s at most, %d late" % (
+                what, len(times), sorted(times)[len(times) // 2], max(times), late))
+        if late > (1.0 - SOON) * len(times):
+            faults.append("%s: %d of %d late" % (what, late, len(times)))
+    if ways_m:
+        print("way after a kill: %.2f m at most of %d" % (max(ways_m), len(ways_m)))
+    for fault in faults:
+        print("kills: " + fault, file=sys.stderr)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

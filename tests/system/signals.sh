@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# No signal but SIGKILL ends the daemon without a word to the robot: each that would stops it in order, with report and
+# exit code 0; a terminal that goes away stops a robot that drives. usage: signals.sh FOLDER-OF-PROGRAMS
+set -euo pipefail
+bin=$(realpath "$1")
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+out=$(mktemp -d)
+daemon= simulator=
+end() {
+  for process in $daemon $simulator; do kill -9 "$process" 2>/dev/null || true; done
+  rm -rf "$out"
+}
+trap end EXIT
+fail() { echo "signals: $1" >&2; cat "$out"/*.log >&2; exit 1; }
+
+world=config/scenarios/room.yaml
+"$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
+
+# start PORTS: a daemon that answers
+start() {
+  rm -rf "$out/run"
+  "$bin/deltamapd" --config config/simulation.yaml --set robot.port="$1/robot" --set laser.port="$1/laser" \
+    --set map.file="$out/m0.yaml" --set map.store= --set recording.file= --set control.socket="$out/ctl.sock" \
+    --initial-pose 1,2,0 --out "$out/run" 2>"$out/daemon.log" &
+  daemon=$!
+  for _ in $(seq 100); do
+    "$bin/deltamap" ctl --socket "$out/ctl.sock" status >/dev/null 2>&1 && return
+    kill -0 "$daemon" 2>/dev/null || fail "the daemon has ended"
+    sleep 0.1
+  done
+  fail "the daemon does not answer"
+}
+# stopped SIGNAL: it has ended, and in order
+stopped() {
+  local code=0
+  wait "$daemon" || code=$?
+  daemon=
+  [[ $code == 0 ]] || fail "SIG$1: exit code $code"
+  [[ -s $out/run/report.json ]] || fail "SIG$1: no report"
+  grep -q 'stopped: ' "$out/daemon.log" || fail "SIG$1: no last line"
+}
+
+signals="HUP INT QUIT TERM USR1 USR2 ALRM VTALRM PROF IO PWR STKFLT XCPU RTMIN RTMAX"
+for signal in $signals; do
+  start "$out/none"
+  kill -s "$signal" "$daemon"
+  stopped "$signal"
+done
+
+start "$out/none"
+for signal in PIPE XFSZ TSTP TTIN TTOU; do kill -s "$signal" "$daemon"; done
+sleep 1.5
+"$bin/deltamap" ctl --socket "$out/ctl.sock" status >/dev/null || fail "a signal that is to be ignored was not"
+kill "$daemon"
+stopped TERM
+
+"$bin/deltamap" sim --world "$world" --links "$out" --seed 1 --truth "$out/truth.jsonl" 2>"$out/sim.log" &
+simulator=$!
+for _ in $(seq 100); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
+start "$out"
+"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null
+sleep 8
+[[ $("$bin/deltamap" ctl --socket "$out/ctl.sock" status --json) == *'"drive":"wander"'* ]] || fail "it does not drive"
+kill -s HUP "$daemon"
+stopped HUP
+sleep 0.5
+# The true pose and speed.
+where() { grep -o '"pose":.*' "$out/truth.jsonl" | tail -n 1; }
+before=$(where)
+sleep 1.5
+[[ -n $before && $(where) == "$before" ]] || fail "the robot drives on: $before, then $(where)"
+echo "signals: 15 stop the daemon in order, 5 do nothing; after SIGHUP the robot stands at $before"

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# How a start ends that cannot be: exit code 2 and one line where only a person can mend it, 1 where another daemon is at
+# work; a daemon that was killed is in nobody's way; a store that is no good does not keep the daemon from its work.
+# usage: start.sh FOLDER-OF-PROGRAMS
+set -euo pipefail
+bin=$(realpath "$1")
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+out=$(mktemp -d)
+first=
+end() {
+  [[ -z $first ]] || kill -9 "$first" 2>/dev/null || true
+  rm -rf "$out"
+}
+trap end EXIT
+fail() { echo "start: $1" >&2; cat "$out"/*.log >&2; exit 1; }
+
+"$bin/deltamap" sim --world config/scenarios/room.yaml --write-map "$out/m0.yaml"
+plain=(--config config/simulation.yaml --set robot.port="$out/none" --set laser.port="$out/none" --set map.file="$out/m0.yaml"
+  --set map.store= --set recording.file= --set control.socket=)
+# expect CODE WORDS OPTION...: it ends so, with one line that has the words
+expect() {
+  local code=0 wanted=$1 words=$2
+  shift 2
+  timeout -s KILL 20 "$bin/deltamapd" "${plain[@]}" "$@" 2>"$out/daemon.log" || code=$?
+  [[ $code == "$wanted" ]] || fail "exit code $code in place of $wanted: $*"
+  grep '^deltamapd: ' "$out/daemon.log" | grep -q -- "$words" || fail "no line with '$words': $*"
+}
+
+echo 'image: none.pgm' >"$out/bad.yaml"
+echo >"$out/file"
+expect 2 "map.file" --set map.file=
+expect 2 "none.yaml: No such file" --set map.file="$out/none.yaml"
+expect 2 "bad.yaml: key 'resolution' is missing" --set map.file="$out/bad.yaml"
+expect 2 "is no folder" --out "$out/file/run"
+expect 2 "is no folder" --set map.store="$out/file/store.sqlite"
+expect 2 "is a directory" --set map.store="$out"
+expect 2 "is no folder" --set recording.file="$out/file/bytes.pcapng"
+expect 2 "map.fiel" --set map.fiel=x
+
+mkdir "$out/run"
+"$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/first.log" &
+first=$!
+for _ in $(seq 100); do [[ -e $out/run/.lock && -e $out/bytes.pcapng ]] && break; sleep 0.1; done
+sleep 0.5
+holder="is in use by deltamapd (pid "
+size=$(stat -c %i "$out/bytes.pcapng")
+expect 1 "run: $holder" --out "$out/run"
+expect 1 "store.sqlite: $holder" --set map.store="$out/store.sqlite"
+expect 1 "bytes.pcapng: $holder" --set recording.file="$out/bytes.pcapng"
+[[ $(stat -c %i "$out/bytes.pcapng") == "$size" && ! -e $out/bytes.previous.pcapng ]] || fail "the recording was touched"
+"$bin/deltamap" map history "$out/store.sqlite" list >/dev/null || fail "a store in use cannot be read"
+code=0
+"$bin/deltamap" map history "$out/store.sqlite" rollback 0 2>"$out/tool.log" || code=$?
+[[ $code == 1 ]] && grep -q "$holder" "$out/tool.log" || fail "rollback of a store in use: exit code $code"
+
+kill -9 "$first"
+wait "$first" 2>/dev/null || true
+[[ -e $out/run/.lock ]] || fail "a killed daemon leaves its lock file behind: this test expects so"
+rm -f "$out"/store.sqlite-*  # its log holds all of it
+head -c 20000 /dev/urandom >"$out/store.sqlite"
+"$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/second.log" &
+first=$!
+for _ in $(seq 100); do grep -q 'robot' "$out/second.log" && break; sleep 0.1; done
+sleep 0.5
+kill "$first" || fail "the second daemon has ended"
+wait "$first" || fail "the second daemon did not end well"
+first=
+grep -q "warning map store set aside as $out/store.sqlite.set-aside-1: " "$out/second.log" || fail "no warning"
+[[ $(stat -c %s "$out/store.sqlite.set-aside-1") == 20000 ]] || fail "the damaged store was not kept"
+[[ ! -e $out/run/.lock && ! -e $out/store.sqlite.lock && ! -e $out/bytes.pcapng.lock ]] || fail "locks are left behind"
+echo "start: 8 mistakes end with exit code 2, 4 conflicts with 1"
