@@ -56,9 +56,9 @@ TEST(GridFile, ReadsForeignShadesAndComments) {
   const std::string pixels{'\x00', '\x64', '\x32'};
   folder.write("m.pgm", "P5\n# by another hand\n3 1\n100\n" + pixels);
   const OccupancyGrid grid = read_grid(folder.write("m.yaml", "image: m.pgm\n" + kKeys));
-  EXPECT_EQ(grid[Cell{0, 0}], CellState::kOccupied);
-  EXPECT_EQ(grid[Cell{1, 0}], CellState::kFree);
-  EXPECT_EQ(grid[Cell{2, 0}], CellState::kUnknown);
+  EXPECT_EQ((grid[Cell{0, 0}]), CellState::kOccupied);
+  EXPECT_EQ((grid[Cell{1, 0}]), CellState::kFree);
+  EXPECT_EQ((grid[Cell{2, 0}]), CellState::kUnknown);
   EXPECT_EQ(grid.geometry().origin, Point2(-1.5, 2.0));
 }
 
