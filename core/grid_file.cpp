@@ -17,6 +17,8 @@
 namespace deltamap {
 namespace {
 
+constexpr double kFinest_m = 0.001;  // sides of a cell
+constexpr double kCoarsest_m = 100.0;
 constexpr int kMaxSide = 32767;  // cells; 16-bit indices suffice everywhere
 
 struct MapKeys {
@@ -65,6 +67,8 @@ MapKeys parse_keys(const std::filesystem::path& file) {
   keys.image = map["image"].as<std::string>();
   keys.resolution_m = number(map, "resolution", file);
   if (!(keys.resolution_m > 0.0)) refuse(file, "'resolution' must be positive");
+  if (keys.resolution_m < kFinest_m || keys.resolution_m > kCoarsest_m)
+    refuse(file, "'resolution' must be 0.001 to 100 m");
   const YAML::Node origin = map["origin"];
   if (!origin || !origin.IsSequence() || origin.size() < 2) refuse(file, "'origin' must be [x, y, yaw]");
   std::array<double, 3> values{};

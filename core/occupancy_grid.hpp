@@ -21,11 +21,16 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// As std::floor, at a quarter of its instructions where the processor has none for it. Far beyond all integers the
-/// answer is some integer that no grid has.
+/// No grid has a cell so far away; its neighbours still are whole numbers.
+inline constexpr double kFarthestCell = 1e9;
+
+/// As std::floor, at a quarter of its instructions where the processor has none for it. What lies beyond
+/// kFarthestCell stays there, and what is no number is taken for the lowest: a cast would be undefined.
 [[nodiscard]] inline int rounded_down(double value) {
-  const int towards_zero = static_cast<int>(value);
-  return static_cast<int>(static_cast<unsigned>(towards_zero) - (value < towards_zero ? 1U : 0U));
+  const double from_below = value > -kFarthestCell ? value : -kFarthestCell;
+  const double within = from_below < kFarthestCell ? from_below : kFarthestCell;
+  const int towards_zero = static_cast<int>(within);
+  return towards_zero - (within < towards_zero ? 1 : 0);
 }
 
 /// Where a grid lies in its map frame: no rotation.

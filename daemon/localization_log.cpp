@@ -91,8 +91,8 @@ std::string csv_line(const LocalizationRow& row) {
   line.number(row.belief.pose_right);
   line.number(row.belief.map_wrong);
   line.word(name_of(row.belief.verdict));
-  line.counts(row.belief.stable);
-  line.counts(row.belief.elsewhere);
+  line.counts(row.belief.is_checked ? row.belief.stable : BeamCounts{});
+  line.counts(row.belief.is_checked ? row.belief.elsewhere : BeamCounts{});
   line.number(row.belief.rival_share);
   line.pose(row.belief.map_from_rival);
   for (int i = 0; i < 3; ++i) {

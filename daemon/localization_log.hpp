@@ -32,7 +32,8 @@ struct LocalizationRow {
 /// Averages are left at 0: whoever keeps them fills them in.
 [[nodiscard]] LocalizationRow row_of(const TrackedScan& tracked);
 
-/// The names of the columns, and one line; each with its line end.
+/// The names of the columns, and one line; each with its line end. Beams are counted in the lines of those scans alone
+/// that were held against the map, so that columns can be added up; 0 in the others.
 [[nodiscard]] std::string csv_header();
 [[nodiscard]] std::string csv_line(const LocalizationRow& row);
 

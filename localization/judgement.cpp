@@ -46,12 +46,14 @@ bool Judgement::due(const PoseJudge::Passed& passed) {
 }
 
 const Belief& Judgement::observe(const View& view) {
+  belief_.is_checked = false;
   if (!due(view.passed)) return belief_;
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
   const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed, view.things);
   judge_.observe(tallied(beams, stability_), passed, shares_in(view.rivals));
   belief_ = judge_.belief();
+  belief_.is_checked = true;
   earn(beams, view);
   return belief_;
 }

@@ -42,6 +42,7 @@ class Judgement {
     const RivalReport& rivals;
     const TemporaryThings* things = nullptr;  ///< what is known to be different for now
   };
+  /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
   const Belief& observe(const View& view);
 
   [[nodiscard]] const Belief& belief() const { return belief_; }

@@ -9,7 +9,8 @@ namespace deltamap::localization {
 
 class ProvenHold {
  public:
-  /// Beams on proven tiles at the believed pose; too few say nothing.
+  /// Beams on proven tiles at the believed pose, at every scan: what the last check has told holds until the next one.
+  /// Too few say nothing.
   void observe(const BeamCounts& stable) {
     if (stable.expected < kLeastExpected) return;
     const bool holds = stable.fit >= kHeld * stable.expected;

@@ -24,6 +24,7 @@ class Misfit {
  public:
   explicit Misfit(const MisfitParams& params) : params_{params} {}
 
+  /// Every scan in order. Shares are averaged over time: what the last checked scan has told holds until the next one.
   void observe(const TrackedScan& tracked);
   /// The map has fitted well, and now fewer beams do.
   [[nodiscard]] bool is_sudden() const;

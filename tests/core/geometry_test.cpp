@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/angle.hpp"
+#include "core/occupancy_grid.hpp"
 #include "core/pose2.hpp"
 #include "core/time.hpp"
 
@@ -18,6 +21,21 @@ TEST(Angle, WrapsIntoTheHalfOpenCircle) {
 }
 
 TEST(Angle, TurnsTheShortWay) { EXPECT_NEAR(turn_between(radians(170.0), radians(-170.0)), radians(20.0), kExact); }
+
+/// Run under the undefined-behaviour sanitizer, too: a cast of what no integer holds is caught there.
+TEST(GridGeometry, HasACellForEveryPointHoweverWild) {
+  const GridGeometry grid{20, 10, 0.05, {-1.0, 2.0}};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(grid.cell_at({-0.99, 2.06}), (Cell{0, 1}));
+  EXPECT_EQ(grid.cell_at({-1.01, 1.99}), (Cell{-1, -1}));
+  for (const double wild : {1e300, -1e300, 1e9, -1e9, kInfinity, -kInfinity, kNan}) {
+    EXPECT_FALSE(grid.contains(grid.cell_at({wild, 2.06}))) << wild;
+    EXPECT_FALSE(grid.contains(grid.cell_at({-0.99, wild}))) << wild;
+    const Cell cell = grid.cell_at({wild, wild});
+    EXPECT_FALSE(grid.contains({cell.column + 1000, cell.row - 1000})) << wild << ": its neighbours are numbers, too";
+  }
+}
 
 TEST(Pose2, ComposesAndInverts) {
   const Pose2 a{1.0, 2.0, kPi / 2.0};

@@ -70,6 +70,10 @@ TEST(GridFile, NamesFileAndPlaceOfWhatItCannotRead) {
   EXPECT_NE(refusal(folder.write("turned.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n"))
                 .find("rotated origin"),
             std::string::npos);
+  for (const char* resolution : {"0.0000001", "1e6", "nan", "-0.05"}) {
+    const std::string keys = std::string("image: m.pgm\nresolution: ") + resolution + "\norigin: [0, 0, 0]\n";
+    EXPECT_NE(refusal(folder.write("wild.yaml", keys)).find("'resolution'"), std::string::npos) << resolution;
+  }
   folder.write("cut.pgm", "P5 100 100 255\nabc");
   EXPECT_NE(refusal(folder.write("cut.yaml", "image: cut.pgm\n" + kKeys)).find("cut.pgm: byte 18: cut short"),
             std::string::npos);

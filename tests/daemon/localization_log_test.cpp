@@ -25,6 +25,7 @@ TrackedScan some_scan() {
   estimate.revision = 3;
   estimate.belief.pose_right = 0.0625;
   estimate.belief.verdict = PoseVerdict::kWrong;
+  estimate.belief.is_checked = true;
   estimate.belief.stable = {.expected = 10, .fit = 2, .short_of = 3, .beyond = 5};
   return tracked;
 }

@@ -149,6 +149,21 @@ TEST(Localizer, AnswersEveryScanOfAStandingRobotAndStaysHonest) {
   }
 }
 
+TEST(Localizer, SaysOfWhichScansItHasCountedTheBeams) {
+  Drive drive{test::drawn_flat()};
+  LocalizerParams params = small();
+  params.judgement.check_s = 0.75;  // three scans and a bit: every fourth is held against the map
+  Localizer localizer = localizer_at_start(params, test::drawn_flat());
+  drive.stand();
+  std::vector<bool> checked;
+  for (int i = 0; i < 13; ++i) {
+    const Belief belief = drive.next(localizer).estimate.belief;
+    checked.push_back(belief.is_checked);
+    EXPECT_GT(belief.stable.expected + belief.elsewhere.expected, 0u) << i;
+  }
+  for (std::size_t i = 0; i < checked.size(); ++i) EXPECT_EQ(checked[i], i % 4 == 0) << i;
+}
+
 TEST(Localizer, FindsItselfWithoutAnInitialPose) {
   Drive drive{test::drawn_flat()};
   Localizer localizer{small(), std::make_shared<const OccupancyGrid>(test::drawn_flat()), std::nullopt, 3};
