@@ -167,8 +167,14 @@ struct IoStage::State {
     safety_timer.cancel();
     robot.close();
     laser.close();
+    await_farewell();
+  }
+
+  void await_farewell() {
+    const bool was_leaving = robot.is_open() && robot.session().is_leaving();
     farewell_timer.expires_after(kFarewell);
-    farewell_timer.async_wait([this](const boost::system::error_code&) { loop.stop(); });
+    farewell_timer.async_wait(
+        [this, was_leaving](const boost::system::error_code&) { was_leaving ? await_farewell() : loop.stop(); });
   }
 
   asio::io_context loop{1};

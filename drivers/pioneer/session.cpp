@@ -13,7 +13,9 @@
 namespace deltamap::drivers::pioneer {
 namespace {
 
+constexpr double kMmPerMetre = 1000.0;
 constexpr double kCheckIntervalS = 1.0;
+constexpr double kControllerCycleS = 0.1;  // A6: so old the newest speed may be
 constexpr double kVoltsPerDecivolt = 0.1;
 
 RobotModel model_or_throw(const std::string& name) {
@@ -174,17 +176,26 @@ void PioneerSession::keep_alive(Timestamp now, PioneerOutput& out) {
 PioneerOutput PioneerSession::close(Timestamp now) {
   PioneerOutput out;
   if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
-  leave(std::nullopt);
+  leave(std::nullopt, now + time_to_stand());
   return finished(now, std::move(out));
 }
 
-/// Only a robot that we have opened hears CLOSE; one that waits for a connection may take it amiss.
-void PioneerSession::leave(std::optional<std::string> reason) {
-  const bool was_opened = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
+/// CLOSE takes the current from the motors and our deceleration from the controller: a robot that still moves then
+/// rolls on. Only a robot that we have opened hears CLOSE; one that waits for a connection may take it amiss.
+void PioneerSession::leave(std::optional<std::string> reason, Timestamp close_at) {
+  owes_close_ = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
   push_stop();
-  if (was_opened) queue_.push({CommandNumber::kClose, {}});
   state_ = State::kLeaving;
+  deadline_ = close_at;
   left_for_ = std::move(reason);
+}
+
+Duration PioneerSession::time_to_stand() const {
+  if (!newest_sip_) return {};
+  const double faster_m_per_s =
+      std::max(std::abs(newest_sip_->left_mm_per_s), std::abs(newest_sip_->right_mm_per_s)) / kMmPerMetre;
+  if (faster_m_per_s == 0.0) return {};
+  return duration_from_seconds(faster_m_per_s / stopping_limits().deceleration_m_per_s2 + kControllerCycleS);
 }
 
 Duration PioneerSession::watchdog() const {
@@ -244,7 +255,12 @@ Timestamp PioneerSession::next_wake() const {
 PioneerOutput PioneerSession::finished(Timestamp now, PioneerOutput out) {
   if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
   write_due(now, out);
-  if (state_ == State::kLeaving && queue_.is_empty()) {
+  if (owes_close_ && queue_.is_empty() && now >= deadline_) {
+    owes_close_ = false;
+    queue_.push({CommandNumber::kClose, {}});
+    write_due(now, out);
+  }
+  if (state_ == State::kLeaving && queue_.is_empty() && !owes_close_) {
     state_ = State::kIdle;
     out.output.failed = std::exchange(left_for_, std::nullopt);
   } else {

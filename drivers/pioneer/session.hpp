@@ -69,8 +69,10 @@ class PioneerSession {
   [[nodiscard]] PioneerOutput emergency_stop(Timestamp now);
   /// A person lets it drive, or makes it stand, until a person says otherwise.
   [[nodiscard]] PioneerOutput switch_drive(bool on, Timestamp now);
-  /// Stops the robot and takes leave: on_time() sends what must keep its distance; nothing is sent after it.
+  /// Stops the robot and, once it stands, takes leave: on_time() sends what has to wait; nothing is sent after it.
   [[nodiscard]] PioneerOutput close(Timestamp now);
+  /// The farewell is not out yet.
+  [[nodiscard]] bool is_leaving() const { return state_ == State::kLeaving; }
 
   /// SIPs come and commands are heard.
   [[nodiscard]] bool is_connected() const { return state_ == State::kConnected; }
@@ -128,7 +130,8 @@ class PioneerSession {
   void bring_motors(Timestamp now, PioneerOutput& out);
   void push_set_points();
   void push_emergency_stop(Timestamp now);
-  void leave(std::optional<std::string> reason);
+  void leave(std::optional<std::string> reason, Timestamp close_at = {});
+  [[nodiscard]] Duration time_to_stand() const;
   [[nodiscard]] Duration watchdog() const;
   [[nodiscard]] Duration pulse_interval() const;
 
@@ -152,6 +155,7 @@ class PioneerSession {
   std::optional<Timestamp> enable_sent_;   // ENABLE 1
   std::optional<Timestamp> disable_sent_;  // ENABLE 0 or CLOSE
   std::optional<std::string> left_for_;    // kLeaving: why the session has failed; nothing: it was closed
+  bool owes_close_ = false;                // kLeaving: CLOSE is sent at the deadline
 
   // The search.
   unsigned idle_baud_;       // where the robot waits for a connection

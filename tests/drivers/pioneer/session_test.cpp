@@ -438,9 +438,15 @@ TEST_F(PioneerSessionTest, TakesItsLeaveWithARobotThatStands) {
   line.run_for(2.0);
   line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
   line.run_for(1.0);
+  robot.sip.left_mm_per_s = robot.sip.right_mm_per_s = 300;
+  line.run_for(0.2);
   line.carry_out(session.close(line.now));
   line.run_for(0.3);
+  EXPECT_NE(line.written.back().bytes, kCloseFrame) << "it brakes: CLOSE would let it roll";
+  EXPECT_TRUE(session.is_leaving());
+  line.run_for(0.9);
   EXPECT_EQ(line.written.back().bytes, kCloseFrame);
+  EXPECT_FALSE(session.is_leaving());
   EXPECT_FALSE(line.wake_at);
   EXPECT_FALSE(line.failed);
   EXPECT_FALSE(robot.connected);

@@ -216,7 +216,8 @@ TEST(ByteLog, EndsWithAWholeBlockWhereTheDiskFilledUp) {
     } catch (const std::runtime_error& error) {
       told = error.what();
     }
-    EXPECT_THROW(writer.write(kRecords[2]), std::runtime_error);
+    writer.write(kRecords[2]);
+    EXPECT_THROW(writer.flush(), std::runtime_error) << "tried again, and still full";
   }
   ::setrlimit(RLIMIT_FSIZE, &old_limit);
   std::signal(SIGXFSZ, old_handler);
