@@ -10,7 +10,6 @@
 #include "core/grid_file.hpp"
 #include "daemon/control/client.hpp"
 #include "daemon/kept_drive.hpp"
-#include "daemon/kept_pose.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/provenance.hpp"
@@ -136,10 +135,10 @@ Finding drive_finding(const Settings& settings) {
   const std::string mode(name_of(settings.navigation.mode));
   if (settings.navigation.mode == navigation::DriveMode::kOff)
     return {Level::kOk, "drive", mode + ": it never moves the robot"};
-  const KeptDrive kept{settings.map.store.empty() ? fs::path{} : memory_places(settings.map.store).drive};
-  if (!kept.why_unknown().empty()) return {Level::kWarning, "drive", mode + ": " + kept.why_unknown()};
-  const std::string told(drivers::pioneer::name_of(kept.value()));
-  const bool drives = kept.value() == KeptDrive::DriveSwitch::kOn;
+  const KeptDriveAnswer kept = read_kept_drive(drive_place(settings.map.store, settings.robot.port));
+  if (!kept.why_unknown.empty()) return {Level::kWarning, "drive", mode + ": " + kept.why_unknown};
+  const std::string told(drivers::pioneer::name_of(kept.value));
+  const bool drives = kept.value == KeptDrive::DriveSwitch::kOn;
   return {Level::kOk, "drive", mode + ": the switch is " + told + (drives ? ": it would drive" : ": it would stand")};
 }
 

@@ -6,7 +6,6 @@
 #include <chrono>
 
 #include "daemon/kept_drive.hpp"
-#include "daemon/kept_pose.hpp"
 #include "daemon/stop_log.hpp"
 
 namespace deltamap::daemon {
@@ -31,8 +30,8 @@ drivers::pioneer::PioneerParams robot_params(const Settings& settings, const Kep
 
 /// A replay keeps nothing.
 KeptDrive kept_drive(const Settings& settings, drivers::SessionMode mode) {
-  return KeptDrive{mode == drivers::SessionMode::kLive ? memory_places(settings.map.store).drive
-                                                       : std::filesystem::path{}};
+  return KeptDrive{mode == drivers::SessionMode::kLive ? drive_place(settings.map.store, settings.robot.port)
+                                                       : DrivePlace{}};
 }
 
 PortOpener serial_opener(const Settings& settings) {
@@ -97,7 +96,20 @@ struct IoStage::State {
     if (!permission.holds()) safety.release();
     wiring.telemetry.drives.set(permission.holds());
     wiring.telemetry.drive_switch.set(static_cast<std::uint8_t>(permission.drive_switch()));
-    if (const std::string line = kept.keep(permission.drive_switch()); !line.empty()) wiring.log(line);
+    keep_switch();
+  }
+
+  void keep_switch() {
+    const auto value = switch_to_keep(robot.session().permission().drive_switch(), safety.waits_for());
+    const std::string line = kept.keep(value, drivers::port::port_clock_now());
+    if (!line.empty()) wiring.log(line);
+  }
+
+  /// Done is only what a restart will know as well; "on" may be lost.
+  [[nodiscard]] CommandOutcome kept_outcome(CommandOutcome outcome, bool may_drive) {
+    keep_switch();
+    if (may_drive || kept.why_not_kept().empty()) return outcome;
+    return {outcome.ticket, false, outcome.message + ", but this is NOT kept on disk: " + kept.why_not_kept()};
   }
 
   void take(Lms200Output& out) {
@@ -127,6 +139,7 @@ struct IoStage::State {
     safety_timer.expires_after(kSafetyPeriod);
     safety_timer.async_wait([this](const boost::system::error_code& error) {
       if (error) return;
+      keep_switch();  // what stops it may be the laser; what could not be written is tried again
       send_allowed_motion();
       watch_over_motion();
     });
@@ -212,7 +225,7 @@ void IoStage::post(const DriveCommand& command, navigation::StopReason held_by) 
 
 void IoStage::let_drive(bool may_drive, std::uint64_t ticket) {
   asio::post(state_->loop, [state = state_.get(), may_drive, ticket] {
-    const CommandOutcome outcome = state->let_drive(may_drive, ticket);
+    const CommandOutcome outcome = state->kept_outcome(state->let_drive(may_drive, ticket), may_drive);
     if (state->wiring.answer) state->wiring.answer(outcome);
   });
 }

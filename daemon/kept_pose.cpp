@@ -55,10 +55,9 @@ std::optional<KeptPose> pose_in(const Json& json, std::uint64_t first_map) {
 
 MemoryPlaces memory_places(const std::filesystem::path& store) {
   if (store.empty()) return {};
-  MemoryPlaces places{store, store, store, store};
+  MemoryPlaces places{store, store, store};
   places.pose.replace_extension(".pose.json");
   places.stability.replace_extension(".stability");
-  places.drive.replace_extension(".drive.json");
   places.saved_map.replace_extension(".saved.yaml");
   return places;
 }

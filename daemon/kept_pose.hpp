@@ -26,7 +26,6 @@ struct KeptPose {
 struct MemoryPlaces {
   std::filesystem::path pose;       ///< NAME.pose.json
   std::filesystem::path stability;  ///< NAME.stability
-  std::filesystem::path drive;      ///< NAME.drive.json: kept_drive
   std::filesystem::path saved_map;  ///< NAME.saved.yaml with its PGM: what `ctl save` writes
 };
 [[nodiscard]] MemoryPlaces memory_places(const std::filesystem::path& store);

@@ -150,9 +150,10 @@ TEST_F(CheckConfig, TellsWhetherItWouldDrive) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   EXPECT_EQ(finding("drive").text, "wander: the switch is unknown: it would stand");
   fs::create_directories(folder_.path() / "state");
-  EXPECT_EQ(KeptDrive{memory_places(settings_.map.store).drive}.keep(KeptDrive::DriveSwitch::kOn), "");
+  const DrivePlace place = drive_place(settings_.map.store, settings_.robot.port);
+  EXPECT_EQ(KeptDrive{place}.keep(KeptDrive::DriveSwitch::kOn, Timestamp{}), "");
   EXPECT_EQ(finding("drive").text, "wander: the switch is on: it would drive");
-  (void)folder_.write(memory_places(settings_.map.store).drive, "not a switch");
+  (void)folder_.write(place.file, "not a switch");
   EXPECT_EQ(finding("drive").level, Level::kWarning);
 }
 

@@ -7,50 +7,20 @@
 
 #include "daemon/control/request.hpp"
 #include "daemon/control/server.hpp"
-#include "daemon/tool/run_tool.hpp"
-#include "tests/support/pipeline_fixture.hpp"
-#include "tests/support/simulated_ports.hpp"
-#include "tests/support/socket_client.hpp"
+#include "daemon/kept_drive.hpp"
+#include "tests/support/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 using control::Request;
-using Json = nlohmann::json;
+using test::comes_true;
 using test::content_of;
+using test::ControlDeskTest;
+using test::DriveTest;
 using test::SocketClient;
+using Json = nlohmann::json;
 using namespace std::chrono_literals;
-
-constexpr auto kGiveUp = 60s;
-
-/// Asks until the answer is as wanted.
-template <typename Wanted>
-bool comes_true(const Wanted& wanted) {
-  const auto give_up_at = std::chrono::steady_clock::now() + kGiveUp;
-  while (!wanted()) {
-    if (std::chrono::steady_clock::now() > give_up_at) return false;
-    std::this_thread::yield();
-  }
-  return true;
-}
-
-class ControlDeskTest : public test::PipelineFixture {
- protected:
-  ControlDeskTest() { settings_.control.socket = folder_.path() / "ctl.sock"; }
-
-  [[nodiscard]] Json asked(const Request& request) const {
-    SocketClient client{settings_.control.socket};
-    return Json::parse(client.asked(control::line_of(request)));
-  }
-  [[nodiscard]] Json status() const { return asked({Request::Kind::kStatus, {}}); }
-  [[nodiscard]] bool reached_scan(int scan) const {
-    return comes_true([&] { return status()["localized"] > scan; });
-  }
-  [[nodiscard]] int exit_code(std::vector<const char*> arguments) const {
-    arguments.insert(arguments.begin(), {"deltamap", "ctl", "--socket", settings_.control.socket.c_str()});
-    return tool::run_tool(static_cast<int>(arguments.size()), arguments.data());
-  }
-};
 
 TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedByTheReplayBitForBit) {
   const RunReport live = run_live(3ms, [&](const Pipeline&) {
@@ -273,45 +243,6 @@ TEST_F(ControlDeskTest, ASocketThatCannotBeIsToldAndTheDaemonWorksWithoutIt) {
 
 // --- who drives ---
 
-class DriveTest : public ControlDeskTest {
- protected:
-  void SetUp() override {
-    settings_.laser.session.baud = 38400;
-    settings_.initial_pose = Pose2{1.0, 2.0, 0.0};
-    settings_.recording.file.clear();
-  }
-
-  void run(const std::function<void(const test::SimulatedPorts&)>& operate) {
-    const auto scenario =
-        simulation::read_scenario(std::filesystem::path(DELTAMAP_SOURCE_DIR) / "config/scenarios/room.yaml");
-    test::SimulatedPorts ports{scenario, 1};
-    Pipeline::Options live = options();
-    live.open = [&ports](boost::asio::io_context& loop, drivers::port::PortId id, unsigned baud) {
-      return ports.open(loop, id, baud);
-    };
-    std::optional<Pipeline> pipeline{std::in_place, settings_, std::move(live)};
-    ASSERT_TRUE(reached_scan(5));
-    operate(ports);
-    (void)pipeline->stop();
-    ports.end();
-  }
-
-  /// Whether anything that makes wheels turn or motors hold was among the commands from `first` on.
-  static bool moves(const test::SimulatedPorts& ports, std::size_t first = 0) {
-    using Number = drivers::pioneer::CommandNumber;
-    const auto sent = ports.commands();
-    return std::any_of(sent.begin() + static_cast<std::ptrdiff_t>(std::min(first, sent.size())), sent.end(),
-                       [](const test::SimulatedPorts::SentCommand& command) {
-                         const bool is_motion = command.number == static_cast<std::uint8_t>(Number::kVel) ||
-                                                command.number == static_cast<std::uint8_t>(Number::kRvel) ||
-                                                command.number == static_cast<std::uint8_t>(Number::kEnable);
-                         const bool is_zero =
-                             command.argument.size() == 3 && command.argument[1] == 0 && command.argument[2] == 0;
-                         return is_motion && !is_zero;
-                       });
-  }
-};
-
 TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
   run([&](const test::SimulatedPorts& ports) {
     const Json refused = asked({Request::Kind::kDriveWander, {}});
@@ -352,16 +283,17 @@ TEST_F(DriveTest, WithoutAPoseItDrivesWhereTheSettingsSaySo) {
 TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   settings_.map.store = folder_.path() / "kept.sqlite";
-  const auto kept = [&] { return content_of(folder_.path() / "kept.drive.json"); };
+  const auto kept = [&] { return content_of(drive_place(settings_.map.store, settings_.robot.port).file); };
   run([&](const test::SimulatedPorts& ports) {
     EXPECT_FALSE(moves(ports)) << "nobody has said anything yet";
     EXPECT_EQ(status()["drive"], "off");
     EXPECT_EQ(status()["drive_switch"], "unknown");
     EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     EXPECT_TRUE(comes_true([&] { return moves(ports); }));
-    EXPECT_EQ(kept(), "{\"drive\":\"on\"}\n");
+    EXPECT_EQ(kept(), "{\"drive\":\"on\",\"robot_port\":\"/dev/ttyUSB0\"}\n");
     EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
-    EXPECT_EQ(kept(), "{\"drive\":\"off by the operator\"}\n") << "on disk when it is answered";
+    EXPECT_EQ(kept(), "{\"drive\":\"off by the operator\",\"robot_port\":\"/dev/ttyUSB0\"}\n")
+        << "on disk when it is answered";
     EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "no command"; }));
     EXPECT_EQ(status()["drive"], "off");
     const std::size_t stopped = ports.commands().size();

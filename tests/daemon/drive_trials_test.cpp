@@ -210,6 +210,34 @@ TEST_P(RandomSequences, NeverMoveARobotThatAPersonHasSwitchedOff) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSequences, testing::Range(std::uint64_t{0}, kShards));
 
+TEST(StopsThatWaitForAPerson, WaitForOneAfterARestartAsWell) {
+  Drive drive{3001};
+  Daemon& daemon = drive.daemon;
+  auto& robot = drive.simulation.robot();
+  const auto drives = [&] {
+    const Pose2 before = drive.simulation.map_from_robot();
+    daemon.run(6.0);
+    const Pose2 after = drive.simulation.map_from_robot();
+    return distance_between(before, after) > 0.02 || std::abs(turn_between(before.theta, after.theta)) > 0.02;
+  };
+  ASSERT_TRUE(drives());
+  robot.fail(1);
+  daemon.run(3.0);
+  robot.fail(0);
+  EXPECT_FALSE(drives()) << "nobody has said so again";
+  daemon.kill();
+  daemon.run(0.5);
+  daemon.start();
+  EXPECT_FALSE(drives()) << "a restart is no person";
+  EXPECT_FALSE(robot.motors_enabled());
+  EXPECT_TRUE(daemon.operator_says(true));
+  EXPECT_TRUE(drives());
+  daemon.kill();
+  daemon.run(4.0);
+  daemon.start();
+  EXPECT_TRUE(drives()) << "a person has let it go, and that is kept";
+}
+
 /// Between the robot's middle and whatever stands there.
 double nearest_m(const Simulation& simulation) {
   const simulation::RayCaster surfaces{simulation.world()};

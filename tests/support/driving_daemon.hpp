@@ -116,8 +116,8 @@ class DrivingDaemon {
   [[nodiscard]] bool operator_says(bool on) {
     if (!process_ || (on && process_->robot.session().stop_button_is_pressed())) return false;
     process_->robot.obey(process_->robot.session().switch_drive(on, devices_.now()), devices_.now());
-    process_->obey_permission();
     if (on) process_->safety.let_drive_again();
+    process_->obey_permission(devices_.now());
     return true;
   }
 
@@ -142,7 +142,7 @@ class DrivingDaemon {
   /// What dies with it.
   struct Process {
     explicit Process(DrivingDaemon& owner)
-        : kept{owner.params_.kept_file},
+        : kept{{owner.params_.kept_file, "/dev/robot"}},
           safety{owner.params_.safety},
           pilot{owner.params_.wander, owner.params_.seed},
           robot{PioneerSession{owner.robot_params(kept), drivers::SessionMode::kLive},
@@ -152,9 +152,10 @@ class DrivingDaemon {
                   owner.devices_.send_to_laser(bytes, baud);
                 }} {}
 
-    void obey_permission() {
-      if (!robot.session().permission().holds()) safety.release();
-      (void)kept.keep(robot.session().permission().drive_switch());
+    void obey_permission(Timestamp now) {
+      const auto& permission = robot.session().permission();
+      if (!permission.holds()) safety.release();
+      (void)kept.keep(daemon::switch_to_keep(permission.drive_switch(), safety.waits_for()), now);
     }
 
     daemon::KeptDrive kept;
@@ -195,7 +196,7 @@ class DrivingDaemon {
       last_odometry_ = now;
     }
     log_.insert(log_.end(), out.output.log.begin(), out.output.log.end());
-    process_->obey_permission();
+    process_->obey_permission(now);
   }
 
   void take(const drivers::lms200::Lms200Output& out, Timestamp now) {
