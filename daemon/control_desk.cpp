@@ -14,16 +14,19 @@ ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
     : settings_{settings},
       wiring_{std::move(wiring)},
       began_{drivers::port::port_clock_now()},
-      server_{
-          {.socket = settings.control.socket,
-           .handle = [this](const std::string& line, control::Server::Reply reply) { answer(line, std::move(reply)); },
-           .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it")}} {}
+      server_{{.socket = settings.control.socket,
+               .handle = [this](const std::string& line, bool sender_is_gone,
+                                control::Server::Reply reply) { answer(line, sender_is_gone, std::move(reply)); },
+               .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it")}} {}
 
-void ControlDesk::answer(const std::string& line, control::Server::Reply reply) {
+void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply) {
   const control::RequestAnswer answer = control::request_of_line(line);
   if (!answer.request) return reply(error_line(answer.refused));
   const Request& request = *answer.request;
   if (request.kind != Request::Kind::kStatus) wiring_.log("ctl: " + control::words_of(request));
+  if (sender_is_gone && request.kind == Request::Kind::kDriveWander) {
+    return wiring_.log("ctl: drive wander: not done, who asked for it waits no longer");
+  }
   switch (request.kind) {
     case Request::Kind::kStatus:
       return reply(status_json_line(wiring_.telemetry, settings_, seconds(drivers::port::port_clock_now() - began_)));

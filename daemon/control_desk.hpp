@@ -38,7 +38,7 @@ class ControlDesk {
     control::Request request;
     control::Server::Reply reply;
   };
-  void answer(const std::string& line, control::Server::Reply reply);
+  void answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply);
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
   void command(Command::Kind kind, const control::Request& request, control::Server::Reply reply);
 

@@ -30,6 +30,10 @@ std::string fit_words(std::optional<double> fit) {
   return *fit >= kFits ? share : "only " + share + ": is it the right place, and the right map?";
 }
 
+std::string refused_start_words() {
+  return "the start pose lies more than 1 m from free floor, so that the whole map is searched; " + kSayWhere;
+}
+
 void FitWatch::pass(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
   passed_s_ = last_ ? std::max(0.0, seconds(time - *last_)) : 0.0;
@@ -40,19 +44,20 @@ void FitWatch::pass(const TrackedScan& tracked) {
 
 std::string FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit) {
   pass(tracked);
-  if (!fit) return {};
-  first_scans_ = std::min(first_scans_ + 1, kFirstScans + 1);
-  first_fit_ += *fit;
-  if (looks_at_start_ && first_scans_ == kFirstScans) {
-    looks_at_start_ = false;
-    return judged_start();
+  if (fit) {
+    first_scans_ = std::min(first_scans_ + 1, kFirstScans + 1);
+    first_fit_ += *fit;
+    if (looks_at_start_ && first_scans_ == kFirstScans) {
+      looks_at_start_ = false;
+      return judged_start();
+    }
+    const double before = mean_fit_.value_or(*fit);
+    mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kMemory_s)) * (*fit - before);
   }
-  const double before = mean_fit_.value_or(*fit);
-  mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kMemory_s)) * (*fit - before);
-  const bool is_unfit = tracked.estimate.state != LocalizerState::kTracking || *mean_fit_ < kMisfit;
+  const bool is_unfit = tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kMisfit;
   unfit_s_ = is_unfit ? unfit_s_ + passed_s_ : 0.0;
   unfit_m_ = is_unfit ? unfit_m_ + driven_m_ : 0.0;
-  return judged_long();
+  return judged_long(tracked.estimate.state);
 }
 
 std::string FitWatch::judged_start() {
@@ -62,13 +67,16 @@ std::string FitWatch::judged_start() {
          " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere;
 }
 
-std::string FitWatch::judged_long() {
+std::string FitWatch::judged_long(LocalizerState state) {
   if (unfit_s_ == 0.0) return std::exchange(said_, false) ? "the map fits again" : "";
-  if (said_ || unfit_s_ < kLong_s || unfit_m_ < kFar_m) return {};
+  // A search that nobody drives for gets no further.
+  const bool is_long = unfit_s_ >= kLong_s && (unfit_m_ >= kFar_m || state == LocalizerState::kGlobal);
+  if (said_ || !is_long) return {};
   said_ = true;
+  const std::string best = mean_fit_ ? percent(*mean_fit_) + " of the beams fit at the best one; " : "";
   return "no place in the map has been sure for " + std::to_string(std::lround(unfit_s_)) + " s and " +
-         std::to_string(std::lround(unfit_m_)) + " m: " + percent(*mean_fit_) +
-         " of the beams fit at the best one; is it the map of this place, and 'laser.mount' right? Else " + kSayWhere;
+         std::to_string(std::lround(unfit_m_)) + " m: " + best +
+         "is it the map of this place, and 'laser.mount' right? Else " + kSayWhere;
 }
 
 }  // namespace deltamap::daemon

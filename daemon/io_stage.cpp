@@ -18,8 +18,10 @@ using drivers::pioneer::PioneerOutput;
 using drivers::pioneer::PioneerSession;
 using drivers::port::PortId;
 
-constexpr std::chrono::milliseconds kSafetyPeriod{50};  // twice a controller cycle (protocols.md A6)
-constexpr std::chrono::milliseconds kFarewell{300};     // for the last packets to leave at 9600 baud
+constexpr std::chrono::milliseconds kSafetyPeriod{50};   // twice a controller cycle (protocols.md A6)
+constexpr std::chrono::seconds kRequestLife{1};          // to drive: this thread has hung, or the machine
+constexpr std::chrono::milliseconds kRobotSilence{500};  // five controller cycles: it is not heard, and may not hear
+constexpr std::chrono::milliseconds kFarewell{300};      // for the last packets to leave at 9600 baud
 
 drivers::pioneer::PioneerParams robot_params(const Settings& settings, const KeptDrive& kept) {
   auto params = settings.robot.session;
@@ -39,6 +41,12 @@ PortOpener serial_opener(const Settings& settings) {
     return drivers::port::open_serial_port(loop, id == PortId::kRobot ? robot : laser, baud);
   };
 }
+
+struct DriveRequest {
+  bool may_drive;
+  std::uint64_t ticket;
+  Timestamp asked;
+};
 
 }  // namespace
 
@@ -75,6 +83,7 @@ struct IoStage::State {
 
   void take(PioneerOutput& out) {
     Telemetry& telemetry = wiring.telemetry;
+    if (!out.odometry.empty()) robot_heard_at = drivers::port::port_clock_now();
     for (Odometry& odometry : out.odometry) {
       safety.observe(odometry);
       telemetry.battery_v.set(odometry.battery_v);
@@ -103,13 +112,6 @@ struct IoStage::State {
     const auto value = switch_to_keep(robot.session().permission().drive_switch(), safety.waits_for());
     const std::string line = kept.keep(value, drivers::port::port_clock_now());
     if (!line.empty()) wiring.log(line);
-  }
-
-  /// Done is only what a restart will know as well; "on" may be lost.
-  [[nodiscard]] CommandOutcome kept_outcome(CommandOutcome outcome, bool may_drive) {
-    keep_switch();
-    if (may_drive || kept.why_not_kept().empty()) return outcome;
-    return {outcome.ticket, false, outcome.message + ", but this is NOT kept on disk: " + kept.why_not_kept()};
   }
 
   void take(Lms200Output& out) {
@@ -158,17 +160,39 @@ struct IoStage::State {
     robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
   }
 
-  CommandOutcome let_drive(bool may_drive, std::uint64_t ticket) {
-    if (may_drive && robot.session().stop_button_is_pressed()) {
-      return {ticket, false, "the STOP button is pressed: let it go first"};
+  CommandOutcome let_drive(const DriveRequest& request) {
+    const Timestamp now = drivers::port::port_clock_now();
+    return request.may_drive ? switch_on(request, now) : switch_off(request.ticket, now);
+  }
+
+  /// Refused as long as anything speaks against it: a refusal must not drive later, by itself.
+  CommandOutcome switch_on(const DriveRequest& request, Timestamp now) {
+    if (now - request.asked > kRequestLife) {
+      return {request.ticket, false, "it was asked for too long ago: say so again"};
     }
-    robot.handle(robot.session().switch_drive(may_drive, drivers::port::port_clock_now()));
-    if (drives && !may_drive) send_allowed_motion();
-    if (!may_drive) return {ticket, true, "the robot is told to stand"};
+    if (robot.session().stop_button_is_pressed()) {
+      return {request.ticket, false, "the STOP button is pressed: let it go first"};
+    }
     safety.let_drive_again();
-    const navigation::StopReason held_by = safety.waits_for();
-    if (held_by == navigation::StopReason::kNone) return {ticket, true, "wanders from the next scan on"};
-    return {ticket, false, "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
+    if (const navigation::StopReason held_by = safety.waits_for(); held_by != navigation::StopReason::kNone) {
+      return {request.ticket, false,
+              "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
+    }
+    robot.handle(robot.session().switch_drive(true, now));
+    return {request.ticket, true, "wanders from the next scan on"};
+  }
+
+  CommandOutcome switch_off(std::uint64_t ticket, Timestamp now) {
+    robot.handle(robot.session().switch_drive(false, now));
+    if (drives) send_allowed_motion();
+    const bool is_told = !drives || (robot.session().is_connected() && now - robot_heard_at < kRobotSilence);
+    const std::string told = is_told
+                                 ? "the robot is told to stand"
+                                 : "the robot cannot be told now: what moves goes on until its watchdog; press STOP";
+    if (const std::string& why = kept.why_not_kept(); !why.empty()) {
+      return {ticket, false, told + ". The off is NOT kept on disk: " + why};
+    }
+    return {ticket, is_told, is_told ? told : "kept, but " + told};
   }
 
   void take(const DriveCommand& command, navigation::StopReason held_by) {
@@ -194,6 +218,7 @@ struct IoStage::State {
   std::atomic<std::int64_t> asked_ns{0};  // port clock; 0: the loop owes no answer
   Wiring wiring;
   bool drives;  // by the settings
+  Timestamp robot_heard_at{};
   KeptDrive kept;
   navigation::Safety safety;
   StopLog stop_log;
@@ -224,8 +249,9 @@ void IoStage::post(const DriveCommand& command, navigation::StopReason held_by) 
 }
 
 void IoStage::let_drive(bool may_drive, std::uint64_t ticket) {
-  asio::post(state_->loop, [state = state_.get(), may_drive, ticket] {
-    const CommandOutcome outcome = state->kept_outcome(state->let_drive(may_drive, ticket), may_drive);
+  const DriveRequest request{may_drive, ticket, drivers::port::port_clock_now()};
+  asio::post(state_->loop, [state = state_.get(), request] {
+    const CommandOutcome outcome = state->let_drive(request);
     if (state->wiring.answer) state->wiring.answer(outcome);
   });
 }

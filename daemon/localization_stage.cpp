@@ -46,6 +46,9 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
   if (settings.navigation.mode == navigation::DriveMode::kWander) {
     pilot_.emplace(settings.navigation.wander, settings.seed);
   }
+  if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
+    (void)wiring_.recorder.send(LogLine{refused_start_words()});
+  }
 }
 
 void LocalizationStage::run() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/server.hpp"
 
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -99,11 +100,18 @@ class Session : public std::enable_shared_from_this<Session> {
     const std::string line = received_.substr(0, size - 1);
     received_.erase(0, size);
     wait_for_reply();
-    options_.handle(line, [self = weak_from_this(), number = number_, to = socket_.get_executor()](std::string reply) {
-      asio::post(to, [self, number, reply = std::move(reply)] {
-        if (const auto session = self.lock()) session->answer(number, reply);
-      });
-    });
+    options_.handle(line, is_gone(),
+                    [self = weak_from_this(), number = number_, to = socket_.get_executor()](std::string reply) {
+                      asio::post(to, [self, number, reply = std::move(reply)] {
+                        if (const auto session = self.lock()) session->answer(number, reply);
+                      });
+                    });
+  }
+
+  /// Both ways: one that only has nothing more to say still listens.
+  [[nodiscard]] bool is_gone() {
+    pollfd state{socket_.native_handle(), 0, 0};
+    return ::poll(&state, 1, 0) > 0 && (state.revents & POLLHUP) != 0;
   }
 
   void wait_for_reply() {

@@ -20,8 +20,9 @@ class Server {
  public:
   /// Any thread, now or later; the first one counts.
   using Reply = std::function<void(std::string)>;
-  /// In the server's thread. `line` comes and goes without its line end.
-  using Handler = std::function<void(const std::string& line, Reply reply)>;
+  /// In the server's thread. `line` comes and goes without its line end. `sender_is_gone`: nobody waits for the reply
+  /// any more, the request may be old.
+  using Handler = std::function<void(const std::string& line, bool sender_is_gone, Reply reply)>;
 
   struct Options {
     std::filesystem::path socket;  ///< readable and writable by owner and group; what a crash left there is replaced

@@ -244,7 +244,7 @@ TEST_F(ControlDeskTest, ASocketThatCannotBeIsToldAndTheDaemonWorksWithoutIt) {
 // --- who drives ---
 
 TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
-  run([&](const test::SimulatedPorts& ports) {
+  run([&](test::SimulatedPorts& ports) {
     const Json refused = asked({Request::Kind::kDriveWander, {}});
     EXPECT_EQ(refused["ok"], false);
     EXPECT_EQ(refused["error"], "'navigation.mode' is not wander: this daemon never drives");
@@ -259,7 +259,7 @@ TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
 TEST_F(DriveTest, WithoutAPoseItStandsAndSaysWhy) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   settings_.initial_pose.reset();
-  run([&](const test::SimulatedPorts& ports) {
+  run([&](test::SimulatedPorts& ports) {
     EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "pose unknown"; }));
     const std::size_t from = ports.commands().size();
@@ -273,10 +273,22 @@ TEST_F(DriveTest, WithoutAPoseItDrivesWhereTheSettingsSaySo) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   settings_.navigation.drive_without_pose = true;
   settings_.initial_pose.reset();
-  run([&](const test::SimulatedPorts& ports) {
+  run([&](test::SimulatedPorts& ports) {
     EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "none"; }));
     EXPECT_TRUE(comes_true([&] { return moves(ports); }));
+  });
+}
+
+TEST_F(DriveTest, ARefusedWanderDoesNotSwitchOn) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  settings_.navigation.safety.low_battery_s = 0.2;
+  run([&](test::SimulatedPorts& ports) {
+    ports.drain_battery();
+    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "low battery"; }));
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], false);
+    EXPECT_EQ(status()["drive_switch"], "unknown") << "else it would drive later, by itself";
+    EXPECT_FALSE(moves(ports));
   });
 }
 
@@ -284,7 +296,7 @@ TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   settings_.map.store = folder_.path() / "kept.sqlite";
   const auto kept = [&] { return content_of(drive_place(settings_.map.store, settings_.robot.port).file); };
-  run([&](const test::SimulatedPorts& ports) {
+  run([&](test::SimulatedPorts& ports) {
     EXPECT_FALSE(moves(ports)) << "nobody has said anything yet";
     EXPECT_EQ(status()["drive"], "off");
     EXPECT_EQ(status()["drive_switch"], "unknown");
@@ -305,7 +317,7 @@ TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
     EXPECT_EQ(status()["drive"], "wander");
     EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
   });
-  run([&](const test::SimulatedPorts& ports) {
+  run([&](test::SimulatedPorts& ports) {
     const int scan = status()["localized"];
     EXPECT_TRUE(reached_scan(scan + 10));
     EXPECT_FALSE(moves(ports)) << "a restart is no person";

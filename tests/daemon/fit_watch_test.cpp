@@ -16,11 +16,14 @@ class Watched {
  public:
   explicit Watched(bool is_given) : watch_{is_given} {}
 
+  /// It does not move while it is held.
+  void hold() { step_m_ = 0.0; }
+
   std::string after(double duration_s, std::optional<double> fit, LocalizerState state = LocalizerState::kTracking) {
     std::string said;
     for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
       tracked_.scan.time += duration_from_seconds(kPeriod_s);
-      tracked_.odom_from_robot.x += 0.1;
+      tracked_.odom_from_robot.x += step_m_;
       tracked_.estimate.state = state;
       const std::string line = watch_.observe(tracked_, fit);
       if (!line.empty()) said += line + "\n";
@@ -29,6 +32,7 @@ class Watched {
   }
 
  private:
+  double step_m_ = 0.1;
   FitWatch watch_;
   TrackedScan tracked_;
 };
@@ -57,6 +61,15 @@ TEST(FitWatch, AForeignMapIsToldOnceAfterAMinuteOfSearching) {
       << said;
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
   EXPECT_EQ(watched.after(5.0, 0.9), "the map fits again\n");
+}
+
+TEST(FitWatch, ASearchThatNobodyDrivesForIsToldToo) {
+  Watched watched{false};
+  watched.hold();
+  EXPECT_EQ(watched.after(59.0, std::nullopt, LocalizerState::kGlobal), "");
+  const std::string said = watched.after(60.0, std::nullopt, LocalizerState::kGlobal);
+  EXPECT_EQ(said.rfind("no place in the map has been sure for 60 s and 0 m: is it the map", 0), 0u) << said;
+  EXPECT_EQ(watched.after(100.0, 0.2, LocalizerState::kTracking), "") << "one who stands in front of a sure pose";
 }
 
 TEST(FitWatch, APoseThatIsTrackedAndDoesNotFitForAMinuteIsToldToo) {

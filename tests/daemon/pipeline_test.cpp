@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <mutex>
+
 #include "tests/support/pipeline_fixture.hpp"
 
 namespace deltamap::daemon {
@@ -111,6 +113,32 @@ TEST_F(PipelineTest, AJournalOfOtherSettingsIsNotObeyed) {
   const RunReport again = replay("live.pcapng", "replayed");
   EXPECT_EQ(again.journal, "not obeyed: other settings or map");
   EXPECT_EQ(again.scans.dropped, 0u);
+}
+
+TEST_F(PipelineTest, AStartPoseWhereNobodyCanStandIsTold) {
+  OccupancyGrid map = *options().start.map;
+  const Point2 corner = map.geometry().origin;
+  for (int row = 0; row < map.height(); ++row) {
+    for (int column = 0; column < map.width(); ++column) {
+      const Cell cell{column, row};
+      if ((map.geometry().centre_of(cell) - corner).norm() < 1.5) map.set(cell, CellState::kOccupied);
+    }
+  }
+  Settings settings = settings_;
+  settings.initial_pose = Pose2{corner.x() + 0.1, corner.y() + 0.1, 0.0};
+  std::mutex mutex;
+  std::string log;
+  Pipeline::Options live = options();
+  live.start.map = std::make_shared<const OccupancyGrid>(std::move(map));
+  live.log = [&](const std::string& line) {
+    const std::scoped_lock lock{mutex};
+    log += line + "\n";
+  };
+  live.open = [](boost::asio::io_context&, drivers::port::PortId, unsigned) {
+    return drivers::port::SerialPortAnswer{nullptr, "none here"};
+  };
+  (void)Pipeline{settings, std::move(live)}.stop();
+  EXPECT_NE(log.find("the start pose lies more than 1 m from free floor"), std::string::npos) << log;
 }
 
 }  // namespace

@@ -238,10 +238,10 @@ class SavingMaps : public Saving {
 TEST_F(SavingMaps, WhatWasMissedIsStoredWholeWhenThereIsRoomAgain) {
   {
     MapOutputs outputs{options(), telemetry.outputs, warn(), at_s(0)};
-    for (std::uint32_t number : {1, 2}) outputs.save(result_of(number), at_s(number));
+    for (std::uint32_t number : {1u, 2u}) outputs.save(result_of(number), at_s(number));
     {
       const test::FullDisk full;
-      for (std::uint32_t number : {3, 4, 5}) outputs.save(result_of(number), at_s(number));
+      for (std::uint32_t number : {3u, 4u, 5u}) outputs.save(result_of(number), at_s(number));
       outputs.save(refusal_of(6), at_s(6));
       outputs.retry(at_s(7));
       for (const char* name : {"changes", "map", "history", "store"}) EXPECT_FALSE(status(name).written) << name;
@@ -260,7 +260,7 @@ TEST_F(SavingMaps, WhatWasMissedIsStoredWholeWhenThereIsRoomAgain) {
     const mapping::MapStore kept{file, *start.map};
     EXPECT_EQ(kept.dropped(), 0u);
     EXPECT_EQ(kept.newest(), 6u);
-    for (const std::uint32_t number : {1, 2, 5, 6}) {
+    for (const std::uint32_t number : {1u, 2u, 5u, 6u}) {
       EXPECT_EQ(kept.grid(number), *result_of(number).revision->map) << number;
     }
     EXPECT_THROW((void)kept.grid(4), std::runtime_error);

@@ -56,7 +56,7 @@ class DriveTest : public ControlDeskTest {
     settings_.recording.file.clear();
   }
 
-  void run(const std::function<void(const SimulatedPorts&)>& operate) {
+  void run(const std::function<void(SimulatedPorts&)>& operate) {
     const auto scenario =
         simulation::read_scenario(std::filesystem::path(DELTAMAP_SOURCE_DIR) / "config/scenarios/room.yaml");
     SimulatedPorts ports{scenario, 1};

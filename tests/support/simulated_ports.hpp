@@ -5,6 +5,7 @@
 
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
@@ -37,6 +38,8 @@ class SimulatedPorts {
     }
     return {std::make_unique<Port>(*this, id, baud), ""};
   }
+  /// The robot tells a battery of 10 V from now on. Any thread.
+  void drain_battery() { is_drained_ = true; }
   /// In the io thread's last moments, or after it: nothing comes any more.
   void end() { timer_.reset(); }
 
@@ -95,6 +98,10 @@ class SimulatedPorts {
     timer_->async_wait([this](const boost::system::error_code& error) {
       if (error) return;
       simulation_.advance_to(drivers::port::port_clock_now());
+      if (is_drained_.exchange(false)) {
+        const drivers::pioneer::Command fake{drivers::pioneer::CommandNumber::kBatTest, 100};
+        simulation_.send_to_robot(drivers::pioneer::encoded_command(fake), baud(PortId::kRobot));
+      }
       for (const PortId id : {PortId::kRobot, PortId::kLaser}) {
         if (!handlers(id).on_bytes) continue;
         const auto bytes = fetch(id);
@@ -106,6 +113,7 @@ class SimulatedPorts {
   }
 
   simulation::Simulation simulation_;
+  std::atomic<bool> is_drained_ = false;
   std::optional<boost::asio::steady_timer> timer_;
   drivers::port::PortHandlers handlers_[2];
   unsigned bauds_[2] = {9600, 9600};

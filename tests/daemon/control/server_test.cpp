@@ -30,7 +30,7 @@ class ServerTest : public testing::Test {
     thread_ = std::jthread{[this] { server_->run(); }};
   }
   void serve_echo() {
-    serve([](const std::string& line, const Server::Reply& reply) { reply("re: " + line); });
+    serve([](const std::string& line, bool, const Server::Reply& reply) { reply("re: " + line); });
   }
   void end() {
     if (!server_) return;
@@ -56,6 +56,30 @@ TEST_F(ServerTest, EachOfSeveralClientsGetsItsOwnReplies) {
   EXPECT_EQ(exchange(socket(), "d"), "re: d");
 }
 
+TEST_F(ServerTest, TellsWhetherTheSenderStillWaits) {
+  std::promise<void> may_look;
+  std::vector<std::pair<std::string, bool>> asked;
+  std::promise<void> done;
+  serve([&](const std::string& line, bool sender_is_gone, const Server::Reply& reply) {
+    if (line == "hold") may_look.get_future().wait();
+    asked.emplace_back(line, sender_is_gone);
+    reply("");
+    if (asked.size() == 3) done.set_value();
+  });
+  SocketClient holds{socket()};
+  SocketClient waits{socket()};
+  {
+    SocketClient leaves{socket()};
+    EXPECT_TRUE(holds.send("hold\n"));
+    EXPECT_TRUE(leaves.send("left\n"));
+  }
+  EXPECT_TRUE(waits.send("last\n"));
+  may_look.set_value();
+  done.get_future().wait();
+  end();
+  for (const auto& [line, sender_is_gone] : asked) EXPECT_EQ(sender_is_gone, line == "left") << line;
+}
+
 TEST_F(ServerTest, ARequestMayComeInPieces) {
   serve_echo();
   SocketClient client{socket()};
@@ -65,7 +89,7 @@ TEST_F(ServerTest, ARequestMayComeInPieces) {
 
 TEST_F(ServerTest, AClientThatVanishesBeforeItsReplyHarmsNobody) {
   std::promise<Server::Reply> asked;
-  serve([&](const std::string& line, const Server::Reply& reply) {
+  serve([&](const std::string& line, bool, const Server::Reply& reply) {
     line == "slow" ? asked.set_value(reply) : reply("re: " + line);
   });
   SocketClient gone{socket()};
@@ -81,7 +105,7 @@ TEST_F(ServerTest, AClientThatVanishesBeforeItsReplyHarmsNobody) {
 
 TEST_F(ServerTest, AReplyMayComeLaterFromAnotherThreadAndOnlyTheFirstCounts) {
   std::promise<Server::Reply> asked;
-  serve([&](const std::string& line, const Server::Reply& reply) {
+  serve([&](const std::string& line, bool, const Server::Reply& reply) {
     line == "slow" ? asked.set_value(reply) : reply("re: " + line);
   });
   SocketClient client{socket()};
@@ -95,7 +119,7 @@ TEST_F(ServerTest, AReplyMayComeLaterFromAnotherThreadAndOnlyTheFirstCounts) {
 
 TEST_F(ServerTest, WhereNoReplyComesTheClientIsToldSo) {
   std::vector<Server::Reply> kept;
-  serve([&](const std::string&, Server::Reply reply) { kept.push_back(std::move(reply)); }, 0.05);
+  serve([&](const std::string&, bool, Server::Reply reply) { kept.push_back(std::move(reply)); }, 0.05);
   SocketClient client{socket()};
   EXPECT_EQ(client.asked("slow"), "too late");
 }
@@ -152,7 +176,7 @@ TEST_F(ServerTest, WhatACrashLeftBehindIsReplaced) {
 TEST_F(ServerTest, ALiveDaemonIsNotReplaced) {
   serve_echo();
   try {
-    const Server second{{socket(), [](const std::string&, const Server::Reply&) {}, ""}};
+    const Server second{{socket(), [](const std::string&, bool, const Server::Reply&) {}, ""}};
     FAIL() << "must refuse";
   } catch (const AlreadyServed& error) {
     EXPECT_EQ(error.what(), socket().string() + ": another daemon listens there");
@@ -164,7 +188,7 @@ TEST_F(ServerTest, AFileOfSomebodyElseIsLeftAlone) {
   (void)folder_.write("ctl.sock", "precious");
   const auto refusal_at = [](const fs::path& path) -> std::string {
     try {
-      const Server server{{path, [](const std::string&, const Server::Reply&) {}, ""}};
+      const Server server{{path, [](const std::string&, bool, const Server::Reply&) {}, ""}};
     } catch (const std::runtime_error& error) {
       return error.what();
     }
