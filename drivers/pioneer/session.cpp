@@ -70,7 +70,7 @@ void PioneerSession::take_packet(const Packet& packet, Timestamp now, PioneerOut
   } else if (type == kSync2) {
     take_identity(packet, out);
   } else if (type == kConfigPacket) {
-    take_config(packet, out);
+    take_config(packet, now, out);
   } else if (type != kSync0 && type != kSync1) {
     ++content_counts_.unknown;
   }
@@ -90,30 +90,32 @@ void PioneerSession::take_sip(const Packet& packet, Timestamp now, PioneerOutput
       config_ && odometry.battery_v > 0.0 && odometry.battery_v <= kVoltsPerDecivolt * config_->low_battery_decivolts;
   odometry.fault_flags = newest_sip_->fault_flags.value_or(0);
   out.odometry.push_back(odometry);
-  if (mode_ == SessionMode::kLive) watch_motors(now, out);
+  if (mode_ == SessionMode::kLive) watch_motors(packet.first_byte, now, out);
 }
 
 void PioneerSession::take_identity(const Packet& packet, PioneerOutput& out) {
+  config_.reset();  // of an earlier connection
   const std::optional<RobotIdentity> identity = decoded_identity(packet.data);
   if (!identity) {  // the bare echo of an old controller, or CLOSE come back
     ++content_counts_.malformed;
     return;
   }
   identity_ = identity;
-  config_.reset();
   odometry_.begin_epoch();
   out.output.log.push_back("robot name=" + identity->name + " type=" + identity->type +
                            " subtype=" + identity->subtype);
   use_model_of(identity->subtype, out);
 }
 
-void PioneerSession::take_config(const Packet& packet, PioneerOutput& out) {
+void PioneerSession::take_config(const Packet& packet, Timestamp now, PioneerOutput& out) {
   std::optional<ConfigPacket> config = decoded_config(packet.data);
   if (!config) {
     ++content_counts_.malformed;
     return;
   }
+  const bool is_first = !knows_watchdog();
   config_ = std::move(config);
+  if (is_first && knows_watchdog()) next_check_ = now;
   use_model_of(config_->subtype, out);
 }
 
@@ -181,9 +183,12 @@ PioneerOutput PioneerSession::close(Timestamp now) {
 }
 
 /// CLOSE takes the current from the motors and our deceleration from the controller: a robot that still moves then
-/// rolls on. Only a robot that we have opened hears CLOSE; one that waits for a connection may take it amiss.
+/// rolls on. Only a robot that we have opened hears CLOSE, one that waits for a connection may take it amiss; and only
+/// at our own wish: where the link has failed, the SIPs of the connection that is left over will tell what buttons were
+/// pressed meanwhile, and CLOSE would wipe that out.
 void PioneerSession::leave(std::optional<std::string> reason, Timestamp close_at) {
-  owes_close_ = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
+  const bool has_opened = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
+  owes_close_ = has_opened && !reason;
   push_stop();
   state_ = State::kLeaving;
   deadline_ = close_at;
@@ -200,7 +205,8 @@ Duration PioneerSession::time_to_stand() const {
 
 Duration PioneerSession::watchdog() const {
   constexpr unsigned kDefaultMs = 2000;
-  return std::chrono::milliseconds{config_ && config_->watchdog_ms > 0 ? config_->watchdog_ms : kDefaultMs};
+  const unsigned told_ms = config_ ? config_->watchdog_ms.value_or(0) : 0;
+  return std::chrono::milliseconds{told_ms > 0 ? told_ms : kDefaultMs};
 }
 
 Duration PioneerSession::pulse_interval() const {
@@ -247,8 +253,8 @@ Timestamp PioneerSession::next_wake() const {
   }
   const std::optional<Timestamp> due = queue_.next_due();
   if (!due) return wake_at;
-  const bool waits_for_queue = state_ == State::kQuieting || state_ == State::kClosing || state_ == State::kSwitching ||
-                               state_ == State::kLeaving;
+  const bool waits_for_queue = state_ == State::kQuieting || state_ == State::kObserving || state_ == State::kClosing ||
+                               state_ == State::kSwitching || state_ == State::kLeaving;
   return waits_for_queue ? *due : std::min(wake_at, *due);
 }
 

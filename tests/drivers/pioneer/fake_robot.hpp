@@ -40,16 +40,18 @@ class FakeRobot {
       decoder_.set_baud(*new_baud_);
       new_baud_.reset();
     }
-    if (connected && now - last_heard_ > std::chrono::milliseconds{config.watchdog_ms}) watchdog_has_stopped = true;
+    const int watchdog_ms = config.watchdog_ms.value_or(0);
+    const bool is_due = watchdog_ms > 0 && now - last_heard_ > std::chrono::milliseconds{watchdog_ms};
+    if (connected && is_due) watchdog_has_stopped = true;
     moves = connected && motors_on && !watchdog_has_stopped && (speed != 0 || turn_rate != 0);
     has_ever_moved = has_ever_moved || moves;
     if (!connected || is_mute || now < next_sip_) return;
     next_sip_ = now + std::chrono::milliseconds{100};
     if (moves) sip.x_units = static_cast<std::uint16_t>((sip.x_units + speed / 10) & 0x7FFF);
     sip.moving = moves;
-    sip.flags =
-        static_cast<std::uint16_t>((motors_on ? sip_flag::kMotorsEnabled : 0) |
-                                   (stop_button ? sip_flag::kStopButton : 0) | (sonar_on ? sip_flag::kSonarArrays : 0));
+    sip.flags = static_cast<std::uint16_t>((motors_on ? sip_flag::kMotorsEnabled : 0) |
+                                           (stop_button ? sip_flag::kStopButton : 0) |
+                                           (estall ? sip_flag::kEstall : 0) | (sonar_on ? sip_flag::kSonarArrays : 0));
     send(encoded_sip(sip), now);
   }
 
@@ -65,6 +67,7 @@ class FakeRobot {
   bool motors_on = false;
   bool sonar_on = true;
   bool stop_button = false;
+  bool estall = false;  ///< shown; ENABLE 1 is obeyed all the same
   bool watchdog_has_stopped = false;
   bool moves = false;
   bool has_ever_moved = false;
@@ -72,6 +75,7 @@ class FakeRobot {
   bool is_deaf = false;  ///< commands are lost
   bool follows_host_baud = true;
   bool takes_limits = true;
+  bool tells_config = true;
   unsigned idle_baud = 0;  ///< fallen back to at CLOSE; 0: stays
   int closes_to_lose = 0;
   int sync1_to_garble = 0;  ///< answers of type FF
@@ -150,7 +154,7 @@ class FakeRobot {
         sonar_on = value == 1;
         break;
       case CommandNumber::kConfig:
-        send(encoded_config(config), now);
+        if (tells_config) send(encoded_config(config), now);
         break;
       case CommandNumber::kSetV:
       case CommandNumber::kSetRv:
