@@ -18,7 +18,7 @@ struct FileInUse : std::runtime_error {
 class FileLock {
  public:
   /// Throws FileInUse where another program, or another lock of this one, holds it; std::system_error where the lock
-  /// file cannot be made. `what` is what the line names.
+  /// file can neither be made nor, being another user's, be read. `what` is what the line names.
   FileLock(std::filesystem::path lock_file, const std::string& what);
   /// The lock file goes with it.
   ~FileLock();

@@ -31,11 +31,12 @@ void require_place(const fs::path& file) {
   }
 }
 
+/// Throws StartError where nobody can say whether another program has it: a store in use is never set aside.
 std::optional<FileLock> lock_of(const fs::path& file) {
   try {
     return lock_of_file(file);
-  } catch (const std::system_error&) {  // nothing can be written there: nothing needs to be locked
-    return std::nullopt;
+  } catch (const std::system_error& error) {
+    throw StartError(error.what());
   }
 }
 
