@@ -105,8 +105,16 @@ FileLock& FileLock::operator=(FileLock&& other) noexcept {
   return *this;
 }
 
+std::filesystem::path file_behind(std::filesystem::path name) {
+  constexpr int kMostLinks = 40;  // as the kernel has it
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(name)); ++i) {
+    name = name.parent_path() / std::filesystem::read_symlink(name);
+  }
+  return std::filesystem::weakly_canonical(name);
+}
+
 std::optional<FileLock> lock_of_file(const std::filesystem::path& file) {
-  return locked(file.string() + ".lock", file.string());
+  return locked(file_behind(file).string() + ".lock", file.string());
 }
 
 std::optional<FileLock> lock_of_folder(const std::filesystem::path& folder) {

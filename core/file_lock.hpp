@@ -30,7 +30,10 @@ class FileLock {
   int descriptor_ = -1;
 };
 
-/// The lock of one file, NAME.lock beside it; nothing where the disk is full or read-only, so that there can be none.
+/// The file that a name leads to through links, also where it does not exist yet. Throws std::system_error.
+[[nodiscard]] std::filesystem::path file_behind(std::filesystem::path name);
+/// The lock of one file, NAME.lock beside it, and of every link to it; nothing where the disk is full or read-only, so
+/// that there can be none.
 [[nodiscard]] std::optional<FileLock> lock_of_file(const std::filesystem::path& file);
 /// The lock of everything in a folder that exists, .lock in it; nothing as above.
 [[nodiscard]] std::optional<FileLock> lock_of_folder(const std::filesystem::path& folder);

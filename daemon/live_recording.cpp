@@ -51,6 +51,7 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       bauds_{options_.bauds.robot, options_.bauds.laser},
       last_stamp_{options_.began} {
   require_place(options_.file);
+  options_.file = file_behind(options_.file);
   lock_ = lock_of_file(options_.file);
   keep_previous(options_.file);
   attempt(options_.began, [this] { go_on(); });

@@ -24,6 +24,6 @@ struct OpenedStore {
 
 /// Throws FileInUse where another program has it, StartError where only a person can mend it (the place is wrong, may
 /// not be read, or cannot be locked).
-[[nodiscard]] OpenedStore open_store(const std::filesystem::path& file, const OccupancyGrid& first);
+[[nodiscard]] OpenedStore open_store(const std::filesystem::path& name, const OccupancyGrid& first);
 
 }  // namespace deltamap::daemon

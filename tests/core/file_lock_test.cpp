@@ -71,6 +71,20 @@ TEST(FileLock, OfAnotherUserIsRespectedThroughAFileThatMayOnlyBeRead) {
   EXPECT_NE(refusal(file).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << refusal(file);
 }
 
+TEST(FileLock, IsThatOfTheFileBehindALink) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "store.sqlite";
+  std::filesystem::create_directory(folder.path() / "links");
+  std::filesystem::create_symlink("../store.sqlite", folder.path() / "links/link");
+  std::filesystem::create_symlink(folder.path() / "links/link", folder.path() / "link");
+  for (const bool exists : {false, true}) {
+    if (exists) (void)folder.write("store.sqlite", "");
+    const auto lock = lock_of_file(file);
+    EXPECT_NE(refusal(folder.path() / "link"), "") << exists;
+    EXPECT_NE(refusal(folder.path() / "links/link"), "") << exists;
+  }
+}
+
 TEST(FileLock, LeftByAnotherUserIsReplacedByOneThatNamesItsHolder) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "store.sqlite";

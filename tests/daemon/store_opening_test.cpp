@@ -157,6 +157,19 @@ TEST_F(StoreOpening, SetAsideNeverReplacesWhatWasSetAsideBefore) {
   EXPECT_EQ(fs::file_size(file.string() + ".set-aside-2"), 10'000u);
 }
 
+TEST_F(StoreOpening, BehindALinkTheDatabaseIsSetAsideAndNotTheLink) {
+  (void)folder.write("store.sqlite", std::string(10'000, 'x'));
+  fs::create_directory(folder.path() / "links");
+  const fs::path link = folder.path() / "links" / "link.sqlite";
+  fs::create_symlink(file, link);
+  const OpenedStore opened = open_store(link, first);
+  EXPECT_EQ(fs::file_size(file.string() + ".set-aside-1"), 10'000u);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(opened.store.store);
+  EXPECT_EQ((MapStore{file, first}.newest()), 0u);
+  EXPECT_THROW((void)open_store(file, first), FileInUse);
+}
+
 TEST_F(StoreOpening, AnotherMapBeginsItsOwnHistoryInTheSameFile) {
   fill();
   OccupancyGrid other = first;
