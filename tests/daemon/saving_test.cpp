@@ -179,6 +179,28 @@ TEST_F(Recording, BeginsLaterWhereTheDiskIsFullAtTheStart) {
             (std::vector<std::string>{"run", "records lost here", "baud 9600", "baud 9600", "laser 7 at 9600"}));
 }
 
+TEST_F(Recording, AlwaysSaysWhatTheRunBeganFrom) {
+  for (const rlim_t room : {400u, 480u, 560u, 640u}) {  // behind the header, and in the middle of the notes
+    LiveRecording::Options large = options();
+    large.first_notes = {"run", "map " + std::string(300, 'x')};
+    {
+      std::optional<LiveRecording> recording;
+      {
+        const test::FullDisk full{room};
+        recording.emplace(large, telemetry, warn());
+        recording->flush(at_s(0.5));
+      }
+      recording->write(record_at(5, 7), at_s(5));
+      recording->close(at_s(6));
+    }
+    const std::vector<std::string> all = told();
+    ASSERT_GE(all.size(), 3u) << room;
+    EXPECT_EQ(std::vector<std::string>(all.begin(), all.begin() + 2), large.first_notes) << room;
+    EXPECT_EQ(std::count(all.begin(), all.end(), "run"), 1) << room;
+    EXPECT_EQ(all.back(), "laser 7 at 9600");
+  }
+}
+
 TEST_F(Recording, OfAnotherDaemonIsNotTouched) {
   LiveRecording first{options(), telemetry, warn()};
   first.write(record_at(1, 1), at_s(1));
