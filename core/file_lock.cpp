@@ -38,6 +38,22 @@ bool is_current(int descriptor, const std::filesystem::path& file) {
   throw std::system_error(errno, std::generic_category(), file.string() + ": cannot be locked");
 }
 
+struct OpenLockFile {
+  int descriptor = -1;
+  bool may_write = true;
+};
+
+/// The file of another user may at least be read, and be locked so. Throws std::system_error.
+OpenLockFile opened(const std::filesystem::path& file) {
+  const int to_write = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  if (to_write >= 0) return {to_write, true};
+  if (errno != EACCES) fail(file);
+  const int to_read = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (to_read >= 0) return {to_read, false};
+  errno = EACCES;  // not ENOENT: it is the folder that forbids
+  fail(file);
+}
+
 std::optional<FileLock> locked(const std::filesystem::path& lock_file, const std::string& what) {
   try {
     return FileLock{lock_file, what};
@@ -52,8 +68,7 @@ std::optional<FileLock> locked(const std::filesystem::path& lock_file, const std
 
 FileLock::FileLock(std::filesystem::path lock_file, const std::string& what) : file_{std::move(lock_file)} {
   for (;;) {
-    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-    if (descriptor < 0) fail(file_);
+    const auto [descriptor, may_write] = opened(file_);
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const int reason = errno;
       const std::string holder = text_in(descriptor);
@@ -62,7 +77,9 @@ FileLock::FileLock(std::filesystem::path lock_file, const std::string& what) : f
       if (reason != EWOULDBLOCK) fail(file_);
       throw FileInUse(what + ": is in use by " + (holder.empty() ? "another program" : holder));
     }
-    if (is_current(descriptor, file_)) {
+    // Nobody holds what another user has left: one of its own names the holder.
+    const bool is_replaced = !may_write && is_current(descriptor, file_) && ::unlink(file_.c_str()) == 0;
+    if (!is_replaced && is_current(descriptor, file_)) {
       descriptor_ = descriptor;
       break;
     }
@@ -88,8 +105,16 @@ FileLock& FileLock::operator=(FileLock&& other) noexcept {
   return *this;
 }
 
+std::filesystem::path file_behind(std::filesystem::path name) {
+  constexpr int kMostLinks = 40;  // as the kernel has it
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(name)); ++i) {
+    name = name.parent_path() / std::filesystem::read_symlink(name);
+  }
+  return std::filesystem::weakly_canonical(name);
+}
+
 std::optional<FileLock> lock_of_file(const std::filesystem::path& file) {
-  return locked(file.string() + ".lock", file.string());
+  return locked(file_behind(file).string() + ".lock", file.string());
 }
 
 std::optional<FileLock> lock_of_folder(const std::filesystem::path& folder) {

@@ -18,7 +18,7 @@ struct FileInUse : std::runtime_error {
 class FileLock {
  public:
   /// Throws FileInUse where another program, or another lock of this one, holds it; std::system_error where the lock
-  /// file cannot be made. `what` is what the line names.
+  /// file can neither be made nor, being another user's, be read. `what` is what the line names.
   FileLock(std::filesystem::path lock_file, const std::string& what);
   /// The lock file goes with it.
   ~FileLock();
@@ -30,7 +30,10 @@ class FileLock {
   int descriptor_ = -1;
 };
 
-/// The lock of one file, NAME.lock beside it; nothing where the disk is full or read-only, so that there can be none.
+/// The file that a name leads to through links, also where it does not exist yet. Throws std::system_error.
+[[nodiscard]] std::filesystem::path file_behind(std::filesystem::path name);
+/// The lock of one file, NAME.lock beside it, and of every link to it; nothing where the disk is full or read-only, so
+/// that there can be none.
 [[nodiscard]] std::optional<FileLock> lock_of_file(const std::filesystem::path& file);
 /// The lock of everything in a folder that exists, .lock in it; nothing as above.
 [[nodiscard]] std::optional<FileLock> lock_of_folder(const std::filesystem::path& folder);

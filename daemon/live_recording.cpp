@@ -51,17 +51,26 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       bauds_{options_.bauds.robot, options_.bauds.laser},
       last_stamp_{options_.began} {
   require_place(options_.file);
+  options_.file = file_behind(options_.file);
   lock_ = lock_of_file(options_.file);
   keep_previous(options_.file);
   attempt(options_.began, [this] { go_on(); });
 }
 
-void LiveRecording::go_on() {
-  if (!writer_) {
+void LiveRecording::begin() {
+  try {
     writer_.emplace(options_.file, drivers::port::FirstBauds{bauds_[0], bauds_[1]});
     for (const std::string& note : options_.first_notes) writer_->write(note_at(last_stamp_, note));
-    options_.first_notes.clear();
+    writer_->flush();
+  } catch (const std::exception&) {
+    writer_.reset();  // the next attempt begins the file anew: without its first notes it says nothing of its run
+    throw;
   }
+  options_.first_notes.clear();
+}
+
+void LiveRecording::go_on() {
+  if (!writer_) begin();
   if (!has_gap_) return;
   writer_->write(note_at(last_stamp_, kGapNote));
   for (const PortId port : {PortId::kRobot, PortId::kLaser}) {

@@ -37,6 +37,8 @@ class LiveRecording {
   void close(Timestamp now);
 
  private:
+  /// The file with what the run begins from; all of it or nothing. Throws std::runtime_error where it cannot.
+  void begin();
   /// Throws std::runtime_error where it cannot.
   void go_on();
   void attempt(Timestamp now, const std::function<void()>& write);

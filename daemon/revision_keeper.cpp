@@ -68,9 +68,11 @@ void RevisionKeeper::store_missed() {
       note.cause += " (" + std::to_string(missed_revision_->first - to_.numbers_before) + " to " +
                     std::to_string(newest.number - to_.numbers_before) + " in one)";
     }
-    // A store that could be opened only now may hold more than this run knew of.
+    // A store that could be opened only now, or that another program has written to, holds more than this run knew of.
+    store.catch_up();
     const std::uint32_t number = std::max(newest.number - to_.numbers_before, store.newest() + 1);
     store.append_whole(number, newest.time, *newest.map, note);
+    to_.numbers_before = newest.number - number;
     missed_revision_.reset();
   }
   if (missed_refusal_) {

@@ -17,7 +17,7 @@
 namespace deltamap::daemon {
 
 /// `numbers_before` is what the store does not count: the revision that the run started on, where the store began with
-/// it. Throws std::runtime_error naming the file.
+/// it; modulo 2^32, for a store can be ahead of the run. Throws std::runtime_error naming the file.
 void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_view method,
           std::uint32_t numbers_before = 0);
 

@@ -31,11 +31,21 @@ void require_place(const fs::path& file) {
   }
 }
 
+/// What is opened, locked and set aside is the database, and no link to it.
+fs::path behind(const fs::path& name) {
+  try {
+    return file_behind(name);
+  } catch (const std::system_error& error) {
+    throw StartError(error.what());
+  }
+}
+
+/// Throws StartError where nobody can say whether another program has it: a store in use is never set aside.
 std::optional<FileLock> lock_of(const fs::path& file) {
   try {
     return lock_of_file(file);
-  } catch (const std::system_error&) {  // nothing can be written there: nothing needs to be locked
-    return std::nullopt;
+  } catch (const std::system_error& error) {
+    throw StartError(error.what());
   }
 }
 
@@ -102,8 +112,9 @@ void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGri
 
 }  // namespace
 
-OpenedStore open_store(const fs::path& file, const OccupancyGrid& first) {
-  require_place(file);
+OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
+  require_place(name);
+  const fs::path file = behind(name);
   OpenedStore opened;
   opened.lock = lock_of(file);
   try {

@@ -22,8 +22,8 @@ struct OpenedStore {
   std::vector<std::string> warnings;  ///< a short line each
 };
 
-/// Throws FileInUse where another program has it, StartError where only a person can mend it (the place is wrong or may
-/// not be read).
-[[nodiscard]] OpenedStore open_store(const std::filesystem::path& file, const OccupancyGrid& first);
+/// Throws FileInUse where another program has it, StartError where only a person can mend it (the place is wrong, may
+/// not be read, or cannot be locked).
+[[nodiscard]] OpenedStore open_store(const std::filesystem::path& name, const OccupancyGrid& first);
 
 }  // namespace deltamap::daemon

@@ -234,6 +234,7 @@ MapStore& MapStore::operator=(MapStore&&) noexcept = default;
 
 std::uint32_t MapStore::newest() const { return state_->newest; }
 std::uint32_t MapStore::dropped() const { return state_->dropped; }
+void MapStore::catch_up() { state_->newest = state_->newest_written(); }
 
 OccupancyGrid MapStore::grid(std::uint32_t number) const {
   if (number > state_->newest) state_->fail_as_missing(number);

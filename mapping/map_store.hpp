@@ -51,6 +51,8 @@ class MapStore {
   [[nodiscard]] std::uint32_t newest() const;
   /// Damaged revisions that opening has dropped.
   [[nodiscard]] std::uint32_t dropped() const;
+  /// What another program has written since it was opened counts, too.
+  void catch_up();
   /// M_k. Throws std::runtime_error where there is no such revision, or it is damaged.
   [[nodiscard]] OccupancyGrid grid(std::uint32_t number) const;
   /// Accepted and refused, in the order in which they were written.

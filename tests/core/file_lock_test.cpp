@@ -7,6 +7,7 @@
 
 #include <csignal>
 
+#include "tests/support/not_root.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap {
@@ -57,6 +58,50 @@ TEST(FileLock, OfAFolderIsOneForAllInIt) {
   const test::TemporaryFolder folder;
   const auto lock = lock_of_folder(folder.path());
   EXPECT_THROW((void)lock_of_folder(folder.path() / "."), FileInUse);
+}
+
+TEST(FileLock, OfAnotherUserIsRespectedThroughAFileThatMayOnlyBeRead) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "store.sqlite";
+  const auto lock = lock_of_file(file);
+  const auto lock_file = file.string() + ".lock";
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  std::filesystem::permissions(lock_file, std::filesystem::perms{0444});
+  const test::NotRoot another_user;
+  EXPECT_NE(refusal(file).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << refusal(file);
+}
+
+TEST(FileLock, IsThatOfTheFileBehindALink) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "store.sqlite";
+  std::filesystem::create_directory(folder.path() / "links");
+  std::filesystem::create_symlink("../store.sqlite", folder.path() / "links/link");
+  std::filesystem::create_symlink(folder.path() / "links/link", folder.path() / "link");
+  for (const bool exists : {false, true}) {
+    if (exists) (void)folder.write("store.sqlite", "");
+    const auto lock = lock_of_file(file);
+    EXPECT_NE(refusal(folder.path() / "link"), "") << exists;
+    EXPECT_NE(refusal(folder.path() / "links/link"), "") << exists;
+  }
+}
+
+TEST(FileLock, LeftByAnotherUserIsReplacedByOneThatNamesItsHolder) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "store.sqlite";
+  (void)folder.write("store.sqlite.lock", "deltamapd (pid 1)\n");
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  std::filesystem::permissions(file.string() + ".lock", std::filesystem::perms{0444});
+  const test::NotRoot another_user;
+  const auto lock = lock_of_file(file);
+  EXPECT_NE(refusal(file).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << refusal(file);
+}
+
+TEST(FileLock, ThatMayNotEvenBeReadIsAnError) {
+  const test::TemporaryFolder folder;
+  std::filesystem::permissions(folder.write("store.sqlite.lock", ""), std::filesystem::perms::none);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  const test::NotRoot another_user;
+  EXPECT_THROW((void)lock_of_file(folder.path() / "store.sqlite"), std::system_error);
 }
 
 TEST(FileLock, WhereThereIsNoFolderIsAnError) {

@@ -179,6 +179,28 @@ TEST_F(Recording, BeginsLaterWhereTheDiskIsFullAtTheStart) {
             (std::vector<std::string>{"run", "records lost here", "baud 9600", "baud 9600", "laser 7 at 9600"}));
 }
 
+TEST_F(Recording, AlwaysSaysWhatTheRunBeganFrom) {
+  for (const rlim_t room : {400u, 480u, 560u, 640u}) {  // behind the header, and in the middle of the notes
+    LiveRecording::Options large = options();
+    large.first_notes = {"run", "map " + std::string(300, 'x')};
+    {
+      std::optional<LiveRecording> recording;
+      {
+        const test::FullDisk full{room};
+        recording.emplace(large, telemetry, warn());
+        recording->flush(at_s(0.5));
+      }
+      recording->write(record_at(5, 7), at_s(5));
+      recording->close(at_s(6));
+    }
+    const std::vector<std::string> all = told();
+    ASSERT_GE(all.size(), 3u) << room;
+    EXPECT_EQ(std::vector<std::string>(all.begin(), all.begin() + 2), large.first_notes) << room;
+    EXPECT_EQ(std::count(all.begin(), all.end(), "run"), 1) << room;
+    EXPECT_EQ(all.back(), "laser 7 at 9600");
+  }
+}
+
 TEST_F(Recording, OfAnotherDaemonIsNotTouched) {
   LiveRecording first{options(), telemetry, warn()};
   first.write(record_at(1, 1), at_s(1));
@@ -191,6 +213,18 @@ TEST_F(Recording, OfAnotherDaemonIsNotTouched) {
   }
   EXPECT_FALSE(fs::exists(folder.path() / "bytes.previous.pcapng"));
   EXPECT_EQ(told().size(), 2u);
+}
+
+TEST_F(Recording, BehindALinkIsKeptAndLockedWhereItIs) {
+  (void)folder.write("bytes.pcapng", "older");
+  LiveRecording::Options linked = options();
+  fs::create_directory(folder.path() / "links");
+  linked.file = folder.path() / "links" / "link.pcapng";
+  fs::create_symlink(file, linked.file);
+  LiveRecording recording{linked, telemetry, warn()};
+  EXPECT_TRUE(fs::is_symlink(linked.file));
+  EXPECT_EQ(content_of(folder.path() / "bytes.previous.pcapng"), "older");
+  EXPECT_THROW(LiveRecording(options(), telemetry, warn()), FileInUse);
 }
 
 TEST_F(Recording, InAFolderThatIsNotThereIsAPersonsMistake) {
@@ -269,6 +303,22 @@ TEST_F(SavingMaps, WhatWasMissedIsStoredWholeWhenThereIsRoomAgain) {
     EXPECT_EQ(history[3].occupied, 3u);
     EXPECT_TRUE(history[4].refused);
   }
+}
+
+TEST_F(SavingMaps, GoesOnBehindWhatAnotherProgramHasWrittenIntoTheStore) {
+  MapOutputs outputs{options(), telemetry.outputs, warn(), at_s(0)};
+  outputs.save(result_of(1), at_s(1));
+  EXPECT_EQ((mapping::MapStore{store, *start.map}.roll_back(0, at_s(1.5))), 2u);
+  outputs.save(result_of(2), at_s(2));
+  EXPECT_FALSE(status("store").written);
+  outputs.retry(at_s(4));
+  EXPECT_TRUE(status("store").written) << status("store").why;
+  outputs.save(result_of(3), at_s(5));
+  EXPECT_EQ(warnings.size(), 2u);
+  const mapping::MapStore kept{store, *start.map};
+  EXPECT_EQ(kept.newest(), 4u);
+  EXPECT_EQ(kept.grid(2), *start.map);
+  for (const std::uint32_t number : {2, 3}) EXPECT_EQ(kept.grid(number + 1), *result_of(number).revision->map);
 }
 
 TEST_F(SavingMaps, ADiskThatIsFullAtTheStartAndFreeAtTheEnd) {

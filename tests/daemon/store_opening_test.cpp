@@ -13,6 +13,7 @@
 #include "daemon/start_error.hpp"
 #include "mapping/map_store.hpp"
 #include "tests/support/full_disk.hpp"
+#include "tests/support/not_root.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::daemon {
@@ -156,6 +157,19 @@ TEST_F(StoreOpening, SetAsideNeverReplacesWhatWasSetAsideBefore) {
   EXPECT_EQ(fs::file_size(file.string() + ".set-aside-2"), 10'000u);
 }
 
+TEST_F(StoreOpening, BehindALinkTheDatabaseIsSetAsideAndNotTheLink) {
+  (void)folder.write("store.sqlite", std::string(10'000, 'x'));
+  fs::create_directory(folder.path() / "links");
+  const fs::path link = folder.path() / "links" / "link.sqlite";
+  fs::create_symlink(file, link);
+  const OpenedStore opened = open_store(link, first);
+  EXPECT_EQ(fs::file_size(file.string() + ".set-aside-1"), 10'000u);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(opened.store.store);
+  EXPECT_EQ((MapStore{file, first}.newest()), 0u);
+  EXPECT_THROW((void)open_store(file, first), FileInUse);
+}
+
 TEST_F(StoreOpening, AnotherMapBeginsItsOwnHistoryInTheSameFile) {
   fill();
   OccupancyGrid other = first;
@@ -206,10 +220,8 @@ TEST_F(StoreOpening, AReadOnlyFileIsSetAsideAndItsMapGoesOn) {
   fill();
   fs::permissions(folder.path(), fs::perms::all);
   fs::permissions(file, fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
-  const bool is_root = geteuid() == 0;  // to whom every file is writable
-  if (is_root && ::seteuid(65534) != 0) GTEST_SKIP() << "cannot be another user here";
+  const test::NotRoot another_user;
   EXPECT_EQ(expect_set_aside(), kRevisions);
-  if (is_root) (void)::seteuid(0);
 }
 
 TEST_F(StoreOpening, AStoreInUseIsRefusedByTheNameOfItsHolder) {
@@ -220,6 +232,27 @@ TEST_F(StoreOpening, AStoreInUseIsRefusedByTheNameOfItsHolder) {
   } catch (const FileInUse& error) {
     EXPECT_NE(std::string(error.what()).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos);
   }
+}
+
+TEST_F(StoreOpening, OfADaemonOfAnotherUserIsNotTakenAway) {
+  fill();
+  const OpenedStore opened = open_store(file, first);
+  for (const char* part : {"", ".lock"}) fs::permissions(file.string() + part, fs::perms{0444});
+  fs::permissions(folder.path(), fs::perms::all);
+  const test::NotRoot another_user;
+  EXPECT_THROW((void)open_store(file, first), FileInUse);
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_FALSE(fs::exists(file.string() + ".set-aside-1"));
+}
+
+TEST_F(StoreOpening, ThatCannotBeLockedIsNeverSetAside) {
+  (void)folder.write("store.sqlite", std::string(10'000, 'x'));
+  fs::permissions(folder.write("store.sqlite.lock", ""), fs::perms::none);
+  fs::permissions(folder.path(), fs::perms::all);
+  const test::NotRoot another_user;
+  EXPECT_THROW((void)open_store(file, first), StartError);
+  EXPECT_EQ(fs::file_size(file), 10'000u);
+  EXPECT_FALSE(fs::exists(file.string() + ".set-aside-1"));
 }
 
 TEST_F(StoreOpening, APlaceThatIsNoneIsAPersonsMistake) {
