@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,8 @@ struct Motion {
 
 /// What the controller does by itself.
 struct StoppingBehaviour {
-  double watchdog_s = 2.0;                               ///< silence after which it stops by itself; infinite: never
-  double deceleration_m_per_s2 = 0.3;                    ///< > 0
+  std::optional<double> watchdog_s;    ///< silence after which it stops by itself; infinite: never; nothing: not known
+  double deceleration_m_per_s2 = 0.3;  ///< > 0
   double turn_deceleration_rad_per_s2 = radians(100.0);  ///< > 0
 };
 

@@ -75,8 +75,10 @@ StopReason Safety::blocking_state(Timestamp now) const {
   if (const StopReason held = waits_for(); held != StopReason::kNone) return held;
   if (const StopReason silent = silence(now); silent != StopReason::kNone) return silent;
   if (odometry_->stop_button) return StopReason::kStopButton;
+  // Before the motors: they are not enabled until it is known.
+  if (!stopping_.watchdog_s) return StopReason::kWatchdogUnknown;
   if (!odometry_->motors_enabled) return StopReason::kMotorsOff;
-  if (!std::isfinite(stopping_.watchdog_s)) return StopReason::kNoWatchdog;
+  if (!std::isfinite(*stopping_.watchdog_s)) return StopReason::kNoWatchdog;
   if (implausible_at_ && seconds(now - *implausible_at_) < params_.plausible_s) return StopReason::kImplausible;
   if (command_->held_by != StopReason::kNone) return command_->held_by;
   return command_->command.speed_m_per_s < 0.0 ? StopReason::kReverse : StopReason::kNone;
@@ -98,7 +100,7 @@ Coasting Safety::coasting(const Motion& at_first, const Motion& then, double bli
   return {.at_first = at_first,
           .at_first_s = blind_s,
           .then = then,
-          .then_s = stopping_.watchdog_s + kControllerCycleS,
+          .then_s = stopping_.watchdog_s.value() + kControllerCycleS,
           .deceleration_m_per_s2 = std::min(params_.deceleration_m_per_s2, stopping_.deceleration_m_per_s2),
           .turn_deceleration_rad_per_s2 = stopping_.turn_deceleration_rad_per_s2};
 }

@@ -13,6 +13,8 @@ std::string_view name_of(StopReason reason) {
       return "command expired";
     case StopReason::kNoOdometry:
       return "no odometry";
+    case StopReason::kWatchdogUnknown:
+      return "watchdog not known";
     case StopReason::kNoWatchdog:
       return "no watchdog";
     case StopReason::kStopButton:

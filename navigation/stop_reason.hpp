@@ -13,6 +13,7 @@ enum class StopReason : std::uint8_t {
   kNoCommand,        ///< nobody drives
   kCommandExpired,   ///< the pilot has fallen silent
   kNoOdometry,       ///< the robot has fallen silent
+  kWatchdogUnknown,  ///< the controller has not told it: where the robot would stop is not known
   kNoWatchdog,       ///< the controller would go on for ever if nobody spoke to it
   kStopButton,       ///< pressed
   kMotorsOff,        ///< not enabled, or switched off by a person

@@ -107,20 +107,16 @@ DecodedFrame config_frame(const ConfigPacket& config) {
                   {"serial_number", config.serial_number},
                   {"name", config.name},
                   {"sip_cycle_ms", whole(config.sip_cycle_ms)},
-                  {"host_baud", whole(config.host_baud)},
-                  {"watchdog_ms", whole(config.watchdog_ms)},
-                  {"trans_vel_max", whole(config.trans_vel_max)},
-                  {"rot_vel_max", whole(config.rot_vel_max)},
-                  {"front_bumpers", whole(config.front_bumpers)},
-                  {"rear_bumpers", whole(config.rear_bumpers)},
-                  {"auto_baud", whole(config.auto_baud)},
-                  {"has_gyro", whole(config.has_gyro)},
-                  {"rev_count", whole(config.rev_count)},
-                  {"ticks_per_mm", whole(config.ticks_per_mm)},
-                  {"drift_factor", whole(config.drift_factor)},
-                  {"low_battery_decivolts", whole(config.low_battery_decivolts)},
-                  {"firmware_version", config.firmware_version},
-                  {"kinematics_delay_ms", whole(config.kinematics_delay_ms)}};
+                  {"host_baud", whole(config.host_baud)}};
+  add_if_there(frame.fields, "watchdog_ms", config.watchdog_ms);
+  const NamedFields rest{
+      {"trans_vel_max", whole(config.trans_vel_max)}, {"rot_vel_max", whole(config.rot_vel_max)},
+      {"front_bumpers", whole(config.front_bumpers)}, {"rear_bumpers", whole(config.rear_bumpers)},
+      {"auto_baud", whole(config.auto_baud)},         {"has_gyro", whole(config.has_gyro)},
+      {"rev_count", whole(config.rev_count)},         {"ticks_per_mm", whole(config.ticks_per_mm)},
+      {"drift_factor", whole(config.drift_factor)},   {"low_battery_decivolts", whole(config.low_battery_decivolts)},
+      {"firmware_version", config.firmware_version},  {"kinematics_delay_ms", whole(config.kinematics_delay_ms)}};
+  frame.fields.insert(frame.fields.end(), rest.begin(), rest.end());
   return frame;
 }
 

@@ -47,6 +47,10 @@ struct Reading {
     const std::int16_t value = fields.s16();
     return accept([&] { field = value; });
   }
+  bool operator()(std::optional<std::uint16_t>& field) {
+    const std::uint16_t value = fields.u16();
+    return accept([&] { field = value; });
+  }
 
   template <typename Assign>
   bool accept(Assign&& assign) {
@@ -64,6 +68,7 @@ struct Writing {
   bool operator()(std::uint8_t field) { return data.u8(field), true; }
   bool operator()(std::uint16_t field) { return data.u16(field), true; }
   bool operator()(std::int16_t field) { return data.s16(field), true; }
+  bool operator()(const std::optional<std::uint16_t>& field) { return field && (data.u16(*field), true); }
 };
 
 }  // namespace
@@ -72,6 +77,7 @@ std::optional<ConfigPacket> decoded_config(std::span<const std::uint8_t> data) {
   FieldReader fields{data};
   if (fields.u8() != kConfigPacket) return std::nullopt;
   ConfigPacket config;
+  config.watchdog_ms.reset();
   Reading reading{fields};
   visit_fields(config, reading);
   constexpr unsigned kTypeAndSubtype = 2;

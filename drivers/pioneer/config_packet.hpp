@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // CONFIGpac (protocols.md A10): what the controller's flash says about this robot. Firmware versions stop at different
-// fields; those that did not come keep their defaults.
+// fields; those that did not come keep their defaults, but for the watchdog: what it is decides whether the robot is
+// driven.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +34,7 @@ struct ConfigPacket {
   std::uint8_t rear_sonar = 0;
   std::uint16_t low_battery_decivolts = 110;
   std::uint16_t rev_count = 16570;
-  std::uint16_t watchdog_ms = 2000;
+  std::optional<std::uint16_t> watchdog_ms = 2000;  ///< 0: none; nothing: the packet has ended before
   std::uint8_t p2_mpacs = 0;
   std::uint16_t stall_val = 200;
   std::uint16_t stall_count_ms = 100;
@@ -87,7 +88,8 @@ struct ConfigPacket {
 /// are ignored.
 [[nodiscard]] std::optional<ConfigPacket> decoded_config(std::span<const std::uint8_t> data);
 
-/// The whole frame with every field. The strings together must leave room in one packet (at most 80 bytes).
+/// The whole frame with every field; it ends before a watchdog that is nothing. The strings together must leave room in
+/// one packet (at most 80 bytes).
 [[nodiscard]] std::vector<std::uint8_t> encoded_config(const ConfigPacket& config);
 
 }  // namespace deltamap::drivers::pioneer

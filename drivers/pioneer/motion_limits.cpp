@@ -22,7 +22,7 @@ std::vector<Command> limit_commands(const MotionLimits& limits) {
 }
 
 bool shows(const ConfigPacket& config, const MotionLimits& limits) {
-  return config.trans_vel_max == whole_mm(limits.max_speed_m_per_s) &&
+  return config.watchdog_ms && config.trans_vel_max == whole_mm(limits.max_speed_m_per_s) &&
          config.rot_vel_max == whole_degrees(limits.max_turn_rate_rad_per_s) &&
          config.trans_acc == whole_mm(limits.acceleration_m_per_s2) &&
          config.trans_decel == whole_mm(limits.deceleration_m_per_s2) &&
@@ -33,8 +33,10 @@ bool shows(const ConfigPacket& config, const MotionLimits& limits) {
 StoppingLimits stopping_limits_of(const std::optional<ConfigPacket>& config) {
   StoppingLimits limits;
   if (!config) return limits;
-  limits.is_confirmed = true;
-  limits.watchdog_s = config->watchdog_ms > 0 ? 1e-3 * config->watchdog_ms : std::numeric_limits<double>::infinity();
+  if (config->watchdog_ms) {
+    limits.watchdog_s =
+        *config->watchdog_ms > 0 ? 1e-3 * *config->watchdog_ms : std::numeric_limits<double>::infinity();
+  }
   if (config->trans_decel > 0) limits.deceleration_m_per_s2 = 1e-3 * config->trans_decel;
   if (config->rot_decel > 0) limits.turn_deceleration_rad_per_s2 = radians(config->rot_decel);
   return limits;

@@ -25,18 +25,17 @@ struct MotionLimits {
 
 /// SETV, SETRV, SETA twice, SETRA twice.
 [[nodiscard]] std::vector<Command> limit_commands(const MotionLimits& limits);
-/// Whether the controller reports all of them, to the whole mm and degree of the wire.
+/// Whether the controller reports all of them, to the whole mm and degree of the wire, and its watchdog.
 [[nodiscard]] bool shows(const ConfigPacket& config, const MotionLimits& limits);
 
 /// How a robot that nobody speaks to any more comes to rest: it goes on for `watchdog_s`, then brakes.
 struct StoppingLimits {
-  double watchdog_s = 2.0;             ///< silence after which it stops by itself; infinite where it has none
+  std::optional<double> watchdog_s;    ///< silence after which it stops by itself; infinite: never; nothing: not told
   double deceleration_m_per_s2 = 0.3;  ///< flash default of a P3-DX until the controller has reported its own
-  double turn_deceleration_rad_per_s2 = radians(100.0);  ///< likewise
-  bool is_confirmed = false;                             ///< by the controller, in this connection
+  double turn_deceleration_rad_per_s2 = radians(100.0);  ///< flash default until then
 };
 
-/// What the controller reports; the defaults where it has not reported anything.
+/// What the controller has reported in this connection.
 [[nodiscard]] StoppingLimits stopping_limits_of(const std::optional<ConfigPacket>& config);
 
 }  // namespace deltamap::drivers::pioneer

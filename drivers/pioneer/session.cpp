@@ -70,7 +70,7 @@ void PioneerSession::take_packet(const Packet& packet, Timestamp now, PioneerOut
   } else if (type == kSync2) {
     take_identity(packet, out);
   } else if (type == kConfigPacket) {
-    take_config(packet, out);
+    take_config(packet, now, out);
   } else if (type != kSync0 && type != kSync1) {
     ++content_counts_.unknown;
   }
@@ -94,26 +94,28 @@ void PioneerSession::take_sip(const Packet& packet, Timestamp now, PioneerOutput
 }
 
 void PioneerSession::take_identity(const Packet& packet, PioneerOutput& out) {
+  config_.reset();  // of an earlier connection
   const std::optional<RobotIdentity> identity = decoded_identity(packet.data);
   if (!identity) {  // the bare echo of an old controller, or CLOSE come back
     ++content_counts_.malformed;
     return;
   }
   identity_ = identity;
-  config_.reset();
   odometry_.begin_epoch();
   out.output.log.push_back("robot name=" + identity->name + " type=" + identity->type +
                            " subtype=" + identity->subtype);
   use_model_of(identity->subtype, out);
 }
 
-void PioneerSession::take_config(const Packet& packet, PioneerOutput& out) {
+void PioneerSession::take_config(const Packet& packet, Timestamp now, PioneerOutput& out) {
   std::optional<ConfigPacket> config = decoded_config(packet.data);
   if (!config) {
     ++content_counts_.malformed;
     return;
   }
+  const bool is_first = !knows_watchdog();
   config_ = std::move(config);
+  if (is_first && knows_watchdog()) next_check_ = now;
   use_model_of(config_->subtype, out);
 }
 
@@ -200,7 +202,8 @@ Duration PioneerSession::time_to_stand() const {
 
 Duration PioneerSession::watchdog() const {
   constexpr unsigned kDefaultMs = 2000;
-  return std::chrono::milliseconds{config_ && config_->watchdog_ms > 0 ? config_->watchdog_ms : kDefaultMs};
+  const unsigned told_ms = config_ ? config_->watchdog_ms.value_or(0) : 0;
+  return std::chrono::milliseconds{told_ms > 0 ? told_ms : kDefaultMs};
 }
 
 Duration PioneerSession::pulse_interval() const {

@@ -5,7 +5,7 @@
 // Safety: SYNC0 has the bytes of PULSE, and any packet lets a robot that its watchdog stopped resume its old set
 // points. So at every baud ESTOP, VEL 0 and RVEL 0 go out before SYNC0, and after a gap in our own sending VEL 0 and
 // RVEL 0 go out before anything else. CLOSE goes only to a robot that has shown by a SIP that it is connected. Whether
-// motors may be enabled is drive_permission's to say.
+// motors may be enabled is drive_permission's to say; none are before the controller has told its watchdog.
 #pragma once
 
 #include <cstdint>
@@ -104,7 +104,7 @@ class PioneerSession {
   void take_sip(const Packet& packet, Timestamp now, PioneerOutput& out);
   void watch_motors(Timestamp now, PioneerOutput& out);
   void take_identity(const Packet& packet, PioneerOutput& out);
-  void take_config(const Packet& packet, PioneerOutput& out);
+  void take_config(const Packet& packet, Timestamp now, PioneerOutput& out);
   void use_model_of(const std::string& subtype, PioneerOutput& out);
 
   // The way to a connection (live).
@@ -128,6 +128,7 @@ class PioneerSession {
   void bring_robot_to_wanted_state(Timestamp now, PioneerOutput& out);
   void bring_limits(PioneerOutput& out);
   void bring_motors(Timestamp now, PioneerOutput& out);
+  [[nodiscard]] bool knows_watchdog() const { return config_ && config_->watchdog_ms; }
   void push_set_points();
   void push_emergency_stop(Timestamp now);
   void leave(std::optional<std::string> reason, Timestamp close_at = {});

@@ -18,10 +18,11 @@ constexpr Duration kEmergencyRepeat{100'000'000};  // a SIP cycle: the next one 
 constexpr Duration kEchoOfDisable{500'000'000};
 
 std::string limits_line(const char* what, const StoppingLimits& limits) {
+  char watchdog[32] = "unknown";
+  if (limits.watchdog_s) (void)std::snprintf(watchdog, sizeof watchdog, "%.1f s", *limits.watchdog_s);
   char text[160];
-  (void)std::snprintf(text, sizeof text,
-                      "robot %s: deceleration=%.2f m/s^2 turn_deceleration=%.0f deg/s^2 watchdog=%.1f s", what,
-                      limits.deceleration_m_per_s2, degrees(limits.turn_deceleration_rad_per_s2), limits.watchdog_s);
+  (void)std::snprintf(text, sizeof text, "robot %s: deceleration=%.2f m/s^2 turn_deceleration=%.0f deg/s^2 watchdog=%s",
+                      what, limits.deceleration_m_per_s2, degrees(limits.turn_deceleration_rad_per_s2), watchdog);
   return text;
 }
 
@@ -97,10 +98,11 @@ void PioneerSession::bring_limits(PioneerOutput& out) {
                      : config_ ? "does not take its limits, it has its own"
                                : "does not tell its limits, they are taken for";
   out.output.log.push_back(limits_line(what, stopping_limits()));
+  if (!knows_watchdog()) out.output.log.push_back("robot does not tell its watchdog: it is not driven");
 }
 
-/// ENABLE 1 is sent once, not until it shows: motors that are off in the next SIP may have been switched off again by a
-/// person who was faster than the SIP.
+/// ENABLE 1 waits for the watchdog, without which nobody knows how the robot would stop. It is sent once, not until it
+/// shows: motors that are off in the next SIP may have been switched off again by a person who was faster than the SIP.
 void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
   const bool motors_are_on = newest_sip_->has(sip_flag::kMotorsEnabled);
   if (permission_.must_disable() && motors_are_on && disable_requests_ < kMaxRequests) {
@@ -111,7 +113,8 @@ void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
     permission_.enable_had_no_effect();
     out.output.log.push_back("robot motors did not come on: press MOTORS, or `deltamap ctl drive wander`");
   }
-  if (motors_are_on || enable_was_sent_ || !permission_.holds() || stop_button_is_pressed()) return;
+  const bool is_due = permission_.holds() && knows_watchdog() && !enable_was_sent_;
+  if (motors_are_on || !is_due || stop_button_is_pressed()) return;
   queue_.drop(CommandNumber::kEnable);
   queue_.push({CommandNumber::kEnable, 1});
 }
@@ -119,7 +122,8 @@ void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
 PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) {
   PioneerOutput out;
   if (mode_ == SessionMode::kListenOnly || state_ != State::kConnected) return finished(now, std::move(out));
-  DriveCommand wanted = permission_.holds() ? command : DriveCommand{command.time, 0.0, 0.0};
+  const bool may_drive = permission_.holds() && knows_watchdog();
+  DriveCommand wanted = may_drive ? command : DriveCommand{command.time, 0.0, 0.0};
   const MotionLimits& limits = params_.limits;
   wanted.speed_m_per_s = std::clamp(wanted.speed_m_per_s, -limits.max_speed_m_per_s, limits.max_speed_m_per_s);
   wanted.turn_rate_rad_per_s =

@@ -31,9 +31,16 @@ Odometry driving() {
   return odometry;
 }
 
+/// The controller has told a watchdog of 2 s.
+Safety with_watchdog(const SafetyParams& params = {}) {
+  Safety safety{params};
+  safety.set_stopping_behaviour({.watchdog_s = 2.0});
+  return safety;
+}
+
 /// All is well: a free hall, motors on, a fresh command.
 Safety at_ease(double speed_m_per_s = 0.5, double turn_rate_rad_per_s = 0.2) {
-  Safety safety{{}};
+  Safety safety = with_watchdog();
   safety.observe(hall(6.0F));
   safety.observe(driving());
   safety.command({kNow, speed_m_per_s, turn_rate_rad_per_s}, kNow);
@@ -60,7 +67,7 @@ TEST(Safety, LetsACommandThroughWhereAllIsWell) {
 }
 
 TEST(Safety, StandsStillUntilSomeoneDrives) {
-  Safety safety{{}};
+  Safety safety = with_watchdog();
   safety.observe(hall(6.0F));
   safety.observe(driving());
   expect_stop(safety.allowed(kNow), StopReason::kNoCommand);
@@ -71,7 +78,7 @@ TEST(Safety, StandsStillUntilSomeoneDrives) {
 }
 
 TEST(Safety, LetsACommandExpireAfterItsLifeFromItsArrival) {
-  Safety safety{{.nominal_scan_period_s = 10.0}};
+  Safety safety = with_watchdog({.nominal_scan_period_s = 10.0});
   safety.observe(hall(6.0F));
   safety.observe(driving());
   safety.command({kNow, 0.5, 0.2}, after(0.1));  // decided on a scan of 0.1 s ago
@@ -138,7 +145,7 @@ TEST(Safety, SlowsDownSoFarThatTheStopDistanceIsFree) {
 }
 
 TEST(Safety, KeepsAGreaterDistanceTheOlderTheScan) {
-  Safety safety{{.command_life_s = 10.0, .nominal_scan_period_s = 10.0, .odometry_life_s = 10.0}};
+  Safety safety = with_watchdog({.command_life_s = 10.0, .nominal_scan_period_s = 10.0, .odometry_life_s = 10.0});
   safety.observe(hall(1.0F));
   safety.observe(driving());
   safety.command({kNow, 0.7, 0.0}, kNow);
@@ -170,9 +177,9 @@ TEST(Safety, CountsOnTheWeakerOfTwoBrakings) {
   Safety safety = at_ease(0.7, 0.0);
   safety.observe(hall(1.5F));
   const double as_set = safety.allowed(kNow).speed_m_per_s;
-  safety.set_stopping_behaviour({.deceleration_m_per_s2 = 1.0});
+  safety.set_stopping_behaviour({.watchdog_s = 2.0, .deceleration_m_per_s2 = 1.0});
   EXPECT_EQ(safety.allowed(kNow).speed_m_per_s, as_set) << "the settings say 0.3";
-  safety.set_stopping_behaviour({.deceleration_m_per_s2 = 0.1});
+  safety.set_stopping_behaviour({.watchdog_s = 2.0, .deceleration_m_per_s2 = 0.1});
   EXPECT_LT(safety.allowed(kNow).speed_m_per_s, as_set);
 }
 

@@ -18,6 +18,7 @@ constexpr double kTickS = 0.1;
 class Drive {
  public:
   Drive() {
+    safety.set_stopping_behaviour({.watchdog_s = 2.0});
     odometry.motors_enabled = true;
     scan.first_bearing_rad = -std::numbers::pi / 2.0;
     scan.bearing_step_rad = std::numbers::pi / 180.0;
@@ -84,7 +85,9 @@ std::vector<Row> table() {
       {StopReason::kNoOdometry, [](Drive& d) { d.robot_speaks = false; }, [](Drive& d) { d.robot_speaks = true; },
        false, false},
       {StopReason::kNoWatchdog, [=](Drive& d) { d.safety.set_stopping_behaviour({.watchdog_s = infinite}); },
-       [](Drive& d) { d.safety.set_stopping_behaviour({}); }, false, false},
+       [](Drive& d) { d.safety.set_stopping_behaviour({.watchdog_s = 2.0}); }, false, false},
+      {StopReason::kWatchdogUnknown, [](Drive& d) { d.safety.set_stopping_behaviour({}); },
+       [](Drive& d) { d.safety.set_stopping_behaviour({.watchdog_s = 2.0}); }, false, false},
       {StopReason::kStopButton, [](Drive& d) { d.odometry.stop_button = true; },
        [](Drive& d) { d.odometry.stop_button = false; }, false, false},
       {StopReason::kMotorsOff, [](Drive& d) { d.odometry.motors_enabled = false; },

@@ -55,6 +55,7 @@ Drive driven(const OccupancyGrid& grid, Pose2 pose, double for_s, std::uint64_t 
              const SafetyParams& safety_params = {}) {
   Wander wander{{}, seed};
   Safety safety{safety_params};
+  safety.set_stopping_behaviour({.watchdog_s = 2.0});
   Drive drive;
   Timestamp now = timestamp_from_ns(5'000'000'000);
   Odometry odometry;

@@ -40,7 +40,9 @@ class FakeRobot {
       decoder_.set_baud(*new_baud_);
       new_baud_.reset();
     }
-    if (connected && now - last_heard_ > std::chrono::milliseconds{config.watchdog_ms}) watchdog_has_stopped = true;
+    const int watchdog_ms = config.watchdog_ms.value_or(0);
+    const bool is_due = watchdog_ms > 0 && now - last_heard_ > std::chrono::milliseconds{watchdog_ms};
+    if (connected && is_due) watchdog_has_stopped = true;
     moves = connected && motors_on && !watchdog_has_stopped && (speed != 0 || turn_rate != 0);
     has_ever_moved = has_ever_moved || moves;
     if (!connected || is_mute || now < next_sip_) return;
@@ -72,6 +74,7 @@ class FakeRobot {
   bool is_deaf = false;  ///< commands are lost
   bool follows_host_baud = true;
   bool takes_limits = true;
+  bool tells_config = true;
   unsigned idle_baud = 0;  ///< fallen back to at CLOSE; 0: stays
   int closes_to_lose = 0;
   int sync1_to_garble = 0;  ///< answers of type FF
@@ -150,7 +153,7 @@ class FakeRobot {
         sonar_on = value == 1;
         break;
       case CommandNumber::kConfig:
-        send(encoded_config(config), now);
+        if (tells_config) send(encoded_config(config), now);
         break;
       case CommandNumber::kSetV:
       case CommandNumber::kSetRv:

@@ -79,7 +79,7 @@ json fields_of(const ConfigPacket& c) {
 #define ADD(field) fields[#field] = c.field
   ADD(four_motors), ADD(rot_vel_top), ADD(trans_vel_top), ADD(rot_acc_top), ADD(trans_acc_top), ADD(pwm_max);
   ADD(sip_cycle_ms), ADD(host_baud), ADD(aux1_baud), ADD(has_gripper), ADD(front_sonar), ADD(rear_sonar);
-  ADD(low_battery_decivolts), ADD(rev_count), ADD(watchdog_ms), ADD(p2_mpacs), ADD(stall_val), ADD(stall_count_ms);
+  ADD(low_battery_decivolts), ADD(rev_count), ADD(p2_mpacs), ADD(stall_val), ADD(stall_count_ms);
   ADD(joy_vel), ADD(joy_rot_vel), ADD(rot_vel_max), ADD(trans_vel_max), ADD(rot_acc), ADD(rot_decel), ADD(rot_kp);
   ADD(rot_kv), ADD(rot_ki), ADD(trans_acc), ADD(trans_decel), ADD(trans_kp), ADD(trans_kv), ADD(trans_ki);
   ADD(front_bumpers), ADD(rear_bumpers), ADD(charger), ADD(sonar_cycle_ms), ADD(auto_baud), ADD(has_gyro);
@@ -88,6 +88,7 @@ json fields_of(const ConfigPacket& c) {
   ADD(lat_decel), ADD(charge_threshold), ADD(pdb_port), ADD(gyro_rate_limit), ADD(high_temperature), ADD(power_bits);
   ADD(battery_type), ADD(soc_low), ADD(soc_shutdown);
 #undef ADD
+  if (c.watchdog_ms) fields["watchdog_ms"] = *c.watchdog_ms;
   return fields;
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "core/random.hpp"
 #include "tests/drivers/pioneer/fake_robot.hpp"
 #include "tests/support/damage.hpp"
@@ -174,16 +176,15 @@ TEST_F(PioneerSessionTest, SetsLimitsAndReadsThemBack) {
   use({.limits = {.max_speed_m_per_s = 0.5, .deceleration_m_per_s2 = 0.8}});
   robot.config.watchdog_ms = 700;
   ASSERT_TRUE(connect());
-  EXPECT_FALSE(session.stopping_limits().is_confirmed);
+  EXPECT_FALSE(session.stopping_limits().watchdog_s);
   EXPECT_EQ(session.stopping_limits().deceleration_m_per_s2, 0.3) << "as delivered, until it has said otherwise";
   line.run_for(1.5);
   EXPECT_EQ(robot.config.trans_vel_max, 500);
   EXPECT_EQ(robot.config.trans_acc, 300);
   EXPECT_EQ(robot.config.trans_decel, 800);
   EXPECT_EQ(robot.config.rot_decel, 150);
-  EXPECT_TRUE(session.stopping_limits().is_confirmed);
   EXPECT_DOUBLE_EQ(session.stopping_limits().deceleration_m_per_s2, 0.8);
-  EXPECT_DOUBLE_EQ(session.stopping_limits().watchdog_s, 0.7);
+  EXPECT_DOUBLE_EQ(session.stopping_limits().watchdog_s.value_or(0.0), 0.7);
   EXPECT_EQ(times_obeyed(CommandNumber::kSetV), 1u) << "no more once they show";
   EXPECT_TRUE(line.has_logged("keeps to its limits: deceleration=0.80 m/s^2"));
 }
@@ -280,11 +281,60 @@ TEST_F(PioneerSessionTest, EnablesMotorsWhereAllowedAndDrives) {
   EXPECT_FALSE(robot.moves);
 }
 
+TEST_F(PioneerSessionTest, NeitherEnablesNorDrivesARobotThatDoesNotTellItsWatchdog) {
+  const auto mute = [](FakeRobot& r) { r.tells_config = false; };
+  const auto ends_before_it = [](FakeRobot& r) { r.config.watchdog_ms.reset(); };
+  for (const std::function<void(FakeRobot&)>& hides : {std::function<void(FakeRobot&)>{mute}, {ends_before_it}}) {
+    use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+    robot = FakeRobot{9600};
+    hides(robot);
+    ASSERT_TRUE(connect());
+    for (int i = 0; i < 60; ++i) {
+      line.carry_out(session.drive({line.now, 0.3, 0.2}, line.now));
+      line.run_for(0.2);
+    }
+    EXPECT_FALSE(session.stopping_limits().watchdog_s);
+    EXPECT_EQ(times_obeyed(CommandNumber::kConfig), 5u);
+    EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 0u);
+    robot.motors_on = true;  // a person's hand
+    line.carry_out(session.drive({line.now, 0.3, 0.2}, line.now));
+    line.run_for(0.5);
+    EXPECT_FALSE(robot.has_ever_moved);
+    EXPECT_EQ(std::count(line.log.begin(), line.log.end(), "robot does not tell its watchdog: it is not driven"), 1);
+    EXPECT_TRUE(session.is_connected());
+    line.log.clear();
+    robot.outgoing.clear();
+  }
+}
+
+TEST_F(PioneerSessionTest, DrivesOnceALateConfigurationHasToldTheWatchdog) {
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+  robot.tells_config = false;
+  ASSERT_TRUE(connect());
+  line.run_for(2.5);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 0u);
+  robot.tells_config = true;
+  ASSERT_TRUE(line.run_until([&] { return session.config().has_value(); }, 1.5));
+  line.run_for(0.3);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 1u);
+  EXPECT_TRUE(robot.motors_on);
+  // Of the next connection nothing is known again.
+  robot.connected = robot.motors_on = false;
+  line.run_for(1.0);
+  ASSERT_TRUE(line.failed);
+  line.failed.reset();
+  robot.tells_config = false;
+  ASSERT_TRUE(connect());
+  line.run_for(2.5);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 1u);
+}
+
 TEST_F(PioneerSessionTest, ClampsSetPointsAndRefusesThoseThatAreNoNumbers) {
   use({.enable_motors = true,
        .drive_switch = DriveSwitch::kOn,
        .limits = {.max_speed_m_per_s = 0.25, .max_turn_rate_rad_per_s = 0.5}});
   ASSERT_TRUE(connect());
+  line.run_for(1.0);
   line.carry_out(session.drive({line.now, 9.0, -9.0}, line.now));
   line.run_for(0.1);
   EXPECT_EQ(robot.speed, 250);
