@@ -24,7 +24,7 @@ enum class DriveSwitch : std::uint8_t {
 /// What a SIP says of motors and STOP button, and in which connection it came.
 struct MotorReport {
   bool motors_on = false;
-  bool stop_button = false;
+  bool stop_button = false;  ///< or E-stall
   enum class From : std::uint8_t {
     kLeftOver,    ///< the robot still was connected to a client that has gone: maybe to us, before a link silence
     kOpening,     ///< the first of our connection: the motors are off after OPEN whoever wants what (protocols.md A4)

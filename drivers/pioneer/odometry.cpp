@@ -67,7 +67,7 @@ Odometry OdometryTracker::observe(const Sip& sip, Timestamp time) {
   odometry.turn_rate_rad_per_s = (sip.right_mm_per_s - sip.left_mm_per_s) / 2.0 * model_.turn_rate_per_speed;
   odometry.epoch = epoch_;
   odometry.motors_enabled = sip.has(sip_flag::kMotorsEnabled);
-  odometry.stop_button = sip.has(sip_flag::kStopButton);
+  odometry.stop_button = sip.has(sip_flag::kStopped);
   odometry.stalled = sip.left_stall || sip.right_stall;
   odometry.front_bumpers = sip.front_bumpers;
   odometry.rear_bumpers = sip.rear_bumpers;

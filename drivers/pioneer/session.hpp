@@ -79,6 +79,7 @@ class PioneerSession {
   [[nodiscard]] unsigned baud() const { return decoder_.baud(); }
   [[nodiscard]] DecoderCounts counts() const;
   [[nodiscard]] const DrivePermission& permission() const { return permission_; }
+  /// Or E-stall holds it.
   [[nodiscard]] bool stop_button_is_pressed() const;
   /// What the robot said about itself, once it did.
   [[nodiscard]] const std::optional<RobotIdentity>& identity() const { return identity_; }

@@ -29,7 +29,7 @@ std::string limits_line(const char* what, const StoppingLimits& limits) {
 }  // namespace
 
 bool PioneerSession::stop_button_is_pressed() const {
-  return is_connected() && newest_sip_ && newest_sip_->has(sip_flag::kStopButton);
+  return is_connected() && newest_sip_ && newest_sip_->has(sip_flag::kStopped);
 }
 
 void PioneerSession::watch_motors(Timestamp now, PioneerOutput& out) {
@@ -39,7 +39,7 @@ void PioneerSession::watch_motors(Timestamp now, PioneerOutput& out) {
   const bool searches = state_ == State::kQuieting || state_ == State::kClosing || state_ == State::kSyncing;
   const DriveSwitch before = permission_.drive_switch();
   permission_.observe({.motors_on = newest_sip_->has(sip_flag::kMotorsEnabled),
-                       .stop_button = newest_sip_->has(sip_flag::kStopButton),
+                       .stop_button = newest_sip_->has(sip_flag::kStopped),
                        .from = searches                    ? From::kLeftOver
                                : state_ == State::kOpening ? From::kOpening
                                                            : From::kConnection,

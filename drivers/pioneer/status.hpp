@@ -25,6 +25,8 @@ inline constexpr std::uint16_t kMotorsEnabled = 1u << 0;
 inline constexpr std::uint16_t kSonarArrays = 0xFu << 1;
 inline constexpr std::uint16_t kStopButton = 1u << 5;
 inline constexpr std::uint16_t kEstall = 1u << 6;
+inline constexpr std::uint16_t kStopped =
+    kStopButton | kEstall;  ///< either: held by a person or by the controller (A9)
 inline constexpr std::uint16_t kFarLedge = 1u << 7;
 inline constexpr std::uint16_t kNearLedge = 1u << 8;
 inline constexpr std::uint16_t kJoystickButton = 1u << 9;

@@ -197,6 +197,7 @@ pioneer::Sip VirtualPioneer::sip(Timestamp now, const Sonar& sonar) {
   sip.control_units = heading_units(set_points_.heading_rad().value_or(pose.theta));
   if (motors_enabled_) sip.flags |= pioneer::sip_flag::kMotorsEnabled;
   if (stop_button_) sip.flags |= pioneer::sip_flag::kStopButton;
+  if (estall_) sip.flags |= pioneer::sip_flag::kEstall;
   if (sonar_on_) sip.flags |= std::uint16_t{1} << 1;
   add_contact(sip);
   add_sonar(sip, now, sonar);

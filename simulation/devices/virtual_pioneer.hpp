@@ -59,6 +59,9 @@ class VirtualPioneer {
   void reset(Timestamp now);  ///< power cycle: pose 0, nobody connected, motors off
   void press_stop_button() { motors_enabled_ = false, stop_button_ = true; }
   void release_stop_button() { stop_button_ = false; }
+  /// Whether ENABLE 1 is obeyed meanwhile is not documented: here it is.
+  void begin_estall() { motors_enabled_ = false, estall_ = true; }
+  void end_estall() { estall_ = false; }
   void fail(std::uint16_t fault_flags) { fault_flags_ = fault_flags; }
   void press_motors_button() { motors_enabled_ = !motors_enabled_ && !stop_button_; }
 
@@ -96,6 +99,7 @@ class VirtualPioneer {
   bool watchdog_fired_ = false;
   bool motors_enabled_ = false;
   bool stop_button_ = false;
+  bool estall_ = false;
   bool sonar_on_ = false;
   bool encoder_stream_ = false;
   bool io_stream_ = false;

@@ -70,13 +70,15 @@ class Persons {
     if (was_on) switch_off();
     if (!was_on && robot.motors_enabled()) button_off_ = false;
   }
-  void press_stop() {
-    drive_.simulation.robot().press_stop_button();
+  void press_stop(bool as_estall) {
+    auto& robot = drive_.simulation.robot();
+    as_estall ? robot.begin_estall() : robot.press_stop_button();
     holds_stop_ = true;
     switch_off();
   }
   void release_stop() {
     drive_.simulation.robot().release_stop_button();
+    drive_.simulation.robot().end_estall();
     holds_stop_ = false;
     // Let go before any SIP: only motors that went off tell it, and those of a robot that waits are off anyway.
     if (is_open_ && waited_ && drive_.daemon.last_odometry() < pressed_) give_up();
@@ -152,10 +154,18 @@ void random_event(Drive& drive, Persons& persons) {
   switch (drive.random.index_below(8)) {
     case 0:
       return persons.press_motors();
-    case 1:
-      persons.press_stop();
+    case 1: {
+      const bool as_estall = drive.random.uniform() < 0.5;
+      persons.press_stop(as_estall);
       pass(0.15, 2.0);
+      if (as_estall && drive.random.uniform() < 0.5) {
+        drive.simulation.robot().reset(drive.simulation.now());
+        pass(0.15, 4.0);
+        persons.say(true);  // refused as soon as a SIP shows it
+        pass(0.15, 2.0);
+      }
       return persons.release_stop();
+    }
     case 2:
       drive.daemon.cut_line(true);
       if (drive.random.uniform() < 0.5) {

@@ -180,6 +180,18 @@ TEST(VirtualPioneer, MovesOnlyWithMotorsEnabledAndTheStopButtonDisablesThem) {
   EXPECT_EQ(rig.robot.demand().speed_m_per_s, 0.0) << "and not by letting go";
 }
 
+TEST(VirtualPioneer, ShowsEstall) {
+  Rig rig;
+  rig.connect();
+  rig.send({CommandNumber::kEnable, 1});
+  rig.robot.begin_estall();
+  EXPECT_FALSE(rig.robot.motors_enabled());
+  EXPECT_TRUE(rig.next_sip()->has(pioneer::sip_flag::kEstall));
+  rig.robot.end_estall();
+  EXPECT_FALSE(rig.next_sip()->has(pioneer::sip_flag::kEstall));
+  EXPECT_FALSE(rig.robot.motors_enabled());
+}
+
 TEST(VirtualPioneer, TellsItsPoseInFifteenBitsOfItsUnit) {
   Rig rig{{.model = "p3dx"}};
   rig.motion.odom_from_robot = {20.0, -0.485, radians(-90)};

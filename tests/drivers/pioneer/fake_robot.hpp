@@ -49,9 +49,9 @@ class FakeRobot {
     next_sip_ = now + std::chrono::milliseconds{100};
     if (moves) sip.x_units = static_cast<std::uint16_t>((sip.x_units + speed / 10) & 0x7FFF);
     sip.moving = moves;
-    sip.flags =
-        static_cast<std::uint16_t>((motors_on ? sip_flag::kMotorsEnabled : 0) |
-                                   (stop_button ? sip_flag::kStopButton : 0) | (sonar_on ? sip_flag::kSonarArrays : 0));
+    sip.flags = static_cast<std::uint16_t>((motors_on ? sip_flag::kMotorsEnabled : 0) |
+                                           (stop_button ? sip_flag::kStopButton : 0) |
+                                           (estall ? sip_flag::kEstall : 0) | (sonar_on ? sip_flag::kSonarArrays : 0));
     send(encoded_sip(sip), now);
   }
 
@@ -67,6 +67,7 @@ class FakeRobot {
   bool motors_on = false;
   bool sonar_on = true;
   bool stop_button = false;
+  bool estall = false;  ///< shown; ENABLE 1 is obeyed all the same
   bool watchdog_has_stopped = false;
   bool moves = false;
   bool has_ever_moved = false;

@@ -402,6 +402,30 @@ TEST_F(PioneerSessionTest, DoesNotEnableMotorsWhileTheStopButtonIsHeldAtConnecti
   EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 0u);
 }
 
+TEST_F(PioneerSessionTest, TakesEstallForTheStopButton) {
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+  robot.estall = true;
+  ASSERT_TRUE(connect());
+  line.run_for(3.0);
+  EXPECT_TRUE(session.stop_button_is_pressed()) << "`drive wander` is refused by this";
+  EXPECT_TRUE(line.messages.back().stop_button);
+  EXPECT_EQ(session.permission().drive_switch(), DriveSwitch::kOffAtRobot);
+  line.carry_out(session.switch_drive(true, line.now));
+  line.run_for(3.0);
+  robot.connected = false;  // a reset
+  line.run_for(1.0);
+  ASSERT_TRUE(line.failed);
+  line.failed.reset();
+  ASSERT_TRUE(connect());
+  line.run_for(3.0);
+  robot.estall = false;
+  line.run_for(3.0);
+  EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 0u);
+  line.carry_out(session.switch_drive(true, line.now));
+  line.run_for(3.0);
+  EXPECT_TRUE(robot.motors_on) << "a person has said so after it";
+}
+
 TEST_F(PioneerSessionTest, StopsTheRobotFirstAfterAGapInItsOwnSending) {
   use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
