@@ -90,7 +90,7 @@ void PioneerSession::take_sip(const Packet& packet, Timestamp now, PioneerOutput
       config_ && odometry.battery_v > 0.0 && odometry.battery_v <= kVoltsPerDecivolt * config_->low_battery_decivolts;
   odometry.fault_flags = newest_sip_->fault_flags.value_or(0);
   out.odometry.push_back(odometry);
-  if (mode_ == SessionMode::kLive) watch_motors(now, out);
+  if (mode_ == SessionMode::kLive) watch_motors(packet.first_byte, now, out);
 }
 
 void PioneerSession::take_identity(const Packet& packet, PioneerOutput& out) {
@@ -183,9 +183,12 @@ PioneerOutput PioneerSession::close(Timestamp now) {
 }
 
 /// CLOSE takes the current from the motors and our deceleration from the controller: a robot that still moves then
-/// rolls on. Only a robot that we have opened hears CLOSE; one that waits for a connection may take it amiss.
+/// rolls on. Only a robot that we have opened hears CLOSE, one that waits for a connection may take it amiss; and only
+/// at our own wish: where the link has failed, the SIPs of the connection that is left over will tell what buttons were
+/// pressed meanwhile, and CLOSE would wipe that out.
 void PioneerSession::leave(std::optional<std::string> reason, Timestamp close_at) {
-  owes_close_ = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
+  const bool has_opened = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
+  owes_close_ = has_opened && !reason;
   push_stop();
   state_ = State::kLeaving;
   deadline_ = close_at;
@@ -250,8 +253,8 @@ Timestamp PioneerSession::next_wake() const {
   }
   const std::optional<Timestamp> due = queue_.next_due();
   if (!due) return wake_at;
-  const bool waits_for_queue = state_ == State::kQuieting || state_ == State::kClosing || state_ == State::kSwitching ||
-                               state_ == State::kLeaving;
+  const bool waits_for_queue = state_ == State::kQuieting || state_ == State::kObserving || state_ == State::kClosing ||
+                               state_ == State::kSwitching || state_ == State::kLeaving;
   return waits_for_queue ? *due : std::min(wake_at, *due);
 }
 

@@ -4,8 +4,9 @@
 //
 // Safety: SYNC0 has the bytes of PULSE, and any packet lets a robot that its watchdog stopped resume its old set
 // points. So at every baud ESTOP, VEL 0 and RVEL 0 go out before SYNC0, and after a gap in our own sending VEL 0 and
-// RVEL 0 go out before anything else. CLOSE goes only to a robot that has shown by a SIP that it is connected. Whether
-// motors may be enabled is drive_permission's to say; none are before the controller has told its watchdog.
+// RVEL 0 go out before anything else. CLOSE goes only to a robot that has shown by a SIP that it is connected, and not
+// to one that has fallen silent: it switches the motors off, and then nobody can tell any more whether a person had.
+// Whether motors may be enabled is drive_permission's to say; none are before the controller has told its watchdog.
 #pragma once
 
 #include <cstdint>
@@ -91,6 +92,7 @@ class PioneerSession {
   enum class State {
     kIdle,       // not started, closed, failed, or listening only
     kQuieting,   // whatever the robot was doing is being stopped; a SIP tells that it is still connected
+    kObserving,  // a connection that was left over: a SIP younger than the stop is awaited, then it is closed
     kClosing,    // a connection that was left over is being closed
     kSyncing,    // SYNC0, SYNC1, SYNC2, each awaiting its echo
     kOpening,    // OPEN sent, awaiting the first SIP
@@ -103,7 +105,7 @@ class PioneerSession {
   // What comes in (both modes).
   void take_packet(const Packet& packet, Timestamp now, PioneerOutput& out);
   void take_sip(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void watch_motors(Timestamp now, PioneerOutput& out);
+  void watch_motors(Timestamp sip_began, Timestamp now, PioneerOutput& out);
   void take_identity(const Packet& packet, PioneerOutput& out);
   void take_config(const Packet& packet, Timestamp now, PioneerOutput& out);
   void use_model_of(const std::string& subtype, PioneerOutput& out);
@@ -112,7 +114,8 @@ class PioneerSession {
   void probe(Timestamp now, PioneerOutput& out);
   void probe_next(Timestamp now, PioneerOutput& out);
   void begin_quieting();
-  void close_left_over(Timestamp now, PioneerOutput& out);
+  void stop_left_over(Timestamp now, PioneerOutput& out);
+  void close_left_over(const Packet& sip, Timestamp now);
   void push_stop();
   void notice_another_speed(Timestamp now);
   void send_sync(std::uint8_t step, Timestamp now);

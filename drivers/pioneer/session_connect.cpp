@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The way to a connection (protocols.md A4): at each baud first quiet, then SYNC0, SYNC1, SYNC2, OPEN; later perhaps a
 // faster line. Every SYNC0 is preceded by its own ESTOP, VEL 0 and RVEL 0: the ones before may have been lost. A robot
-// that answers with SIPs is still connected to a client that has gone: it is closed and then waits at its idle baud.
+// that answers with SIPs is still connected to a client that has gone: it is stopped, looked at, closed, and then waits
+// at its idle baud.
 #include <algorithm>
 #include <utility>
 
@@ -10,9 +11,10 @@
 namespace deltamap::drivers::pioneer {
 namespace {
 
-constexpr int kTriesPerProbe = 2;            // once SYNC0 was answered
-constexpr int kMaxClosings = 5;              // CLOSE may be lost
-constexpr Duration kQuietTime{150'000'000};  // a SIP cycle and the rest of a SIP that was on the line
+constexpr int kTriesPerProbe = 2;              // once SYNC0 was answered
+constexpr int kMaxClosings = 5;                // CLOSE may be lost
+constexpr Duration kQuietTime{150'000'000};    // a SIP cycle and the rest of a SIP that was on the line
+constexpr Duration kObserveTime{500'000'000};  // a SIP cycle, and a long SIP at 9600 baud; one may be lost
 constexpr Duration kEchoTimeout{1'000'000'000};
 constexpr std::uint64_t kBytesAtAnotherSpeed = 30;  // more than noise and the rest of a packet: a SIP has at least 24
 constexpr Duration kBaudPause{10'000'000};          // before and after the change of speed (A4.8)
@@ -74,11 +76,20 @@ void PioneerSession::begin_quieting() {
   push_stop();
 }
 
-void PioneerSession::close_left_over(Timestamp now, PioneerOutput& out) {
+void PioneerSession::stop_left_over(Timestamp now, PioneerOutput& out) {
   if (++closings_ > kMaxClosings) return leave("robot stays connected to a client that has gone");
   if (closings_ == 1) out.output.log.push_back("robot was still connected to a client that has gone: closing it");
-  state_ = State::kClosing;
+  state_ = State::kObserving;
   push_stop();
+  deadline_ = now + kObserveTime;
+}
+
+/// CLOSE switches the motors off. What a button has done must be seen before: at once after a SIP that is younger than
+/// the stop, there is the least time for a person to be overlooked.
+void PioneerSession::close_left_over(const Packet& sip, Timestamp now) {
+  const bool is_younger = queue_.is_empty() && sip.first_byte > *queue_.last_sent();
+  if (!is_younger) return;
+  state_ = State::kClosing;
   queue_.push({CommandNumber::kClose, {}});
   deadline_ = now + kQuietTime;
 }
@@ -92,6 +103,10 @@ void PioneerSession::send_sync(std::uint8_t step, Timestamp now) {
 }
 
 void PioneerSession::time_out_while_connecting(Timestamp now, PioneerOutput& out) {
+  if (state_ == State::kObserving) {  // it has fallen silent
+    if (queue_.is_empty() && now >= deadline_) begin_quieting();
+    return;
+  }
   if (state_ == State::kQuieting || state_ == State::kClosing) {
     if (!queue_.is_empty() || now < *queue_.last_sent() + kQuietTime) {
       if (queue_.is_empty()) deadline_ = *queue_.last_sent() + kQuietTime;
@@ -114,7 +129,10 @@ void PioneerSession::time_out_while_connecting(Timestamp now, PioneerOutput& out
 void PioneerSession::answer_while_connecting(const Packet& packet, Timestamp now, PioneerOutput& out) {
   switch (state_) {
     case State::kQuieting:
-      if (is_sip(packet.type())) close_left_over(now, out);
+      if (is_sip(packet.type())) stop_left_over(now, out);
+      break;
+    case State::kObserving:
+      if (is_sip(packet.type())) close_left_over(packet, now);
       break;
     case State::kSyncing:
       take_echo(packet, now, out);
@@ -147,7 +165,7 @@ void PioneerSession::take_echo(const Packet& packet, Timestamp now, PioneerOutpu
     queue_.push({CommandNumber::kOpen, {}});
     deadline_ = now + kEchoTimeout;
   } else if (is_sip(type)) {
-    close_left_over(now, out);
+    stop_left_over(now, out);
   } else if (sync_step_ > 0 && type < sync_step_) {
     // An echo that came late: the right one follows.
   } else if (++tries_ > kTriesPerProbe) {

@@ -32,11 +32,14 @@ bool PioneerSession::stop_button_is_pressed() const {
   return is_connected() && newest_sip_ && newest_sip_->has(sip_flag::kStopped);
 }
 
-void PioneerSession::watch_motors(Timestamp now, PioneerOutput& out) {
+void PioneerSession::watch_motors(Timestamp sip_began, Timestamp now, PioneerOutput& out) {
   using From = MotorReport::From;
   if (state_ == State::kIdle) return;
   const auto lately = [now](const std::optional<Timestamp>& sent, Duration echo) { return sent && now - *sent < echo; };
-  const bool searches = state_ == State::kQuieting || state_ == State::kClosing || state_ == State::kSyncing;
+  // A SIP that was under way when CLOSE or ENABLE 0 went out shows what was before them.
+  const bool is_after_disable = disable_sent_ && sip_began >= *disable_sent_;
+  const bool searches = state_ == State::kQuieting || state_ == State::kObserving || state_ == State::kClosing ||
+                        state_ == State::kSyncing;
   const DriveSwitch before = permission_.drive_switch();
   permission_.observe({.motors_on = newest_sip_->has(sip_flag::kMotorsEnabled),
                        .stop_button = newest_sip_->has(sip_flag::kStopped),
@@ -44,7 +47,7 @@ void PioneerSession::watch_motors(Timestamp now, PioneerOutput& out) {
                                : state_ == State::kOpening ? From::kOpening
                                                            : From::kConnection,
                        .may_be_our_enable = lately(enable_sent_, kEchoOfEnable),
-                       .may_be_our_disable = lately(disable_sent_, kEchoOfDisable)});
+                       .may_be_our_disable = is_after_disable && lately(disable_sent_, kEchoOfDisable)});
   if (permission_.drive_switch() != before) {
     out.output.log.push_back(
         permission_.holds()

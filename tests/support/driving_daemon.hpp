@@ -108,6 +108,8 @@ class DrivingDaemon {
   [[nodiscard]] bool is_alive() const { return process_.has_value(); }
   /// The robot's line carries nothing in either direction.
   void cut_line(bool is_cut) { line_is_cut_ = is_cut; }
+  /// Half a cable: the robot hears us, we do not hear it.
+  void cut_answers(bool are_cut) { answers_are_cut_ = are_cut; }
   /// The adapter is pulled out: the port hangs up and cannot be opened.
   void pull_adapter(bool is_out) {
     adapter_is_out_ = is_out;
@@ -181,7 +183,7 @@ class DrivingDaemon {
     std::vector<std::uint8_t> from_robot = devices_.bytes_from_robot(robot_baud);
     const std::vector<std::uint8_t> from_laser = devices_.bytes_from_laser(laser_baud);
     if (!process_) return;
-    if (line_is_cut_ || adapter_is_out_) from_robot.clear();
+    if (line_is_cut_ || answers_are_cut_ || adapter_is_out_) from_robot.clear();
     const Timestamp now = devices_.now();
     process_->robot.turn(from_robot, !adapter_is_out_, now, [&](auto& out) { take(out, now); });
     process_->laser.turn(from_laser, true, now, [&](auto& out) { take(out, now); });
@@ -229,6 +231,7 @@ class DrivingDaemon {
   Params params_;
   std::optional<Process> process_;
   bool line_is_cut_ = false;
+  bool answers_are_cut_ = false;
   bool adapter_is_out_ = false;
   Timestamp last_odometry_{};
   std::optional<Scan> last_scan_;

@@ -12,6 +12,7 @@
 
 #include "drivers/pioneer/session.hpp"
 #include "tests/drivers/pioneer/fake_robot.hpp"
+#include "tests/support/figure.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {
@@ -233,6 +234,43 @@ TEST(DrivePermission, MotorsSwitchedOffWhileTheLinkWasSilentOrTheDaemonDeadStayO
   dead.run(5.0);
   EXPECT_EQ(dead.session.permission().drive_switch(), DriveSwitch::kOffAtRobot);
   EXPECT_FALSE(dead.robot.motors_on);
+}
+
+TEST(DrivePermission, MotorsSwitchedOffWhileOnlyTheRobotHearsUsStayOff) {
+  Rig rig{true, DriveSwitch::kOn};
+  ASSERT_TRUE(rig.robot.moves);
+  const int before = rig.times_sent({CommandNumber::kEnable, 1});
+  rig.robot.is_mute = true;  // half a cable
+  rig.run(0.4);
+  rig.press_motors();
+  rig.run(1.6);
+  rig.robot.is_mute = false;
+  rig.run(8.0);
+  EXPECT_TRUE(rig.session.is_connected());
+  EXPECT_EQ(rig.session.permission().drive_switch(), DriveSwitch::kOffAtRobot);
+  EXPECT_EQ(rig.times_sent({CommandNumber::kEnable, 1}), before);
+  EXPECT_FALSE(rig.robot.motors_on);
+}
+
+/// In each millisecond after a restart. A SIP of 9600 baud is 30 ms on the line: what is done between its beginning
+/// and CLOSE, nothing tells.
+TEST(DrivePermission, MotorsSwitchedOffBeforeALeftOverConnectionIsClosedStayOff) {
+  int presses = 0;
+  int overlooked = 0;
+  for (int ms = 0; ms < 1000; ++ms) {
+    Rig rig{true, DriveSwitch::kOn};
+    rig.kill_and_restart();
+    rig.line.run_for(1e-3 * ms);
+    if (!rig.robot.motors_on || !rig.robot.connected) break;  // closed
+    ++presses;
+    rig.press_motors();
+    rig.run(5.0);
+    overlooked += rig.robot.motors_on ? 1 : 0;
+  }
+  test::tell_figure("presses_before_close", presses, "times");
+  test::tell_figure("overlooked_before_close", overlooked, "times");
+  EXPECT_GT(presses, 100);
+  EXPECT_LE(overlooked, 45);
 }
 
 TEST(DrivePermission, MotorsSwitchedOffBeforeAnySipHasShownOurEnableStayOff) {

@@ -162,13 +162,18 @@ TEST_F(PioneerSessionTest, FindsARobotThatWasLeftAtTheFastBaudAndThenWaitsAtItsO
   EXPECT_FALSE(robot.has_ever_moved);
 }
 
-TEST_F(PioneerSessionTest, TakesLeaveOfARobotThatHasFallenSilentAtThePaceThatItCanTake) {
+TEST_F(PioneerSessionTest, StopsARobotThatHasFallenSilentAndDoesNotCloseIt) {
   ASSERT_TRUE(connect());
   line.run_for(1.0);
   robot.is_mute = true;
   line.run_for(3.0);
   ASSERT_TRUE(line.failed);
-  EXPECT_FALSE(robot.connected) << "it heard us";
+  const auto& heard = robot.obeyed;
+  ASSERT_GE(heard.size(), 3u);
+  EXPECT_EQ(heard[heard.size() - 3].number, CommandNumber::kEstop);
+  EXPECT_EQ(heard[heard.size() - 2], (Command{CommandNumber::kVel, 0}));
+  EXPECT_EQ(heard[heard.size() - 1], (Command{CommandNumber::kRvel, 0}));
+  EXPECT_TRUE(robot.connected) << "CLOSE would wipe out what a button has done meanwhile";
   EXPECT_EQ(robot.lost, 0);
 }
 
