@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/pioneer/command_queue.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "drivers/received_bytes.hpp"
 
 namespace deltamap::drivers::pioneer {
+namespace {
+
+constexpr Duration kGap{5'000'000};
+
+}  // namespace
 
 std::optional<Command> CommandQueue::take_due(Timestamp now, unsigned baud) {
-  constexpr Duration kGap{5'000'000};
   if (waiting_.empty() || now < free_at_) return std::nullopt;
   Command command = std::move(waiting_.front());
   waiting_.pop_front();
   free_at_ = now + line_time(encoded_command(command).size(), baud) + kGap;
   last_sent_ = now;
   return command;
+}
+
+void CommandQueue::hold_for(std::size_t size, Timestamp now, unsigned baud) {
+  free_at_ = std::max(free_at_, now) + line_time(size, baud) + kGap;
 }
 
 void CommandQueue::drop(CommandNumber number) {

@@ -23,6 +23,8 @@ class CommandQueue {
 
   /// The command that may be written now, if any.
   [[nodiscard]] std::optional<Command> take_due(Timestamp now, unsigned baud);
+  /// Bytes that are no command go out now: what waits comes after them, at the same distance.
+  void hold_for(std::size_t size, Timestamp now, unsigned baud);
   /// When the next command may be written; nullopt where none waits.
   [[nodiscard]] std::optional<Timestamp> next_due() const;
   /// When the last command was handed out.

@@ -51,7 +51,9 @@ void PioneerSession::probe(Timestamp now, PioneerOutput& out) {
   }
   set_baud(probes_[probe_].baud, out);
   if (was_in_vain_) {
-    out.output.requests.push_back({PortRequest::Kind::kWrite, LineDiagnosis::question_to_a_laser(), 0});
+    const std::vector<std::uint8_t> question = LineDiagnosis::question_to_a_laser();
+    queue_.hold_for(question.size(), now, baud());
+    out.output.requests.push_back({PortRequest::Kind::kWrite, question, 0});
   }
   tries_ = 0;
   begin_quieting();

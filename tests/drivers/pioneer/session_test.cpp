@@ -121,6 +121,27 @@ TEST_F(PioneerSessionTest, FindsALaserOnItsPortInTheSecondSearch) {
   EXPECT_TRUE(line.failed->ends_with("baud: the ports are swapped: the laser speaks on the robot's port"));
 }
 
+TEST_F(PioneerSessionTest, KeepsTheDistanceOfCommandsAfterTheQuestionToALaser) {
+  robot.is_deaf = true;
+  EXPECT_FALSE(connect(60.0));
+  line.failed.reset();
+  line.written.clear();
+  line.start();
+  line.run_for(60.0);
+  ASSERT_TRUE(line.failed);
+  constexpr Duration kLeastGap = std::chrono::milliseconds{5};  // A1
+  const auto question = LineDiagnosis::question_to_a_laser();
+  int asked = 0;
+  Timestamp free_at;  // of the line
+  for (const tests::WrittenBytes& written : line.written) {
+    if (written.bytes.empty()) continue;  // a change of speed
+    EXPECT_GE(seconds(written.at - free_at), seconds(kLeastGap)) << "at " << written.baud;
+    free_at = written.at + line_time(written.bytes.size(), written.baud);
+    asked += written.bytes == question ? 1 : 0;
+  }
+  EXPECT_GE(asked, 5);
+}
+
 TEST_F(PioneerSessionTest, ConnectsToARobotThatWakesUpWhileALaserIsAskedFor) {
   robot.is_deaf = true;
   EXPECT_FALSE(connect(60.0));
