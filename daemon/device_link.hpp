@@ -68,8 +68,9 @@ class DeviceLink {
     handle(session_.start(now));
   }
 
-  /// What another part of the io thread made the session answer.
+  /// What another part of the io thread made the session answer; during the farewell it is a part of that.
   void handle(Output out) {
+    if (closed_) return say_farewell(out);
     // What stops a robot waits for nothing that its owner does about it.
     for (const drivers::PortRequest& request : out.output.requests) perform(request);
     hooks_.on_messages(out);

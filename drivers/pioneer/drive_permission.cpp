@@ -52,8 +52,8 @@ void DrivePermission::observe(const MotorReport& report) {
       switch_ = DriveSwitch::kOn;
     }
   }
-  // A robot that goes on telling so has not heard our CLOSE: then it was a button.
-  if (went_off && report.may_be_our_disable) return;
+  // A robot that goes on telling so has not heard our CLOSE: then it was a button. After OPEN it has.
+  if (went_off && report.may_be_our_disable && report.from != From::kOpening) return;
   // This SIP may be older than our ENABLE 1: whether it was obeyed stays open.
   const bool is_older = !motors_on_ && !report.motors_on && report.may_be_our_enable && holds();
   if (is_older && report.from == From::kConnection) return;

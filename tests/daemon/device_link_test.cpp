@@ -118,6 +118,16 @@ TEST_F(DeviceLinkTest, AFarewellThatTakesItsTimeIsSentToItsEndAndNothingAfterIt)
   EXPECT_EQ(lost_, 0);
 }
 
+TEST_F(DeviceLinkTest, NothingThatIsAskedOfTheSessionMeanwhileCutsTheFarewellOff) {
+  link_.open();
+  link_.close();
+  link_.handle({});  // `ctl drive`
+  loop_.run_one();
+  link_.handle(link_.session().on_time(Timestamp{}));  // takes a word out of turn
+  loop_.run();
+  EXPECT_EQ(written_, (std::vector<std::uint8_t>{3, 2, 1}));
+}
+
 TEST_F(DeviceLinkTest, APortThatHangsUpAfterItsSessionHasFailedIsNoSecondFailure) {
   link_.open();
   device_.on_bytes({}, Timestamp{});

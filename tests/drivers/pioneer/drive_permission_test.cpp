@@ -309,6 +309,16 @@ TEST(DrivePermission, AnEnableThatWasStillOnItsWayIsTakenBack) {
   EXPECT_TRUE(rig.robot.moves) << "a person is heard again";
 }
 
+TEST(DrivePermission, MotorsThatAreOffAfterOpenWereSwitchedOffByNobodyHoweverLongTheyStayOff) {
+  using From = MotorReport::From;
+  DrivePermission permission{true, DriveSwitch::kOn};
+  permission.observe({.motors_on = true, .from = From::kLeftOver});
+  permission.observe({.motors_on = false, .from = From::kOpening, .may_be_our_disable = true});
+  permission.observe({.motors_on = false, .from = From::kConnection, .may_be_our_disable = true});
+  permission.observe({.motors_on = false, .from = From::kConnection});
+  EXPECT_TRUE(permission.holds());
+}
+
 TEST(DrivePermission, ASwitchHasItsNameAndIsFoundByIt) {
   for (const auto value :
        {DriveSwitch::kUnknown, DriveSwitch::kOn, DriveSwitch::kOffAtRobot, DriveSwitch::kOffByOperator})
