@@ -16,6 +16,7 @@
 #include "daemon/recorder.hpp"
 #include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
+#include "daemon/start_error.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "mapping/store_scan.hpp"
 
@@ -122,7 +123,7 @@ struct Pipeline::State {
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{with_warnings(std::move(wanted))},
-      out_lock{options.out ? lock_of_folder(*options.out) : std::nullopt},
+      out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       control{control_desk(
           settings, {.map = options.start.map->geometry(),
                      .commands = commands,

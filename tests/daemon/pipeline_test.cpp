@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/start_error.hpp"
+#include "tests/support/not_root.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 
 namespace deltamap::daemon {
@@ -75,6 +77,17 @@ TEST_F(PipelineTest, AnIoThreadThatHangsShowsInTheLongestWork) {
 TEST_F(PipelineTest, AReportThatCannotBeWrittenIsAnErrorAndNoCrash) {
   fs::create_directories(folder_.path() / "live/report.json");
   EXPECT_THROW((void)run_live(std::chrono::microseconds(0)), std::runtime_error);
+}
+
+TEST_F(PipelineTest, AFolderWhoseLockMayNotBeReadIsAPersonsMistake) {
+  const fs::path out = folder_.path() / "live";
+  fs::create_directories(out);
+  fs::permissions(folder_.write("live/.lock", ""), fs::perms::none);
+  for (const fs::path& open : {folder_.path(), out}) fs::permissions(open, fs::perms::all);
+  Pipeline::Options wanted = options();
+  wanted.out = out;
+  const test::NotRoot another_user;
+  EXPECT_THROW((Pipeline{settings_, std::move(wanted)}), StartError);
 }
 
 TEST_F(PipelineTest, ASecondDaemonInTheSameFolderOrRecordingEndsBeforeItDoesHarm) {
