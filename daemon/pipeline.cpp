@@ -113,6 +113,7 @@ struct Pipeline::State {
   void update_map(const ScanSet& set);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
   void end_threads();
+  void write_report(const RunReport& report) const;
 
   Workload awareness_work, map_work;
   double wall_began_s = 0.0;
@@ -307,6 +308,15 @@ void Pipeline::State::end_threads() {
   recorder_thread->join();
 }
 
+/// The run has ended well whether or not there is room for its report.
+void Pipeline::State::write_report(const RunReport& report) const {
+  try {
+    replace_file(*options.out / "report.json", json_text(report, settings));
+  } catch (const std::exception& error) {
+    options.warn(std::string("no report of this run: ") + error.what());
+  }
+}
+
 RunReport Pipeline::stop() {
   State& s = *state_;
   s.end_threads();
@@ -340,7 +350,7 @@ RunReport Pipeline::stop() {
   report.latency_p99_s = s.localization.latency().quantile_s(0.99);
   report.latency_max_s = s.localization.latency().max_s();
   report.wire = s.io.counts();
-  if (s.options.out) replace_file(*s.options.out / "report.json", json_text(report, s.settings));
+  if (s.options.out) s.write_report(report);
   return report;
 }
 
