@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live_recording.hpp"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <system_error>
 #include <utility>
 
@@ -13,14 +16,17 @@ namespace {
 using drivers::port::ByteRecord;
 using drivers::port::PortId;
 
-/// A service that has crashed is started again at once: the recording of the crash must outlive that.
-void keep_previous(const std::filesystem::path& recording) {
+/// A service that has crashed is started again at once: the recording of the crash must outlive that. Answers why it
+/// cannot be kept now.
+std::error_code keep_previous(const std::filesystem::path& recording) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(recording, error)) return;
+  if (!std::filesystem::is_regular_file(recording, error)) return {};
   std::filesystem::path previous = recording;
   previous.replace_extension(".previous" + recording.extension().string());
   std::filesystem::rename(recording, previous, error);
-  if (error) throw StartError(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
+  const int reason = error.value();
+  if (!error || reason == EROFS || reason == ENOSPC || reason == EDQUOT) return error;
+  throw StartError(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
 }
 
 /// A wrong name is no full disk: waiting does not help.
@@ -31,6 +37,8 @@ void require_place(const std::filesystem::path& file) {
     throw StartError(file.string() + ": cannot be written: " + folder.string() + " is no folder");
   }
   if (std::filesystem::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
+  if (::access(folder.c_str(), W_OK | X_OK) == 0 || errno == EROFS) return;
+  throw StartError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
 }
 
 ByteRecord note_at(Timestamp stamp, std::string_view note, PortId port = PortId::kRobot) {
@@ -50,14 +58,18 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       log_{warn},
       bauds_{options_.bauds.robot, options_.bauds.laser},
       last_stamp_{options_.began} {
+  options_.file = or_start_error([&] { return file_behind(options_.file); });
   require_place(options_.file);
-  options_.file = file_behind(options_.file);
-  lock_ = lock_of_file(options_.file);
-  keep_previous(options_.file);
+  lock_ = or_start_error([&] { return lock_of_file(options_.file); });
+  is_previous_kept_ = !keep_previous(options_.file);
   attempt(options_.began, [this] { go_on(); });
 }
 
 void LiveRecording::begin() {
+  if (!is_previous_kept_) {
+    if (const auto error = keep_previous(options_.file)) throw std::system_error(error, options_.file.string());
+    is_previous_kept_ = true;
+  }
   try {
     writer_.emplace(options_.file, drivers::port::FirstBauds{bauds_[0], bauds_[1]});
     for (const std::string& note : options_.first_notes) writer_->write(note_at(last_stamp_, note));

@@ -26,7 +26,7 @@ class LiveRecording {
     Timestamp began;
     double max_gigabytes = 0.0;
   };
-  /// Throws FileInUse where another daemon records there, StartError where no file can be.
+  /// Throws FileInUse where another daemon records there, StartError where this user can have no file.
   LiveRecording(Options options, Telemetry& telemetry, const RetryingOutput::Warn& warn);
 
   void write(const drivers::port::ByteRecord& record, Timestamp now);
@@ -52,6 +52,7 @@ class LiveRecording {
   std::optional<drivers::port::ByteLogWriter> writer_;
   std::array<unsigned, 2> bauds_;  // in force, by PortId
   Timestamp last_stamp_;
+  bool is_previous_kept_ = false;
   bool has_gap_ = false;
   bool ended_ = false;
 };

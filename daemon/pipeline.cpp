@@ -16,6 +16,7 @@
 #include "daemon/recorder.hpp"
 #include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
+#include "daemon/start_error.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "mapping/store_scan.hpp"
 
@@ -112,6 +113,7 @@ struct Pipeline::State {
   void update_map(const ScanSet& set);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
   void end_threads();
+  void write_report(const RunReport& report) const;
 
   Workload awareness_work, map_work;
   double wall_began_s = 0.0;
@@ -122,7 +124,7 @@ struct Pipeline::State {
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{with_warnings(std::move(wanted))},
-      out_lock{options.out ? lock_of_folder(*options.out) : std::nullopt},
+      out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       control{control_desk(
           settings, {.map = options.start.map->geometry(),
                      .commands = commands,
@@ -306,6 +308,15 @@ void Pipeline::State::end_threads() {
   recorder_thread->join();
 }
 
+/// The run has ended well whether or not there is room for its report.
+void Pipeline::State::write_report(const RunReport& report) const {
+  try {
+    replace_file(*options.out / "report.json", json_text(report, settings));
+  } catch (const std::exception& error) {
+    options.warn(std::string("no report of this run: ") + error.what());
+  }
+}
+
 RunReport Pipeline::stop() {
   State& s = *state_;
   s.end_threads();
@@ -339,7 +350,7 @@ RunReport Pipeline::stop() {
   report.latency_p99_s = s.localization.latency().quantile_s(0.99);
   report.latency_max_s = s.localization.latency().max_s();
   report.wire = s.io.counts();
-  if (s.options.out) replace_file(*s.options.out / "report.json", json_text(report, s.settings));
+  if (s.options.out) s.write_report(report);
   return report;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <system_error>
 
 namespace deltamap::daemon {
 
@@ -10,5 +11,15 @@ namespace deltamap::daemon {
 struct StartError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// What this user may not do with a file at the start, waiting does not mend.
+template <class Work>
+auto or_start_error(Work&& work) {
+  try {
+    return work();
+  } catch (const std::system_error& error) {
+    throw StartError(error.what());
+  }
+}
 
 }  // namespace deltamap::daemon

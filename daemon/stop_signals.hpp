@@ -14,10 +14,19 @@ inline constexpr std::array kStopSignals{SIGTERM, SIGINT,  SIGHUP,    SIGQUIT, S
 // A write that fails says so itself; a robot that drives is not put to sleep from the keyboard.
 inline constexpr std::array kIgnoredSignals{SIGPIPE, SIGXFSZ, SIGTSTP, SIGTTIN, SIGTTOU};
 
+/// As nohup and the shell's & leave them: whoever started the program wants it to go on.
+[[nodiscard]] inline bool was_ignored_at_start(int signal) {
+  struct sigaction now {};
+  const bool may_be = signal == SIGHUP || signal == SIGINT || signal == SIGQUIT;
+  return may_be && sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
 [[nodiscard]] inline sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal : kStopSignals) sigaddset(&signals, signal);
+  for (const int signal : kStopSignals) {
+    if (!was_ignored_at_start(signal)) sigaddset(&signals, signal);
+  }
   for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) sigaddset(&signals, signal);
   return signals;
 }

@@ -31,24 +31,6 @@ void require_place(const fs::path& file) {
   }
 }
 
-/// What is opened, locked and set aside is the database, and no link to it.
-fs::path behind(const fs::path& name) {
-  try {
-    return file_behind(name);
-  } catch (const std::system_error& error) {
-    throw StartError(error.what());
-  }
-}
-
-/// Throws StartError where nobody can say whether another program has it: a store in use is never set aside.
-std::optional<FileLock> lock_of(const fs::path& file) {
-  try {
-    return lock_of_file(file);
-  } catch (const std::system_error& error) {
-    throw StartError(error.what());
-  }
-}
-
 /// The database with its log, under the first free name NAME.set-aside-1, -2 …; nothing where it cannot be renamed.
 std::optional<fs::path> set_aside(const fs::path& file) {
   std::error_code error;
@@ -114,9 +96,11 @@ void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGri
 
 OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
   require_place(name);
-  const fs::path file = behind(name);
+  // What is locked, opened and set aside is the database, and no link to it. Without knowing whether another program
+  // has it, it is not touched.
+  const fs::path file = or_start_error([&] { return file_behind(name); });
   OpenedStore opened;
-  opened.lock = lock_of(file);
+  opened.lock = or_start_error([&] { return lock_of_file(file); });
   try {
     take(opened, MapStore{file, first}, first);
   } catch (const StoreError& error) {

@@ -7,6 +7,8 @@
 
 #include <mutex>
 
+#include "daemon/start_error.hpp"
+#include "tests/support/not_root.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 
 namespace deltamap::daemon {
@@ -74,9 +76,24 @@ TEST_F(PipelineTest, AnIoThreadThatHangsShowsInTheLongestWork) {
   (void)pipeline.stop();
 }
 
-TEST_F(PipelineTest, AReportThatCannotBeWrittenIsAnErrorAndNoCrash) {
+TEST_F(PipelineTest, AReportThatCannotBeWrittenIsAWarningAndTheRunEndsWell) {
   fs::create_directories(folder_.path() / "live/report.json");
-  EXPECT_THROW((void)run_live(std::chrono::microseconds(0)), std::runtime_error);
+  std::vector<std::string> warnings;
+  prepare_ = [&](Pipeline::Options& live) { live.warn = [&](const std::string& line) { warnings.push_back(line); }; };
+  EXPECT_GT(run_live(std::chrono::microseconds(0)).scans.decoded, 0u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("report.json: cannot be written: "), std::string::npos) << warnings[0];
+}
+
+TEST_F(PipelineTest, AFolderWhoseLockMayNotBeReadIsAPersonsMistake) {
+  const fs::path out = folder_.path() / "live";
+  fs::create_directories(out);
+  fs::permissions(folder_.write("live/.lock", ""), fs::perms::none);
+  for (const fs::path& open : {folder_.path(), out}) fs::permissions(open, fs::perms::all);
+  Pipeline::Options wanted = options();
+  wanted.out = out;
+  const test::NotRoot another_user;
+  EXPECT_THROW((Pipeline{settings_, std::move(wanted)}), StartError);
 }
 
 TEST_F(PipelineTest, ASecondDaemonInTheSameFolderOrRecordingEndsBeforeItDoesHarm) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the outputs of the running daemon do while the disk is full, and when it is not any more.
 #include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <unistd.h>
 
 #include <sstream>
 
@@ -11,6 +13,7 @@
 #include "daemon/start_error.hpp"
 #include "mapping/map_store.hpp"
 #include "tests/support/full_disk.hpp"
+#include "tests/support/not_root.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::daemon {
@@ -231,6 +234,41 @@ TEST_F(Recording, InAFolderThatIsNotThereIsAPersonsMistake) {
   LiveRecording::Options nowhere = options();
   nowhere.file = folder.path() / "missing" / "bytes.pcapng";
   EXPECT_THROW(LiveRecording(nowhere, telemetry, warn()), StartError);
+}
+
+TEST_F(Recording, WhereThisUserMayNotWriteIsAPersonsMistake) {
+  fs::permissions(folder.path(), fs::perms{0555});
+  {
+    const test::NotRoot another_user;
+    EXPECT_THROW(LiveRecording(options(), telemetry, warn()), StartError);
+  }
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::permissions(folder.write("bytes.pcapng.lock", ""), fs::perms::none);
+  const test::NotRoot another_user;
+  EXPECT_THROW(LiveRecording(options(), telemetry, warn()), StartError);
+}
+
+TEST_F(Recording, OnAReadOnlyFileSystemPausesAndKeepsTheOlderOneLater) {
+  if (getuid() != 0) GTEST_SKIP() << "only root can mount: run this test as root";
+  const fs::path mounted = folder.path() / "mounted";
+  fs::create_directory(mounted);
+  if (mount("tmpfs", mounted.c_str(), "tmpfs", 0, "size=8m") != 0) GTEST_SKIP() << "nothing can be mounted here";
+  file = mounted / "bytes.pcapng";
+  (void)folder.write("mounted/bytes.pcapng", "older");
+  EXPECT_EQ(mount(nullptr, mounted.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr), 0);
+  try {
+    LiveRecording recording{options(), telemetry, warn()};
+    EXPECT_FALSE(status("recording").written);
+    EXPECT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(mount(nullptr, mounted.c_str(), nullptr, MS_REMOUNT, nullptr), 0);
+    recording.write(record_at(5, 7), at_s(5));
+    recording.close(at_s(6));
+    EXPECT_EQ(told().front(), "run");
+    EXPECT_EQ(content_of(mounted / "bytes.previous.pcapng"), "older");
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << error.what();
+  }
+  EXPECT_EQ(umount(mounted.c_str()), 0);
 }
 
 /// A Δ that makes one more cell occupied than the one before.

@@ -17,10 +17,12 @@ fail() { echo "signals: $1" >&2; cat "$out"/*.log >&2; exit 1; }
 world=config/scenarios/room.yaml
 "$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
 
+signals_at_start=(--default-signal=HUP,INT,QUIT)
 # start PORTS: a daemon that answers
 start() {
   rm -rf "$out/run"
-  "$bin/deltamapd" --config config/simulation.yaml --set robot.port="$1/robot" --set laser.port="$1/laser" \
+  # The & of a script leaves INT and QUIT ignored, and what is ignored at the start stays so.
+  env "${signals_at_start[@]}" "$bin/deltamapd" --config config/simulation.yaml --set robot.port="$1/robot" --set laser.port="$1/laser" \
     --set map.file="$out/m0.yaml" --set map.store= --set recording.file= --set control.socket="$out/ctl.sock" \
     --initial-pose 1,2,0 --out "$out/run" 2>"$out/daemon.log" &
   daemon=$!
@@ -48,6 +50,15 @@ for signal in $signals; do
   stopped "$signal"
 done
 
+signals_at_start=(--ignore-signal=HUP,INT,QUIT)
+start "$out/none"
+for signal in HUP INT QUIT; do kill -s "$signal" "$daemon"; done
+sleep 1.5
+"$bin/deltamap" ctl --socket "$out/ctl.sock" status >/dev/null || fail "a signal that was ignored at the start was not"
+kill "$daemon"
+stopped TERM
+signals_at_start=(--default-signal=HUP,INT,QUIT)
+
 start "$out/none"
 for signal in PIPE XFSZ TSTP TTIN TTOU; do kill -s "$signal" "$daemon"; done
 sleep 1.5
@@ -70,4 +81,4 @@ where() { grep -o '"pose":.*' "$out/truth.jsonl" | tail -n 1; }
 before=$(where)
 sleep 1.5
 [[ -n $before && $(where) == "$before" ]] || fail "the robot drives on: $before, then $(where)"
-echo "signals: 15 stop the daemon in order, 5 do nothing; after SIGHUP the robot stands at $before"
+echo "signals: 15 stop the daemon in order, 5 do nothing, nor do 3 that were ignored at its start; after SIGHUP the robot stands at $before"
