@@ -90,7 +90,8 @@ std::string utc_clock(double unix_s) {
 
 /// All that is well in one line; what is not written in a line of its own.
 std::string outputs_lines(const Json& s) {
-  if (!s.contains("outputs") || !s["outputs"].is_object() || s["outputs"].empty()) return line("saving", "%s", "nothing");
+  if (!s.contains("outputs") || !s["outputs"].is_object() || s["outputs"].empty())
+    return line("saving", "%s", "nothing");
   std::string written;
   std::string paused;
   for (const auto& [name, output] : s["outputs"].items()) {
