@@ -356,7 +356,7 @@ TEST_F(SavingMaps, GoesOnBehindWhatAnotherProgramHasWrittenIntoTheStore) {
   const mapping::MapStore kept{store, *start.map};
   EXPECT_EQ(kept.newest(), 4u);
   EXPECT_EQ(kept.grid(2), *start.map);
-  for (const std::uint32_t number : {2, 3}) EXPECT_EQ(kept.grid(number + 1), *result_of(number).revision->map);
+  for (const std::uint32_t number : {2u, 3u}) EXPECT_EQ(kept.grid(number + 1), *result_of(number).revision->map);
 }
 
 TEST_F(SavingMaps, ADiskThatIsFullAtTheStartAndFreeAtTheEnd) {
