@@ -48,14 +48,17 @@ Forklift::Forklift(const ForkliftParams& params, std::vector<Box> slots, const W
   for (const Box& slot : slots) slots_.push_back({slot, container_at(slot, initial_world)});
 }
 
-std::optional<Change> Forklift::next_change(const World& world, const Circle& robot, std::span<const Circle> people) {
+std::optional<Change> Forklift::next_change(const World& world, const Circle& robot, std::span<const Circle> people,
+                                            const MayTouch& may_touch) {
   if (slots_.empty() || params_.kinds.empty()) return std::nullopt;
   const ReachableFloor floor = reachable_floor(world, robot.centre, 0.5 * params_.passage_m);
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const ChangeKind kind = params_.kinds[random_.index_below(static_cast<std::uint32_t>(params_.kinds.size()))];
     Slot& slot = slots_[random_.index_below(static_cast<std::uint32_t>(slots_.size()))];
     const auto change = proposed(kind, slot, world);
-    if (!change || !is_harmless(*change, world, floor, robot, people)) continue;
+    if (!change) continue;
+    if (may_touch && !(may_touch(change->box) && (!change->from || may_touch(*change->from)))) continue;
+    if (!is_harmless(*change, world, floor, robot, people)) continue;
     note(*change, slot);
     return change;
   }

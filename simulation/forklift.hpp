@@ -4,6 +4,7 @@
 // leaves every corridor passable.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,9 +35,11 @@ class Forklift {
   Forklift(const ForkliftParams& params, std::vector<Box> slots, const World& initial_world, const Point2& robot_start,
            Random random);
 
-  /// The next change of this world, or none where nothing can be done now without harm.
+  using MayTouch = std::function<bool(const Box& box)>;
+  /// The next change of this world, or none where nothing can be done now without harm. `may_touch` is asked of where a
+  /// container stands before and after.
   [[nodiscard]] std::optional<Change> next_change(const World& world, const Circle& robot,
-                                                  std::span<const Circle> people);
+                                                  std::span<const Circle> people, const MayTouch& may_touch = {});
 
   /// Another has done this.
   void learn(const Change& change);

@@ -36,7 +36,8 @@ enum class Stream : std::uint64_t {
   kActor,
   kDoor,
   kSlips,
-  kGaps
+  kGaps,
+  kSight
 };
 
 double rounded_to(double value, double unit) { return unit * std::round(value / unit); }
@@ -87,6 +88,7 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
       next_push_{kStart},
       next_thought_{kStart},
       gap_chance_{random_for(params.seed, Stream::kGaps)},
+      sight_chance_{random_for(params.seed, Stream::kSight)},
       fan_{sweep_of(params.fan)},
       sweep_s_{duration_s(params.fan)} {
   if (params.slips) slips_.emplace(*params.slips, random_for(params.seed, Stream::kSlips));
@@ -239,11 +241,30 @@ void VirtualDrive::report_odometry(const RobotState& before, Timestamp from) {
 
 void VirtualDrive::let_forklift_work() {
   if (!forklift_ || now_ < next_change_) return;
-  const auto done = forklift_->next_change(world_, robot_body(), movers_.bodies().obstacles());
+  const bool may_be_seen = sight_chance_.uniform() < params_.change_in_view_share;
+  const Forklift::MayTouch out_of_sight = [this](const Box& box) { return is_out_of_sight(box); };
+  const auto done = forklift_->next_change(world_, robot_body(), movers_.bodies().obstacles(),
+                                           may_be_seen ? Forklift::MayTouch{} : out_of_sight);
   next_change_ = now_ + duration_from_seconds(done ? params_.forklift->change_every_s : kForkliftPatience_s);
   if (!done) return;
   change(*done);
   step_.changes.push_back(*done);
+}
+
+/// No corner and no middle of a side can be seen from where the robot is, whichever way it looks.
+bool VirtualDrive::is_out_of_sight(const Box& box) const {
+  const Point2 eye = body_.state().map_from_robot.position();
+  const auto is_hidden = [&](const Point2& point) {
+    constexpr double kBefore_m = 0.05;  // a beam that ends so near has met the thing itself
+    const Point2 way = point - eye;
+    const double away_m = way.norm();
+    return away_m > params_.max_range_m ||
+           surfaces_.cast(eye, std::atan2(way.y(), way.x()), std::max(0.0, away_m - kBefore_m)).has_value();
+  };
+  const auto sides = faces(box);
+  return std::all_of(sides.begin(), sides.end(), [&](const Segment& side) {
+    return is_hidden(side.from) && is_hidden(0.5 * (side.from + side.to));
+  });
 }
 
 void VirtualDrive::let_containers_creep() {

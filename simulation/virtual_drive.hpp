@@ -40,9 +40,10 @@ struct VirtualDriveParams {
   double odometry_lag_s = 0.0;         ///< by which a SIP's content is older than its stamp, >= 0
   std::optional<Pose2> told_mount{};   ///< what scans say of the mount, in place of the truth
   RoutePilotParams route{};
-  std::vector<PersonParams> people{};                    ///< besides the scenario's
-  std::optional<ForkliftParams> forklift{};              ///< none: nothing changes by itself
-  std::optional<CreepParams> creep{};                    ///< none: nothing creeps
+  std::vector<PersonParams> people{};        ///< besides the scenario's
+  std::optional<ForkliftParams> forklift{};  ///< none: nothing changes by itself
+  double change_in_view_share = 1.0;         ///< of its turns in which it may do something in the robot's sight, [0, 1]
+  std::optional<CreepParams> creep{};        ///< none: nothing creeps
   std::optional<ChangedStartParams> changed_at_start{};  ///< in place of the scenario's
   std::vector<Change> changes_at_start{};                ///< besides
   std::optional<SlipParams> slips{};                     ///< besides those of single wheels
@@ -105,6 +106,7 @@ class VirtualDrive {
   void think();
   void drive_until(Timestamp end);
   void let_forklift_work();
+  [[nodiscard]] bool is_out_of_sight(const Box& box) const;
   void let_containers_creep();
   void see_changes();
   [[nodiscard]] Scan sweep();
@@ -129,6 +131,7 @@ class VirtualDrive {
   std::optional<Timestamp> next_gap_;
   std::optional<Slips> slips_;
   Random gap_chance_;
+  Random sight_chance_;
   DriveTarget target_;
   std::optional<DriveTarget> held_;
   DriveStep step_;

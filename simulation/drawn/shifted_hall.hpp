@@ -6,8 +6,7 @@
 
 #include <cstdint>
 
-#include "simulation/scenario.hpp"
-#include "simulation/virtual_drive.hpp"
+#include "simulation/drawn/drawn.hpp"
 
 namespace deltamap::simulation::drawn {
 
@@ -18,12 +17,6 @@ struct ShiftedHallParams {
   double wheel_noise_times = 1.0;  ///< of the delivered robot's, >= 0
   bool crowd = false;              ///< 12 people in place of 3, and 60 boxes that no map shows
   double largest_turn_rad = 0.0;   ///< of a container that is shifted, >= 0
-};
-
-/// A world, and a robot that drives about in it.
-struct Drawn {
-  Scenario scenario;
-  VirtualDriveParams drive;
 };
 
 /// By the seed alone: where everything stands, who walks where, and what happens.

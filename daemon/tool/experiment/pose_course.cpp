@@ -136,7 +136,7 @@ std::string PoseCourse::cause() const {
 }
 
 PoseCourse::Numbers PoseCourse::numbers() const {
-  const auto us_a_scan = [&](double seconds) { return 1e6 * share_of(seconds, static_cast<double>(scans_)); };
+  const auto ms_a_scan = [&](double seconds) { return 1e3 * share_of(seconds, static_cast<double>(scans_)); };
   return {{"minutes", now_s_ / 60.0},
           {"scans", static_cast<double>(scans_)},
           {"found_after_s", knows_start_ || !found_s_ ? kNothing : *found_s_},
@@ -161,8 +161,8 @@ PoseCourse::Numbers PoseCourse::numbers() const {
           {"changed_view_s", changed_view_s_},
           {"slips", static_cast<double>(slips_)},
           {"gaps", static_cast<double>(gaps_)},
-          {"localizer_cpu_us", us_a_scan(costs_.localizer_s)},
-          {"mapping_cpu_us", us_a_scan(costs_.awareness_s + costs_.update_s)}};
+          {"localizer_cpu_ms", ms_a_scan(costs_.localizer_s)},
+          {"mapping_cpu_ms", ms_a_scan(costs_.awareness_s + costs_.update_s)}};
 }
 
 }  // namespace deltamap::daemon::tool::experiment

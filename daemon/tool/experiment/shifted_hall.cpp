@@ -50,6 +50,7 @@ class ShiftedHall : public Experiment {
   [[nodiscard]] std::string what() const override {
     return "An hour among containers of 5 m that are shifted by up to 0.8 m, one a minute, with poor wheels";
   }
+  [[nodiscard]] bool measures_time() const override { return true; }
   [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
   [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
 };
@@ -77,16 +78,26 @@ std::vector<Run> ShiftedHall::runs(const Options& options) const {
   return runs;
 }
 
+Series error_series(const Outcome& outcome) {
+  Series series{"seed " + outcome.label("seed"), {}};
+  const std::vector<double> time_s = outcome.scans.column("t_s");
+  const std::vector<double> error_m = outcome.scans.column("error_m");
+  for (std::size_t i = 0; i < time_s.size(); ++i) series.points.emplace_back(time_s[i] / 60.0, error_m[i]);
+  return series;
+}
+
 Report ShiftedHall::report(const std::vector<Outcome>& outcomes) const {
   Report report;
   for (const Kind& kind : kinds()) {
     std::vector<double> rms_m, most_m, off, jumps;
+    Chart errors{kind.name + ": error", "time, min", "position, m", {}};
     for (const Outcome& outcome : outcomes) {
       if (outcome.label("kind") != kind.name) continue;
       rms_m.push_back(outcome.number("error_rms_m"));
       most_m.push_back(outcome.number("error_most_m"));
       off.push_back(outcome.number("off_share"));
       jumps.push_back(outcome.number("jumps"));
+      errors.series.push_back(error_series(outcome));
     }
     if (rms_m.empty()) continue;  // not asked for
     report.figures.push_back({kind.name + ": RMSE of the worst drive", quantile(rms_m, 1.0), "m", kind.rms_m});
@@ -94,6 +105,7 @@ Report ShiftedHall::report(const std::vector<Outcome>& outcomes) const {
     report.figures.push_back({kind.name + ": farthest scan", quantile(most_m, 1.0), "m"});
     report.figures.push_back({kind.name + ": time off by more than 0.5 m", mean_of(off)});
     report.figures.push_back({kind.name + ": jumps away from a right pose, most", quantile(jumps, 1.0)});
+    report.charts.push_back(std::move(errors));
   }
   TextTable runs{"Every drive", {"kind", "seed", "RMSE, m", "farthest, m", "off", "jumps", "cause"}, {}};
   for (const Outcome& outcome : outcomes) {

@@ -76,7 +76,9 @@ Outcome watched_drive(const WatchedRun& run) {
   std::optional<MappingWatch> watch;
   if (run.settings.mapping.enabled) {
     watch.emplace(run.scenario, run.first_map,
-                  MappingWatchParams{.range_m = run.drive.max_range_m, .judge_every_s = kJudgeEvery_s});
+                  MappingWatchParams{.range_m = run.drive.max_range_m,
+                                     .field_rad = radians(run.drive.fan.angle_deg),
+                                     .judge_every_s = kJudgeEvery_s});
   }
   PoseCourse course{run.knows_start};
   const ChangedView changed_view{run};
