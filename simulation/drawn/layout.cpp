@@ -123,8 +123,8 @@ Layout corridors(Random& random) {
     builder.walls_round(rectangle(low, high));
     sides.push_back({{high.x(), low.y()}, high});
   }
-  const int things = whole(2, 3 * count, random);
-  for (int i = 0; i < things; ++i) {
+  const int tries = whole(4 * count, 16 * count, random);  // most of them where there is no room
+  for (int i = 0; i < tries; ++i) {
     const Segment& side = sides[random.index_below(static_cast<std::uint32_t>(sides.size()))];
     builder.lean(side, side.from + Point2{1.0, 1.0}, {.most_m = 1.2, .way_m = width_m - 0.7}, 0.6);
   }

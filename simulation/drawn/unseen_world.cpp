@@ -17,11 +17,10 @@ namespace deltamap::simulation::drawn {
 namespace {
 
 constexpr double kClearance_m = 0.4;     // of the robot's middle
-constexpr double kStartRoom_m = 0.6;     // around a start
 constexpr double kSeenShare = 0.25;      // of the changes that may happen in view
 constexpr double kLargestShift_m = 0.8;  // in x and in y
 constexpr double kLanesKept = 0.85;      // of the floor
-constexpr int kStarts = 20;              // places that are tried for the largest floor
+constexpr int kStarts = 400;             // places that are tried for the largest floor; corridors are a small part
 constexpr int kPathTries = 200;
 
 enum class Stream : std::uint64_t { kLayout, kStart, kPeople, kOutdated, kFirstDrive };
@@ -111,7 +110,7 @@ ForkliftParams forklift_of(const UnseenKind& kind, double passage_m) {
   return forklift;
 }
 
-VirtualDriveParams drive_of(const UnseenKind& kind, std::uint64_t seed) {
+VirtualDriveParams drive_of(const UnseenKind& kind, double passage_m, std::uint64_t seed) {
   VirtualDriveParams drive;
   drive.seed = seed;
   drive.fan = kind.fan;
@@ -120,7 +119,7 @@ VirtualDriveParams drive_of(const UnseenKind& kind, std::uint64_t seed) {
   drive.odometry_lag_s = kind.odometry_lag_s;
   drive.route.speed_m_per_s = kind.speed_m_per_s;
   drive.route.clearance_m = kClearance_m;
-  drive.route.comfort_m = 0.8;
+  drive.route.comfort_m = 0.5 * passage_m;  // or it would stay on its side of a door
   drive.slips = kind.slips;
   drive.gaps = kind.gaps;
   drive.creep = kind.creep;
@@ -137,7 +136,7 @@ UnseenWorld unseen_world(const UnseenKind& kind, std::uint64_t seed) {
   scenario.world = layout.world;
   scenario.slots = layout.slots;
   Random start = random_for(seed, Stream::kStart);
-  const FloorPlaces places{main_floor(layout.world, kStartRoom_m, start)};
+  const FloorPlaces places{main_floor(layout.world, 0.5 * layout.passage_m, start)};
   const Point2 place = places.any(start);
   scenario.robot.map_from_start = {place.x(), place.y(), start.uniform(-std::numbers::pi, std::numbers::pi)};
   scenario.robot.body = with_wheel_errors(scenario.robot.body, kind.wheels);
@@ -146,7 +145,7 @@ UnseenWorld unseen_world(const UnseenKind& kind, std::uint64_t seed) {
   add_people(kind.people, places, scenario, random_for(seed, Stream::kPeople));
 
   VirtualDriveParams& drive = unseen.drawn.drive;
-  drive = drive_of(kind, seed);
+  drive = drive_of(kind, layout.passage_m, seed);
   drive.told_mount = scenario.laser.optics.robot_from_laser * kind.told_from_true_mount;
   drive.forklift = forklift_of(kind, layout.passage_m);
   if (drive.creep) drive.creep->passage_m = layout.passage_m;

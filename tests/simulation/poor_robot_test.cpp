@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/angle.hpp"
+#include "simulation/passages.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::simulation {
@@ -34,7 +35,17 @@ Moved moved(VirtualDrive& drive, int scans) {
   const Pose2 truth = drive.map_from_robot();
   Pose2 last = wheels;
   for (int scan = 0; scan < scans; ++scan) last = odometry_of(drive.next());
-  return {wheels.inverse() * last, truth.inverse() * drive.map_from_robot()};
+  return {motion_between(wheels, last), motion_between(truth, drive.map_from_robot())};
+}
+
+TEST(ReachableFloor, EndsAtAWallHoweverNearOneStandsToIt) {
+  const World halves{{{1, ObjectKind::kWall, Polyline{{{0, 0}, {12, 0}, {12, 6}, {0, 6}, {0, 0}}}},
+                      {2, ObjectKind::kWall, Polyline{{{6, 0}, {6, 6}}}}}};
+  for (const double away_m : {0.4, 0.5, 0.6, 0.7}) {
+    const ReachableFloor floor = reachable_floor(halves, {6.0 - away_m, 3.0}, 0.4);
+    EXPECT_TRUE(floor.contains({2.0, 3.0})) << away_m;
+    EXPECT_FALSE(floor.contains({8.0, 3.0})) << away_m;
+  }
 }
 
 TEST(WheelErrors, CountTooFarByTheScaleAndDriftWhereTheBodyGoesStraight) {
@@ -64,7 +75,6 @@ TEST(VirtualDrive, SlipsByAsMuchAsItShouldWithinAMoment) {
   VirtualDrive drive{exact_hall(), {.odometry_period_s = 0.02, .slips = SlipParams{.every_m = 3.0, .turn_rad = 0.1}}};
   drive.hold({.speed_m_per_s = 0.2});
   int slips = 0;
-  int straight = 0;
   DriveStep before = drive.next();
   Pose2 truth = drive.map_from_robot();
   for (int scan = 0; scan < 1000; ++scan) {
@@ -77,12 +87,11 @@ TEST(VirtualDrive, SlipsByAsMuchAsItShouldWithinAMoment) {
     }
     DriveStep after = step;
     for (int more = 0; more < 6; ++more) after = drive.next();
-    const Pose2 wheels = odometry_of(before).inverse() * odometry_of(after);
-    const Pose2 body = truth.inverse() * drive.map_from_robot();
-    const double length_m = std::abs(wheels.position().norm() - body.position().norm());
+    const Pose2 wheels = motion_between(odometry_of(before), odometry_of(after));
+    const Pose2 body = motion_between(truth, drive.map_from_robot());
+    const double length_m = std::abs(wheels.x - body.x);
     const double turn_rad = std::abs(turn_between(body.theta, wheels.theta));
     EXPECT_TRUE(std::abs(length_m - 0.3) < 0.05 || std::abs(turn_rad - 0.1) < 0.01) << length_m << " " << turn_rad;
-    straight += turn_rad < 0.02 ? 1 : 0;
     before = after;
     truth = drive.map_from_robot();
   }
