@@ -81,8 +81,8 @@ void run(const ExperimentOptions& given) {
   {
     Progress progress{chosen->name(), results.runs.size()};
     progress.show(0);
-    results.outcomes =
-        experiment::outcomes_of(results.runs, given.jobs, [&](std::size_t done) { progress.show(done); });
+    const int jobs = chosen->measures_time() ? 1 : given.jobs;  // runs beside it would be measured too
+    results.outcomes = experiment::outcomes_of(results.runs, jobs, [&](std::size_t done) { progress.show(done); });
   }
   results.report = chosen->report(results.outcomes);
   write(results, given);
@@ -104,7 +104,10 @@ void add_experiment(CLI::App& app) {
   command.add_option("--out", given->out, "folder for NAME.csv, summary.json and index.html")->required();
   command.add_flag("--quick", given->options.quick, "fewer and shorter runs: to see that it works");
   command.add_option("--seed", given->options.seed, "first seed (default 1)");
-  command.add_option("--jobs", given->jobs, "runs at once (default: the processors)")->check(CLI::Range(1, 256));
+  command
+      .add_option("--jobs", given->jobs,
+                  "runs at once (default: the processors); one where an experiment measures the machine")
+      ->check(CLI::Range(1, 256));
   command.add_option("--minutes", given->options.minutes, "of each drive, in place of the experiment's")
       ->check(CLI::PositiveNumber);
   command.add_option("--repeats", given->options.repeats, "seeds, or runs of each kind, in place of the experiment's")

@@ -5,6 +5,7 @@
 
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
@@ -21,7 +22,7 @@
 #include "drivers/port/serial_port.hpp"
 #include "simulation/virtual_drive.hpp"
 
-namespace deltamap::test {
+namespace deltamap::daemon::tool::experiment {
 
 class VirtualPorts {
  public:
@@ -35,8 +36,8 @@ class VirtualPorts {
   }
 
   [[nodiscard]] Pose2 map_from_robot() const { return drive_.map_from_robot(); }
-  /// Whose counts say what has been taken. Before anything plays.
-  void follow(const daemon::Telemetry& telemetry) { telemetry_ = &telemetry; }
+  /// Whose counts say what has been taken; nothing plays before.
+  void follow(const Telemetry& telemetry) { telemetry_ = &telemetry; }
 
   [[nodiscard]] drivers::port::SerialPortAnswer open(boost::asio::io_context& loop, PortId id) {
     if (!timer_) timer_.emplace(loop);
@@ -54,7 +55,7 @@ class VirtualPorts {
     void set_baud(unsigned) override {}
     void discard_input() override {}
     [[nodiscard]] const std::string& name() const override { return name_; }
-    [[nodiscard]] unsigned baud() const override { return daemon::tool::kImportBaud; }
+    [[nodiscard]] unsigned baud() const override { return kImportBaud; }
 
    private:
     VirtualPorts& ports_;
@@ -68,9 +69,10 @@ class VirtualPorts {
   }
 
   [[nodiscard]] bool is_taken() const {
-    if (telemetry_ == nullptr) return false;
-    const std::uint64_t done = telemetry_->localized.value() + telemetry_->dropped.value();
-    return telemetry_->scans.value() <= done + telemetry_->scans_lost.value();
+    const Telemetry* const telemetry = telemetry_;
+    if (telemetry == nullptr) return false;
+    const std::uint64_t done = telemetry->localized.value() + telemetry->dropped.value();
+    return telemetry->scans.value() <= done + telemetry->scans_lost.value();
   }
 
   void play() {
@@ -87,7 +89,7 @@ class VirtualPorts {
     const simulation::DriveStep step = drive_.next();
     if (!began_) began_ = step.scan.time;
     for (const Odometry& odometry : step.odometry) bytes_.add_pose(odometry.time, odometry.odom_from_robot);
-    daemon::tool::CarmenScan scan;
+    CarmenScan scan;
     scan.time = step.scan.time;
     scan.first_bearing_rad = step.scan.first_bearing_rad;
     scan.bearing_step_rad = step.scan.bearing_step_rad;
@@ -107,9 +109,9 @@ class VirtualPorts {
 
   simulation::VirtualDrive drive_;
   std::function<bool(double)> passed_;
-  daemon::tool::CarmenSurvey survey_;
-  daemon::tool::CarmenBytes bytes_{survey_, [this](const drivers::port::ByteRecord& record) { send(record); }};
-  const daemon::Telemetry* telemetry_ = nullptr;
+  CarmenSurvey survey_;
+  CarmenBytes bytes_{survey_, [this](const drivers::port::ByteRecord& record) { send(record); }};
+  std::atomic<const Telemetry*> telemetry_ = nullptr;
   std::optional<boost::asio::steady_timer> timer_;
   drivers::port::PortHandlers handlers_[2];
   Timestamp opened_;
@@ -117,4 +119,4 @@ class VirtualPorts {
   std::optional<Timestamp> first_stamp_;
 };
 
-}  // namespace deltamap::test
+}  // namespace deltamap::daemon::tool::experiment
