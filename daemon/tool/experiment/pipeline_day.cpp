@@ -44,7 +44,8 @@ double heap_mb() {
 /// Looks at the memory while the drive goes on.
 class MemoryBook {
  public:
-  explicit MemoryBook(double drive_s) : drive_s_{drive_s}, every_s_{std::min(kHour_s, drive_s / kLeastSamples)} {}
+  MemoryBook(double drive_s, std::function<void(const MemorySample&)> sampled)
+      : drive_s_{drive_s}, every_s_{std::min(kHour_s, drive_s / kLeastSamples)}, sampled_{std::move(sampled)} {}
 
   /// False once the drive is over.
   bool look(double passed_s) {
@@ -55,6 +56,7 @@ class MemoryBook {
     }
     if (is_sample) {
       samples_.push_back({passed_s, std::exchange(least_mb_, kNone_mb), resident_mb()});
+      if (sampled_) sampled_(samples_.back());
     }
     return passed_s < drive_s_;
   }
@@ -65,6 +67,7 @@ class MemoryBook {
 
   double drive_s_;
   double every_s_;
+  std::function<void(const MemorySample&)> sampled_;
   double least_mb_ = kNone_mb;
   double next_look_s_ = 0.0;
   std::vector<MemorySample> samples_;
@@ -109,9 +112,9 @@ Settings settings_in(const std::filesystem::path& folder, const MappingRun& run)
 double PipelineDay::heap_growth_mb() const { return growth(samples, &MemorySample::heap_mb); }
 double PipelineDay::resident_growth_mb() const { return growth(samples, &MemorySample::resident_mb); }
 
-PipelineDay pipeline_day(const MappingRun& run) {
+PipelineDay pipeline_day(const MappingRun& run, std::function<void(const MemorySample&)> sampled) {
   const ScratchFolder folder;
-  MemoryBook book{60.0 * run.minutes};
+  MemoryBook book{60.0 * run.minutes, std::move(sampled)};
   End end;
   VirtualPorts ports{run.scenario, run.drive, [&](double passed_s) {
                        const bool goes_on = book.look(passed_s);

@@ -3,6 +3,7 @@
 // over hours of virtual time in a world that changes, and what it holds in memory meanwhile.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,12 +31,15 @@ struct PipelineDay {
   [[nodiscard]] double resident_growth_mb() const;
 };
 
-/// Hours in which what is bounded by the size of the world fills up: the tiles of votes, wherever beams have ended.
+/// Hours after which nearly all of what is bounded by the size of the world is there: the tiles of votes.
 inline constexpr double kSettling_h = 4.0;
-inline constexpr double kMostHeapGrowth_mb = 0.5;  ///< after that, to be called flat
+/// To be called flat: what may still be missing from these bounds in a hall of 35 m × 35 m. By then it has 0.9 of its
+/// tiles (0.46 MB are left) and 3400 of the 8192 places that are written back and forth (0.19 MB).
+inline constexpr double kMostHeapGrowth_mb = 0.75;
 
-/// Nothing else may be at work in the process. Throws std::runtime_error where a stage fails.
-[[nodiscard]] PipelineDay pipeline_day(const MappingRun& run);
+/// Nothing else may be at work in the process. Throws std::runtime_error where a stage fails. `sampled`: told of each
+/// sample at once, in the io thread; may be empty.
+[[nodiscard]] PipelineDay pipeline_day(const MappingRun& run, std::function<void(const MemorySample&)> sampled = {});
 
 /// Its numbers and its samples; no labels.
 [[nodiscard]] Outcome outcome_of(const PipelineDay& day);

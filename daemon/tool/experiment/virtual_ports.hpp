@@ -68,11 +68,15 @@ class VirtualPorts {
     if (handlers_[0].on_bytes && handlers_[1].on_bytes) play();
   }
 
+  /// The last scan has been localized, and the map thread, which comes last on a busy machine, is not left behind: with
+  /// two sets before it the next could be lost.
   [[nodiscard]] bool is_taken() const {
     const Telemetry* const telemetry = telemetry_;
     if (telemetry == nullptr) return false;
-    const std::uint64_t done = telemetry->localized.value() + telemetry->dropped.value();
-    return telemetry->scans.value() <= done + telemetry->scans_lost.value();
+    const std::uint64_t localized = telemetry->localized.value() + telemetry->dropped.value();
+    if (telemetry->scans.value() > localized + telemetry->scans_lost.value()) return false;
+    const std::uint64_t worked_off = telemetry->newest_revision.value() + telemetry->refused.value();
+    return telemetry->phases_closed.value() < worked_off + telemetry->sets_lost.value() + 2;
   }
 
   void play() {
