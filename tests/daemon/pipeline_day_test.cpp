@@ -44,11 +44,12 @@ void show(const MemorySample& sample) {
 }
 
 void show(const RunReport& report) {
-  std::printf(
-      "scans=%lu lost=%.0f s revisions=%lu refused=%lu tracked_lost=%lu recording_lost=%lu\n",
-      static_cast<unsigned long>(report.scans.localized), report.time_lost_s,
-      static_cast<unsigned long>(report.changes.accepted()), static_cast<unsigned long>(report.changes.refused()),
-      static_cast<unsigned long>(report.scans.tracked_lost), static_cast<unsigned long>(report.scans.recording_lost));
+  std::printf("scans=%lu lost=%.0f s revisions=%lu refused=%lu sets_lost=%lu tracked_lost=%lu recording_lost=%lu\n",
+              static_cast<unsigned long>(report.scans.localized), report.time_lost_s,
+              static_cast<unsigned long>(report.changes.accepted()),
+              static_cast<unsigned long>(report.changes.refused()), static_cast<unsigned long>(report.scans.sets_lost),
+              static_cast<unsigned long>(report.scans.tracked_lost),
+              static_cast<unsigned long>(report.scans.recording_lost));
 }
 
 TEST(PipelineDay, HoldsNoMoreInMemoryInTheLastHourThanOnceItHasSettled) {

@@ -5,6 +5,7 @@
 
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -70,13 +71,17 @@ class VirtualPorts {
 
   /// The last scan has been localized, and the map thread, which comes last on a busy machine, is not left behind: with
   /// two sets before it the next could be lost.
-  [[nodiscard]] bool is_taken() const {
+  [[nodiscard]] bool is_taken() {
     const Telemetry* const telemetry = telemetry_;
     if (telemetry == nullptr) return false;
     const std::uint64_t localized = telemetry->localized.value() + telemetry->dropped.value();
     if (telemetry->scans.value() > localized + telemetry->scans_lost.value()) return false;
-    const std::uint64_t worked_off = telemetry->newest_revision.value() + telemetry->refused.value();
-    return telemetry->phases_closed.value() < worked_off + telemetry->sets_lost.value() + 2;
+    // Before what was closed: a set that is closed and worked off in between must not look like an order.
+    const std::int64_t worked_off =
+        std::int64_t{telemetry->newest_revision.value()} + telemetry->refused.value() + telemetry->sets_lost.value();
+    const std::int64_t closed = telemetry->phases_closed.value();
+    orders_ = std::max(orders_, worked_off - closed);
+    return closed + orders_ < worked_off + 2;
   }
 
   void play() {
@@ -116,6 +121,7 @@ class VirtualPorts {
   CarmenSurvey survey_;
   CarmenBytes bytes_{survey_, [this](const drivers::port::ByteRecord& record) { send(record); }};
   std::atomic<const Telemetry*> telemetry_ = nullptr;
+  std::int64_t orders_ = 0;  // to withdraw: worked off like sets, but no phase
   std::optional<boost::asio::steady_timer> timer_;
   drivers::port::PortHandlers handlers_[2];
   Timestamp opened_;
