@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/check_config.hpp"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -13,6 +11,7 @@
 #include "daemon/localization_step.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/provenance.hpp"
+#include "daemon/scratch_folder.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/state_folders.hpp"
 #include "drivers/port/port_check.hpp"
@@ -24,26 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Level = Finding::Level;
-
-/// A folder for a moment, in the system's place for such.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "deltamap-check-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": no folder for a copy of the store");
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 Finding settings_finding(const Settings& settings, const std::string& config) {
   return {Level::kOk, "settings",

@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::int64_t kApplicationId = 0x444D4150;  // "DMAP"
 constexpr std::int64_t kSchemaVersion = 2;
+constexpr int kCache_kB = 256;  // of the file in memory: an append touches a few pages; SQLite would keep 2 MB a store
 
 constexpr const char* kSchema = R"(
 CREATE TABLE map (hash INTEGER PRIMARY KEY, width INTEGER, height INTEGER, resolution_m REAL, origin_x_m REAL,
@@ -64,6 +65,7 @@ Database opened_store(const std::filesystem::path& file, Database::Mode mode) {
     throw StoreError(file.string() + ": no such file", StoreError::Kind::kOther);
   }
   Database database{file, mode};
+  database.run("PRAGMA cache_size = -" + std::to_string(kCache_kB));  // negative: in kB, not in pages
   if (create && database.number("SELECT count(*) FROM sqlite_master") == 0) {
     database.run("PRAGMA journal_mode = WAL");
     Transaction all{database};

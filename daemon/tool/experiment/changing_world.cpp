@@ -7,6 +7,7 @@
 
 #include "daemon/tool/experiment/lived_in.hpp"
 #include "daemon/tool/experiment/mapping_run.hpp"
+#include "daemon/tool/experiment/pipeline_day.hpp"
 #include "daemon/tool/experiment/registry.hpp"
 
 namespace deltamap::daemon::tool::experiment {
@@ -21,6 +22,7 @@ struct Drive {
   int restarts = 0;
   std::vector<std::string> methods{"evidence", "paper"};
   std::function<void(simulation::VirtualDriveParams&, simulation::Scenario&)> arrange{};
+  bool by_pipeline = false;  ///< the daemon's own, with threads and files, in place of the stages in step
 };
 
 enum class Over : std::uint8_t { kMean, kLeast, kMost };
@@ -40,6 +42,7 @@ struct Plan {
   std::string what;
   std::vector<Drive> drives;
   std::vector<Asked> asked;
+  bool measures_machine = false;
 };
 
 double value_of(const Outcome& outcome, const std::string& number) {
@@ -73,6 +76,7 @@ class ChangingWorld : public Experiment {
   explicit ChangingWorld(Plan plan) : plan_{std::move(plan)} {}
   [[nodiscard]] std::string name() const override { return plan_.name; }
   [[nodiscard]] std::string what() const override { return plan_.what; }
+  [[nodiscard]] bool measures_time() const override { return plan_.measures_machine; }
   [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
   [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
 
@@ -97,7 +101,7 @@ std::vector<Run> ChangingWorld::runs(const Options& options) const {
         run.minutes = options.minutes.value_or(options.quick ? std::min(5.0, kind.minutes) : kind.minutes);
         run.restarts = kind.restarts;
         runs.push_back({kind.name + "-seed" + std::to_string(seed) + "-" + method, [=] {
-                          Outcome outcome = outcome_of(run);
+                          Outcome outcome = kind.by_pipeline ? outcome_of(pipeline_day(run)) : outcome_of(run);
                           outcome.labels = {{"drive", kind.name}, {"seed", std::to_string(seed)}, {"method", method}};
                           return outcome;
                         }});
@@ -141,6 +145,18 @@ Chart course_chart(const std::string& title, const std::string& y, const std::ve
   return chart;
 }
 
+void add_charts(Report& report, const Drive& kind, const std::vector<const Outcome*>& ours,
+                const std::vector<const Outcome*>& both) {
+  const auto add = [&](const std::string& title, const std::string& y, const std::vector<const Outcome*>& outcomes,
+                       const std::vector<std::string>& columns) {
+    report.charts.push_back(course_chart(kind.name + ": " + title, y, outcomes, columns));
+  };
+  if (kind.by_pipeline) return add("memory, simulator and all", "MB", ours, {"heap_mb", "resident_mb"});
+  add("error", "position, mean of five minutes, m", both, {"error_mean_m"});
+  add("acceptance", "Eq. 11", both, {"acceptance"});
+  add("contour F1, ours, stale, perfect", "F1", ours, {"f1", "f1_stale", "f1_perfect"});
+}
+
 /// Every number of every run, the methods side by side.
 TextTable table_of(const std::string& drive, const std::vector<const Outcome*>& ours,
                    const std::vector<const Outcome*>& paper) {
@@ -175,11 +191,7 @@ Report ChangingWorld::report(const std::vector<Outcome>& outcomes) const {
     }
     auto both = ours;
     both.insert(both.end(), paper.begin(), paper.end());
-    report.charts.push_back(
-        course_chart(kind.name + ": error", "position, mean of five minutes, m", both, {"error_mean_m"}));
-    report.charts.push_back(course_chart(kind.name + ": acceptance", "Eq. 11", both, {"acceptance"}));
-    report.charts.push_back(
-        course_chart(kind.name + ": contour F1, ours, stale, perfect", "F1", ours, {"f1", "f1_stale", "f1_perfect"}));
+    add_charts(report, kind, ours, both);
     report.tables.push_back(table_of(kind.name, ours, paper));
     for (const Outcome* one : {ours.front(), paper.empty() ? nullptr : paper.front()}) {
       if (one == nullptr) continue;
@@ -234,6 +246,17 @@ Plan seven_hours() {
               asked_of_lasting_drives("")};
 }
 
+/// The daemon's own pipeline over a day at a fifth of the laser's rate, so that it takes minutes.
+Drive day_of_pipeline() {
+  return {.name = "pipeline",
+          .scenario = "endurance.yaml",
+          .minutes = 1440.0,
+          .range_m = 30.0,
+          .methods = {"evidence"},
+          .arrange = [](simulation::VirtualDriveParams& drive, simulation::Scenario&) { drive.scan_period_s = 0.5; },
+          .by_pipeline = true};
+}
+
 Plan endurance() {
   const auto every = [](double seconds) {
     return [seconds](simulation::VirtualDriveParams& drive, simulation::Scenario&) {
@@ -241,19 +264,29 @@ Plan endurance() {
     };
   };
   Plan plan{"endurance",
-            "24 hours with ten restarts among racks, doors and passers-by; and changes twice as often until it breaks",
-            {{.name = "24h", .scenario = "endurance.yaml", .minutes = 1440.0, .restarts = 10, .methods = {"evidence"}}},
+            "24 hours with ten restarts among racks, doors and passers-by, 24 hours of the daemon's own pipeline, and "
+            "changes twice as often until it breaks",
+            {{.name = "24h", .scenario = "endurance.yaml", .minutes = 1440.0, .restarts = 10, .methods = {"evidence"}},
+             day_of_pipeline()},
             asked_of_lasting_drives("24h") +
                 std::vector<Asked>{{"24h", "acceptance_perfect - acceptance", Over::kMost, {.most = 0.004}},
-                                   {"24h", "shortfall_growth", Over::kMost, {.most = 0.001}}}};
+                                   {"24h", "shortfall_growth", Over::kMost, {.most = 0.001}},
+                                   {"24h", "skill", Over::kLeast, {}},
+                                   {"pipeline", "heap_growth_mb", Over::kMost, {.most = kMostHeapGrowth_mb}, "MB"},
+                                   {"pipeline", "resident_growth_mb", Over::kMost, {}, "MB"},
+                                   {"pipeline", "last_heap_mb", Over::kMost, {}, "MB"},
+                                   {"pipeline", "revisions", Over::kLeast, {}},
+                                   {"pipeline", "not_followed_s", Over::kMost, {}, "s"},
+                                   {"pipeline", "warnings", Over::kMost, {.most = 0.0}}},
+            true};
   for (const double seconds : {30.0, 15.0, 7.5, 3.75}) {
     const std::string name = "every-" + text_of(seconds) + "s";
     plan.drives.push_back(
         {.name = name, .scenario = "hall.yaml", .minutes = 60.0, .methods = {"evidence"}, .arrange = every(seconds)});
     plan.asked.push_back({name, "cells_written_astray", Over::kMost, {.most = 0.0}});
+    plan.asked.push_back({name, "error_p99_m", Over::kMost, {}, "m"});
+    plan.asked.push_back({name, "skill", Over::kLeast, {}});
   }
-  plan.asked.push_back({"", "error_p99_m", Over::kMost, {}, "m"});
-  plan.asked.push_back({"", "skill", Over::kLeast, {}});
   return plan;
 }
 

@@ -64,6 +64,10 @@ void PoseCourse::note_happenings(const Mapped& scan, const Befallen& befallen) {
     changed_view_s_ += counted_s_;
   }
   if (befallen.person_near) person_s_ = now_s_;
+  if (befallen.little_in_view) {
+    empty_s_ = now_s_;
+    empty_view_s_ += counted_s_;
+  }
   if (scan.slips > 0) slip_s_ = now_s_;
   slips_ += scan.slips;
   ++scans_;
@@ -127,6 +131,7 @@ std::string PoseCourse::happening() const {
   add(slip_s_, "slip");
   add(gap_s_, "gap");
   add(person_s_, "person near");
+  add(empty_s_, "little in view");
   return happening.empty() ? "none known" : happening;
 }
 
@@ -159,6 +164,7 @@ PoseCourse::Numbers PoseCourse::numbers() const {
           {"inside_95", coverage_.share()},
           {"inside_95_after_slip", coverage_after_slips_.share()},
           {"changed_view_s", changed_view_s_},
+          {"empty_view_s", empty_view_s_},
           {"slips", static_cast<double>(slips_)},
           {"gaps", static_cast<double>(gaps_)},
           {"localizer_cpu_ms", ms_a_scan(costs_.localizer_s)},

@@ -17,6 +17,7 @@ namespace deltamap::daemon::tool::experiment {
 struct Befallen {
   bool change_in_view = false;
   bool person_near = false;
+  bool little_in_view = false;
 };
 
 class PoseCourse {
@@ -77,9 +78,11 @@ class PoseCourse {
   std::optional<double> slip_s_;
   std::optional<double> gap_s_;
   std::optional<double> person_s_;
+  std::optional<double> empty_s_;  // little in view
   int slips_ = 0;
   int gaps_ = 0;
   double changed_view_s_ = 0.0;
+  double empty_view_s_ = 0.0;
 
   std::size_t scans_ = 0;
   StageCosts costs_;  // of all scans

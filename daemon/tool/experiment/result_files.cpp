@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/tool/experiment/result_files.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
@@ -38,6 +40,24 @@ std::string cell_of(const std::string& text) {
   return text.find_first_of(",\"\n") == std::string::npos ? text : '"' + text + '"';
 }
 
+double number_or_nothing(const Outcome& outcome, const std::string& name) {
+  for (const auto& [own, value] : outcome.numbers) {
+    if (own == name) return value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Of all runs, each once, in the order in which they first come: not every run need have measured the same.
+std::vector<std::string> numbers_in(const std::vector<Outcome>& outcomes) {
+  std::vector<std::string> names;
+  for (const Outcome& outcome : outcomes) {
+    for (const auto& [name, value] : outcome.numbers) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 void expect_writable(const fs::path& folder) {
@@ -50,16 +70,17 @@ void expect_writable(const fs::path& folder) {
 }
 
 std::string runs_csv(const Results& results) {
+  const std::vector<std::string> numbers = numbers_in(results.outcomes);
   std::string csv = "run";
   if (!results.outcomes.empty()) {
     for (const auto& [name, value] : results.outcomes.front().labels) csv += "," + cell_of(name);
-    for (const auto& [name, value] : results.outcomes.front().numbers) csv += "," + cell_of(name);
   }
+  for (const std::string& name : numbers) csv += "," + cell_of(name);
   csv += '\n';
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
     csv += cell_of(results.runs[i].name);
     for (const auto& [name, value] : results.outcomes[i].labels) csv += "," + cell_of(value);
-    for (const auto& [name, value] : results.outcomes[i].numbers) csv += "," + text_of(value);
+    for (const std::string& name : numbers) csv += "," + text_of(number_or_nothing(results.outcomes[i], name));
     csv += '\n';
   }
   return csv;

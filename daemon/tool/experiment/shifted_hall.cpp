@@ -50,7 +50,8 @@ class ShiftedHall : public Experiment {
   [[nodiscard]] std::string what() const override {
     return "An hour among containers of 5 m that are shifted by up to 0.8 m, one a minute, with poor wheels";
   }
-  [[nodiscard]] bool measures_time() const override { return true; }
+  [[nodiscard]] bool measures_time() const override { return true; }  // CPU time of the thread
+  [[nodiscard]] bool runs_alone() const override { return false; }
   [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
   [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
 };

@@ -154,7 +154,8 @@ class Unseen : public Experiment {
     return "Worlds that nobody has tuned on, another kind for every seed (1-999: development; 1000-1059: closing "
            "notes)";
   }
-  [[nodiscard]] bool measures_time() const override { return true; }
+  [[nodiscard]] bool measures_time() const override { return true; }  // CPU time of the thread
+  [[nodiscard]] bool runs_alone() const override { return false; }
   [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
   [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
 };

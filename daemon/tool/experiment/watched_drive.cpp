@@ -14,7 +14,8 @@ namespace deltamap::daemon::tool::experiment {
 namespace {
 
 constexpr double kRowEvery_s = 1.0;
-constexpr double kDiffers = 0.05;  // share of the beams above which a change is in view
+constexpr double kDiffers = 0.05;   // share of the beams above which a change is in view
+constexpr double kFewBeams = 0.15;  // share of the beams below which little is in view
 constexpr double kPersonNear_m = 3.0;
 constexpr double kJudgeEvery_s = 5.0;
 
@@ -39,6 +40,13 @@ bool is_person_near(const Mapped& scan) {
   return std::any_of(walkers.begin(), walkers.end(), [&](const simulation::Circle& person) {
     return (person.centre - scan.map_from_robot.position()).norm() < kPersonNear_m;
   });
+}
+
+/// Hardly a beam comes back.
+bool is_little_in_view(const Scan& scan) {
+  const auto ranges = std::count_if(scan.beams.begin(), scan.beams.end(),
+                                    [](const Beam& beam) { return beam.kind == BeamKind::kRange; });
+  return static_cast<double>(ranges) < kFewBeams * static_cast<double>(scan.beams.size());
 }
 
 /// Looks once a second what is different in view from the world of M_0.
@@ -92,7 +100,7 @@ Outcome watched_drive(const WatchedRun& run) {
     passed_s = scan.passed_s;
     const bool writes_row = passed_s >= next_row_s;
     if (writes_row) changed_share = changed_view.share(drive.drive(), scan.map_from_robot);
-    course.observe(scan, {changed_share > kDiffers, is_person_near(scan)});
+    course.observe(scan, {changed_share > kDiffers, is_person_near(scan), is_little_in_view(scan.tracked.scan)});
     if (watch) watch->observe(scan, drive.map());
     if (!writes_row) continue;
     next_row_s = passed_s + kRowEvery_s;

@@ -75,6 +75,19 @@ TEST(Experiment, SummaryAndPageSayWhichProgramMadeThemWithWhichSettings) {
   EXPECT_NE(experiment::page_html(results).find(told), std::string::npos);
 }
 
+TEST(Experiment, TableHasAColumnForEveryNumberThatAnyRunHas) {
+  const experiment::Results results{
+      "name",
+      "what",
+      1,
+      false,
+      {{"one", {}}, {"two", {}}},
+      {{{{"drive", "x"}}, {{"a", 1.0}, {"b", 2.0}}, {}}, {{{"drive", "y"}}, {{"b", 3.0}, {"c", 4.0}}, {}}},
+      {},
+      {}};
+  EXPECT_EQ(experiment::runs_csv(results), "run,drive,a,b,c\none,x,1,2,\ntwo,y,,3,4\n");
+}
+
 /// A table without the columns whose names end in _ms or _mb.
 std::vector<std::string> without_times(const std::string& csv) {
   std::vector<bool> is_time;
@@ -137,7 +150,7 @@ TEST(Experiment, ListsThoseThatThereAreALineEach) {
   for (const auto& known : experiment::experiments()) {
     std::string line;
     ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_EQ(line, known->name() + "\t" + (known->measures_time() ? "times" : "") + "\t" + known->what());
+    EXPECT_EQ(line, known->name() + "\t" + (known->runs_alone() ? "times" : "") + "\t" + known->what());
   }
   EXPECT_EQ(lines.peek(), EOF);
 }

@@ -5,6 +5,8 @@
 
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
+#include <algorithm>
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
@@ -21,7 +23,7 @@
 #include "drivers/port/serial_port.hpp"
 #include "simulation/virtual_drive.hpp"
 
-namespace deltamap::test {
+namespace deltamap::daemon::tool::experiment {
 
 class VirtualPorts {
  public:
@@ -35,8 +37,8 @@ class VirtualPorts {
   }
 
   [[nodiscard]] Pose2 map_from_robot() const { return drive_.map_from_robot(); }
-  /// Whose counts say what has been taken. Before anything plays.
-  void follow(const daemon::Telemetry& telemetry) { telemetry_ = &telemetry; }
+  /// Whose counts say what has been taken; nothing plays before.
+  void follow(const Telemetry& telemetry) { telemetry_ = &telemetry; }
 
   [[nodiscard]] drivers::port::SerialPortAnswer open(boost::asio::io_context& loop, PortId id) {
     if (!timer_) timer_.emplace(loop);
@@ -54,7 +56,7 @@ class VirtualPorts {
     void set_baud(unsigned) override {}
     void discard_input() override {}
     [[nodiscard]] const std::string& name() const override { return name_; }
-    [[nodiscard]] unsigned baud() const override { return daemon::tool::kImportBaud; }
+    [[nodiscard]] unsigned baud() const override { return kImportBaud; }
 
    private:
     VirtualPorts& ports_;
@@ -67,10 +69,19 @@ class VirtualPorts {
     if (handlers_[0].on_bytes && handlers_[1].on_bytes) play();
   }
 
-  [[nodiscard]] bool is_taken() const {
-    if (telemetry_ == nullptr) return false;
-    const std::uint64_t done = telemetry_->localized.value() + telemetry_->dropped.value();
-    return telemetry_->scans.value() <= done + telemetry_->scans_lost.value();
+  /// The last scan has been localized, and the map thread, which comes last on a busy machine, is not left behind: with
+  /// two sets before it the next could be lost.
+  [[nodiscard]] bool is_taken() {
+    const Telemetry* const telemetry = telemetry_;
+    if (telemetry == nullptr) return false;
+    const std::uint64_t localized = telemetry->localized.value() + telemetry->dropped.value();
+    if (telemetry->scans.value() > localized + telemetry->scans_lost.value()) return false;
+    // Before what was closed: a set that is closed and worked off in between must not look like an order.
+    const std::int64_t worked_off =
+        std::int64_t{telemetry->newest_revision.value()} + telemetry->refused.value() + telemetry->sets_lost.value();
+    const std::int64_t closed = telemetry->phases_closed.value();
+    orders_ = std::max(orders_, worked_off - closed);
+    return closed + orders_ < worked_off + 2;
   }
 
   void play() {
@@ -87,7 +98,7 @@ class VirtualPorts {
     const simulation::DriveStep step = drive_.next();
     if (!began_) began_ = step.scan.time;
     for (const Odometry& odometry : step.odometry) bytes_.add_pose(odometry.time, odometry.odom_from_robot);
-    daemon::tool::CarmenScan scan;
+    CarmenScan scan;
     scan.time = step.scan.time;
     scan.first_bearing_rad = step.scan.first_bearing_rad;
     scan.bearing_step_rad = step.scan.bearing_step_rad;
@@ -107,9 +118,10 @@ class VirtualPorts {
 
   simulation::VirtualDrive drive_;
   std::function<bool(double)> passed_;
-  daemon::tool::CarmenSurvey survey_;
-  daemon::tool::CarmenBytes bytes_{survey_, [this](const drivers::port::ByteRecord& record) { send(record); }};
-  const daemon::Telemetry* telemetry_ = nullptr;
+  CarmenSurvey survey_;
+  CarmenBytes bytes_{survey_, [this](const drivers::port::ByteRecord& record) { send(record); }};
+  std::atomic<const Telemetry*> telemetry_ = nullptr;
+  std::int64_t orders_ = 0;  // to withdraw: worked off like sets, but no phase
   std::optional<boost::asio::steady_timer> timer_;
   drivers::port::PortHandlers handlers_[2];
   Timestamp opened_;
@@ -117,4 +129,4 @@ class VirtualPorts {
   std::optional<Timestamp> first_stamp_;
 };
 
-}  // namespace deltamap::test
+}  // namespace deltamap::daemon::tool::experiment
