@@ -17,7 +17,7 @@ import sys
 # Of these more is better; of all others less.
 MORE_IS_BETTER = {"recall", "precision", "skill", "inside_95", "inside_95_after_slip", "start_found", "f1",
                   "acceptance", "walls_kept", "changes_found", "layer_recall", "acceptance_solid"}
-FIGURES = ["error_rms_m", "error_most_m", "off_share", "stretches_off", "jumps", "found_after_s",
+FIGURES = ["error_rms_m", "laser_error_rms_m", "error_most_m", "off_share", "stretches_off", "jumps", "found_after_s",
            "wrong_before_found_s", "searching_while_near_s", "recall", "precision", "skill", "gate_shut_while_right",
            "cells_written_astray", "wall_drift_m", "inside_95", "inside_95_after_slip", "localizer_cpu_ms",
            "mapping_cpu_ms"]

@@ -33,7 +33,8 @@ void PoseCourse::Coverage::add(bool is_inside) {
 
 double PoseCourse::Coverage::share() const { return share_of(static_cast<double>(inside), static_cast<double>(all)); }
 
-PoseCourse::PoseCourse(bool knows_start) : knows_start_{knows_start} {
+PoseCourse::PoseCourse(bool knows_start, const Pose2& robot_from_laser)
+    : knows_start_{knows_start}, robot_from_laser_{robot_from_laser} {
   if (knows_start) found_s_ = 0.0;
 }
 
@@ -43,7 +44,7 @@ void PoseCourse::observe(const Mapped& scan, const Befallen& befallen) {
   if (found_s_) {
     followed_s_ += counted_s_;
     note_error(error_m);
-    note_covariance(scan);
+    note_laser(scan);
     note_gate(scan, error_m);
   } else {
     search(scan, error_m);
@@ -105,8 +106,13 @@ void PoseCourse::note_error(double error_m) {
   longest_off_s_ = std::max(longest_off_s_, off_for_s_);
 }
 
-void PoseCourse::note_covariance(const Mapped& scan) {
-  const Pose2& truth = scan.map_from_robot;
+/// Scans tell where the laser is. Nobody can know by them where on the robot it is: the covariance is judged by where
+/// the robot would be if the mount were the one that it was told.
+void PoseCourse::note_laser(const Mapped& scan) {
+  const Pose2& told_mount = scan.tracked.scan.robot_from_laser;
+  const Pose2 map_from_laser = scan.map_from_robot * robot_from_laser_;
+  laser_errors_m_.push_back(distance_between(map_from_laser, scan.estimate.map_from_robot * told_mount));
+  const Pose2 truth = map_from_laser * inverse(told_mount);
   const Pose2& estimate = scan.estimate.map_from_robot;
   const Eigen::Vector3d error{estimate.x - truth.x, estimate.y - truth.y, turn_between(truth.theta, estimate.theta)};
   const bool is_inside = error.dot(scan.estimate.covariance.ldlt().solve(error)) <= kInside95;
@@ -150,6 +156,7 @@ PoseCourse::Numbers PoseCourse::numbers() const {
                                        : 0.0},
           {"wrong_before_found_s", knows_start_ ? kNothing : wrong_before_found_s_},
           {"error_rms_m", root_mean_square(errors_m_)},
+          {"laser_error_rms_m", root_mean_square(laser_errors_m_)},
           {"error_median_m", quantile(errors_m_, 0.5)},
           {"error_p99_m", quantile(errors_m_, 0.99)},
           {"error_most_m", quantile(errors_m_, 1.0)},

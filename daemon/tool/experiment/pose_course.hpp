@@ -23,8 +23,8 @@ struct Befallen {
 class PoseCourse {
  public:
   /// `knows_start`: the localizer was told where it begins; else the start counts as found once the pose has been
-  /// tracked and right for 5 s.
-  explicit PoseCourse(bool knows_start);
+  /// tracked and right for 5 s. `robot_from_laser`: the true mount; scans may tell another.
+  PoseCourse(bool knows_start, const Pose2& robot_from_laser);
 
   void observe(const Mapped& scan, const Befallen& befallen);
 
@@ -39,7 +39,7 @@ class PoseCourse {
   void note_happenings(const Mapped& scan, const Befallen& befallen);
   void search(const Mapped& scan, double error_m);
   void note_error(double error_m);
-  void note_covariance(const Mapped& scan);
+  void note_laser(const Mapped& scan);
   void note_gate(const Mapped& scan, double error_m);
   [[nodiscard]] std::string happening() const;
 
@@ -47,12 +47,14 @@ class PoseCourse {
   double counted_s_ = 0.0;  // since the last scan, without gaps
   bool is_first_ = true;
   bool knows_start_;
+  Pose2 robot_from_laser_;
   std::optional<double> near_since_s_;  // while it is searched
   std::optional<double> found_s_;
   double wrong_before_found_s_ = 0.0;
 
   // Since it was found.
   std::vector<double> errors_m_;
+  std::vector<double> laser_errors_m_;
   double followed_s_ = 0.0;
   double off_s_ = 0.0;
   double off_for_s_ = 0.0;  // the present stretch

@@ -85,6 +85,7 @@ Outcome drive_through(std::uint64_t seed, double minutes, const Options& options
 
 std::vector<SpreadAsked> asked() {
   return {{"error_rms_m", "m", Better::kLess, 0.01, 0.03, 0.10},
+          {"laser_error_rms_m", "m"},
           {"error_most_m", "m"},
           {"off_share"},
           {"stretches_off"},

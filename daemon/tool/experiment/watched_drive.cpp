@@ -88,7 +88,7 @@ Outcome watched_drive(const WatchedRun& run) {
                                      .field_rad = radians(run.drive.fan.angle_deg),
                                      .judge_every_s = kJudgeEvery_s});
   }
-  PoseCourse course{run.knows_start};
+  PoseCourse course{run.knows_start, run.scenario.laser.optics.robot_from_laser};
   const ChangedView changed_view{run};
   Outcome outcome;
   outcome.scans = ScanTable{{"t_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state", "gate",

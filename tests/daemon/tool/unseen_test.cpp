@@ -28,7 +28,7 @@ double number(const PoseCourse& course, const std::string& name) {
 /// A drive along x; the estimate is beside the truth by so much.
 class MadeUpDrive {
  public:
-  explicit MadeUpDrive(bool knows_start) : course{knows_start} {}
+  explicit MadeUpDrive(bool knows_start, const Pose2& mount = {}) : course{knows_start, mount} {}
 
   void scans(int count, double error_m, LocalizerState state = LocalizerState::kTracking,
              mapping::GateReason gate = mapping::GateReason::kOpen, const Befallen& befallen = {}) {
@@ -80,6 +80,14 @@ TEST(PoseCourse, JudgesTheCovarianceAndApartWhatFollowsASlip) {
   EXPECT_NEAR(number(drive.course, "inside_95"), 940.0 / 1000.0, 1e-6);
   EXPECT_NEAR(number(drive.course, "inside_95_after_slip"), 540.0 / 600.0, 0.002) << "of a minute";
   EXPECT_EQ(number(drive.course, "slips"), 1.0);
+}
+
+TEST(PoseCourse, JudgesTheCovarianceByTheLaserAndNotByAMountThatNobodyCanKnow) {
+  MadeUpDrive drive{true, {0.3, 0.0, 0.0}};  // scans tell a mount in the robot's middle
+  drive.scans(100, 0.0);
+  EXPECT_EQ(number(drive.course, "inside_95"), 0.0) << "the laser is 0.3 m ahead of where it is believed";
+  EXPECT_NEAR(number(drive.course, "laser_error_rms_m"), 0.3, 1e-6);
+  EXPECT_EQ(number(drive.course, "error_rms_m"), 0.0);
 }
 
 TEST(PoseCourse, CountsHowLongTheGateIsShutWhileThePoseIsRight) {
