@@ -88,6 +88,7 @@ void LiveRecording::go_on() {
   for (const PortId port : {PortId::kRobot, PortId::kLaser}) {
     writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds_[static_cast<std::size_t>(port)]), port));
   }
+  if (!pause_note_.empty()) writer_->write(note_at(last_stamp_, pause_note_));
   writer_->flush();
   has_gap_ = false;
 }
@@ -99,9 +100,14 @@ void LiveRecording::attempt(Timestamp now, const std::function<void()>& write) {
   if (writer_) telemetry_.recorded_bytes.set(writer_->size_bytes());
 }
 
-void LiveRecording::remember_baud(const ByteRecord& record) {
+void LiveRecording::remember(const ByteRecord& record) {
+  if (record.note.empty()) return;
   const auto baud = drivers::port::baud_of_note(record.note);
   if (baud) bauds_[static_cast<std::size_t>(record.port)] = *baud;
+  const auto decision = decision_of_note(record.note);
+  const bool is_pause =
+      decision && (decision->kind == Decision::Kind::kPaused || decision->kind == Decision::Kind::kResumed);
+  if (is_pause) pause_note_ = record.note;
 }
 
 void LiveRecording::write(const ByteRecord& record, Timestamp now) {
@@ -111,7 +117,7 @@ void LiveRecording::write(const ByteRecord& record, Timestamp now) {
     go_on();
     writer_->write(record);
   });
-  remember_baud(record);
+  remember(record);
   if (!output_.works()) return output_.count_lost();
   if (static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
   const std::string why = "it has reached recording.max_gigabytes";
