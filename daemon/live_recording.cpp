@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live_recording.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <system_error>
 #include <utility>
 
 #include "daemon/journal.hpp"
+#include "daemon/output_place.hpp"
 #include "daemon/start_error.hpp"
 
 namespace deltamap::daemon {
@@ -29,18 +28,6 @@ std::error_code keep_previous(const std::filesystem::path& recording) {
   throw StartError(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
 }
 
-/// A wrong name is no full disk: waiting does not help.
-void require_place(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, error)) {
-    throw StartError(file.string() + ": cannot be written: " + folder.string() + " is no folder");
-  }
-  if (std::filesystem::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
-  if (::access(folder.c_str(), W_OK | X_OK) == 0 || errno == EROFS) return;
-  throw StartError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
-}
-
 ByteRecord note_at(Timestamp stamp, std::string_view note, PortId port = PortId::kRobot) {
   ByteRecord record;
   record.port = port;
@@ -59,7 +46,7 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       bauds_{options_.bauds.robot, options_.bauds.laser},
       last_stamp_{options_.began} {
   options_.file = or_start_error([&] { return file_behind(options_.file); });
-  require_place(options_.file);
+  (void)judged_recording_place(options_.file);
   lock_ = or_start_error([&] { return lock_of_file(options_.file); });
   is_previous_kept_ = !keep_previous(options_.file);
   attempt(options_.began, [this] { go_on(); });

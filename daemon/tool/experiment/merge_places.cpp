@@ -9,6 +9,7 @@
 
 #include "core/angle.hpp"
 #include "core/grid_file.hpp"
+#include "core/scratch_folder.hpp"
 #include "daemon/tool/experiment/merge_layouts.hpp"
 #include "mapping/merge/transformed_grid.hpp"
 
@@ -21,26 +22,6 @@ namespace merge = mapping::merge;
 constexpr double kFirstShare = 0.75;  // the map's columns end here …
 constexpr double kOtherShare = 0.25;  // … and the other world's begin here
 constexpr double kMostShift_cells = 10.0;
-
-/// A folder that goes with its owner.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "deltamap-map-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 std::string quoted(const fs::path& path) {
   if (path.string().find('\'') != std::string::npos) throw std::runtime_error(path.string() + ": a quote in its name");
