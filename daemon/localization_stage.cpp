@@ -47,7 +47,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
     pilot_.emplace(settings.navigation.wander, settings.seed);
   }
   if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
-    (void)wiring_.recorder.send(LogLine{refused_start_words()});
+    (void)wiring_.recorder.send(refused_start_line());
   }
 }
 
@@ -104,8 +104,8 @@ void LocalizationStage::localize(Scan scan) {
   show(tracked.estimate, tracked.scan.received);
   answer_relocalize(number);
   tell_changes();
-  if (std::string line = fit_watch_.observe(tracked, step_.fit()); !line.empty())
-    (void)wiring_.recorder.send(LogLine{std::move(line)});
+  if (LogLine line = fit_watch_.observe(tracked, step_.fit()); !line.text.empty())
+    (void)wiring_.recorder.send(std::move(line));
   (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
   (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
