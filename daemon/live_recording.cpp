@@ -53,6 +53,7 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
 }
 
 void LiveRecording::begin() {
+  if (!lock_) lock_ = lock_of_file(options_.file);  // there could be none before
   if (!is_previous_kept_) {
     if (const auto error = keep_previous(options_.file)) throw std::system_error(error, options_.file.string());
     is_previous_kept_ = true;

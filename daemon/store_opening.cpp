@@ -86,7 +86,8 @@ OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
   // has it, it is not touched.
   const fs::path file = or_start_error([&] { return file_behind(name); });
   OpenedStore opened;
-  opened.lock = or_start_error([&] { return lock_of_file(file); });
+  opened.store.to_lock = file;
+  opened.store.lock = or_start_error([&] { return lock_of_file(file); });
   try {
     take(opened, MapStore{file, first}, first);
   } catch (const StoreError& error) {
