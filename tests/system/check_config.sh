@@ -49,6 +49,9 @@ started() {
   grep -q '^[0-9:.]* warning ' "$out/start.log" && echo warning || echo ok
 }
 
+# files: everything in the place with size, mode and time; what a daemon that is at work there writes is its own
+files() { [[ -n $holder ]] || find "$place" -printf '%p %s %m %T@\n' | sort; }
+
 cases=0
 # agree VERDICT WHAT [RUN-AS...] -- OPTION...: in the folder $place, which the caller has made ready
 agree() {
@@ -56,9 +59,9 @@ agree() {
   shift 2
   while [[ $1 != -- ]]; do as+=("$1"); shift; done
   shift
-  before=$(find "$place" -printf '%p %s %m %T@\n' | sort)
+  before=$(files)
   checked "${as[@]}" "$bin/deltamapd" "${plain[@]}" "$@" >"$out/checked"
-  [[ $(find "$place" -printf '%p %s %m %T@\n' | sort) == "$before" ]] || fail "$what: --check-config has changed something"
+  [[ $(files) == "$before" ]] || fail "$what: --check-config has changed something"
   started "${as[@]}" "$bin/deltamapd" "${plain[@]}" "$@" >"$out/started"
   check=$(<"$out/checked") start=$(<"$out/started")
   [[ $check == "$start" ]] || fail "$what: --check-config says $check, a start $start"
