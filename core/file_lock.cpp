@@ -54,6 +54,29 @@ OpenLockFile opened(const std::filesystem::path& file) {
   fail(file);
 }
 
+[[noreturn]] void refuse_in_use(int descriptor, const std::string& what) {
+  const std::string holder = text_in(descriptor);
+  ::close(descriptor);
+  throw FileInUse(what + ": is in use by " + (holder.empty() ? "another program" : holder));
+}
+
+void require_lockable(const std::filesystem::path& lock_file, const std::string& what) {
+  const int descriptor = ::open(lock_file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor < 0) {
+    if (errno != ENOENT) fail(lock_file);
+    const std::filesystem::path folder = lock_file.parent_path();
+    const bool may_make = ::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0 || errno == EROFS;
+    if (!may_make) fail(lock_file);
+    return;
+  }
+  // Shared: two that only look are not in each other's way.
+  if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) refuse_in_use(descriptor, what);
+  ::close(descriptor);
+}
+
+std::filesystem::path lock_file_of(const std::filesystem::path& file) { return file_behind(file).string() + ".lock"; }
+std::filesystem::path lock_file_in(const std::filesystem::path& folder) { return folder / ".lock"; }
+
 std::optional<FileLock> locked(const std::filesystem::path& lock_file, const std::string& what) {
   try {
     return FileLock{lock_file, what};
@@ -70,12 +93,11 @@ FileLock::FileLock(std::filesystem::path lock_file, const std::string& what) : f
   for (;;) {
     const auto [descriptor, may_write] = opened(file_);
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EWOULDBLOCK) refuse_in_use(descriptor, what);
       const int reason = errno;
-      const std::string holder = text_in(descriptor);
       ::close(descriptor);
       errno = reason;
-      if (reason != EWOULDBLOCK) fail(file_);
-      throw FileInUse(what + ": is in use by " + (holder.empty() ? "another program" : holder));
+      fail(file_);
     }
     // Nobody holds what another user has left: one of its own names the holder.
     const bool is_replaced = !may_write && is_current(descriptor, file_) && ::unlink(file_.c_str()) == 0;
@@ -114,11 +136,17 @@ std::filesystem::path file_behind(std::filesystem::path name) {
 }
 
 std::optional<FileLock> lock_of_file(const std::filesystem::path& file) {
-  return locked(file_behind(file).string() + ".lock", file.string());
+  return locked(lock_file_of(file), file.string());
 }
 
+void require_lockable_file(const std::filesystem::path& file) { require_lockable(lock_file_of(file), file.string()); }
+
 std::optional<FileLock> lock_of_folder(const std::filesystem::path& folder) {
-  return locked(folder / ".lock", folder.string());
+  return locked(lock_file_in(folder), folder.string());
+}
+
+void require_lockable_folder(const std::filesystem::path& folder) {
+  require_lockable(lock_file_in(folder), folder.string());
 }
 
 }  // namespace deltamap

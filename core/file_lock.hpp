@@ -35,7 +35,11 @@ class FileLock {
 /// The lock of one file, NAME.lock beside it, and of every link to it; nothing where the disk is full or read-only, so
 /// that there can be none.
 [[nodiscard]] std::optional<FileLock> lock_of_file(const std::filesystem::path& file);
+/// Throws what lock_of_file() would throw now; takes and makes nothing.
+void require_lockable_file(const std::filesystem::path& file);
 /// The lock of everything in a folder that exists, .lock in it; nothing as above.
 [[nodiscard]] std::optional<FileLock> lock_of_folder(const std::filesystem::path& folder);
+/// Throws what lock_of_folder() would throw now; takes and makes nothing.
+void require_lockable_folder(const std::filesystem::path& folder);
 
 }  // namespace deltamap

@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "core/grid_file.hpp"
+#include "core/scratch_folder.hpp"
 #include "daemon/control/client.hpp"
 #include "daemon/kept_drive.hpp"
 #include "daemon/localization_step.hpp"
-#include "daemon/outputs.hpp"
+#include "daemon/output_place.hpp"
 #include "daemon/provenance.hpp"
-#include "daemon/scratch_folder.hpp"
 #include "daemon/start_banner.hpp"
+#include "daemon/start_error.hpp"
 #include "daemon/state_folders.hpp"
 #include "drivers/port/port_check.hpp"
 #include "mapping/map_store.hpp"
@@ -56,8 +58,8 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
 
 /// With its write-ahead log: what a daemon that was killed has left there belongs to the store.
 void copy_store(const fs::path& store, const fs::path& target) {
-  if (fs::is_directory(store)) throw std::runtime_error(store.string() + ": is a directory");
   fs::copy_file(store, target);
+  fs::permissions(target, fs::perms::owner_write, fs::perm_options::add);
   const fs::path log = store.string() + "-wal";
   if (fs::exists(log)) fs::copy_file(log, target.string() + "-wal");
 }
@@ -82,11 +84,20 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
     return {Level::kWarning, "store", text + ", " + std::to_string(copy.dropped()) + " damaged revisions are dropped"};
   } catch (const mapping::StoreError& error) {
     const bool is_unsound = error.kind == mapping::StoreError::Kind::kUnsound;
-    const std::string why = of_the_store(error.what()) + (is_unsound ? ": a start would set it aside" : "");
-    return {is_unsound ? Level::kWarning : Level::kError, "store", why};
+    const char* what_then = is_unsound ? ": a start would set it aside" : ": a start would go on without it";
+    return {Level::kWarning, "store", of_the_store(error.what()) + what_then};
   } catch (const std::exception& error) {
-    return {Level::kError, "store", of_the_store(error.what())};
+    return {Level::kWarning, "store", store + ": not opened: " + of_the_store(error.what())};
   }
+}
+
+/// The folder may have to be made: a start does that, where it is allowed.
+std::string judged_place(const fs::path& file, const std::function<std::string()>& judged) {
+  std::error_code ignored;
+  if (fs::is_directory(fs::absolute(file).parent_path(), ignored)) return judged();
+  const std::string why = why_no_folder_for(file);
+  if (!why.empty()) throw StartError(file.string() + ": " + why);
+  return "";
 }
 
 /// `first` is nothing where the map could not be read.
@@ -94,12 +105,17 @@ Finding store_finding(const Settings& settings, const std::string& config, const
   const std::string& store = settings.map.store;
   std::error_code ignored;
   if (store.empty()) return {Level::kOk, "store", "none: the map is not kept across restarts"};
-  if (const std::string why = why_no_folder_for(store); !why.empty()) {
-    return {Level::kError, "store", store_refusal(settings, config, why)};
+  try {
+    require_store_folder(settings, config);
+    const std::string why = judged_place(store, [&] { return judged_store_place(store); });
+    if (!fs::exists(store, ignored)) return {Level::kOk, "store", store + ": will be made"};
+    if (!first) return {Level::kWarning, "store", store + ": not opened, for it is another for each map"};
+    Finding content = store_content(store, *first);
+    if (why.empty()) return content;
+    return {Level::kWarning, "store", why + ": a start would go on with its newest map; " + content.text};
+  } catch (const std::exception& error) {
+    return {Level::kError, "store", error.what()};
   }
-  if (!fs::exists(store, ignored)) return {Level::kOk, "store", store + ": will be made"};
-  if (!first) return {Level::kWarning, "store", store + ": not opened, for it is another for each map"};
-  return store_content(store, *first);
 }
 
 Finding port_finding(const std::string& about, const std::string& path) {
@@ -121,34 +137,36 @@ Finding drive_finding(const Settings& settings) {
   return {Level::kOk, "drive", mode + ": the switch is " + told + (drives ? ": it would drive" : ": it would stand")};
 }
 
-/// A file that is written as the run goes; without it the daemon goes on.
-void check_written(const std::string& about, const std::string& file, std::vector<Finding>& findings) {
-  if (file.empty()) return;
-  const std::string why = why_no_folder_for(file);
-  findings.push_back({why.empty() ? Level::kOk : Level::kWarning, about, file + (why.empty() ? "" : ": " + why)});
-}
-
-/// Two daemons do not share a socket, nor ports.
-void check_control(const std::string& socket, std::vector<Finding>& findings) {
-  std::error_code ignored;
-  if (!fs::is_socket(socket, ignored)) return check_written("control", socket, findings);
+/// An output that is written as the run goes: `file`, or all of a folder that `file` lies in.
+Finding place_finding(const std::string& about, const std::string& name, const fs::path& file,
+                      const std::function<std::string()>& judged) {
   try {
-    (void)control::exchange(socket, R"({"command":"status"})");
-    findings.push_back({Level::kError, "control", socket + ": another daemon listens there"});
-  } catch (const std::exception&) {  // left by one that was killed: it is replaced
-    check_written("control", socket, findings);
+    const std::string why = judged_place(file, judged);
+    if (why.empty()) return {Level::kOk, about, name};
+    return {Level::kWarning, about, why + ": a start would go on without it, and try again"};
+  } catch (const std::exception& error) {
+    return {Level::kError, about, error.what()};
   }
 }
 
-void check_out(const Settings& settings, const std::string& out, std::vector<Finding>& findings) {
-  if (out.empty()) return;
+/// A daemon that cannot be commanded still does its work.
+Finding socket_finding(const fs::path& socket) {
+  std::error_code ignored;
+  std::string why = why_no_folder_for(socket);
+  const fs::file_status status = fs::symlink_status(socket, ignored);
+  if (fs::exists(status) && !fs::is_socket(status)) why = "a file that is no socket is in the way";
+  return {why.empty() ? Level::kOk : Level::kWarning, "control", socket.string() + (why.empty() ? "" : ": " + why)};
+}
+
+/// Two daemons do not share a socket, nor ports.
+Finding control_finding(const std::string& socket) {
+  std::error_code ignored;
+  if (!fs::is_socket(socket, ignored)) return socket_finding(socket);
   try {
-    if (const std::string why = why_no_folder_for(fs::path(out) / "report.json"); !why.empty())
-      throw std::runtime_error(why);
-    require_map_elsewhere(settings.map.file, out);
-    findings.push_back({Level::kOk, "out", out});
-  } catch (const std::exception& error) {
-    findings.push_back({Level::kError, "out", error.what()});
+    (void)control::exchange(socket, R"({"command":"status"})");
+    return {Level::kError, "control", socket + ": another daemon listens there"};
+  } catch (const std::exception&) {  // left by one that was killed: it is replaced
+    return socket_finding(socket);
   }
 }
 
@@ -161,9 +179,14 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   findings.push_back(port_finding("robot", settings.robot.port));
   findings.push_back(port_finding("laser", settings.laser.port));
   findings.push_back(drive_finding(settings));
-  check_control(settings.control.socket, findings);
-  check_written("recording", settings.recording.file, findings);
-  check_out(settings, out, findings);
+  if (!settings.control.socket.empty()) findings.push_back(control_finding(settings.control.socket));
+  if (const std::string& file = settings.recording.file; !file.empty()) {
+    findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));
+  }
+  if (!out.empty()) {
+    findings.push_back(place_finding("out", out, fs::path(out) / "report.json",
+                                     [&] { return judged_out_place(out, settings.map.file); }));
+  }
   return findings;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // --check-config: what a start would find, without starting. Reads the map whole, opens a copy of the store, looks at
-// the ports from outside. Makes, changes and disturbs nothing.
+// the ports from outside. Makes, changes and disturbs nothing. Outputs are judged as a start judges them
+// (output_place).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an operator asks of the localization thread while it runs. Taken before a scan and written into the recording
-// with that scan's number, so that a replay repeats it.
+// with that scan's number and time, so that a replay repeats it.
 #pragma once
 
 #include <cstdint>

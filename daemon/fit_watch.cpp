@@ -30,8 +30,8 @@ std::string fit_words(std::optional<double> fit) {
   return *fit >= kFits ? share : "only " + share + ": is it the right place, and the right map?";
 }
 
-std::string refused_start_words() {
-  return "the start pose lies more than 1 m from free floor, so that the whole map is searched; " + kSayWhere;
+LogLine refused_start_line() {
+  return {"the start pose lies more than 1 m from free floor, so that the whole map is searched; " + kSayWhere, true};
 }
 
 void FitWatch::pass(const TrackedScan& tracked) {
@@ -42,7 +42,7 @@ void FitWatch::pass(const TrackedScan& tracked) {
   last_odom_from_robot_ = tracked.odom_from_robot;
 }
 
-std::string FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit) {
+LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit) {
   pass(tracked);
   if (fit) {
     first_scans_ = std::min(first_scans_ + 1, kFirstScans + 1);
@@ -60,23 +60,25 @@ std::string FitWatch::observe(const TrackedScan& tracked, std::optional<double> 
   return judged_long(tracked.estimate.state);
 }
 
-std::string FitWatch::judged_start() {
+LogLine FitWatch::judged_start() {
   const double mean = first_fit_ / kFirstScans;
   if (mean >= kFits) return {};
-  return "the start pose does not fit: " + percent(mean) +
-         " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere;
+  return {"the start pose does not fit: " + percent(mean) +
+              " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere,
+          true};
 }
 
-std::string FitWatch::judged_long(LocalizerState state) {
-  if (unfit_s_ == 0.0) return std::exchange(said_, false) ? "the map fits again" : "";
+LogLine FitWatch::judged_long(LocalizerState state) {
+  if (unfit_s_ == 0.0) return {std::exchange(said_, false) ? "the map fits again" : ""};
   // A search that nobody drives for gets no further.
   const bool is_long = unfit_s_ >= kLong_s && (unfit_m_ >= kFar_m || state == LocalizerState::kGlobal);
   if (said_ || !is_long) return {};
   said_ = true;
   const std::string best = mean_fit_ ? percent(*mean_fit_) + " of the beams fit at the best one; " : "";
-  return "no place in the map has been sure for " + std::to_string(std::lround(unfit_s_)) + " s and " +
-         std::to_string(std::lround(unfit_m_)) + " m: " + best +
-         "is it the map of this place, and 'laser.mount' right? Else " + kSayWhere;
+  return {"no place in the map has been sure for " + std::to_string(std::lround(unfit_s_)) + " s and " +
+              std::to_string(std::lround(unfit_m_)) + " m: " + best +
+              "is it the map of this place, and 'laser.mount' right? Else " + kSayWhere,
+          true};
 }
 
 }  // namespace deltamap::daemon

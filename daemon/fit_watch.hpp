@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/messages.hpp"
+#include "daemon/log_line.hpp"
 
 namespace deltamap::daemon {
 
@@ -15,20 +16,20 @@ namespace deltamap::daemon {
 [[nodiscard]] std::string fit_words(std::optional<double> fit);
 
 /// Of a start pose that is not near free floor (localization/start_pose.hpp).
-[[nodiscard]] std::string refused_start_words();
+[[nodiscard]] LogLine refused_start_line();
 
 class FitWatch {
  public:
   /// `is_given`: the run begins at a pose that a person gave.
   explicit FitWatch(bool is_given) : looks_at_start_{is_given} {}
 
-  /// After each scan: a line for the log, empty where there is nothing to say.
+  /// After each scan: a line for the log, of no text where there is nothing to say.
   /// `fit`: share of its beams that the map explains at the estimated pose; nothing where no beam came back.
-  [[nodiscard]] std::string observe(const TrackedScan& tracked, std::optional<double> fit);
+  [[nodiscard]] LogLine observe(const TrackedScan& tracked, std::optional<double> fit);
 
  private:
-  [[nodiscard]] std::string judged_start();
-  [[nodiscard]] std::string judged_long(LocalizerState state);
+  [[nodiscard]] LogLine judged_start();
+  [[nodiscard]] LogLine judged_long(LocalizerState state);
   void pass(const TrackedScan& tracked);
 
   bool looks_at_start_;

@@ -178,8 +178,17 @@ struct IoStage::State {
       return {request.ticket, false,
               "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
     }
+    if (const std::string_view why = robot.session().why_never_driven(); !why.empty()) {
+      return {request.ticket, false, "it is not driven: " + std::string(why)};
+    }
     robot.handle(robot.session().switch_drive(true, now));
-    return {request.ticket, true, "wanders from the next scan on"};
+    return {request.ticket, true, when_it_drives()};
+  }
+
+  [[nodiscard]] std::string when_it_drives() const {
+    if (!robot.session().is_connected()) return "wanders once the robot is connected";
+    if (!robot.session().stopping_limits().watchdog_s) return "wanders once the robot has told its watchdog";
+    return "wanders from the next scan on";
   }
 
   CommandOutcome switch_off(std::uint64_t ticket, Timestamp now) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/journal.hpp"
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 
@@ -17,10 +18,37 @@ bool matches(const std::string& note, const char* format, Fields*... fields) {
 }
 
 /// Every bit of the pose survives.
-std::string note_of_relocalization(const Pose2& pose, const std::string& scan) {
-  char text[128];
-  (void)std::snprintf(text, sizeof text, "relocalized to %.17g %.17g %.17g before scan ", pose.x, pose.y, pose.theta);
-  return text + scan;
+std::string words_of_relocalization(const Pose2& pose) {
+  char text[96];
+  (void)std::snprintf(text, sizeof text, "relocalized to %.17g %.17g %.17g", pose.x, pose.y, pose.theta);
+  return text;
+}
+
+/// "… before scan 12 at 1700000000000000000": Unix time of the scan's first beam, ns.
+std::string note_of_command(const std::string& words, const Decision& command) {
+  const std::string note = words + " before scan " + std::to_string(command.scan);
+  return command.scan_time ? note + " at " + std::to_string(unix_ns(*command.scan_time)) : note;
+}
+
+std::optional<Decision> command_of_note(const std::string& note) {
+  const std::size_t at = note.rfind(" at ");
+  std::int64_t time_ns = 0;
+  const bool has_time = at != std::string::npos && matches(note.substr(at), " at %" SCNd64 "%n", &time_ns);
+  const std::string text = has_time ? note.substr(0, at) : note;
+  Decision command;
+  Pose2& pose = command.map_from_robot;
+  if (matches(text, "mapping paused before scan %" SCNu32 "%n", &command.scan)) {
+    command.kind = Kind::kPaused;
+  } else if (matches(text, "mapping resumed before scan %" SCNu32 "%n", &command.scan)) {
+    command.kind = Kind::kResumed;
+  } else if (matches(text, "relocalized to %lf %lf %lf before scan %" SCNu32 "%n", &pose.x, &pose.y, &pose.theta,
+                     &command.scan)) {
+    command.kind = Kind::kRelocalized;
+  } else {
+    return std::nullopt;
+  }
+  if (has_time) command.scan_time = timestamp_from_ns(time_ns);
+  return command;
 }
 
 }  // namespace
@@ -65,11 +93,11 @@ std::string note_of(const Decision& decision) {
     case Kind::kPhaseClosed:
       return "phase " + number + " closed at scan " + scan;
     case Kind::kPaused:
-      return "mapping paused before scan " + scan;
+      return note_of_command("mapping paused", decision);
     case Kind::kResumed:
-      return "mapping resumed before scan " + scan;
+      return note_of_command("mapping resumed", decision);
     case Kind::kRelocalized:
-      return note_of_relocalization(decision.map_from_robot, scan);
+      return note_of_command(words_of_relocalization(decision.map_from_robot), decision);
   }
   return {};
 }
@@ -87,12 +115,7 @@ std::optional<Decision> decision_of_note(std::string_view note) {
   if (matches(text, "set of phase %" SCNu32 " lost%n", &a)) return Decision{Kind::kSetLost, 0, a};
   if (matches(text, "phase %" SCNu32 " closed at scan %" SCNu32 "%n", &a, &b))
     return Decision{Kind::kPhaseClosed, b, a};
-  if (matches(text, "mapping paused before scan %" SCNu32 "%n", &a)) return Decision{Kind::kPaused, a, 0};
-  if (matches(text, "mapping resumed before scan %" SCNu32 "%n", &a)) return Decision{Kind::kResumed, a, 0};
-  Pose2 pose;
-  if (matches(text, "relocalized to %lf %lf %lf before scan %" SCNu32 "%n", &pose.x, &pose.y, &pose.theta, &a))
-    return Decision{Kind::kRelocalized, a, 0, pose};
-  return std::nullopt;
+  return command_of_note(text);
 }
 
 void Journal::read(std::string_view note) {
@@ -132,9 +155,16 @@ void Journal::read(std::string_view note) {
     case Kind::kPaused:
     case Kind::kResumed:
     case Kind::kRelocalized:
-      commands_[decision->scan].push_back(*decision);
+      // What was in force is said again behind a gap.
+      if (std::find(commands_.begin(), commands_.end(), *decision) == commands_.end()) commands_.push_back(*decision);
       break;
   }
+}
+
+std::strong_ordering Journal::place_of(const Decision& command, const Scan& scan) const {
+  const bool scans_count_as_live = run_ && !has_gap_;
+  if (command.scan_time && !scans_count_as_live) return *command.scan_time <=> scan.time;
+  return command.scan <=> scan.number;
 }
 
 std::optional<std::uint32_t> Journal::revision_before(std::uint32_t scan) const {

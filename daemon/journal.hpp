@@ -4,6 +4,7 @@
 // same settings and map obeys it, so that it comes to the same trajectory, revisions and Δ-phases.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/messages.hpp"
 #include "core/pose2.hpp"
 
 namespace deltamap::daemon {
@@ -41,6 +43,8 @@ struct Decision {
   std::uint32_t scan = 0;
   std::uint32_t number = 0;
   Pose2 map_from_robot{};
+  /// Of an operator's command: Scan.time of `scan`. Nothing in recordings of older versions.
+  std::optional<Timestamp> scan_time{};
   friend bool operator==(const Decision&, const Decision&) = default;
 };
 
@@ -73,8 +77,11 @@ class Journal {
   /// The scan at which a Δ-phase ended in the recorded run.
   [[nodiscard]] std::optional<std::uint32_t> closing_scan(std::uint32_t phase) const;
   [[nodiscard]] std::size_t closed_phases() const { return closed_.size(); }
-  /// What the operator asked for, by the scan before which it was done, in order.
-  [[nodiscard]] const std::map<std::uint32_t, std::vector<Decision>>& commands() const { return commands_; }
+  /// What the operator asked for, in the order in which it was done.
+  [[nodiscard]] const std::vector<Decision>& commands() const { return commands_; }
+  /// Whether a command was done before this scan (equal), before an earlier (less) or a later one (greater). Where
+  /// records are missing a replay counts fewer scans than the run did: there the time of its scan places a command.
+  [[nodiscard]] std::strong_ordering place_of(const Decision& command, const Scan& scan) const;
 
  private:
   std::optional<RunIdentity> run_;
@@ -82,7 +89,7 @@ class Journal {
   std::map<std::uint32_t, std::uint32_t> revisions_;  // scan → revision
   std::map<std::uint32_t, std::uint32_t> things_;     // scan → snapshot
   std::map<std::uint32_t, std::uint32_t> closed_;     // phase → scan
-  std::map<std::uint32_t, std::vector<Decision>> commands_;
+  std::vector<Decision> commands_;
   std::set<std::uint32_t> dropped_, lost_, lost_odometry_, lost_tracked_, lost_sets_;
 };
 

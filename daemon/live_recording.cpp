@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live_recording.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <system_error>
 #include <utility>
 
 #include "daemon/journal.hpp"
+#include "daemon/output_place.hpp"
 #include "daemon/start_error.hpp"
 
 namespace deltamap::daemon {
@@ -29,18 +28,6 @@ std::error_code keep_previous(const std::filesystem::path& recording) {
   throw StartError(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
 }
 
-/// A wrong name is no full disk: waiting does not help.
-void require_place(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, error)) {
-    throw StartError(file.string() + ": cannot be written: " + folder.string() + " is no folder");
-  }
-  if (std::filesystem::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
-  if (::access(folder.c_str(), W_OK | X_OK) == 0 || errno == EROFS) return;
-  throw StartError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
-}
-
 ByteRecord note_at(Timestamp stamp, std::string_view note, PortId port = PortId::kRobot) {
   ByteRecord record;
   record.port = port;
@@ -59,13 +46,14 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       bauds_{options_.bauds.robot, options_.bauds.laser},
       last_stamp_{options_.began} {
   options_.file = or_start_error([&] { return file_behind(options_.file); });
-  require_place(options_.file);
+  (void)judged_recording_place(options_.file);
   lock_ = or_start_error([&] { return lock_of_file(options_.file); });
   is_previous_kept_ = !keep_previous(options_.file);
   attempt(options_.began, [this] { go_on(); });
 }
 
 void LiveRecording::begin() {
+  if (!lock_) lock_ = lock_of_file(options_.file);  // there could be none before
   if (!is_previous_kept_) {
     if (const auto error = keep_previous(options_.file)) throw std::system_error(error, options_.file.string());
     is_previous_kept_ = true;
@@ -88,6 +76,7 @@ void LiveRecording::go_on() {
   for (const PortId port : {PortId::kRobot, PortId::kLaser}) {
     writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds_[static_cast<std::size_t>(port)]), port));
   }
+  if (!pause_note_.empty()) writer_->write(note_at(last_stamp_, pause_note_));
   writer_->flush();
   has_gap_ = false;
 }
@@ -99,9 +88,14 @@ void LiveRecording::attempt(Timestamp now, const std::function<void()>& write) {
   if (writer_) telemetry_.recorded_bytes.set(writer_->size_bytes());
 }
 
-void LiveRecording::remember_baud(const ByteRecord& record) {
+void LiveRecording::remember(const ByteRecord& record) {
+  if (record.note.empty()) return;
   const auto baud = drivers::port::baud_of_note(record.note);
   if (baud) bauds_[static_cast<std::size_t>(record.port)] = *baud;
+  const auto decision = decision_of_note(record.note);
+  const bool is_pause =
+      decision && (decision->kind == Decision::Kind::kPaused || decision->kind == Decision::Kind::kResumed);
+  if (is_pause) pause_note_ = record.note;
 }
 
 void LiveRecording::write(const ByteRecord& record, Timestamp now) {
@@ -111,7 +105,7 @@ void LiveRecording::write(const ByteRecord& record, Timestamp now) {
     go_on();
     writer_->write(record);
   });
-  remember_baud(record);
+  remember(record);
   if (!output_.works()) return output_.count_lost();
   if (static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
   const std::string why = "it has reached recording.max_gigabytes";

@@ -42,7 +42,8 @@ class LiveRecording {
   /// Throws std::runtime_error where it cannot.
   void go_on();
   void attempt(Timestamp now, const std::function<void()>& write);
-  void remember_baud(const drivers::port::ByteRecord& record);
+  /// What must be said again behind a gap.
+  void remember(const drivers::port::ByteRecord& record);
 
   Options options_;
   Telemetry& telemetry_;
@@ -51,6 +52,7 @@ class LiveRecording {
   std::optional<FileLock> lock_;
   std::optional<drivers::port::ByteLogWriter> writer_;
   std::array<unsigned, 2> bauds_;  // in force, by PortId
+  std::string pause_note_;         // the newest of the operator's "mapping paused", "mapping resumed"
   Timestamp last_stamp_;
   bool is_previous_kept_ = false;
   bool has_gap_ = false;

@@ -47,7 +47,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
     pilot_.emplace(settings.navigation.wander, settings.seed);
   }
   if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
-    (void)wiring_.recorder.send(LogLine{refused_start_words()});
+    (void)wiring_.recorder.send(refused_start_line());
   }
 }
 
@@ -99,13 +99,13 @@ void LocalizationStage::localize(Scan scan) {
   const std::uint32_t number = scan.number;
   take_revisions(number);
   take_things(number);
-  take_commands(number);
+  take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
   show(tracked.estimate, tracked.scan.received);
   answer_relocalize(number);
   tell_changes();
-  if (std::string line = fit_watch_.observe(tracked, step_.fit()); !line.empty())
-    (void)wiring_.recorder.send(LogLine{std::move(line)});
+  if (LogLine line = fit_watch_.observe(tracked, step_.fit()); !line.text.empty())
+    (void)wiring_.recorder.send(std::move(line));
   (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
   (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
@@ -147,7 +147,7 @@ std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& track
 
 // --- the operator ---
 
-void LocalizationStage::take_commands(std::uint32_t scan) {
+void LocalizationStage::take_commands(const Scan& scan) {
   while (const auto command = wiring_.commands.try_receive()) {
     if (command->kind == Command::Kind::kSave) {
       save(*command);
@@ -172,11 +172,11 @@ void LocalizationStage::take_commands_without_scan() {
   }
 }
 
-void LocalizationStage::relocalize(const Command& command, std::uint32_t scan) {
+void LocalizationStage::relocalize(const Command& command, const Scan& scan) {
   if (relocalized_) wiring_.answer({*relocalized_, false, "another pose has come before the next scan"});
   relocalized_.reset();
   const bool is_there = step_.relocalize(command.map_from_robot);
-  note({Kind::kRelocalized, scan, 0, command.map_from_robot});
+  note({Kind::kRelocalized, scan.number, 0, command.map_from_robot, scan.time});
   if (is_there) {
     relocalized_ = command.ticket;
   } else {
@@ -191,8 +191,8 @@ void LocalizationStage::answer_relocalize(std::uint32_t scan) {
   relocalized_.reset();
 }
 
-void LocalizationStage::pause(const Command& command, std::uint32_t scan) {
-  const std::string from = " from scan " + std::to_string(scan) + " on";
+void LocalizationStage::pause(const Command& command, const Scan& scan) {
+  const std::string from = " from scan " + std::to_string(scan.number) + " on";
   if (!mapping_enabled_)
     return wiring_.answer({command.ticket, false, "'mapping.enabled' is false: there is nothing to pause"});
   is_paused_ = command.kind == Command::Kind::kPause;
@@ -201,7 +201,7 @@ void LocalizationStage::pause(const Command& command, std::uint32_t scan) {
     things_.reset();
     step_.apply(things_);
   }
-  note({is_paused_ ? Kind::kPaused : Kind::kResumed, scan, 0});
+  note({is_paused_ ? Kind::kPaused : Kind::kResumed, scan.number, 0, {}, scan.time});
   wiring_.answer({command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from});
 }
 

@@ -56,11 +56,11 @@ class LocalizationStage {
   void pilot(const TrackedScan& tracked);
   /// For the pilot: what stands there although the scan does not show it.
   [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked) const;
-  void take_commands(std::uint32_t scan);
+  void take_commands(const Scan& scan);
   /// No scan comes: a save is done, everything else is answered as not done.
   void take_commands_without_scan();
-  void pause(const Command& command, std::uint32_t scan);
-  void relocalize(const Command& command, std::uint32_t scan);
+  void pause(const Command& command, const Scan& scan);
+  void relocalize(const Command& command, const Scan& scan);
   /// How well the scan fits there.
   void answer_relocalize(std::uint32_t scan);
   void save(const Command& command);

@@ -8,12 +8,11 @@
 namespace deltamap::daemon {
 namespace {
 
-/// A history that begins with this run.
+/// A history that begins with this run, whenever it can be opened: that of a run before goes.
 StoreToKeep begun_history(const std::filesystem::path& file, const StartMap& start) {
-  std::error_code ignored;
-  for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part, ignored);
   return {.open =
               [file, first = start.map] {
+                for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part);
                 return mapping::MapStore{file, *first};
               },
           .numbers_before = start.revision};

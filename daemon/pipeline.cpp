@@ -47,15 +47,15 @@ std::vector<std::string> first_notes(const Settings& settings, const Pipeline::O
 
 /// Nothing where the settings name no socket. A daemon that cannot be commanded still does its work; but not beside
 /// another one.
-std::unique_ptr<ControlDesk> control_desk(const Settings& settings, ControlDesk::Wiring wiring) {
+std::unique_ptr<ControlDesk> control_desk(const Settings& settings, ControlDesk::Wiring wiring,
+                                          const RetryingOutput::Warn& warn) {
   if (settings.control.socket.empty()) return nullptr;
-  const auto log = wiring.log;
   try {
     return std::make_unique<ControlDesk>(settings, std::move(wiring));
   } catch (const control::AlreadyServed&) {
     throw;
   } catch (const std::exception& error) {
-    log(std::string("no `deltamap ctl` in this run: ") + error.what());
+    warn(std::string("no `deltamap ctl` in this run: ") + error.what());
     return nullptr;
   }
 }
@@ -125,12 +125,14 @@ Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{with_warnings(std::move(wanted))},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
-      control{control_desk(
-          settings, {.map = options.start.map->geometry(),
-                     .commands = commands,
-                     .telemetry = telemetry,
-                     .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
-                     .log = options.log})},
+      control{
+          control_desk(settings,
+                       {.map = options.start.map->geometry(),
+                        .commands = commands,
+                        .telemetry = telemetry,
+                        .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
+                        .log = options.log},
+                       options.warn)},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),

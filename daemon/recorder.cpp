@@ -11,27 +11,31 @@ namespace {
 
 constexpr std::chrono::seconds kFlushPeriod{1};
 
+Recorder::Hooks with_warnings(Recorder::Hooks hooks) {
+  if (!hooks.warn) hooks.warn = hooks.log;
+  return hooks;
+}
+
 }  // namespace
 
 using drivers::port::ByteRecord;
 
 Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
-    : hooks_{std::move(hooks)},
-      memory_{options.memory, telemetry.outputs, hooks_.warn ? hooks_.warn : hooks_.log},
+    : hooks_{with_warnings(std::move(hooks))},
+      memory_{options.memory, telemetry.outputs, hooks_.warn},
       now_{options.began},
       last_stamp_{options.began} {
-  const auto& warn = hooks_.warn ? hooks_.warn : hooks_.log;
   if (!options.recording.empty()) {
     recording_.emplace(LiveRecording::Options{.file = options.recording,
                                               .bauds = options.bauds,
                                               .first_notes = options.first_notes,
                                               .began = options.began,
                                               .max_gigabytes = options.max_gigabytes},
-                       telemetry, warn);
+                       telemetry, hooks_.warn);
   }
   const auto begin = [&](std::optional<LiveLines>& lines, const char* name, const std::filesystem::path& file) {
     if (file.empty()) return;
-    lines.emplace(file, RetryingOutput{name, file, telemetry.outputs, warn});
+    lines.emplace(file, RetryingOutput{name, file, telemetry.outputs, hooks_.warn});
     lines->flush(now_);
   };
   begin(trajectory_, "trajectory", options.trajectory);
@@ -96,7 +100,8 @@ void Recorder::write(RecorderItem&& item) {
   } else if (const auto* order = std::get_if<std::unique_ptr<const SaveOrder>>(&item)) {
     save(**order);
   } else {
-    hooks_.log(std::get<LogLine>(item).text);
+    const auto& line = std::get<LogLine>(item);
+    (line.is_warning ? hooks_.warn : hooks_.log)(line.text);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "daemon/line_file.hpp"
 #include "daemon/live_recording.hpp"
 #include "daemon/localization_log.hpp"
+#include "daemon/log_line.hpp"
 #include "daemon/memory_keeper.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/telemetry.hpp"
@@ -23,9 +24,6 @@
 namespace deltamap::daemon {
 
 using JournalNote = std::string;
-struct LogLine {
-  std::string text;
-};
 using RecorderItem = std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint,
                                   std::unique_ptr<const LocalizationRow>, std::unique_ptr<const KeptPose>,
                                   std::unique_ptr<const KeptStability>, std::unique_ptr<const SaveOrder>, LogLine>;
@@ -65,7 +63,7 @@ class Recorder {
   struct Hooks {
     std::function<void(const std::string&)> log;         ///< a short line
     std::function<void(const CommandOutcome&)> saved{};  ///< a save order is done; may be empty
-    std::function<void(const std::string&)> warn{};      ///< a short line: an output pauses; empty: log
+    std::function<void(const std::string&)> warn{};      ///< a short line of what is degraded; empty: log
   };
   /// Throws FileInUse and StartError as LiveRecording does. A full disk is no reason.
   Recorder(const Options& options, Telemetry& telemetry, Hooks hooks);

@@ -71,7 +71,7 @@ class Replay {
  private:
   void take(Odometry&& odometry, std::uint32_t number);
   void take(Scan&& scan);
-  void obey_commands_before(std::uint32_t scan);
+  void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
   void update_map(const ScanSet& set);
 
@@ -79,7 +79,7 @@ class Replay {
   const Journal& journal_;
   bool is_cut_;  // its last notes are missing
   bool obeys_;
-  decltype(Journal{}.commands().begin()) next_command_;
+  std::vector<Decision>::const_iterator next_command_;
   bool has_begun_ = false;
   bool is_paused_ = false;
   std::uint32_t first_revision_;
@@ -153,7 +153,7 @@ void Replay::take(Scan&& scan) {
     const CpuTimer timer{report_.cpu.localization_s};
     while (const auto revision = revisions_.next_before(scan)) localization_.apply(*revision);
     if (auto things = things_.next_before(scan.number)) localization_.apply(std::move(things));
-    obey_commands_before(scan.number);
+    obey_commands_before(scan);
     tracked = localization_.observe(std::move(scan));
     step_times_.add(timer.elapsed_s());
   }
@@ -167,17 +167,17 @@ void Replay::take(Scan&& scan) {
 }
 
 /// What the operator did is an input as the bytes are: obeyed whatever becomes of the journal.
-void Replay::obey_commands_before(std::uint32_t scan) {
-  for (; next_command_ != journal_.commands().end() && next_command_->first <= scan; ++next_command_) {
-    const bool is_of_before = !has_begun_ && next_command_->first < scan;  // the window begins later
-    for (const Decision& command : next_command_->second) {
-      ++report_.commands;
-      if (command.kind == Decision::Kind::kRelocalized && !is_of_before)
-        localization_.relocalize(command.map_from_robot);
-      if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
-      if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
-      if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
-    }
+void Replay::obey_commands_before(const Scan& scan) {
+  for (; next_command_ != journal_.commands().end(); ++next_command_) {
+    const Decision& command = *next_command_;
+    const auto place = journal_.place_of(command, scan);
+    if (place > 0) break;
+    ++report_.commands;
+    const bool is_of_before = !has_begun_ && place < 0;  // the window begins later
+    if (command.kind == Decision::Kind::kRelocalized && !is_of_before) localization_.relocalize(command.map_from_robot);
+    if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
+    if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
+    if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
   }
   has_begun_ = true;
 }

@@ -31,9 +31,22 @@ RevisionKeeper::RevisionKeeper(StoreToKeep store, std::string_view method, Retry
 
 void RevisionKeeper::take(const MapStep::Result& result, Timestamp now) {
   const bool all_stored = to_.store && !missed_revision_ && !missed_refusal_;
-  if (all_stored && output_.attempt(now, [&] { keep(*to_.store, result, method_, to_.numbers_before); })) return;
+  const bool goes_on = all_stored && (!result.revision || follows(*result.revision));
+  const auto append = [&] {
+    lock();
+    keep(*to_.store, result, method_, to_.numbers_before);
+  };
+  if (goes_on && output_.attempt(now, append)) return;
   miss(result);
   retry(now);
+}
+
+bool RevisionKeeper::follows(const MapRevision& revision) const {
+  return revision.number - to_.numbers_before == to_.store->newest() + 1;
+}
+
+void RevisionKeeper::lock() {
+  if (!to_.lock && !to_.to_lock.empty()) to_.lock = lock_of_file(to_.to_lock);
 }
 
 void RevisionKeeper::miss(const MapStep::Result& result) {
@@ -49,7 +62,8 @@ void RevisionKeeper::miss(const MapStep::Result& result) {
 }
 
 void RevisionKeeper::retry(Timestamp now) {
-  if (to_.store && !missed_revision_ && !missed_refusal_) return;
+  const bool is_locked = to_.lock || to_.to_lock.empty();
+  if (to_.store && is_locked && !missed_revision_ && !missed_refusal_) return;
   (void)output_.attempt(now, [this] { store_missed(); });
 }
 
@@ -59,26 +73,31 @@ void RevisionKeeper::close(Timestamp now) {
 }
 
 void RevisionKeeper::store_missed() {
+  lock();
   if (!to_.store) to_.store.emplace(to_.open());
-  mapping::MapStore& store = *to_.store;
   if (missed_revision_) {
-    const MapRevision& newest = *missed_revision_->newest.revision;
-    mapping::RevisionNote note = note_of(missed_revision_->newest, method_);
-    if (missed_revision_->first < newest.number) {
-      note.cause += " (" + std::to_string(missed_revision_->first - to_.numbers_before) + " to " +
-                    std::to_string(newest.number - to_.numbers_before) + " in one)";
-    }
-    // A store that could be opened only now, or that another program has written to, holds more than this run knew of.
-    store.catch_up();
-    const std::uint32_t number = std::max(newest.number - to_.numbers_before, store.newest() + 1);
-    store.append_whole(number, newest.time, *newest.map, note);
-    to_.numbers_before = newest.number - number;
+    store_whole(*missed_revision_);
     missed_revision_.reset();
   }
   if (missed_refusal_) {
-    keep(store, *missed_refusal_, method_);
+    keep(*to_.store, *missed_refusal_, method_);
     missed_refusal_.reset();
   }
+}
+
+/// Behind what the store holds: one that could be opened only now, or that another program has written to, holds more
+/// than this run knew of.
+void RevisionKeeper::store_whole(const Missed& missed) {
+  mapping::MapStore& store = *to_.store;
+  store.catch_up();
+  const MapRevision& newest = *missed.newest.revision;
+  const std::uint32_t first = std::max(missed.first - to_.numbers_before, store.newest() + 1);
+  const std::uint32_t numbers_before = missed.first - first;
+  const std::uint32_t number = newest.number - numbers_before;
+  mapping::RevisionNote note = note_of(missed.newest, method_);
+  if (first < number) note.cause += " (" + std::to_string(first) + " to " + std::to_string(number) + " in one)";
+  store.append_whole(number, newest.time, *newest.map, note);
+  to_.numbers_before = numbers_before;
 }
 
 }  // namespace deltamap::daemon

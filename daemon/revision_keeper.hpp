@@ -5,11 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "core/file_lock.hpp"
 #include "daemon/map_step.hpp"
 #include "daemon/retrying_output.hpp"
 #include "mapping/map_store.hpp"
@@ -23,6 +25,8 @@ void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_v
 
 /// A store that takes a run's revisions, and how to open it where that was not possible yet.
 struct StoreToKeep {
+  std::filesystem::path to_lock{};  ///< the file that this run alone may write to; empty: locked elsewhere
+  std::optional<FileLock> lock{};   ///< nothing: there could be none yet; until the end of the run
   std::optional<mapping::MapStore> store{};
   std::function<mapping::MapStore()> open{};
   std::string why_not{};             ///< where it is not open
@@ -41,6 +45,10 @@ class RevisionKeeper {
   void close(Timestamp now);
 
  private:
+  /// Throws FileInUse where another program has the store by now.
+  void lock();
+  /// The store's newest revision is the one before this.
+  [[nodiscard]] bool follows(const MapRevision& revision) const;
   struct Missed {
     std::uint32_t first = 0;  ///< number of the oldest that was missed
     MapStep::Result newest;   ///< its changes are left out
@@ -48,6 +56,7 @@ class RevisionKeeper {
   void miss(const MapStep::Result& result);
   /// Throws std::runtime_error naming the file.
   void store_missed();
+  void store_whole(const Missed& missed);
 
   StoreToKeep to_;
   std::string method_;

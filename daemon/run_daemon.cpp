@@ -21,6 +21,7 @@
 #include "daemon/control/server.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/kept_stability.hpp"
+#include "daemon/output_place.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
@@ -146,17 +147,8 @@ OccupancyGrid first_map(const Settings& settings, const CommandLine& line) {
 std::filesystem::path folder_to_write(const std::string& out, const std::filesystem::path& map) {
   std::error_code error;
   std::filesystem::create_directories(out, error);
-  if (error || !std::filesystem::is_directory(out, error)) {
-    throw StartError(out + ": is no folder" + (error ? ": " + error.message() : std::string{}));
-  }
-  if (::access(out.c_str(), W_OK | X_OK) != 0 && errno != EROFS) {
-    throw StartError(out + ": cannot be written: " + std::generic_category().message(errno));
-  }
-  try {
-    require_map_elsewhere(map, out);
-  } catch (const std::runtime_error& error_) {
-    throw StartError(error_.what());
-  }
+  if (error) throw StartError(out + ": is no folder: " + error.message());
+  (void)judged_out_place(out, map);
   return out;
 }
 

@@ -43,19 +43,21 @@ std::string why_no_folder_for(const fs::path& file) {
   return folder.string() + " cannot be written to (" + std::generic_category().message(errno) + ")";
 }
 
-std::string store_refusal(const Settings& settings, const std::string& config, const std::string& why) {
-  return config + ": 'map.store': " + why + ": give this user the folder (sudo install -d -o " + user_name() + " " +
-         folder_of(settings.map.store).string() + ") or another file (--set map.store=FILE)";
+void require_store_folder(const Settings& settings, const std::string& config) {
+  std::error_code ignored;
+  if (settings.map.store.empty() || fs::exists(settings.map.store, ignored)) return;
+  const std::string why = why_no_folder_for(settings.map.store);
+  if (why.empty()) return;
+  throw SettingsError(config + ": 'map.store': " + why + ": give this user the folder (sudo install -d -o " +
+                      user_name() + " " + folder_of(settings.map.store).string() +
+                      ") or another file (--set map.store=FILE)");
 }
 
 void make_state_folders(const Settings& settings, const std::string& config) {
   for (const std::string* file : {&settings.map.store, &settings.recording.file, &settings.control.socket}) {
     make_folder_of(*file);
   }
-  std::error_code ignored;
-  if (settings.map.store.empty() || fs::exists(settings.map.store, ignored)) return;
-  const std::string why = why_no_folder_for(settings.map.store);
-  if (!why.empty()) throw SettingsError(store_refusal(settings, config, why));
+  require_store_folder(settings, config);
 }
 
 }  // namespace deltamap::daemon

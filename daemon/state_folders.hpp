@@ -13,11 +13,11 @@ namespace deltamap::daemon {
 /// cannot be had: only a person can mend that. The others are told by whoever opens the file.
 void make_state_folders(const Settings& settings, const std::string& config);
 
+/// The part of make_state_folders() that throws; makes nothing.
+void require_store_folder(const Settings& settings, const std::string& config);
+
 /// Empty where `file` could be written into its folder, which may have to be made first; else the reason. Makes
 /// nothing.
 [[nodiscard]] std::string why_no_folder_for(const std::filesystem::path& file);
-
-/// One line: why map.store cannot be kept, and the ways out. `why` is from why_no_folder_for().
-[[nodiscard]] std::string store_refusal(const Settings& settings, const std::string& config, const std::string& why);
 
 }  // namespace deltamap::daemon

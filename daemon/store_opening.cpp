@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/store_opening.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <system_error>
 #include <utility>
 
+#include "daemon/output_place.hpp"
 #include "daemon/start_error.hpp"
 #include "mapping/map_salvage.hpp"
 #include "mapping/store_error.hpp"
@@ -18,18 +16,6 @@ namespace fs = std::filesystem;
 using mapping::MapStore;
 using mapping::SalvagedMap;
 using mapping::StoreError;
-
-void require_place(const fs::path& file) {
-  std::error_code error;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (!fs::is_directory(folder, error)) {
-    throw StartError(file.string() + ": cannot be written: " + folder.string() + " is no folder");
-  }
-  if (fs::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
-  if (fs::exists(file, error) && ::access(file.c_str(), R_OK) != 0) {
-    throw StartError(file.string() + ": cannot be read: " + std::generic_category().message(errno));
-  }
-}
 
 /// The database with its log, under the first free name NAME.set-aside-1, -2 …; nothing where it cannot be renamed.
 std::optional<fs::path> set_aside(const fs::path& file) {
@@ -95,12 +81,13 @@ void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGri
 }  // namespace
 
 OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
-  require_place(name);
+  (void)judged_store_place(name);
   // What is locked, opened and set aside is the database, and no link to it. Without knowing whether another program
   // has it, it is not touched.
   const fs::path file = or_start_error([&] { return file_behind(name); });
   OpenedStore opened;
-  opened.lock = or_start_error([&] { return lock_of_file(file); });
+  opened.store.to_lock = file;
+  opened.store.lock = or_start_error([&] { return lock_of_file(file); });
   try {
     take(opened, MapStore{file, first}, first);
   } catch (const StoreError& error) {

@@ -9,15 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "core/file_lock.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/revision_keeper.hpp"
 
 namespace deltamap::daemon {
 
 struct OpenedStore {
-  std::optional<FileLock> lock;  ///< until the end of the run
-  StoreToKeep store;
+  StoreToKeep store;                  ///< and its lock
   StartMap start;                     ///< the newest revision of this map, or M_0 itself
   std::vector<std::string> warnings;  ///< a short line each
 };

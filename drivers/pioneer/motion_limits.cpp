@@ -5,12 +5,9 @@
 #include <limits>
 
 namespace deltamap::drivers::pioneer {
-namespace {
 
 int whole_mm(double metres) { return static_cast<int>(std::lround(1000.0 * metres)); }
 int whole_degrees(double rad) { return static_cast<int>(std::lround(degrees(rad))); }
-
-}  // namespace
 
 std::vector<Command> limit_commands(const MotionLimits& limits) {
   return {{CommandNumber::kSetV, whole_mm(limits.max_speed_m_per_s)},

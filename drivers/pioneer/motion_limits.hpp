@@ -23,6 +23,10 @@ struct MotionLimits {
   double turn_deceleration_rad_per_s2 = radians(150.0);
 };
 
+// What goes over the wire is whole.
+[[nodiscard]] int whole_mm(double metres);
+[[nodiscard]] int whole_degrees(double rad);
+
 /// SETV, SETRV, SETA twice, SETRA twice.
 [[nodiscard]] std::vector<Command> limit_commands(const MotionLimits& limits);
 /// Whether the controller reports all of them, to the whole mm and degree of the wire, and its watchdog.

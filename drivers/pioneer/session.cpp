@@ -13,7 +13,6 @@
 namespace deltamap::drivers::pioneer {
 namespace {
 
-constexpr double kMmPerMetre = 1000.0;
 constexpr double kCheckIntervalS = 1.0;
 constexpr double kControllerCycleS = 0.1;  // A6: so old the newest speed may be
 constexpr double kVoltsPerDecivolt = 0.1;
@@ -198,7 +197,7 @@ void PioneerSession::leave(std::optional<std::string> reason, Timestamp close_at
 Duration PioneerSession::time_to_stand() const {
   if (!newest_sip_) return {};
   const double faster_m_per_s =
-      std::max(std::abs(newest_sip_->left_mm_per_s), std::abs(newest_sip_->right_mm_per_s)) / kMmPerMetre;
+      1e-3 * std::max(std::abs(newest_sip_->left_mm_per_s), std::abs(newest_sip_->right_mm_per_s));
   if (faster_m_per_s == 0.0) return {};
   return duration_from_seconds(faster_m_per_s / stopping_limits().deceleration_m_per_s2 + kControllerCycleS);
 }

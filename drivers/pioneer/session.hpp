@@ -87,6 +87,8 @@ class PioneerSession {
   [[nodiscard]] const std::optional<ConfigPacket>& config() const { return config_; }
   /// How the robot comes to rest without us, by what its controller has confirmed.
   [[nodiscard]] StoppingLimits stopping_limits() const { return stopping_limits_of(config_); }
+  /// Why this controller is not driven in this connection, whatever a person says; empty: nothing speaks against it.
+  [[nodiscard]] std::string_view why_never_driven() const;
 
  private:
   enum class State {

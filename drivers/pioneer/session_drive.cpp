@@ -11,7 +11,6 @@
 namespace deltamap::drivers::pioneer {
 namespace {
 
-constexpr double kMmPerMetre = 1000.0;
 constexpr int kMaxRequests = 5;                    // of one state, before we take the robot as it is
 constexpr Duration kEchoOfEnable{1'000'000'000};   // a command, a SIP cycle and both on the line, with room for a queue
 constexpr Duration kEmergencyRepeat{100'000'000};  // a SIP cycle: the next one shows whether the robot stands
@@ -104,6 +103,13 @@ void PioneerSession::bring_limits(PioneerOutput& out) {
   if (!knows_watchdog()) out.output.log.push_back("robot does not tell its watchdog: it is not driven");
 }
 
+std::string_view PioneerSession::why_never_driven() const {
+  if (limits_are_told_ && !knows_watchdog()) return "the robot does not tell its watchdog";
+  if (knows_watchdog() && config_->watchdog_ms == 0)
+    return "the robot's watchdog is off: it would never stop by itself";
+  return {};
+}
+
 /// ENABLE 1 waits for the watchdog, without which nobody knows how the robot would stop. It is sent once, not until it
 /// shows: motors that are off in the next SIP may have been switched off again by a person who was faster than the SIP.
 void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
@@ -179,8 +185,8 @@ void PioneerSession::push_set_points() {
   const double turn_rate = set_point_ ? set_point_->turn_rate_rad_per_s : 0.0;
   queue_.drop(CommandNumber::kVel);
   queue_.drop(CommandNumber::kRvel);
-  queue_.push_first({CommandNumber::kRvel, static_cast<int>(std::lround(degrees(turn_rate)))});
-  queue_.push_first({CommandNumber::kVel, static_cast<int>(std::lround(speed * kMmPerMetre))});
+  queue_.push_first({CommandNumber::kRvel, whole_degrees(turn_rate)});
+  queue_.push_first({CommandNumber::kVel, whole_mm(speed)});
 }
 
 }  // namespace deltamap::drivers::pioneer

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <thread>
 
@@ -27,16 +28,22 @@ TEST(Channel, RefusesTheNewestItemWhenFullLeavesItAndCountsIt) {
   EXPECT_TRUE(channel.try_send(std::move(second)));
 }
 
-TEST(Channel, GivesEverythingInOrderAcrossThreads) {
-  constexpr int kCount = 100'000;
-  Channel<std::unique_ptr<int>> channel{64};
-  std::jthread sender{[&] {
-    for (int i = 0; i < kCount; ++i) {
-      auto item = std::make_unique<int>(i);
+/// Sends 0, 1, 2 … as fast as they are taken, then closes the channel.
+template <typename Item, typename Make = std::identity>
+std::jthread counting_sender(Channel<Item>& channel, int count, const Make& make = {}) {
+  return std::jthread{[&channel, count, make] {
+    for (int i = 0; i < count; ++i) {
+      Item item = make(i);
       while (!channel.try_send(std::move(item))) std::this_thread::yield();
     }
     channel.close();
   }};
+}
+
+TEST(Channel, GivesEverythingInOrderAcrossThreads) {
+  constexpr int kCount = 100'000;
+  Channel<std::unique_ptr<int>> channel{64};
+  const std::jthread sender = counting_sender(channel, kCount, [](int i) { return std::make_unique<int>(i); });
   int expected = 0;
   while (auto item = channel.receive()) ASSERT_EQ(**item, expected++);
   EXPECT_EQ(expected, kCount);
@@ -45,13 +52,7 @@ TEST(Channel, GivesEverythingInOrderAcrossThreads) {
 TEST(Channel, MixesPollingAndSleepingWithoutLosingAWakeUp) {
   constexpr int kCount = 20'000;
   Channel<int> channel{8};
-  std::jthread sender{[&] {
-    for (int i = 0; i < kCount; ++i) {
-      int item = i;
-      while (!channel.try_send(std::move(item))) std::this_thread::yield();
-    }
-    channel.close();
-  }};
+  const std::jthread sender = counting_sender(channel, kCount);
   int expected = 0;
   while (auto item = channel.receive()) {
     ASSERT_EQ(*item, expected++);
@@ -90,13 +91,7 @@ TEST(Channel, WaitsNoLongerThanItIsAskedTo) {
 TEST(Channel, GivesEverythingInOrderToAReceiverThatLooksUpNowAndThen) {
   constexpr int kCount = 20'000;
   Channel<int> channel{8};
-  std::jthread sender{[&] {
-    for (int i = 0; i < kCount; ++i) {
-      int item = i;
-      while (!channel.try_send(std::move(item))) std::this_thread::yield();
-    }
-    channel.close();
-  }};
+  const std::jthread sender = counting_sender(channel, kCount);
   int expected = 0;
   while (!channel.is_drained()) {
     const auto item = channel.receive_within(std::chrono::milliseconds{200});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operator and the running daemon, over a real socket: what is answered, what a replay repeats, and who may drive.
+// The operator and the running daemon, over a real socket: what is answered, what a replay repeats.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 #include "daemon/control/request.hpp"
 #include "daemon/control/server.hpp"
-#include "daemon/kept_drive.hpp"
+#include "drivers/port/byte_log.hpp"
 #include "tests/support/control_fixture.hpp"
 
 namespace deltamap::daemon {
@@ -17,7 +17,6 @@ using control::Request;
 using test::comes_true;
 using test::content_of;
 using test::ControlDeskTest;
-using test::DriveTest;
 using test::SocketClient;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
@@ -46,8 +45,10 @@ TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedByTheReplayBitForBit) {
             content_of(folder_.path() / "live/trajectory.tum"));
 }
 
+constexpr Pose2 kOffTheDrive{5.0, 4.6, 0.0};  // in its middle, 1.7 m from it at least
+
 TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedWithOtherSettingsAndAnotherSeed) {
-  const Pose2 far{5.0, 4.6, 0.0};  // in the middle of the drive, 1.7 m from it at least
+  const Pose2 far = kOffTheDrive;
   const auto nearest_to_far = [&](const std::string& run) {
     std::ifstream lines(folder_.path() / run / "trajectory.tum");
     double nearest_m = 1e9;
@@ -72,6 +73,54 @@ TEST_F(ControlDeskTest, WhatTheOperatorDidIsRepeatedWithOtherSettingsAndAnotherS
 
   (void)replay("drive.pcapng", "untouched");
   EXPECT_GT(nearest_to_far("untouched"), 1.5);
+}
+
+/// Leaves out the bytes of some seconds, as a full disk does.
+void write_with_a_gap(const std::filesystem::path& recording, double from_s, double to_s,
+                      const std::filesystem::path& gapped) {
+  drivers::port::ByteLogReader reader{recording};
+  drivers::port::ByteLogWriter writer{gapped, {500'000, 500'000}};
+  std::optional<Timestamp> began;
+  bool is_noted = false;
+  while (const auto record = reader.next()) {
+    if (!began && !record->bytes.empty()) began = record->stamp;
+    const double at_s = began ? seconds(record->stamp - *began) : 0.0;
+    if (at_s >= from_s && at_s < to_s && !record->bytes.empty()) continue;
+    if (at_s >= to_s && !is_noted) {
+      drivers::port::ByteRecord gap;
+      gap.stamp = record->stamp;
+      gap.note = kGapNote;
+      writer.write(gap);
+      is_noted = true;
+    }
+    writer.write(*record);
+  }
+  writer.close();
+}
+
+TEST_F(ControlDeskTest, WhatTheOperatorDidBehindAGapIsRepeatedAtItsTime) {
+  // The times of the first scan near the pose that the operator gave, and of the scan before it.
+  const auto jumped_at = [&](const std::string& run) {
+    std::ifstream lines(folder_.path() / run / "trajectory.tum");
+    std::string before;
+    double x = 0.0;
+    double y = 0.0;
+    for (std::string time; lines >> time >> x >> y; lines.ignore(1000, '\n')) {
+      if (std::hypot(x - kOffTheDrive.x, y - kOffTheDrive.y) < 0.7) return before + " " + time;
+      before = time;
+    }
+    return std::string("never");
+  };
+  (void)run_live(3ms, [&](const Pipeline&) {
+    ASSERT_TRUE(reached_scan(120));  // behind the gap, at 11 s
+    EXPECT_EQ(asked({Request::Kind::kRelocalize, kOffTheDrive})["ok"], true);
+  });
+  write_with_a_gap(folder_.path() / "live.pcapng", 4.0, 10.0, folder_.path() / "gapped.pcapng");
+  const RunReport again = replay("gapped.pcapng", "replayed");
+  EXPECT_EQ(again.journal, "not obeyed: records are missing");
+  EXPECT_EQ(again.commands, 1u);
+  EXPECT_NE(jumped_at("live"), "never");
+  EXPECT_EQ(jumped_at("replayed"), jumped_at("live"));
 }
 
 TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame) {
@@ -239,90 +288,6 @@ TEST_F(ControlDeskTest, ASecondDaemonEndsBeforeItTouchesAnything) {
 TEST_F(ControlDeskTest, ASocketThatCannotBeIsToldAndTheDaemonWorksWithoutIt) {
   settings_.control.socket = folder_.path() / "missing/ctl.sock";
   EXPECT_GT(run_live(0ms).scans.decoded, 300u);
-}
-
-// --- who drives ---
-
-TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
-  run([&](test::SimulatedPorts& ports) {
-    const Json refused = asked({Request::Kind::kDriveWander, {}});
-    EXPECT_EQ(refused["ok"], false);
-    EXPECT_EQ(refused["error"], "'navigation.mode' is not wander: this daemon never drives");
-    EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
-    const int scan = status()["localized"];
-    EXPECT_TRUE(reached_scan(scan + 10));
-    EXPECT_FALSE(moves(ports));
-    EXPECT_EQ(status()["drive"], "off");
-  });
-}
-
-TEST_F(DriveTest, WithoutAPoseItStandsAndSaysWhy) {
-  settings_.navigation.mode = navigation::DriveMode::kWander;
-  settings_.initial_pose.reset();
-  run([&](test::SimulatedPorts& ports) {
-    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
-    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "pose unknown"; }));
-    const std::size_t from = ports.commands().size();
-    const int scan = status()["localized"];
-    EXPECT_TRUE(reached_scan(scan + 10));
-    EXPECT_FALSE(moves(ports, from));
-  });
-}
-
-TEST_F(DriveTest, WithoutAPoseItDrivesWhereTheSettingsSaySo) {
-  settings_.navigation.mode = navigation::DriveMode::kWander;
-  settings_.navigation.drive_without_pose = true;
-  settings_.initial_pose.reset();
-  run([&](test::SimulatedPorts& ports) {
-    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
-    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "none"; }));
-    EXPECT_TRUE(comes_true([&] { return moves(ports); }));
-  });
-}
-
-TEST_F(DriveTest, ARefusedWanderDoesNotSwitchOn) {
-  settings_.navigation.mode = navigation::DriveMode::kWander;
-  settings_.navigation.safety.low_battery_s = 0.2;
-  run([&](test::SimulatedPorts& ports) {
-    ports.drain_battery();
-    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "low battery"; }));
-    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], false);
-    EXPECT_EQ(status()["drive_switch"], "unknown") << "else it would drive later, by itself";
-    EXPECT_FALSE(moves(ports));
-  });
-}
-
-TEST_F(DriveTest, OffStopsTheRobotAndWanderStartsItAgain) {
-  settings_.navigation.mode = navigation::DriveMode::kWander;
-  settings_.map.store = folder_.path() / "kept.sqlite";
-  const auto kept = [&] { return content_of(drive_place(settings_.map.store, settings_.robot.port).file); };
-  run([&](test::SimulatedPorts& ports) {
-    EXPECT_FALSE(moves(ports)) << "nobody has said anything yet";
-    EXPECT_EQ(status()["drive"], "off");
-    EXPECT_EQ(status()["drive_switch"], "unknown");
-    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
-    EXPECT_TRUE(comes_true([&] { return moves(ports); }));
-    EXPECT_EQ(kept(), "{\"drive\":\"on\",\"robot_port\":\"/dev/ttyUSB0\"}\n");
-    EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
-    EXPECT_EQ(kept(), "{\"drive\":\"off by the operator\",\"robot_port\":\"/dev/ttyUSB0\"}\n")
-        << "on disk when it is answered";
-    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "no command"; }));
-    EXPECT_EQ(status()["drive"], "off");
-    const std::size_t stopped = ports.commands().size();
-    const int scan = status()["localized"];
-    EXPECT_TRUE(reached_scan(scan + 10));
-    EXPECT_FALSE(moves(ports, stopped)) << "the pilot is not listened to";
-    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
-    EXPECT_TRUE(comes_true([&] { return moves(ports, stopped); }));
-    EXPECT_EQ(status()["drive"], "wander");
-    EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
-  });
-  run([&](test::SimulatedPorts& ports) {
-    const int scan = status()["localized"];
-    EXPECT_TRUE(reached_scan(scan + 10));
-    EXPECT_FALSE(moves(ports)) << "a restart is no person";
-    EXPECT_EQ(status()["drive_switch"], "off by the operator");
-  });
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ class Watched {
       tracked_.scan.time += duration_from_seconds(kPeriod_s);
       tracked_.odom_from_robot.x += step_m_;
       tracked_.estimate.state = state;
-      const std::string line = watch_.observe(tracked_, fit);
-      if (!line.empty()) said += line + "\n";
+      const LogLine line = watch_.observe(tracked_, fit);
+      if (!line.text.empty()) said += (line.is_warning ? "warning: " : "") + line.text + "\n";
     }
     return said;
   }
@@ -38,10 +38,10 @@ class Watched {
 };
 
 TEST(FitWatch, AStartPoseThatDoesNotFitIsToldAfterTheFirstScans) {
-  EXPECT_EQ(
-      Watched{true}.after(1.0, 0.23),
-      "the start pose does not fit: 23 % of the beams end where the map says; the map may be another, or the pose "
-      "wrong: say where the robot stands by `deltamap ctl relocalize X,Y,DEG`\n");
+  EXPECT_EQ(Watched{true}.after(1.0, 0.23),
+            "warning: the start pose does not fit: 23 % of the beams end where the map says; the map may be another, "
+            "or the pose "
+            "wrong: say where the robot stands by `deltamap ctl relocalize X,Y,DEG`\n");
   EXPECT_EQ(Watched{true}.after(10.0, 0.9), "");
   EXPECT_EQ(Watched{false}.after(1.0, 0.23), "") << "nobody gave one";
 }
@@ -56,8 +56,10 @@ TEST(FitWatch, AForeignMapIsToldOnceAfterAMinuteOfSearching) {
   Watched watched{false};
   EXPECT_EQ(watched.after(59.0, 0.45, LocalizerState::kGlobal), "");
   const std::string said = watched.after(60.0, 0.45, LocalizerState::kGlobal);
-  EXPECT_EQ(said.rfind("no place in the map has been sure for 60 s and 30 m: 45 % of the beams fit at the best one", 0),
-            0u)
+  EXPECT_EQ(
+      said.rfind("warning: no place in the map has been sure for 60 s and 30 m: 45 % of the beams fit at the best one",
+                 0),
+      0u)
       << said;
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
   EXPECT_EQ(watched.after(5.0, 0.9), "the map fits again\n");
@@ -68,7 +70,7 @@ TEST(FitWatch, ASearchThatNobodyDrivesForIsToldToo) {
   watched.hold();
   EXPECT_EQ(watched.after(59.0, std::nullopt, LocalizerState::kGlobal), "");
   const std::string said = watched.after(60.0, std::nullopt, LocalizerState::kGlobal);
-  EXPECT_EQ(said.rfind("no place in the map has been sure for 60 s and 0 m: is it the map", 0), 0u) << said;
+  EXPECT_EQ(said.rfind("warning: no place in the map has been sure for 60 s and 0 m: is it the map", 0), 0u) << said;
   EXPECT_EQ(watched.after(100.0, 0.2, LocalizerState::kTracking), "") << "one who stands in front of a sure pose";
 }
 
@@ -77,6 +79,8 @@ TEST(FitWatch, APoseThatIsTrackedAndDoesNotFitForAMinuteIsToldToo) {
   EXPECT_EQ(watched.after(100.0, 0.9), "");
   EXPECT_NE(watched.after(70.0, 0.2), "");
 }
+
+TEST(FitWatch, ARefusedStartIsAWarning) { EXPECT_TRUE(refused_start_line().is_warning); }
 
 TEST(FitWatch, TheFitIsPutIntoWords) {
   EXPECT_EQ(fit_words(0.934), "93 % of its beams fit");

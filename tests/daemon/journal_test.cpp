@@ -19,6 +19,9 @@ TEST(Journal, EveryDecisionSurvivesTheRecording) {
     if (has_no_number) decision.number = 0;
     if (kind == Kind::kRelocalized) decision.map_from_robot = {-1.0 / 3.0, 1e-9, 2.0 / 7.0};
     EXPECT_EQ(decision_of_note(note_of(decision)), decision) << note_of(decision);
+    if (kind != Kind::kPaused && kind != Kind::kResumed && kind != Kind::kRelocalized) continue;
+    decision.scan_time = timestamp_from_ns(1'700'000'000'123'456'789);
+    EXPECT_EQ(decision_of_note(note_of(decision)), decision) << note_of(decision);
   }
   const RunIdentity run{0x0123456789ABCDEFu, 0xFEDCBA9876543210u};
   EXPECT_EQ(run_of_note(note_of(run)), run);
@@ -27,8 +30,10 @@ TEST(Journal, EveryDecisionSurvivesTheRecording) {
 }
 
 TEST(Journal, OtherNotesAreNoDecisions) {
-  for (const char* note : {"baud 38400", "", "scan 5", "scan 5 dropped twice", "scan -x dropped", "revision 1 before",
-                           "relocalized to 1 2 before scan 3", "mapping paused before scan"}) {
+  for (const char* note :
+       {"baud 38400", "", "scan 5", "scan 5 dropped twice", "scan -x dropped", "revision 1 before",
+        "relocalized to 1 2 before scan 3", "mapping paused before scan", "mapping paused before scan 3 at",
+        "mapping paused before scan 3 at noon", "scan 5 dropped at 1700000000000000000"}) {
     EXPECT_FALSE(decision_of_note(note)) << note;
     EXPECT_FALSE(run_of_note(note)) << note;
   }
@@ -58,10 +63,50 @@ TEST(Journal, KeepsTheOperatorsCommandsInTheirOrder) {
   const Decision third{Kind::kRelocalized, 9, 0, {3.0, 4.0, -0.5}};
   Journal journal;
   for (const Decision& decision : {first, second, third}) journal.read(note_of(decision));
-  journal.read(note_of({Kind::kResumed, 10, 0}));
-  EXPECT_EQ(journal.commands().at(9), (std::vector<Decision>{first, second, third}));
-  ASSERT_EQ(journal.commands().at(10).size(), 1u);
-  EXPECT_EQ(journal.commands().at(10).front().kind, Kind::kResumed);
+  const Decision fourth{Kind::kResumed, 10, 0};
+  journal.read(note_of(fourth));
+  EXPECT_EQ(journal.commands(), (std::vector<Decision>{first, second, third, fourth}));
+}
+
+Scan scan_at(std::uint32_t number, std::int64_t time_s) {
+  Scan scan;
+  scan.number = number;
+  scan.time = timestamp_from_ns(time_s * 1'000'000'000);
+  return scan;
+}
+
+TEST(Journal, PlacesACommandByTheNumberOfItsScanWhereNoneIsMissing) {
+  Journal journal;
+  journal.read(note_of(RunIdentity{1, 2}));
+  const Decision paused{Kind::kPaused, 9, 0, {}, scan_at(9, 90).time};
+  EXPECT_TRUE(journal.place_of(paused, scan_at(8, 90)) > 0) << "two scans of one time";
+  EXPECT_TRUE(journal.place_of(paused, scan_at(9, 90)) == 0);
+  EXPECT_TRUE(journal.place_of(paused, scan_at(10, 90)) < 0);
+}
+
+TEST(Journal, PlacesACommandByTheTimeOfItsScanWhereScansAreMissing) {
+  const Decision paused{Kind::kPaused, 9, 0, {}, scan_at(9, 90).time};
+  Journal behind_a_gap;
+  behind_a_gap.read(note_of(RunIdentity{1, 2}));
+  behind_a_gap.read(kGapNote);
+  const Journal without_its_beginning;  // another program has cut it off
+  for (const Journal& journal : {behind_a_gap, without_its_beginning}) {
+    EXPECT_TRUE(journal.place_of(paused, scan_at(3, 89)) > 0);
+    EXPECT_TRUE(journal.place_of(paused, scan_at(4, 90)) == 0);
+    EXPECT_TRUE(journal.place_of(paused, scan_at(5, 91)) < 0);
+    const Decision of_an_older_version{Kind::kPaused, 9};
+    EXPECT_TRUE(journal.place_of(of_an_older_version, scan_at(5, 91)) > 0);
+    EXPECT_TRUE(journal.place_of(of_an_older_version, scan_at(9, 95)) == 0);
+  }
+}
+
+TEST(Journal, TakesWhatIsSaidAgainBehindAGapOnce) {
+  const Decision paused{Kind::kPaused, 9, 0, {}, scan_at(9, 90).time};
+  Journal journal;
+  journal.read(note_of(paused));
+  journal.read(kGapNote);
+  journal.read(note_of(paused));
+  EXPECT_EQ(journal.commands(), std::vector<Decision>{paused});
 }
 
 }  // namespace

@@ -35,6 +35,21 @@ TEST_F(PipelineTest, AnUnhurriedLiveRunAndItsReplayGiveTheSameBytes) {
   EXPECT_EQ(lines_of(content_of(folder_.path() / "live/localization.csv")), live.scans.localized + 1);
 }
 
+TEST_F(PipelineTest, AStartPoseThatDoesNotFitIsAWarning) {
+  settings_.initial_pose = test::pose_on_drive(0.0) * Pose2{-1.5, 0.0, 0.7};
+  std::mutex mutex;
+  std::vector<std::string> warnings;
+  prepare_ = [&](Pipeline::Options& live) {
+    live.warn = [&](const std::string& line) {
+      const std::scoped_lock lock{mutex};
+      warnings.push_back(line);
+    };
+  };
+  (void)run_live(std::chrono::microseconds(500));
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_TRUE(warnings.front().starts_with("the start pose does not fit: ")) << warnings.front();
+}
+
 TEST_F(PipelineTest, ARunThatDropsScansIsReplayedWithTheSameDrops) {
   const RunReport live = run_live(std::chrono::microseconds(0));
   EXPECT_GT(live.scans.dropped + live.scans.lost, 0u) << "the ports must have been faster than the localizer";

@@ -1,51 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the outputs of the running daemon do while the disk is full, and when it is not any more.
-#include <gtest/gtest.h>
+// What lines and the recording of the running daemon do while the disk is full, and when it is not any more.
 #include <sys/mount.h>
 #include <unistd.h>
 
-#include <sstream>
+#include <fstream>
 
-#include "core/grid_file.hpp"
 #include "daemon/line_file.hpp"
 #include "daemon/live_recording.hpp"
-#include "daemon/map_outputs.hpp"
 #include "daemon/start_error.hpp"
-#include "mapping/map_store.hpp"
 #include "tests/support/full_disk.hpp"
 #include "tests/support/not_root.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/saving_fixture.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 namespace fs = std::filesystem;
+using test::at_s;
+using test::content_of;
 
-Timestamp at_s(double time_s) { return timestamp_from_ns(1'700'000'000'000'000'000) + duration_from_seconds(time_s); }
-
-std::string content_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-class Saving : public testing::Test {
- protected:
-  [[nodiscard]] RetryingOutput::Warn warn() {
-    return [this](const std::string& line) { warnings.push_back(line); };
-  }
-  [[nodiscard]] OutputStatus status(const std::string& name) const {
-    for (const OutputStatus& output : telemetry.outputs.all()) {
-      if (output.name == name) return output;
-    }
-    ADD_FAILURE() << name << " is not on the board";
-    return {};
-  }
-
-  test::TemporaryFolder folder;
-  Telemetry telemetry;
-  std::vector<std::string> warnings;
-};
+class Saving : public test::SavingFixture {};
 
 TEST_F(Saving, IsTriedAgainAfterOneTwoFourAndEightSeconds) {
   RetryingOutput output{"store", "store.sqlite", telemetry.outputs, warn()};
@@ -167,6 +142,28 @@ TEST_F(Recording, GoesOnBehindTheLastWholeBlockWithANoteOfTheGap) {
   EXPECT_EQ(status("recording").lost, 1u);
 }
 
+TEST_F(Recording, SaysBehindAGapWhetherMappingIsPaused) {
+  {
+    LiveRecording recording{options(), telemetry, warn()};
+    recording.flush(at_s(1));
+    {
+      const test::FullDisk full{fs::file_size(file)};
+      for (const char* said : {"mapping paused before scan 5 at 1700000002000000000", "scan 6 dropped"}) {
+        drivers::port::ByteRecord note;
+        note.stamp = at_s(2);
+        note.note = said;
+        recording.write(note, at_s(2));
+        recording.flush(at_s(2));
+      }
+    }
+    recording.write(record_at(10, 4), at_s(10));
+    recording.close(at_s(12));
+  }
+  EXPECT_EQ(told(),
+            (std::vector<std::string>{"run", "records lost here", "baud 9600", "baud 9600",
+                                      "mapping paused before scan 5 at 1700000002000000000", "laser 4 at 9600"}));
+}
+
 TEST_F(Recording, BeginsLaterWhereTheDiskIsFullAtTheStart) {
   {
     std::optional<LiveRecording> recording;
@@ -269,113 +266,6 @@ TEST_F(Recording, OnAReadOnlyFileSystemPausesAndKeepsTheOlderOneLater) {
     ADD_FAILURE() << error.what();
   }
   EXPECT_EQ(umount(mounted.c_str()), 0);
-}
-
-/// A Δ that makes one more cell occupied than the one before.
-MapStep::Result result_of(std::uint32_t number) {
-  auto map = std::make_shared<OccupancyGrid>(GridGeometry{40, 30, 0.1, {0.0, 0.0}}, CellState::kFree);
-  for (std::uint32_t cell = 0; cell < number; ++cell) map->set({static_cast<int>(cell), 3}, CellState::kOccupied);
-  MapStep::Result result;
-  result.revision =
-      MapRevision{.number = number,
-                  .time = at_s(number),
-                  .map = map,
-                  .changes = {{{static_cast<int>(number) - 1, 3}, CellState::kFree, CellState::kOccupied}},
-                  .field_patch = {}};
-  result.note.revision = number;
-  result.note.phase = number;
-  return result;
-}
-
-MapStep::Result refusal_of(std::uint32_t phase) {
-  MapStep::Result result;
-  result.note.phase = phase;
-  result.note.reason = "too few scans";
-  return result;
-}
-
-class SavingMaps : public Saving {
- protected:
-  [[nodiscard]] MapOutputs::Options options() const {
-    StoreToKeep to;
-    to.store.emplace(store, *start.map);
-    return {.out = out, .store_file = store, .store = std::move(to), .start = start, .method = "evidence"};
-  }
-
-  StartMap start{std::make_shared<OccupancyGrid>(GridGeometry{40, 30, 0.1, {0.0, 0.0}}, CellState::kFree), 0};
-  fs::path out = folder.path();
-  fs::path store = folder.path() / "store.sqlite";
-};
-
-TEST_F(SavingMaps, WhatWasMissedIsStoredWholeWhenThereIsRoomAgain) {
-  {
-    MapOutputs outputs{options(), telemetry.outputs, warn(), at_s(0)};
-    for (std::uint32_t number : {1u, 2u}) outputs.save(result_of(number), at_s(number));
-    {
-      const test::FullDisk full;
-      for (std::uint32_t number : {3u, 4u, 5u}) outputs.save(result_of(number), at_s(number));
-      outputs.save(refusal_of(6), at_s(6));
-      outputs.retry(at_s(7));
-      for (const char* name : {"changes", "map", "history", "store"}) EXPECT_FALSE(status(name).written) << name;
-    }
-    EXPECT_EQ(warnings.size(), 4u) << "one an output";
-    outputs.retry(at_s(30));
-    for (const char* name : {"changes", "map", "history", "store"}) EXPECT_TRUE(status(name).written) << name;
-    EXPECT_EQ(warnings.size(), 8u);
-    outputs.save(result_of(6), at_s(31));
-    outputs.close(at_s(32));
-  }
-  EXPECT_EQ(read_grid(out / "map.yaml"), *result_of(6).revision->map);
-  const std::string changes = content_of(out / "changes.jsonl");
-  EXPECT_EQ(std::count(changes.begin(), changes.end(), '\n'), 7);
-  for (const fs::path& file : {store, out / "map_store.sqlite"}) {
-    const mapping::MapStore kept{file, *start.map};
-    EXPECT_EQ(kept.dropped(), 0u);
-    EXPECT_EQ(kept.newest(), 6u);
-    for (const std::uint32_t number : {1u, 2u, 5u, 6u}) {
-      EXPECT_EQ(kept.grid(number), *result_of(number).revision->map) << number;
-    }
-    EXPECT_THROW((void)kept.grid(4), std::runtime_error);
-    const auto history = kept.history();
-    EXPECT_EQ(history[3].note.cause, "evidence (3 to 5 in one)");
-    EXPECT_EQ(history[3].occupied, 3u);
-    EXPECT_TRUE(history[4].refused);
-  }
-}
-
-TEST_F(SavingMaps, GoesOnBehindWhatAnotherProgramHasWrittenIntoTheStore) {
-  MapOutputs outputs{options(), telemetry.outputs, warn(), at_s(0)};
-  outputs.save(result_of(1), at_s(1));
-  EXPECT_EQ((mapping::MapStore{store, *start.map}.roll_back(0, at_s(1.5))), 2u);
-  outputs.save(result_of(2), at_s(2));
-  EXPECT_FALSE(status("store").written);
-  outputs.retry(at_s(4));
-  EXPECT_TRUE(status("store").written) << status("store").why;
-  outputs.save(result_of(3), at_s(5));
-  EXPECT_EQ(warnings.size(), 2u);
-  const mapping::MapStore kept{store, *start.map};
-  EXPECT_EQ(kept.newest(), 4u);
-  EXPECT_EQ(kept.grid(2), *start.map);
-  for (const std::uint32_t number : {2u, 3u}) EXPECT_EQ(kept.grid(number + 1), *result_of(number).revision->map);
-}
-
-TEST_F(SavingMaps, ADiskThatIsFullAtTheStartAndFreeAtTheEnd) {
-  std::optional<MapOutputs> outputs;
-  MapOutputs::Options late = options();
-  late.store.store.reset();
-  late.store.open = [this] { return mapping::MapStore{store, *start.map}; };
-  late.store.why_not = "store.sqlite: database or disk is full";
-  {
-    const test::FullDisk full;
-    outputs.emplace(std::move(late), telemetry.outputs, warn(), at_s(0));
-    outputs->save(result_of(1), at_s(1));
-    EXPECT_EQ(warnings.size(), 4u);
-  }
-  outputs->close(at_s(1.5));
-  outputs.reset();
-  EXPECT_EQ(read_grid(out / "map.yaml"), *result_of(1).revision->map);
-  EXPECT_EQ((mapping::MapStore{store, *start.map}.grid(1)), *result_of(1).revision->map);
-  EXPECT_EQ((mapping::MapStore{out / "map_store.sqlite", *start.map}.newest()), 1u);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "simulation/score/map_score.hpp"
 #include "simulation/score/map_truth.hpp"
 #include "simulation/start_map.hpp"
+#include "tests/support/block_room.hpp"
 #include "tests/support/drawn_grid.hpp"
 
 namespace deltamap::simulation::score {
@@ -63,15 +64,7 @@ TEST(MapScore, KeptIsWhatStillHasASurfaceBeside) {
 }
 
 const Scenario& room() {
-  static const Scenario scenario = parse_scenario(R"(
-walls:
-  - [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
-blocks:
-  - {corner: [3, 1], columns: 1, rows: 1, size: [1, 1]}
-robot:
-  start: [1, 1, 0]
-)",
-                                                  "room");
+  static const Scenario scenario = test::block_room();
   return scenario;
 }
 

@@ -56,16 +56,19 @@ class DriveTest : public ControlDeskTest {
     settings_.recording.file.clear();
   }
 
-  void run(const std::function<void(SimulatedPorts&)>& operate) {
+  void run(
+      const std::function<void(SimulatedPorts&)>& operate,
+      const std::function<void(SimulatedPorts&)>& prepare = [](SimulatedPorts&) {}, int after_scan = 5) {
     const auto scenario =
         simulation::read_scenario(std::filesystem::path(DELTAMAP_SOURCE_DIR) / "config/scenarios/room.yaml");
     SimulatedPorts ports{scenario, 1};
+    prepare(ports);
     daemon::Pipeline::Options live = options();
     live.open = [&ports](boost::asio::io_context& loop, drivers::port::PortId id, unsigned baud) {
       return ports.open(loop, id, baud);
     };
     std::optional<daemon::Pipeline> pipeline{std::in_place, settings_, std::move(live)};
-    ASSERT_TRUE(reached_scan(5));
+    ASSERT_TRUE(reached_scan(after_scan));
     operate(ports);
     (void)pipeline->stop();
     ports.end();

@@ -5,6 +5,7 @@
 
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -40,6 +41,8 @@ class SimulatedPorts {
   }
   /// The robot tells a battery of 10 V from now on. Any thread.
   void drain_battery() { is_drained_ = true; }
+  /// Whether the robot hears what it is asked about its configuration. Any thread.
+  void hear_config(bool hears) { hears_config_ = hears; }
   /// In the io thread's last moments, or after it: nothing comes any more.
   void end() { timer_.reset(); }
 
@@ -82,9 +85,13 @@ class SimulatedPorts {
     const Timestamp now = drivers::port::port_clock_now();
     simulation_.advance_to(now);
     if (id == PortId::kLaser) return simulation_.send_to_laser(bytes, baud(id));
-    simulation_.send_to_robot(bytes, baud(id));
+    const auto packets = decoder_.decode(bytes, now);
+    const bool asks_config = std::any_of(packets.begin(), packets.end(), [](const drivers::pioneer::Packet& packet) {
+      return packet.type() == static_cast<std::uint8_t>(drivers::pioneer::CommandNumber::kConfig);
+    });
+    if (hears_config_ || !asks_config) simulation_.send_to_robot(bytes, baud(id));
     const std::scoped_lock lock{mutex_};
-    for (const auto& packet : decoder_.decode(bytes, now)) {
+    for (const auto& packet : packets) {
       commands_.push_back({packet.type(), {packet.body().begin(), packet.body().end()}});
     }
   }
@@ -114,6 +121,7 @@ class SimulatedPorts {
 
   simulation::Simulation simulation_;
   std::atomic<bool> is_drained_ = false;
+  std::atomic<bool> hears_config_ = true;
   std::optional<boost::asio::steady_timer> timer_;
   drivers::port::PortHandlers handlers_[2];
   unsigned bauds_[2] = {9600, 9600};

@@ -3,15 +3,8 @@
 # README's lines for a robot, as they are written there, on a machine without devices: as this user, and where that is
 # root also as one who may write nowhere else. usage: first_minutes.sh FOLDER-OF-PROGRAMS
 set -euo pipefail
-bin=$(realpath "$1")
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-out=$(mktemp -d)
-daemon=
-end() {
-  [[ -z $daemon ]] || kill -9 "$daemon" 2>/dev/null || true
-  rm -rf "$out"
-}
-trap end EXIT
+bin=$1
+source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 fail() { echo "first_minutes: $1" >&2; cat "$place"/*.log >&2; exit 1; }
 
 # block N: the Nth block of commands under "On a robot", without the build

@@ -3,37 +3,24 @@
 # A disk that is full for half a minute of a drive: saving pauses, localization and mapping go on, and afterwards store,
 # map, recording and lines are whole. Needs root for a file system of its own. usage: full_disk.sh FOLDER-OF-PROGRAMS
 set -euo pipefail
-bin=$(realpath "$1")
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-out=$(mktemp -d)
+bin=$1
+source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 disk=$out/disk
-world=config/scenarios/room.yaml
-daemon= simulator=
-end() {
-  for process in $daemon $simulator; do kill -9 "$process" 2>/dev/null || true; done
-  wait 2>/dev/null || true
-  umount "$disk" 2>/dev/null || true
-  rm -rf "$out"
-}
-trap end EXIT
-fail() { echo "full_disk: $1" >&2; cat "$out"/*.log >&2; exit 1; }
+clean_up() { umount "$disk" 2>/dev/null || true; }
 mkdir "$disk"
 if ! mount -t tmpfs -o size=12m tmpfs "$disk" 2>/dev/null; then
   echo "full_disk: SKIPPED: nothing can be mounted here (run it as root)" >&2
   exit 77
 fi
 
-"$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
-"$bin/deltamap" sim --world "$world" --links "$out" --seed 1 --change-every 10 --truth "$out/truth.jsonl" 2>"$out/sim.log" &
-simulator=$!
-for _ in $(seq 100); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
+write_first_map
+simulate --change-every 10
 mkdir "$disk/run"
-"$bin/deltamapd" --config config/simulation.yaml --set robot.port="$out/robot" --set laser.port="$out/laser" \
-  --set map.file="$out/m0.yaml" --set map.store="$disk/store.sqlite" --set recording.file="$disk/bytes.pcapng" \
+"$bin/deltamapd" "${on_the_world[@]}" --set map.store="$disk/store.sqlite" --set recording.file="$disk/bytes.pcapng" \
   --set control.socket="$out/ctl.sock" --set localization.memory.pose_period_s=1 --set mapping.persistence_s=3 \
   --set localization.memory.stability_period_s=5 --initial-pose 1,2,0 --out "$disk/run" 2>"$out/daemon.log" &
 daemon=$!
-number() { "$bin/deltamap" ctl --socket "$out/ctl.sock" status --json | grep -o "\"$1\":[0-9]*" | head -n 1 | cut -d: -f2; }
+number() { ctl status --json | grep -o "\"$1\":[0-9]*" | head -n 1 | cut -d: -f2; }
 # reached WHAT N SECONDS: a count of the status
 reached() {
   for _ in $(seq "$3"); do
@@ -44,7 +31,7 @@ reached() {
   fail "$1 does not reach $2"
 }
 reached localized 1 60
-"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null
+ctl drive wander >/dev/null
 reached newest_revision 1 100
 
 fill() {
@@ -53,7 +40,7 @@ fill() {
 }
 # not_paused: the first output that is not said to pause
 not_paused() {
-  "$bin/deltamap" ctl --socket "$out/ctl.sock" status >"$out/status.log"
+  ctl status >"$out/status.log"
   for name in trajectory localization map store history recording pose; do  # a line of changes may fit
     grep -q " $name not since .* UTC: .*\(No space left\|full\)" "$out/status.log" || { echo "$name"; return; }
   done
@@ -73,7 +60,7 @@ reached localized $((localized + 100)) 60
 
 rm "$disk/filler"
 sleep 12
-"$bin/deltamap" ctl --socket "$out/ctl.sock" status >"$out/status.log"
+ctl status >"$out/status.log"
 grep -q ' not since ' "$out/status.log" && fail "saving does not go on"
 kill "$daemon"
 wait "$daemon" || fail "exit code $?"

@@ -3,29 +3,16 @@
 # A daemon that is killed in mid-drive begins again where the robot is, without being told; a damaged pose is ignored
 # with a warning; the recording of the second run replays to the same bytes. usage: restart.sh FOLDER-OF-PROGRAMS
 set -euo pipefail
-bin=$(realpath "$1")
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-out=$(mktemp -d)
-world=config/scenarios/room.yaml
-daemon= simulator=
-end() {
-  for process in $daemon $simulator; do kill -9 "$process" 2>/dev/null || true; done
-  rm -rf "$out"
-}
-trap end EXIT
-fail() { echo "restart: $1" >&2; cat "$out"/*.log >&2; exit 1; }
-
-"$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
-"$bin/deltamap" sim --world "$world" --links "$out" --seed 1 --truth "$out/truth.jsonl" 2>"$out/sim.log" &
-simulator=$!
-for _ in $(seq 100); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
+bin=$1
+source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
+write_first_map
+simulate
 
 # start NAME [OPTION...]: a daemon that is up and has localized some scans
 start() {
   local name=$1
   shift
-  "$bin/deltamapd" --config config/simulation.yaml --set robot.port="$out/robot" --set laser.port="$out/laser" \
-    --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" \
+  "$bin/deltamapd" "${on_the_world[@]}" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" \
     --set localization.memory.pose_period_s=1 --out "$out/$name" "$@" 2>"$out/$name.log" &
   daemon=$!
   for _ in $(seq 400); do
@@ -37,9 +24,9 @@ start() {
 }
 
 start first --initial-pose 1,2,0
-"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander
+ctl drive wander
 sleep 10
-"$bin/deltamap" ctl --socket "$out/ctl.sock" drive off
+ctl drive off
 sleep 3  # it stands, and the pose that is kept is of now
 kill -9 "$daemon" && wait "$daemon" 2>/dev/null || true
 [[ -S $out/ctl.sock ]] || fail "a killed daemon leaves its socket behind: this test expects so"
@@ -47,11 +34,11 @@ kill -9 "$daemon" && wait "$daemon" 2>/dev/null || true
 
 start second --set localization.initial_pose=null --set recording.file="$out/second.pcapng"
 sleep 2
-"$bin/deltamap" ctl --socket "$out/ctl.sock" status --json >"$out/stands.json"
+ctl status --json >"$out/stands.json"
 grep -q '"drive_switch":"off by the operator"' "$out/stands.json" || fail "what an operator switched off is on again"
-"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander
+ctl drive wander
 sleep 6
-"$bin/deltamap" ctl --socket "$out/ctl.sock" status --json >"$out/status.json"
+ctl status --json >"$out/status.json"
 grep -q '"drive":"wander"' "$out/status.json" || fail "it does not drive though an operator has said so"
 kill "$daemon" && wait "$daemon" || fail "the second daemon did not end well"
 grep -q 'begins at the pose that was kept' "$out/second.log" || fail "the pose that was kept is not used"

@@ -3,31 +3,21 @@
 # No signal but SIGKILL ends the daemon without a word to the robot: each that would stops it in order, with report and
 # exit code 0; a terminal that goes away stops a robot that drives. usage: signals.sh FOLDER-OF-PROGRAMS
 set -euo pipefail
-bin=$(realpath "$1")
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-out=$(mktemp -d)
-daemon= simulator=
-end() {
-  for process in $daemon $simulator; do kill -9 "$process" 2>/dev/null || true; done
-  rm -rf "$out"
-}
-trap end EXIT
-fail() { echo "signals: $1" >&2; cat "$out"/*.log >&2; exit 1; }
-
-world=config/scenarios/room.yaml
-"$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"
+bin=$1
+source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
+write_first_map
 
 signals_at_start=(--default-signal=HUP,INT,QUIT)
 # start PORTS: a daemon that answers
 start() {
   rm -rf "$out/run"
   # The & of a script leaves INT and QUIT ignored, and what is ignored at the start stays so.
-  env "${signals_at_start[@]}" "$bin/deltamapd" --config config/simulation.yaml --set robot.port="$1/robot" --set laser.port="$1/laser" \
-    --set map.file="$out/m0.yaml" --set map.store= --set recording.file= --set control.socket="$out/ctl.sock" \
+  env "${signals_at_start[@]}" "$bin/deltamapd" "${on_the_world[@]}" --set robot.port="$1/robot" --set laser.port="$1/laser" \
+    --set map.store= --set recording.file= --set control.socket="$out/ctl.sock" \
     --initial-pose 1,2,0 --out "$out/run" 2>"$out/daemon.log" &
   daemon=$!
   for _ in $(seq 100); do
-    "$bin/deltamap" ctl --socket "$out/ctl.sock" status >/dev/null 2>&1 && return
+    ctl status >/dev/null 2>&1 && return
     kill -0 "$daemon" 2>/dev/null || fail "the daemon has ended"
     sleep 0.1
   done
@@ -54,7 +44,7 @@ signals_at_start=(--ignore-signal=HUP,INT,QUIT)
 start "$out/none"
 for signal in HUP INT QUIT; do kill -s "$signal" "$daemon"; done
 sleep 1.5
-"$bin/deltamap" ctl --socket "$out/ctl.sock" status >/dev/null || fail "a signal that was ignored at the start was not"
+ctl status >/dev/null || fail "a signal that was ignored at the start was not"
 kill "$daemon"
 stopped TERM
 signals_at_start=(--default-signal=HUP,INT,QUIT)
@@ -62,17 +52,15 @@ signals_at_start=(--default-signal=HUP,INT,QUIT)
 start "$out/none"
 for signal in PIPE XFSZ TSTP TTIN TTOU; do kill -s "$signal" "$daemon"; done
 sleep 1.5
-"$bin/deltamap" ctl --socket "$out/ctl.sock" status >/dev/null || fail "a signal that is to be ignored was not"
+ctl status >/dev/null || fail "a signal that is to be ignored was not"
 kill "$daemon"
 stopped TERM
 
-"$bin/deltamap" sim --world "$world" --links "$out" --seed 1 --truth "$out/truth.jsonl" 2>"$out/sim.log" &
-simulator=$!
-for _ in $(seq 100); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
+simulate
 start "$out"
-"$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null
+ctl drive wander >/dev/null
 sleep 8
-[[ $("$bin/deltamap" ctl --socket "$out/ctl.sock" status --json) == *'"drive":"wander"'* ]] || fail "it does not drive"
+[[ $(ctl status --json) == *'"drive":"wander"'* ]] || fail "it does not drive"
 kill -s HUP "$daemon"
 stopped HUP
 sleep 0.5

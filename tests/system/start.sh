@@ -4,19 +4,10 @@
 # work; a daemon that was killed is in nobody's way; a store that is no good does not keep the daemon from its work.
 # usage: start.sh FOLDER-OF-PROGRAMS
 set -euo pipefail
-bin=$(realpath "$1")
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-out=$(mktemp -d)
-first=
-end() {
-  [[ -z $first ]] || kill -9 "$first" 2>/dev/null || true
-  rm -rf "$out"
-}
-trap end EXIT
-fail() { echo "start: $1" >&2; cat "$out"/*.log >&2; exit 1; }
-
-"$bin/deltamap" sim --world config/scenarios/room.yaml --write-map "$out/m0.yaml"
-plain=(--config config/simulation.yaml --set robot.port="$out/none" --set laser.port="$out/none" --set map.file="$out/m0.yaml"
+bin=$1
+source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
+write_first_map
+plain=("${on_the_world[@]}" --set robot.port="$out/none" --set laser.port="$out/none"
   --set map.store= --set recording.file= --set control.socket=)
 # expect CODE WORDS OPTION...: it ends so, with one line that has the words
 expect() {
@@ -40,7 +31,7 @@ expect 2 "map.fiel" --set map.fiel=x
 
 mkdir "$out/run"
 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/first.log" &
-first=$!
+daemon=$!
 for _ in $(seq 100); do [[ -e $out/run/.lock && -e $out/bytes.pcapng ]] && break; sleep 0.1; done
 sleep 0.5
 holder="is in use by deltamapd (pid "
@@ -54,18 +45,18 @@ code=0
 "$bin/deltamap" map history "$out/store.sqlite" rollback 0 2>"$out/tool.log" || code=$?
 [[ $code == 1 ]] && grep -q "$holder" "$out/tool.log" || fail "rollback of a store in use: exit code $code"
 
-kill -9 "$first"
-wait "$first" 2>/dev/null || true
+kill -9 "$daemon"
+wait "$daemon" 2>/dev/null || true
 [[ -e $out/run/.lock ]] || fail "a killed daemon leaves its lock file behind: this test expects so"
 rm -f "$out"/store.sqlite-*  # its log holds all of it
 head -c 20000 /dev/urandom >"$out/store.sqlite"
 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/second.log" &
-first=$!
+daemon=$!
 for _ in $(seq 100); do grep -q 'robot' "$out/second.log" && break; sleep 0.1; done
 sleep 0.5
-kill "$first" || fail "the second daemon has ended"
-wait "$first" || fail "the second daemon did not end well"
-first=
+kill "$daemon" || fail "the second daemon has ended"
+wait "$daemon" || fail "the second daemon did not end well"
+daemon=
 grep -q "warning map store set aside as $out/store.sqlite.set-aside-1: " "$out/second.log" || fail "no warning"
 [[ $(stat -c %s "$out/store.sqlite.set-aside-1") == 20000 ]] || fail "the damaged store was not kept"
 [[ ! -e $out/run/.lock && ! -e $out/store.sqlite.lock && ! -e $out/bytes.pcapng.lock ]] || fail "locks are left behind"

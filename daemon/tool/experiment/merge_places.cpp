@@ -9,7 +9,7 @@
 
 #include "core/angle.hpp"
 #include "core/grid_file.hpp"
-#include "daemon/scratch_folder.hpp"
+#include "core/scratch_folder.hpp"
 #include "daemon/tool/experiment/merge_layouts.hpp"
 #include "mapping/merge/transformed_grid.hpp"
 

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/scratch_folder.hpp"
 #include "daemon/pipeline.hpp"
-#include "daemon/scratch_folder.hpp"
 #include "daemon/store_opening.hpp"
 #include "daemon/tool/experiment/localizer_drive.hpp"
 #include "daemon/tool/experiment/virtual_ports.hpp"

@@ -3,36 +3,25 @@
 // devices would have sent, as fast as the pipeline takes them, so that none is overtaken.
 #pragma once
 
-#include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
-
 #include <algorithm>
 #include <atomic>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
-#include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
-#include <string>
 
 #include "daemon/telemetry.hpp"
 #include "daemon/tool/carmen_bytes.hpp"
-#include "drivers/port/byte_port.hpp"
-#include "drivers/port/port_clock.hpp"
-#include "drivers/port/serial_port.hpp"
+#include "drivers/port/played_ports.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 
-class VirtualPorts {
+class VirtualPorts final : public drivers::port::PlayedPorts {
  public:
-  using PortId = drivers::port::PortId;
-
   /// `passed` is told the virtual time, s, after each scan; it answers false to end the drive. In the io thread.
   VirtualPorts(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& params,
                std::function<bool(double passed_s)> passed)
-      : drive_{scenario, params}, passed_{std::move(passed)} {
+      : PlayedPorts{kImportBaud}, drive_{scenario, params}, passed_{std::move(passed)} {
     survey_.measuring_mode = 0x06;  // 32 m
   }
 
@@ -40,35 +29,7 @@ class VirtualPorts {
   /// Whose counts say what has been taken; nothing plays before.
   void follow(const Telemetry& telemetry) { telemetry_ = &telemetry; }
 
-  [[nodiscard]] drivers::port::SerialPortAnswer open(boost::asio::io_context& loop, PortId id) {
-    if (!timer_) timer_.emplace(loop);
-    opened_ = drivers::port::port_clock_now();
-    return {std::make_unique<Port>(*this, id), ""};
-  }
-
  private:
-  class Port final : public drivers::port::BytePort {
-   public:
-    Port(VirtualPorts& ports, PortId id) : ports_{ports}, id_{id}, name_{name_of(id)} {}
-    ~Port() override { ports_.timer_.reset(); }
-    void start(drivers::port::PortHandlers handlers) override { ports_.start(id_, std::move(handlers)); }
-    void write(std::span<const std::uint8_t>) override {}
-    void set_baud(unsigned) override {}
-    void discard_input() override {}
-    [[nodiscard]] const std::string& name() const override { return name_; }
-    [[nodiscard]] unsigned baud() const override { return kImportBaud; }
-
-   private:
-    VirtualPorts& ports_;
-    PortId id_;
-    std::string name_;
-  };
-
-  void start(PortId id, drivers::port::PortHandlers handlers) {
-    handlers_[id == PortId::kRobot ? 0 : 1] = std::move(handlers);
-    if (handlers_[0].on_bytes && handlers_[1].on_bytes) play();
-  }
-
   /// The last scan has been localized, and the map thread, which comes last on a busy machine, is not left behind: with
   /// two sets before it the next could be lost.
   [[nodiscard]] bool is_taken() {
@@ -84,7 +45,7 @@ class VirtualPorts {
     return closed + orders_ < worked_off + 2;
   }
 
-  void play() {
+  void play() override {
     timer_->expires_after(std::chrono::microseconds(is_taken() ? 0 : 200));
     timer_->async_wait([this](const boost::system::error_code& error) {
       if (error || !timer_) return;
@@ -110,23 +71,13 @@ class VirtualPorts {
     return passed_(seconds(step.scan.time - *began_));
   }
 
-  void send(const drivers::port::ByteRecord& record) {
-    const auto& handlers = handlers_[record.port == PortId::kRobot ? 0 : 1];
-    if (!first_stamp_) first_stamp_ = record.stamp;
-    if (!record.bytes.empty()) handlers.on_bytes(record.bytes, opened_ + (record.stamp - *first_stamp_));
-  }
-
   simulation::VirtualDrive drive_;
   std::function<bool(double)> passed_;
   CarmenSurvey survey_;
-  CarmenBytes bytes_{survey_, [this](const drivers::port::ByteRecord& record) { send(record); }};
+  CarmenBytes bytes_{survey_, [this](const drivers::port::ByteRecord& record) { give(record); }};
   std::atomic<const Telemetry*> telemetry_ = nullptr;
   std::int64_t orders_ = 0;  // to withdraw: worked off like sets, but no phase
-  std::optional<boost::asio::steady_timer> timer_;
-  drivers::port::PortHandlers handlers_[2];
-  Timestamp opened_;
   std::optional<Timestamp> began_;
-  std::optional<Timestamp> first_stamp_;
 };
 
 }  // namespace deltamap::daemon::tool::experiment

@@ -9,6 +9,7 @@
 #include "daemon/tool/experiment/override_map.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/start_map.hpp"
+#include "tests/support/block_room.hpp"
 #include "tests/support/cast_scan.hpp"
 #include "tests/support/drawn_scan.hpp"
 
@@ -36,15 +37,7 @@ class Room {
     }
   }
 
-  simulation::Scenario scenario = simulation::parse_scenario(R"(
-walls:
-  - [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
-blocks:
-  - {corner: [3, 1], columns: 1, rows: 1, size: [1, 1]}
-robot:
-  start: [1, 1, 0]
-)",
-                                                             "room");
+  simulation::Scenario scenario = test::block_room();
   OccupancyGrid first = simulation::start_map(scenario, 0.05);
   score::ChangeWatch changes{scenario, first.geometry()};
   OccupancyGrid after;

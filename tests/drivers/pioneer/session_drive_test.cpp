@@ -47,6 +47,7 @@ TEST_F(PioneerSessionTest, NeitherEnablesNorDrivesARobotThatDoesNotTellItsWatchd
       line.run_for(0.2);
     }
     EXPECT_FALSE(session.stopping_limits().watchdog_s);
+    EXPECT_EQ(session.why_never_driven(), "the robot does not tell its watchdog");
     EXPECT_EQ(times_obeyed(CommandNumber::kConfig), 5u);
     EXPECT_EQ(times_obeyed(CommandNumber::kEnable), 0u);
     robot.motors_on = true;  // a person's hand
@@ -58,6 +59,19 @@ TEST_F(PioneerSessionTest, NeitherEnablesNorDrivesARobotThatDoesNotTellItsWatchd
     line.log.clear();
     robot.outgoing.clear();
   }
+}
+
+TEST_F(PioneerSessionTest, SaysThatARobotWithoutAWatchdogIsNeverDriven) {
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  EXPECT_EQ(session.why_never_driven(), "");
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+  robot = FakeRobot{9600};
+  robot.config.watchdog_ms = 0;
+  EXPECT_EQ(session.why_never_driven(), "") << "nobody knows yet";
+  ASSERT_TRUE(connect());
+  line.run_for(2.0);
+  EXPECT_EQ(session.why_never_driven(), "the robot's watchdog is off: it would never stop by itself");
 }
 
 TEST_F(PioneerSessionTest, DrivesOnceALateConfigurationHasToldTheWatchdog) {

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder in the system's place for temporary files that goes with its owner.
+// A folder in the system's place for such, that goes with its owner.
 #pragma once
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
+#include <system_error>
 
-namespace deltamap::daemon {
+namespace deltamap {
 
 class ScratchFolder {
  public:
-  /// Throws std::runtime_error where none can be made.
+  /// Throws std::system_error where it cannot be made.
   ScratchFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "deltamap-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": no temporary folder can be made");
+    if (::mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
     path_ = name;
   }
   ~ScratchFolder() {
@@ -23,10 +24,11 @@ class ScratchFolder {
   }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
+
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
   std::filesystem::path path_;
 };
 
-}  // namespace deltamap::daemon
+}  // namespace deltamap

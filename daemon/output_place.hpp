@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a run can have its outputs where the settings say. A start asks before it touches anything, --check-config
+// asks the same and stops there. Makes, changes and disturbs nothing.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace deltamap::daemon {
+
+// Each throws FileInUse where another program has the place, StartError where only a person can mend it, and answers
+// why the run would go on without the output for now; empty: nothing is in the way. The folder must be there.
+
+/// Of a store that is there, not whether it is sound (store_opening).
+[[nodiscard]] std::string judged_store_place(const std::filesystem::path& store);
+[[nodiscard]] std::string judged_recording_place(const std::filesystem::path& recording);
+/// `out` is the folder of --out; `map` is M_0, which must not be overwritten.
+[[nodiscard]] std::string judged_out_place(const std::filesystem::path& out, const std::filesystem::path& map);
+
+}  // namespace deltamap::daemon
