@@ -56,7 +56,8 @@ void PoseCourse::note_happenings(const Mapped& scan, const Befallen& befallen) {
   is_first_ = false;
   now_s_ = scan.passed_s;
   counted_s_ = std::min(since_last_s, kGap_s);
-  if (since_last_s > kGap_s) {
+  is_after_gap_ = since_last_s > kGap_s;
+  if (is_after_gap_) {
     gap_s_ = now_s_;
     ++gaps_;
   }
@@ -89,7 +90,8 @@ void PoseCourse::search(const Mapped& scan, double error_m) {
 }
 
 void PoseCourse::note_error(double error_m) {
-  if (!errors_m_.empty() && errors_m_.back() <= kNear_m && error_m > kOff_m) ++jumps_;
+  const bool was_near = !errors_m_.empty() && errors_m_.back() <= kNear_m;
+  if (was_near && error_m > kOff_m && !is_after_gap_) ++jumps_;
   errors_m_.push_back(error_m);
   if (error_m <= kOff_m) {
     off_for_s_ = 0.0;

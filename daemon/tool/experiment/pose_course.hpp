@@ -45,6 +45,7 @@ class PoseCourse {
 
   double now_s_ = 0.0;
   double counted_s_ = 0.0;  // since the last scan, without gaps
+  bool is_after_gap_ = false;
   bool is_first_ = true;
   bool knows_start_;
   Pose2 robot_from_laser_;

@@ -126,7 +126,12 @@ TEST(PoseCourse, NamesWhatHappenedShortlyBeforeThePoseWentWrong) {
   drive.scans(10, 0.0, LocalizerState::kTracking, mapping::GateReason::kOpen, {.change_in_view = true});
   drive.scans(10, 0.9);
   EXPECT_EQ(drive.course.cause(), "change in view, slip, gap");
-  EXPECT_EQ(number(drive.course, "gaps"), 1.0);
+  EXPECT_EQ(number(drive.course, "jumps"), 1.0);
+  drive.scans(10, 0.0);
+  drive.passed_s += 4.0;
+  drive.scans(10, 0.9);
+  EXPECT_EQ(number(drive.course, "jumps"), 1.0) << "who was blind has not jumped";
+  EXPECT_EQ(number(drive.course, "gaps"), 2.0);
 }
 
 TEST(SeedSummary, GivesMedianNineOfTenAndWorstByWhatIsBetter) {
