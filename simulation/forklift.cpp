@@ -11,7 +11,6 @@ namespace deltamap::simulation {
 namespace {
 
 constexpr int kTries = 60;                // proposals before the fork-lift skips a turn
-constexpr double kLanesKept = 0.95;       // a container in a corridor covers a little of it
 constexpr double kNeighbourGap_m = 1e-3;  // containers of a block touch
 
 World with_all_slots_filled(World world, const std::vector<Box>& slots) {
@@ -49,14 +48,17 @@ Forklift::Forklift(const ForkliftParams& params, std::vector<Box> slots, const W
   for (const Box& slot : slots) slots_.push_back({slot, container_at(slot, initial_world)});
 }
 
-std::optional<Change> Forklift::next_change(const World& world, const Circle& robot, std::span<const Circle> people) {
+std::optional<Change> Forklift::next_change(const World& world, const Circle& robot, std::span<const Circle> people,
+                                            const MayTouch& may_touch) {
   if (slots_.empty() || params_.kinds.empty()) return std::nullopt;
   const ReachableFloor floor = reachable_floor(world, robot.centre, 0.5 * params_.passage_m);
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const ChangeKind kind = params_.kinds[random_.index_below(static_cast<std::uint32_t>(params_.kinds.size()))];
     Slot& slot = slots_[random_.index_below(static_cast<std::uint32_t>(slots_.size()))];
     const auto change = proposed(kind, slot, world);
-    if (!change || !is_harmless(*change, world, floor, robot, people)) continue;
+    if (!change) continue;
+    if (may_touch && !(may_touch(change->box) && (!change->from || may_touch(*change->from)))) continue;
+    if (!is_harmless(*change, world, floor, robot, people)) continue;
     note(*change, slot);
     return change;
   }
@@ -78,6 +80,13 @@ std::optional<Change> Forklift::proposed(ChangeKind kind, Slot& slot, const Worl
 }
 
 Box Forklift::shifted(const Box& box, const Box& home) {
+  if (params_.shifts_anywhere) {
+    const double most_m = params_.largest_shift_m;
+    const Point2 offset{random_.uniform(-most_m, most_m), random_.uniform(-most_m, most_m)};
+    const double turn_rad = random_.uniform(-params_.largest_turn_rad, params_.largest_turn_rad);
+    const Pose2 map_from_shifted = home.map_from_box() * Pose2{offset.x(), offset.y(), turn_rad};
+    return {map_from_shifted.position(), home.width_m, home.height_m, map_from_shifted.theta};
+  }
   const double distance_m = random_.uniform(params_.smallest_shift_m, params_.largest_shift_m);
   const double direction_rad = home.theta_rad + 0.5 * std::numbers::pi * random_.index_below(4);
   Box moved = box;
@@ -95,13 +104,13 @@ bool Forklift::is_harmless(const Change& change, const World& world, const Reach
   if (!is_exposed(change.from.value_or(change.box), floor, clearance_m)) return false;
   if (change.kind == ChangeKind::kRemoved) return true;
   if (!stands_free(change.box, change.id, world)) return false;
-  if (change.kind == ChangeKind::kShifted) {
+  if (change.kind == ChangeKind::kShifted && !params_.shifts_anywhere) {
     const auto slot =
         std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.container == change.id; });
     if ((change.box.centre - slot->home.centre).norm() > params_.largest_shift_m) return false;
   }
   const ReachableFloor after = reachable_floor(changed(world, change), robot.centre, clearance_m);
-  return is_exposed(change.box, after, clearance_m) && share_still_reached(lanes_, after) >= kLanesKept;
+  return is_exposed(change.box, after, clearance_m) && share_still_reached(lanes_, after) >= params_.lanes_kept;
 }
 
 void Forklift::learn(const Change& change) {

@@ -4,6 +4,7 @@
 // leaves every corridor passable.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,9 +20,12 @@ struct ForkliftParams {
   std::vector<ChangeKind> kinds{ChangeKind::kRemoved, ChangeKind::kAdded};
   double smallest_shift_m = 0.3;  ///< > 0
   double largest_shift_m = 0.8;   ///< of a container from its slot, >= smallest_shift_m
+  bool shifts_anywhere = false;   ///< within largest_shift_m of the slot in x and in y, not along the sides alone
+  double largest_turn_rad = 0.0;  ///< of a container that is shifted anywhere, against its slot, >= 0
   double robot_margin_m = 1.0;    ///< between a container that is moved and the robot's body, >= 0
   double people_margin_m = 0.5;   ///< the same of people, >= 0
   double passage_m = 1.4;         ///< width that corridors keep, > 0
+  double lanes_kept = 0.95;       ///< share of the floor with such a passage that stays reachable, [0, 1]
   double least_filled = 0.6;      ///< share of slots below which nothing more is removed, [0, 1]
 };
 
@@ -31,9 +35,11 @@ class Forklift {
   Forklift(const ForkliftParams& params, std::vector<Box> slots, const World& initial_world, const Point2& robot_start,
            Random random);
 
-  /// The next change of this world, or none where nothing can be done now without harm.
+  using MayTouch = std::function<bool(const Box& box)>;
+  /// The next change of this world, or none where nothing can be done now without harm. `may_touch` is asked of where a
+  /// container stands before and after.
   [[nodiscard]] std::optional<Change> next_change(const World& world, const Circle& robot,
-                                                  std::span<const Circle> people);
+                                                  std::span<const Circle> people, const MayTouch& may_touch = {});
 
   /// Another has done this.
   void learn(const Change& change);

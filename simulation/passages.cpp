@@ -67,6 +67,27 @@ std::vector<bool> blocked_floor(const World& world, double clearance_m, const Gr
   return blocked;
 }
 
+/// Whether one can look from `from` to places near by: nothing that stands within `within_m` lies between.
+class NearSight {
+ public:
+  NearSight(const World& world, const Point2& from, double within_m) : from_{from} {
+    for (const Object& object : world.objects) {
+      for (const Segment& piece : segments_of(object.shape)) {
+        if (distance_between(from, piece) <= within_m) pieces_.push_back(piece);
+      }
+    }
+  }
+  [[nodiscard]] bool reaches(const Point2& to) const {
+    return std::none_of(pieces_.begin(), pieces_.end(), [&](const Segment& piece) {
+      return distance_between(Segment{from_, to}, piece) == 0.0;
+    });
+  }
+
+ private:
+  Point2 from_;
+  std::vector<Segment> pieces_;
+};
+
 }  // namespace
 
 bool ReachableFloor::contains(const Point2& point) const {
@@ -85,11 +106,16 @@ ReachableFloor reachable_floor(const World& world, const Point2& from, double cl
     floor.reached[geometry.index_of(cell)] = true;
     open.push_back(cell);
   };
-  // Whoever asks may stand closer to a surface than the clearance: begin with all floor a step away.
+  // Whoever asks may stand closer to a surface than the clearance: begin with all floor a step away, but not behind a
+  // wall.
   const int steps = static_cast<int>(std::ceil(clearance_m / kCellSide_m)) + 1;
   const Cell start = geometry.cell_at(from);
+  const NearSight sight{world, from, 2.0 * steps * kCellSide_m};
   for (int row = -steps; row <= steps; ++row) {
-    for (int column = -steps; column <= steps; ++column) reach({start.column + column, start.row + row});
+    for (int column = -steps; column <= steps; ++column) {
+      const Cell cell{start.column + column, start.row + row};
+      if (sight.reaches(geometry.centre_of(cell))) reach(cell);
+    }
   }
   while (!open.empty()) {
     const Cell cell = open.back();

@@ -25,6 +25,16 @@ Pose2 arc(double left_m, double right_m, double half_track_m) {
 
 }  // namespace
 
+RobotParams with_wheel_errors(RobotParams body, const WheelErrors& errors) {
+  const double ground_of_encoder = 1.0 / (1.0 + errors.scale);
+  const double true_of_nominal_track = (1.0 + errors.turn) * ground_of_encoder;
+  const double drift = errors.drift_rad_per_m * ground_of_encoder * true_of_nominal_track * body.half_track_m;
+  body.track_error = true_of_nominal_track - 1.0;
+  body.left_wheel_error = ground_of_encoder - 1.0 + drift;
+  body.right_wheel_error = ground_of_encoder - 1.0 - drift;
+  return body;
+}
+
 Robot::Robot(const RobotParams& params, const Pose2& map_from_start, Random random)
     : params_{params}, random_{random}, left_{params.left_wheel_error, 0.0}, right_{params.right_wheel_error, 0.0} {
   state_.map_from_robot = map_from_start;

@@ -25,6 +25,15 @@ struct RobotParams {
   double slip_share = 0.5;                  ///< share of that travel that is lost, [0, 1]
 };
 
+/// How the wheels' report differs from the truth, throughout: what a calibration has left over.
+struct WheelErrors {
+  double scale = 0.0;            ///< share by which they count too far
+  double turn = 0.0;             ///< share by which they turn too much
+  double drift_rad_per_m = 0.0;  ///< that they turn, counter-clockwise, where the body goes straight
+};
+/// The same robot with these errors in place of its own.
+[[nodiscard]] RobotParams with_wheel_errors(RobotParams body, const WheelErrors& errors);
+
 struct RobotState {
   Pose2 map_from_robot;                       ///< the truth
   Pose2 odom_from_robot;                      ///< integrated by the wheels' encoders

@@ -14,8 +14,8 @@ namespace deltamap::simulation {
 namespace {
 
 constexpr Timestamp kStart = timestamp_from_ns(1'700'000'000'000'000'000);
-constexpr drivers::lms200::ScanVariant kFan{180, 100};
-constexpr double kSweep_s = 0.5 * drivers::lms200::kMirrorTurnS;
+constexpr double kLeastThought_s = 0.05;  // between two decisions of the pilot
+constexpr double kMostThought_s = 0.2;
 constexpr double kStep_s = 0.01;                  // of bodies, at most
 constexpr double kForkliftPatience_s = 1.0;       // until it looks again where nothing could be done
 constexpr double kBodyRoom_m = 0.2;               // between the robot's body and what stands around it
@@ -34,7 +34,10 @@ enum class Stream : std::uint64_t {
   kCreep,
   kChangedStart,
   kActor,
-  kDoor
+  kDoor,
+  kSlips,
+  kGaps,
+  kSight
 };
 
 double rounded_to(double value, double unit) { return unit * std::round(value / unit); }
@@ -50,14 +53,22 @@ MoverParams movers_of(const Scenario& scenario, const std::vector<PersonParams>&
   return movers;
 }
 
-Sweep fan() {
+Sweep sweep_of(const drivers::lms200::ScanVariant& fan) {
   Sweep sweep;
-  for (unsigned beam = 0; beam < kFan.values(); ++beam) {
-    sweep.bearings_rad.push_back(radians(static_cast<double>(beam) - 90.0));
-    sweep.offsets_s.push_back(drivers::lms200::beam_offset_s(kFan, beam));
+  for (unsigned beam = 0; beam < fan.values(); ++beam) {
+    const double angle_deg = fan.first_angle_deg() + 0.01 * fan.resolution_centideg * beam;
+    sweep.bearings_rad.push_back(radians(angle_deg - 90.0));
+    sweep.offsets_s.push_back(drivers::lms200::beam_offset_s(fan, beam));
   }
   return sweep;
 }
+
+/// A raster takes half a turn of the mirror; while it looks backwards it measures nothing.
+double duration_s(const drivers::lms200::ScanVariant& fan) {
+  return fan.scan_duration_s() - 0.5 * drivers::lms200::kMirrorTurnS;
+}
+
+double exponential(double mean, Random& random) { return -mean * std::log(1.0 - random.uniform()); }
 
 }  // namespace
 
@@ -75,7 +86,13 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
       next_odometry_{kStart},
       next_change_{kStart},
       next_push_{kStart},
-      fan_{fan()} {
+      next_thought_{kStart},
+      gap_chance_{random_for(params.seed, Stream::kGaps)},
+      sight_chance_{random_for(params.seed, Stream::kSight)},
+      fan_{sweep_of(params.fan)},
+      sweep_s_{duration_s(params.fan)} {
+  if (params.slips) slips_.emplace(*params.slips, random_for(params.seed, Stream::kSlips));
+  if (params.gaps) next_gap_ = kStart + duration_from_seconds(exponential(params.gaps->every_s, gap_chance_));
   if (params.forklift) {
     forklift_.emplace(*params.forklift, scenario.slots, scenario.world, scenario_.robot.map_from_start.position(),
                       random_for(params.seed, Stream::kForklift));
@@ -83,6 +100,10 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
   }
   const auto& start = params.changed_at_start ? params.changed_at_start : scenario.changed_at_start;
   if (start) begin_changed(*start);
+  if (!params.changes_at_start.empty()) {
+    for (const Change& change : params.changes_at_start) note_unseen(change);
+    see_changes();
+  }
   if (params.creep) {
     creep_.emplace(*params.creep, world_, scenario_.robot.map_from_start.position(),
                    random_for(params.seed, Stream::kCreep));
@@ -101,19 +122,53 @@ void VirtualDrive::begin_changed(const ChangedStartParams& start) {
   see_changes();
 }
 
+void VirtualDrive::note_unseen(const Change& change) {
+  world_ = changed(world_, change);
+  if (forklift_) forklift_->learn(change);
+  unseen_.push_back(change);
+}
+
 DriveStep VirtualDrive::next() {
   step_ = {};
   step_.changes = std::exchange(unseen_, {});
+  if (next_gap_ && now_ >= *next_gap_) wait_without_scans();
   let_forklift_work();
   let_containers_creep();
-  target_ = held_ ? *held_ : pilot_.target(body_.state(), movers_.bodies(), params_.scan_period_s);
+  think();
   const Timestamp end = now_ + duration_from_seconds(params_.scan_period_s);
   step_.map_from_robot = body_.state().map_from_robot;
   step_.scan = sweep();
-  while (now_ < end) advance(std::min(kStep_s, seconds(end - now_)));
+  drive_until(end);
   step_.scan.received = now_;
   step_.events = movers_.take_events();
   return std::move(step_);
+}
+
+void VirtualDrive::wait_without_scans() {
+  const GapParams& gaps = *params_.gaps;
+  const double length_s = gaps.least_s * std::pow(gaps.most_s / gaps.least_s, gap_chance_.uniform());
+  const Timestamp end = now_ + duration_from_seconds(length_s);
+  while (now_ < end) {
+    let_forklift_work();
+    let_containers_creep();
+    think();
+    drive_until(std::min(end, now_ + duration_from_seconds(kMostThought_s)));
+  }
+  next_gap_ = end + duration_from_seconds(exponential(gaps.every_s, gap_chance_));
+}
+
+void VirtualDrive::think() {
+  if (now_ < next_thought_) return;
+  const double thought_s = std::clamp(params_.scan_period_s, kLeastThought_s, kMostThought_s);
+  next_thought_ = now_ + duration_from_seconds(thought_s);
+  target_ = held_ ? *held_ : pilot_.target(body_.state(), movers_.bodies(), thought_s);
+}
+
+void VirtualDrive::drive_until(Timestamp end) {
+  while (now_ < end) {
+    if (now_ >= next_thought_) think();
+    advance(std::min(kStep_s, seconds(end - now_)));
+  }
 }
 
 /// The robot moves while the mirror turns: between where it is at the sweep's begin and at its end.
@@ -121,17 +176,18 @@ Scan VirtualDrive::sweep() {
   Scan scan;
   scan.time = now_;
   scan.number = scans_++;
-  scan.first_bearing_rad = radians(-90.0);
-  scan.bearing_step_rad = radians(1.0);
+  scan.first_bearing_rad = fan_.bearings_rad.front();
+  scan.bearing_step_rad = radians(0.01 * params_.fan.resolution_centideg);
   scan.max_range_m = params_.max_range_m;
-  scan.robot_from_laser = scenario_.laser.optics.robot_from_laser;
+  scan.robot_from_laser = params_.told_mount.value_or(scenario_.laser.optics.robot_from_laser);
   const Bodies standing = movers_.bodies();
   const Pose2 begin = body_.state().map_from_robot;
-  advance(kSweep_s);
+  const int pieces = 1 + static_cast<int>(sweep_s_ / kStep_s);
+  for (int i = 0; i < pieces; ++i) advance(sweep_s_ / pieces);
   const Pose2 end = body_.state().map_from_robot;
   const auto readings = range_finder_.measure(
       fan_, params_.max_range_m, surfaces_,
-      [&](double offset_s) { return interpolated(begin, end, offset_s / kSweep_s); },
+      [&](double offset_s) { return interpolated(begin, end, offset_s / sweep_s_); },
       [&](double) { return standing.surfaces(); });
   const double unit_m = params_.max_range_m > kLongestInMillimetres_m ? 0.01 : 0.001;
   scan.beams.reserve(readings.size());
@@ -146,6 +202,11 @@ void VirtualDrive::advance(double dt_s) {
   const RobotState before = body_.state();
   const Timestamp from = now_;
   body_.move(target_, dt_s, surfaces_, movers_.bodies().obstacles());
+  if (slips_) {
+    const int before_this = slips_->begun();
+    body_.spin_wheels(slips_->observe(std::abs(body_.state().speed_m_per_s) * dt_s, dt_s));
+    step_.slips += slips_->begun() - before_this;
+  }
   movers_.move(dt_s, surfaces_, robot_body());
   now_ = now_ + duration_from_seconds(dt_s);
   report_odometry(before, from);
@@ -157,7 +218,7 @@ void VirtualDrive::report_odometry(const RobotState& before, Timestamp from) {
     const double share = seconds(next_odometry_ - from) / seconds(now_ - from);
     const Pose2 odom = interpolated(before.odom_from_robot, after.odom_from_robot, share);
     Odometry odometry;
-    odometry.time = next_odometry_;
+    odometry.time = next_odometry_ + duration_from_seconds(params_.odometry_lag_s);
     odometry.odom_from_robot = {rounded_to(odom.x, kWheelUnit_m), rounded_to(odom.y, kWheelUnit_m),
                                 wrapped_angle(rounded_to(odom.theta, kHeadingUnit_rad))};
     const double half_track_m = scenario_.robot.body.half_track_m;
@@ -169,18 +230,41 @@ void VirtualDrive::report_odometry(const RobotState& before, Timestamp from) {
     odometry.motors_enabled = true;
     odometry.stalled = after.stalled;
     odometry.battery_v = scenario_.robot.battery_v;
-    step_.odometry.push_back(odometry);
+    under_way_.push_back(odometry);
     next_odometry_ = next_odometry_ + duration_from_seconds(params_.odometry_period_s);
+  }
+  while (!under_way_.empty() && under_way_.front().time <= now_) {
+    step_.odometry.push_back(under_way_.front());
+    under_way_.pop_front();
   }
 }
 
 void VirtualDrive::let_forklift_work() {
   if (!forklift_ || now_ < next_change_) return;
-  const auto done = forklift_->next_change(world_, robot_body(), movers_.bodies().obstacles());
+  const bool may_be_seen = sight_chance_.uniform() < params_.change_in_view_share;
+  const Forklift::MayTouch out_of_sight = [this](const Box& box) { return is_out_of_sight(box); };
+  const auto done = forklift_->next_change(world_, robot_body(), movers_.bodies().obstacles(),
+                                           may_be_seen ? Forklift::MayTouch{} : out_of_sight);
   next_change_ = now_ + duration_from_seconds(done ? params_.forklift->change_every_s : kForkliftPatience_s);
   if (!done) return;
   change(*done);
   step_.changes.push_back(*done);
+}
+
+/// No corner and no middle of a side can be seen from where the robot is, whichever way it looks.
+bool VirtualDrive::is_out_of_sight(const Box& box) const {
+  const Point2 eye = body_.state().map_from_robot.position();
+  const auto is_hidden = [&](const Point2& point) {
+    constexpr double kBefore_m = 0.05;  // a beam that ends so near has met the thing itself
+    const Point2 way = point - eye;
+    const double away_m = way.norm();
+    return away_m > params_.max_range_m ||
+           surfaces_.cast(eye, std::atan2(way.y(), way.x()), std::max(0.0, away_m - kBefore_m)).has_value();
+  };
+  const auto sides = faces(box);
+  return std::all_of(sides.begin(), sides.end(), [&](const Segment& side) {
+    return is_hidden(side.from) && is_hidden(0.5 * (side.from + side.to));
+  });
 }
 
 void VirtualDrive::let_containers_creep() {

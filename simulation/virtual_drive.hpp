@@ -5,32 +5,49 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
 #include "core/messages.hpp"
+#include "drivers/lms200/variant.hpp"
 #include "simulation/creep.hpp"
 #include "simulation/forklift.hpp"
 #include "simulation/movers.hpp"
 #include "simulation/range_finder.hpp"
 #include "simulation/route_pilot.hpp"
 #include "simulation/scenario.hpp"
+#include "simulation/slips.hpp"
 
 namespace deltamap::simulation {
 
-/// The scans are those of an LMS200 at 180/1 and 38400 baud: 181 beams in half a turn of the mirror, every 8th turn
-/// (protocols.md B7). The body and its wheels' errors, the laser's optics and mount are the scenario's.
+/// Now and then no scans arrive, while the robot drives on and the world changes.
+struct GapParams {
+  double every_s = 600.0;  ///< mean time between two, > 0
+  double least_s = 1.0;    ///< shortest and longest, log-uniform, > 0
+  double most_s = 60.0;
+};
+
+/// As delivered the scans are those of an LMS200 at 180/1 and 38400 baud: 181 beams in half a turn of the mirror, every
+/// 8th turn (protocols.md B7). The body and its wheels' errors, the laser's optics and mount are the scenario's.
 struct VirtualDriveParams {
   std::uint64_t seed = 1;
   std::optional<Pose2> map_from_start{};  ///< in place of the scenario's
-  double scan_period_s = 8 * 0.01332;     ///< between first beams, > 0.01
-  double max_range_m = 80.0;              ///< longer readings are kBeyondMaximum; up to 32 in mm, above in cm (B4)
-  double odometry_period_s = 0.1;         ///< between SIPs (A6), > 0
+  drivers::lms200::ScanVariant fan{180, 100};
+  double scan_period_s = 8 * 0.01332;  ///< between first beams, at least a scan's duration (B7)
+  double max_range_m = 80.0;           ///< longer readings are kBeyondMaximum; up to 32 in mm, above in cm (B4)
+  double odometry_period_s = 0.1;      ///< between SIPs (A6), > 0
+  double odometry_lag_s = 0.0;         ///< by which a SIP's content is older than its stamp, >= 0
+  std::optional<Pose2> told_mount{};   ///< what scans say of the mount, in place of the truth
   RoutePilotParams route{};
-  std::vector<PersonParams> people{};                    ///< besides the scenario's
-  std::optional<ForkliftParams> forklift{};              ///< none: nothing changes by itself
-  std::optional<CreepParams> creep{};                    ///< none: nothing creeps
+  std::vector<PersonParams> people{};        ///< besides the scenario's
+  std::optional<ForkliftParams> forklift{};  ///< none: nothing changes by itself
+  double change_in_view_share = 1.0;         ///< of its turns in which it may do something in the robot's sight, [0, 1]
+  std::optional<CreepParams> creep{};        ///< none: nothing creeps
   std::optional<ChangedStartParams> changed_at_start{};  ///< in place of the scenario's
+  std::vector<Change> changes_at_start{};                ///< besides
+  std::optional<SlipParams> slips{};                     ///< besides those of single wheels
+  std::optional<GapParams> gaps{};
 };
 
 struct DriveStep {
@@ -39,6 +56,7 @@ struct DriveStep {
   Pose2 map_from_robot;            ///< the truth at Scan::time
   std::vector<MoverEvent> events;  ///< since the last scan: no changes of the map
   std::vector<Change> changes;     ///< since the last scan, or before the first; the scan shows them
+  int slips = 0;                   ///< that have begun since the last scan
 };
 
 class VirtualDrive {
@@ -57,7 +75,10 @@ class VirtualDrive {
   void spin(const Pose2& robot_from_moved) { body_.spin_wheels(robot_from_moved); }
   void change(const Change& change);
   /// From now on it drives this, wherever that leads, and not where its pilot would.
-  void hold(const DriveTarget& target) { held_ = target; }
+  void hold(const DriveTarget& target) {
+    held_ = target;
+    next_thought_ = now_;
+  }
   /// Many acts of a fork-lift at once, until that share of the slots is not as in the scenario. Fewer where no more can
   /// be done without harm.
   std::vector<Change> change_many(double share, const ForkliftParams& forklift);
@@ -80,7 +101,12 @@ class VirtualDrive {
   void advance(double dt_s);
   void report_odometry(const RobotState& before, Timestamp from);
   void begin_changed(const ChangedStartParams& start);
+  void note_unseen(const Change& change);
+  void wait_without_scans();
+  void think();
+  void drive_until(Timestamp end);
   void let_forklift_work();
+  [[nodiscard]] bool is_out_of_sight(const Box& box) const;
   void let_containers_creep();
   void see_changes();
   [[nodiscard]] Scan sweep();
@@ -101,11 +127,18 @@ class VirtualDrive {
   Timestamp next_odometry_;
   Timestamp next_change_;
   Timestamp next_push_;
+  Timestamp next_thought_;  // of the pilot
+  std::optional<Timestamp> next_gap_;
+  std::optional<Slips> slips_;
+  Random gap_chance_;
+  Random sight_chance_;
   DriveTarget target_;
   std::optional<DriveTarget> held_;
   DriveStep step_;
+  std::deque<Odometry> under_way_;  // SIPs whose stamps are still to come
   std::uint32_t scans_ = 0;
   Sweep fan_;
+  double sweep_s_;
 };
 
 }  // namespace deltamap::simulation

@@ -56,14 +56,14 @@ std::unordered_set<std::size_t> ChangeWatch::visible_surface(const Box& box, con
 }
 
 std::vector<TrueBeam> ChangeWatch::view_from(const Pose2& map_from_laser, double range_m, int beams,
-                                             const MovingSurfaces& about) const {
-  const double step_rad = std::numbers::pi / (beams - 1);
+                                             const MovingSurfaces& about, double field_rad) const {
+  const double step_rad = field_rad / (beams - 1);
   const auto sees_through = [&](const RayHit& met) {
     return met.material == Material::kGlass && passes_glass(met, optics_);
   };
   std::vector<TrueBeam> view;
   for (int i = 0; i < beams; ++i) {
-    const double bearing_rad = map_from_laser.theta - 0.5 * std::numbers::pi + i * step_rad;
+    const double bearing_rad = map_from_laser.theta - 0.5 * field_rad + i * step_rad;
     const auto hit = cast_through(surfaces_, map_from_laser.position(), bearing_rad, range_m, about, sees_through);
     view.push_back({map_from_laser.position(), bearing_rad, hit ? hit->range_m : range_m, hit});
   }

@@ -3,6 +3,7 @@
 // followed it. Told of everything that happens, in order of time.
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -27,9 +28,9 @@ class ChangeWatch {
   void apply(const MoverEvent& event) { standing_.apply(event); }
   void apply(const Change& change, Timestamp time, const Point2& robot);
 
-  /// What a perfect laser sees from there, over the half circle ahead: the world, and what stands or moves about in it.
+  /// What a perfect laser sees from there over so wide a field ahead: the world, and what stands or moves about in it.
   [[nodiscard]] std::vector<TrueBeam> view_from(const Pose2& map_from_laser, double range_m, int beams,
-                                                const MovingSurfaces& about) const;
+                                                const MovingSurfaces& about, double field_rad = std::numbers::pi) const;
   /// What stands about, as far as has been told.
   [[nodiscard]] MovingSurfaces standing() const { return standing_.surfaces(); }
   /// The view stood for so long.

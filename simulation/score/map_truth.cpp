@@ -29,6 +29,16 @@ CellMask swept_by_doors(const std::vector<DoorParams>& doors, const GridGeometry
   return swept;
 }
 
+std::vector<Segment> outer_walls(const World& world) {
+  const Polyline* first = world.objects.empty() ? nullptr : std::get_if<Polyline>(&world.objects.front().shape);
+  if (first != nullptr && first->points.size() > 3 && first->points.front() == first->points.back()) {
+    return segments_of(*first);
+  }
+  const Bounds bounds = bounds_of(world);
+  const Point2 size = bounds.high - bounds.low;
+  return segments_of(Box{bounds.low + 0.5 * size, size.x(), size.y(), 0.0});
+}
+
 bool is_inside(const Point2& place, const Object& object) {
   if (object.kind != ObjectKind::kContainer && object.kind != ObjectKind::kPost) return false;
   return distance_between(place, object.shape) == 0.0;
@@ -38,7 +48,7 @@ bool is_inside(const Point2& place, const Object& object) {
 
 MapTruth::MapTruth(const Scenario& scenario, const OccupancyGrid& first_map)
     : floor_{scenario.robot.map_from_start.position()},
-      outer_{bounds_of(scenario.world)},
+      outer_{outer_walls(scenario.world)},
       doors_{scenario.doors},
       perfect_{first_map},
       touched_(first_map.geometry().cell_count(), 0),
@@ -49,7 +59,29 @@ MapTruth::MapTruth(const Scenario& scenario, const OccupancyGrid& first_map)
 
 void MapTruth::see(const World& world) {
   world_ = world;
-  visible_ = surveyed_map(world, floor_, perfect_.geometry());
+  visible_ = surveyed_map(world, uncovered_floor(), perfect_.geometry());
+}
+
+/// Where the robot started, or, where a thing stands there now, the nearest place that was floor until now.
+Point2 MapTruth::uncovered_floor() const {
+  const GridGeometry& geometry = perfect_.geometry();
+  const auto is_covered = [&](const Point2& place) {
+    return std::any_of(world_.objects.begin(), world_.objects.end(), [&](const Object& object) {
+      return object.kind != ObjectKind::kWall && distance_between(place, object.shape) < geometry.resolution_m;
+    });
+  };
+  if (visible_.cells().empty() || !is_covered(floor_)) return floor_;
+  Point2 nearest = floor_;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < geometry.cell_count(); ++i) {
+    if (visible_.cells()[i] != CellState::kFree) continue;
+    const Point2 place = geometry.centre_of(geometry.cell_of(i));
+    const double away_m = (place - floor_).norm();
+    if (away_m >= nearest_m || is_covered(place)) continue;
+    nearest = place;
+    nearest_m = away_m;
+  }
+  return nearest;
 }
 
 void MapTruth::touch(std::span<const TrueBeam> view) {
@@ -117,25 +149,27 @@ CellMask MapTruth::seen_through() const {
   return mask;
 }
 
-std::array<double, 4> MapTruth::wall_drift(const OccupancyGrid& first, const OccupancyGrid& map) const {
+std::vector<double> MapTruth::wall_drift(const OccupancyGrid& first, const OccupancyGrid& map) const {
   const GridGeometry& geometry = first.geometry();
-  const auto mean_outwards = [&](const OccupancyGrid& grid, std::size_t wall) {
-    double sum = 0.0;
+  const auto mean_offset_m = [&](const OccupancyGrid& grid, const Segment& wall) {
+    const double length_m = (wall.to - wall.from).norm();
+    const Point2 along = (wall.to - wall.from) / length_m;
+    double sum_m = 0.0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < geometry.cell_count(); ++i) {
       if (grid.cells()[i] != CellState::kOccupied) continue;
-      const Point2 centre = geometry.centre_of(geometry.cell_of(i));
-      const double outwards[] = {outer_.low.x() - centre.x(), centre.x() - outer_.high.x(), outer_.low.y() - centre.y(),
-                                 centre.y() - outer_.high.y()};
-      if (std::abs(outwards[wall]) > kWallReach_m) continue;
-      sum += outwards[wall];
+      const Point2 offset = geometry.centre_of(geometry.cell_of(i)) - wall.from;
+      const double to_right_m = offset.x() * along.y() - offset.y() * along.x();
+      const double share_m = offset.dot(along);
+      if (std::abs(to_right_m) > kWallReach_m || share_m < -kWallReach_m || share_m > length_m + kWallReach_m) continue;
+      sum_m += to_right_m;
       ++count;
     }
-    return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(count);
+    return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum_m / static_cast<double>(count);
   };
-  std::array<double, 4> drift{};
-  for (std::size_t wall = 0; wall < 4; ++wall) drift[wall] = mean_outwards(map, wall) - mean_outwards(first, wall);
-  return drift;
+  std::vector<double> drift_m;
+  for (const Segment& wall : outer_) drift_m.push_back(mean_offset_m(map, wall) - mean_offset_m(first, wall));
+  return drift_m;
 }
 
 }  // namespace deltamap::simulation::score

@@ -3,7 +3,6 @@
 // mapper has every touched cell right as of its last touch, and M_0 everywhere else.
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "simulation/scenario.hpp"
@@ -35,16 +34,17 @@ class MapTruth {
   [[nodiscard]] CellMask lasting() const { return surfaces_of(Material::kSolid); }
   /// Panes and what is wrapped.
   [[nodiscard]] CellMask seen_through() const;
-  /// The four outer walls in the map: mean distance by which they have moved outwards, m; NaN where a wall is not
-  /// drawn. Left, right, lower, upper.
-  [[nodiscard]] std::array<double, 4> wall_drift(const OccupancyGrid& first, const OccupancyGrid& map) const;
+  /// The pieces of the outer wall in the map: mean distance by which each has moved to its right, m; NaN where it is
+  /// not drawn. Of a world whose first wall is not closed, the sides of the rectangle around it.
+  [[nodiscard]] std::vector<double> wall_drift(const OccupancyGrid& first, const OccupancyGrid& map) const;
 
  private:
   [[nodiscard]] CellMask surfaces_of(Material material) const;
+  [[nodiscard]] Point2 uncovered_floor() const;
 
   Point2 floor_;  // where the robot started
   World world_;
-  Bounds outer_;
+  std::vector<Segment> outer_;
   std::vector<DoorParams> doors_;
   OccupancyGrid visible_;
   OccupancyGrid perfect_;

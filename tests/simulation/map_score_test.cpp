@@ -3,6 +3,7 @@
 // best.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -105,8 +106,23 @@ TEST(MapTruth, TellsHowFarTheOuterWallsHaveMoved) {
     moved.set(cell, first.at({cell.column - 1, cell.row}));
   }
   const auto drift = truth.wall_drift(first, moved);
-  EXPECT_NEAR(drift[0], -0.05, 0.01);  // the ends of the walls beside count too
-  EXPECT_NEAR(drift[1], 0.05, 0.01);
+  ASSERT_EQ(drift.size(), 4U) << "lower, right, upper, left, as the wall is drawn";
+  EXPECT_NEAR(drift[0], 0.0, 0.01);
+  EXPECT_NEAR(drift[1], 0.05, 0.01);  // the ends of the walls beside count too
+  EXPECT_NEAR(drift[3], -0.05, 0.01);
+}
+
+TEST(MapTruth, KnowsTheFloorOnWhichAThingHasBeenPutWhereTheRobotStarted) {
+  const Scenario scenario = room();
+  MapTruth truth{scenario, start_map(scenario, 0.05)};
+  const auto free_cells = [&] {
+    return std::count(truth.visible().cells().begin(), truth.visible().cells().end(), CellState::kFree);
+  };
+  const auto before = free_cells();
+  const Box box{scenario.robot.map_from_start.position(), 0.6, 0.4, 0.3};
+  truth.see(scenario.world.with({99, ObjectKind::kContainer, box}));
+  EXPECT_GT(free_cells(), before * 9 / 10);
+  EXPECT_LT(free_cells(), before);
 }
 
 }  // namespace

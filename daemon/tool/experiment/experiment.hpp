@@ -100,6 +100,8 @@ class Experiment {
   [[nodiscard]] virtual std::string what() const = 0;  ///< one line
   /// Numbers that end in _ms or _mb are then the machine's, and differ from one time to the next.
   [[nodiscard]] virtual bool measures_time() const { return false; }
+  /// One run at a time: others beside it would be measured too.
+  [[nodiscard]] virtual bool runs_alone() const { return measures_time(); }
   /// Throws std::runtime_error where a scenario cannot be read.
   [[nodiscard]] virtual std::vector<Run> runs(const Options& options) const = 0;
   /// `outcomes` in the order of the runs.

@@ -8,10 +8,11 @@
 namespace deltamap::daemon::tool::experiment {
 
 MappingDrive::MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
-                           const Settings& settings, std::shared_ptr<const OccupancyGrid> first_map)
+                           const Settings& settings, std::shared_ptr<const OccupancyGrid> first_map, bool knows_start)
     : settings_{settings}, drive_{scenario, drive}, last_pose_{drive_.map_from_robot()} {
   settings_.seed = drive.seed;
-  localizer_.emplace(settings_.localizer, first_map, localization::InitialPose{last_pose_}, settings_.seed);
+  const auto start = knows_start ? std::optional{localization::InitialPose{last_pose_}} : std::nullopt;
+  localizer_.emplace(settings_.localizer, first_map, start, settings_.seed);
   store_scan_.emplace(settings_.mapping.store_scan, settings_.seed);
   map_.emplace(settings_, StartMap{.map = std::move(first_map)});
 }
@@ -23,6 +24,7 @@ Mapped MappingDrive::next() {
   mapped.map_from_robot = step.map_from_robot;
   mapped.changes = std::move(step.changes);
   mapped.events = std::move(step.events);
+  mapped.slips = step.slips;
   mapped.about = drive_.movers().bodies();
   mapped.time = step.scan.time;
   mapped.passed_s = seconds(step.scan.time - *first_);

@@ -32,6 +32,7 @@ struct Mapped {
   std::optional<MapStep::Result> update;          ///< what became of the Δ-phase that this scan closed
   std::vector<simulation::Change> changes;        ///< since the last scan
   std::vector<simulation::MoverEvent> events;
+  int slips = 0;             ///< since the last scan
   simulation::Bodies about;  ///< who moves or stands about, and doors, now
   Timestamp time;
   double passed_s = 0.0;  ///< since the drive began
@@ -40,9 +41,9 @@ struct Mapped {
 
 class MappingDrive {
  public:
-  /// Localizer and mapping of the settings; the robot knows where it starts.
+  /// Localizer and mapping of the settings.
   MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
-               const Settings& settings, std::shared_ptr<const OccupancyGrid> first_map);
+               const Settings& settings, std::shared_ptr<const OccupancyGrid> first_map, bool knows_start = true);
 
   [[nodiscard]] Mapped next();
   /// The daemon ends and begins again where it stands: pose, stability and map are kept, all else is forgotten.

@@ -100,8 +100,8 @@ void MappingWatch::count_lost(const Mapped& scan) {
 
 void MappingWatch::look(const Mapped& scan) {
   next_look_s_ += params_.look_every_s;
-  const auto view =
-      changes_.view_from(scan.map_from_robot * robot_from_laser_, params_.range_m, kViewBeams, about_.surfaces());
+  const auto view = changes_.view_from(scan.map_from_robot * robot_from_laser_, params_.range_m, kViewBeams,
+                                       about_.surfaces(), params_.field_rad);
   changes_.look(view, params_.look_every_s, kFaceBeams);
   truth_.touch(view);
 }

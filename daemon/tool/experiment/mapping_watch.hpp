@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,9 +23,10 @@
 namespace deltamap::daemon::tool::experiment {
 
 struct MappingWatchParams {
-  double range_m = 80.0;       ///< as far as the robot sees
-  double look_every_s = 0.2;   ///< what is in view, > 0
-  double judge_every_s = 1.0;  ///< whether the map has followed, and ghosts, > 0
+  double range_m = 80.0;                ///< as far as the robot sees
+  double field_rad = std::numbers::pi;  ///< ahead
+  double look_every_s = 0.2;            ///< what is in view, > 0
+  double judge_every_s = 1.0;           ///< whether the map has followed, and ghosts, > 0
   double score_every_s = 300.0;
   double wrong_pose_m = 0.3;  ///< cells written while the pose is farther off are counted apart
 };

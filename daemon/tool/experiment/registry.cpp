@@ -18,6 +18,8 @@ std::vector<std::unique_ptr<Experiment>> experiments() {
   all.push_back(table1_experiment());
   all.push_back(merge_experiment());
   all.push_back(gate_experiment());
+  all.push_back(shifted_hall_experiment());
+  all.push_back(unseen_experiment());
   for (auto& one : changing_world_experiments()) all.push_back(std::move(one));
   return all;
 }

@@ -20,6 +20,8 @@ namespace deltamap::daemon::tool::experiment {
 [[nodiscard]] std::unique_ptr<Experiment> table1_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> merge_experiment();
 [[nodiscard]] std::unique_ptr<Experiment> gate_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> shifted_hall_experiment();
+[[nodiscard]] std::unique_ptr<Experiment> unseen_experiment();
 /// table2, fig10-12, endurance, and others of their kind.
 [[nodiscard]] std::vector<std::unique_ptr<Experiment>> changing_world_experiments();
 

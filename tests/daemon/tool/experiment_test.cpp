@@ -150,7 +150,7 @@ TEST(Experiment, ListsThoseThatThereAreALineEach) {
   for (const auto& known : experiment::experiments()) {
     std::string line;
     ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_EQ(line, known->name() + "\t" + (known->measures_time() ? "times" : "") + "\t" + known->what());
+    EXPECT_EQ(line, known->name() + "\t" + (known->runs_alone() ? "times" : "") + "\t" + known->what());
   }
   EXPECT_EQ(lines.peek(), EOF);
 }
