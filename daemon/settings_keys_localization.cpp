@@ -112,6 +112,8 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                             "beams, of this and other scans, that share an error of the map"));
   keys.push_back(number_key("localization.track.agreement", localizer.track.agreement, "", 0.1, 100.0,
                             "deviations of the particles within which the estimate goes on from scan to scan"));
+  keys.push_back(flag_key("localization.track.surfaces", localizer.follow_surfaces,
+                          "where straight surfaces explain the scans they lead, moved or not, and the particles rest"));
 }
 
 void add_temporary(localization::TemporaryBeamsParams& temporary, Keys& keys) {

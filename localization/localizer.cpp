@@ -31,6 +31,8 @@ TrackedScan Localizer::observe(Scan scan) {
   const BodyVelocity velocity = state.odometry.velocity_at(scan.time);
   tracked.rays = deskewed(scan, velocity);
   state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
+  if (state.params.follow_surfaces) state.faced = faced_ends(scan, tracked.rays, std::move(state.faced));
+  state.velocity = velocity;
   if (state.params.model == ScanModel::kBeam && !state.beam_model) {
     state.beam_model.emplace(*state.map, state.params.beam_model, scan.max_range_m);
   }
@@ -61,6 +63,8 @@ void Localizer::apply(const MapRevision& revision) {
     state.judgement.forget(*state.map, *revision.map);
     state.rivals.apply(*revision.map, state.field, {{0, 0}, {revision.map->width(), revision.map->height()}});
   }
+  const CellBox whole{{0, 0}, {revision.map->width(), revision.map->height()}};
+  state.tracker.apply(revision.map, follows ? bounding_box(revision.changes) : whole);
   state.map = revision.map;
   state.revision = revision.number;
   state.beam_model.reset();

@@ -28,7 +28,8 @@ TrackerParams tracker_params(const LocalizerParams& given) {
           .hypothesis = given.hypothesis,
           .refinement = given.refinement,
           .track = given.track,
-          .update = given.update};
+          .update = given.update,
+          .follow_surfaces = given.follow_surfaces};
 }
 
 }  // namespace
@@ -39,7 +40,7 @@ Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const Occu
       map{with_free_space(std::move(first_map))},
       field{*map, given.field},
       odometry{given.odometry},
-      tracker{tracker_params(given), seed},
+      tracker{tracker_params(given), map, seed},
       monitor{given.fit},
       judgement{*map, given.judgement},
       rivals{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfRivals} {}
@@ -161,7 +162,9 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
                                                    .ends = weighing_ends(now),
                                                    .field = field,
                                                    .beam_model = beam_model ? &*beam_model : nullptr,
-                                                   .robot_from_laser = robot_from_laser});
+                                                   .robot_from_laser = robot_from_laser,
+                                                   .faced = faced,
+                                                   .velocity = velocity});
   best = tracker.best();
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);
@@ -191,10 +194,15 @@ const BeamEnds& Localizer::State::weighing_ends(const ScanInstant& now) {
   return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_things : ends;
 }
 
+bool Localizer::State::is_held_by_surfaces() const {
+  constexpr double kHolds = 0.3;  // share of the ends
+  return tracker.holding_share() >= kHolds;
+}
+
 bool Localizer::State::has_won(const RivalPlace& place, const Pose2& believed) const {
   constexpr double kClearlyBetter = 0.15;
   if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
-  if (ends.size() == 0) return false;
+  if (ends.size() == 0 || is_held_by_surfaces()) return false;
   const double fit = explained_share(field, ends, place.map_from_robot);
   return fit >= params.fit.found_above || fit >= explained_share(field, ends, believed) + kClearlyBetter;
 }
@@ -228,6 +236,11 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.verdict = belief.verdict;
   seen.trust = judgement.trust();
   seen.beaten = rivals.report().beaten;
+  if (is_held_by_surfaces()) {
+    seen.verdict = PoseVerdict::kRight;
+    seen.trust = std::max(seen.trust, kTrustInASearch);
+    seen.beaten = false;
+  }
   const LocalizerState after = monitor.observe(seen, best);
   rivals.suspect(monitor.suspicious());
   if (before != after) enter(after, before, believed.map_from_robot, now);

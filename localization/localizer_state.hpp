@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
@@ -31,6 +32,8 @@ struct Localizer::State {
   PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   BeamEnds ends;
+  std::vector<FacedEnd> faced;                    ///< the same scan's, where surfaces are followed
+  BodyVelocity velocity;                          ///< at the scan
   std::shared_ptr<const TemporaryThings> things;  ///< that stand or are gone for now; may be null
   BeamEnds ends_beside_things;
   std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
@@ -80,6 +83,8 @@ struct Localizer::State {
   const BeamEnds& weighing_ends(const ScanInstant& now);
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
   [[nodiscard]] bool has_won(const RivalPlace& place, const Pose2& believed) const;
+  /// Surfaces that stand where the map has them fix the pose.
+  [[nodiscard]] bool is_held_by_surfaces() const;
   /// No pose is believed, nor one being checked.
   [[nodiscard]] bool searches() const;
   /// The epoch of the odometry is another one than at the last scan.

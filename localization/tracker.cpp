@@ -3,11 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "localization/surface_track.hpp"
 #include "localization/weighing.hpp"
 
 namespace deltamap::localization {
 namespace {
+
+// The particles lie as close as one Gaussian that surfaces can go on from.
+constexpr double kOnePlaceShare = 0.98;
+constexpr double kOnePlaceM = 0.15;
+const double kOnePlaceRad = radians(4.0);
 
 constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are spread once a slip fits best
 
@@ -18,18 +25,31 @@ std::int32_t misfit_at(const Pose2& map_from_robot, const Tracker::Seen& seen) {
 
 }  // namespace
 
-Tracker::Tracker(const TrackerParams& params, std::uint64_t seed)
+Tracker::Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed)
     : params_{params},
       filter_{params.particles, seed},
       track_{params.track, params.motion},
       hypotheses_{params.hypothesis},
-      slip_finder_{params.motion, params.refinement} {}
+      slip_finder_{params.motion, params.refinement} {
+  if (!params.follow_surfaces) return;
+  surfaces_ = std::make_unique<SurfaceTrack>(params.track.wheels, params.motion, params.particles.evidence_beams,
+                                             std::move(map));
+}
+
+Tracker::~Tracker() = default;
+
+void Tracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
+  if (surfaces_) surfaces_->apply(std::move(map), changed);
+}
+
+double Tracker::holding_share() const { return surfaces_ ? surfaces_->holding_share() : 0.0; }
 
 RefinedPose Tracker::start_around(const InitialPose& pose) {
   filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
   best_ = hypotheses_.best(filter_.particles());
   drawn_anew_ = false;
   track_.forget();
+  if (surfaces_) surfaces_->cease();
   slip_finder_.forget();
   last_update_.reset();
   return {best_.map_from_robot, best_.covariance};
@@ -47,14 +67,47 @@ void Tracker::restart_clock(Timestamp time) {
 
 Tracker::Answer Tracker::observe(const Seen& seen) {
   const MotionSince since = last_update_ ? motion_since(*last_update_, seen.now, params_.update.time_s) : MotionSince{};
-  Answer answer = update_due(since) ? update(seen, since) : follow(seen, since);
+  const bool are_led = surfaces_ && surfaces_->leads();
+  Answer answer = are_led ? led_by_surfaces(seen) : update_due(since) ? update(seen, since) : follow(seen, since);
   answer.unknown_s = since.unknown_s;
+  if (are_led) {
+    last_update_ = seen.now;
+    return answer;
+  }
   track_.after_scan(seen.now, answer.believed);
+  if (surfaces_ && seen.ends.size() > 0) let_surfaces_lead(seen, answer);
   return answer;
+}
+
+/// The particles rest. Where surfaces cease to explain the scans, they begin anew around the pose.
+Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
+  Answer answer;
+  answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field});
+  answer.n_eff = static_cast<double>(particle_count());
+  const Pose2& pose = answer.believed.map_from_robot;
+  if (seen.ends.size() > 0) answer.w_avg = mean_likelihood(seen.field, seen.ends, pose);
+  if (!surfaces_->leads()) (void)start_around({pose, params_.motion.slip_m, params_.motion.slip_rad}, seen.now);
+  best_ = {pose, answer.believed.covariance, 1.0};
+  return answer;
+}
+
+void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
+  const PoseCovariance& spread = best_.covariance;
+  const bool one_place = best_.weight > kOnePlaceShare && spread(0, 0) + spread(1, 1) < kOnePlaceM * kOnePlaceM &&
+                         spread(2, 2) < kOnePlaceRad * kOnePlaceRad;
+  const SurfaceTrack::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field};
+  if (!one_place || !surfaces_->could_lead(by_surfaces, answer.believed.map_from_robot)) return;
+  answer.believed =
+      surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, by_surfaces);
 }
 
 void Tracker::carry(const ScanInstant& now) {
   if (!last_update_) return;
+  if (surfaces_ && surfaces_->leads()) {
+    surfaces_->carry(now);
+    last_update_ = now;
+    return;
+  }
   const MotionSince since = motion_since(*last_update_, now, params_.update.time_s);
   if (!update_due(since)) return;
   MotionModelParams motion = track_.particle_motion();

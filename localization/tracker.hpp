@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -17,8 +18,11 @@
 #include "localization/scan_instant.hpp"
 #include "localization/slip_finder.hpp"
 #include "localization/start_pose.hpp"
+#include "localization/surface_sighting.hpp"
 
 namespace deltamap::localization {
+
+class SurfaceTrack;
 
 /// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
 /// robot that stands still does not talk itself into certainty.
@@ -35,11 +39,16 @@ struct TrackerParams {
   RefinementParams refinement;
   PoseTrackParams track;
   UpdateParams update;
+  bool follow_surfaces = false;  ///< where straight surfaces explain the scans they lead, and the particles rest
 };
 
 class Tracker {
  public:
-  Tracker(const TrackerParams& params, std::uint64_t seed);
+  Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed);
+  ~Tracker();
+
+  /// Another map, the same but for a box of cells.
+  void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
 
   /// All that came before is forgotten. Answers what is believed before a scan is read.
   RefinedPose start_around(const InitialPose& pose);
@@ -54,6 +63,8 @@ class Tracker {
     const LikelihoodField& field;
     const BeamModel* beam_model = nullptr;  ///< where chosen, it weighs the particles in place of the field
     Point2 robot_from_laser{0.0, 0.0};
+    std::span<const FacedEnd> faced{};  ///< the same scan's, for the surfaces; may be empty
+    BodyVelocity velocity{};            ///< at the scan, by the wheels
   };
   struct Answer {
     RefinedPose believed;
@@ -65,6 +76,11 @@ class Tracker {
   /// No scan has come for long: the particles and the track go along with the wheels up to this instant.
   void carry(const ScanInstant& now);
 
+  /// Of late, the share of ends on surfaces that stand where the map has them; 0 while the particles lead.
+  [[nodiscard]] double holding_share() const;
+  /// The surfaces that lead at times; null where they never do.
+  [[nodiscard]] const SurfaceTrack* surfaces() const { return surfaces_.get(); }
+
   /// The heaviest hypothesis at the last update.
   [[nodiscard]] const Hypothesis& best() const { return best_; }
   [[nodiscard]] std::size_t particle_count() const { return filter_.particles().size(); }
@@ -72,6 +88,8 @@ class Tracker {
  private:
   Answer update(const Seen& seen, const MotionSince& since);
   Answer follow(const Seen& seen, const MotionSince& since);
+  Answer led_by_surfaces(const Seen& seen);
+  void let_surfaces_lead(const Seen& seen, Answer& answer);
   [[nodiscard]] bool update_due(const MotionSince& since) const;
   [[nodiscard]] std::span<const std::int32_t> weighed(const Seen& seen);
   [[nodiscard]] std::span<const Pose2> slips(const Seen& seen);
@@ -84,6 +102,7 @@ class Tracker {
   TrackerParams params_;
   ParticleFilter filter_;
   PoseTrack track_;
+  std::unique_ptr<SurfaceTrack> surfaces_;  // none: they never lead
   HypothesisFinder hypotheses_;
   Hypothesis best_;
   BeamErrors errors_;

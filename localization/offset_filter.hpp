@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where is the robot, and which surfaces of the map still hold? At each keyframe the surfaces in view correct the pose.
+// One that was moved is a landmark with an unknown offset: it goes on saying how the robot moves, only not where it is.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "localization/likelihood_field.hpp"
+#include "localization/offset_state.hpp"
+#include "localization/surface_map.hpp"
+#include "localization/surface_sighting.hpp"
+#include "localization/surface_switch.hpp"
+
+namespace deltamap::localization {
+
+class OffsetFilter {
+ public:
+  explicit OffsetFilter(std::shared_ptr<const OccupancyGrid> map) : map_{std::move(map)} {}
+
+  /// Follows no surface yet. What was learned of the wheels is kept.
+  void start(const RefinedPose& at);
+  /// Another map, the same but for a box of cells: a surface that lies there as before is still followed.
+  void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
+
+  [[nodiscard]] Pose2 corrected(const WheelStep& step) const { return state_.corrected(step); }
+  void carry(const WheelStep& step, const PoseCovariance& added);
+
+  /// What a keyframe showed; shares are of its ends, [0, 1].
+  struct Seen {
+    double straight = 0.0;  ///< on a surface, where it is believed to be
+    double holding = 0.0;   ///< on a surface that stands where the map has it
+    bool slipped = false;   ///< things that do not touch seem to have moved at once: nothing of it was used
+  };
+  /// `rest_share`: what an end that is on no surface counts, in (0, 1]. Where `may_slip` is not set, things have moved,
+  /// however many.
+  Seen observe(const LikelihoodField& field, std::span<const FacedEnd> ends, double rest_share, bool may_slip = true);
+  /// Share of the ends on surfaces of the map, with the robot at a pose.
+  [[nodiscard]] double straight_share(const LikelihoodField& field, std::span<const FacedEnd> ends, const Pose2& pose);
+
+  [[nodiscard]] RefinedPose believed() const { return state_.pose(); }
+  [[nodiscard]] WheelErrors wheels() const { return state_.wheels(); }
+  [[nodiscard]] bool is_sound() const { return state_.is_sound(); }
+  [[nodiscard]] std::size_t followed() const { return switches_.size(); }
+
+ private:
+  struct Visit {
+    SurfaceMap::Id id;
+    int misfits = 0;        ///< keyframes in a row in which it was not where it was expected
+    double unseen_m = 0.0;  ///< driven since it was last in view
+  };
+  struct Fit {
+    std::vector<bool> fits;  ///< for each sighting: as expected
+    bool slipped = false;
+  };
+  [[nodiscard]] std::span<const Sighting> find(const LikelihoodField& field, std::span<const FacedEnd> ends,
+                                               const Pose2& at);
+  void follow(const Sighting& sighting);
+  void cease(std::size_t surface);
+  void cease_where_long_unseen();
+  void renumber();
+  [[nodiscard]] Fit fit_of(std::span<const Sighting> sightings) const;
+  void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
+  void correct_by_rest(const LikelihoodField& field, double share);
+  [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;
+  void note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits);
+
+  SurfaceMap map_;
+  SightingFinder finder_;
+  OffsetState state_;
+  std::vector<SurfaceSwitch> switches_;  ///< of the surfaces of the state, in its order
+  std::vector<Visit> visits_;            ///< likewise
+};
+
+}  // namespace deltamap::localization

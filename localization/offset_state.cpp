@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/offset_state.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::localization {
+namespace {
+
+// Before anything was learned: deviations of distance, turn, drift (rad/m) and lag (s).
+const Eigen::Vector4d kWheelDeviations{0.03, 0.03, 0.01, 0.05};
+// Beyond these the wheels are broken, not biased.
+const Eigen::Vector4d kLargestWheelErrors{0.1, 0.1, 0.15, 0.3};
+// How fast they change: variances a metre. Tyres wear, loads shift.
+const Eigen::Vector4d kWheelWalk{1e-7, 1e-7, 1e-8, 1e-8};
+
+Point2 turned_left(const Point2& p) { return {-p.y(), p.x()}; }
+
+}  // namespace
+
+void OffsetState::start(const RefinedPose& at) {
+  Eigen::Vector4d wheels = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d of_wheels = kWheelDeviations.cwiseAbs2().asDiagonal();
+  if (mean_.size() >= kFixed && is_sound()) {
+    wheels = mean_.segment<4>(kPose);
+    of_wheels = covariance_.block<4, 4>(kPose, kPose);
+  }
+  mean_ = Eigen::VectorXd::Zero(kFixed);
+  mean_.head<kPose>() << at.map_from_robot.x, at.map_from_robot.y, at.map_from_robot.theta;
+  mean_.segment<4>(kPose) = wheels;
+  covariance_ = Eigen::MatrixXd::Zero(kFixed, kFixed);
+  covariance_.topLeftCorner<kPose, kPose>() = at.covariance;
+  covariance_.block<4, 4>(kPose, kPose) = of_wheels;
+}
+
+RefinedPose OffsetState::pose() const {
+  return {{mean_[0], mean_[1], wrapped_angle(mean_[2])}, covariance_.topLeftCorner<kPose, kPose>()};
+}
+
+Pose2 OffsetState::corrected(const WheelStep& step) const {
+  const WheelErrors errors = wheels();
+  const double further_rad = errors.turn * step.motion.theta + errors.drift_rad_per_m * step.motion.position().norm() +
+                             errors.lag_s * step.turn_rate_change_rad_per_s;
+  const Pose2 along_the_arc = Pose2{0.0, 0.0, 0.5 * further_rad} * step.motion;
+  return {(1.0 + errors.distance) * along_the_arc.x + errors.lag_s * step.speed_change_m_per_s,
+          (1.0 + errors.distance) * along_the_arc.y, step.motion.theta + further_rad};
+}
+
+void OffsetState::carry(const WheelStep& step, const PoseCovariance& added) {
+  const Pose2 motion = corrected(step);
+  const double length_m = step.motion.position().norm();
+  const Pose2 turned{0.0, 0.0, mean_[2]};
+  const Point2 moved = turned * motion.position();
+  const Point2 by_half_turn = 0.5 * turned_left(moved);
+  Eigen::Matrix<double, kPose, kFixed> by = Eigen::Matrix<double, kPose, kFixed>::Zero();
+  by.leftCols<kPose>().setIdentity();
+  by.block<2, 1>(0, 2) = turned_left(moved);
+  by.block<2, 1>(0, 3) = moved / (1.0 + mean_[3]);
+  by.block<2, 1>(0, 4) = by_half_turn * step.motion.theta;
+  by.block<2, 1>(0, 5) = by_half_turn * length_m;
+  by.block<2, 1>(0, 6) =
+      by_half_turn * step.turn_rate_change_rad_per_s + turned * Point2{step.speed_change_m_per_s, 0.0};
+  by.row(2).tail<4>() << 0.0, step.motion.theta, length_m, step.turn_rate_change_rad_per_s;
+  mean_.head<kPose>() += Eigen::Vector3d{moved.x(), moved.y(), motion.theta};
+  mean_.segment<4>(kPose) = mean_.segment<4>(kPose).cwiseMax(-kLargestWheelErrors).cwiseMin(kLargestWheelErrors).eval();
+  covariance_.topRows<kPose>() = (by * covariance_.topRows<kFixed>()).eval();
+  covariance_.leftCols<kPose>() = (covariance_.leftCols<kFixed>() * by.transpose()).eval();
+  covariance_.topLeftCorner<kPose, kPose>() += added;
+  covariance_.diagonal().segment<4>(kPose) += length_m * kWheelWalk;
+}
+
+void OffsetState::append(double offset_m, double deviation_m, double deviation_rad) {
+  const Eigen::Index size = mean_.size();
+  mean_.conservativeResize(size + 2);
+  mean_.tail<2>() << offset_m, 0.0;
+  covariance_.conservativeResize(size + 2, size + 2);
+  covariance_.rightCols<2>().setZero();
+  covariance_.bottomRows<2>().setZero();
+  covariance_(size, size) = deviation_m * deviation_m;
+  covariance_(size + 1, size + 1) = deviation_rad * deviation_rad;
+}
+
+void OffsetState::remove(std::size_t surface) {
+  const Eigen::Index at = offset_of(surface);
+  const Eigen::Index after = mean_.size() - at - 2;
+  mean_.segment(at, after) = mean_.tail(after).eval();
+  mean_.conservativeResize(at + after);
+  covariance_.middleRows(at, after) = covariance_.bottomRows(after).eval();
+  covariance_.middleCols(at, after) = covariance_.rightCols(after).eval();
+  covariance_.conservativeResize(at + after, at + after);
+}
+
+void OffsetState::update(const SparseRow& row, double innovation, double variance) {
+  column_ = Eigen::VectorXd::Zero(mean_.size());
+  for (const SparseRow::Entry& entry : row.used()) column_ += entry.value * covariance_.col(entry.index);
+  double expected = variance;
+  for (const SparseRow::Entry& entry : row.used()) expected += entry.value * column_[entry.index];
+  mean_ += column_ * (innovation / expected);
+  covariance_.noalias() -= column_ * (column_.transpose() / expected);
+}
+
+}  // namespace deltamap::localization

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// One Gaussian over the robot's pose, the systematic errors of its wheels and, for each surface that is followed, how
+// far it stands from where the map has it: offset along its normal, m, and turn, rad.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "localization/pose_refinement.hpp"
+
+namespace deltamap::localization {
+
+/// What the wheels counted from one scan to the next.
+struct WheelStep {
+  Pose2 motion;
+  double speed_change_m_per_s = 0.0;  ///< between the two instants
+  double turn_rate_change_rad_per_s = 0.0;
+};
+
+/// What the robot did, in terms of what its wheels counted (Kelly 2004).
+struct WheelErrors {
+  double distance = 0.0;         ///< share driven beyond the count
+  double turn = 0.0;             ///< share turned beyond the count
+  double drift_rad_per_m = 0.0;  ///< turned in a metre that counts as straight
+  double lag_s = 0.0;            ///< the wheels' stamps are that much too late
+};
+
+/// A row of a measurement's Jacobian: most of it is zero.
+struct SparseRow {
+  struct Entry {
+    Eigen::Index index;
+    double value;
+  };
+  std::array<Entry, 5> entries;
+  std::size_t count;
+
+  [[nodiscard]] std::span<const Entry> used() const { return {entries.data(), count}; }
+};
+
+class OffsetState {
+ public:
+  static constexpr Eigen::Index kPose = 3;
+  static constexpr Eigen::Index kFixed = 7;  ///< pose and wheels
+
+  /// No surface is followed. What was learned of the wheels is kept.
+  void start(const RefinedPose& at);
+
+  /// The robot's motion, by the wheels and what is known of their errors.
+  [[nodiscard]] Pose2 corrected(const WheelStep& step) const;
+  /// `added`: covariance of the step's own noise, map frame.
+  void carry(const WheelStep& step, const PoseCovariance& added);
+
+  /// Follows one more surface, expected at `offset_m` with these deviations.
+  void append(double offset_m, double deviation_m, double deviation_rad);
+  /// Ceases to follow surface number `surface`: what it has told of the pose stays.
+  void remove(std::size_t surface);
+
+  /// A measurement: row · state was found to be greater than expected by `innovation`.
+  void update(const SparseRow& row, double innovation, double variance);
+  /// As a factor: precision and precision · mean, over `count` entries from `first` on (2 or 3).
+  template <int kCount>
+  void multiply(Eigen::Index first, const Eigen::Matrix<double, kCount, kCount>& precision,
+                const Eigen::Matrix<double, kCount, 1>& pull) {
+    using Square = Eigen::Matrix<double, kCount, kCount>;
+    const Eigen::Matrix<double, Eigen::Dynamic, kCount> left = covariance_.middleCols<kCount>(first);
+    const Square inner = covariance_.block<kCount, kCount>(first, first);
+    const Square gain = precision * (Square::Identity() + inner * precision).inverse();
+    const Eigen::Matrix<double, kCount, 1> here = mean_.segment<kCount>(first);
+    mean_ += left * ((Square::Identity() - gain * inner) * pull - gain * here);
+    covariance_.noalias() -= left * gain * left.transpose();
+  }
+
+  [[nodiscard]] const Eigen::VectorXd& mean() const { return mean_; }
+  [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
+  /// Where the offset of a surface stands in mean and covariance; its turn follows.
+  [[nodiscard]] static Eigen::Index offset_of(std::size_t surface) {
+    return kFixed + 2 * static_cast<Eigen::Index>(surface);
+  }
+  [[nodiscard]] RefinedPose pose() const;
+  [[nodiscard]] WheelErrors wheels() const { return {mean_[3], mean_[4], mean_[5], mean_[6]}; }
+  [[nodiscard]] bool is_sound() const { return mean_.allFinite() && covariance_.diagonal().minCoeff() >= 0.0; }
+
+ private:
+  Eigen::VectorXd mean_;
+  Eigen::MatrixXd covariance_;
+  Eigen::VectorXd column_;
+};
+
+}  // namespace deltamap::localization

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Does a surface stand where the map has it, or was it moved? A switch beside the Gaussian: its effect on a surface's
+// offset is passed on by expectation propagation (Minka 2001) and may be taken back for as long as the surface is
+// followed. Pieces of one straight face that stand off alike are one witness.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "localization/offset_state.hpp"
+#include "localization/surface.hpp"
+
+namespace deltamap::localization {
+
+/// Deviations of a surface that was moved, about where it stood.
+inline constexpr double kMovedM = 0.5;
+inline constexpr double kMovedRad = 0.1;
+
+struct SurfaceSwitch {
+  Surface surface;
+  double usual_m = 0.0;  ///< its offset while it holds
+  double prior = 0.9;    ///< P(holds) before it was in view
+  double holds = 0.5;    ///< P(holds) now
+  /// What the switch adds to the Gaussian: precision and precision · mean of offset and turn.
+  Eigen::Matrix2d precision = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d pull = Eigen::Vector2d::Zero();
+};
+
+/// Settles all switches against each other; `switches[i]` is that of surface i of the state.
+void settle(std::vector<SurfaceSwitch>& switches, OffsetState& state);
+
+}  // namespace deltamap::localization

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/surface_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "localization/pose_refinement.hpp"
+#include "localization/weighing.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+constexpr double kLeadsAbove = 0.82;  // share of ends on straight surfaces: what a hall of walls and containers shows
+constexpr double kCeasesBelow = 0.3;
+constexpr double kNewest = 0.1;             // share of one keyframe in the running means
+constexpr double kKeyframeM = 0.2;          // driven,
+const double kKeyframeRad = radians(10.0);  // or turned,
+constexpr double kUnsureM = 0.01;           // or as unsure as what a surface tells
+constexpr double kUnsureRad = 0.004;
+constexpr double kStrangest = 25.0;      // squared deviations: a slip is no measure of how the wheels usually do
+constexpr double kLongestStepM = 0.5;    // of one correction
+constexpr double kClearlyBetter = 0.15;  // share of ends that the map explains
+
+BeamEnds all_of(std::span<const FacedEnd> faced) {
+  BeamEnds ends;
+  for (const FacedEnd& end : faced) {
+    ends.x_m.push_back(static_cast<float>(end.at.x()));
+    ends.y_m.push_back(static_cast<float>(end.at.y()));
+  }
+  return ends;
+}
+
+/// The place near the one that the wheels tell where the scan fits the map clearly better; none where no such is.
+std::optional<RefinedPose> where_it_slipped_to(const SurfaceTrack::Seen& seen, const RefinedPose& by_wheels,
+                                               const MotionModelParams& motion) {
+  const BeamEnds ends = all_of(seen.faced);
+  const Pose2& from = by_wheels.map_from_robot;
+  const PoseCovariance spread = slip_covariance(motion, from.theta);
+  double best_share = explained_share(seen.field, ends, from) + kClearlyBetter;
+  std::optional<RefinedPose> best;
+  for (const double turn : {0.0, -0.5, 0.5, -1.0, 1.0, -1.5, 1.5, -2.0, 2.0}) {  // deviations of a slip
+    for (const double ahead : {0.0, -0.75, 0.75, -1.5, 1.5}) {
+      const Pose2 start = from * Pose2{ahead * motion.slip_m, 0.0, turn * motion.slip_rad};
+      RefinedPose slid = refined(seen.field, ends, {start, spread}, 1.0, RefinementParams{});
+      const double share = explained_share(seen.field, ends, slid.map_from_robot);
+      if (share <= best_share) continue;
+      best_share = share;
+      slid.covariance += by_wheels.covariance + Eigen::Vector3d{9e-4, 9e-4, 1e-4}.asDiagonal().toDenseMatrix();
+      best = slid;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+SurfaceTrack::SurfaceTrack(const WheelTrustParams& wheels, const MotionModelParams& motion, double evidence_beams,
+                           std::shared_ptr<const OccupancyGrid> map)
+    : motion_{motion}, wheels_{wheels}, evidence_beams_{evidence_beams}, filter_{std::move(map)} {}
+
+void SurfaceTrack::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
+  filter_.apply(std::move(map), changed);
+}
+
+bool SurfaceTrack::could_lead(const Seen& seen, const Pose2& map_from_robot) {
+  straight_ += kNewest * (filter_.straight_share(seen.field, seen.faced, map_from_robot) - straight_);
+  return straight_ >= kLeadsAbove;
+}
+
+RefinedPose SurfaceTrack::lead_from(const RefinedPose& at, const Seen& seen) {
+  filter_.start(at);
+  wheels_.forget_stretch();
+  leads_ = true;
+  last_ = Last{seen.now, seen.velocity};
+  since_.reset();
+  holding_ = 0.0;
+  return keyframe(seen);
+}
+
+PoseCovariance SurfaceTrack::noise(const Pose2& motion, double unknown_s) const {
+  PoseCovariance added = wheels_.added(motion, filter_.believed().map_from_robot.theta);
+  const double unknown_m = motion_.unknown_speed_m_per_s * unknown_s;
+  const double unknown_rad = motion_.unknown_turn_rate_rad_per_s * unknown_s;
+  added.diagonal() += Eigen::Vector3d{unknown_m * unknown_m, unknown_m * unknown_m, unknown_rad * unknown_rad};
+  // Raised where corrections exceed what was expected, never lowered.
+  added.topLeftCorner<2, 2>() *= std::max(1.0, surprise_m_);
+  added(2, 2) *= std::max(1.0, surprise_rad_);
+  return added;
+}
+
+void SurfaceTrack::step_to(const ScanInstant& now, const BodyVelocity& velocity) {
+  const ScanInstant& before = last_->instant;
+  const double passed_s = std::max(0.0, seconds(now.time - before.time));
+  WheelStep step;
+  double unknown_s = passed_s;
+  if (now.odometry && before.odometry) {
+    step.motion = motion_between(before.odometry->joined_from_robot, now.odometry->joined_from_robot);
+    step.speed_change_m_per_s = velocity.speed_m_per_s - last_->velocity.speed_m_per_s;
+    step.turn_rate_change_rad_per_s = velocity.turn_rate_rad_per_s - last_->velocity.turn_rate_rad_per_s;
+    if (now.odometry->epoch == before.odometry->epoch) unknown_s = std::min(now.odometry->uncovered_s, passed_s);
+  }
+  const Pose2 corrected = filter_.corrected(step);
+  const PoseCovariance added = noise(corrected, unknown_s);
+  filter_.carry(step, added);
+  last_ = Last{now, velocity};
+  if (!since_) return;
+  since_->by_wheels = since_->by_wheels * step.motion;
+  since_->corrected = since_->corrected * corrected;
+  since_->variance_m2 += std::max(added(0, 0), added(1, 1));
+  since_->variance_rad2 += added(2, 2);
+}
+
+bool SurfaceTrack::is_due() const {
+  if (!since_) return true;
+  return since_->by_wheels.position().norm() >= kKeyframeM || std::abs(since_->by_wheels.theta) >= kKeyframeRad ||
+         since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad;
+}
+
+void SurfaceTrack::carry(const ScanInstant& now) {
+  if (leads_) step_to(now, last_->velocity);
+}
+
+RefinedPose SurfaceTrack::observe(const Seen& seen) {
+  step_to(seen.now, seen.velocity);
+  return is_due() && !seen.faced.empty() ? keyframe(seen) : filter_.believed();
+}
+
+RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
+  const double share =
+      std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, seen.faced.size())));
+  const RefinedPose before = filter_.believed();
+  OffsetFilter::Seen shown = filter_.observe(seen.field, seen.faced, share);
+  const bool slipped = shown.slipped;
+  if (slipped) {
+    const std::optional<RefinedPose> there = where_it_slipped_to(seen, before, motion_);
+    if (there) filter_.start(*there);
+    shown = filter_.observe(seen.field, seen.faced, share, false);
+    wheels_.forget_stretch();
+  }
+  const RefinedPose after = filter_.believed();
+  const bool runs_away = !slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
+  if (!filter_.is_sound() || runs_away) {
+    filter_.start(before);
+    cease();
+    return before;
+  }
+  if (since_ && !slipped) {
+    learn_noise(before, after);
+    wheels_.learn(since_->corrected, after);
+  }
+  since_ = SinceKeyframe{};
+  straight_ += kNewest * (shown.straight - straight_);
+  holding_ += kNewest * (shown.holding - holding_);
+  if (straight_ < kCeasesBelow) cease();
+  return after;
+}
+
+void SurfaceTrack::learn_noise(const RefinedPose& before, const RefinedPose& after) {
+  const Eigen::Vector3d correction = difference(before.map_from_robot, after.map_from_robot);
+  const auto surprise = [&](Eigen::Index i) {
+    const double gained = std::max(1e-6, before.covariance(i, i) - after.covariance(i, i));
+    return std::min(kStrangest, correction[i] * correction[i] / gained);
+  };
+  surprise_m_ += kNewest * (0.5 * (surprise(0) + surprise(1)) - surprise_m_);
+  surprise_rad_ += kNewest * (surprise(2) - surprise_rad_);
+}
+
+}  // namespace deltamap::localization

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The believed pose from scan to scan while it is one Gaussian: carried by the wheels, corrected at keyframes by the
+// surfaces in view (offset_filter.hpp). It leads where straight surfaces explain the scans, and the particles rest
+// meanwhile; where they cease to, the particles go on from where it stands.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "localization/motion_model.hpp"
+#include "localization/offset_filter.hpp"
+#include "localization/scan_instant.hpp"
+#include "localization/wheel_trust.hpp"
+
+namespace deltamap::localization {
+
+class SurfaceTrack {
+ public:
+  /// `evidence_beams`: as of ParticleFilterParams.
+  SurfaceTrack(const WheelTrustParams& wheels, const MotionModelParams& motion, double evidence_beams,
+               std::shared_ptr<const OccupancyGrid> map);
+
+  void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
+
+  struct Seen {
+    const ScanInstant& now;
+    BodyVelocity velocity;
+    std::span<const FacedEnd> faced;
+    const LikelihoodField& field;
+  };
+  [[nodiscard]] bool leads() const { return leads_; }
+  /// Looks at a scan while the particles lead. True where straight surfaces have explained the scans of late.
+  [[nodiscard]] bool could_lead(const Seen& seen, const Pose2& map_from_robot);
+  /// Leads from here on.
+  RefinedPose lead_from(const RefinedPose& at, const Seen& seen);
+  /// The pose was set, or the particles have taken over.
+  void cease() { leads_ = false; }
+
+  /// The pose at one more scan. It may have ceased to lead.
+  RefinedPose observe(const Seen& seen);
+  /// No scan has come for long: along with the wheels.
+  void carry(const ScanInstant& now);
+
+  /// Running mean of the share of ends on surfaces that stand where the map has them; 0 where it does not lead.
+  [[nodiscard]] double holding_share() const { return leads_ ? holding_ : 0.0; }
+  [[nodiscard]] const OffsetFilter& filter() const { return filter_; }
+
+ private:
+  struct Last {
+    ScanInstant instant;
+    BodyVelocity velocity;
+  };
+  [[nodiscard]] PoseCovariance noise(const Pose2& motion, double unknown_s) const;
+  void step_to(const ScanInstant& now, const BodyVelocity& velocity);
+  [[nodiscard]] bool is_due() const;
+  RefinedPose keyframe(const Seen& seen);
+  void learn_noise(const RefinedPose& before, const RefinedPose& after);
+
+  MotionModelParams motion_;
+  WheelTrust wheels_;
+  double evidence_beams_;
+  OffsetFilter filter_;
+  std::optional<Last> last_;
+  bool leads_ = false;
+  struct SinceKeyframe {
+    Pose2 by_wheels;
+    Pose2 corrected;
+    double variance_m2 = 0.0;
+    double variance_rad2 = 0.0;
+  };
+  std::optional<SinceKeyframe> since_;  // none: no keyframe yet
+  double straight_ = 0.0;               // running means over keyframes, shares of ends
+  double holding_ = 0.0;
+  double surprise_m_ = 1.0;  // squared corrections as multiples of what was expected, running means
+  double surprise_rad_ = 1.0;
+};
+
+}  // namespace deltamap::localization

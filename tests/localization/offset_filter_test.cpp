@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/offset_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <memory>
+
+#include "localization/localizer.hpp"
+#include "localization/localizer_params.hpp"
+#include "tests/support/container_hall.hpp"
+
+namespace deltamap::localization {
+namespace {
+
+RefinedPose at_rest(double x, double y, double theta) {
+  return {{x, y, theta}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
+}
+
+TEST(OffsetState, TakesAFactorAsTheProductOfGaussians) {
+  OffsetState state;
+  state.start(at_rest(1.0, 2.0, 0.3));
+  state.append(0.1, 0.5, 0.1);
+  state.update({{{{0, 1.0}, {7, -1.0}}}, 2}, 0.05, 0.01);  // ties pose and offset
+  const Eigen::MatrixXd information = state.covariance().inverse();
+  const Eigen::VectorXd weighed = information * state.mean();
+  Eigen::Matrix2d precision;
+  precision << 40.0, 3.0, 3.0, 90.0;
+  const Eigen::Vector2d pull{2.0, -1.0};
+  state.multiply<2>(7, precision, pull);
+  Eigen::MatrixXd expected = information;
+  expected.block<2, 2>(7, 7) += precision;
+  Eigen::VectorXd expected_weighed = weighed;
+  expected_weighed.segment<2>(7) += pull;
+  EXPECT_LT((state.covariance() - expected.inverse()).norm(), 1e-9);
+  EXPECT_LT((state.mean() - expected.inverse() * expected_weighed).norm(), 1e-9);
+}
+
+TEST(OffsetState, KeepsThePoseWhenASurfaceIsForgotten) {
+  OffsetState state;
+  state.start(at_rest(1.0, 2.0, 0.3));
+  state.append(0.1, 0.5, 0.1);
+  state.append(0.2, 0.5, 0.1);
+  state.update({{{{0, 1.0}, {7, -1.0}}}, 2}, 0.05, 0.01);
+  state.update({{{{1, 1.0}, {9, -1.0}}}, 2}, -0.05, 0.01);
+  const RefinedPose before = state.pose();
+  const double second_m = state.mean()[9];
+  state.remove(0);
+  EXPECT_EQ(state.mean().size(), 9);
+  EXPECT_EQ(state.mean()[7], second_m);
+  EXPECT_EQ(state.pose().map_from_robot, before.map_from_robot);
+  EXPECT_EQ(state.pose().covariance, before.covariance);
+}
+
+Surface face(double x) {
+  return {.centre = {x, 0.0},
+          .normal = {0.0, 1.0},
+          .half_length_m = 0.5,
+          .offset_deviation_m = 0.015,
+          .turn_deviation_rad = 0.005};
+}
+
+/// The offset of a surface measured `offset_m` from where the map has it, with a pose known that well.
+double holds_after(double offset_m, double pose_deviation_m) {
+  OffsetState state;
+  RefinedPose pose = at_rest(0.0, 0.0, 0.0);
+  pose.covariance(1, 1) = pose_deviation_m * pose_deviation_m;
+  state.start(pose);
+  state.append(0.0, kMovedM, kMovedRad);
+  state.update({{{{1, 1.0}, {7, -1.0}}}, 2}, -offset_m, 1e-4);
+  state.update({{{{2, -1.0}, {8, -1.0}}}, 2}, 0.0, 1e-5);
+  std::vector<SurfaceSwitch> switches{{.surface = face(0.0)}};
+  settle(switches, state);
+  EXPECT_TRUE(state.is_sound());
+  return switches[0].holds;
+}
+
+TEST(SurfaceSwitch, TellsAMovedSurfaceFromOneThatHolds) {
+  EXPECT_GT(holds_after(0.0, 0.01), 0.95);
+  EXPECT_GT(holds_after(0.02, 0.01), 0.9);
+  EXPECT_LT(holds_after(0.15, 0.01), 0.05);
+  EXPECT_LT(holds_after(-0.5, 0.01), 0.01);
+  EXPECT_GT(holds_after(0.15, 0.2), 0.5) << "a pose that may be off explains it as well";
+}
+
+TEST(SurfaceSwitch, TakesTwoHalvesOfOneFaceForOneWitness) {
+  // Pieces of one face, seen 0.1 m off: whether the pose or the face is off, both halves say the same.
+  const auto pose_after = [](int pieces) {
+    OffsetState state;
+    RefinedPose pose = at_rest(0.0, 0.0, 0.0);
+    pose.covariance(1, 1) = 0.06 * 0.06;
+    state.start(pose);
+    std::vector<SurfaceSwitch> switches;
+    for (int i = 0; i < pieces; ++i) {
+      state.append(0.0, kMovedM, kMovedRad);
+      switches.push_back({.surface = face(i)});
+      const Eigen::Index at = OffsetState::offset_of(static_cast<std::size_t>(i));
+      state.update({{{{1, 1.0}, {at, -1.0}}}, 2}, -0.1, 1e-4);
+      state.update({{{{2, -1.0}, {at + 1, -1.0}}}, 2}, 0.0, 1e-5);
+    }
+    settle(switches, state);
+    return switches.front().holds;
+  };
+  EXPECT_NEAR(pose_after(4), pose_after(1), 0.2);
+}
+
+/// A robot whose wheels count 1 % too far and turn 2 % too little, by a fixed round through the aisles.
+class Drive {
+ public:
+  explicit Drive(const test::Containers& in_truth, bool follow_surfaces)
+      : world_{test::world_of(in_truth)}, localizer_{params(follow_surfaces), map(), start(), 5} {
+    odometry_.time = timestamp_from_ns(1'700'000'000'000'000'000);
+  }
+
+  void go(double metres, double turn_rad) {
+    const int steps = static_cast<int>(std::ceil(std::max(metres / 0.05, std::abs(turn_rad) / radians(3.0))));
+    for (int i = 0; i < steps; ++i) step({metres / steps, 0.0, turn_rad / steps});
+  }
+  void rearrange(const test::Containers& containers) { world_ = test::world_of(containers); }
+  void slip(const Pose2& robot_from_moved) { truth_ = truth_ * robot_from_moved; }
+  [[nodiscard]] double error_m() const { return distance_between(truth_, believed_); }
+  [[nodiscard]] double worst_m() const { return worst_m_; }
+  void forget_worst() { worst_m_ = 0.0; }
+  [[nodiscard]] const Pose2& truth() const { return truth_; }
+
+ private:
+  static std::shared_ptr<const OccupancyGrid> map() {
+    return std::make_shared<const OccupancyGrid>(test::map_of(test::containers_in_order()));
+  }
+  static LocalizerParams params(bool follow_surfaces) {
+    LocalizerParams params;
+    params.follow_surfaces = follow_surfaces;
+    return params;
+  }
+  static InitialPose start() { return {{2.0, 1.0, 0.0}, 0.05, 0.02}; }
+
+  void step(const Pose2& counted) {
+    truth_ = truth_ * Pose2{counted.x / 1.01, 0.0, counted.theta * 1.02};
+    odometry_.odom_from_robot = odometry_.odom_from_robot * counted;
+    odometry_.time += duration_from_seconds(0.1);
+    localizer_.observe(odometry_);
+    believed_ = localizer_.observe(test::cast_scan(world_, truth_, odometry_.time, {.max_range_m = 8.0}, random_))
+                    .estimate.map_from_robot;
+    worst_m_ = std::max(worst_m_, error_m());
+  }
+
+  OccupancyGrid world_;
+  Localizer localizer_;
+  Pose2 truth_ = start().map_from_robot;
+  Pose2 believed_;
+  Odometry odometry_;
+  Random random_{11};
+  double worst_m_ = 0.0;
+};
+
+test::Containers shifted() {
+  test::Containers containers = test::containers_in_order();
+  containers[3] += Point2{-0.3, -0.2};
+  return containers;
+}
+
+/// The largest error of a round through a hall one of whose containers is shifted as the robot comes.
+double worst_among_shifted_m(bool follow_surfaces) {
+  Drive drive{test::containers_in_order(), follow_surfaces};
+  drive.go(8.0, 0.0);
+  drive.go(0.0, radians(90.0));
+  drive.rearrange(shifted());
+  drive.forget_worst();
+  drive.go(3.0, 0.0);
+  drive.go(0.0, radians(90.0));
+  drive.go(8.0, 0.0);
+  return drive.worst_m();
+}
+
+TEST(SurfaceTrack, IsNotLedAstrayByContainersThatWereShifted) {
+  const double by_surfaces_m = worst_among_shifted_m(true);
+  EXPECT_LT(by_surfaces_m, 0.06);
+  EXPECT_LT(by_surfaces_m, 0.5 * worst_among_shifted_m(false));
+}
+
+TEST(SurfaceTrack, HoldsThePoseInAHallThatIsAsItWas) {
+  Drive drive{test::containers_in_order(), true};
+  drive.go(3.0, 0.0);
+  drive.forget_worst();
+  drive.go(5.0, 0.0);
+  EXPECT_LT(drive.worst_m(), 0.03);
+}
+
+TEST(SurfaceTrack, FindsThePoseAgainAfterASlip) {
+  Drive drive{test::containers_in_order(), true};
+  drive.go(5.0, 0.0);
+  drive.slip({-0.1, 0.0, radians(5.0)});
+  drive.go(0.5, 0.0);
+  EXPECT_LT(drive.error_m(), 0.05);
+}
+
+TEST(OffsetFilter, FindsTheErrorsOfTheWheels) {
+  const auto map = std::make_shared<const OccupancyGrid>(test::map_of(test::containers_in_order()));
+  const OccupancyGrid world = test::world_of(test::containers_in_order());
+  const LikelihoodField field{*map, {}};
+  OffsetFilter filter{map};
+  Pose2 truth{2.0, 1.0, 0.0};
+  filter.start(at_rest(truth.x, truth.y, truth.theta));
+  Random random{4};
+  const PoseCovariance noise = Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix();
+  std::vector<FacedEnd> ends;
+  for (int side = 0; side < 8; ++side) {
+    for (int i = 0; i < 40 + 30; ++i) {
+      const Pose2 counted = i < 40 ? Pose2{side % 2 == 0 ? 0.2 : 0.075, 0.0, 0.0} : Pose2{0.0, 0.0, radians(3.0)};
+      truth = truth * Pose2{counted.x * 1.01, 0.0, counted.theta * 0.98};
+      filter.carry({.motion = counted}, noise);
+      const Scan scan = test::cast_scan(world, truth, timestamp_from_ns(i), {.max_range_m = 8.0}, random);
+      ends = faced_ends(scan, deskewed(scan, {}), std::move(ends));
+      (void)filter.observe(field, ends, 0.1);
+    }
+  }
+  EXPECT_NEAR(filter.wheels().distance, 0.01, 0.002);
+  EXPECT_NEAR(filter.wheels().turn, -0.02, 0.003);
+  EXPECT_LT(distance_between(filter.believed().map_from_robot, truth), 0.03);
+}
+
+}  // namespace
+}  // namespace deltamap::localization
