@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <mutex>
 
 #include "daemon/start_error.hpp"
@@ -96,8 +97,10 @@ TEST_F(PipelineTest, AReportThatCannotBeWrittenIsAWarningAndTheRunEndsWell) {
   std::vector<std::string> warnings;
   prepare_ = [&](Pipeline::Options& live) { live.warn = [&](const std::string& line) { warnings.push_back(line); }; };
   EXPECT_GT(run_live(std::chrono::microseconds(0)).scans.decoded, 0u);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].find("report.json: cannot be written: "), std::string::npos) << warnings[0];
+  // A run as hurried as this one loses scans, and may have to say more.
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& line) {
+    return line.find("report.json: cannot be written: ") != std::string::npos;
+  })) << ::testing::PrintToString(warnings);
 }
 
 TEST_F(PipelineTest, AFolderWhoseLockMayNotBeReadIsAPersonsMistake) {
