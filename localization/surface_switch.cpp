@@ -77,7 +77,8 @@ std::vector<std::size_t> bodies_of(std::span<const SurfaceSwitch> switches, cons
   for (std::size_t a = 0; a < switches.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       if (body[a] == body[b] || !are_one_face(switches[a].surface, switches[b].surface)) continue;
-      if (stand_off_alike(state, a, b)) std::replace(body.begin(), body.end(), body[a], body[b]);
+      const std::size_t joins = body[a];
+      if (stand_off_alike(state, a, b)) std::replace(body.begin(), body.end(), joins, std::size_t{body[b]});
     }
   }
   return body;
