@@ -23,6 +23,12 @@ PoseCovariance covariance_along(double direction_rad, double along_m2, double as
   return covariance;
 }
 
+PoseCovariance unknown_motion_covariance(const MotionModelParams& params, double unknown_s) {
+  const double unknown_m = params.unknown_speed_m_per_s * unknown_s;
+  const double unknown_rad = params.unknown_turn_rate_rad_per_s * unknown_s;
+  return Eigen::Vector3d{unknown_m * unknown_m, unknown_m * unknown_m, unknown_rad * unknown_rad}.asDiagonal();
+}
+
 PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad) {
   const double aside_m = kSlipSideways * params.slip_m;
   return covariance_along(heading_rad, params.slip_m * params.slip_m, aside_m * aside_m,

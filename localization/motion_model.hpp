@@ -34,6 +34,9 @@ inline constexpr double kSlipSideways = 0.25;
 /// Of a robot's pose in the map once its wheels have slipped, by the model.
 [[nodiscard]] PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad);
 
+/// Added to a pose by so many seconds without odometry, by the model: variances.
+[[nodiscard]] PoseCovariance unknown_motion_covariance(const MotionModelParams& params, double unknown_s);
+
 /// A motion between two odometry poses: turn, drive, turn.
 struct TurnDriveTurn {
   double rot1_rad = 0.0;
