@@ -83,8 +83,9 @@ bool SurfaceTrack::is_due() const {
          since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad;
 }
 
-void SurfaceTrack::carry(const ScanInstant& now) {
-  if (leads_) step_to(now, last_->velocity);
+RefinedPose SurfaceTrack::carry(const ScanInstant& now) {
+  step_to(now, last_->velocity);
+  return filter_.believed();
 }
 
 RefinedPose SurfaceTrack::observe(const Seen& seen) {

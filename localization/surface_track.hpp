@@ -42,8 +42,8 @@ class SurfaceTrack {
 
   /// The pose at one more scan. It may have ceased to lead.
   RefinedPose observe(const Seen& seen);
-  /// No scan has come for long: along with the wheels.
-  void carry(const ScanInstant& now);
+  /// No scan has come for long: along with the wheels. While it leads.
+  RefinedPose carry(const ScanInstant& now);
 
   /// Running mean of the share of ends on surfaces that stand where the map has them; 0 where it does not lead.
   [[nodiscard]] double holding_share() const { return leads_ ? holding_ : 0.0; }

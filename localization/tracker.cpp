@@ -80,12 +80,7 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field});
   const Pose2& pose = answer.believed.map_from_robot;
   if (!surfaces_->leads()) {
-    const PoseCovariance& spread = answer.believed.covariance;
-    const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
-    const double deviation_rad = std::sqrt(std::max(0.0, spread(2, 2)));
-    (void)start_around(
-        {pose, std::max(params_.motion.slip_m, deviation_m), std::max(params_.motion.slip_rad, deviation_rad)},
-        seen.now);
+    go_on_from(answer.believed, seen.now);
     return update(seen, {});
   }
   answer.n_eff = static_cast<double>(particle_count());
@@ -93,6 +88,16 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   best_ = {pose, answer.believed.covariance, 1.0};
   last_update_ = seen.now;
   return answer;
+}
+
+/// The particles take over from the surfaces. These may have erred by as much as a slip.
+void Tracker::go_on_from(const RefinedPose& believed, const ScanInstant& now) {
+  const PoseCovariance& spread = believed.covariance;
+  const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
+  const double deviation_rad = std::sqrt(std::max(0.0, spread(2, 2)));
+  (void)start_around({believed.map_from_robot, std::max(params_.motion.slip_m, deviation_m),
+                      std::max(params_.motion.slip_rad, deviation_rad)},
+                     now);
 }
 
 void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
@@ -107,8 +112,10 @@ void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
 void Tracker::carry(const ScanInstant& now) {
   if (!last_update_) return;
   if (surfaces_ && surfaces_->leads()) {
-    surfaces_->carry(now);
-    last_update_ = now;
+    const RefinedPose believed = surfaces_->carry(now);
+    surfaces_->cease();
+    go_on_from(believed, now);
+    track_.after_scan(now, believed);
     return;
   }
   const MotionSince since = motion_since(*last_update_, now, params_.update.time_s);

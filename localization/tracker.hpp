@@ -87,6 +87,7 @@ class Tracker {
   Answer update(const Seen& seen, const MotionSince& since);
   Answer follow(const Seen& seen, const MotionSince& since);
   Answer led_by_surfaces(const Seen& seen);
+  void go_on_from(const RefinedPose& believed, const ScanInstant& now);
   void let_surfaces_lead(const Seen& seen, Answer& answer);
   [[nodiscard]] bool update_due(const MotionSince& since) const;
   [[nodiscard]] std::span<const std::int32_t> weighed(const Seen& seen);
