@@ -91,15 +91,25 @@ class Rivals {
   void thin(const Seen& seen);
   void weigh(const LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
-  void probe(const LikelihoodField& field, const Pose2& joined);
-  void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined, double own_fit);
-  void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
-  /// By how much log evidence the scans of the last metres speak for a pose, of which they say `its`, against another.
-  /// While a pose is believed, only those since the robot may have been carried off: since when they speak for it most.
-  [[nodiscard]] double ahead_of(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
+  [[nodiscard]] Pose2 driven(const std::optional<Pose2>& believed_before, const Seen& seen,
+                             const Pose2& by_wheels) const;
+  void probe(const LikelihoodField& field);
+  void admit_rival(const LikelihoodField& field, const Pose2& rough, double own_fit);
+  void admit_all(const LikelihoodField& field, std::span<const Pose2> poses);
+  /// Of a place that has only now come to mind, against the best that is known.
+  struct Odds {
+    double ahead = 0.0;      ///< log evidence of the scans of the last metres
+    double log_prior = 0.0;  ///< log odds before any scan
+  };
+  /// Either the robot has just been carried there: then only the scans since that moment speak, but nobody carries
+  /// robots about. Or it has been there since the believed place was found, and the search has overlooked it: then all
+  /// scans speak. The likelier of the two.
+  [[nodiscard]] Odds odds_beside_believed(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
+  [[nodiscard]] Odds odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
+                                     const ScanStack::Sums& others) const;
   /// What a place that has only now come to mind brings with it, had the robot been carried there lately; nothing where
   /// no pose is believed.
-  [[nodiscard]] Comparison brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const;
+  [[nodiscard]] Comparison brought_by(const LikelihoodField& field, const Pose2& pose) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
 
@@ -115,6 +125,7 @@ class Rivals {
   SurfaceNovelty novelty_;
   UsualMisfit usual_misfit_;
   std::optional<Pose2> last_joined_;
+  Pose2 way_from_robot_;  ///< the way that was driven, from anywhere: joins the scans of the stack
   bool believing_ = false;
   bool suspicious_ = false;
   double elsewhere_prior_;

@@ -26,11 +26,13 @@ class Round {
   [[nodiscard]] const Pose2& truth() const { return truth_; }
 
   void carry_to(const Pose2& truth) { truth_ = truth; }
+  /// The wheels count each turn so many times.
+  void let_wheels_turn(double times) { wheels_turn_ = times; }
 
   const RivalReport& step(std::optional<Pose2> believed, double held = 0.0) {
     const Pose2 motion = kMotion;
     truth_ = truth_ * motion;
-    joined_ = joined_ * motion;
+    joined_ = joined_ * Pose2{motion.x, motion.y, wheels_turn_ * motion.theta};
     const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
     return rivals_.observe(field_, {.ends = scoring_ends(scan, deskewed(scan, {}), 0),
                                     .joined_from_robot = joined_,
@@ -42,6 +44,7 @@ class Round {
   const OccupancyGrid& world_;
   Pose2 truth_;
   Pose2 joined_;
+  double wheels_turn_ = 1.0;
   Random random_;
   LikelihoodField field_;
   Rivals rivals_;
@@ -60,6 +63,30 @@ TEST(Rivals, LeaveNearlyAllBeliefToAPoseThatFits) {
     ASSERT_TRUE(report.own_known);
     ASSERT_GT(report.own_share, 0.98) << i;
   }
+}
+
+/// The least share of the belief that a right pose, which a search has found, holds while the whole map is searched
+/// beside it.
+double least_share_after_search(double wheels_turn) {
+  const OccupancyGrid map = test::drawn_flat();
+  Round round{map, map, {1.6, 1.0, 0.0}, 1};
+  round.let_wheels_turn(wheels_turn);
+  round.rivals().start_anywhere();
+  for (int i = 0; i < 50; ++i) (void)round.step(std::nullopt);
+  round.rivals().start_believing_in(round.truth());
+  round.rivals().suspect(true);
+  double least = 1.0;
+  for (int i = 0; i < 150; ++i) {
+    const double share = round.step(round.truth() * kMotion).own_share;
+    if (i >= 20) least = std::min(least, share);
+  }
+  return least;
+}
+
+TEST(Rivals, LeaveMostBeliefToAPoseThatWasFoundAndFits) { EXPECT_GT(least_share_after_search(1.0), 0.8); }
+
+TEST(Rivals, JoinScansAsTheBelievedPoseHasMovedWhereTheWheelsCountPoorly) {
+  EXPECT_GT(least_share_after_search(1.2), 0.8);
 }
 
 TEST(Rivals, FindPlacesThatFitAsWellAndNeverPreferThem) {
