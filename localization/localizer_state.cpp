@@ -18,6 +18,8 @@ constexpr double kTrustInNothing = 0.1;  // and before there is any
 constexpr double kScansLagS = 0.5;    // a scan is at most so much older than the newest report of the wheels
 constexpr double kScansCeaseS = 5.0;  // without a scan: the particles go along with the wheels, step by step
 
+constexpr double kAsWell = 0.05;  // share of the ends that a place may explain less
+
 // A search has only begun: the whole map has been looked at twice at most.
 constexpr double kSearchBeginsM = 1.0;
 const double kSearchBeginsRad = radians(90.0);
@@ -181,8 +183,27 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
     ++counts.recoveries;
     return believe_in(winner, now);
   }
+  const double as_well = explained_share(field, ends, winner) - kAsWell;
+  if (const std::optional<Pose2> near = explained_nearby(tracked.believed.map_from_robot, as_well)) {
+    ++counts.recoveries;
+    return believe_in(*near, now);
+  }
   doubt(tracked.believed.map_from_robot, now);
   return tracked.believed;
+}
+
+/// Robots slip more often than they are carried away: where the wheels may have slipped to, the scan may fit too.
+std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, double share) const {
+  const PoseCovariance spread = slip_covariance(params.motion, believed.theta);
+  std::optional<Pose2> nearest;
+  for (const Pose2& from : slips_around(params.motion, believed)) {
+    const Pose2 slid = refined(field, ends, {from, spread}, 1.0, params.refinement).map_from_robot;
+    const double explained = explained_share(field, ends, slid);
+    if (explained < share) continue;
+    share = explained;
+    nearest = slid;
+  }
+  return nearest;
 }
 
 const BeamEnds& Localizer::State::weighing_ends(const ScanInstant& now) {

@@ -82,6 +82,7 @@ struct Localizer::State {
   /// Those that weigh the believed pose: without what stands about for now, where enough are left.
   const BeamEnds& weighing_ends(const ScanInstant& now);
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
+  [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
   [[nodiscard]] bool has_won(const RivalPlace& place, const Pose2& believed) const;
   /// Surfaces that stand where the map has them fix the pose.
   [[nodiscard]] bool is_held_by_surfaces() const;

@@ -23,6 +23,22 @@ PoseCovariance covariance_along(double direction_rad, double along_m2, double as
   return covariance;
 }
 
+std::vector<Pose2> slips_around(const MotionModelParams& params, const Pose2& pose) {
+  std::vector<Pose2> poses;
+  for (const double turn : {0.0, -0.5, 0.5, -1.0, 1.0, -1.5, 1.5, -2.0, 2.0}) {  // deviations
+    for (const double ahead : {0.0, -0.75, 0.75, -1.5, 1.5}) {
+      poses.push_back(pose * Pose2{ahead * params.slip_m, 0.0, turn * params.slip_rad});
+    }
+  }
+  return poses;
+}
+
+PoseCovariance unknown_motion_covariance(const MotionModelParams& params, double unknown_s) {
+  const double unknown_m = params.unknown_speed_m_per_s * unknown_s;
+  const double unknown_rad = params.unknown_turn_rate_rad_per_s * unknown_s;
+  return Eigen::Vector3d{unknown_m * unknown_m, unknown_m * unknown_m, unknown_rad * unknown_rad}.asDiagonal();
+}
+
 PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad) {
   const double aside_m = kSlipSideways * params.slip_m;
   return covariance_along(heading_rad, params.slip_m * params.slip_m, aside_m * aside_m,

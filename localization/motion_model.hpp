@@ -3,6 +3,8 @@
 // 2005, Table 5.6. A motion is a turn, a straight line and a turn; each gets noise in proportion to the others.
 #pragma once
 
+#include <vector>
+
 #include "core/angle.hpp"
 #include "core/pose2.hpp"
 #include "core/random.hpp"
@@ -33,6 +35,12 @@ inline constexpr double kSlipSideways = 0.25;
 
 /// Of a robot's pose in the map once its wheels have slipped, by the model.
 [[nodiscard]] PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad);
+
+/// Poses about one, as far apart as slips may take the robot: to slide from.
+[[nodiscard]] std::vector<Pose2> slips_around(const MotionModelParams& params, const Pose2& pose);
+
+/// Added to a pose by so many seconds without odometry, by the model: variances.
+[[nodiscard]] PoseCovariance unknown_motion_covariance(const MotionModelParams& params, double unknown_s);
 
 /// A motion between two odometry poses: turn, drive, turn.
 struct TurnDriveTurn {

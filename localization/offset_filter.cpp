@@ -4,17 +4,17 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "localization/normal_equations.hpp"
+#include "localization/surface_measurement.hpp"
 
 namespace deltamap::localization {
 namespace {
 
-constexpr double kRangeDeviationM = 0.015;  // of one beam, laser and surface together
-constexpr double kDistanceFloorM = 0.01;    // what all beams on one surface err together
-constexpr double kSlopeFloorRad = 0.004;
-constexpr double kLeastSpreadM2 = 0.02;    // of the ends along a surface, for its direction to be told
 constexpr double kStrange = 16.0;          // squared deviations: not where it was expected
+constexpr double kSlipOdds = 7.0;          // nats against one: a slip in 200 m, keyframes of 0.2 m
+constexpr double kDoubtsAgainM = 1.0;      // driven between two looks for a slip that lies behind
 constexpr int kMisfitsOfAChange = 3;       // in a row: it was moved while in view
 constexpr double kForgottenAfterM = 15.0;  // driven without a view of it
 constexpr std::size_t kMostFollowed = 32;
@@ -27,33 +27,6 @@ constexpr double kReassignRad = 0.005;
 constexpr double kFarthestM = 0.3;  // that ends on no surface may move the pose
 constexpr double kFarthestRad = 0.18;
 constexpr int kRestSteps = 6;
-
-/// What a sighting measures: the distance from where the surface is believed, and the turn against it, 0 expected.
-struct Measurement {
-  SparseRow distance;
-  SparseRow turn;
-  double distance_m;
-  double turn_rad;
-  double distance_variance;
-  double turn_variance;
-  bool has_turn;
-};
-
-/// With the robot at `at`; the rows are over the whole state.
-Measurement measurement_of(const Sighting& sighting, const Pose2& at, Eigen::Index offset) {
-  const Sighting::Measured seen = sighting.measured(at);
-  const Point2& n = sighting.surface.normal;
-  const double by_turn_m = n.y() * seen.lever.x() - n.x() * seen.lever.y();
-  const double beam2 =
-      std::max(kRangeDeviationM * kRangeDeviationM, seen.across_m2 / std::max(1.0, sighting.beams - 2.0));
-  return {.distance = {{{{0, n.x()}, {1, n.y()}, {2, by_turn_m}, {offset, -1.0}, {offset + 1, -seen.along_m}}}, 5},
-          .turn = {{{{2, -1.0}, {offset + 1, -1.0}}}, 2},
-          .distance_m = seen.distance_m,
-          .turn_rad = seen.slope,
-          .distance_variance = beam2 / sighting.beams + kDistanceFloorM * kDistanceFloorM,
-          .turn_variance = beam2 / std::max(1e-6, seen.spread_m2) + kSlopeFloorRad * kSlopeFloorRad,
-          .has_turn = seen.spread_m2 > kLeastSpreadM2};
-}
 
 /// What the row gives at the state, where its measurement was taken with the pose at `at`.
 double expected(const SparseRow& row, const Eigen::VectorXd& mean, const Eigen::Vector3d& at) {
@@ -70,37 +43,6 @@ double covariance_of(const SparseRow& a, const SparseRow& b, const Eigen::Matrix
     for (const SparseRow::Entry& q : b.used()) sum += p.value * q.value * covariance(p.index, q.index);
   }
   return sum;
-}
-
-/// Do two pieces touch, as the faces of one thing do?
-bool touch(const Surface& a, const Surface& b) {
-  constexpr double kGapM = 0.4;
-  for (const double p : {-1.0, 1.0}) {
-    for (const double q : {-1.0, 1.0}) {
-      const Point2 end = a.centre + p * a.half_length_m * a.tangent();
-      if ((b.centre + q * b.half_length_m * b.tangent() - end).norm() < kGapM) return true;
-    }
-  }
-  return false;
-}
-
-/// Are there two among them that no chain of touching ones joins?
-bool are_unconnected(std::span<const Sighting* const> sightings) {
-  std::vector<bool> joined(sightings.size());
-  std::vector<std::size_t> open;
-  if (!sightings.empty()) open.push_back(0);
-  std::size_t reached = 0;
-  while (!open.empty()) {
-    const std::size_t at = open.back();
-    open.pop_back();
-    if (joined[at]) continue;
-    joined[at] = true;
-    ++reached;
-    for (std::size_t k = 0; k < sightings.size(); ++k) {
-      if (!joined[k] && touch(sightings[at]->surface, sightings[k]->surface)) open.push_back(k);
-    }
-  }
-  return reached < sightings.size();
 }
 
 }  // namespace
@@ -129,6 +71,7 @@ void OffsetFilter::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox
 void OffsetFilter::carry(const WheelStep& step, const PoseCovariance& added) {
   state_.carry(step, added);
   const double driven_m = step.motion.position().norm();
+  since_doubt_m_ += driven_m;
   for (Visit& visit : visits_) visit.unseen_m += driven_m;
 }
 
@@ -152,11 +95,16 @@ void OffsetFilter::cease(std::size_t surface) {
   if (visits_[surface].id.is_valid()) {
     SurfaceRecord& record = map_.record(visits_[surface].id);
     const double holds = switches_[surface].holds;
-    record.followed_as = SurfaceRecord::kNotFollowed;
     record.visits += 1.0;
     record.held += holds;
     if (holds <= 0.5) record.offset_m = state_.mean()[OffsetState::offset_of(surface)];
   }
+  drop(surface);
+}
+
+/// Without a memory of the visit. To be followed by renumber().
+void OffsetFilter::drop(std::size_t surface) {
+  if (visits_[surface].id.is_valid()) map_.record(visits_[surface].id).followed_as = SurfaceRecord::kNotFollowed;
   state_.remove(surface);
   visits_.erase(visits_.begin() + static_cast<std::ptrdiff_t>(surface));
   switches_.erase(switches_.begin() + static_cast<std::ptrdiff_t>(surface));
@@ -189,24 +137,28 @@ std::span<const Sighting> OffsetFilter::find(const LikelihoodField& field, std::
   });
 }
 
-OffsetFilter::Fit OffsetFilter::fit_of(std::span<const Sighting> sightings) const {
+std::span<const Sighting> OffsetFilter::find_by_map(const LikelihoodField& field, std::span<const FacedEnd> ends,
+                                                    const Pose2& at) {
+  return finder_.find(map_, field, ends, at, [](const SurfaceRecord& record) {
+    return SurfacePlace{record.offset_m, 0.0, kUnknownM};
+  });
+}
+
+std::vector<bool> OffsetFilter::fit_of(std::span<const Sighting> sightings) const {
   const Pose2 at = state_.pose().map_from_robot;
   const Eigen::Vector3d here = state_.mean().head<OffsetState::kPose>();
-  Fit fit;
-  std::vector<const Sighting*> strange;
+  std::vector<bool> fits;
   for (const Sighting& sighting : sightings) {
-    const Measurement seen = measurement_of(sighting, at, OffsetState::offset_of(surface_of(sighting)));
+    const SurfaceMeasurement seen = measurement_of(sighting, at, OffsetState::offset_of(surface_of(sighting)));
     const double cross = covariance_of(seen.distance, seen.turn, state_.covariance());
     Eigen::Matrix2d spread;
     spread << covariance_of(seen.distance, seen.distance, state_.covariance()) + seen.distance_variance, cross, cross,
         covariance_of(seen.turn, seen.turn, state_.covariance()) + (seen.has_turn ? seen.turn_variance : 1.0);
     const Eigen::Vector2d off{seen.distance_m + expected(seen.distance, state_.mean(), here),
                               seen.turn_rad + expected(seen.turn, state_.mean(), here)};
-    fit.fits.push_back(off.dot(spread.inverse() * off) <= kStrange);
-    if (!fit.fits.back()) strange.push_back(&sighting);
+    fits.push_back(off.dot(spread.inverse() * off) <= kStrange);
   }
-  fit.slipped = are_unconnected(strange);
-  return fit;
+  return fits;
 }
 
 void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at) {
@@ -214,7 +166,7 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
   const Eigen::Vector3d here{at.x, at.y, heading + turn_between(heading, at.theta)};
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     if (!fits[i]) continue;
-    const Measurement seen = measurement_of(sightings[i], at, OffsetState::offset_of(surface_of(sightings[i])));
+    const SurfaceMeasurement seen = measurement_of(sightings[i], at, OffsetState::offset_of(surface_of(sightings[i])));
     state_.update(seen.distance, -seen.distance_m - expected(seen.distance, state_.mean(), here),
                   seen.distance_variance);
     if (!seen.has_turn) continue;
@@ -222,37 +174,106 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
   }
 }
 
+/// Where any one surface in view that seems to have moved would stand where the map has it.
+std::vector<Pose2> OffsetFilter::undone_moves(std::span<const Sighting> sightings) const {
+  const Pose2 at = state_.pose().map_from_robot;
+  std::vector<Pose2> poses;
+  for (const Sighting& sighting : sightings) {
+    const std::size_t number = surface_of(sighting);
+    if (switches_[number].holds > 0.5) continue;
+    const Eigen::Index offset = OffsetState::offset_of(number);
+    const Surface& surface = sighting.surface;
+    const Pose2 unturned{0.0, 0.0, -state_.mean()[offset + 1]};
+    const Point2 from_centre = at.position() - state_.mean()[offset] * surface.normal - surface.centre;
+    const Point2 there = surface.centre + unturned * from_centre;
+    poses.push_back({there.x(), there.y(), wrapped_angle(at.theta + unturned.theta)});
+  }
+  return poses;
+}
+
+/// Had the wheels slipped? Only now, where something is not where it was expected; metres ago, where something seems to
+/// have moved. Goes to where the surfaces are clearly better explained.
+bool OffsetFilter::follows_slip(const LikelihoodField& field, std::span<const FacedEnd> ends,
+                                std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                const MotionModelParams& motion) {
+  const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
+  std::vector<Pose2> undone;
+  if (since_doubt_m_ >= kDoubtsAgainM) undone = undone_moves(sightings);
+  if (!is_strange && undone.empty()) return false;
+  since_doubt_m_ = 0.0;
+  const RefinedPose wheels = state_.pose();
+  const auto number_of = [&](SurfaceMap::Id id) { return map_.record(id).followed_as; };
+  const auto as_followed = [&](const Pose2& at) { return find(field, ends, at); };
+  const auto as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); };
+  const SlipReading no_slip{state_, switches_, PoseCovariance::Zero()};
+  const double usual = no_slip.best_near(wheels.map_from_robot, as_followed, number_of).evidence;
+  SlipReading::Answer best;
+  best.evidence = usual + kSlipOdds;
+  PoseCovariance slip = PoseCovariance::Zero();
+  const auto look = [&](std::span<const Pose2> poses, const PoseCovariance& spread, auto&& seen_from) {
+    const SlipReading reading{state_, switches_, spread};
+    for (const Pose2& pose : poses) {
+      SlipReading::Answer there = reading.best_near(pose, seen_from, number_of);
+      if (there.evidence <= best.evidence) continue;
+      best = std::move(there);
+      slip = spread;
+    }
+  };
+  const PoseCovariance now = slip_covariance(motion, wheels.map_from_robot.theta);
+  if (is_strange) look(slips_around(motion, wheels.map_from_robot), now, as_followed);
+  const double aside_m = 0.5 * kForgottenAfterM * motion.slip_rad;  // by a turn that far behind
+  const PoseCovariance behind =
+      now + Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
+  look(undone, behind, as_mapped);
+  if (slip.isZero()) return false;
+  for (std::size_t i = visits_.size(); i-- > 0;) {
+    if (std::find(best.hold_again.begin(), best.hold_again.end(), i) != best.hold_again.end()) drop(i);
+  }
+  renumber();
+  state_.jump(best.pose, slip);
+  return true;
+}
+
+/// The surfaces that the scan shows from a pose, all of them followed.
+std::vector<Sighting> OffsetFilter::followed_from(const LikelihoodField& field, std::span<const FacedEnd> ends,
+                                                  const Pose2& at) {
+  const std::span<const Sighting> found = find(field, ends, at);
+  std::vector<Sighting> sightings{found.begin(), found.end()};
+  std::stable_sort(sightings.begin(), sightings.end(),
+                   [](const Sighting& a, const Sighting& b) { return a.beams > b.beams; });
+  if (sightings.size() > kMostSightings) sightings.resize(kMostSightings);
+  for (const Sighting& sighting : sightings) follow(sighting);
+  return sightings;
+}
+
 OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span<const FacedEnd> ends,
-                                         double rest_share, bool may_slip) {
+                                         double rest_share, const MotionModelParams& motion) {
   Seen seen;
   if (ends.empty()) return seen;
-  const auto most_beams = [](const Sighting& a, const Sighting& b) { return a.beams > b.beams; };
-  std::vector<Sighting> sightings;
-  Fit fit;
-  OffsetState before;
-  for (const bool again : {false, true}) {
-    const Pose2 at = state_.pose().map_from_robot;
-    const std::span<const Sighting> found = find(field, ends, at);
-    if (again) state_ = before;
-    sightings.assign(found.begin(), found.end());
-    std::stable_sort(sightings.begin(), sightings.end(), most_beams);
-    if (sightings.size() > kMostSightings) sightings.resize(kMostSightings);
-    for (const Sighting& sighting : sightings) follow(sighting);
-    before = state_;
-    fit = fit_of(sightings);
-    seen.slipped = may_slip && !again && fit.slipped;
-    if (seen.slipped) return seen;
-    correct_by(sightings, fit.fits, at);
-    const Pose2 now = state_.pose().map_from_robot;
-    if (distance_between(now, at) <= kReassignM && std::abs(turn_between(now.theta, at.theta)) <= kReassignRad) break;
+  std::vector<Sighting> sightings = followed_from(field, ends, state_.pose().map_from_robot);
+  std::vector<bool> fits = fit_of(sightings);
+  seen.slipped = follows_slip(field, ends, sightings, fits, motion);
+  const Pose2 at = state_.pose().map_from_robot;
+  if (seen.slipped) {
+    sightings = followed_from(field, ends, at);
+    fits = fit_of(sightings);
   }
-  note_visits(sightings, fit.fits);
+  OffsetState before = state_;
+  correct_by(sightings, fits, at);
+  const Pose2 now = state_.pose().map_from_robot;
+  if (distance_between(now, at) > kReassignM || std::abs(turn_between(now.theta, at.theta)) > kReassignRad) {
+    std::swap(state_, before);
+    sightings = followed_from(field, ends, now);
+    fits = fit_of(sightings);
+    correct_by(sightings, fits, at);
+  }
+  note_visits(sightings, fits);
   correct_by_rest(field, rest_share);
   settle(switches_, state_);
   const auto count = static_cast<double>(ends.size());
   seen.straight = 1.0 - static_cast<double>(finder_.rest().size()) / count;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
-    if (fit.fits[i] && switches_[surface_of(sightings[i])].holds > 0.5) seen.holding += sightings[i].beams / count;
+    if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5) seen.holding += sightings[i].beams / count;
   }
   cease_where_long_unseen();
   return seen;
@@ -291,9 +312,7 @@ void OffsetFilter::correct_by_rest(const LikelihoodField& field, double share) {
 
 double OffsetFilter::straight_share(const LikelihoodField& field, std::span<const FacedEnd> ends, const Pose2& pose) {
   if (ends.empty()) return 0.0;
-  (void)finder_.find(map_, field, ends, pose, [](const SurfaceRecord& record) {
-    return SurfacePlace{record.offset_m, 0.0, kUnknownM};
-  });
+  (void)find_by_map(field, ends, pose);
   return 1.0 - static_cast<double>(finder_.rest().size()) / static_cast<double>(ends.size());
 }
 

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "localization/likelihood_field.hpp"
+#include "localization/motion_model.hpp"
 #include "localization/offset_state.hpp"
+#include "localization/slip_reading.hpp"
 #include "localization/surface_map.hpp"
 #include "localization/surface_sighting.hpp"
 #include "localization/surface_switch.hpp"
@@ -31,18 +33,17 @@ class OffsetFilter {
   struct Seen {
     double straight = 0.0;  ///< on a surface, where it is believed to be
     double holding = 0.0;   ///< on a surface that stands where the map has it
-    bool slipped = false;   ///< things that do not touch seem to have moved at once: nothing of it was used
+    bool slipped = false;   ///< the wheels had slipped: the pose has gone to where the scan is explained
   };
-  /// `rest_share`: what an end that is on no surface counts, in (0, 1]. Where `may_slip` is not set, things have moved,
-  /// however many.
-  Seen observe(const LikelihoodField& field, std::span<const FacedEnd> ends, double rest_share, bool may_slip = true);
+  /// `rest_share`: what an end that is on no surface counts, in (0, 1]. `motion`: how far slips may go.
+  Seen observe(const LikelihoodField& field, std::span<const FacedEnd> ends, double rest_share,
+               const MotionModelParams& motion);
   /// Share of the ends on surfaces of the map, with the robot at a pose.
   [[nodiscard]] double straight_share(const LikelihoodField& field, std::span<const FacedEnd> ends, const Pose2& pose);
 
   [[nodiscard]] RefinedPose believed() const { return state_.pose(); }
   [[nodiscard]] WheelErrors wheels() const { return state_.wheels(); }
   [[nodiscard]] bool is_sound() const { return state_.is_sound(); }
-  [[nodiscard]] std::size_t followed() const { return switches_.size(); }
 
  private:
   struct Visit {
@@ -50,17 +51,23 @@ class OffsetFilter {
     int misfits = 0;        ///< keyframes in a row in which it was not where it was expected
     double unseen_m = 0.0;  ///< driven since it was last in view
   };
-  struct Fit {
-    std::vector<bool> fits;  ///< for each sighting: as expected
-    bool slipped = false;
-  };
   [[nodiscard]] std::span<const Sighting> find(const LikelihoodField& field, std::span<const FacedEnd> ends,
                                                const Pose2& at);
+  /// As if all stood where the map has it.
+  [[nodiscard]] std::span<const Sighting> find_by_map(const LikelihoodField& field, std::span<const FacedEnd> ends,
+                                                      const Pose2& at);
+  [[nodiscard]] std::vector<Sighting> followed_from(const LikelihoodField& field, std::span<const FacedEnd> ends,
+                                                    const Pose2& at);
+  [[nodiscard]] std::vector<Pose2> undone_moves(std::span<const Sighting> sightings) const;
+  [[nodiscard]] bool follows_slip(const LikelihoodField& field, std::span<const FacedEnd> ends,
+                                  std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                  const MotionModelParams& motion);
   void follow(const Sighting& sighting);
   void cease(std::size_t surface);
+  void drop(std::size_t surface);
   void cease_where_long_unseen();
   void renumber();
-  [[nodiscard]] Fit fit_of(std::span<const Sighting> sightings) const;
+  [[nodiscard]] std::vector<bool> fit_of(std::span<const Sighting> sightings) const;
   void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
   void correct_by_rest(const LikelihoodField& field, double share);
   [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;
@@ -71,6 +78,7 @@ class OffsetFilter {
   OffsetState state_;
   std::vector<SurfaceSwitch> switches_;  ///< of the surfaces of the state, in its order
   std::vector<Visit> visits_;            ///< likewise
+  double since_doubt_m_ = 0.0;           ///< driven since another reading was last looked for
 };
 
 }  // namespace deltamap::localization

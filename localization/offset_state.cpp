@@ -70,6 +70,11 @@ void OffsetState::carry(const WheelStep& step, const PoseCovariance& added) {
   covariance_.diagonal().segment<4>(kPose) += length_m * kWheelWalk;
 }
 
+void OffsetState::jump(const Pose2& to, const PoseCovariance& slip) {
+  mean_.head<kPose>() << to.x, to.y, to.theta;
+  covariance_.topLeftCorner<kPose, kPose>() += slip;
+}
+
 void OffsetState::append(double offset_m, double deviation_m, double deviation_rad) {
   const Eigen::Index size = mean_.size();
   mean_.conservativeResize(size + 2);

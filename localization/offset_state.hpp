@@ -52,6 +52,9 @@ class OffsetState {
   /// `added`: covariance of the step's own noise, map frame.
   void carry(const WheelStep& step, const PoseCovariance& added);
 
+  /// The wheels have slipped: the pose is another one, and less sure. Surfaces stay where they are.
+  void jump(const Pose2& to, const PoseCovariance& slip);
+
   /// Follows one more surface, expected at `offset_m` with these deviations.
   void append(double offset_m, double deviation_m, double deviation_rad);
   /// Ceases to follow surface number `surface`: what it has told of the pose stays.

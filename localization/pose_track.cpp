@@ -29,22 +29,10 @@ void PoseTrack::forget() {
   wheels_.forget_stretch();
 }
 
-PoseTrack::Step PoseTrack::step_to(const ScanInstant& now) const {
-  const ScanInstant& before = last_->instant;
-  const double passed_s = std::max(0.0, seconds(now.time - before.time));
-  if (!now.odometry || !before.odometry) return {{}, passed_s};
-  const bool jumped = now.odometry->epoch != before.odometry->epoch;
-  return {motion_between(before.odometry->joined_from_robot, now.odometry->joined_from_robot),
-          jumped ? passed_s : std::min(now.odometry->uncovered_s, passed_s)};
-}
-
 RefinedPose PoseTrack::expected_at(const ScanInstant& now) const {
-  const Step step = step_to(now);
+  const MotionSince step = step_between(last_->instant, now);
   RefinedPose expected = carried(last_->believed, step.motion, wheels_);
-  const double unknown_m = motion_.unknown_speed_m_per_s * step.unknown_s;
-  const double unknown_rad = motion_.unknown_turn_rate_rad_per_s * step.unknown_s;
-  expected.covariance.diagonal() +=
-      Eigen::Vector3d{unknown_m * unknown_m, unknown_m * unknown_m, unknown_rad * unknown_rad};
+  expected.covariance += unknown_motion_covariance(motion_, step.unknown_s);
   return expected;
 }
 
@@ -64,11 +52,11 @@ RefinedPose PoseTrack::before_scan(const ScanInstant& now, const Hypothesis& par
 
 std::optional<Pose2> PoseTrack::carried_to(const ScanInstant& now) const {
   if (!last_) return std::nullopt;
-  return last_->believed.map_from_robot * step_to(now).motion;
+  return last_->believed.map_from_robot * step_between(last_->instant, now).motion;
 }
 
 void PoseTrack::after_scan(const ScanInstant& now, const RefinedPose& believed) {
-  if (last_) wheels_.learn(step_to(now).motion, believed);
+  if (last_) wheels_.learn(step_between(last_->instant, now).motion, believed);
   last_ = Last{now, believed};
 }
 

@@ -48,11 +48,6 @@ class PoseTrack {
     ScanInstant instant;
     RefinedPose believed;
   };
-  struct Step {
-    Pose2 motion;
-    double unknown_s = 0.0;
-  };
-  [[nodiscard]] Step step_to(const ScanInstant& now) const;
   /// The last estimate, carried by the wheels, and as unsure as they are.
   [[nodiscard]] RefinedPose expected_at(const ScanInstant& now) const;
 

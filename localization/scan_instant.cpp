@@ -27,4 +27,15 @@ MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double
   return since;
 }
 
+MotionSince step_between(const ScanInstant& before, const ScanInstant& now) {
+  MotionSince step;
+  step.passed_s = std::max(0.0, seconds(now.time - before.time));
+  step.unknown_s = step.passed_s;
+  if (!now.odometry || !before.odometry) return step;
+  step.motion = motion_between(before.odometry->joined_from_robot, now.odometry->joined_from_robot);
+  const bool jumped = now.odometry->epoch != before.odometry->epoch;
+  if (!jumped) step.unknown_s = std::min(now.odometry->uncovered_s, step.passed_s);
+  return step;
+}
+
 }  // namespace deltamap::localization

@@ -24,4 +24,7 @@ struct MotionSince {
 /// the epoch has changed too.
 [[nodiscard]] MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double usual_s);
 
+/// From one scan to the next: where the epoch has changed, nothing is known of what passed between.
+[[nodiscard]] MotionSince step_between(const ScanInstant& before, const ScanInstant& now);
+
 }  // namespace deltamap::localization

@@ -228,4 +228,12 @@ std::vector<Surface> surfaces_in(const OccupancyGrid& map, const CellBox& box) {
   return surfaces;
 }
 
+bool are_one_face(const Surface& a, const Surface& b) {
+  constexpr double kOneLineM = 0.1;  // between their lines
+  constexpr double kGapM = 0.5;
+  const Point2 way = b.centre - a.centre;
+  return a.normal.dot(b.normal) >= 0.99 && std::abs(a.normal.dot(way)) <= kOneLineM &&
+         std::abs(a.tangent().dot(way)) <= a.half_length_m + b.half_length_m + kGapM;
+}
+
 }  // namespace deltamap::localization

@@ -38,6 +38,9 @@ struct Surface {
   }
 };
 
+/// Pieces of one straight face, or of two that stand in line?
+[[nodiscard]] bool are_one_face(const Surface& a, const Surface& b);
+
 /// The surfaces whose contour cells lie in the box, in a fixed order. They are cut at the box's border: what a surface
 /// is depends on the map within three cells of the box alone.
 [[nodiscard]] std::vector<Surface> surfaces_in(const OccupancyGrid& map, const CellBox& box);

@@ -16,13 +16,14 @@ constexpr double kAlikeCosine = 0.9994;  // 2°
 
 int tiles_in(int cells, int side) { return (cells + side - 1) / side; }
 
-}  // namespace
-
+/// The same piece of a line, give or take what a redrawn map moves it by.
 bool lies_alike(const Surface& a, const Surface& b) {
   return a.normal.dot(b.normal) >= kAlikeCosine && std::abs(a.normal.dot(b.centre - a.centre)) <= kAlikeM &&
          std::abs(a.tangent().dot(b.centre - a.centre)) <= kAlikeAlongM &&
          std::abs(a.half_length_m - b.half_length_m) <= kAlikeAlongM;
 }
+
+}  // namespace
 
 SurfaceMap::SurfaceMap(std::shared_ptr<const OccupancyGrid> map)
     : map_{std::move(map)},

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -72,8 +71,5 @@ class SurfaceMap {
   int rows_;
   std::unordered_map<std::int32_t, std::vector<SurfaceRecord>> tiles_;
 };
-
-/// The same piece of a line, give or take what a redrawn map moves it by.
-[[nodiscard]] bool lies_alike(const Surface& a, const Surface& b);
 
 }  // namespace deltamap::localization

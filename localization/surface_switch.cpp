@@ -14,8 +14,6 @@ constexpr int kSweeps = 3;
 constexpr double kDamping = 0.7;   // share of a change that is made at once
 constexpr double kSettled = 1e-3;  // a smaller change, as a share, is none
 constexpr double kSurestOdds = 30.0;
-constexpr double kOneLineM = 0.1;  // between the lines of two pieces of one face
-constexpr double kOneFaceGapM = 0.5;
 constexpr double kAlikeM = 0.05;  // between their offsets
 
 /// An offset and turn as they would be known without the surface's own switch.
@@ -54,12 +52,6 @@ double log_odds(const SurfaceSwitch& of, const Cavity& cavity) {
   const double wider = precision[0] * precision[1] * expected.determinant();
   return std::log(of.prior / (1.0 - of.prior)) + 0.5 * std::log(narrower / wider) -
          0.5 * off.dot(expected.inverse() * off);
-}
-
-bool are_one_face(const Surface& a, const Surface& b) {
-  const Point2 way = b.centre - a.centre;
-  return a.normal.dot(b.normal) >= 0.99 && std::abs(a.normal.dot(way)) <= kOneLineM &&
-         std::abs(a.tangent().dot(way)) <= a.half_length_m + b.half_length_m + kOneFaceGapM;
 }
 
 bool stand_off_alike(const OffsetState& state, std::size_t a, std::size_t b) {

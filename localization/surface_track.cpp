@@ -5,53 +5,21 @@
 #include <cmath>
 #include <utility>
 
-#include "localization/pose_refinement.hpp"
-#include "localization/weighing.hpp"
-
 namespace deltamap::localization {
 namespace {
 
 constexpr double kLeadsAbove = 0.82;  // share of ends on straight surfaces: what a hall of walls and containers shows
 constexpr double kCeasesBelow = 0.3;
+// What one Gaussian can hold, that surfaces are told apart from.
+constexpr double kOnePlaceM = 0.15;
+const double kOnePlaceRad = radians(4.0);
 constexpr double kNewest = 0.1;             // share of one keyframe in the running means
 constexpr double kKeyframeM = 0.2;          // driven,
 const double kKeyframeRad = radians(10.0);  // or turned,
 constexpr double kUnsureM = 0.01;           // or as unsure as what a surface tells
 constexpr double kUnsureRad = 0.004;
-constexpr double kStrangest = 25.0;      // squared deviations: a slip is no measure of how the wheels usually do
-constexpr double kLongestStepM = 0.5;    // of one correction
-constexpr double kClearlyBetter = 0.15;  // share of ends that the map explains
-
-BeamEnds all_of(std::span<const FacedEnd> faced) {
-  BeamEnds ends;
-  for (const FacedEnd& end : faced) {
-    ends.x_m.push_back(static_cast<float>(end.at.x()));
-    ends.y_m.push_back(static_cast<float>(end.at.y()));
-  }
-  return ends;
-}
-
-/// The place near the one that the wheels tell where the scan fits the map clearly better; none where no such is.
-std::optional<RefinedPose> where_it_slipped_to(const SurfaceTrack::Seen& seen, const RefinedPose& by_wheels,
-                                               const MotionModelParams& motion) {
-  const BeamEnds ends = all_of(seen.faced);
-  const Pose2& from = by_wheels.map_from_robot;
-  const PoseCovariance spread = slip_covariance(motion, from.theta);
-  double best_share = explained_share(seen.field, ends, from) + kClearlyBetter;
-  std::optional<RefinedPose> best;
-  for (const double turn : {0.0, -0.5, 0.5, -1.0, 1.0, -1.5, 1.5, -2.0, 2.0}) {  // deviations of a slip
-    for (const double ahead : {0.0, -0.75, 0.75, -1.5, 1.5}) {
-      const Pose2 start = from * Pose2{ahead * motion.slip_m, 0.0, turn * motion.slip_rad};
-      RefinedPose slid = refined(seen.field, ends, {start, spread}, 1.0, RefinementParams{});
-      const double share = explained_share(seen.field, ends, slid.map_from_robot);
-      if (share <= best_share) continue;
-      best_share = share;
-      slid.covariance += by_wheels.covariance + Eigen::Vector3d{9e-4, 9e-4, 1e-4}.asDiagonal().toDenseMatrix();
-      best = slid;
-    }
-  }
-  return best;
-}
+constexpr double kStrangest = 25.0;    // squared deviations: a slip is no measure of how the wheels usually do
+constexpr double kLongestStepM = 0.5;  // of one correction
 
 }  // namespace
 
@@ -80,9 +48,7 @@ RefinedPose SurfaceTrack::lead_from(const RefinedPose& at, const Seen& seen) {
 
 PoseCovariance SurfaceTrack::noise(const Pose2& motion, double unknown_s) const {
   PoseCovariance added = wheels_.added(motion, filter_.believed().map_from_robot.theta);
-  const double unknown_m = motion_.unknown_speed_m_per_s * unknown_s;
-  const double unknown_rad = motion_.unknown_turn_rate_rad_per_s * unknown_s;
-  added.diagonal() += Eigen::Vector3d{unknown_m * unknown_m, unknown_m * unknown_m, unknown_rad * unknown_rad};
+  added += unknown_motion_covariance(motion_, unknown_s);
   // Raised where corrections exceed what was expected, never lowered.
   added.topLeftCorner<2, 2>() *= std::max(1.0, surprise_m_);
   added(2, 2) *= std::max(1.0, surprise_rad_);
@@ -90,18 +56,14 @@ PoseCovariance SurfaceTrack::noise(const Pose2& motion, double unknown_s) const 
 }
 
 void SurfaceTrack::step_to(const ScanInstant& now, const BodyVelocity& velocity) {
-  const ScanInstant& before = last_->instant;
-  const double passed_s = std::max(0.0, seconds(now.time - before.time));
-  WheelStep step;
-  double unknown_s = passed_s;
-  if (now.odometry && before.odometry) {
-    step.motion = motion_between(before.odometry->joined_from_robot, now.odometry->joined_from_robot);
+  const MotionSince since = step_between(last_->instant, now);
+  WheelStep step{.motion = since.motion};
+  if (now.odometry && last_->instant.odometry) {
     step.speed_change_m_per_s = velocity.speed_m_per_s - last_->velocity.speed_m_per_s;
     step.turn_rate_change_rad_per_s = velocity.turn_rate_rad_per_s - last_->velocity.turn_rate_rad_per_s;
-    if (now.odometry->epoch == before.odometry->epoch) unknown_s = std::min(now.odometry->uncovered_s, passed_s);
   }
   const Pose2 corrected = filter_.corrected(step);
-  const PoseCovariance added = noise(corrected, unknown_s);
+  const PoseCovariance added = noise(corrected, since.unknown_s);
   filter_.carry(step, added);
   last_ = Last{now, velocity};
   if (!since_) return;
@@ -109,6 +71,10 @@ void SurfaceTrack::step_to(const ScanInstant& now, const BodyVelocity& velocity)
   since_->corrected = since_->corrected * corrected;
   since_->variance_m2 += std::max(added(0, 0), added(1, 1));
   since_->variance_rad2 += added(2, 2);
+}
+
+bool SurfaceTrack::is_one_place(const PoseCovariance& spread) {
+  return spread(0, 0) + spread(1, 1) < kOnePlaceM * kOnePlaceM && spread(2, 2) < kOnePlaceRad * kOnePlaceRad;
 }
 
 bool SurfaceTrack::is_due() const {
@@ -123,6 +89,10 @@ void SurfaceTrack::carry(const ScanInstant& now) {
 
 RefinedPose SurfaceTrack::observe(const Seen& seen) {
   step_to(seen.now, seen.velocity);
+  if (!is_one_place(filter_.believed().covariance)) {
+    cease();
+    return filter_.believed();
+  }
   return is_due() && !seen.faced.empty() ? keyframe(seen) : filter_.believed();
 }
 
@@ -130,22 +100,17 @@ RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
   const double share =
       std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, seen.faced.size())));
   const RefinedPose before = filter_.believed();
-  OffsetFilter::Seen shown = filter_.observe(seen.field, seen.faced, share);
-  const bool slipped = shown.slipped;
-  if (slipped) {
-    const std::optional<RefinedPose> there = where_it_slipped_to(seen, before, motion_);
-    if (there) filter_.start(*there);
-    shown = filter_.observe(seen.field, seen.faced, share, false);
-    wheels_.forget_stretch();
-  }
+  const OffsetFilter::Seen shown = filter_.observe(seen.field, seen.faced, share, motion_);
+  if (shown.slipped) wheels_.forget_stretch();
   const RefinedPose after = filter_.believed();
-  const bool runs_away = !slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
+  const bool runs_away =
+      !shown.slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
   if (!filter_.is_sound() || runs_away) {
     filter_.start(before);
     cease();
     return before;
   }
-  if (since_ && !slipped) {
+  if (since_ && !shown.slipped) {
     learn_noise(before, after);
     wheels_.learn(since_->corrected, after);
   }

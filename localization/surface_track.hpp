@@ -29,6 +29,9 @@ class SurfaceTrack {
     std::span<const FacedEnd> faced;
     const LikelihoodField& field;
   };
+  /// Is a pose sure enough to tell the surfaces around it apart?
+  [[nodiscard]] static bool is_one_place(const PoseCovariance& spread);
+
   [[nodiscard]] bool leads() const { return leads_; }
   /// Looks at a scan while the particles lead. True where straight surfaces have explained the scans of late.
   [[nodiscard]] bool could_lead(const Seen& seen, const Pose2& map_from_robot);
@@ -44,7 +47,6 @@ class SurfaceTrack {
 
   /// Running mean of the share of ends on surfaces that stand where the map has them; 0 where it does not lead.
   [[nodiscard]] double holding_share() const { return leads_ ? holding_ : 0.0; }
-  [[nodiscard]] const OffsetFilter& filter() const { return filter_; }
 
  private:
   struct Last {

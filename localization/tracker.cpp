@@ -13,8 +13,6 @@ namespace {
 
 // The particles lie as close as one Gaussian that surfaces can go on from.
 constexpr double kOnePlaceShare = 0.98;
-constexpr double kOnePlaceM = 0.15;
-const double kOnePlaceRad = radians(4.0);
 
 constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are spread once a slip fits best
 
@@ -86,15 +84,21 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   answer.n_eff = static_cast<double>(particle_count());
   const Pose2& pose = answer.believed.map_from_robot;
   if (seen.ends.size() > 0) answer.w_avg = mean_likelihood(seen.field, seen.ends, pose);
-  if (!surfaces_->leads()) (void)start_around({pose, params_.motion.slip_m, params_.motion.slip_rad}, seen.now);
+  if (!surfaces_->leads()) {
+    const PoseCovariance& spread = answer.believed.covariance;
+    const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
+    const double deviation_rad = std::sqrt(std::max(0.0, spread(2, 2)));
+    (void)start_around(
+        {pose, std::max(params_.motion.slip_m, deviation_m), std::max(params_.motion.slip_rad, deviation_rad)},
+        seen.now);
+  }
   best_ = {pose, answer.believed.covariance, 1.0};
   return answer;
 }
 
 void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
   const PoseCovariance& spread = best_.covariance;
-  const bool one_place = best_.weight > kOnePlaceShare && spread(0, 0) + spread(1, 1) < kOnePlaceM * kOnePlaceM &&
-                         spread(2, 2) < kOnePlaceRad * kOnePlaceRad;
+  const bool one_place = best_.weight > kOnePlaceShare && SurfaceTrack::is_one_place(spread);
   const SurfaceTrack::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field};
   if (!one_place || !surfaces_->could_lead(by_surfaces, answer.believed.map_from_robot)) return;
   answer.believed =

@@ -78,8 +78,6 @@ class Tracker {
 
   /// Of late, the share of ends on surfaces that stand where the map has them; 0 while the particles lead.
   [[nodiscard]] double holding_share() const;
-  /// The surfaces that lead at times; null where they never do.
-  [[nodiscard]] const SurfaceTrack* surfaces() const { return surfaces_.get(); }
 
   /// The heaviest hypothesis at the last update.
   [[nodiscard]] const Hypothesis& best() const { return best_; }

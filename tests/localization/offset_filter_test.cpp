@@ -9,6 +9,7 @@
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
+#include "localization/surface_track.hpp"
 #include "tests/support/container_hall.hpp"
 
 namespace deltamap::localization {
@@ -118,6 +119,11 @@ class Drive {
     for (int i = 0; i < steps; ++i) step({metres / steps, 0.0, turn_rad / steps});
   }
   void rearrange(const test::Containers& containers) { world_ = test::world_of(containers); }
+  /// Neither scans nor odometry for so long, in which it moves on.
+  void be_blind(double seconds, const Pose2& robot_from_moved) {
+    truth_ = truth_ * robot_from_moved;
+    odometry_.time += duration_from_seconds(seconds);
+  }
   void slip(const Pose2& robot_from_moved) { truth_ = truth_ * robot_from_moved; }
   [[nodiscard]] double error_m() const { return distance_between(truth_, believed_); }
   [[nodiscard]] double worst_m() const { return worst_m_; }
@@ -195,6 +201,50 @@ TEST(SurfaceTrack, FindsThePoseAgainAfterASlip) {
   EXPECT_LT(drive.error_m(), 0.05);
 }
 
+TEST(SurfaceTrack, FindsThePoseAtOnceAfterALargeSlip) {
+  for (const Pose2& slip : {Pose2{-0.3, 0.0, 0.0}, Pose2{0.0, 0.0, 0.15}, Pose2{0.2, 0.0, -0.12}}) {
+    Drive drive{test::containers_in_order(), true};
+    drive.go(5.0, 0.0);
+    drive.slip(slip);
+    drive.go(0.3, 0.0);
+    EXPECT_LT(drive.error_m(), 0.05) << slip.x << " m, " << slip.theta << " rad";
+  }
+}
+
+TEST(SurfaceTrack, FindsASlipThatLooksLikeAMovedWallOnceOtherSurfacesTell) {
+  Drive drive{test::containers_in_order(), true};
+  drive.go(5.0, 0.0);
+  drive.slip({0.3, 0.0, 0.0});  // along the aisle: only the wall at its end is not where it was
+  drive.go(2.0, 0.0);
+  drive.go(0.0, radians(90.0));
+  drive.go(3.0, 0.0);
+  EXPECT_LT(drive.error_m(), 0.05);
+}
+
+TEST(SurfaceTrack, TakesASlipForNoChangeOfTheHall) {
+  // Of four containers one has been shifted before: where it stands is known when the wheels slip.
+  Drive drive{test::containers_in_order(), true};
+  drive.go(3.0, 0.0);
+  drive.rearrange(shifted());
+  drive.go(5.0, 0.0);
+  drive.go(0.0, radians(90.0));
+  drive.go(2.0, 0.0);
+  drive.slip({-0.2, 0.0, 0.1});
+  drive.go(0.5, 0.0);
+  EXPECT_LT(drive.error_m(), 0.06);
+}
+
+TEST(SurfaceTrack, LeavesAPoseThatIsNotSureToTheParticles) {
+  Drive drive{test::containers_in_order(), true};
+  drive.go(5.0, 0.0);
+  drive.be_blind(20.0, {1.2, 0.0, 0.1});
+  drive.go(2.0, 0.0);
+  EXPECT_LT(drive.error_m(), 0.06);
+  EXPECT_FALSE(SurfaceTrack::is_one_place(Eigen::Vector3d{0.04, 0.0, 0.0}.asDiagonal().toDenseMatrix()));
+  EXPECT_FALSE(SurfaceTrack::is_one_place(Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(SurfaceTrack::is_one_place(Eigen::Vector3d{1e-3, 1e-3, 1e-4}.asDiagonal().toDenseMatrix()));
+}
+
 TEST(OffsetFilter, FindsTheErrorsOfTheWheels) {
   const auto map = std::make_shared<const OccupancyGrid>(test::map_of(test::containers_in_order()));
   const OccupancyGrid world = test::world_of(test::containers_in_order());
@@ -212,7 +262,7 @@ TEST(OffsetFilter, FindsTheErrorsOfTheWheels) {
       filter.carry({.motion = counted}, noise);
       const Scan scan = test::cast_scan(world, truth, timestamp_from_ns(i), {.max_range_m = 8.0}, random);
       ends = faced_ends(scan, deskewed(scan, {}), std::move(ends));
-      (void)filter.observe(field, ends, 0.1);
+      (void)filter.observe(field, ends, 0.1, {});
     }
   }
   EXPECT_NEAR(filter.wheels().distance, 0.01, 0.002);

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a pose explains the surfaces in view, had the wheels slipped to it: each of them holds, stands where it was
+// last seen to, or was moved only now. One face is one witness.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "localization/offset_state.hpp"
+#include "localization/surface_measurement.hpp"
+#include "localization/surface_switch.hpp"
+
+namespace deltamap::localization {
+
+class SlipReading {
+ public:
+  /// `slip`: how far the pose may lie from the state's, beyond what the state itself says.
+  SlipReading(const OffsetState& state, std::span<const SurfaceSwitch> switches, const PoseCovariance& slip);
+
+  struct Answer {
+    Pose2 pose;
+    double evidence = 0.0;                ///< ln p(scan | slipped there), up to a constant
+    Eigen::Matrix3d information;          ///< for a Gauss-Newton step,
+    Eigen::Vector3d pull;                 ///< which goes against it
+    std::vector<std::size_t> hold_again;  ///< followed surfaces that seemed to have moved, and hold from there
+  };
+  /// The best pose near one, by Gauss-Newton. `seen_from(const Pose2&)`: sightings; `number_of(SurfaceMap::Id)`: of a
+  /// followed surface, negative of any other.
+  template <typename SeenFrom, typename NumberOf>
+  [[nodiscard]] Answer best_near(Pose2 pose, SeenFrom&& seen_from, NumberOf&& number_of) const {
+    Answer best;
+    best.evidence = -std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kSteps; ++step) {
+      const std::span<const Sighting> sightings = seen_from(pose);
+      Answer here = at_pose(pose);
+      for (const Sighting& sighting : sightings) {
+        add(here, sighting, number_of(sighting.id), weight_of(sighting, sightings));
+      }
+      here.evidence += log_share_of_spread(here);
+      const std::optional<Pose2> next = stepped(here);
+      if (here.evidence > best.evidence) best = std::move(here);
+      if (!next) break;
+      pose = *next;
+    }
+    return best;
+  }
+
+ private:
+  static constexpr int kSteps = 5;
+  /// One step of Gauss-Newton; nothing where it has arrived.
+  [[nodiscard]] static std::optional<Pose2> stepped(const Answer& answer);
+  [[nodiscard]] Answer at_pose(const Pose2& pose) const;
+  [[nodiscard]] static double weight_of(const Sighting& sighting, std::span<const Sighting> all);
+  /// Of all poses within the spread, those that fit (Laplace's approximation of the evidence).
+  [[nodiscard]] double log_share_of_spread(const Answer& answer) const;
+  void add(Answer& answer, const Sighting& sighting, int followed_as, double weight) const;
+  [[nodiscard]] double variance_beside_pose(Eigen::Index i) const;
+
+  const OffsetState& state_;
+  std::span<const SurfaceSwitch> switches_;
+  Eigen::Matrix3d known_;         // inverse of the spread
+  Eigen::Matrix3d pose_inverse_;  // of the state's covariance
+};
+
+}  // namespace deltamap::localization
