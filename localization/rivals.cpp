@@ -146,21 +146,12 @@ void Rivals::keep_near_ends() {
   if (near_ends_.size() < kEnough) near_ends_ = ends_;
 }
 
-/// Scans tell it better than wheels while a pose is followed. A pose that was mended has not driven there.
-Pose2 Rivals::driven(const std::optional<Pose2>& believed_before, const Seen& seen, const Pose2& by_wheels) const {
-  const bool is_followed = believing_ && believed_before && seen.map_from_believed;
-  if (!is_followed || has_jumped(*seen.map_from_believed)) return by_wheels;
-  return motion_between(*believed_before, *seen.map_from_believed);
-}
-
 const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& seen) {
   const Pose2 motion = last_joined_ ? motion_between(*last_joined_, seen.joined_from_robot) : Pose2{};
   last_joined_ = seen.joined_from_robot;
   bank_.carry(motion);
   watch_.carry(motion);
-  const std::optional<Pose2> believed_before = last_believed_;
   if (last_believed_) last_believed_ = *last_believed_ * motion;
-  way_from_robot_ = way_from_robot_ * driven(believed_before, seen, motion);
   if (believing_ && seen.map_from_believed) {
     if (has_jumped(*seen.map_from_believed)) forget_carrying();
     bank_.believe(*seen.map_from_believed);
@@ -176,14 +167,14 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
   weigh(field, seen);
-  if (believing_) probe(field);
+  if (believing_) probe(field, seen.joined_from_robot);
   if (!believing_ || suspicious_) {
     const std::span<const Pose2> found = search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot,
                                                       believing_ ? params_.suspicious_pace : 1.0);
-    if (!found.empty()) admit_all(field, found);
+    if (!found.empty()) admit_all(field, found, seen.joined_from_robot);
   }
   bank_.settle();
-  stack_.add(ends_, way_from_robot_);
+  stack_.add(ends_, seen.joined_from_robot);
   write_report();
   return report_;
 }
@@ -208,26 +199,26 @@ Rivals::Odds Rivals::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& i
   return {ahead, log_prior_unbelieved(pose)};
 }
 
-Comparison Rivals::brought_by(const LikelihoodField& field, const Pose2& pose) const {
+Comparison Rivals::brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
   if (!believing_ || bank_.places().empty()) return {};
   const double beams = usual_misfit_.telling() * bank_.params().evidence_beams;
-  return stack_.compared_lately(field, pose, bank_.places().front().map_from_robot, way_from_robot_, beams);
+  return stack_.compared_lately(field, pose, bank_.places().front().map_from_robot, joined, beams);
 }
 
-void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> poses) {
+void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined) {
   constexpr double kJustFoundM = 0.5;
   const Place* const best = bank_.reference();
   const bool proven = best != nullptr && best->followed_m > kJustFoundM;  // then no newcomer starts ahead of it
   const Pose2 held_against = best != nullptr ? best->map_from_robot : poses.front();
-  const ScanStack::Sums others = stack_.log_likelihoods(field, held_against, way_from_robot_);
+  const ScanStack::Sums others = stack_.log_likelihoods(field, held_against, joined);
   const double base = best != nullptr ? best->log_evidence : 0.0;
   for (const Pose2& pose : poses) {
     if (bank_.knows(pose)) continue;
-    const ScanStack::Sums its = stack_.log_likelihoods(field, pose, way_from_robot_);
+    const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
     Odds odds = believing_ ? odds_beside_believed(its, others) : odds_unbelieved(pose, its, others);
     if (proven) odds.log_prior += kOverlooked;
     if (proven && !believing_) odds.ahead = std::min(0.0, odds.ahead);
-    const Comparison brought = odds.ahead > 0.0 ? brought_by(field, pose) : Comparison{};
+    const Comparison brought = odds.ahead > 0.0 ? brought_by(field, pose, joined) : Comparison{};
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + odds.ahead,
                  .log_prior = odds.log_prior,
@@ -241,7 +232,7 @@ void Rivals::weigh(const LikelihoodField& field, const Seen& seen) {
   const bool believes = believing_ && !bank_.places().empty();
   std::span<const float> weights;
   if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
-    weights = novelty_.weights(ends_, way_from_robot_);
+    weights = novelty_.weights(ends_, seen.joined_from_robot);
     if (believes) usual_misfit_.observe(1.0 - explained_share(field, ends_, bank_.places().front().map_from_robot));
     bank_.weigh(field, ends_, weights, usual_misfit_.telling());
     since_step_m_ = 0.0;
@@ -253,7 +244,7 @@ void Rivals::weigh(const LikelihoodField& field, const Seen& seen) {
                   .ends = ends_,
                   .near_ends = near_ends_,
                   .map_from_believed = bank_.places().front().map_from_robot,
-                  .joined_from_robot = way_from_robot_,
+                  .joined_from_robot = seen.joined_from_robot,
                   .stack = stack_,
                   .telling = usual_misfit_.telling(),
                   .weights = weights,
@@ -261,7 +252,7 @@ void Rivals::weigh(const LikelihoodField& field, const Seen& seen) {
                  bank_.rivals());
 }
 
-void Rivals::probe(const LikelihoodField& field) {
+void Rivals::probe(const LikelihoodField& field, const Pose2& joined) {
   if (bank_.places().empty()) return;
   probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
   probe_nearby_next_ = !probe_nearby_next_;
@@ -271,11 +262,11 @@ void Rivals::probe(const LikelihoodField& field) {
       probe_nearby_next_ ? probes_.best_nearby(field, ends_, bank_, {believed, params_.nearby_m, params_.nearby_rad},
                                                params_.probes_nearby)
                          : probes_.best_anywhere(own_fit - kFitsNearlyAsWell);
-  if (found) admit_rival(field, *found, own_fit);
+  if (found) admit_rival(field, *found, joined, own_fit);
 }
 
 /// Beside a believed pose only what fits the scan nearly as well is worth following.
-void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, double own_fit) {
+void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined, double own_fit) {
   const Place& own = bank_.places().front();
   const Pose2 pose = settled(field, ends_, rough);
   if (bank_.knows(pose)) return;
@@ -288,9 +279,9 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, doubl
                         .log_evidence = own.log_evidence + ahead,
                         .log_prior = std::log(params_.nearby_prior)});
   }
-  const ScanStack::Sums its = stack_.log_likelihoods(field, pose, way_from_robot_);
-  const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, way_from_robot_);
-  const Comparison brought = brought_by(field, pose);
+  const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
+  const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
+  const Comparison brought = brought_by(field, pose, joined);
   const Odds odds = odds_beside_believed(its, owns);
   bank_.admit({.map_from_robot = pose,
                .log_evidence = own.log_evidence + odds.ahead,

@@ -91,11 +91,9 @@ class Rivals {
   void thin(const Seen& seen);
   void weigh(const LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
-  [[nodiscard]] Pose2 driven(const std::optional<Pose2>& believed_before, const Seen& seen,
-                             const Pose2& by_wheels) const;
-  void probe(const LikelihoodField& field);
-  void admit_rival(const LikelihoodField& field, const Pose2& rough, double own_fit);
-  void admit_all(const LikelihoodField& field, std::span<const Pose2> poses);
+  void probe(const LikelihoodField& field, const Pose2& joined);
+  void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined, double own_fit);
+  void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
   /// Of a place that has only now come to mind, against the best that is known.
   struct Odds {
     double ahead = 0.0;      ///< log evidence of the scans of the last metres
@@ -109,7 +107,7 @@ class Rivals {
                                      const ScanStack::Sums& others) const;
   /// What a place that has only now come to mind brings with it, had the robot been carried there lately; nothing where
   /// no pose is believed.
-  [[nodiscard]] Comparison brought_by(const LikelihoodField& field, const Pose2& pose) const;
+  [[nodiscard]] Comparison brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
 
@@ -125,7 +123,6 @@ class Rivals {
   SurfaceNovelty novelty_;
   UsualMisfit usual_misfit_;
   std::optional<Pose2> last_joined_;
-  Pose2 way_from_robot_;  ///< the way that was driven, from anywhere: joins the scans of the stack
   bool believing_ = false;
   bool suspicious_ = false;
   double elsewhere_prior_;
