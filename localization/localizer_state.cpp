@@ -18,7 +18,7 @@ constexpr double kTrustInNothing = 0.1;  // and before there is any
 constexpr double kScansLagS = 0.5;    // a scan is at most so much older than the newest report of the wheels
 constexpr double kScansCeaseS = 5.0;  // without a scan: the particles go along with the wheels, step by step
 
-constexpr double kAsWell = 0.05;  // share of the ends that a place may explain less
+constexpr double kClearlyBetter = 0.15;  // share of the ends that one place explains beyond another
 
 // A search has only begun: the whole map has been looked at twice at most.
 constexpr double kSearchBeginsM = 1.0;
@@ -183,7 +183,7 @@ RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_
     ++counts.recoveries;
     return believe_in(winner, now);
   }
-  const double as_well = explained_share(field, ends, winner) - kAsWell;
+  const double as_well = explained_share(field, ends, winner) - kClearlyBetter;
   if (const std::optional<Pose2> near = explained_nearby(tracked.believed.map_from_robot, as_well)) {
     ++counts.recoveries;
     return believe_in(*near, now);
@@ -221,7 +221,6 @@ bool Localizer::State::is_held_by_surfaces() const {
 }
 
 bool Localizer::State::has_won(const RivalPlace& place, const Pose2& believed) const {
-  constexpr double kClearlyBetter = 0.15;
   if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
   if (ends.size() == 0 || is_held_by_surfaces()) return false;
   const double fit = explained_share(field, ends, place.map_from_robot);

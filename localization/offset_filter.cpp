@@ -72,7 +72,7 @@ void OffsetFilter::carry(const WheelStep& step, const PoseCovariance& added) {
   state_.carry(step, added);
   const double driven_m = step.motion.position().norm();
   since_doubt_m_ += driven_m;
-  for (Visit& visit : visits_) visit.unseen_m += driven_m;
+  for (SurfaceSwitch& followed : switches_) followed.unseen_m += driven_m;
 }
 
 std::size_t OffsetFilter::surface_of(const Sighting& sighting) const {
@@ -117,12 +117,13 @@ void OffsetFilter::renumber() {
 
 void OffsetFilter::cease_where_long_unseen() {
   for (std::size_t i = visits_.size(); i-- > 0;) {
-    if (visits_[i].unseen_m > kForgottenAfterM || visits_[i].misfits >= kMisfitsOfAChange) cease(i);
+    if (switches_[i].unseen_m > kForgottenAfterM || visits_[i].misfits >= kMisfitsOfAChange) cease(i);
   }
   while (visits_.size() > kMostFollowed) {
-    const auto longest = std::max_element(visits_.begin(), visits_.end(),
-                                          [](const Visit& a, const Visit& b) { return a.unseen_m < b.unseen_m; });
-    cease(static_cast<std::size_t>(longest - visits_.begin()));
+    const auto longest =
+        std::max_element(switches_.begin(), switches_.end(),
+                         [](const SurfaceSwitch& a, const SurfaceSwitch& b) { return a.unseen_m < b.unseen_m; });
+    cease(static_cast<std::size_t>(longest - switches_.begin()));
   }
   renumber();
 }
@@ -174,15 +175,14 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
   }
 }
 
-/// Where any one surface in view that seems to have moved would stand where the map has it.
-std::vector<Pose2> OffsetFilter::undone_moves(std::span<const Sighting> sightings) const {
+/// Where any one surface that seems to have moved would stand where the map has it.
+std::vector<Pose2> OffsetFilter::undone_moves() const {
   const Pose2 at = state_.pose().map_from_robot;
   std::vector<Pose2> poses;
-  for (const Sighting& sighting : sightings) {
-    const std::size_t number = surface_of(sighting);
-    if (switches_[number].holds > 0.5) continue;
-    const Eigen::Index offset = OffsetState::offset_of(number);
-    const Surface& surface = sighting.surface;
+  for (std::size_t i = 0; i < switches_.size(); ++i) {
+    if (switches_[i].holds > 0.5) continue;
+    const Eigen::Index offset = OffsetState::offset_of(i);
+    const Surface& surface = switches_[i].surface;
     const Pose2 unturned{0.0, 0.0, -state_.mean()[offset + 1]};
     const Point2 from_centre = at.position() - state_.mean()[offset] * surface.normal - surface.centre;
     const Point2 there = surface.centre + unturned * from_centre;
@@ -194,11 +194,10 @@ std::vector<Pose2> OffsetFilter::undone_moves(std::span<const Sighting> sighting
 /// Had the wheels slipped? Only now, where something is not where it was expected; metres ago, where something seems to
 /// have moved. Goes to where the surfaces are clearly better explained.
 bool OffsetFilter::follows_slip(const LikelihoodField& field, std::span<const FacedEnd> ends,
-                                std::span<const Sighting> sightings, const std::vector<bool>& fits,
-                                const MotionModelParams& motion) {
+                                const std::vector<bool>& fits, const MotionModelParams& motion) {
   const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
   std::vector<Pose2> undone;
-  if (since_doubt_m_ >= kDoubtsAgainM) undone = undone_moves(sightings);
+  if (since_doubt_m_ >= kDoubtsAgainM) undone = undone_moves();
   if (!is_strange && undone.empty()) return false;
   since_doubt_m_ = 0.0;
   const RefinedPose wheels = state_.pose();
@@ -206,7 +205,8 @@ bool OffsetFilter::follows_slip(const LikelihoodField& field, std::span<const Fa
   const auto as_followed = [&](const Pose2& at) { return find(field, ends, at); };
   const auto as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); };
   const SlipReading no_slip{state_, switches_, PoseCovariance::Zero()};
-  const double usual = no_slip.best_near(wheels.map_from_robot, as_followed, number_of).evidence;
+  const double usual = std::max(no_slip.best_near(wheels.map_from_robot, as_followed, number_of).evidence,
+                                no_slip.best_near(wheels.map_from_robot, as_mapped, number_of).evidence);
   SlipReading::Answer best;
   best.evidence = usual + kSlipOdds;
   PoseCovariance slip = PoseCovariance::Zero();
@@ -252,7 +252,7 @@ OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span
   if (ends.empty()) return seen;
   std::vector<Sighting> sightings = followed_from(field, ends, state_.pose().map_from_robot);
   std::vector<bool> fits = fit_of(sightings);
-  seen.slipped = follows_slip(field, ends, sightings, fits, motion);
+  seen.slipped = follows_slip(field, ends, fits, motion);
   const Pose2 at = state_.pose().map_from_robot;
   if (seen.slipped) {
     sightings = followed_from(field, ends, at);
@@ -272,18 +272,28 @@ OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span
   settle(switches_, state_);
   const auto count = static_cast<double>(ends.size());
   seen.straight = 1.0 - static_cast<double>(finder_.rest().size()) / count;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5) seen.holding += sightings[i].beams / count;
-  }
+  seen.holding = share_held(sightings, fits) / count;
   cease_where_long_unseen();
   return seen;
 }
 
+/// Ends on surfaces that hold; along a wall every pose fits, so twice those of the direction that fewer hold.
+double OffsetFilter::share_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const {
+  Eigen::Matrix2d held = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const Point2& normal = sightings[i].surface.normal;
+    if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5)
+      held += sightings[i].beams * normal * normal.transpose();
+  }
+  const double half_apart = std::hypot(0.5 * (held(0, 0) - held(1, 1)), held(0, 1));
+  return held.trace() - 2.0 * half_apart;
+}
+
 void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits) {
   for (std::size_t i = 0; i < sightings.size(); ++i) {
-    Visit& visit = visits_[surface_of(sightings[i])];
-    visit.unseen_m = 0.0;
-    visit.misfits = fits[i] ? 0 : visit.misfits + 1;
+    const std::size_t number = surface_of(sightings[i]);
+    switches_[number].unseen_m = 0.0;
+    visits_[number].misfits = fits[i] ? 0 : visits_[number].misfits + 1;
   }
 }
 

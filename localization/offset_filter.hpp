@@ -32,7 +32,7 @@ class OffsetFilter {
   /// What a keyframe showed; shares are of its ends, [0, 1].
   struct Seen {
     double straight = 0.0;  ///< on a surface, where it is believed to be
-    double holding = 0.0;   ///< on a surface that stands where the map has it
+    double holding = 0.0;   ///< on surfaces that stand where the map has them, in the direction that fewer of them hold
     bool slipped = false;   ///< the wheels had slipped: the pose has gone to where the scan is explained
   };
   /// `rest_share`: what an end that is on no surface counts, in (0, 1]. `motion`: how far slips may go.
@@ -48,8 +48,7 @@ class OffsetFilter {
  private:
   struct Visit {
     SurfaceMap::Id id;
-    int misfits = 0;        ///< keyframes in a row in which it was not where it was expected
-    double unseen_m = 0.0;  ///< driven since it was last in view
+    int misfits = 0;  ///< keyframes in a row in which it was not where it was expected
   };
   [[nodiscard]] std::span<const Sighting> find(const LikelihoodField& field, std::span<const FacedEnd> ends,
                                                const Pose2& at);
@@ -58,10 +57,9 @@ class OffsetFilter {
                                                       const Pose2& at);
   [[nodiscard]] std::vector<Sighting> followed_from(const LikelihoodField& field, std::span<const FacedEnd> ends,
                                                     const Pose2& at);
-  [[nodiscard]] std::vector<Pose2> undone_moves(std::span<const Sighting> sightings) const;
+  [[nodiscard]] std::vector<Pose2> undone_moves() const;
   [[nodiscard]] bool follows_slip(const LikelihoodField& field, std::span<const FacedEnd> ends,
-                                  std::span<const Sighting> sightings, const std::vector<bool>& fits,
-                                  const MotionModelParams& motion);
+                                  const std::vector<bool>& fits, const MotionModelParams& motion);
   void follow(const Sighting& sighting);
   void cease(std::size_t surface);
   void drop(std::size_t surface);
@@ -71,6 +69,7 @@ class OffsetFilter {
   void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
   void correct_by_rest(const LikelihoodField& field, double share);
   [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;
+  [[nodiscard]] double share_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const;
   void note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits);
 
   SurfaceMap map_;

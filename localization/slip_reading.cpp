@@ -9,10 +9,12 @@
 namespace deltamap::localization {
 namespace {
 
-// Nats that an explanation costs against "it holds": one in ten is moved, to anywhere within half a metre where it
-// would stand to 2 cm; one in a hundred while it is followed.
-constexpr double kMoved = 5.4;
-constexpr double kMovedNow = 8.0;
+// Nats that an explanation costs against "it holds". Moved: anywhere within half a metre, where it would stand to 2 cm,
+// and one in ten is where nothing is known of a surface; since it was last in view: one in so many metres.
+constexpr double kAnywhere = 3.2;
+constexpr double kMoved = 2.2 + kAnywhere;
+constexpr double kMovedOnceInM = 1500.0;
+constexpr double kKeyframeM = 0.2;
 
 }  // namespace
 
@@ -20,11 +22,27 @@ SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch
     : state_{state},
       switches_{switches},
       known_{(state.pose().covariance + slip).inverse()},
-      pose_inverse_{state.covariance().topLeftCorner<3, 3>().inverse()} {}
+      pose_inverse_{state.covariance().topLeftCorner<3, 3>().inverse()} {
+  for (const SurfaceSwitch& of : switches) {
+    const auto pieces = std::count_if(switches.begin(), switches.end(), [&](const SurfaceSwitch& other) {
+      return other.holds < 0.5 && are_one_face(of.surface, other.surface);
+    });
+    share_of_face_.push_back(1.0 / static_cast<double>(std::max<std::ptrdiff_t>(1, pieces)));
+  }
+}
 
 double SlipReading::variance_beside_pose(Eigen::Index i) const {
   const Eigen::Vector3d with_pose = state_.covariance().block<3, 1>(0, i);
   return std::max(1e-8, state_.covariance()(i, i) - with_pose.dot(pose_inverse_ * with_pose));
+}
+
+double SlipReading::cost_of_moved(std::size_t number) const {
+  const double holds = switches_[number].prior;
+  return std::log(holds / (1.0 - holds)) + kAnywhere;
+}
+
+double SlipReading::cost_of_moved_now(std::size_t number) const {
+  return std::log(kMovedOnceInM / std::max(kKeyframeM, switches_[number].unseen_m)) + kAnywhere;
 }
 
 SlipReading::Answer SlipReading::at_pose(const Pose2& pose) const {
@@ -67,14 +85,16 @@ void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as,
   double turn_rad2 = held_rad2;
   double evidence = -0.5 * seen.strangeness(0.0, 0.0, held_m2, held_rad2);
   double least = -kMoved;
+  double gain = kMoved;
   if (followed_as >= 0) {
     const auto number = static_cast<std::size_t>(followed_as);
     const Eigen::Index at = OffsetState::offset_of(number);
     const double last_m2 = variance_beside_pose(at);
     const double last_rad2 = variance_beside_pose(at + 1);
     const double as_last = -0.5 * seen.strangeness(state_.mean()[at], state_.mean()[at + 1], last_m2, last_rad2) -
-                           kMoved * (1.0 - switches_[number].holds);
-    least = -kMovedNow;
+                           cost_of_moved(number) * (1.0 - switches_[number].holds);
+    gain = cost_of_moved_now(number);
+    least = -gain;
     if (as_last >= evidence) {
       evidence = as_last;
       offset_m = state_.mean()[at];
@@ -85,9 +105,9 @@ void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as,
       answer.hold_again.push_back(number);
     }
   }
-  answer.evidence += weight * (kMovedNow + std::max(least, evidence));
+  answer.evidence += weight * (gain + std::max(least, evidence));
   // Beams that no explanation fits pull less (Geman and McClure).
-  const double trust = weight / std::pow(1.0 + std::max(0.0, -evidence) / kMovedNow, 2);
+  const double trust = weight / std::pow(1.0 + std::max(0.0, -evidence) / gain, 2);
   const double variance_m2 = seen.distance_variance + offset_m2 + seen.along_m * seen.along_m * turn_rad2;
   const Eigen::Vector3d row{seen.distance.entries[0].value, seen.distance.entries[1].value,
                             seen.distance.entries[2].value};
@@ -97,6 +117,21 @@ void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as,
   const double variance_rad2 = seen.turn_variance + turn_rad2;
   answer.information(2, 2) += trust / variance_rad2;
   answer.pull[2] -= trust / variance_rad2 * (seen.turn_rad - turn_rad);
+}
+
+void SlipReading::add_unseen(Answer& answer, std::size_t number) const {
+  const Surface& surface = switches_[number].surface;
+  const Eigen::Index at = OffsetState::offset_of(number);
+  const Pose2 moved = answer.pose * inverse(state_.pose().map_from_robot);
+  const Point2 centre = moved * Point2{surface.centre + state_.mean()[at] * surface.normal};
+  const double off_m = surface.normal.dot(centre - surface.centre);
+  const double off_rad = state_.mean()[at + 1] + moved.theta;
+  const double variance_m2 = variance_beside_pose(at) + std::pow(surface.offset_deviation_m, 2);
+  const double variance_rad2 = variance_beside_pose(at + 1) + std::pow(surface.turn_deviation_rad, 2);
+  const double holds = -0.5 * (off_m * off_m / variance_m2 + off_rad * off_rad / variance_rad2);
+  const double stays = -cost_of_moved(number);
+  if (holds > stays) answer.hold_again.push_back(number);
+  answer.evidence += share_of_face_[number] * std::max(holds, stays);
 }
 
 }  // namespace deltamap::localization

@@ -37,8 +37,14 @@ class SlipReading {
     for (int step = 0; step < kSteps; ++step) {
       const std::span<const Sighting> sightings = seen_from(pose);
       Answer here = at_pose(pose);
+      std::vector<bool> in_view(switches_.size());
       for (const Sighting& sighting : sightings) {
-        add(here, sighting, number_of(sighting.id), weight_of(sighting, sightings));
+        const int number = number_of(sighting.id);
+        if (number >= 0) in_view[static_cast<std::size_t>(number)] = true;
+        add(here, sighting, number, weight_of(sighting, sightings));
+      }
+      for (std::size_t i = 0; i < switches_.size(); ++i) {
+        if (!in_view[i] && switches_[i].holds < 0.5) add_unseen(here, i);
       }
       here.evidence += log_share_of_spread(here);
       const std::optional<Pose2> next = stepped(here);
@@ -58,12 +64,17 @@ class SlipReading {
   /// Of all poses within the spread, those that fit (Laplace's approximation of the evidence).
   [[nodiscard]] double log_share_of_spread(const Answer& answer) const;
   void add(Answer& answer, const Sighting& sighting, int followed_as, double weight) const;
+  /// One that seemed to have moved, and is no longer in view: the slip may lie before it was seen.
+  void add_unseen(Answer& answer, std::size_t number) const;
+  [[nodiscard]] double cost_of_moved(std::size_t number) const;
+  [[nodiscard]] double cost_of_moved_now(std::size_t number) const;
   [[nodiscard]] double variance_beside_pose(Eigen::Index i) const;
 
   const OffsetState& state_;
   std::span<const SurfaceSwitch> switches_;
-  Eigen::Matrix3d known_;         // inverse of the spread
-  Eigen::Matrix3d pose_inverse_;  // of the state's covariance
+  std::vector<double> share_of_face_;  // of each followed surface, among those that seem to have moved
+  Eigen::Matrix3d known_;              // inverse of the spread
+  Eigen::Matrix3d pose_inverse_;       // of the state's covariance
 };
 
 }  // namespace deltamap::localization

@@ -68,22 +68,17 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
   const bool are_led = surfaces_ && surfaces_->leads();
   Answer answer = are_led ? led_by_surfaces(seen) : update_due(since) ? update(seen, since) : follow(seen, since);
   answer.unknown_s = since.unknown_s;
-  if (are_led) {
-    last_update_ = seen.now;
-    return answer;
-  }
+  if (surfaces_ && surfaces_->leads()) return answer;
   track_.after_scan(seen.now, answer.believed);
   if (surfaces_ && seen.ends.size() > 0) let_surfaces_lead(seen, answer);
   return answer;
 }
 
-/// The particles rest. Where surfaces cease to explain the scans, they begin anew around the pose.
+/// The particles rest. Where surfaces cease to lead, they begin anew around the pose, at this very scan.
 Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   Answer answer;
   answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field});
-  answer.n_eff = static_cast<double>(particle_count());
   const Pose2& pose = answer.believed.map_from_robot;
-  if (seen.ends.size() > 0) answer.w_avg = mean_likelihood(seen.field, seen.ends, pose);
   if (!surfaces_->leads()) {
     const PoseCovariance& spread = answer.believed.covariance;
     const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
@@ -91,8 +86,12 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
     (void)start_around(
         {pose, std::max(params_.motion.slip_m, deviation_m), std::max(params_.motion.slip_rad, deviation_rad)},
         seen.now);
+    return update(seen, {});
   }
+  answer.n_eff = static_cast<double>(particle_count());
+  if (seen.ends.size() > 0) answer.w_avg = mean_likelihood(seen.field, seen.ends, pose);
   best_ = {pose, answer.believed.covariance, 1.0};
+  last_update_ = seen.now;
   return answer;
 }
 
