@@ -177,15 +177,13 @@ void add_verdict(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(number_key("localization.verdict.least_beams", verdict.least_beams, "", 0.1, 1000.0,
                             "that must tell of a direction before it counts"));
   keys.push_back(number_key("localization.verdict.doubt_after_search", verdict.doubt_after_search, "", 0.0, 10.0,
-                            "log odds taken from each view at a place that was found by its fit"));
+                            "log odds taken from what a view says for a place that was found by its fit"));
   keys.push_back(number_key("localization.verdict.views_after_search", verdict.views_after_search, "", 0.0, 1000.0,
                             "new views before such a place is called right"));
   keys.push_back(number_key("localization.verdict.views_of_suspicion", verdict.views_of_suspicion, "", 0.0, 1000.0,
                             "likewise where the hold has fallen from one scan to the next"));
   keys.push_back(number_key("localization.verdict.unique_for_views", verdict.unique_for_views, "", 0.0, 1000.0,
                             "views without another place that fits about as well before a pose is called right"));
-  keys.push_back(number_key("localization.verdict.ambiguity_memory_views", verdict.ambiguity_memory_views, "", 0.1, 1e6,
-                            "in which a share of belief that was lost to other places comes back"));
   keys.push_back(number_key("localization.verdict.proof_memory_views", verdict.proof_memory_views, "", 0.1, 1e6,
                             "for which it counts that proven tiles held the pose"));
   keys.push_back(number_key("localization.verdict.changed_above", verdict.changed_above, "", 0.0, 1.0,

@@ -74,7 +74,6 @@ void PoseJudge::start(double pose_right, bool found) {
   views_ = 0.0;
   unique_views_ = 0.0;
   suspicion_views_ = 0.0;
-  share_ = 1.0;
   any_view_ = false;
   last_hold_.reset();
   belief_ = {};
@@ -101,14 +100,19 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   const double fresh = novelty(passed, weakest ? std::optional{weakest->hold} : std::nullopt);
   const double still_right = probability(right_log_odds_) * (1.0 - fresh * params_.lost_in_a_view);
   right_log_odds_ = log_odds(std::clamp(still_right, params_.least_wrong, 1.0 - params_.least_wrong));
-  if (weakest) right_log_odds_ += fresh * (weakest->evidence - (found_ ? params_.doubt_after_search : 0.0));
+  if (weakest) right_log_odds_ += fresh * told_by(weakest->evidence);
   views_ += fresh;
   suspicion_views_ = std::max(0.0, suspicion_views_ - fresh);
-  share_ = std::min(shares.believed, share_ + fresh / params_.ambiguity_memory_views);
   unique_views_ = shares.unique ? unique_views_ + fresh : 0.0;
   judge_map(view, fresh);
   proof_ = proven ? 1.0 : proof_ * std::exp(-fresh / params_.proof_memory_views);
   decide(shares);
+}
+
+/// A place that a search has chosen because it fits proves less by fitting: a wrong one is an image of the right one.
+/// What does not fit speaks against it as against any other.
+double PoseJudge::told_by(double evidence) const {
+  return found_ && evidence > 0.0 ? std::max(0.0, evidence - params_.doubt_after_search) : evidence;
 }
 
 void PoseJudge::judge_map(const ViewTally& view, double fresh) {
@@ -122,7 +126,7 @@ void PoseJudge::judge_map(const ViewTally& view, double fresh) {
 }
 
 void PoseJudge::decide(const Shares& shares) {
-  trust_ = probability(right_log_odds_) * share_;
+  trust_ = probability(right_log_odds_) * shares.believed;
   const bool unseasoned = (found_ && views_ < params_.views_after_search) || suspicion_views_ > 0.0;
   const auto limit = [&](double proof) { return 1.0 - (1.0 - proof) * (1.0 - params_.unproven_limit); };
   belief_.pose_right = std::clamp(trust_, 1.0 - limit(proof_), limit(unseasoned ? 0.0 : proof_));

@@ -20,18 +20,17 @@ struct PoseVerdictParams {
   double short_weight = 0.7;     ///< of a beam that something stands in front of, against one that goes through; 0..1
   double least_beams = 3.0;      ///< that must tell of a direction before it counts; > 0
   double unproven_weight = 0.5;  ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
-  double doubt_after_search = 0.35;      ///< taken from each view's log-odds at a place that was found by its fit; >= 0
-  double views_after_search = 6.0;       ///< new views before such a place can be called right; >= 0
-  double views_of_suspicion = 6.0;       ///< likewise after a hold that fell from one scan to the next; >= 0
-  double ambiguity_memory_views = 40.0;  ///< in which a share of belief that was lost to rivals comes back; > 0
-  double lost_in_a_view = 0.002;         ///< P(the pose has become wrong since the last new view); 0..0.1
-  double least_wrong = 0.0005;           ///< P(wrong) that no evidence ever undercuts; 0..0.1
-  double right_above = 0.9;              ///< P(pose right) from which the verdict is right; 0.5..1
-  double wrong_below = 0.1;              ///< P(pose right) below which the verdict is wrong; 0..0.5
-  double unproven_limit = 0.85;          ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
-  double unique_for_views = 4.0;         ///< so long no other place may explain the scans before it is right; >= 0
-  double proof_memory_views = 4.0;       ///< for so many views it still counts that proven tiles held the pose; > 0
-  double changed_above = 0.1;            ///< share of beams off the map from which it is rather wrong than right; 0..1
+  double doubt_after_search = 0.35;  ///< taken from what a view says for a place that was found by its fit; >= 0
+  double views_after_search = 6.0;   ///< new views before such a place can be called right; >= 0
+  double views_of_suspicion = 6.0;   ///< likewise after a hold that fell from one scan to the next; >= 0
+  double lost_in_a_view = 0.002;     ///< P(the pose has become wrong since the last new view); 0..0.1
+  double least_wrong = 0.0005;       ///< P(wrong) that no evidence ever undercuts; 0..0.1
+  double right_above = 0.9;          ///< P(pose right) from which the verdict is right; 0.5..1
+  double wrong_below = 0.1;          ///< P(pose right) below which the verdict is wrong; 0..0.5
+  double unproven_limit = 0.85;      ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
+  double unique_for_views = 4.0;     ///< so long no other place may explain the scans before it is right; >= 0
+  double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles held the pose; > 0
+  double changed_above = 0.1;        ///< share of beams off the map from which it is rather wrong than right; 0..1
 };
 
 class PoseJudge {
@@ -64,6 +63,7 @@ class PoseJudge {
 
  private:
   [[nodiscard]] double novelty(const Passed& passed, std::optional<double> hold);
+  [[nodiscard]] double told_by(double evidence) const;
   void judge_map(const ViewTally& view, double novelty);
   void decide(const Shares& shares);
 
@@ -73,11 +73,9 @@ class PoseJudge {
   bool found_ = false;
   double views_ = 0.0;            ///< new ones since the start
   double suspicion_views_ = 0.0;  ///< left
-  double share_ = 1.0;            ///< of the belief, that the believed place holds; rises slowly
-
-  double unique_views_ = 0.0;  ///< in which no other place explained the scans
-  double proof_ = 0.0;         ///< 1 where proven tiles are in view; fades
-  double misfit_share_ = 0.0;  ///< running mean over the last views
+  double unique_views_ = 0.0;     ///< in which no other place explained the scans
+  double proof_ = 0.0;            ///< 1 where proven tiles are in view; fades
+  double misfit_share_ = 0.0;     ///< running mean over the last views
   bool any_view_ = false;
   std::optional<double> last_hold_;
   Belief belief_;

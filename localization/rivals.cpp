@@ -99,7 +99,6 @@ bool Rivals::is_near_believed(const Pose2& pose) const {
 }
 
 double Rivals::log_prior_unbelieved(const Pose2& pose) const {
-  if (believing_) return std::log(elsewhere_prior_);
   return !last_believed_ || is_near_believed(pose) ? 0.0 : std::log(params_.kidnapped_prior);
 }
 
@@ -180,13 +179,24 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
   return report_;
 }
 
-double Rivals::ahead_of(const ScanStack::Sums& its, const ScanStack::Sums& others) const {
-  double ahead = 0.0;
+Rivals::Odds Rivals::odds_beside_believed(const ScanStack::Sums& its, const ScanStack::Sums& others) const {
+  const double of_a_beam = bank_.params().evidence_beams;
+  double lately = 0.0;
+  double in_all = 0.0;
   for (std::size_t k = 0; k < stack_.size(); ++k) {
-    const double since_then = its[k] - others[k];
-    ahead = believing_ ? std::max(ahead, since_then) : since_then;
+    in_all = of_a_beam * (its[k] - others[k]);
+    lately = std::max(lately, in_all);
   }
-  return bank_.params().evidence_beams * ahead;
+  const Odds carried{std::min(lately, params_.most_ahead), std::log(params_.elsewhere_prior)};
+  const Odds overlooked{std::min(in_all, params_.most_ahead), std::log(elsewhere_prior_)};
+  return carried.ahead + carried.log_prior > overlooked.ahead + overlooked.log_prior ? carried : overlooked;
+}
+
+Rivals::Odds Rivals::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
+                                     const ScanStack::Sums& others) const {
+  const std::size_t scans = stack_.size();
+  const double ahead = scans == 0 ? 0.0 : bank_.params().evidence_beams * (its[scans - 1] - others[scans - 1]);
+  return {ahead, log_prior_unbelieved(pose)};
 }
 
 Comparison Rivals::brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
@@ -205,12 +215,13 @@ void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> pose
   for (const Pose2& pose : poses) {
     if (bank_.knows(pose)) continue;
     const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
-    double ahead = ahead_of(its, others);
-    const Comparison brought = ahead > 0.0 ? brought_by(field, pose, joined) : Comparison{};
-    if (believing_) ahead = std::clamp(ahead, -kFarthestBehind, params_.most_ahead);
+    Odds odds = believing_ ? odds_beside_believed(its, others) : odds_unbelieved(pose, its, others);
+    if (proven) odds.log_prior += kOverlooked;
+    if (proven && !believing_) odds.ahead = std::min(0.0, odds.ahead);
+    const Comparison brought = odds.ahead > 0.0 ? brought_by(field, pose, joined) : Comparison{};
     bank_.admit({.map_from_robot = pose,
-                 .log_evidence = base + (proven && !believing_ ? std::min(0.0, ahead) : ahead),
-                 .log_prior = log_prior_unbelieved(pose) + (proven ? kOverlooked : 0.0),
+                 .log_evidence = base + odds.ahead,
+                 .log_prior = odds.log_prior,
                  .since_carried = brought.ahead(),
                  .lost_since = brought.lost});
   }
@@ -271,9 +282,10 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
   const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
   const Comparison brought = brought_by(field, pose, joined);
+  const Odds odds = odds_beside_believed(its, owns);
   bank_.admit({.map_from_robot = pose,
-               .log_evidence = own.log_evidence + std::clamp(ahead_of(its, owns), -kFarthestBehind, params_.most_ahead),
-               .log_prior = std::log(elsewhere_prior_),
+               .log_evidence = own.log_evidence + odds.ahead,
+               .log_prior = odds.log_prior,
                .since_carried = brought.ahead(),
                .lost_since = brought.lost});
 }

@@ -94,9 +94,17 @@ class Rivals {
   void probe(const LikelihoodField& field, const Pose2& joined);
   void admit_rival(const LikelihoodField& field, const Pose2& rough, const Pose2& joined, double own_fit);
   void admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
-  /// By how much log evidence the scans of the last metres speak for a pose, of which they say `its`, against another.
-  /// While a pose is believed, only those since the robot may have been carried off: since when they speak for it most.
-  [[nodiscard]] double ahead_of(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
+  /// Of a place that has only now come to mind, against the best that is known.
+  struct Odds {
+    double ahead = 0.0;      ///< log evidence of the scans of the last metres
+    double log_prior = 0.0;  ///< log odds before any scan
+  };
+  /// Either the robot has just been carried there: then only the scans since that moment speak, but nobody carries
+  /// robots about. Or it has been there since the believed place was found, and the search has overlooked it: then all
+  /// scans speak. The likelier of the two.
+  [[nodiscard]] Odds odds_beside_believed(const ScanStack::Sums& its, const ScanStack::Sums& others) const;
+  [[nodiscard]] Odds odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
+                                     const ScanStack::Sums& others) const;
   /// What a place that has only now come to mind brings with it, had the robot been carried there lately; nothing where
   /// no pose is believed.
   [[nodiscard]] Comparison brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const;

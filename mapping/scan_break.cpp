@@ -19,7 +19,7 @@ double bearing_of(const Eigen::Vector2f& way) {
 
 }  // namespace
 
-std::optional<ScanBreak::Shares> ScanBreak::compared(const TrackedScan& tracked) const {
+std::optional<ScanBreak::Shares> ScanBreak::compared(const TrackedScan& tracked, const Pose2& now_from_last) const {
   const std::vector<RayInRobot>& rays = tracked.rays;
   std::size_t first = 0;
   while (first < rays.size() && !has_range(tracked, first)) ++first;
@@ -27,7 +27,6 @@ std::optional<ScanBreak::Shares> ScanBreak::compared(const TrackedScan& tracked)
   const Eigen::Vector2f laser = rays[first].origin;
   const double first_bearing_rad = bearing_of(rays[first].end - laser);
   const auto beams = static_cast<std::ptrdiff_t>(rays.size());
-  const Pose2 now_from_last = inverse(tracked.odom_from_robot) * odom_from_robot_;
   const auto c = static_cast<float>(std::cos(now_from_last.theta));
   const auto s = static_cast<float>(std::sin(now_from_last.theta));
   const Eigen::Vector2f moved{static_cast<float>(now_from_last.x), static_cast<float>(now_from_last.y)};
@@ -68,8 +67,25 @@ void ScanBreak::keep(const TrackedScan& tracked) {
     if (has_range(tracked, i)) ends_.push_back(tracked.rays[i].end);
   }
   odom_from_robot_ = tracked.odom_from_robot;
+  map_from_robot_ = tracked.estimate.map_from_robot;
   epoch_ = tracked.odometry_epoch;
   last_ = tracked.scan.time;
+}
+
+/// By the wheels or by the estimate, whichever explains the scan better.
+std::optional<ScanBreak::Shares> ScanBreak::least_compared(const TrackedScan& tracked) const {
+  const auto by_wheels = compared(tracked, inverse(tracked.odom_from_robot) * odom_from_robot_);
+  const auto by_estimate = compared(tracked, inverse(tracked.estimate.map_from_robot) * map_from_robot_);
+  if (!by_wheels || !by_estimate) return by_wheels;
+  const bool estimate_is_better = by_estimate->nearer + by_estimate->farther < by_wheels->nearer + by_wheels->farther;
+  return estimate_is_better ? by_estimate : by_wheels;
+}
+
+/// A heading that is wrong from the start moves the end aside by wheels_rad_per_m · way² / 2.
+bool ScanBreak::was_blind(const TrackedScan& tracked) const {
+  if (!last_ || epoch_ != tracked.odometry_epoch) return false;
+  const double way_m = distance_between(odom_from_robot_, tracked.odom_from_robot);
+  return 0.5 * params_.wheels_rad_per_m * way_m * way_m > params_.least_m;
 }
 
 SeenBreak ScanBreak::observe(const TrackedScan& tracked) {
@@ -77,10 +93,11 @@ SeenBreak ScanBreak::observe(const TrackedScan& tracked) {
       last_ && epoch_ == tracked.odometry_epoch &&
       distance_between(odom_from_robot_, tracked.odom_from_robot) <= params_.most_way_m &&
       std::abs(turn_between(odom_from_robot_.theta, tracked.odom_from_robot.theta)) <= params_.most_turn_rad;
-  const std::optional<Shares> now = follows ? compared(tracked) : std::nullopt;
+  const std::optional<Shares> now = follows ? least_compared(tracked) : std::nullopt;
+  const bool blind = was_blind(tracked);
   const double passed_s = last_ ? std::max(0.0, seconds(tracked.scan.time - *last_)) : 0.0;
   keep(tracked);
-  if (!now) return {};
+  if (!now) return {0.0, blind};
   const Shares usual = usual_.value_or(Shares{});
   const Shares more{now->nearer - usual.nearer, now->farther - usual.farther};
   const double most = std::min(more.nearer, more.farther) >= params_.each_way ? params_.most : params_.most_one_way;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices that a scan does not follow from the one before: moved on as odometry says, part of the view is suddenly
-// nearer and part of it farther away. So it is for a robot that is carried; a thing that comes makes its part nearer
-// alone, one that goes farther alone. Neither map nor estimate is asked, so that a map out of date and a pose that
-// deceives itself do not matter.
+// Notices that a scan does not follow from the one before: moved on as odometry says, and as the estimate says, part of
+// the view is suddenly nearer and part of it farther away. So it is for a robot that is carried; a thing that comes
+// makes its part nearer alone, one that goes farther alone. Where the wheels have slipped, or their reports come late,
+// the estimate has moved as the scans have. The map is not asked, so that one that is out of date does not matter.
+// After a way without scans that is so long that odometry may be off by as much as would show, nobody knows: a break
+// too.
 #pragma once
 
 #include <cstdint>
@@ -46,12 +48,15 @@ class ScanBreak {
     double farther = 0.0;
   };
   /// Of the beams that can be compared; nothing where those are too few.
-  [[nodiscard]] std::optional<Shares> compared(const TrackedScan& tracked) const;
+  [[nodiscard]] std::optional<Shares> compared(const TrackedScan& tracked, const Pose2& now_from_last) const;
+  [[nodiscard]] std::optional<Shares> least_compared(const TrackedScan& tracked) const;
+  [[nodiscard]] bool was_blind(const TrackedScan& tracked) const;
   void keep(const TrackedScan& tracked);
 
   ScanBreakParams params_;
   std::vector<Eigen::Vector2f> ends_;  // of the last scan, robot frame; those that have a range
   Pose2 odom_from_robot_;
+  Pose2 map_from_robot_;
   std::uint32_t epoch_ = 0;
   std::optional<Timestamp> last_;
   std::optional<Shares> usual_;

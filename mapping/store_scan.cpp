@@ -86,6 +86,7 @@ std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {
   s.awareness.w_slow = s.ratio.w_slow();
   s.awareness.r_d = s.ratio.value();
   s.awareness.gate = s.gate.gate().reason();
+  s.awareness.gate_confirms_after = s.gate.gate().confirms_after();
   s.awareness.gate_shut_for_s = s.gate.gate().shut_for_s();
   s.awareness.gate_times = s.gate.gate().times();
   return set;

@@ -36,7 +36,8 @@ struct Awareness {
   std::uint32_t short_beams = 0;    ///< evidence: beams of this scan that ended before the map says
   std::uint32_t through_beams = 0;  ///< evidence: beams of this scan that went through what the map says
   GateReason gate = GateReason::kOpen;
-  double gate_shut_for_s = 0.0;  ///< since it was open last
+  GateReason gate_confirms_after = GateReason::kOpen;  ///< kOpen: nothing has to be confirmed
+  double gate_shut_for_s = 0.0;                        ///< since it was open last
   GateTimes gate_times{};
 };
 

@@ -105,6 +105,7 @@ void WriteGate::note_break(const TrackedScan& tracked) {
   const double over_s = broken_->shuts ? std::max(params_.wary_s, params_.break_settles_s) : params_.wary_s;
   if (misfit_.is_worse_than_remembered(broken_->explained)) {
     is_confirming_ = true;
+    confirms_after_ = GateReason::kConfirming;
   } else if (seconds(time - broken_->time) > over_s) {
     forget_break();
   }
@@ -154,9 +155,11 @@ void WriteGate::observe(const TrackedScan& tracked) {
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
   if (was_tracking_ && !is_confirming_ && (is_proof || misfit_.is_both_ways())) {
     is_confirming_ = true;
+    confirms_after_ = GateReason::kMisfit;
     // What has only made it wary is a thing that stays: as much as without it need not fit again.
     if (broken_ && !broken_->shuts) forget_break();
   }
+  if (is_confirming_ && is_proof) confirms_after_ = judgement;
   if (is_confirming_ && holds(judgement, time, driven_m)) {
     is_confirming_ = false;
     forget_break();

@@ -81,6 +81,9 @@ class WriteGate {
 
   [[nodiscard]] bool is_open() const { return reason_ == GateReason::kOpen; }
   [[nodiscard]] GateReason reason() const { return reason_; }
+  /// What the pose is being confirmed after: the proof that it was wrong, kMisfit after another view, kConfirming after
+  /// scans that broke off; kOpen where it is not.
+  [[nodiscard]] GateReason confirms_after() const { return is_confirming_ ? confirms_after_ : GateReason::kOpen; }
   /// Did this scan prove the pose wrong that was believed before it, or is it in doubt for too long?
   [[nodiscard]] bool has_proven_wrong() const { return has_proven_wrong_; }
   /// Told that the pose was wrong, and not open since.
@@ -116,6 +119,7 @@ class WriteGate {
   bool was_tracking_ = false;
   bool has_proven_wrong_ = false;
   bool is_confirming_ = false;
+  GateReason confirms_after_ = GateReason::kOpen;
   bool is_distrusted_ = false;
   Timestamp holds_since_;
   double held_m_ = 0.0;  // driven since then

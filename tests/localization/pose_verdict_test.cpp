@@ -101,6 +101,25 @@ TEST(PoseVerdict, IsNotShakenByPeopleWhoStandInTheWay) {
   EXPECT_EQ(after(judge, 60.0, view).verdict, PoseVerdict::kRight);
 }
 
+TEST(PoseVerdict, TrustsAPoseAgainAsSoonAsTheOtherPlaceIsRefuted) {
+  PoseJudge judge = sure();
+  EXPECT_LT(after(judge, 2.0, view_of(1.0, 1.0), 0.5, {.believed = 0.1, .best_rival = 0.9}).pose_right, 0.2);
+  EXPECT_GT(after(judge, 0.2, view_of(1.0, 1.0)).pose_right, 0.95);
+}
+
+TEST(PoseVerdict, HoldsViewsThatSayLittleAgainstNoPlaceThatWasFound) {
+  PoseJudge judge{{}};
+  judge.start(0.5, true);
+  EXPECT_GT(after(judge, 40.0, view_of(1.0, 0.5)).pose_right, 0.4);
+  PoseJudge found{{}};
+  found.start(0.5, true);
+  PoseJudge given{{}};
+  given.start(0.5, false);
+  const double of_found = after(found, 1.0, view_of(1.0, 0.2)).pose_right;
+  EXPECT_DOUBLE_EQ(of_found, after(given, 1.0, view_of(1.0, 0.2)).pose_right) << "what does not fit speaks in full";
+  EXPECT_LT(of_found, 0.3);
+}
+
 TEST(PoseVerdict, SaysNothingNewWithoutBeams) {
   PoseJudge judge{{}};
   judge.start(0.5, false);

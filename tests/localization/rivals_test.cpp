@@ -62,6 +62,25 @@ TEST(Rivals, LeaveNearlyAllBeliefToAPoseThatFits) {
   }
 }
 
+/// The least share of the belief that a right pose, which a search has found, holds while the whole map is searched
+/// beside it.
+double least_share_after_search() {
+  const OccupancyGrid map = test::drawn_flat();
+  Round round{map, map, {1.6, 1.0, 0.0}, 1};
+  round.rivals().start_anywhere();
+  for (int i = 0; i < 50; ++i) (void)round.step(std::nullopt);
+  round.rivals().start_believing_in(round.truth());
+  round.rivals().suspect(true);
+  double least = 1.0;
+  for (int i = 0; i < 150; ++i) {
+    const double share = round.step(round.truth() * kMotion).own_share;
+    if (i >= 20) least = std::min(least, share);
+  }
+  return least;
+}
+
+TEST(Rivals, LeaveMostBeliefToAPoseThatWasFoundAndFits) { EXPECT_GT(least_share_after_search(), 0.8); }
+
 TEST(Rivals, FindPlacesThatFitAsWellAndNeverPreferThem) {
   const OccupancyGrid map = symmetric_hall();
   Round round{map, map, {6.0, 4.0, 0.0}, 2};

@@ -75,6 +75,24 @@ TEST(ScanBreak, IsALargeOneWhereAThirdOfTheViewIsNearer) {
   EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0, 70)).is_large);
 }
 
+TEST(ScanBreak, IsNoneWhereTheWheelsHaveSlippedAndTheEstimateHasNot) {
+  StraightDrive robot;
+  ScanBreak scans{{}};
+  for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
+  robot.map_from_odom.x = -0.6;  // so much the wheels counted and the body did not go
+  for (int i = 0; i < 20; ++i) ASSERT_LT(scans.observe(aisle_scan(robot, -0.6)).share, kWary) << i;
+}
+
+TEST(ScanBreak, IsALargeOneAfterAWayWithoutScansOverWhichTheWheelsMayBeOff) {
+  StraightDrive robot;
+  ScanBreak scans{{}};
+  (void)scans.observe(aisle_scan(robot, 0.0));
+  robot.speed_m_per_s = 2.0 / kPeriod_s;
+  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0)).is_large);
+  robot.speed_m_per_s = 4.0 / kPeriod_s;
+  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0)).is_large);
+}
+
 TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
   StraightDrive robot;
   WriteGate gate{{}};

@@ -94,7 +94,9 @@ TEST(WriteGate, AWrongPoseIsToldOnceAndHasToHoldBeforeItOpensAgain) {
   EXPECT_EQ(told, 1);
   drive(robot, gate, 19.7);
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+  EXPECT_EQ(gate.confirms_after(), GateReason::kLost);
   drive(robot, gate, 0.6);
+  EXPECT_EQ(gate.confirms_after(), GateReason::kOpen);
   EXPECT_TRUE(gate.is_open());
   EXPECT_NEAR(seconds(robot.now() - *gate.trusted_since()), 0.0, 0.6);
   const auto shut = shut_by_reason(gate.times());
@@ -174,6 +176,7 @@ TEST(WriteGate, WaitsForProofWhereTheWholeViewHasBecomeAnother) {
   EXPECT_EQ(gate.reason(), GateReason::kMisfit);
   for (int i = 0; i < 190; ++i) gate.observe(seeing(robot.next(), 5, 5));
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+  EXPECT_EQ(gate.confirms_after(), GateReason::kMisfit);
   for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 5, 5));
   EXPECT_TRUE(gate.is_open());
   EXPECT_FALSE(gate.trusted_since()) << "nothing was proven";

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "daemon/tool/experiment/scan_table.hpp"
 
 namespace deltamap::daemon::tool::experiment {
 namespace {
+
+using mapping::GateReason;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOff_m = 0.5;
@@ -22,9 +25,38 @@ constexpr double kBefore_s = 20.0;     // in which what happened may be a cause
 constexpr double kAfterSlip_s = 60.0;  // in which the covariance is judged apart
 constexpr double kInside95 = 7.815;    // 95 % quantile of χ², 3 degrees of freedom
 
+std::string why_shut(GateReason reason, GateReason confirms_after) {
+  std::string why{mapping::name_of(reason)};
+  const bool tells_more = reason == GateReason::kConfirming && confirms_after != GateReason::kOpen;
+  if (tells_more && confirms_after != reason) why += " after " + std::string{mapping::name_of(confirms_after)};
+  return why;
+}
+
+double sum_of(const std::map<std::string, double>& parts) {
+  return std::accumulate(parts.begin(), parts.end(), 0.0,
+                         [](double sum, const auto& part) { return sum + part.second; });
+}
+
 double share_of(double part, double all) { return all > 0.0 ? part / all : kNothing; }
 
 }  // namespace
+
+std::vector<std::string> all_whys_shut() {
+  std::vector<std::string> whys;
+  for (std::size_t i = 1; i < mapping::kGateReasons; ++i) {
+    const auto reason = static_cast<GateReason>(i);
+    whys.push_back(why_shut(reason, GateReason::kOpen));
+    const bool begins = mapping::proves_wrong(reason) || reason == GateReason::kMisfit;
+    if (begins) whys.push_back(why_shut(GateReason::kConfirming, reason));
+  }
+  return whys;
+}
+
+std::string shut_number(const std::string& why) {
+  std::string number = "shut_right_" + why + "_s";
+  std::replace(number.begin(), number.end(), ' ', '_');
+  return number;
+}
 
 void PoseCourse::Coverage::add(bool is_inside) {
   ++all;
@@ -127,7 +159,8 @@ void PoseCourse::note_gate(const Mapped& scan, double error_m) {
   if (error_m <= kOff_m && !is_tracking) searching_while_near_s_ += counted_s_;
   if (error_m > kRight_m) return;
   right_s_ += counted_s_;
-  if (scan.awareness.gate != mapping::GateReason::kOpen) shut_while_right_s_ += counted_s_;
+  if (scan.awareness.gate == GateReason::kOpen) return;
+  shut_while_right_s_[why_shut(scan.awareness.gate, scan.awareness.gate_confirms_after)] += counted_s_;
 }
 
 std::string PoseCourse::happening() const {
@@ -150,34 +183,39 @@ std::string PoseCourse::cause() const {
 
 PoseCourse::Numbers PoseCourse::numbers() const {
   const auto ms_a_scan = [&](double seconds) { return 1e3 * share_of(seconds, static_cast<double>(scans_)); };
-  return {{"minutes", now_s_ / 60.0},
-          {"scans", static_cast<double>(scans_)},
-          {"found_after_s", knows_start_ || !found_s_ ? kNothing : *found_s_},
-          {"start_found", knows_start_ ? kNothing
-                          : found_s_   ? 1.0
-                                       : 0.0},
-          {"wrong_before_found_s", knows_start_ ? kNothing : wrong_before_found_s_},
-          {"error_rms_m", root_mean_square(errors_m_)},
-          {"laser_error_rms_m", root_mean_square(laser_errors_m_)},
-          {"error_median_m", quantile(errors_m_, 0.5)},
-          {"error_p99_m", quantile(errors_m_, 0.99)},
-          {"error_most_m", quantile(errors_m_, 1.0)},
-          {"off_share", share_of(off_s_, followed_s_)},
-          {"off_s", off_s_},
-          {"longest_off_s", longest_off_s_},
-          {"stretches_off", static_cast<double>(stretches_)},
-          {"jumps", static_cast<double>(jumps_)},
-          {"first_off_s", first_off_s_.value_or(kNothing)},
-          {"searching_while_near_s", searching_while_near_s_},
-          {"gate_shut_while_right", share_of(shut_while_right_s_, right_s_)},
-          {"inside_95", coverage_.share()},
-          {"inside_95_after_slip", coverage_after_slips_.share()},
-          {"changed_view_s", changed_view_s_},
-          {"empty_view_s", empty_view_s_},
-          {"slips", static_cast<double>(slips_)},
-          {"gaps", static_cast<double>(gaps_)},
-          {"localizer_cpu_ms", ms_a_scan(costs_.localizer_s)},
-          {"mapping_cpu_ms", ms_a_scan(costs_.awareness_s + costs_.update_s)}};
+  Numbers numbers{{"minutes", now_s_ / 60.0},
+                  {"scans", static_cast<double>(scans_)},
+                  {"found_after_s", knows_start_ || !found_s_ ? kNothing : *found_s_},
+                  {"start_found", knows_start_ ? kNothing
+                                  : found_s_   ? 1.0
+                                               : 0.0},
+                  {"wrong_before_found_s", knows_start_ ? kNothing : wrong_before_found_s_},
+                  {"error_rms_m", root_mean_square(errors_m_)},
+                  {"laser_error_rms_m", root_mean_square(laser_errors_m_)},
+                  {"error_median_m", quantile(errors_m_, 0.5)},
+                  {"error_p99_m", quantile(errors_m_, 0.99)},
+                  {"error_most_m", quantile(errors_m_, 1.0)},
+                  {"off_share", share_of(off_s_, followed_s_)},
+                  {"off_s", off_s_},
+                  {"longest_off_s", longest_off_s_},
+                  {"stretches_off", static_cast<double>(stretches_)},
+                  {"jumps", static_cast<double>(jumps_)},
+                  {"first_off_s", first_off_s_.value_or(kNothing)},
+                  {"searching_while_near_s", searching_while_near_s_},
+                  {"gate_shut_while_right", share_of(sum_of(shut_while_right_s_), right_s_)},
+                  {"inside_95", coverage_.share()},
+                  {"inside_95_after_slip", coverage_after_slips_.share()},
+                  {"changed_view_s", changed_view_s_},
+                  {"empty_view_s", empty_view_s_},
+                  {"slips", static_cast<double>(slips_)},
+                  {"gaps", static_cast<double>(gaps_)},
+                  {"localizer_cpu_ms", ms_a_scan(costs_.localizer_s)},
+                  {"mapping_cpu_ms", ms_a_scan(costs_.awareness_s + costs_.update_s)}};
+  for (const std::string& why : all_whys_shut()) {
+    const auto found = shut_while_right_s_.find(why);
+    numbers.emplace_back(shut_number(why), found == shut_while_right_s_.end() ? 0.0 : found->second);
+  }
+  return numbers;
 }
 
 }  // namespace deltamap::daemon::tool::experiment

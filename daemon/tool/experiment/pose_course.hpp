@@ -4,6 +4,7 @@
 // what was happening when the pose first went wrong.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,12 @@
 #include "daemon/tool/experiment/mapping_drive.hpp"
 
 namespace deltamap::daemon::tool::experiment {
+
+/// Why the map may not be written: "doubtful", "confirming after jumped", … A view that has become another one counts
+/// as "confirming after misfit", scans that broke off as "confirming".
+[[nodiscard]] std::vector<std::string> all_whys_shut();
+/// The number of a course: seconds in which that was so although the pose was right.
+[[nodiscard]] std::string shut_number(const std::string& why);
 
 /// What befell robot and world at a scan and may lead a localizer astray.
 struct Befallen {
@@ -64,7 +71,7 @@ class PoseCourse {
   int jumps_ = 0;
   double searching_while_near_s_ = 0.0;
   double right_s_ = 0.0;
-  double shut_while_right_s_ = 0.0;
+  std::map<std::string, double> shut_while_right_s_;  // by why_shut()
   std::optional<double> first_off_s_;
   std::string first_off_during_;
   struct Coverage {

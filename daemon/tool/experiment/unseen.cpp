@@ -6,6 +6,7 @@
 #include <string>
 
 #include "daemon/settings.hpp"
+#include "daemon/tool/experiment/pose_course.hpp"
 #include "daemon/tool/experiment/registry.hpp"
 #include "daemon/tool/experiment/seed_summary.hpp"
 #include "daemon/tool/experiment/watched_drive.hpp"
@@ -136,6 +137,29 @@ TextTable failed_seeds(const std::vector<Outcome>& outcomes) {
   return table;
 }
 
+/// The longest first.
+TextTable shut_while_right(const std::vector<Outcome>& outcomes) {
+  std::vector<std::pair<double, std::vector<std::string>>> rows;
+  for (const std::string& why : all_whys_shut()) {
+    double all_s = 0.0;
+    std::size_t seeds = 0;
+    const Outcome* worst = nullptr;
+    for (const Outcome& outcome : outcomes) {
+      const double shut_s = outcome.number(shut_number(why));
+      all_s += shut_s;
+      seeds += shut_s > 0.0 ? 1 : 0;
+      if (worst == nullptr || shut_s > worst->number(shut_number(why))) worst = &outcome;
+    }
+    if (seeds == 0) continue;
+    rows.push_back({all_s, {why, text_of(std::round(all_s)), std::to_string(seeds), worst->label("seed")}});
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  TextTable table{
+      "Why the gate was shut while the pose was right", {"why", "s, all seeds", "seeds", "longest in seed"}, {}};
+  for (auto& row : rows) table.rows.push_back(std::move(row.second));
+  return table;
+}
+
 /// The values of all seeds in order of size: how long the tail is.
 Chart chart_of(const std::string& what, const std::string& number, const std::vector<Outcome>& outcomes) {
   std::vector<double> values;
@@ -189,6 +213,7 @@ Report Unseen::report(const std::vector<Outcome>& outcomes) const {
   report.charts.push_back(
       chart_of("gate shut while the pose is right, share of the time", "gate_shut_while_right", outcomes));
   report.tables.push_back(failed_seeds(outcomes));
+  report.tables.push_back(shut_while_right(outcomes));
   return report;
 }
 
