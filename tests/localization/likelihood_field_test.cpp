@@ -17,7 +17,7 @@ constexpr LikelihoodFieldParams kParams{.hit_deviation_m = 0.10, .random_share =
 /// Straight from the definition: look at every contour cell.
 std::uint8_t expected_steps(const OccupancyGrid& map, Cell cell, const LikelihoodFieldParams& params) {
   double nearest2 = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
+  for (std::size_t i = 0; i < map.geometry().cell_count(); ++i) {
     const Cell other = map.geometry().cell_of(i);
     if (!is_contour(map, other)) continue;
     nearest2 = std::min(nearest2, std::pow(other.column - cell.column, 2) + std::pow(other.row - cell.row, 2));
@@ -31,7 +31,7 @@ std::uint8_t expected_steps(const OccupancyGrid& map, Cell cell, const Likelihoo
 
 OccupancyGrid random_grid(int width, int height, Random& random) {
   OccupancyGrid grid{{width, height, 0.05, {-1.0, 2.0}}};
-  for (std::size_t i = 0; i < grid.cells().size(); ++i) {
+  for (std::size_t i = 0; i < grid.geometry().cell_count(); ++i) {
     const double chance = random.uniform();
     grid.set(grid.geometry().cell_of(i), chance < 0.04  ? CellState::kOccupied
                                          : chance < 0.7 ? CellState::kFree
@@ -81,7 +81,7 @@ TEST(LikelihoodField, HoldsTheDefinitionInEveryCell) {
   Random random{11};
   const OccupancyGrid map = random_grid(40, 31, random);
   const LikelihoodField field{map, kParams};
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
+  for (std::size_t i = 0; i < map.geometry().cell_count(); ++i) {
     const Cell cell = map.geometry().cell_of(i);
     ASSERT_EQ(field.steps_at(cell), expected_steps(map, cell, kParams)) << cell.column << ' ' << cell.row;
   }
@@ -119,7 +119,7 @@ TEST(LikelihoodField, PatchedIsTheSameAsRebuiltWhateverChanges) {
     LikelihoodField patched_field{before, kParams};
     patched_field.apply(field_patch(after, changes_between(before, after), kParams));
     const LikelihoodField rebuilt{after, kParams};
-    for (std::size_t i = 0; i < after.cells().size(); ++i) {
+    for (std::size_t i = 0; i < after.geometry().cell_count(); ++i) {
       const Cell cell = after.geometry().cell_of(i);
       ASSERT_EQ(patched_field.steps_at(cell), rebuilt.steps_at(cell)) << "round " << round;
     }
