@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/random.hpp"
+#include "tests/support/drawn_flat.hpp"
 #include "tests/support/drawn_grid.hpp"
+#include "tests/support/padded.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -122,6 +125,38 @@ TEST(LikelihoodField, PatchedIsTheSameAsRebuiltWhateverChanges) {
     for (std::size_t i = 0; i < after.geometry().cell_count(); ++i) {
       const Cell cell = after.geometry().cell_of(i);
       ASSERT_EQ(patched_field.steps_at(cell), rebuilt.steps_at(cell)) << "round " << round;
+    }
+  }
+}
+
+TEST(LikelihoodField, HoldsTheSameBytesHoweverMuchUnknownSpaceLiesAroundTheMap) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, kParams};
+  const LikelihoodField::Bordered own = field.bordered();
+  for (const test::Padding& by :
+       {test::Padding{1, 0, 0, 0}, test::Padding{37, 101, 3, 0}, test::Padding{3000, 64, 5, 700}}) {
+    const LikelihoodField wide_field{test::padded(map, by), kParams};
+    const LikelihoodField::Bordered wide = wide_field.bordered();
+    ASSERT_EQ(wide.width, own.width);
+    ASSERT_EQ(wide.height, own.height);
+    EXPECT_NEAR((wide.origin - own.origin).norm(), 0.0, 1e-9);
+    EXPECT_TRUE(std::equal(own.bytes, own.bytes + own.width * own.height, wide.bytes));
+  }
+}
+
+TEST(LikelihoodField, GrowsWithWhatTheMapShows) {
+  OccupancyGrid before{{900, 700, 0.05, {-1.0, 2.0}}};
+  for (int column = 300; column < 340; ++column) before.set({column, 300}, CellState::kOccupied);
+  for (const Cell& cell : {Cell{310, 301}, Cell{0, 0}, Cell{899, 699}, Cell{899, 0}}) {
+    OccupancyGrid after = before;
+    after.set(cell, CellState::kOccupied);
+    LikelihoodField patched_field{before, kParams};
+    patched_field.apply(field_patch(after, changes_between(before, after), kParams));
+    const LikelihoodField rebuilt{after, kParams};
+    EXPECT_EQ(patched_field.window(), rebuilt.window());
+    for (std::size_t i = 0; i < after.geometry().cell_count(); ++i) {
+      const Cell at = after.geometry().cell_of(i);
+      ASSERT_EQ(patched_field.steps_at(at), rebuilt.steps_at(at)) << at.column << ' ' << at.row;
     }
   }
 }
