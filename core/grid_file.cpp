@@ -3,12 +3,15 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <stdexcept>
 
 #include "core/replace_file.hpp"
@@ -19,6 +22,7 @@ namespace {
 
 constexpr double kFinest_m = 0.001;  // sides of a cell
 constexpr double kCoarsest_m = 100.0;
+constexpr int kTogether = 64;    // pixels
 constexpr int kMaxSide = 32767;  // cells; 16-bit indices suffice everywhere
 
 struct MapKeys {
@@ -34,10 +38,15 @@ struct MapKeys {
   throw std::runtime_error(file.string() + ": " + why);
 }
 
-std::string read_bytes(const std::filesystem::path& file) {
+std::ifstream open_file(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file)) refuse(file, "is a directory");
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file, std::strerror(errno));
+  return in;
+}
+
+std::string read_bytes(const std::filesystem::path& file) {
+  std::ifstream in = open_file(file);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -90,40 +99,50 @@ MapKeys parse_keys(const std::filesystem::path& file) {
   return keys;
 }
 
-/// The header of a binary PGM: numbers separated by white space and comments.
-class PgmHeader {
+/// A binary PGM, read from its beginning: the header, numbers separated by white space and comments, then rows of
+/// pixels.
+class PgmReader {
  public:
-  PgmHeader(const std::string& bytes, const std::filesystem::path& file) : bytes_{bytes}, file_{file} {
-    if (bytes.size() < 2 || bytes[0] != 'P' || bytes[1] != '5') refuse(file, "byte 0: not a binary PGM (P5)");
+  explicit PgmReader(const std::filesystem::path& file) : in_{open_file(file)}, file_{file} {
+    if (in_.get() != 'P' || in_.get() != '5') refuse(file, "byte 0: not a binary PGM (P5)");
   }
   int next_number(int most) {
     skip_space();
     const std::size_t start = at_;
     long value = 0;
-    while (at_ < bytes_.size() && bytes_[at_] >= '0' && bytes_[at_] <= '9' && value <= most) {
-      value = value * 10 + (bytes_[at_++] - '0');
+    while (std::isdigit(in_.peek()) != 0 && value <= most) {
+      value = value * 10 + (in_.get() - '0');
+      ++at_;
     }
     if (at_ == start || value < 1 || value > most) {
       refuse(file_, "byte " + std::to_string(start) + ": expected a number from 1 to " + std::to_string(most));
     }
     return static_cast<int>(value);
   }
-  /// Where the pixels begin: after exactly one white space.
-  [[nodiscard]] std::size_t end() const { return at_ + 1; }
+  /// Pixels begin after exactly one white space; refuses a file that has too few.
+  void begin_pixels(int width, int height) {
+    (void)in_.get();
+    const auto needed = at_ + 1 + static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    const auto size = static_cast<std::size_t>(std::filesystem::file_size(file_));
+    if (size >= needed) return;
+    refuse(file_, "byte " + std::to_string(size) + ": cut short, " + std::to_string(width) + " x " +
+                      std::to_string(height) + " cells need " + std::to_string(needed) + " bytes");
+  }
+  void read_row(std::string& row) {
+    if (!in_.read(row.data(), static_cast<std::streamsize>(row.size()))) refuse(file_, "cannot be read to its end");
+  }
 
  private:
   void skip_space() {
-    while (at_ < bytes_.size()) {
-      if (bytes_[at_] == '#') {
-        at_ = std::min(bytes_.find('\n', at_), bytes_.size());
-      } else if (std::isspace(static_cast<unsigned char>(bytes_[at_])) != 0) {
+    while (in_.peek() == '#' || std::isspace(in_.peek()) != 0) {
+      const bool is_comment = in_.peek() == '#';
+      do {
+        (void)in_.get();
         ++at_;
-      } else {
-        return;
-      }
+      } while (is_comment && in_.peek() != '\n' && in_.peek() != std::char_traits<char>::eof());
     }
   }
-  const std::string& bytes_;
+  std::ifstream in_;
   const std::filesystem::path& file_;
   std::size_t at_ = 2;
 };
@@ -142,6 +161,10 @@ std::array<CellState, 256> cell_states(int brightest, const MapKeys& keys) {
   return states;
 }
 
+bool is_of_one_shade(std::string_view pixels) {
+  return std::memcmp(pixels.data(), pixels.data() + 1, pixels.size() - 1) == 0;
+}
+
 char shade_of(CellState state) {
   switch (state) {
     case CellState::kOccupied:
@@ -154,14 +177,35 @@ char shade_of(CellState state) {
   return static_cast<char>(205);
 }
 
-std::string pgm_of(const OccupancyGrid& grid) {
-  std::string pgm = "P5\n" + std::to_string(grid.width()) + " " + std::to_string(grid.height()) + "\n255\n";
-  pgm.reserve(pgm.size() + grid.cells().size());
-  for (int row = grid.height() - 1; row >= 0; --row) {
-    for (int column = 0; column < grid.width(); ++column) pgm += shade_of(grid[{column, row}]);
+/// The grid as a binary PGM, the header first and then row by row from the top: never whole in memory.
+class PgmWriter {
+ public:
+  explicit PgmWriter(const OccupancyGrid& grid)
+      : grid_{grid},
+        next_row_{grid.height()},
+        piece_{"P5\n" + std::to_string(grid.width()) + " " + std::to_string(grid.height()) + "\n255\n"} {}
+
+  /// Nothing at the end.
+  [[nodiscard]] std::string_view next_piece() {
+    const int row = next_row_--;
+    if (row < 0) return {};
+    if (row < grid_.height()) lay_out(row);
+    return piece_;
   }
-  return pgm;
-}
+
+ private:
+  void lay_out(int row) {
+    piece_.assign(static_cast<std::size_t>(grid_.width()), shade_of(grid_.fill()));
+    grid_.tiles().visit_written({{0, row}, {grid_.width(), row + 1}},
+                                [&](Cell first, std::span<const CellState> cells) {
+                                  std::transform(cells.begin(), cells.end(), piece_.begin() + first.column, shade_of);
+                                });
+  }
+
+  const OccupancyGrid& grid_;
+  int next_row_;  // the height stands for the header
+  std::string piece_;
+};
 
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
   const Point2& origin = grid.geometry().origin;
@@ -183,22 +227,24 @@ bool is_carmen_map(const std::filesystem::path& file, std::string_view first_byt
 OccupancyGrid read_grid(const std::filesystem::path& yaml_file) {
   const MapKeys keys = parse_keys(yaml_file);
   const std::filesystem::path image = yaml_file.parent_path() / keys.image;  // an absolute image path stands for itself
-  const std::string bytes = read_bytes(image);
-  PgmHeader header{bytes, image};
-  const int width = header.next_number(kMaxSide);
-  const int height = header.next_number(kMaxSide);
-  const int brightest = header.next_number(255);
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (bytes.size() < header.end() + pixels) {
-    refuse(image, "byte " + std::to_string(bytes.size()) + ": cut short, " + std::to_string(width) + " x " +
-                      std::to_string(height) + " cells need " + std::to_string(header.end() + pixels) + " bytes");
-  }
+  PgmReader pgm{image};
+  const int width = pgm.next_number(kMaxSide);
+  const int height = pgm.next_number(kMaxSide);
+  const int brightest = pgm.next_number(255);
+  pgm.begin_pixels(width, height);
   const auto states = cell_states(brightest, keys);
+  const auto state_of = [&](char shade) { return states[static_cast<unsigned char>(shade)]; };
   OccupancyGrid grid{{width, height, keys.resolution_m, keys.origin}};
-  const char* pixel = bytes.data() + header.end();
+  std::string shades(static_cast<std::size_t>(width), '\0');
   for (int row = height - 1; row >= 0; --row) {
-    for (int column = 0; column < width; ++column)
-      grid.set({column, row}, states[static_cast<unsigned char>(*pixel++)]);
+    pgm.read_row(shades);
+    for (int column = 0; column < width; column += kTogether) {
+      const std::string_view piece = std::string_view{shades}.substr(static_cast<std::size_t>(column), kTogether);
+      if (state_of(piece.front()) == CellState::kUnknown && is_of_one_shade(piece)) continue;  // most of a large map
+      for (int i = 0; i < static_cast<int>(piece.size()); ++i) {
+        grid.set({column + i, row}, state_of(piece[static_cast<std::size_t>(i)]));
+      }
+    }
   }
   return grid;
 }
@@ -206,7 +252,8 @@ OccupancyGrid read_grid(const std::filesystem::path& yaml_file) {
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file) {
   std::filesystem::path image = yaml_file;
   image.replace_extension(".pgm");
-  replace_file(image, pgm_of(grid));
+  PgmWriter pgm{grid};
+  replace_file(image, [&] { return pgm.next_piece(); });
   replace_file(yaml_file, yaml_of(grid, image.filename().string()));
 }
 

@@ -3,14 +3,29 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 
 namespace deltamap {
 
-CellBox grown(const CellBox& box, int cells, const GridGeometry& geometry) {
+CellBox united(const CellBox& a, const CellBox& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {{std::min(a.first.column, b.first.column), std::min(a.first.row, b.first.row)},
+          {std::max(a.last.column, b.last.column), std::max(a.last.row, b.last.row)}};
+}
+
+CellBox common(const CellBox& a, const CellBox& b) {
+  const CellBox both{{std::max(a.first.column, b.first.column), std::max(a.first.row, b.first.row)},
+                     {std::min(a.last.column, b.last.column), std::min(a.last.row, b.last.row)}};
+  return both.empty() ? CellBox{} : both;
+}
+
+CellBox grown(const CellBox& box, int cells) {
   if (box.empty()) return {};
-  return {{std::max(0, box.first.column - cells), std::max(0, box.first.row - cells)},
-          {std::min(geometry.width, box.last.column + cells), std::min(geometry.height, box.last.row + cells)}};
+  return {{box.first.column - cells, box.first.row - cells}, {box.last.column + cells, box.last.row + cells}};
+}
+
+CellBox grown(const CellBox& box, int cells, const GridGeometry& geometry) {
+  return common(grown(box, cells), geometry.box());
 }
 
 CellBox bounding_box(std::span<const CellChange> changes) {
@@ -33,17 +48,14 @@ OccupancyGrid patched(OccupancyGrid grid, std::span<const CellChange> changes) {
 std::vector<CellChange> changes_between(const OccupancyGrid& before, const OccupancyGrid& after) {
   assert(before.geometry() == after.geometry() && "only grids of one geometry can be compared cell by cell");
   std::vector<CellChange> changes;
-  const GridGeometry& geometry = before.geometry();
-  const auto width = static_cast<std::size_t>(geometry.width);
-  for (int row = 0; row < geometry.height; ++row) {
-    const std::size_t first = static_cast<std::size_t>(row) * width;
-    if (std::memcmp(before.cells().data() + first, after.cells().data() + first, width) == 0)
-      continue;  // most rows, and quick
-    for (int column = 0; column < geometry.width; ++column) {
-      const Cell cell{column, row};
+  const auto has_changed = [&](Cell cell) { return before.tiles().tile_at(cell) != after.tiles().tile_at(cell); };
+  const auto compare = [&](Cell first, std::span<const CellState> now) {
+    for (int i = 0; i < static_cast<int>(now.size()); ++i) {
+      const Cell cell{first.column + i, first.row};
       if (before[cell] != after[cell]) changes.push_back({cell, before[cell], after[cell]});
     }
-  }
+  };
+  after.tiles().visit_where(after.box(), has_changed, compare);  // most tiles are shared
   return changes;
 }
 

@@ -10,23 +10,6 @@
 
 namespace deltamap {
 
-/// A rectangle of cells: first included, last excluded. Empty where last <= first.
-struct CellBox {
-  Cell first;
-  Cell last;
-
-  [[nodiscard]] int width() const { return last.column - first.column; }
-  [[nodiscard]] int height() const { return last.row - first.row; }
-  [[nodiscard]] bool empty() const { return width() <= 0 || height() <= 0; }
-  [[nodiscard]] bool contains(Cell cell) const {
-    return cell.column >= first.column && cell.row >= first.row && cell.column < last.column && cell.row < last.row;
-  }
-  friend bool operator==(const CellBox&, const CellBox&) = default;
-};
-
-/// The box grown by `cells` on every side and clipped to the grid.
-[[nodiscard]] CellBox grown(const CellBox& box, int cells, const GridGeometry& geometry);
-
 struct CellChange {
   Cell cell;
   CellState before = CellState::kUnknown;

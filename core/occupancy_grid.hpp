@@ -1,103 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map: a grid of free, occupied and unknown cells, and where it lies. A cell's value belongs to its area; its
-// centre is at +0.5. Row 0 has the lowest y, column 0 the lowest x. Grids travel as shared_ptr<const> and never change.
+// The map: a grid of free, occupied and unknown cells, and where it lies. It costs what it shows, not what its
+// rectangle holds, and the revisions of a map share what they do not change. Grids travel as shared_ptr<const> and
+// never change.
 #pragma once
 
-#include <cassert>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/grid_geometry.hpp"
+#include "core/tiled.hpp"
 
 namespace deltamap {
 
 enum class CellState : std::uint8_t { kFree = 0, kOccupied = 1, kUnknown = 2 };
 
-struct Cell {
-  int column = 0;
-  int row = 0;
-  friend bool operator==(const Cell&, const Cell&) = default;
-};
-
-/// No grid has a cell so far away; its neighbours still are whole numbers.
-inline constexpr double kFarthestCell = 1e9;
-
-/// As std::floor, at a quarter of its instructions where the processor has none for it. What lies beyond
-/// kFarthestCell stays there, and what is no number is taken for the lowest: a cast would be undefined.
-[[nodiscard]] inline int rounded_down(double value) {
-  const double from_below = value > -kFarthestCell ? value : -kFarthestCell;
-  const double within = from_below < kFarthestCell ? from_below : kFarthestCell;
-  const int towards_zero = static_cast<int>(within);
-  return towards_zero - (within < towards_zero ? 1 : 0);
-}
-
-/// Where a grid lies in its map frame: no rotation.
-struct GridGeometry {
-  int width = 0;              ///< columns
-  int height = 0;             ///< rows
-  double resolution_m = 0.0;  ///< side of a cell, > 0
-  Point2 origin{0.0, 0.0};    ///< lower left corner of cell (0, 0), m, map frame
-
-  [[nodiscard]] bool contains(Cell cell) const {
-    return static_cast<unsigned>(cell.column) < static_cast<unsigned>(width) &&
-           static_cast<unsigned>(cell.row) < static_cast<unsigned>(height);
-  }
-  /// The cell whose area holds the point; it may lie outside the grid.
-  [[nodiscard]] Cell cell_at(const Point2& point_in_map) const {
-    return {rounded_down((point_in_map.x() - origin.x()) / resolution_m),
-            rounded_down((point_in_map.y() - origin.y()) / resolution_m)};
-  }
-  [[nodiscard]] Point2 centre_of(Cell cell) const {
-    return {origin.x() + (cell.column + 0.5) * resolution_m, origin.y() + (cell.row + 0.5) * resolution_m};
-  }
-  [[nodiscard]] std::size_t cell_count() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  }
-  [[nodiscard]] std::size_t index_of(Cell cell) const {
-    assert(contains(cell) && "the cell must lie in the grid");
-    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(cell.column);
-  }
-  [[nodiscard]] Cell cell_of(std::size_t index) const {
-    return {static_cast<int>(index % static_cast<std::size_t>(width)),
-            static_cast<int>(index / static_cast<std::size_t>(width))};
-  }
-  friend bool operator==(const GridGeometry& a, const GridGeometry& b) {
-    return a.width == b.width && a.height == b.height && a.resolution_m == b.resolution_m && a.origin == b.origin;
-  }
-};
-
 class OccupancyGrid {
  public:
   OccupancyGrid() = default;
   explicit OccupancyGrid(const GridGeometry& geometry, CellState fill = CellState::kUnknown)
-      : geometry_{geometry}, cells_(geometry.cell_count(), fill) {}
+      : geometry_{geometry}, fill_{fill}, cells_{geometry.width, geometry.height, fill} {}
 
   [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }
   [[nodiscard]] int width() const { return geometry_.width; }
   [[nodiscard]] int height() const { return geometry_.height; }
   [[nodiscard]] double resolution_m() const { return geometry_.resolution_m; }
+  [[nodiscard]] CellBox box() const { return geometry_.box(); }
 
-  [[nodiscard]] CellState operator[](Cell cell) const { return cells_[geometry_.index_of(cell)]; }
+  /// The cell must lie in the grid.
+  [[nodiscard]] CellState operator[](Cell cell) const { return cells_[cell]; }
   /// Outside the grid everything is unknown.
-  [[nodiscard]] CellState at(Cell cell) const {
-    return geometry_.contains(cell) ? cells_[geometry_.index_of(cell)] : CellState::kUnknown;
-  }
-  void set(Cell cell, CellState state) { cells_[geometry_.index_of(cell)] = state; }
+  [[nodiscard]] CellState at(Cell cell) const { return geometry_.contains(cell) ? cells_[cell] : CellState::kUnknown; }
+  void set(Cell cell, CellState state) { cells_.set(cell, state); }
 
-  /// Row by row from the lowest y.
-  [[nodiscard]] const std::vector<CellState>& cells() const { return cells_; }
-  friend bool operator==(const OccupancyGrid&, const OccupancyGrid&) = default;
+  /// What the grid was filled with, and every cell still is whose tile has not been written to.
+  [[nodiscard]] CellState fill() const { return fill_; }
+  [[nodiscard]] const Tiled<CellState>& tiles() const { return cells_; }
+
+  friend bool operator==(const OccupancyGrid& a, const OccupancyGrid& b);
 
  private:
   GridGeometry geometry_;
-  std::vector<CellState> cells_;
+  CellState fill_ = CellState::kUnknown;
+  Tiled<CellState> cells_;
 };
+
+/// `visit(Cell, CellState)` for each cell that is free or occupied, row by row from the lowest y.
+template <typename Visit>
+void for_each_known(const OccupancyGrid& grid, Visit&& visit);
+
+/// The smallest box that holds every free or occupied cell; empty for none.
+[[nodiscard]] CellBox known_box(const OccupancyGrid& grid);
 
 [[nodiscard]] std::size_t count_of(const OccupancyGrid& grid, CellState state);
 
+/// A copy of all cells side by side, row by row from the lowest y: as large as the rectangle.
+[[nodiscard]] std::vector<CellState> all_cells(const OccupancyGrid& grid);
+
 /// FNV-1a (64 bit) over size, resolution, origin and cells: names a map, so that another map never finds its revisions.
 [[nodiscard]] std::uint64_t grid_hash(const OccupancyGrid& grid);
+
+template <typename Visit>
+void for_each_known(const OccupancyGrid& grid, Visit&& visit) {
+  const auto visit_piece = [&](Cell first, std::span<const CellState> cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i] != CellState::kUnknown) visit(Cell{first.column + static_cast<int>(i), first.row}, cells[i]);
+    }
+  };
+  const auto is_wanted = [&](Cell cell) {
+    return grid.fill() != CellState::kUnknown || grid.tiles().tile_at(cell) != grid.tiles().background();
+  };
+  grid.tiles().visit_where(grid.box(), is_wanted, visit_piece);
+}
 
 }  // namespace deltamap

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace deltamap {
 namespace {
@@ -22,29 +23,38 @@ int synced(int descriptor) {
   return ::close(descriptor) == 0 || reason != 0 ? reason : errno;
 }
 
-/// The content and nothing else; 0, or why not.
-int written(const std::filesystem::path& file, const std::string& content) {
+/// 0, or why not.
+int appended(int out, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t n = ::write(out, content.data(), content.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return n < 0 ? errno : ENOSPC;
+    content.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return 0;
+}
+
+/// The pieces and nothing else; 0, or why not.
+int written(const std::filesystem::path& file, const std::function<std::string_view()>& next_piece) {
   const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (out < 0) return errno;
-  std::size_t done = 0;
-  while (done < content.size()) {
-    const ssize_t n = ::write(out, content.data() + done, content.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) {
-      const int reason = n < 0 ? errno : ENOSPC;
-      ::close(out);
-      return reason;
-    }
-    done += static_cast<std::size_t>(n);
+  int reason = 0;
+  for (std::string_view piece = next_piece(); reason == 0 && !piece.empty();) {
+    reason = appended(out, piece);
+    if (reason == 0) piece = next_piece();
   }
-  return ::close(out) == 0 ? 0 : errno;
+  return ::close(out) == 0 || reason != 0 ? reason : errno;
 }
 
 }  // namespace
 
-void replace_file(const std::filesystem::path& file, const std::string& content) {
+void replace_file(const std::filesystem::path& file, std::string_view content) {
+  replace_file(file, [&] { return std::exchange(content, {}); });
+}
+
+void replace_file(const std::filesystem::path& file, const std::function<std::string_view()>& next_piece) {
   const std::filesystem::path draft = file.string() + ".part";
-  if (const int reason = written(draft, content); reason != 0) {
+  if (const int reason = written(draft, next_piece); reason != 0) {
     ::unlink(draft.c_str());
     fail(file, reason);
   }

@@ -4,13 +4,16 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+#include <functional>
+#include <string_view>
 
 namespace deltamap {
 
 /// Replaces a file whole: the old one stays until the new one is complete on disk. Throws std::runtime_error that names
 /// the file.
-void replace_file(const std::filesystem::path& file, const std::string& content);
+void replace_file(const std::filesystem::path& file, std::string_view content);
+/// The same for content that is not held in memory at once: `next_piece` answers it piece by piece, then an empty one.
+void replace_file(const std::filesystem::path& file, const std::function<std::string_view()>& next_piece);
 
 /// Renames a finished file to its place: its content is on disk before its name, and the name before this returns.
 /// Throws std::runtime_error that names the place.

@@ -33,9 +33,7 @@ Finding settings_finding(const Settings& settings, const std::string& config) {
 }
 
 std::string cells_text(const OccupancyGrid& grid) {
-  const auto count = [&](CellState state) {
-    return std::to_string(std::count(grid.cells().begin(), grid.cells().end(), state));
-  };
+  const auto count = [&](CellState state) { return std::to_string(count_of(grid, state)); };
   return count(CellState::kFree) + " free, " + count(CellState::kOccupied) + " occupied, " +
          count(CellState::kUnknown) + " unknown";
 }

@@ -20,13 +20,14 @@ struct Aside {
 
 /// Towards free space, from the cells around; zero inside blocks and on single cells.
 Point2 surface_normal(const OccupancyGrid& map, Cell at) {
-  Point2 sum{0.0, 0.0};
-  for (int row = -2; row <= 2; ++row) {
-    for (int column = -2; column <= 2; ++column) {
-      const CellState state = map.at({at.column + column, at.row + row});
-      if (state == CellState::kFree) sum += Point2{column, row};
-    }
-  }
+  int columns = 0;
+  int rows = 0;
+  map.tiles().visit_around(at, 2, map.geometry(), [&](Cell cell, CellState state) {
+    if (state != CellState::kFree) return;
+    columns += cell.column - at.column;
+    rows += cell.row - at.row;
+  });
+  const Point2 sum{columns, rows};
   const double length = sum.norm();
   return length > 0.0 ? Point2{sum / length} : Point2{0.0, 0.0};
 }

@@ -37,7 +37,9 @@ std::vector<std::uint8_t> clear_cells(const OccupancyGrid& map) {
     auto& cell = clear[map.geometry().index_of({column, row})];
     cell = static_cast<std::uint8_t>(std::min({static_cast<int>(cell), least + 1, kFarthestClear}));
   };
-  for (std::size_t i = 0; i < clear.size(); ++i) clear[i] = map.cells()[i] == CellState::kFree ? kFarthestClear : 0;
+  for_each_known(map, [&](Cell cell, CellState state) {
+    if (state == CellState::kFree) clear[map.geometry().index_of(cell)] = kFarthestClear;
+  });
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
       lower(column, row,

@@ -17,31 +17,39 @@ constexpr std::int16_t kBeforeRows = -1;
 }  // namespace
 
 CoarseField::CoarseField(const OccupancyGrid& map, const LikelihoodField& field, double block_m)
-    : cells_a_block_{std::max(1, static_cast<int>(std::lround(block_m / map.resolution_m())))},
-      block_m_{cells_a_block_ * map.resolution_m()},
-      columns_{(map.width() + cells_a_block_ - 1) / cells_a_block_},
-      rows_{(map.height() + cells_a_block_ - 1) / cells_a_block_},
-      origin_{map.geometry().origin} {
+    : lattice_{map.geometry(), std::max(1, static_cast<int>(std::lround(block_m / map.resolution_m())))},
+      block_m_{lattice_.blocks().resolution_m},
+      window_{field.window()} {
+  const CellBox blocks = window_.empty() ? CellBox{} : lattice_.blocks_of(window_);
+  first_block_ = blocks.first;
+  columns_ = blocks.width();
+  rows_ = blocks.height();
+  origin_ = lattice_.blocks().origin + block_m_ * Point2{first_block_.column, first_block_.row};
   const auto area = static_cast<std::size_t>(padded_columns()) * static_cast<std::size_t>(rows_ + 2);
-  bytes_.assign(area, field.steps_at({-1, -1}));
+  bytes_.assign(area, field.bordered().bytes[0]);
   free_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false);
-  update(map, field, {{0, 0}, {map.width(), map.height()}});
+  update(map, field, window_);
 }
 
 void CoarseField::update(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed) {
   if (changed.empty()) return;
-  const int last_row = (changed.last.row - 1) / cells_a_block_;
-  const int last_column = (changed.last.column - 1) / cells_a_block_;
-  for (int row = changed.first.row / cells_a_block_; row <= last_row; ++row) {
-    for (int column = changed.first.column / cells_a_block_; column <= last_column; ++column) {
-      look_at(map, field, column, row);
+  if (!(field.window() == window_)) {
+    *this = CoarseField{map, field, block_m_};
+    return;
+  }
+  const CellBox blocks = lattice_.blocks_of(changed);
+  for (int row = blocks.first.row - first_block_.row; row < blocks.last.row - first_block_.row; ++row) {
+    for (int column = blocks.first.column; column < blocks.last.column; ++column) {
+      look_at(map, field, column - first_block_.column, row);
     }
   }
   list_free_blocks();
 }
 
 bool CoarseField::is_free(const OccupancyGrid& map, int column, int row) const {
-  const Cell middle{column * cells_a_block_ + cells_a_block_ / 2, row * cells_a_block_ + cells_a_block_ / 2};
+  const Cell first = cells_of(column, row).first;
+  const int half = lattice_.cells_per_block() / 2;
+  const Cell middle{first.column + half, first.row + half};
   for (int y = middle.row - 1; y <= middle.row; ++y) {
     for (int x = middle.column - 1; x <= middle.column; ++x) {
       if (map.at({x, y}) == CellState::kFree) return true;
@@ -51,14 +59,14 @@ bool CoarseField::is_free(const OccupancyGrid& map, int column, int row) const {
 }
 
 void CoarseField::look_at(const OccupancyGrid& map, const LikelihoodField& field, int column, int row) {
-  const Cell first{column * cells_a_block_, row * cells_a_block_};
-  const Cell last{std::min(first.column + cells_a_block_, map.width()),
-                  std::min(first.row + cells_a_block_, map.height())};
+  const CellBox cells = cells_of(column, row);
+  const CellBox held = common(cells, window_);
   const LikelihoodField::Bordered fine = field.bordered();
-  std::uint8_t best = 255;
-  for (int y = first.row; y < last.row; ++y) {
-    const std::uint8_t* const from = fine.bytes + static_cast<std::ptrdiff_t>(y + 1) * fine.width + first.column + 1;
-    best = std::min(best, *std::min_element(from, from + (last.column - first.column)));
+  std::uint8_t best = held == cells ? 255 : fine.bytes[0];
+  for (int y = held.first.row; y < held.last.row; ++y) {
+    const std::uint8_t* const from = fine.bytes + static_cast<std::ptrdiff_t>(y - window_.first.row + 1) * fine.width +
+                                     (held.first.column - window_.first.column + 1);
+    best = std::min(best, *std::min_element(from, from + held.width()));
   }
   const auto at = static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(padded_columns());
   bytes_[at + static_cast<std::size_t>(column + kAtOnce)] = best;

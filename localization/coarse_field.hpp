@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "core/block_lattice.hpp"
 #include "core/grid_patch.hpp"
 #include "localization/deskew.hpp"
 #include "localization/likelihood_field.hpp"
@@ -25,12 +26,13 @@ struct TurnedBeams {
   std::size_t count = 0;
 };
 
+/// Its blocks are those that the field's window touches, counted from there.
 class CoarseField {
  public:
   /// Blocks of about `block_m`; at least one cell.
   CoarseField(const OccupancyGrid& map, const LikelihoodField& field, double block_m);
 
-  /// Looks again at the blocks that the box of changed cells touches.
+  /// Looks again at the blocks that the box of changed cells touches; at all where the field's window has grown.
   void update(const OccupancyGrid& map, const LikelihoodField& field, const CellBox& changed);
 
   /// Blocks in whose middle a robot may stand: one of the cells there is free. Rising.
@@ -54,13 +56,19 @@ class CoarseField {
   [[nodiscard]] Point2 origin() const { return origin_; }
 
  private:
+  /// The cells of one of the window's blocks.
+  [[nodiscard]] CellBox cells_of(int column, int row) const {
+    return lattice_.cells_of({first_block_.column + column, first_block_.row + row});
+  }
   [[nodiscard]] bool is_free(const OccupancyGrid& map, int column, int row) const;
   [[nodiscard]] int padded_columns() const { return columns_ + 2 * kAtOnce; }
   void look_at(const OccupancyGrid& map, const LikelihoodField& field, int column, int row);
   void list_free_blocks();
 
-  int cells_a_block_;
+  BlockLattice lattice_;  // of the map
   double block_m_;
+  CellBox window_;    // of the field, cells
+  Cell first_block_;  // of the lattice: the window's
   int columns_;
   int rows_;
   Point2 origin_;

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/block_lattice.hpp"
+
 namespace deltamap::localization {
 namespace {
 
 constexpr int kRowsAtOnce = 64;   // of a whole rebuild: its working memory stays small however large the map
 constexpr int kContourReach = 2;  // a cell's being contour depends on cells up to two away
+constexpr int kWindowStepCells = 64;
 
 double hit_deviation_on(const GridGeometry& geometry, const LikelihoodFieldParams& params) {
   return std::max(params.hit_deviation_m, 0.7 * geometry.resolution_m);
@@ -75,7 +78,7 @@ class WindowBuilder {
       : map_{map},
         table_{table},
         window_{window},
-        wide_{grown(window, table.reach_cells, map.geometry())},
+        wide_{grown(window, table.reach_cells)},
         never_{table.reach_cells + 1},
         width_{static_cast<std::size_t>(window.width()) + 2 * static_cast<std::size_t>(table.reach_cells)},
         column_distance_(width_ * static_cast<std::size_t>(window.height()), never_ * never_) {}
@@ -89,7 +92,7 @@ class WindowBuilder {
       const int* in_row = row_of_distances(row) + table_.reach_cells;
       for (int column = window_.first.column; column < window_.last.column; ++column, ++in_row) {
         const std::uint8_t steps = table_.at(squared_distance(in_row));
-        const bool unknown = map_[{column, row}] == CellState::kUnknown;
+        const bool unknown = map_.at({column, row}) == CellState::kUnknown;
         bytes.push_back(unknown ? std::min(steps, table_.unknown) : steps);
       }
     }
@@ -142,7 +145,7 @@ class WindowBuilder {
   const OccupancyGrid& map_;
   const StepTable& table_;
   CellBox window_;
-  CellBox wide_;  // what the window depends on, inside the map
+  CellBox wide_;  // what the window depends on
   int never_;     // farther than anything that counts, cells
   std::size_t width_;
   std::vector<int> column_distance_;
@@ -178,32 +181,43 @@ LikelihoodField::LikelihoodField(const OccupancyGrid& map, const LikelihoodField
     : geometry_{map.geometry()}, params_{params}, hit_deviation_m_{hit_deviation_on(map.geometry(), params)} {
   const StepTable table = step_table(geometry_, params);
   distance_of_steps_m_ = distances_of_steps(table, geometry_.resolution_m);
-  const Bordered size = bordered();
-  bytes_.assign(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), table.unknown);
-  for (int row = 0; row < geometry_.height; row += kRowsAtOnce) {
-    const CellBox band{{0, row}, {geometry_.width, std::min(row + kRowsAtOnce, geometry_.height)}};
-    if (!band.empty()) apply({band, WindowBuilder{map, band, table}.bytes()});
+  bytes_.assign(4, table.unknown);  // the border of nothing
+  const CellBox shown = grown(known_box(map), table.reach_cells);
+  widen(shown);
+  for (int row = shown.first.row; row < shown.last.row; row += kRowsAtOnce) {
+    const CellBox band{{shown.first.column, row}, {shown.last.column, std::min(row + kRowsAtOnce, shown.last.row)}};
+    apply({band, WindowBuilder{map, band, table}.bytes()});
   }
 }
 
 std::uint8_t LikelihoodField::steps_at(Cell cell) const {
-  if (!geometry_.contains(cell)) return bytes_.front();
-  const std::size_t width = static_cast<std::size_t>(geometry_.width) + 2;
-  return bytes_[(static_cast<std::size_t>(cell.row) + 1) * width + static_cast<std::size_t>(cell.column) + 1];
+  return window_.contains(cell) ? bytes_[index_of(cell)] : bytes_.front();
+}
+
+void LikelihoodField::widen(const CellBox& box) {
+  if (box.empty() || (window_.contains(box.first) && window_.contains({box.last.column - 1, box.last.row - 1}))) return;
+  const BlockLattice lattice{geometry_, kWindowStepCells};
+  const CellBox blocks = lattice.blocks_of(united(window_, box));
+  const CellBox wide{lattice.cells_of(blocks.first).first, lattice.cells_of(blocks.last).first};
+  const LikelihoodField before = *this;
+  window_ = wide;
+  window_origin_ = geometry_.origin + geometry_.resolution_m * Point2{wide.first.column, wide.first.row};
+  const Bordered size = bordered();
+  bytes_.assign(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), before.bytes_.front());
+  for (int row = before.window_.first.row; row < before.window_.last.row; ++row) {
+    const Cell first{before.window_.first.column, row};
+    std::copy_n(before.bytes_.data() + before.index_of(first), before.window_.width(), bytes_.data() + index_of(first));
+  }
 }
 
 void LikelihoodField::apply(const FieldPatch& patch) {
   if (patch.box.empty()) return;
   const auto patch_width = static_cast<std::size_t>(patch.box.width());
   assert(patch.values.size() == patch_width * static_cast<std::size_t>(patch.box.height()) && "a value for each cell");
-  assert(geometry_.contains(patch.box.first) && patch.box.last.column <= geometry_.width &&
-         patch.box.last.row <= geometry_.height && "the patch must lie in the map");
-  const std::size_t width = static_cast<std::size_t>(geometry_.width) + 2;
+  widen(patch.box);
   const std::uint8_t* from = patch.values.data();
   for (int row = patch.box.first.row; row < patch.box.last.row; ++row, from += patch_width) {
-    std::uint8_t* to = bytes_.data() + (static_cast<std::size_t>(row) + 1) * width +
-                       static_cast<std::size_t>(patch.box.first.column) + 1;
-    std::copy_n(from, patch_width, to);
+    std::copy_n(from, patch_width, bytes_.data() + index_of({patch.box.first.column, row}));
   }
 }
 
@@ -211,7 +225,7 @@ FieldPatch field_patch(const OccupancyGrid& map, std::span<const CellChange> cha
                        const LikelihoodFieldParams& params) {
   if (changes.empty()) return {};
   const StepTable table = step_table(map.geometry(), params);
-  const CellBox window = grown(bounding_box(changes), table.reach_cells + kContourReach, map.geometry());
+  const CellBox window = grown(bounding_box(changes), table.reach_cells + kContourReach);
   return {window, WindowBuilder{map, window, table}.bytes()};
 }
 

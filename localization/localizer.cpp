@@ -61,10 +61,9 @@ void Localizer::apply(const MapRevision& revision) {
   } else {
     state.field = LikelihoodField{*revision.map, state.params.field};
     state.judgement.forget(*state.map, *revision.map);
-    state.rivals.apply(*revision.map, state.field, {{0, 0}, {revision.map->width(), revision.map->height()}});
+    state.rivals.apply(*revision.map, state.field, revision.map->box());
   }
-  const CellBox whole{{0, 0}, {revision.map->width(), revision.map->height()}};
-  state.tracker.apply(revision.map, follows ? bounding_box(revision.changes) : whole);
+  state.tracker.apply(revision.map, follows ? bounding_box(revision.changes) : revision.map->box());
   state.map = revision.map;
   state.revision = revision.number;
   state.beam_model.reset();

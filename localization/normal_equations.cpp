@@ -121,8 +121,9 @@ NormalEquations normal_equations(const LikelihoodField& field, const BeamEnds& e
   const double cells_per_m = 1.0 / field.geometry().resolution_m;
   const auto scale = static_cast<float>(cells_per_m);
   // In the bordered field the centre of cell (0, 0) lies at (1.5, 1.5); centres are the knots.
-  const auto x_cells = static_cast<float>((map_from_robot.x - field.geometry().origin.x()) * cells_per_m + 0.5);
-  const auto y_cells = static_cast<float>((map_from_robot.y - field.geometry().origin.y()) * cells_per_m + 0.5);
+  const Point2 origin = field.bordered().origin;
+  const auto x_cells = static_cast<float>((map_from_robot.x - origin.x()) * cells_per_m + 0.5);
+  const auto y_cells = static_cast<float>((map_from_robot.y - origin.y()) * cells_per_m + 0.5);
   const auto c = static_cast<float>(std::cos(map_from_robot.theta));
   const auto s = static_cast<float>(std::sin(map_from_robot.theta));
   Sums of;

@@ -13,8 +13,6 @@ constexpr int kMostLevels = 4;       // of proven_after: three counted refutatio
 constexpr int kLeastUnitsApart = 3;  // of half a distance or time: surely more than one whole
 constexpr std::size_t kBytesATile = 4;
 
-int tiles_along(int cells, int cells_a_tile) { return (cells + cells_a_tile - 1) / cells_a_tile; }
-
 /// 16 units of half `apart_m` in x and y; farther places may look alike, which only delays a count.
 std::uint8_t place_of(const Point2& seen_from, double apart_m) {
   const auto nibble = [&](double along_m) {
@@ -43,15 +41,11 @@ std::uint8_t direction_bit(const Point2& from, const Point2& to) {
 Stability::Stability(const GridGeometry& geometry, const StabilityParams& params)
     : geometry_{geometry},
       params_{params},
-      cells_a_tile_{std::max(1, static_cast<int>(std::lround(params.tile_m / geometry.resolution_m)))},
-      columns_{tiles_along(geometry.width, cells_a_tile_)},
-      tiles_(static_cast<std::size_t>(columns_) *
-             static_cast<std::size_t>(tiles_along(geometry.height, cells_a_tile_))) {}
+      lattice_{geometry, std::max(1, static_cast<int>(std::lround(params.tile_m / geometry.resolution_m)))},
+      tiles_{lattice_.blocks().width, lattice_.blocks().height, Tile{}} {}
 
-Stability::Tile* Stability::tile_at(Cell cell) {
-  if (!geometry_.contains(cell)) return nullptr;
-  return &tiles_[static_cast<std::size_t>(cell.row / cells_a_tile_) * static_cast<std::size_t>(columns_) +
-                 static_cast<std::size_t>(cell.column / cells_a_tile_)];
+std::optional<Cell> Stability::tile_of(Cell cell) const {
+  return geometry_.contains(cell) ? std::optional{lattice_.block_of(cell)} : std::nullopt;
 }
 
 bool Stability::counts(Tile& tile, const Point2& seen_from, Timestamp time) const {
@@ -67,23 +61,30 @@ bool Stability::counts(Tile& tile, const Point2& seen_from, Timestamp time) cons
 }
 
 void Stability::confirm(Cell cell, const Point2& seen_from, Timestamp time) {
-  Tile* const tile = tile_at(cell);
-  if (tile == nullptr || !counts(*tile, seen_from, time)) return;
-  tile->level = static_cast<std::uint8_t>(std::min(kMostLevels * params_.proven_after, tile->level + 1));
-  tile->directions = static_cast<std::uint8_t>(tile->directions | direction_bit(geometry_.centre_of(cell), seen_from));
+  const std::optional<Cell> place = tile_of(cell);
+  if (!place) return;
+  Tile tile = tiles_[*place];
+  if (!counts(tile, seen_from, time)) return;
+  tile.level = static_cast<std::uint8_t>(std::min(kMostLevels * params_.proven_after, tile.level + 1));
+  tile.directions = static_cast<std::uint8_t>(tile.directions | direction_bit(geometry_.centre_of(cell), seen_from));
+  tiles_.set(*place, tile);
 }
 
 void Stability::refute(Cell cell, const Point2& seen_from, Timestamp time) {
-  Tile* const tile = tile_at(cell);
-  if (tile == nullptr || tile->level == 0 || !counts(*tile, seen_from, time)) return;
-  tile->level /= 2;
-  if (tile->level == 0) tile->directions = 0;
+  const std::optional<Cell> place = tile_of(cell);
+  if (!place) return;
+  Tile tile = tiles_[*place];
+  if (tile.level == 0 || !counts(tile, seen_from, time)) return;
+  tile.level /= 2;
+  if (tile.level == 0) tile.directions = 0;
+  tiles_.set(*place, tile);
 }
 
 void Stability::forget(std::span<const CellChange> changes) {
   for (const CellChange& change : changes) {
     const bool obstacle = change.before == CellState::kOccupied || change.after == CellState::kOccupied;
-    if (Tile* const tile = tile_at(change.cell); obstacle && tile != nullptr) *tile = Tile{};
+    const std::optional<Cell> place = tile_of(change.cell);
+    if (obstacle && place) tiles_.set(*place, Tile{});
   }
 }
 
@@ -92,33 +93,42 @@ bool Stability::is_proven(const Tile& tile) const {
 }
 
 bool Stability::proven(Cell cell) const {
-  const Tile* const tile = tile_at(cell);
-  return tile != nullptr && is_proven(*tile);
+  const std::optional<Cell> place = tile_of(cell);
+  return place && is_proven(tiles_[*place]);
 }
 
 std::size_t Stability::proven_tiles() const {
-  return static_cast<std::size_t>(
-      std::count_if(tiles_.begin(), tiles_.end(), [&](const Tile& tile) { return is_proven(tile); }));
+  std::size_t count = 0;
+  tiles_.visit_written(lattice_.blocks().box(), [&](Cell, std::span<const Tile> tiles) {
+    count += static_cast<std::size_t>(
+        std::count_if(tiles.begin(), tiles.end(), [&](const Tile& tile) { return is_proven(tile); }));
+  });
+  return count;
 }
 
 StabilityRecord Stability::record() const {
-  StabilityRecord record{geometry_, cells_a_tile_, {}};
-  record.bytes.reserve(kBytesATile * tiles_.size());
-  for (const Tile& tile : tiles_) {
-    record.bytes.insert(record.bytes.end(), {tile.level, tile.directions, tile.place, tile.moment});
-  }
+  const GridGeometry& places = lattice_.blocks();
+  StabilityRecord record{geometry_, lattice_.cells_per_block(), {}};
+  record.bytes.resize(kBytesATile * places.cell_count());
+  tiles_.visit_written(places.box(), [&](Cell first, std::span<const Tile> tiles) {
+    std::uint8_t* to = record.bytes.data() + kBytesATile * places.index_of(first);
+    for (const Tile& tile : tiles) {
+      for (const std::uint8_t byte : {tile.level, tile.directions, tile.place, tile.moment}) *to++ = byte;
+    }
+  });
   return record;
 }
 
 bool Stability::restore(const StabilityRecord& record) {
-  if (!(record.geometry == geometry_) || record.cells_a_tile != cells_a_tile_ ||
-      record.bytes.size() != kBytesATile * tiles_.size()) {
+  const GridGeometry& places = lattice_.blocks();
+  if (!(record.geometry == geometry_) || record.cells_a_tile != lattice_.cells_per_block() ||
+      record.bytes.size() != kBytesATile * places.cell_count()) {
     return false;
   }
   const int most = kMostLevels * params_.proven_after;
-  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+  for (std::size_t i = 0; i < places.cell_count(); ++i) {
     const std::uint8_t* const kept = record.bytes.data() + kBytesATile * i;
-    tiles_[i] = {static_cast<std::uint8_t>(std::min<int>(most, kept[0])), kept[1], kept[2], kept[3]};
+    tiles_.set(places.cell_of(i), {static_cast<std::uint8_t>(std::min<int>(most, kept[0])), kept[1], kept[2], kept[3]});
   }
   return true;
 }

@@ -5,11 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/block_lattice.hpp"
 #include "core/grid_patch.hpp"
 #include "core/occupancy_grid.hpp"
+#include "core/tiled.hpp"
 #include "core/time.hpp"
 
 namespace deltamap::localization {
@@ -53,18 +56,18 @@ class Stability {
     std::uint8_t directions = 0;  ///< a bit for each eighth of the circle that it was confirmed from
     std::uint8_t place = 0;       ///< of the last count: 4 bits of column and row in units of apart_m / 2
     std::uint8_t moment = 0;      ///< of the last count, in units of apart_s / 2
+    friend bool operator==(const Tile&, const Tile&) = default;
   };
-  [[nodiscard]] Tile* tile_at(Cell cell);
-  [[nodiscard]] const Tile* tile_at(Cell cell) const { return const_cast<Stability*>(this)->tile_at(cell); }
   [[nodiscard]] bool is_proven(const Tile& tile) const;
   /// Far enough in place and time from the tile's last count? Then this becomes the last one.
   [[nodiscard]] bool counts(Tile& tile, const Point2& seen_from, Timestamp time) const;
+  /// A tile's place; nothing outside the map.
+  [[nodiscard]] std::optional<Cell> tile_of(Cell cell) const;
 
   GridGeometry geometry_;
   StabilityParams params_;
-  int cells_a_tile_;
-  int columns_;
-  std::vector<Tile> tiles_;
+  BlockLattice lattice_;
+  Tiled<Tile> tiles_;
 };
 
 }  // namespace deltamap::localization

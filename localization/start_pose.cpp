@@ -51,8 +51,9 @@ Start usable_start(const OccupancyGrid& map, const InitialPose& given) {
 }
 
 Hypothesis anywhere_in(const OccupancyGrid& map) {
-  const Point2 half = 0.5 * map.resolution_m() * Point2{map.width(), map.height()};
-  const Point2 middle = map.geometry().origin + half;
+  const CellBox known = known_box(map);
+  const Point2 half = 0.5 * map.resolution_m() * Point2{known.width(), known.height()};
+  const Point2 middle = map.geometry().origin + map.resolution_m() * Point2{known.first.column, known.first.row} + half;
   const double turn = std::numbers::pi;
   return {{middle.x(), middle.y(), 0.0},
           Eigen::Vector3d{half.x() * half.x() / 3.0, half.y() * half.y() / 3.0, turn * turn / 3.0}.asDiagonal(),

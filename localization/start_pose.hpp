@@ -34,7 +34,7 @@ struct Start {
 /// farther outside the map, the robot may be anywhere.
 [[nodiscard]] Start usable_start(const OccupancyGrid& map, const InitialPose& given);
 
-/// What is known before the first scan: the middle of the map, give or take all of it; weight 0.
+/// What is known before the first scan: the middle of what the map shows, give or take all of it; weight 0.
 [[nodiscard]] Hypothesis anywhere_in(const OccupancyGrid& map);
 
 /// The map itself. Throws std::runtime_error where there is none or no cell of it is free.

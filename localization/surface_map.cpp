@@ -14,8 +14,6 @@ constexpr double kAlikeM = 0.03;  // across
 constexpr double kAlikeAlongM = 0.3;
 constexpr double kAlikeCosine = 0.9994;  // 2°
 
-int tiles_in(int cells, int side) { return (cells + side - 1) / side; }
-
 /// The same piece of a line, give or take what a redrawn map moves it by.
 bool lies_alike(const Surface& a, const Surface& b) {
   return a.normal.dot(b.normal) >= kAlikeCosine && std::abs(a.normal.dot(b.centre - a.centre)) <= kAlikeM &&
@@ -27,9 +25,7 @@ bool lies_alike(const Surface& a, const Surface& b) {
 
 SurfaceMap::SurfaceMap(std::shared_ptr<const OccupancyGrid> map)
     : map_{std::move(map)},
-      side_cells_{std::max(8, static_cast<int>(std::lround(kTileM / map_->resolution_m())))},
-      columns_{tiles_in(map_->width(), side_cells_)},
-      rows_{tiles_in(map_->height(), side_cells_)} {}
+      lattice_{map_->geometry(), std::max(8, static_cast<int>(std::lround(kTileM / map_->resolution_m())))} {}
 
 bool SurfaceMap::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
   if (!(map->geometry() == map_->geometry())) {
@@ -38,10 +34,10 @@ bool SurfaceMap::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& 
   }
   map_ = std::move(map);
   if (changed.empty()) return true;
-  const CellBox box = grown(changed, kReachCells, map_->geometry());
-  for (int row = box.first.row / side_cells_; row <= (box.last.row - 1) / side_cells_; ++row) {
-    for (int column = box.first.column / side_cells_; column <= (box.last.column - 1) / side_cells_; ++column) {
-      const auto known = tiles_.find(row * columns_ + column);
+  const CellBox tiles = lattice_.blocks_of(grown(changed, kReachCells, map_->geometry()));
+  for (int row = tiles.first.row; row < tiles.last.row; ++row) {
+    for (int column = tiles.first.column; column < tiles.last.column; ++column) {
+      const auto known = tiles_.find(static_cast<std::int32_t>(lattice_.blocks().index_of({column, row})));
       if (known == tiles_.end()) continue;
       std::vector<SurfaceRecord> anew = found_in(known->first);
       for (SurfaceRecord& record : anew) {
@@ -72,19 +68,17 @@ const std::vector<SurfaceRecord>& SurfaceMap::records_of(std::int32_t tile) {
 }
 
 std::vector<SurfaceRecord> SurfaceMap::found_in(std::int32_t tile) const {
-  const Cell first{(tile % columns_) * side_cells_, (tile / columns_) * side_cells_};
-  const CellBox box{
-      first, {std::min(first.column + side_cells_, map_->width()), std::min(first.row + side_cells_, map_->height())}};
+  const Cell place = lattice_.blocks().cell_of(static_cast<std::size_t>(tile));
+  const CellBox box = common(lattice_.cells_of(place), map_->box());
   std::vector<SurfaceRecord> records;
   for (const Surface& surface : surfaces_in(*map_, box)) records.push_back({.surface = surface});
   return records;
 }
 
 CellBox SurfaceMap::tiles_around(const Point2& at, double reach_m) const {
-  const Cell low = map_->geometry().cell_at(at - Point2::Constant(reach_m));
-  const Cell high = map_->geometry().cell_at(at + Point2::Constant(reach_m));
-  return {{std::max(0, low.column / side_cells_), std::max(0, low.row / side_cells_)},
-          {std::min(columns_, high.column / side_cells_ + 1), std::min(rows_, high.row / side_cells_ + 1)}};
+  const Cell low = lattice_.blocks().cell_at(at - Point2::Constant(reach_m));
+  const Cell high = lattice_.blocks().cell_at(at + Point2::Constant(reach_m));
+  return common({low, {high.column + 1, high.row + 1}}, lattice_.blocks().box());
 }
 
 }  // namespace deltamap::localization

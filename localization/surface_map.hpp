@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/block_lattice.hpp"
 #include "localization/surface.hpp"
 
 namespace deltamap::localization {
@@ -44,7 +45,7 @@ class SurfaceMap {
     const CellBox tiles = tiles_around(at, reach_m);
     for (int row = tiles.first.row; row < tiles.last.row; ++row) {
       for (int column = tiles.first.column; column < tiles.last.column; ++column) {
-        const std::int32_t tile = row * columns_ + column;
+        const auto tile = static_cast<std::int32_t>(lattice_.blocks().index_of({column, row}));
         const std::vector<SurfaceRecord>& records = records_of(tile);
         for (std::size_t i = 0; i < records.size(); ++i) use(Id{tile, static_cast<std::int32_t>(i)}, records[i]);
       }
@@ -66,9 +67,7 @@ class SurfaceMap {
   [[nodiscard]] CellBox tiles_around(const Point2& at, double reach_m) const;
 
   std::shared_ptr<const OccupancyGrid> map_;
-  int side_cells_;
-  int columns_;
-  int rows_;
+  BlockLattice lattice_;  // a block: a tile
   std::unordered_map<std::int32_t, std::vector<SurfaceRecord>> tiles_;
 };
 

@@ -33,8 +33,8 @@ template <typename Take>
   const LikelihoodField::Bordered bordered = field.bordered();
   const double cells_per_m = 1.0 / field.geometry().resolution_m;
   const auto heading_rad = static_cast<float>(map_from_robot.theta);
-  const PoseInCells pose{static_cast<float>((map_from_robot.x - field.geometry().origin.x()) * cells_per_m + 1.0),
-                         static_cast<float>((map_from_robot.y - field.geometry().origin.y()) * cells_per_m + 1.0),
+  const PoseInCells pose{static_cast<float>((map_from_robot.x - bordered.origin.x()) * cells_per_m + 1.0),
+                         static_cast<float>((map_from_robot.y - bordered.origin.y()) * cells_per_m + 1.0),
                          std::cos(heading_rad) * static_cast<float>(cells_per_m),
                          std::sin(heading_rad) * static_cast<float>(cells_per_m)};
   const auto last_column = static_cast<float>(bordered.width - 1);

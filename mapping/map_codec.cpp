@@ -2,6 +2,7 @@
 #include "mapping/map_codec.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace deltamap::mapping {
 namespace {
@@ -9,6 +10,10 @@ namespace {
 void put(std::vector<std::uint8_t>& bytes, std::uint64_t number) {
   for (; number >= 0x80; number >>= 7) bytes.push_back(static_cast<std::uint8_t>(number | 0x80));
   bytes.push_back(static_cast<std::uint8_t>(number));
+}
+
+void put_run(std::vector<std::uint8_t>& bytes, std::size_t cells, CellState state) {
+  put(bytes, std::uint64_t{cells} << 2 | static_cast<std::uint64_t>(state));
 }
 
 class Reader {
@@ -39,12 +44,23 @@ constexpr bool is_state(std::uint64_t number) { return number <= static_cast<std
 
 std::vector<std::uint8_t> encoded_grid(const OccupancyGrid& grid) {
   std::vector<std::uint8_t> bytes;
-  const std::vector<CellState>& cells = grid.cells();
-  for (auto run = cells.begin(); run != cells.end();) {
-    const auto end = std::find_if(run, cells.end(), [&](CellState state) { return state != *run; });
-    put(bytes, static_cast<std::uint64_t>(end - run) << 2 | static_cast<std::uint64_t>(*run));
-    run = end;
-  }
+  CellState state = grid.fill();
+  std::size_t count = 0;  // cells of the run so far
+  const auto add = [&](CellState next, std::size_t cells) {
+    if (cells == 0) return;
+    if (next != state && count > 0) put_run(bytes, std::exchange(count, 0), state);
+    state = next;
+    count += cells;
+  };
+  std::size_t next = 0;
+  grid.tiles().visit_written(grid.box(), [&](Cell first, std::span<const CellState> cells) {
+    const std::size_t index = grid.geometry().index_of(first);
+    add(grid.fill(), index - next);
+    for (const CellState cell : cells) add(cell, 1);
+    next = index + cells.size();
+  });
+  add(grid.fill(), grid.geometry().cell_count() - next);
+  if (count > 0) put_run(bytes, count, state);
   return bytes;
 }
 
@@ -55,9 +71,12 @@ std::optional<OccupancyGrid> decoded_grid(std::span<const std::uint8_t> bytes, c
   while (!reader.at_end()) {
     const auto run = reader.take();
     if (!run || !is_state(*run & 3) || *run >> 2 > geometry.cell_count() - next) return std::nullopt;
-    for (std::uint64_t left = *run >> 2; left > 0; --left) {
-      grid.set(geometry.cell_of(next++), static_cast<CellState>(*run & 3));
+    const auto state = static_cast<CellState>(*run & 3);
+    const std::size_t end = next + static_cast<std::size_t>(*run >> 2);
+    if (state != CellState::kUnknown) {
+      for (std::size_t index = next; index < end; ++index) grid.set(geometry.cell_of(index), state);
     }
+    next = end;
   }
   if (next != geometry.cell_count()) return std::nullopt;
   return grid;

@@ -32,9 +32,8 @@ class MapDraft {
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     std::vector<CellChange> changes;
     for (const std::size_t index : touched) {
-      const CellState before = before_->cells()[index];
-      const CellState after = map_.cells()[index];
-      if (before != after) changes.push_back({map_.geometry().cell_of(index), before, after});
+      const Cell cell = map_.geometry().cell_of(index);
+      if ((*before_)[cell] != map_[cell]) changes.push_back({cell, (*before_)[cell], map_[cell]});
     }
     return changes;
   }

@@ -7,7 +7,9 @@
 #include <memory>
 #include <utility>
 
+#include "core/block_lattice.hpp"
 #include "core/points_in_map.hpp"
+#include "core/tiled.hpp"
 #include "mapping/alignment/registration.hpp"
 #include "mapping/alignment/surface.hpp"
 #include "mapping/ray_counts.hpp"
@@ -30,36 +32,33 @@ class PlacesOfEnds {
  public:
   PlacesOfEnds(const GridGeometry& map, double reach_m) {
     const double side_m = 0.5 * (reach_m + kMostMoved_m);  // so that two blocks reach far enough
-    cells_per_block_ = std::max(1, static_cast<int>(std::ceil(side_m / map.resolution_m)));
-    blocks_ = {map.width / cells_per_block_ + 1, map.height / cells_per_block_ + 1, cells_per_block_ * map.resolution_m,
-               map.origin};
-    has_end_.resize(blocks_.cell_count());
-    is_near_end_.resize(blocks_.cell_count());
+    lattice_ = {map, std::max(1, static_cast<int>(std::ceil(side_m / map.resolution_m)))};
+    const GridGeometry& blocks = lattice_.blocks();
+    has_end_ = Tiled<std::uint8_t>{blocks.width, blocks.height, 0};
+    is_near_end_ = has_end_;
   }
 
   void add(const Point2& end) {
-    const Cell middle = blocks_.cell_at(end);
+    const GridGeometry& blocks = lattice_.blocks();
+    const Cell middle = blocks.cell_at(end);
     // Outside the map there may still be a surface in reach: the map's border, for a pose that is a little off.
-    if (blocks_.contains(middle) && std::exchange(has_end_[blocks_.index_of(middle)], 1) != 0) return;
-    const CellBox near = grown({middle, {middle.column + 1, middle.row + 1}}, 2, blocks_);
+    if (blocks.contains(middle) && std::exchange(has_end_.to_write(middle), 1) != 0) return;
+    const CellBox near = grown({middle, {middle.column + 1, middle.row + 1}}, 2, blocks);
     for (int row = near.first.row; row < near.last.row; ++row) {
       for (int column = near.first.column; column < near.last.column; ++column) {
-        is_near_end_[blocks_.index_of({column, row})] = 1;
+        is_near_end_.set({column, row}, 1);
       }
     }
   }
-  [[nodiscard]] bool contains(Cell cell) const {
-    return is_near_end_[blocks_.index_of({cell.column / cells_per_block_, cell.row / cells_per_block_})] != 0;
-  }
+  [[nodiscard]] bool contains(Cell cell) const { return is_near_end_[lattice_.block_of(cell)] != 0; }
 
  private:
   // Corrections are of some centimetres. An end that is moved farther may miss a surface that is in reach by then.
   static constexpr double kMostMoved_m = 0.2;
 
-  GridGeometry blocks_;
-  int cells_per_block_ = 1;
-  std::vector<std::uint8_t> has_end_;
-  std::vector<std::uint8_t> is_near_end_;
+  BlockLattice lattice_;
+  Tiled<std::uint8_t> has_end_;
+  Tiled<std::uint8_t> is_near_end_;
 };
 
 /// `ends_of_scans`: of each guess, in the robot's frame.

@@ -41,9 +41,8 @@ Colour colour_of(CellState before, CellState after) {
 
 CellBox known_box(const OccupancyGrid& a, const OccupancyGrid& b) {
   std::vector<CellChange> known;
-  for (std::size_t i = 0; i < a.cells().size(); ++i) {
-    if (a.cells()[i] != CellState::kUnknown || b.cells()[i] != CellState::kUnknown)
-      known.push_back({a.geometry().cell_of(i), {}, {}});
+  for (const OccupancyGrid* const grid : {&a, &b}) {
+    for_each_known(*grid, [&](Cell cell, CellState) { known.push_back({cell, {}, {}}); });
   }
   return grown(bounding_box(known), 4, a.geometry());
 }

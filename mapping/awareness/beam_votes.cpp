@@ -2,6 +2,8 @@
 #include "mapping/awareness/beam_votes.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/grid_ray.hpp"
 
@@ -9,41 +11,25 @@ namespace deltamap::mapping::awareness {
 
 /// The surface that the beam met may lie in the block beside.
 void BeamVotes::mark_still_there(Cell end, const ClearSpace& clear) {
-  const GridGeometry& blocks = clear.blocks();
-  const auto mark_solid = [&](std::size_t index) {
-    if (clear.distances()[index] == 0) mark(index, kStillThere);
-  };
-  if (end.column < 1 || end.row < 1 || end.column > blocks.width - 2 || end.row > blocks.height - 2) {
-    for (int row = end.row - 1; row <= end.row + 1; ++row) {
-      for (int column = end.column - 1; column <= end.column + 1; ++column) {
-        if (blocks.contains({column, row})) mark_solid(blocks.index_of({column, row}));
-      }
-    }
-    return;
+  if (clear.blocks().contains(end)) {
+    if (clear.distance(end) > 1 || (marks_[end] & kLookedAround) != 0) return;
+    mark(end, kLookedAround);
   }
-  const std::size_t middle = blocks.index_of(end);
-  if (clear.distances()[middle] > 1 || (marks_[middle] & kLookedAround) != 0) return;
-  mark(middle, kLookedAround);
-  const auto across = static_cast<std::size_t>(blocks.width);
-  for (std::size_t left = middle - across - 1; left <= middle + across - 1; left += across) {
-    mark_solid(left);
-    mark_solid(left + 1);
-    mark_solid(left + 2);
-  }
+  clear.for_each_solid_around(end, [&](Cell block) { mark(block, kStillThere); });
 }
 
 void BeamVotes::mark_beam(const BeamVerdict& beam, const VotedMap& map) {
   const GridGeometry& blocks = map.layer.blocks();
-  for (const Cell& cell : beam.passed) mark(blocks.index_of(map.layer.block_of(cell)), kGone);
+  for (const Cell& cell : beam.passed) mark(map.layer.block_of(cell), kGone);
   const Cell end = blocks.cell_at(beam.end);
   const bool on_map = blocks.contains(end);
-  if (on_map && beam.ends_off_map) mark(blocks.index_of(end), kNewHere);
-  if (on_map && beam.ends_at_surface && map.watched.is_watched(end)) mark(blocks.index_of(end), kWatchedEnd);
+  if (on_map && beam.ends_off_map) mark(end, kNewHere);
+  if (on_map && beam.ends_at_surface && map.watched.is_watched(end)) mark(end, kWatchedEnd);
   if (beam.ends_at_surface && !beam.ends_off_map) mark_still_there(end, map.clear);
-  const double clear_m = beam.length_m - beam.interval_m - blocks.resolution_m / map.layer.cells_per_block();
+  const double clear_m = beam.length_m - beam.interval_m - blocks.resolution_m / map.layer.lattice().cells_per_block();
   if (clear_m <= 0.0) return;
   const Point2 clear_end = beam.from + (beam.end - beam.from) * (clear_m / beam.length_m);
-  map.layer.walk_open(beam.from, clear_end, [&](Cell block) { mark(blocks.index_of(block), kNothingNew); });
+  map.layer.walk_open(beam.from, clear_end, [&](Cell block) { mark(block, kNothingNew); });
 }
 
 /// Far away, neighbouring beams end blocks apart: what lies between them on one new face is as new.
@@ -52,7 +38,7 @@ void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometr
   const auto end = [&](std::size_t i) -> const Point2& { return beams[i].end; };
   for_each_face_step(beams.size(), face, length_m, end, [&](std::size_t i) {
     walk_ray(blocks, end(i), end(i + 1), [&](Cell block, double) {
-      if (blocks.contains(block)) mark(blocks.index_of(block), kNewHere);
+      if (blocks.contains(block)) mark(block, kNewHere);
       return true;
     });
   });
@@ -61,25 +47,31 @@ void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometr
 /// Far away, neighbouring beams pass a face blocks apart: what lies between them on the face is as gone.
 void BeamVotes::mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face) {
   const GridGeometry& blocks = map.layer.blocks();
-  const auto place = [&](Cell cell) { return blocks.centre_of(map.layer.block_of(cell)); };
+  const auto squared_blocks = [](Cell a, Cell b) {
+    const int columns = a.column - b.column;
+    const int rows = a.row - b.row;
+    return columns * columns + rows * rows;
+  };
   for (std::size_t i = 0; i + 1 < beams.size(); ++i) {
     if (beams[i].length_m <= 0.0 || beams[i + 1].length_m <= 0.0 || beams[i].passed.empty()) continue;
     for (const Cell& beside : beams[i + 1].passed) {
-      const Point2 to = place(beside);
+      const Cell to = map.layer.block_of(beside);
       const auto nearest = std::min_element(beams[i].passed.begin(), beams[i].passed.end(), [&](Cell a, Cell b) {
-        return (place(a) - to).squaredNorm() < (place(b) - to).squaredNorm();
+        return squared_blocks(map.layer.block_of(a), to) < squared_blocks(map.layer.block_of(b), to);
       });
-      const Point2 from = place(*nearest);
-      const double step_m = face.slant * (to - beams[i + 1].from).norm() * face.bearing_step_rad;
-      if ((to - from).norm() <= step_m + blocks.resolution_m) mark_gone_between(from, to, map.clear);
+      const Cell from = map.layer.block_of(*nearest);
+      const double step_m = face.slant * (blocks.centre_of(to) - beams[i + 1].from).norm() * face.bearing_step_rad;
+      const double apart_m = blocks.resolution_m * std::sqrt(squared_blocks(from, to));
+      if (apart_m <= step_m + blocks.resolution_m) mark_gone_between(from, to, map.clear);
     }
   }
 }
 
-void BeamVotes::mark_gone_between(const Point2& from, const Point2& to, const ClearSpace& clear) {
-  const GridGeometry& blocks = clear.blocks();
-  walk_ray(blocks, from, to, [&](Cell block, double) {
-    if (clear.is_solid(block)) mark(blocks.index_of(block), kGone);
+/// In whole blocks: where the way crosses a corner of blocks, rounding must not decide which of them it goes through.
+void BeamVotes::mark_gone_between(Cell from, Cell to, const ClearSpace& clear) {
+  const GridGeometry blocks{clear.blocks().width, clear.blocks().height, 1.0, {0.0, 0.0}};
+  walk_ray(blocks, blocks.centre_of(from), blocks.centre_of(to), [&](Cell block, double) {
+    if (clear.is_solid(block)) mark(block, kGone);
     return true;
   });
 }
@@ -91,9 +83,8 @@ void BeamVotes::collect() {
   for (Blocks* blocks : {&votes_.yes[0], &votes_.yes[1], &votes_.no[0], &votes_.no[1], &votes_.ends, &votes_.all}) {
     blocks->clear();
   }
-  for (const std::uint32_t block : marked_) {
-    const Marks marks = marks_[block];
-    marks_[block] = 0;
+  for (const auto& [marks_of_block, block] : marked_) {
+    const Marks marks = std::exchange(*marks_of_block, Marks{0});
     if ((marks & kNewHere) != 0) {
       votes_.yes[kAdded].push_back(block);
     } else if ((marks & kNothingNew) != 0) {
@@ -114,11 +105,14 @@ void BeamVotes::collect() {
 const Votes& BeamVotes::of(std::span<const BeamVerdict> beams, std::span<const Cell> gone, const VotedMap& map,
                            const FaceParams& face) {
   const GridGeometry& blocks = map.layer.blocks();
-  marks_.resize(blocks.cell_count(), 0);
+  if (!(blocks == blocks_)) {
+    blocks_ = blocks;
+    marks_ = Tiled<Marks>{blocks.width, blocks.height, 0};
+  }
   for (const BeamVerdict& beam : beams) {
     if (beam.length_m > 0.0) mark_beam(beam, map);  // else silent
   }
-  for (const Cell& cell : gone) mark(blocks.index_of(map.layer.block_of(cell)), kGone);
+  for (const Cell& cell : gone) mark(map.layer.block_of(cell), kGone);
   mark_faces(beams, blocks, face);
   mark_gone_faces(beams, map, face);
   collect();

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/tiled.hpp"
 #include "mapping/awareness/beam_evidence.hpp"
 #include "mapping/awareness/clear_space.hpp"
 #include "mapping/awareness/face_step.hpp"
@@ -44,20 +45,26 @@ class BeamVotes {
   static constexpr Marks kNewHere = 1, kNothingNew = 2, kGone = 4, kStillThere = 8, kWatchedEnd = 16,
                          kLookedAround = 32;
 
-  [[gnu::always_inline]] void mark(std::size_t block, Marks what) {
-    Marks& marks = marks_[block];
-    if (marks == 0) marked_.push_back(static_cast<std::uint32_t>(block));
+  struct Marked {
+    Marks* marks;
+    std::uint32_t block;
+  };
+
+  [[gnu::always_inline]] void mark(Cell block, Marks what) {
+    Marks& marks = marks_.to_write(block);
+    if (marks == 0) marked_.push_back({&marks, static_cast<std::uint32_t>(blocks_.index_of(block))});
     marks |= what;
   }
   void mark_beam(const BeamVerdict& beam, const VotedMap& map);
   void mark_still_there(Cell end, const ClearSpace& clear);
   void mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face);
   void mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face);
-  void mark_gone_between(const Point2& from, const Point2& to, const ClearSpace& clear);
+  void mark_gone_between(Cell from, Cell to, const ClearSpace& clear);
   void collect();
 
-  std::vector<Marks> marks_;  // of every block; none between scans
-  Blocks marked_;             // blocks with marks, each once
+  GridGeometry blocks_;
+  Tiled<Marks> marks_;          // of every block; none between scans
+  std::vector<Marked> marked_;  // blocks with marks, each once
   Votes votes_;
 };
 

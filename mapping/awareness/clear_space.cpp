@@ -5,21 +5,24 @@
 
 namespace deltamap::mapping::awareness {
 
-ClearSpace::ClearSpace(const OccupancyGrid& map, int cells_per_block)
-    : blocks_{(map.width() + cells_per_block - 1) / cells_per_block,
-              (map.height() + cells_per_block - 1) / cells_per_block, map.resolution_m() * cells_per_block,
-              map.geometry().origin},
-      cells_per_block_{cells_per_block},
-      solid_(blocks_.cell_count(), 0),
-      distance_(blocks_.cell_count(), kFarthest) {
-  for (std::size_t i = 0; i < solid_.size(); ++i) solid_[i] = has_occupied_cell(map, blocks_.cell_of(i)) ? 1 : 0;
-  measure({{0, 0}, {blocks_.width, blocks_.height}});
+ClearSpace::ClearSpace(const OccupancyGrid& map, const BlockLattice& lattice)
+    : lattice_{lattice},
+      solid_{lattice.blocks().width, lattice.blocks().height, 0},
+      distance_{lattice.blocks().width, lattice.blocks().height, kFarthest} {
+  CellBox all;
+  for_each_known(map, [&](Cell cell, CellState state) {
+    if (state != CellState::kOccupied) return;
+    const Cell block = lattice_.block_of(cell);
+    solid_.set(block, 1);
+    all = united(all, {block, {block.column + 1, block.row + 1}});
+  });
+  measure(grown(all, kFarthest, blocks()));
 }
 
 bool ClearSpace::has_occupied_cell(const OccupancyGrid& map, Cell block) const {
-  const Cell first{block.column * cells_per_block_, block.row * cells_per_block_};
-  for (int row = first.row; row < first.row + cells_per_block_; ++row) {
-    for (int column = first.column; column < first.column + cells_per_block_; ++column) {
+  const CellBox cells = lattice_.cells_of(block);
+  for (int row = cells.first.row; row < cells.last.row; ++row) {
+    for (int column = cells.first.column; column < cells.last.column; ++column) {
       if (map.at({column, row}) == CellState::kOccupied) return true;
     }
   }
@@ -29,14 +32,13 @@ bool ClearSpace::has_occupied_cell(const OccupancyGrid& map, Cell block) const {
 void ClearSpace::update(const OccupancyGrid& map, std::span<const CellChange> changes) {
   std::vector<CellChange> turned;  // blocks that have become solid or clear
   for (const CellChange& change : changes) {
-    const Cell block{change.cell.column / cells_per_block_, change.cell.row / cells_per_block_};
-    std::uint8_t& solid = solid_[blocks_.index_of(block)];
+    const Cell block = lattice_.block_of(change.cell);
     const std::uint8_t is_solid = has_occupied_cell(map, block) ? 1 : 0;
-    if (solid == is_solid) continue;
-    solid = is_solid;
+    if (solid_[block] == is_solid) continue;
+    solid_.set(block, is_solid);
     turned.push_back({.cell = block});
   }
-  measure(grown(bounding_box(turned), kFarthest, blocks_));
+  measure(grown(bounding_box(turned), kFarthest, blocks()));
 }
 
 /// Two sweeps, after Rosenfeld and Pfaltz, "Sequential operations in digital picture processing", 1966. What lies
@@ -44,11 +46,11 @@ void ClearSpace::update(const OccupancyGrid& map, std::span<const CellChange> ch
 void ClearSpace::measure(const CellBox& box) {
   const auto at = [&](int column, int row) -> int {
     const Cell block{column, row};
-    return blocks_.contains(block) ? distance_[blocks_.index_of(block)] : kFarthest;
+    return blocks().contains(block) ? distance_[block] : kFarthest;
   };
   const auto take = [&](int column, int row, int nearest) {
-    const std::size_t index = blocks_.index_of({column, row});
-    distance_[index] = solid_[index] != 0 ? 0 : static_cast<std::uint8_t>(std::min(kFarthest, nearest + 1));
+    const Cell block{column, row};
+    distance_.set(block, solid_[block] != 0 ? 0 : static_cast<std::uint8_t>(std::min(kFarthest, nearest + 1)));
   };
   for (int row = box.first.row; row < box.last.row; ++row) {
     for (int column = box.first.column; column < box.last.column; ++column) {

@@ -5,13 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
 
+#include "core/block_lattice.hpp"
 #include "core/grid_patch.hpp"
 #include "core/occupancy_grid.hpp"
+#include "core/tiled.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -21,7 +23,7 @@ class ClearSpace {
   static constexpr int kFarthest = 15;
 
   ClearSpace() = default;
-  ClearSpace(const OccupancyGrid& map, int cells_per_block);
+  ClearSpace(const OccupancyGrid& map, const BlockLattice& lattice);
 
   /// `map` differs in these cells from the map before.
   void update(const OccupancyGrid& map, std::span<const CellChange> changes);
@@ -29,26 +31,40 @@ class ClearSpace {
   /// Has the block an occupied cell?
   [[nodiscard]] bool is_solid(Cell block) const { return distance(block) == 0; }
   /// To the nearest solid block: rows or columns, whichever are more; at most kFarthest. The block lies on the map.
-  [[nodiscard]] int distance(Cell block) const { return distance_[blocks_.index_of(block)]; }
-  [[nodiscard]] const std::vector<std::uint8_t>& distances() const { return distance_; }
-  [[nodiscard]] const GridGeometry& blocks() const { return blocks_; }
-  /// No cell within so many rows and columns of this one, which lies on the map, is occupied; 0: who knows.
-  [[nodiscard]] int clear_cells_around(Cell cell) const {
-    return clear_cells_around_block({cell.column / cells_per_block_, cell.row / cells_per_block_});
+  [[nodiscard]] int distance(Cell block) const { return distance_[block]; }
+  /// `visit(Cell block)` for each solid block, row by row.
+  template <typename Visit>
+  void for_each_solid(Visit&& visit) const {
+    solid_.visit_written(blocks().box(), [&](Cell first, std::span<const std::uint8_t> solid) {
+      for (int i = 0; i < static_cast<int>(solid.size()); ++i) {
+        if (solid[static_cast<std::size_t>(i)] != 0) visit(Cell{first.column + i, first.row});
+      }
+    });
   }
+  /// The same for those that touch a block, and the block itself; it may lie beyond the map's border.
+  template <typename Visit>
+  void for_each_solid_around(Cell block, Visit&& visit) const {
+    solid_.visit_around(block, 1, blocks(), [&](Cell at, std::uint8_t solid) {
+      if (solid != 0) visit(at);
+    });
+  }
+  [[nodiscard]] const BlockLattice& lattice() const { return lattice_; }
+  [[nodiscard]] const GridGeometry& blocks() const { return lattice_.blocks(); }
+  /// No cell within so many rows and columns of this one, which lies on the map, is occupied; 0: who knows.
+  [[nodiscard]] int clear_cells_around(Cell cell) const { return clear_cells_around_block(lattice_.block_of(cell)); }
   /// Likewise for each cell of a block.
-  [[nodiscard]] int clear_cells_around_block(Cell block) const { return (distance(block) - 1) * cells_per_block_; }
-  [[nodiscard]] int cells_per_block() const { return cells_per_block_; }
+  [[nodiscard]] int clear_cells_around_block(Cell block) const {
+    return (distance(block) - 1) * lattice_.cells_per_block();
+  }
 
  private:
   [[nodiscard]] bool has_occupied_cell(const OccupancyGrid& map, Cell block) const;
   /// Where solid blocks have come or gone.
   void measure(const CellBox& blocks);
 
-  GridGeometry blocks_;
-  int cells_per_block_ = 1;
-  std::vector<std::uint8_t> solid_;
-  std::vector<std::uint8_t> distance_;
+  BlockLattice lattice_;
+  Tiled<std::uint8_t> solid_;
+  Tiled<std::uint8_t> distance_;
 };
 
 /// One coordinate of a beam, in cells.
@@ -96,8 +112,9 @@ void walk_surfaces(const OccupancyGrid& map, const ClearSpace& clear, const Poin
   const double per_leapt_cell_m = (1.0 - 1e-9) * std::min(x.per_cell_m, y.per_cell_m);
 
   // Leaps go from block to block: dividing by the cells of a block each time takes longer than all the rest.
-  const double blocks_per_cell = 1.0 / clear.cells_per_block();
-  const Point2 start_block = start * blocks_per_cell;
+  const double blocks_per_cell = 1.0 / clear.lattice().cells_per_block();
+  const Cell ahead = clear.lattice().ahead();
+  const Point2 start_block = (start + Point2{ahead.column, ahead.row}) * blocks_per_cell;
   const Point2 blocks_per_m{x.cells_per_m * blocks_per_cell, y.cells_per_m * blocks_per_cell};
 
   double way_m = 0.0;  // the beam is in the cell there

@@ -43,12 +43,13 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (before == nullptr || before->geometry() != map_->geometry()) {
     specks_.begin(*map_);
     layer_ = VoteLayer{params_.votes, map_->geometry()};
-    temporary_ = TemporaryLayer{params_.temporary, layer_.blocks(), layer_.cells_per_block()};
+    temporary_ = TemporaryLayer{params_.temporary, layer_.lattice()};
     waiting_.clear();
-    clear_ = ClearSpace{*map_, layer_.cells_per_block()};
+    clear_ = ClearSpace{*map_, layer_.lattice()};
     watched_ = WatchList{params_.watch, layer_.blocks()};
+    joined_ = Tiled<std::uint8_t>{layer_.blocks().width, layer_.blocks().height, 0};
     passing_ = Passing{params_.passing};
-    young_ = YoungBlocks{clear_, layer_.cells_per_block()};
+    young_ = YoungBlocks{clear_};
     return;
   }
   const std::vector<CellChange> changes = changes_between(*before, *map_);
@@ -90,10 +91,9 @@ std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlo
   const GridGeometry& blocks = layer_.blocks();
   const Question question = region.front().question;
   const double least_votes = question == Question::kAdded ? params_.joining_votes : params_.joining_gone_votes;
-  joined_.resize(blocks.cell_count(), 0);
   std::vector<Cell> joined;
   const auto join = [&](Cell block) {
-    if (std::exchange(joined_[blocks.index_of(block)], 1) == 0) joined.push_back(block);
+    if (std::exchange(joined_.to_write(block), 1) == 0) joined.push_back(block);
   };
   const auto is_voted_for = [&](Cell block) {
     const Ballot ballot = layer_.ballot(question, block, now_ms_);
@@ -110,7 +110,7 @@ std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlo
       }
     }
   }
-  for (const Cell& block : joined) joined_[blocks.index_of(block)] = 0;
+  for (const Cell& block : joined) joined_.to_write(block) = 0;
   return joined;
 }
 

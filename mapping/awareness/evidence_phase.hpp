@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
+#include "core/tiled.hpp"
 #include "mapping/awareness/beam_evidence.hpp"
 #include "mapping/awareness/beam_votes.hpp"
 #include "mapping/awareness/clear_space.hpp"
@@ -93,7 +94,7 @@ class EvidencePhase {
   std::vector<ProvenBlock> waiting_;
   ClearSpace clear_;
   BeamVotes votes_;
-  std::vector<std::uint8_t> joined_;  // a flag a block: belongs to the region that is being handed on
+  Tiled<std::uint8_t> joined_;  // a flag a block: belongs to the region that is being handed on
   WatchList watched_;
   Passing passing_;
   Specks specks_;

@@ -26,12 +26,11 @@ bool Passing::is_small_and_apart(const std::vector<ProvenBlock>& region, const V
   const OccupancyGrid& map = view.map;
   const CellBox box = box_of(region, view.votes);
   if (std::max(box.width(), box.height()) * map.resolution_m() >= params_.small_m) return false;
-  const CellBox around =
-      grown(box, static_cast<int>(std::lround(params_.apart_m / map.resolution_m())), map.geometry());
+  const CellBox around = grown(box, static_cast<int>(std::lround(params_.apart_m / map.resolution_m())));
   int unknown = 0;
   for (int row = around.first.row; row < around.last.row; ++row) {
     for (int column = around.first.column; column < around.last.column; ++column) {
-      const CellState state = map[{column, row}];
+      const CellState state = map.at({column, row});
       if (state == CellState::kOccupied) return false;
       unknown += state == CellState::kUnknown ? 1 : 0;
     }

@@ -70,12 +70,12 @@ void Specks::gather(const OccupancyGrid& map, std::span<const Cell> starts) {
 
 void Specks::begin(const OccupancyGrid& map) {
   geometry_ = map.geometry();
-  flags_.assign(geometry_.cell_count(), 0);
+  flags_ = Tiled<Flags>{geometry_.width, geometry_.height, Flags{0}};
   specks_.clear();
   std::vector<Cell> occupied;
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
-    if (map.cells()[i] == CellState::kOccupied) occupied.push_back(geometry_.cell_of(i));
-  }
+  for_each_known(map, [&](Cell cell, CellState state) {
+    if (state == CellState::kOccupied) occupied.push_back(cell);
+  });
   gather(map, occupied);
   for (const Speck& speck : specks_) {
     for (const Cell& cell : speck.cells) flags_of(cell) = kThin;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/grid_patch.hpp"
+#include "core/tiled.hpp"
 #include "mapping/awareness/beam_evidence.hpp"
 #include "mapping/awareness/pose_deviation.hpp"
 
@@ -31,7 +32,7 @@ class Specks {
   /// Finds the small groups of occupied cells around the changes that have led to this map.
   void follow(const OccupancyGrid& map, std::span<const CellChange> changes);
 
-  [[nodiscard]] bool is_of_speck(Cell cell) const { return (flags_[geometry_.index_of(cell)] & kOfSpeck) != 0; }
+  [[nodiscard]] bool is_of_speck(Cell cell) const { return (flags_[cell] & kOfSpeck) != 0; }
 
   /// All cells of the specks that any of these cells belongs to.
   [[nodiscard]] std::vector<Cell> whole(std::span<const Cell> some) const;
@@ -53,7 +54,7 @@ class Specks {
     int thin_looks = 0;  ///< since it was missed or met last
   };
   enum class Look : std::uint8_t { kNothing, kMet, kThrough, kMissed };
-  [[nodiscard]] Flags& flags_of(Cell cell) { return flags_[geometry_.index_of(cell)]; }
+  [[nodiscard]] Flags& flags_of(Cell cell) { return flags_.to_write(cell); }
   struct Group {
     std::vector<Cell> cells;
     CellBox box;  ///< around them
@@ -68,8 +69,8 @@ class Specks {
   SpeckParams params_;
   GridGeometry geometry_;
   std::vector<Speck> specks_;
-  std::vector<Flags> flags_;  // of each cell
-  std::vector<Cell> taken_;   // whose flags of looking are set
+  Tiled<Flags> flags_;       // of each cell
+  std::vector<Cell> taken_;  // whose flags of looking are set
 };
 
 }  // namespace deltamap::mapping::awareness

@@ -33,8 +33,8 @@ std::vector<std::uint32_t> shown(const Entries& entries) {
 
 }  // namespace
 
-TemporaryLayer::TemporaryLayer(const TemporaryParams& params, const GridGeometry& blocks, int cells_per_block)
-    : params_{params}, blocks_{blocks}, cells_per_block_{cells_per_block} {
+TemporaryLayer::TemporaryLayer(const TemporaryParams& params, const BlockLattice& lattice)
+    : params_{params}, lattice_{lattice} {
   params_.most_votes = std::max(params_.most_votes, params_.least_votes);
 }
 
@@ -98,11 +98,9 @@ void TemporaryLayer::keep_newest(Entries& entries, std::uint32_t now_ms) {
 }
 
 bool TemporaryLayer::has_occupied(const OccupancyGrid& map, std::uint32_t block, int margin_cells) const {
-  const Cell at = blocks_.cell_of(block);
-  const Cell first{at.column * cells_per_block_ - margin_cells, at.row * cells_per_block_ - margin_cells};
-  const int side = cells_per_block_ + 2 * margin_cells;
-  for (int row = first.row; row < first.row + side; ++row) {
-    for (int column = first.column; column < first.column + side; ++column) {
+  const CellBox cells = grown(lattice_.cells_of(lattice_.blocks().cell_of(block)), margin_cells);
+  for (int row = cells.first.row; row < cells.last.row; ++row) {
+    for (int column = cells.first.column; column < cells.last.column; ++column) {
       if (map.at({column, row}) == CellState::kOccupied) return true;
     }
   }
@@ -116,8 +114,8 @@ void TemporaryLayer::follow(const OccupancyGrid& map) {
 
 void TemporaryLayer::hide(Timestamp time) {
   if (newest_ == nullptr || newest_->empty()) return;
-  newest_ = std::make_shared<const TemporaryThings>(
-      TemporaryThings{.number = newest_->number + 1, .time = time, .blocks = blocks_, .standing = {}, .gone = {}});
+  newest_ = std::make_shared<const TemporaryThings>(TemporaryThings{
+      .number = newest_->number + 1, .time = time, .blocks = lattice_.blocks(), .standing = {}, .gone = {}});
 }
 
 void TemporaryLayer::clear() {
@@ -132,7 +130,7 @@ void TemporaryLayer::publish(Timestamp time) {
   newest_ =
       std::make_shared<const TemporaryThings>(TemporaryThings{.number = newest_ == nullptr ? 1 : newest_->number + 1,
                                                               .time = time,
-                                                              .blocks = blocks_,
+                                                              .blocks = lattice_.blocks(),
                                                               .standing = shown(standing_),
                                                               .gone = shown(gone_)});
 }

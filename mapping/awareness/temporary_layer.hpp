@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/block_lattice.hpp"
 #include "core/occupancy_grid.hpp"
 #include "core/temporary_things.hpp"
 
@@ -25,8 +26,7 @@ struct TemporaryParams {
 class TemporaryLayer {
  public:
   TemporaryLayer() = default;
-  /// `cells_per_block`: blocks begin at the map's cell (0, 0) and are so wide.
-  TemporaryLayer(const TemporaryParams& params, const GridGeometry& blocks, int cells_per_block);
+  TemporaryLayer(const TemporaryParams& params, const BlockLattice& lattice);
 
   /// What one keyframe says of blocks, by index: yes (ascending) and no (in any order) of "something is new here" and
   /// "something has gone here".
@@ -61,8 +61,7 @@ class TemporaryLayer {
   void publish(Timestamp time);
 
   TemporaryParams params_;
-  GridGeometry blocks_;
-  int cells_per_block_ = 1;
+  BlockLattice lattice_;
   Entries standing_;
   Entries gone_;
   Entries spare_;                    // memory of the entries before the last keyframe

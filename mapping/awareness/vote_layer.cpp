@@ -12,21 +12,15 @@ constexpr float kNobody = 0.1F;  // worn votes that count for nothing
 }  // namespace
 
 VoteLayer::VoteLayer(const VoteLayerParams& params, const GridGeometry& map) : params_{params} {
-  cells_per_block_ = std::max(1, static_cast<int>(std::lround(params.block_m / map.resolution_m)));
-  blocks_ = {(map.width + cells_per_block_ - 1) / cells_per_block_,
-             (map.height + cells_per_block_ - 1) / cells_per_block_, map.resolution_m * cells_per_block_, map.origin};
-  tiles_across_ = static_cast<unsigned>(blocks_.width) / kTileSide + 1;
-  const std::size_t tiles_up = static_cast<unsigned>(blocks_.height) / kTileSide + 1;
-  open_.assign(blocks_.cell_count(), 0);
-  squares_ = {blocks_.width / kSquareSide + 1, blocks_.height / kSquareSide + 1, blocks_.resolution_m * kSquareSide,
-              blocks_.origin};
+  lattice_ = {map, std::max(1, static_cast<int>(std::lround(params.block_m / map.resolution_m)))};
+  const GridGeometry& blocks = lattice_.blocks();
+  tiles_across_ = static_cast<unsigned>(blocks.width) / kTileSide + 1;
+  const std::size_t tiles_up = static_cast<unsigned>(blocks.height) / kTileSide + 1;
+  open_ = Tiled<std::uint8_t>{blocks.width, blocks.height, 0};
+  squares_ = {blocks.width / kSquareSide + 1, blocks.height / kSquareSide + 1, blocks.resolution_m * kSquareSide,
+              blocks.origin};
   opened_.assign(squares_.cell_count(), 0);
   tile_of_.assign(tiles_across_ * tiles_up, -1);
-}
-
-CellBox VoteLayer::cells_of(Cell block) const {
-  const Cell first{block.column * cells_per_block_, block.row * cells_per_block_};
-  return {first, {first.column + cells_per_block_, first.row + cells_per_block_}};
 }
 
 Ballot VoteLayer::ballot(Question question, Cell block, std::uint32_t now_ms) const {
@@ -62,20 +56,20 @@ VoteLayer::Tile& VoteLayer::tile_for(Cell block, std::uint32_t now_ms) {
 }
 
 void VoteLayer::set_open(Cell block, int bits) {
-  std::uint8_t& open = open_[blocks_.index_of(block)];
+  const std::uint8_t open = open_[block];
   std::uint8_t& opened = opened_[squares_.index_of({block.column / kSquareSide, block.row / kSquareSide})];
   const std::uint8_t added = bit_of(Question::kAdded);
   if ((open & added) != (bits & added))
     opened = static_cast<std::uint8_t>((bits & added) != 0 ? opened + 1 : opened - 1);
-  open = static_cast<std::uint8_t>(bits);
+  open_.set(block, static_cast<std::uint8_t>(bits));
 }
 
 void VoteLayer::empty_tile(Tile& tile) {
   const int side = kTileSide;
   const Cell first{static_cast<int>(tile.place % tiles_across_) * side,
                    static_cast<int>(tile.place / tiles_across_) * side};
-  for (int row = first.row; row < std::min(first.row + side, blocks_.height); ++row) {
-    for (int column = first.column; column < std::min(first.column + side, blocks_.width); ++column) {
+  for (int row = first.row; row < std::min(first.row + side, blocks().height); ++row) {
+    for (int column = first.column; column < std::min(first.column + side, blocks().width); ++column) {
       set_open({column, row}, 0);
     }
   }
@@ -91,27 +85,27 @@ void VoteLayer::vote(Question question, Cell block, bool yes, std::uint32_t now_
     if (ballot.yes < 0.5F) ballot.first_ms = now_ms;
     ballot.yes = std::min(most, ballot.yes + 1.0F);
     ballot.no *= left;
-    if (!is_open(question, block)) set_open(block, open_[blocks_.index_of(block)] | bit_of(question));
+    if (!is_open(question, block)) set_open(block, open_[block] | bit_of(question));
   } else {
     ballot.no = std::min(most, ballot.no + 1.0F);
     ballot.yes *= left;
     if (ballot.no >= most && ballot.yes < kNobody && is_open(question, block))
-      set_open(block, open_[blocks_.index_of(block)] & ~bit_of(question));
+      set_open(block, open_[block] & ~bit_of(question));
   }
   ballot.last_ms = now_ms;
 }
 
 void VoteLayer::reset(Question question, Cell block) {
-  set_open(block, open_[blocks_.index_of(block)] & ~bit_of(question));
+  set_open(block, open_[block] & ~bit_of(question));
   const std::int32_t tile = tile_of_[place_of(block)];
   if (tile >= 0)
     tiles_[static_cast<std::size_t>(tile)].ballots[static_cast<std::size_t>(question)][slot_of(block)] = {};
 }
 
 void VoteLayer::reset(const CellBox& cells) {
-  const Cell first = block_of(cells.first);
-  for (int row = first.row; row * cells_per_block_ < cells.last.row; ++row) {
-    for (int column = first.column; column * cells_per_block_ < cells.last.column; ++column) {
+  const CellBox voided = lattice_.blocks_of(cells);
+  for (int row = voided.first.row; row < voided.last.row; ++row) {
+    for (int column = voided.first.column; column < voided.last.column; ++column) {
       reset(Question::kAdded, {column, row});
       reset(Question::kRemoved, {column, row});
     }

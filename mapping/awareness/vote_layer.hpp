@@ -9,10 +9,12 @@
 #include <span>
 #include <vector>
 
+#include "core/block_lattice.hpp"
 #include "core/box_walk.hpp"
 #include "core/grid_patch.hpp"
 #include "core/grid_ray.hpp"
 #include "core/occupancy_grid.hpp"
+#include "core/tiled.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -47,15 +49,13 @@ class VoteLayer {
   VoteLayer(const VoteLayerParams& params, const GridGeometry& map);
 
   /// Blocks lie on the map like cells of their own grid.
-  [[nodiscard]] const GridGeometry& blocks() const { return blocks_; }
-  [[nodiscard]] int cells_per_block() const { return cells_per_block_; }
-  [[nodiscard]] Cell block_of(Cell cell) const { return {cell.column / cells_per_block_, cell.row / cells_per_block_}; }
-  [[nodiscard]] CellBox cells_of(Cell block) const;
+  [[nodiscard]] const GridGeometry& blocks() const { return lattice_.blocks(); }
+  [[nodiscard]] const BlockLattice& lattice() const { return lattice_; }
+  [[nodiscard]] Cell block_of(Cell cell) const { return lattice_.block_of(cell); }
+  [[nodiscard]] CellBox cells_of(Cell block) const { return lattice_.cells_of(block); }
 
   /// Has anybody said yes to the question in this block, and not been outvoted as often as it counts since?
-  [[nodiscard]] bool is_open(Question question, Cell block) const {
-    return (open_[blocks_.index_of(block)] & bit_of(question)) != 0;
-  }
+  [[nodiscard]] bool is_open(Question question, Cell block) const { return (open_[block] & bit_of(question)) != 0; }
   /// `visit(Cell block)` for those that the segment touches in which somebody has said "added"; most of the way there
   /// is none, and it is passed in squares of many blocks. `from` lies on the map, or none is visited.
   template <typename Visit>
@@ -94,10 +94,9 @@ class VoteLayer {
   [[nodiscard]] bool is_void(const Ballot& ballot, std::uint32_t now_ms) const;
 
   VoteLayerParams params_;
-  GridGeometry blocks_;
-  int cells_per_block_ = 1;
+  BlockLattice lattice_;
   std::size_t tiles_across_ = 0;
-  std::vector<std::uint8_t> open_;     // a bit a question, for each block
+  Tiled<std::uint8_t> open_;           // a bit a question, for each block
   GridGeometry squares_;               // of kSquareSide × kSquareSide blocks
   std::vector<std::uint8_t> opened_;   // blocks in a square in which somebody has said "added"
   std::vector<std::int32_t> tile_of_;  // index into tiles_, -1 = none
@@ -108,8 +107,8 @@ template <typename Visit>
 void VoteLayer::walk_open(const Point2& from, const Point2& to, Visit&& visit) const {
   const double length_m = (to - from).norm();
   const auto walk_blocks = [&](const Point2& first, const Point2& last) {
-    walk_ray(blocks_, first, last, [&](Cell block, double) {
-      if (!blocks_.contains(block)) return false;
+    walk_ray(blocks(), first, last, [&](Cell block, double) {
+      if (!blocks().contains(block)) return false;
       if (is_open(Question::kAdded, block)) visit(block);
       return true;
     });

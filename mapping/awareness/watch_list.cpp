@@ -12,7 +12,7 @@ constexpr std::uint32_t kMostBetween = 40;  // keyframes: a surface may be met f
 }  // namespace
 
 void WatchList::forget(std::vector<Region>::iterator region) {
-  for (const std::uint32_t index : region->look.blocks) --watchers_[index];
+  for (const std::uint32_t index : region->look.blocks) --watchers_.to_write(geometry_.cell_of(index));
   regions_.erase(region);
 }
 
@@ -32,7 +32,7 @@ void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_block
   std::sort(wide.begin(), wide.end());
   wide.erase(std::unique(wide.begin(), wide.end()), wide.end());
   if (regions_.size() >= params_.most_watched) forget(regions_.begin());
-  for (const std::uint32_t index : wide) ++watchers_[index];
+  for (const std::uint32_t index : wide) ++watchers_.to_write(geometry_.cell_of(index));
   regions_.push_back(std::move(region));
 }
 
@@ -50,7 +50,7 @@ void WatchList::forget(const std::vector<std::uint32_t>& blocks) {
   for (auto region = regions_.begin(); region != regions_.end();) {
     std::erase_if(region->look.blocks, [&](std::uint32_t index) {
       const bool is_forgotten = std::binary_search(blocks.begin(), blocks.end(), index);
-      if (is_forgotten) --watchers_[index];
+      if (is_forgotten) --watchers_.to_write(geometry_.cell_of(index));
       return is_forgotten;
     });
     region = region->look.blocks.empty() ? regions_.erase(region) : region + 1;

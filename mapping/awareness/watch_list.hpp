@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
+#include "core/tiled.hpp"
 
 namespace deltamap::mapping::awareness {
 
@@ -27,7 +28,7 @@ class WatchList {
  public:
   WatchList() = default;
   WatchList(const WatchParams& params, const GridGeometry& blocks)
-      : params_{params}, geometry_{blocks}, watchers_(blocks.cell_count(), 0) {}
+      : params_{params}, geometry_{blocks}, watchers_{blocks.width, blocks.height, 0} {}
 
   /// Watches the blocks and those within `margin_blocks` of them.
   void watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms);
@@ -38,7 +39,7 @@ class WatchList {
   /// These blocks (sorted) are not to be looked at again.
   void forget(const std::vector<std::uint32_t>& blocks);
 
-  [[nodiscard]] bool is_watched(Cell block) const { return watchers_[geometry_.index_of(block)] > 0; }
+  [[nodiscard]] bool is_watched(Cell block) const { return watchers_[block] > 0; }
 
   /// The watched blocks in which a keyframe's beams ended.
   void see(std::vector<std::uint32_t> ends);
@@ -57,8 +58,8 @@ class WatchList {
 
   WatchParams params_;
   GridGeometry geometry_;
-  std::vector<std::uint8_t> watchers_;  // regions that each block belongs to
-  std::vector<Region> regions_;         // oldest first
+  Tiled<std::uint8_t> watchers_;  // regions that each block belongs to
+  std::vector<Region> regions_;   // oldest first
 };
 
 }  // namespace deltamap::mapping::awareness

@@ -3,21 +3,18 @@
 
 namespace deltamap::mapping::awareness {
 
-YoungBlocks::YoungBlocks(const ClearSpace& clear, int cells_per_block)
-    : blocks_{clear.blocks()}, cells_per_block_{cells_per_block}, ages_(blocks_.cell_count(), Age::kEmpty) {
-  for (std::size_t i = 0; i < ages_.size(); ++i) {
-    if (clear.is_solid(blocks_.cell_of(i))) ages_[i] = Age::kOld;
-  }
+YoungBlocks::YoungBlocks(const ClearSpace& clear) : ages_{clear.blocks().width, clear.blocks().height, Age::kEmpty} {
+  clear.for_each_solid([&](Cell block) { ages_.set(block, Age::kOld); });
 }
 
 void YoungBlocks::follow(const ClearSpace& clear, std::span<const CellChange> changes) {
   for (const CellChange& change : changes) {
-    const Cell block{change.cell.column / cells_per_block_, change.cell.row / cells_per_block_};
-    Age& age = ages_[blocks_.index_of(block)];
+    const Cell block = clear.lattice().block_of(change.cell);
+    const Age age = ages_[block];
     if (change.after == CellState::kOccupied) {
-      if (age == Age::kEmpty) age = Age::kYoung;
+      if (age == Age::kEmpty) ages_.set(block, Age::kYoung);
     } else if (age == Age::kYoung && !clear.is_solid(block)) {
-      age = Age::kEmpty;
+      ages_.set(block, Age::kEmpty);
     }
   }
 }

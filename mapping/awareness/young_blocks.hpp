@@ -5,10 +5,10 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/grid_patch.hpp"
 #include "core/occupancy_grid.hpp"
+#include "core/tiled.hpp"
 #include "mapping/awareness/clear_space.hpp"
 
 namespace deltamap::mapping::awareness {
@@ -16,20 +16,18 @@ namespace deltamap::mapping::awareness {
 class YoungBlocks {
  public:
   YoungBlocks() = default;
-  /// All that the map shows is old. `clear` is that of the map, in blocks so wide.
-  YoungBlocks(const ClearSpace& clear, int cells_per_block);
+  /// All that the map shows is old. `clear` is that of the map.
+  explicit YoungBlocks(const ClearSpace& clear);
 
   /// The changes have led to the map that `clear` is of now.
   void follow(const ClearSpace& clear, std::span<const CellChange> changes);
 
-  [[nodiscard]] bool is_young(Cell block) const { return ages_[blocks_.index_of(block)] == Age::kYoung; }
+  [[nodiscard]] bool is_young(Cell block) const { return ages_[block] == Age::kYoung; }
 
  private:
   enum class Age : std::uint8_t { kEmpty, kYoung, kOld };
 
-  GridGeometry blocks_;
-  int cells_per_block_ = 1;
-  std::vector<Age> ages_;
+  Tiled<Age> ages_;  // of the blocks
 };
 
 }  // namespace deltamap::mapping::awareness

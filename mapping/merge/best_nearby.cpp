@@ -59,7 +59,6 @@ CellsNearBorders cells_near_borders(const OccupancyGrid& map, std::span<const Ed
   const auto reach = static_cast<float>(reach_cells);
   const auto most_x = static_cast<float>(map.width() - 1);
   const auto most_y = static_cast<float>(map.height() - 1);
-  const std::ptrdiff_t width = map.width();
   CellsNearBorders near;
   near.x.all.reserve(edges.size());
   near.y.all.reserve(edges.size());
@@ -71,24 +70,24 @@ CellsNearBorders cells_near_borders(const OccupancyGrid& map, std::span<const Ed
     if (!(x >= 1.0F && y >= 1.0F && x < most_x && y < most_y)) continue;
     const auto column = static_cast<std::int32_t>(x);
     const auto row = static_cast<std::int32_t>(y);
-    const CellState* const here = map.cells().data() + row * width + column;
+    const CellState here = map[{column, row}];
     const auto& counts = kCounts[static_cast<std::size_t>(edge.state)];
-    const Counts counts_here = counts[static_cast<std::size_t>(*here)];
+    const Counts counts_here = counts[static_cast<std::size_t>(here)];
     near.at_start += counts_here;
-    const auto add = [&](Crossings& crossings, float in_cell, float per_turn, std::ptrdiff_t next) {
+    const auto add = [&](Crossings& crossings, float in_cell, float per_turn, const Cell& before, const Cell& after) {
       const float farthest = reach + reach * std::abs(per_turn);
-      if (in_cell <= farthest && here[-next] != *here) {
-        const Counts gain = counts_here - counts[static_cast<std::size_t>(here[-next])];
+      if (in_cell <= farthest && map[before] != here) {
+        const Counts gain = counts_here - counts[static_cast<std::size_t>(map[before])];
         crossings.all.push_back({-in_cell, per_turn, gain});
         crossings.before -= gain;
       }
-      if (1.0F - in_cell <= farthest && here[next] != *here) {
-        const Counts gain = counts[static_cast<std::size_t>(here[next])] - counts_here;
+      if (1.0F - in_cell <= farthest && map[after] != here) {
+        const Counts gain = counts[static_cast<std::size_t>(map[after])] - counts_here;
         crossings.all.push_back({1.0F - in_cell, per_turn, gain});
       }
     };
-    add(near.x, x - static_cast<float>(column), -arm_y * per_lever, 1);
-    add(near.y, y - static_cast<float>(row), arm_x * per_lever, width);
+    add(near.x, x - static_cast<float>(column), -arm_y * per_lever, {column - 1, row}, {column + 1, row});
+    add(near.y, y - static_cast<float>(row), arm_x * per_lever, {column, row - 1}, {column, row + 1});
   }
   return near;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "mapping/merge/acceptance.hpp"
 #include "mapping/merge/motion_equations.hpp"
@@ -20,12 +19,13 @@ struct Border {
   bool along_x = false;
 };
 
-/// `here`: a known cell of a map that is `width` cells wide; asked for at (u, v) in it.
-Border nearest_border(const CellState* here, std::ptrdiff_t width, float u, float v) {
-  const CellState beside = u < 0.5F ? here[-1] : here[1];
-  const CellState above = v < 0.5F ? here[-width] : here[width];
-  const bool is_border_x = beside != *here && beside != CellState::kUnknown;
-  const bool is_border_y = above != *here && above != CellState::kUnknown;
+/// Of a known cell with four neighbours; asked for at (u, v) in it.
+Border nearest_border(const OccupancyGrid& map, Cell cell, float u, float v) {
+  const CellState here = map[cell];
+  const CellState beside = map[{cell.column + (u < 0.5F ? -1 : 1), cell.row}];
+  const CellState above = map[{cell.column, cell.row + (v < 0.5F ? -1 : 1)}];
+  const bool is_border_x = beside != here && beside != CellState::kUnknown;
+  const bool is_border_y = above != here && above != CellState::kUnknown;
   if (!is_border_x && !is_border_y) return {};
   const float to_x = std::min(u, 1.0F - u);
   const float to_y = std::min(v, 1.0F - v);
@@ -45,8 +45,6 @@ BorderSums border_sums(const OccupancyGrid& map, std::span<const EdgeCell> edges
   const auto tx = static_cast<float>(motion.column);
   const auto ty = static_cast<float>(motion.row);
   const auto per_lever = static_cast<float>(1.0 / lever_cells);
-  const auto width = static_cast<std::ptrdiff_t>(map.width());
-  const CellState* const cells = map.cells().data();
   float xx = 0.0F, xt = 0.0F, yy = 0.0F, yt = 0.0F, tt = 0.0F, bx = 0.0F, by = 0.0F, bt = 0.0F;
   BorderSums sums;
   for (const EdgeCell& edge : edges) {
@@ -58,11 +56,12 @@ BorderSums border_sums(const OccupancyGrid& map, std::span<const EdgeCell> edges
     const int column = static_cast<int>(x);
     const int row = static_cast<int>(y);
     if (column + 1 >= map.width() || row + 1 >= map.height()) continue;
-    const CellState* const here = cells + row * width + column;
-    if (*here == CellState::kUnknown) continue;
-    const bool agrees = *here == edge.state;
+    const CellState here = map[{column, row}];
+    if (here == CellState::kUnknown) continue;
+    const bool agrees = here == edge.state;
     ++(agrees ? sums.acceptance.agreeing : sums.acceptance.disagreeing);
-    const Border border = nearest_border(here, width, x - static_cast<float>(column), y - static_cast<float>(row));
+    const Border border =
+        nearest_border(map, {column, row}, x - static_cast<float>(column), y - static_cast<float>(row));
     if (border.distance_cells >= (agrees ? margin_cells : 1.0F)) continue;
     // Towards the border, and beyond it by the margin; or away from it, until the margin is reached.
     const float rest = border.distance_cells + (agrees ? -margin_cells : margin_cells);

@@ -2,8 +2,8 @@
 #include "mapping/merge/contour_score.hpp"
 
 #include <array>
-#include <vector>
 
+#include "core/tiled.hpp"
 #include "mapping/merge/transformed_grid.hpp"
 
 namespace deltamap::mapping::merge {
@@ -29,15 +29,15 @@ ContourScore contour_score(const OccupancyGrid& one, const OccupancyGrid& other)
   if (!(other.geometry() == geometry)) return contour_score(one, transformed_grid(other, {}, geometry));
 
   ContourScore score;
-  std::vector<char> left(geometry.cell_count(), 0);  // occupied cells of the other without a partner
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    const bool in_one = one.cells()[i] == CellState::kOccupied;
-    const bool in_other = other.cells()[i] == CellState::kOccupied;
-    score.occupied_one += in_one ? 1 : 0;
-    score.paired += in_one && in_other ? 1 : 0;
-    score.occupied_other += in_other && one.cells()[i] != CellState::kUnknown ? 1 : 0;
-    left[i] = in_other && !in_one ? 1 : 0;
-  }
+  Tiled<char> left{geometry.width, geometry.height, 0};  // occupied cells of the other without a partner
+  for_each_known(one, [&](Cell, CellState state) { score.occupied_one += state == CellState::kOccupied ? 1 : 0; });
+  for_each_known(other, [&](Cell cell, CellState state) {
+    if (state != CellState::kOccupied) return;
+    const bool in_one = one[cell] == CellState::kOccupied;
+    score.paired += in_one ? 1 : 0;
+    score.occupied_other += one[cell] != CellState::kUnknown ? 1 : 0;
+    if (!in_one) left.set(cell, 1);
+  });
   // Column by column, as the scoring script sorts its cells: the pairing is greedy, so the order matters.
   for (int column = 0; column < geometry.width; ++column) {
     for (int row = 0; row < geometry.height; ++row) {
@@ -45,8 +45,8 @@ ContourScore contour_score(const OccupancyGrid& one, const OccupancyGrid& other)
       if (one[cell] != CellState::kOccupied || other[cell] == CellState::kOccupied) continue;
       for (const Cell& step : kAround) {
         const Cell beside{column + step.column, row + step.row};
-        if (!geometry.contains(beside) || left[geometry.index_of(beside)] == 0) continue;
-        left[geometry.index_of(beside)] = 0;
+        if (!geometry.contains(beside) || left[beside] == 0) continue;
+        left.set(beside, 0);
         ++score.paired;
         score.occupied_other += one[beside] == CellState::kUnknown ? 1 : 0;
         break;

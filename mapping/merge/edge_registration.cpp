@@ -23,8 +23,6 @@ MotionEquations motion_equations(const OccupancyGrid& map, std::span<const EdgeC
   const auto tx = static_cast<float>(motion.column - 0.5);  // cell centres on whole numbers
   const auto ty = static_cast<float>(motion.row - 0.5);
   const auto per_lever = static_cast<float>(1.0 / lever_cells);
-  const auto width = static_cast<std::size_t>(map.width());
-  const CellState* const cells = map.cells().data();
   float xx = 0.0F, xy = 0.0F, xt = 0.0F, yy = 0.0F, yt = 0.0F, tt = 0.0F, bx = 0.0F, by = 0.0F, bt = 0.0F;
   MotionEquations sums;
   for (const EdgeCell& edge : edges) {
@@ -36,8 +34,8 @@ MotionEquations motion_equations(const OccupancyGrid& map, std::span<const EdgeC
     const int column = static_cast<int>(x);
     const int row = static_cast<int>(y);
     if (column + 1 >= map.width() || row + 1 >= map.height()) continue;
-    const CellState* const low = cells + static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column);
-    const CellState* const high = low + width;
+    const CellState low[2] = {map[{column, row}], map[{column + 1, row}]};
+    const CellState high[2] = {map[{column, row + 1}], map[{column + 1, row + 1}]};
     if (low[0] == CellState::kUnknown || low[1] == CellState::kUnknown || high[0] == CellState::kUnknown ||
         high[1] == CellState::kUnknown) {
       continue;
@@ -86,12 +84,13 @@ std::vector<EdgeCell> edge_cells(const OccupancyGrid& local, std::span<const Cel
   const auto to_y = static_cast<float>(0.5 - middle.y());
   for (std::size_t row = 0; row < static_cast<std::size_t>(local.height()); ++row) {
     const std::uint64_t* const word = marks.data() + (row + 1) * words;
-    const CellState* const states = local.cells().data() + row * width;
     for (std::size_t i = 0; i < words; ++i) {
       for (std::uint64_t left = word[i]; left != 0; left &= left - 1) {
         const std::size_t column = i * kBits + static_cast<std::size_t>(std::countr_zero(left)) - 1;
-        if (column >= width || states[column] == CellState::kUnknown) continue;
-        edges.push_back({{static_cast<float>(column) + to_x, static_cast<float>(row) + to_y}, states[column]});
+        if (column >= width) continue;
+        const CellState state = local[{static_cast<int>(column), static_cast<int>(row)}];
+        if (state == CellState::kUnknown) continue;
+        edges.push_back({{static_cast<float>(column) + to_x, static_cast<float>(row) + to_y}, state});
       }
     }
   }

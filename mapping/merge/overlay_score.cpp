@@ -48,10 +48,9 @@ LocalCells::LocalCells(const OccupancyGrid& local, std::span<const Cell> contour
                         static_cast<float>(cell.row + 0.5 - middle.y())};
   };
   for (const Cell& cell : contour) contour_.push_back(about_middle(cell));
-  for (std::size_t i = 0; i < local.cells().size(); ++i) {
-    if (local.cells()[i] == CellState::kUnknown) continue;
-    (local.cells()[i] == CellState::kOccupied ? occupied_ : free_).push_back(about_middle(local.geometry().cell_of(i)));
-  }
+  for_each_known(local, [&](Cell cell, CellState state) {
+    (state == CellState::kOccupied ? occupied_ : free_).push_back(about_middle(cell));
+  });
 }
 
 LocalCells LocalCells::thinned(std::size_t most_cells) const {

@@ -62,16 +62,12 @@ ShiftCorrelation::ShiftCorrelation(const OccupancyGrid& map, std::span<const Cel
   s.last_row = (s.rows + map.height() / s.cells_per_pixel) / 2;
 
   cv::Mat picture = cv::Mat::zeros(s.rows, s.columns, CV_32F);
-  const auto free_cells = static_cast<float>(std::count(map.cells().begin(), map.cells().end(), CellState::kFree));
+  const auto free_cells = static_cast<float>(count_of(map, CellState::kFree));
   const float free_value = -static_cast<float>(map_contour.size()) / std::max(1.0F, free_cells);
-  for (int row = 0; row < map.height(); ++row) {
-    auto* pixels = picture.ptr<float>(row / s.cells_per_pixel);
-    const CellState* cells = &map.cells()[map.geometry().index_of({0, row})];
-    for (int column = 0, pixel = 0, part = 0; column < map.width(); ++column) {
-      pixels[pixel] += cells[column] == CellState::kFree ? free_value : 0.0F;
-      if (++part == s.cells_per_pixel) part = 0, ++pixel;
-    }
-  }
+  for_each_known(map, [&](Cell cell, CellState state) {
+    if (state == CellState::kFree)
+      picture.at<float>(cell.row / s.cells_per_pixel, cell.column / s.cells_per_pixel) += free_value;
+  });
   for (const Cell& cell : map_contour) {
     picture.at<float>(cell.row / s.cells_per_pixel, cell.column / s.cells_per_pixel) += 1.0F;
   }

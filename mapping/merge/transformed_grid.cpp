@@ -50,9 +50,7 @@ OccupancyGrid part_of(const OccupancyGrid& grid, double from_share, double to_sh
 
 OccupancyGrid overridden(OccupancyGrid map, const OccupancyGrid& local) {
   assert(map.geometry() == local.geometry() && "both grids must have the same cells");
-  for (std::size_t i = 0; i < local.cells().size(); ++i) {
-    if (local.cells()[i] != CellState::kUnknown) map.set(map.geometry().cell_of(i), local.cells()[i]);
-  }
+  for_each_known(local, [&](Cell cell, CellState state) { map.set(cell, state); });
   return map;
 }
 

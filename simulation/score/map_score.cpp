@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace deltamap::simulation::score {
 namespace {
@@ -21,30 +22,29 @@ Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMas
   const GridGeometry& geometry = truth.geometry();
   const std::size_t cells = geometry.cell_count();
   Pairs pairs{CellMask(cells, 0), CellMask(cells, 0)};
-  const auto is_occupied = [](const OccupancyGrid& grid, std::size_t i) {
-    return grid.cells()[i] == CellState::kOccupied;
-  };
+  const std::vector<CellState> is = all_cells(truth);
+  const std::vector<CellState> said = all_cells(map);
   const auto pair = [&](std::size_t of_truth, std::size_t of_map) {
     pairs.of_truth[of_truth] = pairs.of_map[of_map] = 1;
     ++pairs.count;
   };
   for (std::size_t i = 0; i < cells; ++i) {
     if (where[i] == 0) continue;
-    pairs.truth_cells += is_occupied(truth, i) ? 1 : 0;
+    pairs.truth_cells += is[i] == CellState::kOccupied ? 1 : 0;
     // What cannot be seen cannot be wrong, but may be the neighbour of what can.
-    pairs.map_cells += is_occupied(map, i) && truth.cells()[i] != CellState::kUnknown ? 1 : 0;
-    if (is_occupied(truth, i) && is_occupied(map, i)) pair(i, i);
+    pairs.map_cells += said[i] == CellState::kOccupied && is[i] != CellState::kUnknown ? 1 : 0;
+    if (is[i] == CellState::kOccupied && said[i] == CellState::kOccupied) pair(i, i);
   }
   for (std::size_t i = 0; i < cells; ++i) {
-    if (where[i] == 0 || !is_occupied(truth, i) || pairs.of_truth[i] != 0) continue;
+    if (where[i] == 0 || is[i] != CellState::kOccupied || pairs.of_truth[i] != 0) continue;
     const Cell cell = geometry.cell_of(i);
     for (const Cell& step : kAround) {
       const Cell beside{cell.column + step.column, cell.row + step.row};
       if (!geometry.contains(beside)) continue;
       const std::size_t j = geometry.index_of(beside);
-      if (where[j] == 0 || !is_occupied(map, j) || pairs.of_map[j] != 0) continue;
+      if (where[j] == 0 || said[j] != CellState::kOccupied || pairs.of_map[j] != 0) continue;
       pair(i, j);
-      pairs.map_cells += truth.cells()[j] == CellState::kUnknown ? 1 : 0;
+      pairs.map_cells += is[j] == CellState::kUnknown ? 1 : 0;
       break;
     }
   }
@@ -62,9 +62,11 @@ MapScore map_score(const OccupancyGrid& truth, const OccupancyGrid& map, const C
   std::size_t disagreeing = 0;
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < where.size(); ++i) {
-    const CellState is = truth.cells()[i];
-    const CellState said = map.cells()[i];
-    if (where[i] == 0 || is == CellState::kUnknown || said == CellState::kUnknown) continue;
+    if (where[i] == 0) continue;
+    const Cell cell = truth.geometry().cell_of(i);
+    const CellState is = truth[cell];
+    const CellState said = map[cell];
+    if (is == CellState::kUnknown || said == CellState::kUnknown) continue;
     ++(is == said ? agreeing : disagreeing);
     if (is == said) continue;
     const bool explained = is == CellState::kOccupied ? pairs.of_truth[i] != 0 : pairs.of_map[i] != 0;
@@ -84,8 +86,9 @@ double share_kept(const OccupancyGrid& first, const OccupancyGrid& map, const Ce
   OccupancyGrid lasting{first.geometry()};
   std::size_t all = 0;
   for (std::size_t i = 0; i < these.size(); ++i) {
-    if (these[i] == 0 || first.cells()[i] != CellState::kOccupied) continue;
-    lasting.set(first.geometry().cell_of(i), CellState::kOccupied);
+    const Cell cell = first.geometry().cell_of(i);
+    if (these[i] == 0 || first[cell] != CellState::kOccupied) continue;
+    lasting.set(cell, CellState::kOccupied);
     ++all;
   }
   if (all == 0) return std::numeric_limits<double>::quiet_NaN();

@@ -70,17 +70,17 @@ Point2 MapTruth::uncovered_floor() const {
       return object.kind != ObjectKind::kWall && distance_between(place, object.shape) < geometry.resolution_m;
     });
   };
-  if (visible_.cells().empty() || !is_covered(floor_)) return floor_;
+  if (visible_.box().empty() || !is_covered(floor_)) return floor_;
   Point2 nearest = floor_;
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < geometry.cell_count(); ++i) {
-    if (visible_.cells()[i] != CellState::kFree) continue;
-    const Point2 place = geometry.centre_of(geometry.cell_of(i));
+  for_each_known(visible_, [&](Cell cell, CellState state) {
+    if (state != CellState::kFree) return;
+    const Point2 place = geometry.centre_of(cell);
     const double away_m = (place - floor_).norm();
-    if (away_m >= nearest_m || is_covered(place)) continue;
+    if (away_m >= nearest_m || is_covered(place)) return;
     nearest = place;
     nearest_m = away_m;
-  }
+  });
   return nearest;
 }
 
@@ -156,15 +156,15 @@ std::vector<double> MapTruth::wall_drift(const OccupancyGrid& first, const Occup
     const Point2 along = (wall.to - wall.from) / length_m;
     double sum_m = 0.0;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < geometry.cell_count(); ++i) {
-      if (grid.cells()[i] != CellState::kOccupied) continue;
-      const Point2 offset = geometry.centre_of(geometry.cell_of(i)) - wall.from;
+    for_each_known(grid, [&](Cell cell, CellState state) {
+      if (state != CellState::kOccupied) return;
+      const Point2 offset = geometry.centre_of(cell) - wall.from;
       const double to_right_m = offset.x() * along.y() - offset.y() * along.x();
       const double share_m = offset.dot(along);
-      if (std::abs(to_right_m) > kWallReach_m || share_m < -kWallReach_m || share_m > length_m + kWallReach_m) continue;
+      if (std::abs(to_right_m) > kWallReach_m || share_m < -kWallReach_m || share_m > length_m + kWallReach_m) return;
       sum_m += to_right_m;
       ++count;
-    }
+    });
     return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum_m / static_cast<double>(count);
   };
   std::vector<double> drift_m;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random.hpp"
 #include "core/replace_file.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -28,6 +29,22 @@ TEST(GridFile, ReadsWhatItWrote) {
   write_grid(grid, folder.path() / "map.yaml");
   EXPECT_EQ(read_grid(folder.path() / "map.yaml"), grid);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.yaml.part"));
+}
+
+TEST(GridFile, ReadsAndWritesMapsOfManyTilesMostOfThemUnknown) {
+  const test::TemporaryFolder folder;
+  Random random{2};
+  OccupancyGrid grid{{777, 333, 0.05, {0.0, 0.0}}};
+  for (int i = 0; i < 2000; ++i) {
+    grid.set({static_cast<int>(200 + random.index_below(150)), static_cast<int>(random.index_below(333))},
+             static_cast<CellState>(random.index_below(3)));
+  }
+  write_grid(grid, folder.path() / "map.yaml");
+  const OccupancyGrid read = read_grid(folder.path() / "map.yaml");
+  EXPECT_EQ(read, grid);
+  EXPECT_LE(read.tiles().tiles_written(), grid.tiles().tiles_written());
+  EXPECT_EQ(std::filesystem::file_size(folder.path() / "map.pgm"),
+            std::string{"P5\n777 333\n255\n"}.size() + 777U * 333U);
 }
 
 TEST(GridFile, NamesAMapOfCarmen) {

@@ -57,6 +57,21 @@ TEST(ReplaceFile, SyncsTheContentBeforeTheNameAndTheFolderAfterIt) {
   EXPECT_TRUE(synced[1].new_name_exists);
 }
 
+TEST(ReplaceFile, TakesTheContentPieceByPiece) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("kept", "old");
+  std::vector<std::string_view> pieces{"one, ", "two, ", "three"};
+  auto next = pieces.begin();
+  replace_file(file, [&] { return next == pieces.end() ? std::string_view{} : *next++; });
+  EXPECT_EQ(content_of(file), "one, two, three");
+  {
+    const test::FullDisk full{3};
+    next = pieces.begin();
+    EXPECT_THROW(replace_file(file, [&] { return *next++; }), std::runtime_error);
+  }
+  EXPECT_EQ(content_of(file), "one, two, three");
+}
+
 TEST(ReplaceFile, LeavesTheOldFileWhereTheDiskIsFull) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("kept", "old");

@@ -12,6 +12,7 @@
 #include "daemon/tool/import_carmen.hpp"
 #include "daemon/tool/run_tool.hpp"
 #include "mapping/map_store.hpp"
+#include "tests/support/padded.hpp"
 #include "tests/support/scripted_drive.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/text_file.hpp"
@@ -80,6 +81,22 @@ TEST_F(ReplayTest, WritesEveryFileOfTheContract) {
     EXPECT_TRUE(fs::exists(folder_.path() / "out" / name)) << name;
   }
   EXPECT_EQ(mapping::MapStore{folder_.path() / "out/map_store.sqlite"}.grid(0), test::small_room(false));
+}
+
+TEST_F(ReplayTest, FindsTheSameChangesHoweverMuchUnknownSpaceLiesAroundTheMap) {
+  test::write_drive(folder_.path() / "drive.log", 24.0);
+  (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
+  EXPECT_EQ(error_of(job()), "");
+  const OccupancyGrid changed = read_grid(folder_.path() / "out/map.yaml");
+  const std::string trajectory = content_of(folder_.path() / "out/trajectory.tum");
+  ASSERT_FALSE(changed == test::small_room(false)) << "the box";
+  for (const test::Padding& by :
+       {test::Padding{.left = 301, .low = 7, .right = 0, .high = 90}, test::Padding{.right = 1}}) {
+    write_grid(test::padded(test::small_room(false), by), folder_.path() / "room.yaml");
+    EXPECT_EQ(error_of(job()), "");
+    EXPECT_EQ(read_grid(folder_.path() / "out/map.yaml"), test::padded(changed, by));
+    EXPECT_EQ(content_of(folder_.path() / "out/trajectory.tum"), trajectory);
+  }
 }
 
 TEST_F(ReplayTest, AnEmptyOrForeignRecordingOrOneWithoutAScanIsNamedAndLeavesNothing) {

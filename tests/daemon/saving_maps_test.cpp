@@ -165,7 +165,7 @@ class LateStore : public SavingMaps {
   }
   /// Occupied ones: the number of the run's revision that made the map.
   static std::uint32_t cells_of(const OccupancyGrid& map) {
-    return static_cast<std::uint32_t>(std::count(map.cells().begin(), map.cells().end(), CellState::kOccupied));
+    return static_cast<std::uint32_t>(count_of(map, CellState::kOccupied));
   }
   bool may_open = false;
 };

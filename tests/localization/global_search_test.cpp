@@ -5,6 +5,7 @@
 
 #include "localization/weighing.hpp"
 #include "tests/support/drawn_flat.hpp"
+#include "tests/support/padded.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -27,12 +28,14 @@ TEST(CoarseField, IsAsGoodInEachBlockAsItsBestCell) {
   const LikelihoodField field{map, {}};
   const CoarseField coarse{map, field, kBlock_m};
   const int cells = 5;
+  const Point2 middle_of_a_cell = Point2::Constant(0.5 * map.resolution_m());
+  const Cell first = map.geometry().cell_at(coarse.origin() + middle_of_a_cell);
   for (int row = 0; row < coarse.rows(); ++row) {
     for (int column = 0; column < coarse.columns(); ++column) {
       int best = 255;
       for (int i = 0; i < cells * cells; ++i) {
-        const Cell cell{column * cells + i % cells, row * cells + i / cells};
-        if (map.geometry().contains(cell)) best = std::min<int>(best, field.steps_at(cell));
+        const Cell cell{first.column + column * cells + i % cells, first.row + row * cells + i / cells};
+        best = std::min<int>(best, field.steps_at(cell));
       }
       ASSERT_EQ(*coarse.from(column, row), best) << column << ' ' << row;
     }
@@ -53,6 +56,18 @@ TEST(CoarseField, FollowsAChangeOfTheMapAsIfBuiltAnew) {
   }
   EXPECT_TRUE(std::ranges::equal(built.free_blocks(), patched.free_blocks()));
   EXPECT_LT(patched.free_blocks().size(), CoarseField(before, field, kBlock_m).free_blocks().size());
+}
+
+TEST(CoarseField, IsTheSameHoweverMuchUnknownSpaceLiesAroundTheMap) {
+  const OccupancyGrid map = test::drawn_flat();
+  const CoarseField own{map, LikelihoodField{map, {}}, kBlock_m};
+  const OccupancyGrid padded_map = test::padded(map, {.left = 1213, .low = 7, .right = 1, .high = 902});
+  const CoarseField wide{padded_map, LikelihoodField{padded_map, {}}, kBlock_m};
+  ASSERT_EQ(wide.columns(), own.columns());
+  ASSERT_TRUE(std::ranges::equal(wide.free_blocks(), own.free_blocks()));
+  EXPECT_NEAR((wide.origin() - own.origin()).norm(), 0.0, 1e-9);
+  for (int row = -1; row <= own.rows(); ++row)
+    EXPECT_TRUE(std::equal(own.from(0, row), own.from(0, row) + own.columns(), wide.from(0, row))) << row;
 }
 
 TEST(CoarseField, TakesBeamsThatLeaveTheMapAsEndingInTheUnknown) {

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/random.hpp"
+#include "tests/support/drawn_flat.hpp"
 #include "tests/support/drawn_grid.hpp"
+#include "tests/support/padded.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -17,7 +20,7 @@ constexpr LikelihoodFieldParams kParams{.hit_deviation_m = 0.10, .random_share =
 /// Straight from the definition: look at every contour cell.
 std::uint8_t expected_steps(const OccupancyGrid& map, Cell cell, const LikelihoodFieldParams& params) {
   double nearest2 = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
+  for (std::size_t i = 0; i < map.geometry().cell_count(); ++i) {
     const Cell other = map.geometry().cell_of(i);
     if (!is_contour(map, other)) continue;
     nearest2 = std::min(nearest2, std::pow(other.column - cell.column, 2) + std::pow(other.row - cell.row, 2));
@@ -31,7 +34,7 @@ std::uint8_t expected_steps(const OccupancyGrid& map, Cell cell, const Likelihoo
 
 OccupancyGrid random_grid(int width, int height, Random& random) {
   OccupancyGrid grid{{width, height, 0.05, {-1.0, 2.0}}};
-  for (std::size_t i = 0; i < grid.cells().size(); ++i) {
+  for (std::size_t i = 0; i < grid.geometry().cell_count(); ++i) {
     const double chance = random.uniform();
     grid.set(grid.geometry().cell_of(i), chance < 0.04  ? CellState::kOccupied
                                          : chance < 0.7 ? CellState::kFree
@@ -81,7 +84,7 @@ TEST(LikelihoodField, HoldsTheDefinitionInEveryCell) {
   Random random{11};
   const OccupancyGrid map = random_grid(40, 31, random);
   const LikelihoodField field{map, kParams};
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
+  for (std::size_t i = 0; i < map.geometry().cell_count(); ++i) {
     const Cell cell = map.geometry().cell_of(i);
     ASSERT_EQ(field.steps_at(cell), expected_steps(map, cell, kParams)) << cell.column << ' ' << cell.row;
   }
@@ -119,9 +122,41 @@ TEST(LikelihoodField, PatchedIsTheSameAsRebuiltWhateverChanges) {
     LikelihoodField patched_field{before, kParams};
     patched_field.apply(field_patch(after, changes_between(before, after), kParams));
     const LikelihoodField rebuilt{after, kParams};
-    for (std::size_t i = 0; i < after.cells().size(); ++i) {
+    for (std::size_t i = 0; i < after.geometry().cell_count(); ++i) {
       const Cell cell = after.geometry().cell_of(i);
       ASSERT_EQ(patched_field.steps_at(cell), rebuilt.steps_at(cell)) << "round " << round;
+    }
+  }
+}
+
+TEST(LikelihoodField, HoldsTheSameBytesHoweverMuchUnknownSpaceLiesAroundTheMap) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, kParams};
+  const LikelihoodField::Bordered own = field.bordered();
+  for (const test::Padding& by :
+       {test::Padding{1, 0, 0, 0}, test::Padding{37, 101, 3, 0}, test::Padding{3000, 64, 5, 700}}) {
+    const LikelihoodField wide_field{test::padded(map, by), kParams};
+    const LikelihoodField::Bordered wide = wide_field.bordered();
+    ASSERT_EQ(wide.width, own.width);
+    ASSERT_EQ(wide.height, own.height);
+    EXPECT_NEAR((wide.origin - own.origin).norm(), 0.0, 1e-9);
+    EXPECT_TRUE(std::equal(own.bytes, own.bytes + own.width * own.height, wide.bytes));
+  }
+}
+
+TEST(LikelihoodField, GrowsWithWhatTheMapShows) {
+  OccupancyGrid before{{900, 700, 0.05, {-1.0, 2.0}}};
+  for (int column = 300; column < 340; ++column) before.set({column, 300}, CellState::kOccupied);
+  for (const Cell& cell : {Cell{310, 301}, Cell{0, 0}, Cell{899, 699}, Cell{899, 0}}) {
+    OccupancyGrid after = before;
+    after.set(cell, CellState::kOccupied);
+    LikelihoodField patched_field{before, kParams};
+    patched_field.apply(field_patch(after, changes_between(before, after), kParams));
+    const LikelihoodField rebuilt{after, kParams};
+    EXPECT_EQ(patched_field.window(), rebuilt.window());
+    for (std::size_t i = 0; i < after.geometry().cell_count(); ++i) {
+      const Cell at = after.geometry().cell_of(i);
+      ASSERT_EQ(patched_field.steps_at(at), rebuilt.steps_at(at)) << at.column << ' ' << at.row;
     }
   }
 }

@@ -47,7 +47,7 @@ TEST(Weighing, SumsTheFieldUnderEachEnd) {
 TEST(Weighing, TakesEndsFarOutsideAsUnknown) {
   const LikelihoodField field{kMap, {}};
   const BeamEnds ends{{1e6F, -1e6F, 0.0F}, {0.0F, -1e6F, 1e9F}};
-  EXPECT_EQ(misfit_steps(field, ends, {}), 3 * field.steps_at({-1, -1}));
+  EXPECT_EQ(misfit_steps(field, ends, {}), 3 * field.steps_at({-1000, -1000}));
 }
 
 TEST(Weighing, IsTheGeometricMeanOfTheLikelihoodsAndIndependentOfTheirNumber) {

@@ -23,7 +23,7 @@ class Beams : public testing::Test {
         Eigen::Vector3d{position_m * position_m, position_m * position_m, heading_rad * heading_rad}.asDiagonal();
     tracked.estimate.state = state;
     tracked.turn_rate_rad_per_s = turn_rate;
-    return beam_evidence(map, ClearSpace{map, 2}, tracked, {}).front();
+    return beam_evidence(map, ClearSpace{map, {map.geometry(), 2}}, tracked, {}).front();
   }
 
   OccupancyGrid map{{220, 200, 0.05, {-1.0, -5.0}}, CellState::kFree};
@@ -45,7 +45,7 @@ TEST_F(Beams, SayNothingOfTheScanBeforeWhereTheyHaveNoRange) {
   tracked.estimate.state = LocalizerState::kTracking;
   tracked.scan.beams = {{3.0F, 0.0F, BeamKind::kRange}};
   tracked.rays = {{{0.0F, 0.0F}, {3.0F, 0.0F}}};
-  const ClearSpace clear{map, 2};
+  const ClearSpace clear{map, {map.geometry(), 2}};
   std::vector<BeamVerdict> verdicts = beam_evidence(map, clear, tracked, {});
   ASSERT_TRUE(verdicts.front().ends_off_map);
   tracked.scan.beams.front().kind = BeamKind::kBeyondMaximum;

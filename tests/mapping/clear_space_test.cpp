@@ -42,7 +42,7 @@ Point2 anywhere(Random& random) { return {random.uniform(-2.9, 4.9), random.unif
 TEST(ClearSpace, KnowsTheDistanceToTheNearestSurfaceEverywhere) {
   Random random{3};
   const OccupancyGrid map = strewn_map(random, 12);
-  const ClearSpace clear{map, kCellsPerBlock};
+  const ClearSpace clear{map, {map.geometry(), kCellsPerBlock}};
   for (std::size_t i = 0; i < clear.blocks().cell_count(); i += 7) {
     const Cell block = clear.blocks().cell_of(i);
     ASSERT_EQ(clear.distance(block), distance_by_search(map, clear.blocks(), block));
@@ -52,7 +52,7 @@ TEST(ClearSpace, KnowsTheDistanceToTheNearestSurfaceEverywhere) {
 TEST(ClearSpace, FollowsAMapThatChangesAsIfMadeAnew) {
   Random random{4};
   OccupancyGrid map = strewn_map(random, 30);
-  ClearSpace clear{map, kCellsPerBlock};
+  ClearSpace clear{map, {map.geometry(), kCellsPerBlock}};
   for (int round = 0; round < 20; ++round) {
     std::vector<CellChange> changes;
     for (int i = 0; i < 3; ++i) {  // what stands goes, what has gone comes
@@ -68,7 +68,7 @@ TEST(ClearSpace, FollowsAMapThatChangesAsIfMadeAnew) {
       map.set(cell, CellState::kFree);
     }
     clear.update(map, changes);
-    const ClearSpace anew{map, kCellsPerBlock};
+    const ClearSpace anew{map, {map.geometry(), kCellsPerBlock}};
     for (std::size_t i = 0; i < clear.blocks().cell_count(); ++i) {
       ASSERT_EQ(clear.distance(clear.blocks().cell_of(i)), anew.distance(clear.blocks().cell_of(i)));
     }
@@ -79,7 +79,7 @@ TEST(WalkSurfaces, MeetsWhatTheWholeWalkMeets) {
   Random random{5};
   for (int round = 0; round < 1000; ++round) {
     const OccupancyGrid map = strewn_map(random, round / 2);
-    const ClearSpace clear{map, kCellsPerBlock};
+    const ClearSpace clear{map, {map.geometry(), kCellsPerBlock}};
     const Point2 from = anywhere(random);
     // Straight ones, ones that leave the map, and ones that begin and end in the same place, too.
     Point2 to = round % 5 == 0 ? Point2{anywhere(random).x(), from.y()} : anywhere(random);
@@ -117,10 +117,11 @@ TEST(WalkSurfaces, EndsWhereItIsToldTo) {
   OccupancyGrid map{{100, 20, 0.05, {0.0, 0.0}}, CellState::kFree};
   for (const int column : {40, 60, 80}) map.set({column, 10}, CellState::kOccupied);
   int met = 0;
-  walk_surfaces(map, ClearSpace{map, kCellsPerBlock}, {0.1, 0.52}, {4.9, 0.52}, [&](Cell cell, double, double) {
-    ++met;
-    return cell.column < 60;
-  });
+  walk_surfaces(map, ClearSpace{map, {map.geometry(), kCellsPerBlock}}, {0.1, 0.52}, {4.9, 0.52},
+                [&](Cell cell, double, double) {
+                  ++met;
+                  return cell.column < 60;
+                });
   EXPECT_EQ(met, 2);
 }
 

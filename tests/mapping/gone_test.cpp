@@ -34,7 +34,7 @@ class Gone : public testing::Test {
   /// What the robot sees of `world`.
   void look(const OccupancyGrid& world, const OccupancyGrid& map, const Pose2& robot = kRobot) {
     tracked = test::seen_scan(world, robot, 0.0, random);
-    clear = ClearSpace{map, 2};
+    clear = ClearSpace{map, {map.geometry(), 2}};
     beams = beam_evidence(map, clear, tracked, {});
   }
   /// First the one map, then the other.

@@ -10,7 +10,6 @@
 #include <functional>
 
 #include "core/random.hpp"
-#include "mapping/map_codec.hpp"
 #include "mapping/taken_back.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -370,30 +369,6 @@ TEST_F(Store, NamesAFileThatWasCut) {
   fs::resize_file(file, fs::file_size(file) / 2);
   const std::string line = complaint([&] { MapStore store(file, first_map()); });
   EXPECT_EQ(line.find(file.string() + ": "), 0u) << line;
-}
-
-TEST(MapCodec, GivesGridsAndChangesBack) {
-  const OccupancyGrid before = test::drawn_grid({"##..  ", "#.. ##", "......"});
-  const OccupancyGrid after = test::drawn_grid({"#.....", "#..###", ".....#"});
-  EXPECT_EQ(decoded_grid(encoded_grid(after), after.geometry()), after);
-  const auto changes = changes_between(before, after);
-  EXPECT_EQ(decoded_changes(encoded_changes(changes, before.geometry()), before.geometry()), changes);
-  EXPECT_TRUE(encoded_changes({}, before.geometry()).empty());
-}
-
-TEST(MapCodec, RefusesEveryCutOfAGrid) {
-  const OccupancyGrid grid = test::drawn_grid({"##..  ", "#.. ##", "......"});
-  const auto bytes = encoded_grid(grid);
-  for (std::size_t size = 0; size < bytes.size(); ++size) {
-    EXPECT_FALSE(decoded_grid(std::span{bytes}.first(size), grid.geometry())) << size;
-  }
-}
-
-TEST(MapCodec, RefusesCellsOutsideOfTheMap) {
-  const GridGeometry small{4, 4, 0.1, {0.0, 0.0}};
-  const GridGeometry large{40, 40, 0.1, {0.0, 0.0}};
-  const std::vector<CellChange> changes{{{30, 30}, CellState::kFree, CellState::kOccupied}};
-  EXPECT_FALSE(decoded_changes(encoded_changes(changes, large), small));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ const GridGeometry kBlocks{20, 20, 0.1, {0.0, 0.0}};
 /// Keyframes, half a second apart.
 class Layer {
  public:
-  explicit Layer(const TemporaryParams& params = {}) : layer{params, kBlocks, kCellsPerBlock} {}
+  explicit Layer(const TemporaryParams& params = {}) : layer{params, {kMap, kCellsPerBlock}} {}
   void added(const Blocks& yes, const Blocks& no = {}) { layer.observe({yes, no, {}, {}}, {}, now_ms += 500); }
   void removed(const Blocks& yes, const Blocks& no = {}) { layer.observe({{}, {}, yes, no}, {}, now_ms += 500); }
   [[nodiscard]] Blocks standing() const { return layer.newest() ? layer.newest()->standing : Blocks{}; }

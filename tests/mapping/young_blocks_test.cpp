@@ -16,8 +16,8 @@ constexpr Cell kCellBeside{5, 7};  // in it too
 class Young : public testing::Test {
  protected:
   void begin() {
-    clear = ClearSpace{map, 2};
-    young = YoungBlocks{clear, 2};
+    clear = ClearSpace{map, {map.geometry(), 2}};
+    young = YoungBlocks{clear};
   }
   void write(Cell cell, CellState state) {
     const OccupancyGrid before = map;

@@ -14,9 +14,10 @@ TEST(Equation11, IsAgreementOverAgreementAndDisagreement) {
   const OccupancyGrid after = test::changed_hall();
   std::size_t same = 0;
   std::size_t different = 0;
-  for (std::size_t i = 0; i < before.cells().size(); ++i) {
-    if (before.cells()[i] == CellState::kUnknown || after.cells()[i] == CellState::kUnknown) continue;
-    ++(before.cells()[i] == after.cells()[i] ? same : different);
+  for (std::size_t i = 0; i < before.geometry().cell_count(); ++i) {
+    const Cell cell = before.geometry().cell_of(i);
+    if (before[cell] == CellState::kUnknown || after[cell] == CellState::kUnknown) continue;
+    ++(before[cell] == after[cell] ? same : different);
   }
   const Acceptance counts = acceptance(before, after);
   EXPECT_EQ(counts.agreeing, same);

@@ -101,7 +101,7 @@ TEST(MapTruth, TellsHowFarTheOuterWallsHaveMoved) {
   const MapTruth truth{room(), first};
   for (const double wall_m : truth.wall_drift(first, first)) EXPECT_EQ(wall_m, 0.0);
   OccupancyGrid moved{first.geometry()};
-  for (std::size_t i = 0; i < first.cells().size(); ++i) {
+  for (std::size_t i = 0; i < first.geometry().cell_count(); ++i) {
     const Cell cell = first.geometry().cell_of(i);
     moved.set(cell, first.at({cell.column - 1, cell.row}));
   }
@@ -115,9 +115,7 @@ TEST(MapTruth, TellsHowFarTheOuterWallsHaveMoved) {
 TEST(MapTruth, KnowsTheFloorOnWhichAThingHasBeenPutWhereTheRobotStarted) {
   const Scenario scenario = room();
   MapTruth truth{scenario, start_map(scenario, 0.05)};
-  const auto free_cells = [&] {
-    return std::count(truth.visible().cells().begin(), truth.visible().cells().end(), CellState::kFree);
-  };
+  const auto free_cells = [&] { return count_of(truth.visible(), CellState::kFree); };
   const auto before = free_cells();
   const Box box{scenario.robot.map_from_start.position(), 0.6, 0.4, 0.3};
   truth.see(scenario.world.with({99, ObjectKind::kContainer, box}));

@@ -139,7 +139,7 @@ TEST(UnseenWorld, IsTheSameForTheSameSeedAndAnotherForAnother) {
     UnseenWorld one = drawn(seed);
     UnseenWorld other = drawn(seed);
     EXPECT_TRUE(same(one.drawn.scenario.world, other.drawn.scenario.world));
-    EXPECT_EQ(one.first_map.cells(), other.first_map.cells());
+    EXPECT_EQ(all_cells(one.first_map), all_cells(other.first_map));
     VirtualDrive drive{one.drawn.scenario, one.drawn.drive};
     VirtualDrive again{other.drawn.scenario, other.drawn.drive};
     for (int scan = 0; scan < 200; ++scan) ASSERT_TRUE(same(drive.next(), again.next())) << "scan " << scan;
@@ -169,7 +169,7 @@ TEST(UnseenWorld, CanBeDrivenInWhateverItsLayout) {
     }
     EXPECT_GT((high - low).norm(), 6.0) << name_of(kind.layout) << " of seed " << seed;
     EXPECT_GT(changes, unseen.drawn.scenario.slots.size() / 10) << name_of(kind.layout) << " of seed " << seed;
-    EXPECT_GT(std::count(unseen.first_map.cells().begin(), unseen.first_map.cells().end(), CellState::kFree), 2000);
+    EXPECT_GT(count_of(unseen.first_map, CellState::kFree), 2000U);
   }
 }
 
@@ -185,11 +185,11 @@ TEST(UnseenWorld, ShowsMostOfTheFloorInTheMapOfAFirstDrive) {
   const auto share_kept = [&](CellState state) {
     double all = 0.0;
     double kept = 0.0;
-    for (std::size_t i = 0; i < exact.cells().size(); ++i) {
-      if (exact.cells()[i] != state) continue;
+    for_each_known(exact, [&](Cell cell, CellState is) {
+      if (is != state) return;
       all += 1.0;
-      kept += surveyed.cells()[i] == state ? 1.0 : 0.0;
-    }
+      kept += surveyed[cell] == state ? 1.0 : 0.0;
+    });
     return kept / all;
   };
   EXPECT_GT(share_kept(CellState::kFree), 0.9);

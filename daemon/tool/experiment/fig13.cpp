@@ -38,7 +38,7 @@ RoomChangesParams schedule(double minutes) {
 /// The cells whose state `map` knows.
 score::CellMask known_cells(const OccupancyGrid& map) {
   score::CellMask known(map.geometry().cell_count(), 0);
-  for (std::size_t i = 0; i < known.size(); ++i) known[i] = map.cells()[i] == CellState::kUnknown ? 0 : 1;
+  for_each_known(map, [&](Cell cell, CellState) { known[map.geometry().index_of(cell)] = 1; });
   return known;
 }
 
@@ -54,8 +54,8 @@ Likeness likeness(const OccupancyGrid& first, const OccupancyGrid& map) {
   Likeness like;
   double known = 0.0;
   for (std::size_t i = 0; i < first.geometry().cell_count(); ++i) {
-    const CellState before = first.cells()[i];
-    const CellState now = map.cells()[i];
+    const CellState before = first[first.geometry().cell_of(i)];
+    const CellState now = map[first.geometry().cell_of(i)];
     if (before == CellState::kUnknown) {
       like.inside += now == CellState::kOccupied ? 1.0 : 0.0;
       like.free_inside += now == CellState::kFree ? 1.0 : 0.0;

@@ -57,11 +57,10 @@ MappingWatch::MappingWatch(const simulation::Scenario& scenario, std::shared_ptr
 void MappingWatch::refresh_surfaces() {
   surfaces_ = score::drawn_surfaces(changes_.world_and_standing(), first_->geometry());
   const OccupancyGrid lasting = score::drawn_surfaces(changes_.world(), first_->geometry());
-  if (ever_surfaces_.cells().empty()) ever_surfaces_ = *first_;
-  for (std::size_t i = 0; i < lasting.cells().size(); ++i) {
-    if (lasting.cells()[i] == CellState::kOccupied)
-      ever_surfaces_.set(lasting.geometry().cell_of(i), CellState::kOccupied);
-  }
+  if (ever_surfaces_.box().empty()) ever_surfaces_ = *first_;
+  for_each_known(lasting, [&](Cell cell, CellState state) {
+    if (state == CellState::kOccupied) ever_surfaces_.set(cell, CellState::kOccupied);
+  });
 }
 
 void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
@@ -121,19 +120,18 @@ bool MappingWatch::is_near_someone(const Point2& place) const {
                      [&](const simulation::Segment& one) { return distance_between(place, one) < near_m; });
 }
 
-bool MappingWatch::is_ghost(const OccupancyGrid& map, std::size_t cell) const {
-  return truth_.last_passed()[cell] != 0 && map.cells()[cell] == CellState::kOccupied &&
-         !has_occupied_within(surfaces_, map.geometry().cell_of(cell), kGhostReach) &&
-         !is_near_someone(map.geometry().centre_of(map.geometry().cell_of(cell)));
+bool MappingWatch::is_ghost(const OccupancyGrid& map, Cell cell) const {
+  return truth_.last_passed()[map.geometry().index_of(cell)] != 0 && map[cell] == CellState::kOccupied &&
+         !has_occupied_within(surfaces_, cell, kGhostReach) && !is_near_someone(map.geometry().centre_of(cell));
 }
 
 MappingWatch::Ghosts MappingWatch::ghosts_in(const OccupancyGrid& map) const {
   Ghosts ghosts;
-  for (std::size_t i = 0; i < map.cells().size(); ++i) {
-    if (!is_ghost(map, i)) continue;
+  for_each_known(map, [&](Cell cell, CellState) {
+    if (!is_ghost(map, cell)) return;
     ++ghosts.all;
-    ghosts.of_passers += has_occupied_within(ever_surfaces_, map.geometry().cell_of(i), kGhostReach) ? 0 : 1;
-  }
+    ghosts.of_passers += has_occupied_within(ever_surfaces_, cell, kGhostReach) ? 0 : 1;
+  });
   return ghosts;
 }
 

@@ -65,7 +65,7 @@ class MappingWatch {
   void judge_changes(const OccupancyGrid& map);
   [[nodiscard]] bool is_near_someone(const Point2& place) const;
   /// Occupied in the map, nothing stands there, and a beam has gone through since.
-  [[nodiscard]] bool is_ghost(const OccupancyGrid& map, std::size_t cell) const;
+  [[nodiscard]] bool is_ghost(const OccupancyGrid& map, Cell cell) const;
   struct Ghosts {
     std::size_t all = 0;
     std::size_t of_passers = 0;  ///< where no container, wall or post has ever stood
