@@ -39,7 +39,7 @@ struct TrackerParams {
   RefinementParams refinement;
   PoseTrackParams track;
   UpdateParams update;
-  bool follow_surfaces = true;  ///< where straight surfaces explain the scans they lead, and the particles rest
+  bool follow_surfaces = false;  ///< where straight surfaces explain the scans they lead, and the particles rest
 };
 
 class Tracker {
