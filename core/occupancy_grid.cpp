@@ -22,12 +22,12 @@ struct Run {
   [[nodiscard]] std::uint64_t after(std::uint64_t hash) const { return factor * hash + offset[hash & 3]; }
   [[nodiscard]] Run then(const Run& next) const {
     Run both{factor * next.factor, {}};
-    for (std::uint64_t low = 0; low < 4; ++low) both.offset[low] = next.after(after(low)) - both.factor * low;
+    for (std::uint32_t low = 0; low < 4; ++low) both.offset[low] = next.after(after(low)) - both.factor * low;
     return both;
   }
   static Run of_one(std::uint8_t byte) {
     Run run{kPrime, {}};
-    for (std::uint64_t low = 0; low < 4; ++low) run.offset[low] = ((low ^ byte) - low) * kPrime;
+    for (std::uint32_t low = 0; low < 4; ++low) run.offset[low] = (std::uint64_t{low ^ byte} - low) * kPrime;
     return run;
   }
   static Run of_eight(std::uint8_t byte) {
