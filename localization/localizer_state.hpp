@@ -81,8 +81,9 @@ struct Localizer::State {
   RefinedPose track(const ScanInstant& now, const Point2& robot_from_laser);
   /// Those that weigh the believed pose: without what stands about for now, where enough are left.
   const BeamEnds& weighing_ends(const ScanInstant& now);
-  /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
+  /// The best pose that a slip may have led to and that explains at least this share of the ends; nothing without one.
   [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
+  /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
   [[nodiscard]] bool has_won(const RivalPlace& place, const Pose2& believed) const;
   /// Surfaces that stand where the map has them fix the pose.
   [[nodiscard]] bool is_held_by_surfaces() const;

@@ -14,7 +14,12 @@ namespace {
 constexpr double kAnywhere = 3.2;
 constexpr double kMoved = 2.2 + kAnywhere;
 constexpr double kMovedOnceInM = 1500.0;
-constexpr double kKeyframeM = 0.2;
+
+/// Where the map has it.
+SurfaceStand held(const Surface& surface) {
+  return {.offset_m2 = surface.offset_deviation_m * surface.offset_deviation_m,
+          .turn_rad2 = surface.turn_deviation_rad * surface.turn_deviation_rad};
+}
 
 }  // namespace
 
@@ -34,6 +39,11 @@ SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch
 double SlipReading::variance_beside_pose(Eigen::Index i) const {
   const Eigen::Vector3d with_pose = state_.covariance().block<3, 1>(0, i);
   return std::max(1e-8, state_.covariance()(i, i) - with_pose.dot(pose_inverse_ * with_pose));
+}
+
+SurfaceStand SlipReading::last_seen(std::size_t number) const {
+  const Eigen::Index at = OffsetState::offset_of(number);
+  return {state_.mean()[at], state_.mean()[at + 1], variance_beside_pose(at), variance_beside_pose(at + 1)};
 }
 
 double SlipReading::cost_of_moved(std::size_t number) const {
@@ -76,31 +86,19 @@ double SlipReading::weight_of(const Sighting& sighting, std::span<const Sighting
 
 void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as, double weight) const {
   const SurfaceMeasurement seen = measurement_of(sighting, answer.pose, 0);
-  const Surface& surface = sighting.surface;
-  const double held_m2 = surface.offset_deviation_m * surface.offset_deviation_m;
-  const double held_rad2 = surface.turn_deviation_rad * surface.turn_deviation_rad;
-  double offset_m = 0.0;
-  double turn_rad = 0.0;
-  double offset_m2 = held_m2;
-  double turn_rad2 = held_rad2;
-  double evidence = -0.5 * seen.strangeness(0.0, 0.0, held_m2, held_rad2);
+  SurfaceStand stand = held(sighting.surface);
+  double evidence = -0.5 * seen.strangeness(stand);
   double least = -kMoved;
   double gain = kMoved;
   if (followed_as >= 0) {
     const auto number = static_cast<std::size_t>(followed_as);
-    const Eigen::Index at = OffsetState::offset_of(number);
-    const double last_m2 = variance_beside_pose(at);
-    const double last_rad2 = variance_beside_pose(at + 1);
-    const double as_last = -0.5 * seen.strangeness(state_.mean()[at], state_.mean()[at + 1], last_m2, last_rad2) -
-                           cost_of_moved(number) * (1.0 - switches_[number].holds);
+    const SurfaceStand last = last_seen(number);
+    const double as_last = -0.5 * seen.strangeness(last) - cost_of_moved(number) * (1.0 - switches_[number].holds);
     gain = cost_of_moved_now(number);
     least = -gain;
     if (as_last >= evidence) {
       evidence = as_last;
-      offset_m = state_.mean()[at];
-      turn_rad = state_.mean()[at + 1];
-      offset_m2 = last_m2;
-      turn_rad2 = last_rad2;
+      stand = last;
     } else if (evidence > least && switches_[number].holds < 0.5) {
       answer.hold_again.push_back(number);
     }
@@ -108,27 +106,26 @@ void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as,
   answer.evidence += weight * (gain + std::max(least, evidence));
   // Beams that no explanation fits pull less (Geman and McClure).
   const double trust = weight / std::pow(1.0 + std::max(0.0, -evidence) / gain, 2);
-  const double variance_m2 = seen.distance_variance + offset_m2 + seen.along_m * seen.along_m * turn_rad2;
+  const SurfaceStand off = seen.off(stand);
   const Eigen::Vector3d row{seen.distance.entries[0].value, seen.distance.entries[1].value,
                             seen.distance.entries[2].value};
-  answer.information += trust / variance_m2 * row * row.transpose();
-  answer.pull += trust / variance_m2 * row * (seen.distance_m - offset_m - turn_rad * seen.along_m);
+  answer.information += trust / off.offset_m2 * row * row.transpose();
+  answer.pull += trust / off.offset_m2 * row * off.offset_m;
   if (!seen.has_turn) return;
-  const double variance_rad2 = seen.turn_variance + turn_rad2;
-  answer.information(2, 2) += trust / variance_rad2;
-  answer.pull[2] -= trust / variance_rad2 * (seen.turn_rad - turn_rad);
+  answer.information(2, 2) += trust / off.turn_rad2;
+  answer.pull[2] -= trust / off.turn_rad2 * off.turn_rad;
 }
 
 void SlipReading::add_unseen(Answer& answer, std::size_t number) const {
   const Surface& surface = switches_[number].surface;
-  const Eigen::Index at = OffsetState::offset_of(number);
+  const SurfaceStand last = last_seen(number);
   const Pose2 moved = answer.pose * inverse(state_.pose().map_from_robot);
-  const Point2 centre = moved * Point2{surface.centre + state_.mean()[at] * surface.normal};
+  const Point2 centre = moved * Point2{surface.centre + last.offset_m * surface.normal};
   const double off_m = surface.normal.dot(centre - surface.centre);
-  const double off_rad = state_.mean()[at + 1] + moved.theta;
-  const double variance_m2 = variance_beside_pose(at) + std::pow(surface.offset_deviation_m, 2);
-  const double variance_rad2 = variance_beside_pose(at + 1) + std::pow(surface.turn_deviation_rad, 2);
-  const double holds = -0.5 * (off_m * off_m / variance_m2 + off_rad * off_rad / variance_rad2);
+  const double off_rad = last.turn_rad + moved.theta;
+  const SurfaceStand mapped = held(surface);
+  const double holds = -0.5 * (off_m * off_m / (last.offset_m2 + mapped.offset_m2) +
+                               off_rad * off_rad / (last.turn_rad2 + mapped.turn_rad2));
   const double stays = -cost_of_moved(number);
   if (holds > stays) answer.hold_again.push_back(number);
   answer.evidence += share_of_face_[number] * std::max(holds, stays);

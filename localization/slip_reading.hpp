@@ -68,6 +68,8 @@ class SlipReading {
   void add_unseen(Answer& answer, std::size_t number) const;
   [[nodiscard]] double cost_of_moved(std::size_t number) const;
   [[nodiscard]] double cost_of_moved_now(std::size_t number) const;
+  /// Beside a pose that is known.
+  [[nodiscard]] SurfaceStand last_seen(std::size_t number) const;
   [[nodiscard]] double variance_beside_pose(Eigen::Index i) const;
 
   const OffsetState& state_;

@@ -7,6 +7,14 @@
 
 namespace deltamap::localization {
 
+/// Where a surface stands, as seen from where the map has it, with variances.
+struct SurfaceStand {
+  double offset_m = 0.0;
+  double turn_rad = 0.0;
+  double offset_m2 = 0.0;
+  double turn_rad2 = 0.0;
+};
+
 /// Two rows over the state of the filter; 0 is expected where pose, offset and turn are right.
 struct SurfaceMeasurement {
   SparseRow distance;  ///< of the beams' mean from the surface, m
@@ -18,14 +26,16 @@ struct SurfaceMeasurement {
   bool has_turn;   ///< false: the beams are too close to each other to tell
   double along_m;  ///< of the beams' mean from the surface's centre
 
-  /// How strange it is, in squared deviations, with the surface `offset_m` and `turn_rad` from where the map has it.
-  [[nodiscard]] double strangeness(double offset_m, double turned_rad, double offset_variance,
-                                   double turned_variance) const {
-    const double off_m = distance_m - offset_m - turned_rad * along_m;
-    const double off_rad = turn_rad - turned_rad;
-    const double variance_m2 = distance_variance + offset_variance + along_m * along_m * turned_variance;
-    const double by_turn = has_turn ? off_rad * off_rad / (turn_variance + turned_variance) : 0.0;
-    return off_m * off_m / variance_m2 + by_turn;
+  /// How far off it is with the surface standing there, with variances.
+  [[nodiscard]] SurfaceStand off(const SurfaceStand& stand) const {
+    return {distance_m - stand.offset_m - stand.turn_rad * along_m, turn_rad - stand.turn_rad,
+            distance_variance + stand.offset_m2 + along_m * along_m * stand.turn_rad2, turn_variance + stand.turn_rad2};
+  }
+  /// The same in squared deviations.
+  [[nodiscard]] double strangeness(const SurfaceStand& stand) const {
+    const SurfaceStand by = off(stand);
+    const double by_turn = has_turn ? by.turn_rad * by.turn_rad / by.turn_rad2 : 0.0;
+    return by.offset_m * by.offset_m / by.offset_m2 + by_turn;
   }
 };
 

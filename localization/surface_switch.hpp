@@ -12,6 +12,8 @@
 
 namespace deltamap::localization {
 
+/// Driven between two keyframes: what is in view is looked for that often.
+inline constexpr double kKeyframeM = 0.2;
 /// Deviations of a surface that was moved, about where it stood.
 inline constexpr double kMovedM = 0.5;
 inline constexpr double kMovedRad = 0.1;

@@ -40,11 +40,7 @@ Colour colour_of(CellState before, CellState after) {
 }
 
 CellBox known_box(const OccupancyGrid& a, const OccupancyGrid& b) {
-  std::vector<CellChange> known;
-  for (const OccupancyGrid* const grid : {&a, &b}) {
-    for_each_known(*grid, [&](Cell cell, CellState) { known.push_back({cell, {}, {}}); });
-  }
-  return grown(bounding_box(known), 4, a.geometry());
+  return grown(united(deltamap::known_box(a), deltamap::known_box(b)), 4, a.geometry());
 }
 
 }  // namespace
