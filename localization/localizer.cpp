@@ -29,6 +29,9 @@ TrackedScan Localizer::observe(Scan scan) {
   if (state.last_scan && scan.time < *state.last_scan) state.odometry.clock_fell_back(*state.last_scan);
   const ScanInstant now{scan.time, state.odometry.at(scan.time)};
   const BodyVelocity velocity = state.odometry.velocity_at(scan.time);
+  if (const auto known = state.tracker.calibration()) {
+    scan.robot_from_laser = known->mount_error * scan.robot_from_laser;
+  }
   tracked.rays = deskewed(scan, velocity);
   state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
   if (state.params.follow_surfaces) state.faced = faced_ends(scan, tracked.rays, std::move(state.faced));
@@ -76,6 +79,8 @@ void Localizer::relocalize(const InitialPose& pose) { state_->start_at(pose); }
 const RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
 
 std::optional<double> Localizer::fit() const { return state_->newest_fit; }
+
+std::optional<DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }
 
 const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 

@@ -10,6 +10,7 @@
 
 #include "core/messages.hpp"
 #include "core/temporary_things.hpp"
+#include "localization/drive_calibration.hpp"
 #include "localization/localizer_counts.hpp"
 #include "localization/rivals.hpp"
 #include "localization/stability.hpp"
@@ -47,6 +48,9 @@ class Localizer {
   [[nodiscard]] const LocalizerCounts& counts() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;
+
+  /// Errors of wheels and mount, as far as driving among surfaces has told; nothing where surfaces are not followed.
+  [[nodiscard]] std::optional<DriveCalibration> calibration() const;
 
   /// What of the map has proven to stay, to be kept across restarts.
   [[nodiscard]] StabilityRecord stability() const;

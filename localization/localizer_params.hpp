@@ -34,7 +34,7 @@ struct LocalizerParams {
   RefinementParams refinement;
   PoseTrackParams track;
   UpdateParams update;
-  bool follow_surfaces = false;  ///< as of TrackerParams
+  bool follow_surfaces = true;  ///< as of TrackerParams
   GlobalSearchParams global;
   RivalsParams rivals;
   PlaceBankParams places;

@@ -215,14 +215,17 @@ const BeamEnds& Localizer::State::weighing_ends(const ScanInstant& now) {
   return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_things : ends;
 }
 
-bool Localizer::State::is_held_by_surfaces() const {
-  constexpr double kHolds = 0.3;  // share of the ends
-  return tracker.holding_share() >= kHolds;
+Belief Localizer::State::belief() const {
+  Belief belief = judgement.belief();
+  if (searches() || !tracker.is_held()) return belief;
+  belief.verdict = PoseVerdict::kRight;
+  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.rival_share);
+  return belief;
 }
 
 bool Localizer::State::has_won(const RivalPlace& place, const Pose2& believed) const {
   if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
-  if (ends.size() == 0 || is_held_by_surfaces()) return false;
+  if (ends.size() == 0 || tracker.is_held()) return false;
   const double fit = explained_share(field, ends, place.map_from_robot);
   return fit >= params.fit.found_above || fit >= explained_share(field, ends, believed) + kClearlyBetter;
 }
@@ -239,7 +242,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   newest_fit = blind ? std::nullopt : std::optional{seen.fit};
   if (check.under_way()) return blind ? void() : judge_start(seen.fit);
   const LocalizerState before = monitor.state();
-  const Belief& belief = judgement.observe({.map = *map,
+  const Belief& judged = judgement.observe({.map = *map,
                                             .scan = scan,
                                             .rays = rays,
                                             .believed = believed,
@@ -248,15 +251,15 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .rivals = rivals.report(),
                                             .things = params.temporary.belief ? things.get() : nullptr});
   if (before == LocalizerState::kTracking) {
-    proven_hold.observe(belief.stable);
+    proven_hold.observe(judged.stable);
   } else {
     proven_hold.forget();
   }
   if (blind) return;
-  seen.verdict = belief.verdict;
+  seen.verdict = judged.verdict;
   seen.trust = judgement.trust();
   seen.beaten = rivals.report().beaten;
-  if (is_held_by_surfaces()) {
+  if (tracker.is_held()) {
     seen.verdict = PoseVerdict::kRight;
     seen.trust = std::max(seen.trust, kTrustInASearch);
     seen.beaten = false;
@@ -306,7 +309,7 @@ Estimate Localizer::State::estimate(Timestamp time, const RefinedPose& believed)
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(
               monitor.state() == LocalizerState::kGlobal ? rivals.report().places : tracker.particle_count()),
-          .belief = judgement.belief(),
+          .belief = belief(),
           .w_avg = w_avg,
           .revision = revision,
           .map = map};

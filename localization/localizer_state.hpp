@@ -85,8 +85,8 @@ struct Localizer::State {
   [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
   [[nodiscard]] bool has_won(const RivalPlace& place, const Pose2& believed) const;
-  /// Surfaces that stand where the map has them fix the pose.
-  [[nodiscard]] bool is_held_by_surfaces() const;
+  /// What the localizer answers: where surfaces hold the pose, nothing but another place speaks against it.
+  [[nodiscard]] Belief belief() const;
   /// No pose is believed, nor one being checked.
   [[nodiscard]] bool searches() const;
   /// The epoch of the odometry is another one than at the last scan.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/offset_filter.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +16,7 @@ namespace {
 
 constexpr double kStrange = 16.0;          // squared deviations: not where it was expected
 constexpr double kSlipOdds = 7.0;          // nats against one: a slip in 200 m, keyframes of 0.2 m
+constexpr double kHalfAxleM = 0.17;        // between a wheel and the robot's centre
 constexpr double kDoubtsAgainM = 1.0;      // driven between two looks for a slip that lies behind
 constexpr int kMisfitsOfAChange = 3;       // in a row: it was moved while in view
 constexpr double kForgottenAfterM = 15.0;  // driven without a view of it
@@ -27,14 +30,25 @@ constexpr double kReassignRad = 0.005;
 constexpr double kFarthestM = 0.3;  // that ends on no surface may move the pose
 constexpr double kFarthestRad = 0.18;
 constexpr int kRestSteps = 6;
+constexpr double kFewestOfADirection = 2.0;  // surfaces that tell of it
 
-/// What the row gives at the state, where its measurement was taken with the pose at `at`.
-double expected(const SparseRow& row, const Eigen::VectorXd& mean, const Eigen::Vector3d& at) {
+using Fixed = Eigen::Vector<double, OffsetState::kFixed>;
+
+/// What the row gives at the state, where its measurement was taken with pose and mount at `at`.
+double expected(const SparseRow& row, const Eigen::VectorXd& mean, const Fixed& at) {
   double sum = 0.0;
   for (const SparseRow::Entry& entry : row.used()) {
-    sum += entry.value * (mean[entry.index] - (entry.index < OffsetState::kPose ? at[entry.index] : 0.0));
+    sum += entry.value * (mean[entry.index] - (entry.index < OffsetState::kFixed ? at[entry.index] : 0.0));
   }
   return sum;
+}
+
+/// One wheel slips: the robot turns about the other one.
+PoseCovariance one_wheel_covariance(const MotionModelParams& motion) {
+  const double aside_m = kHalfAxleM * motion.slip_rad;
+  return Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, motion.slip_rad * motion.slip_rad}
+      .asDiagonal()
+      .toDenseMatrix();
 }
 
 double covariance_of(const SparseRow& a, const SparseRow& b, const Eigen::MatrixXd& covariance) {
@@ -147,7 +161,7 @@ std::span<const Sighting> OffsetFilter::find_by_map(const LikelihoodField& field
 
 std::vector<bool> OffsetFilter::fit_of(std::span<const Sighting> sightings) const {
   const Pose2 at = state_.pose().map_from_robot;
-  const Eigen::Vector3d here = state_.mean().head<OffsetState::kPose>();
+  const Fixed here = state_.mean().head<OffsetState::kFixed>();
   std::vector<bool> fits;
   for (const Sighting& sighting : sightings) {
     const SurfaceMeasurement seen = measurement_of(sighting, at, OffsetState::offset_of(surface_of(sighting)));
@@ -164,7 +178,8 @@ std::vector<bool> OffsetFilter::fit_of(std::span<const Sighting> sightings) cons
 
 void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at) {
   const double heading = state_.mean()[2];
-  const Eigen::Vector3d here{at.x, at.y, heading + turn_between(heading, at.theta)};
+  Fixed here = state_.mean().head<OffsetState::kFixed>();
+  here.head<OffsetState::kPose>() << at.x, at.y, heading + turn_between(heading, at.theta);
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     if (!fits[i]) continue;
     const SurfaceMeasurement seen = measurement_of(sightings[i], at, OffsetState::offset_of(surface_of(sightings[i])));
@@ -194,7 +209,8 @@ std::vector<Pose2> OffsetFilter::undone_moves() const {
 /// Had the wheels slipped? Only now, where something is not where it was expected; metres ago, where something seems to
 /// have moved. Goes to where the surfaces are clearly better explained.
 bool OffsetFilter::follows_slip(const LikelihoodField& field, std::span<const FacedEnd> ends,
-                                const std::vector<bool>& fits, const MotionModelParams& motion) {
+                                std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                const MotionModelParams& motion) {
   const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
   std::vector<Pose2> undone;
   if (since_doubt_m_ >= kDoubtsAgainM) undone = undone_moves();
@@ -204,14 +220,16 @@ bool OffsetFilter::follows_slip(const LikelihoodField& field, std::span<const Fa
   const auto number_of = [&](SurfaceMap::Id id) { return map_.record(id).followed_as; };
   const auto as_followed = [&](const Pose2& at) { return find(field, ends, at); };
   const auto as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); };
-  const SlipReading no_slip{state_, switches_, PoseCovariance::Zero()};
+  std::vector<bool> in_view(switches_.size());
+  for (const Sighting& sighting : sightings) in_view[surface_of(sighting)] = true;
+  const SlipReading no_slip{state_, switches_, PoseCovariance::Zero(), in_view};
   const double usual = std::max(no_slip.best_near(wheels.map_from_robot, as_followed, number_of).evidence,
                                 no_slip.best_near(wheels.map_from_robot, as_mapped, number_of).evidence);
   SlipReading::Answer best;
   best.evidence = usual + kSlipOdds;
   PoseCovariance slip = PoseCovariance::Zero();
   const auto look = [&](std::span<const Pose2> poses, const PoseCovariance& spread, auto&& seen_from) {
-    const SlipReading reading{state_, switches_, spread};
+    const SlipReading reading{state_, switches_, spread, in_view};
     for (const Pose2& pose : poses) {
       SlipReading::Answer there = reading.best_near(pose, seen_from, number_of);
       if (there.evidence <= best.evidence) continue;
@@ -220,7 +238,11 @@ bool OffsetFilter::follows_slip(const LikelihoodField& field, std::span<const Fa
     }
   };
   const PoseCovariance now = slip_covariance(motion, wheels.map_from_robot.theta);
-  if (is_strange) look(slips_around(motion, wheels.map_from_robot), now, as_followed);
+  if (is_strange) {
+    const std::vector<Pose2> around = slips_around(motion, wheels.map_from_robot);
+    look(around, now, as_followed);
+    look(around, one_wheel_covariance(motion), as_followed);
+  }
   const double aside_m = 0.5 * kForgottenAfterM * motion.slip_rad;  // by a turn that far behind
   const PoseCovariance behind =
       now + Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
@@ -252,7 +274,7 @@ OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span
   if (ends.empty()) return seen;
   std::vector<Sighting> sightings = followed_from(field, ends, state_.pose().map_from_robot);
   std::vector<bool> fits = fit_of(sightings);
-  seen.slipped = follows_slip(field, ends, fits, motion);
+  seen.slipped = follows_slip(field, ends, sightings, fits, motion);
   const Pose2 at = state_.pose().map_from_robot;
   if (seen.slipped) {
     sightings = followed_from(field, ends, at);
@@ -272,21 +294,35 @@ OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span
   settle(switches_, state_);
   const auto count = static_cast<double>(ends.size());
   seen.straight = 1.0 - static_cast<double>(finder_.rest().size()) / count;
-  seen.holding = share_held(sightings, fits) / count;
+  seen.holding = std::min(share_of_ends_held(sightings, fits), share_of_surfaces_held());
   cease_where_long_unseen();
   return seen;
 }
 
-/// Ends on surfaces that hold; along a wall every pose fits, so twice those of the direction that fewer hold.
-double OffsetFilter::share_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const {
-  Eigen::Matrix2d held = Eigen::Matrix2d::Zero();
+/// Of the ends, those on surfaces that are where they were expected, and hold.
+double OffsetFilter::share_of_ends_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const {
+  double held = 0.0;
+  double all = static_cast<double>(finder_.rest().size());
   for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const Point2& normal = sightings[i].surface.normal;
-    if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5)
-      held += sightings[i].beams * normal * normal.transpose();
+    all += sightings[i].beams;
+    if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5) held += sightings[i].beams;
   }
-  const double half_apart = std::hypot(0.5 * (held(0, 0) - held(1, 1)), held(0, 1));
-  return held.trace() - 2.0 * half_apart;
+  return all > 0.0 ? held / all : 0.0;
+}
+
+/// Of the surfaces of the last metres that tell of a direction, those that hold; in the direction of which fewer do.
+double OffsetFilter::share_of_surfaces_held() const {
+  Eigen::Matrix2d all = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d held = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < switches_.size(); ++i) {
+    const Point2& normal = switches_[i].surface.normal;
+    all += normal * normal.transpose();
+    if (switches_[i].holds > 0.5) held += normal * normal.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions{all};
+  if (directions.eigenvalues().minCoeff() < kFewestOfADirection) return 0.0;
+  const Eigen::Matrix2d scale = directions.operatorInverseSqrt();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>{scale * held * scale}.eigenvalues().minCoeff();
 }
 
 void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits) {
@@ -300,8 +336,12 @@ void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::v
 /// Ends on no surface correct the pose alone, as pose_refinement.hpp does: slid to where they fit, held by the rest.
 void OffsetFilter::correct_by_rest(const LikelihoodField& field, double share) {
   if (finder_.rest().size() == 0) return;
-  const Eigen::Vector3d start = state_.mean().head<OffsetState::kPose>();
-  const Eigen::Matrix3d spread = state_.covariance().topLeftCorner<3, 3>();
+  const Eigen::Vector<double, 6> before = state_.mean().head<6>();
+  const Eigen::Vector3d start = before.head<OffsetState::kPose>();
+  // How pose and mount move the scan.
+  Eigen::Matrix<double, 3, 6> by;
+  by << Eigen::Matrix3d::Identity(), Eigen::AngleAxisd{start.z(), Eigen::Vector3d::UnitZ()}.toRotationMatrix();
+  const Eigen::Matrix3d spread = by * state_.covariance().topLeftCorner<6, 6>() * by.transpose();
   Eigen::Vector3d at = start;
   Eigen::Matrix3d information;
   Eigen::Vector3d pull;
@@ -317,7 +357,7 @@ void OffsetFilter::correct_by_rest(const LikelihoodField& field, double share) {
   }
   const Eigen::Vector3d moved = at - start;
   if (moved.head<2>().norm() > kFarthestM || std::abs(moved.z()) > kFarthestRad) return;
-  state_.multiply<3>(0, information, pull + information * start);
+  state_.multiply<6>(0, by.transpose() * information * by, by.transpose() * (pull + information * by * before));
 }
 
 double OffsetFilter::straight_share(const LikelihoodField& field, std::span<const FacedEnd> ends, const Pose2& pose) {

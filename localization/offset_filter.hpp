@@ -29,10 +29,10 @@ class OffsetFilter {
   [[nodiscard]] Pose2 corrected(const WheelStep& step) const { return state_.corrected(step); }
   void carry(const WheelStep& step, const PoseCovariance& added);
 
-  /// What a keyframe showed; shares are of its ends, [0, 1].
+  /// What a keyframe showed.
   struct Seen {
-    double straight = 0.0;  ///< on a surface, where it is believed to be
-    double holding = 0.0;   ///< on surfaces that stand where the map has them, in the direction that fewer of them hold
+    double straight = 0.0;  ///< share of its ends on a surface, where that one is believed to be
+    double holding = 0.0;   ///< on surfaces that stand where the map has them, and no more than of the last metres' do
     bool slipped = false;   ///< the wheels had slipped: the pose has gone to where the scan is explained
   };
   /// `rest_share`: what an end that is on no surface counts, in (0, 1]. `motion`: how far slips may go.
@@ -42,7 +42,7 @@ class OffsetFilter {
   [[nodiscard]] double straight_share(const LikelihoodField& field, std::span<const FacedEnd> ends, const Pose2& pose);
 
   [[nodiscard]] RefinedPose believed() const { return state_.pose(); }
-  [[nodiscard]] WheelErrors wheels() const { return state_.wheels(); }
+  [[nodiscard]] DriveCalibration calibration() const { return state_.calibration(); }
   [[nodiscard]] bool is_sound() const { return state_.is_sound(); }
 
  private:
@@ -59,7 +59,8 @@ class OffsetFilter {
                                                     const Pose2& at);
   [[nodiscard]] std::vector<Pose2> undone_moves() const;
   [[nodiscard]] bool follows_slip(const LikelihoodField& field, std::span<const FacedEnd> ends,
-                                  const std::vector<bool>& fits, const MotionModelParams& motion);
+                                  std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                  const MotionModelParams& motion);
   void follow(const Sighting& sighting);
   void cease(std::size_t surface);
   void drop(std::size_t surface);
@@ -69,7 +70,8 @@ class OffsetFilter {
   void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
   void correct_by_rest(const LikelihoodField& field, double share);
   [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;
-  [[nodiscard]] double share_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const;
+  [[nodiscard]] double share_of_ends_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const;
+  [[nodiscard]] double share_of_surfaces_held() const;
   void note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits);
 
   SurfaceMap map_;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace deltamap::localization {
 namespace {
@@ -14,32 +15,45 @@ const Eigen::Vector4d kWheelDeviations{0.03, 0.03, 0.01, 0.05};
 const Eigen::Vector4d kLargestWheelErrors{0.1, 0.1, 0.15, 0.3};
 // How fast they change: variances a metre. Tyres wear, loads shift.
 const Eigen::Vector4d kWheelWalk{1e-7, 1e-7, 1e-8, 1e-8};
+// A laser that was screwed on with a ruler: m, m, rad.
+const Eigen::Vector3d kMountDeviations{0.015, 0.015, 0.005};
 
 Point2 turned_left(const Point2& p) { return {-p.y(), p.x()}; }
 
 }  // namespace
 
+OffsetState::OffsetState() : mean_{Eigen::VectorXd::Zero(kFixed)}, covariance_{Eigen::MatrixXd::Zero(kFixed, kFixed)} {
+  covariance_.diagonal().segment<4>(kWheels) = kWheelDeviations.cwiseAbs2();
+  covariance_.diagonal().segment<3>(kMount) = kMountDeviations.cwiseAbs2();
+}
+
 void OffsetState::start(const RefinedPose& at) {
-  Eigen::Vector4d wheels = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d of_wheels = kWheelDeviations.cwiseAbs2().asDiagonal();
-  if (mean_.size() >= kFixed && is_sound()) {
-    wheels = mean_.segment<4>(kPose);
-    of_wheels = covariance_.block<4, 4>(kPose, kPose);
+  constexpr Eigen::Index kLearned = kFixed - kPose;
+  OffsetState anew;
+  if (is_sound()) {
+    anew.mean_.tail<kLearned>() = mean_.segment<kLearned>(kPose);
+    anew.covariance_.bottomRightCorner<kLearned, kLearned>() = covariance_.block<kLearned, kLearned>(kPose, kPose);
   }
-  mean_ = Eigen::VectorXd::Zero(kFixed);
-  mean_.head<kPose>() << at.map_from_robot.x, at.map_from_robot.y, at.map_from_robot.theta;
-  mean_.segment<4>(kPose) = wheels;
-  covariance_ = Eigen::MatrixXd::Zero(kFixed, kFixed);
-  covariance_.topLeftCorner<kPose, kPose>() = at.covariance;
-  covariance_.block<4, 4>(kPose, kPose) = of_wheels;
+  anew.mean_.head<kPose>() << at.map_from_robot.x, at.map_from_robot.y, at.map_from_robot.theta;
+  anew.covariance_.topLeftCorner<kPose, kPose>() = at.covariance;
+  *this = std::move(anew);
 }
 
 RefinedPose OffsetState::pose() const {
   return {{mean_[0], mean_[1], wrapped_angle(mean_[2])}, covariance_.topLeftCorner<kPose, kPose>()};
 }
 
+DriveCalibration OffsetState::calibration() const {
+  const Eigen::Vector<double, kFixed> deviations = covariance_.diagonal().head<kFixed>().cwiseMax(0.0).cwiseSqrt();
+  const auto wheels = [](const auto& of) {
+    return WheelErrors{of[kWheels], of[kWheels + 1], of[kWheels + 2], of[kWheels + 3]};
+  };
+  const auto mount = [](const auto& of) { return Pose2{of[kMount], of[kMount + 1], of[kMount + 2]}; };
+  return {wheels(mean_), wheels(deviations), mount(mean_), mount(deviations)};
+}
+
 Pose2 OffsetState::corrected(const WheelStep& step) const {
-  const WheelErrors errors = wheels();
+  const WheelErrors errors = calibration().wheels;
   const double further_rad = errors.turn * step.motion.theta + errors.drift_rad_per_m * step.motion.position().norm() +
                              errors.lag_s * step.turn_rate_change_rad_per_s;
   const Pose2 along_the_arc = Pose2{0.0, 0.0, 0.5 * further_rad} * step.motion;
@@ -56,18 +70,19 @@ void OffsetState::carry(const WheelStep& step, const PoseCovariance& added) {
   Eigen::Matrix<double, kPose, kFixed> by = Eigen::Matrix<double, kPose, kFixed>::Zero();
   by.leftCols<kPose>().setIdentity();
   by.block<2, 1>(0, 2) = turned_left(moved);
-  by.block<2, 1>(0, 3) = moved / (1.0 + mean_[3]);
-  by.block<2, 1>(0, 4) = by_half_turn * step.motion.theta;
-  by.block<2, 1>(0, 5) = by_half_turn * length_m;
-  by.block<2, 1>(0, 6) =
+  by.col(kWheels).head<2>() = moved / (1.0 + mean_[kWheels]);
+  by.col(kWheels + 1).head<2>() = by_half_turn * step.motion.theta;
+  by.col(kWheels + 2).head<2>() = by_half_turn * length_m;
+  by.col(kWheels + 3).head<2>() =
       by_half_turn * step.turn_rate_change_rad_per_s + turned * Point2{step.speed_change_m_per_s, 0.0};
-  by.row(2).tail<4>() << 0.0, step.motion.theta, length_m, step.turn_rate_change_rad_per_s;
+  by.row(2).segment<4>(kWheels) << 0.0, step.motion.theta, length_m, step.turn_rate_change_rad_per_s;
   mean_.head<kPose>() += Eigen::Vector3d{moved.x(), moved.y(), motion.theta};
-  mean_.segment<4>(kPose) = mean_.segment<4>(kPose).cwiseMax(-kLargestWheelErrors).cwiseMin(kLargestWheelErrors).eval();
+  mean_.segment<4>(kWheels) =
+      mean_.segment<4>(kWheels).cwiseMax(-kLargestWheelErrors).cwiseMin(kLargestWheelErrors).eval();
   covariance_.topRows<kPose>() = (by * covariance_.topRows<kFixed>()).eval();
   covariance_.leftCols<kPose>() = (covariance_.leftCols<kFixed>() * by.transpose()).eval();
   covariance_.topLeftCorner<kPose, kPose>() += added;
-  covariance_.diagonal().segment<4>(kPose) += length_m * kWheelWalk;
+  covariance_.diagonal().segment<4>(kWheels) += length_m * kWheelWalk;
 }
 
 void OffsetState::jump(const Pose2& to, const PoseCovariance& slip) {

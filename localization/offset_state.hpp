@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One Gaussian over the robot's pose, the systematic errors of its wheels and, for each surface that is followed, how
-// far it stands from where the map has it: offset along its normal, m, and turn, rad.
+// One Gaussian over the robot's pose, the systematic errors of its wheels and of the laser's mount and, for each
+// surface that is followed, how far it stands from where the map has it: offset along its normal, m, and turn, rad.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <span>
 
+#include "localization/drive_calibration.hpp"
 #include "localization/pose_refinement.hpp"
 
 namespace deltamap::localization {
@@ -19,21 +20,13 @@ struct WheelStep {
   double turn_rate_change_rad_per_s = 0.0;
 };
 
-/// What the robot did, in terms of what its wheels counted (Kelly 2004).
-struct WheelErrors {
-  double distance = 0.0;         ///< share driven beyond the count
-  double turn = 0.0;             ///< share turned beyond the count
-  double drift_rad_per_m = 0.0;  ///< turned in a metre that counts as straight
-  double lag_s = 0.0;            ///< the wheels' stamps are that much too late
-};
-
 /// A row of a measurement's Jacobian: most of it is zero.
 struct SparseRow {
   struct Entry {
     Eigen::Index index;
     double value;
   };
-  std::array<Entry, 5> entries;
+  std::array<Entry, 8> entries;
   std::size_t count;
 
   [[nodiscard]] std::span<const Entry> used() const { return {entries.data(), count}; }
@@ -42,9 +35,12 @@ struct SparseRow {
 class OffsetState {
  public:
   static constexpr Eigen::Index kPose = 3;
-  static constexpr Eigen::Index kFixed = 7;  ///< pose and wheels
+  static constexpr Eigen::Index kMount = 3;   ///< three entries from there, after the pose
+  static constexpr Eigen::Index kWheels = 6;  ///< four
+  static constexpr Eigen::Index kFixed = 10;  ///< pose, mount and wheels
 
-  /// No surface is followed. What was learned of the wheels is kept.
+  OffsetState();
+  /// No surface is followed. What was learned of the wheels and the mount is kept.
   void start(const RefinedPose& at);
 
   /// The robot's motion, by the wheels and what is known of their errors.
@@ -62,7 +58,7 @@ class OffsetState {
 
   /// A measurement: row · state was found to be greater than expected by `innovation`.
   void update(const SparseRow& row, double innovation, double variance);
-  /// As a factor: precision and precision · mean, over `count` entries from `first` on (2 or 3).
+  /// As a factor: precision and precision · mean, over kCount entries from `first` on.
   template <int kCount>
   void multiply(Eigen::Index first, const Eigen::Matrix<double, kCount, kCount>& precision,
                 const Eigen::Matrix<double, kCount, 1>& pull) {
@@ -82,7 +78,7 @@ class OffsetState {
     return kFixed + 2 * static_cast<Eigen::Index>(surface);
   }
   [[nodiscard]] RefinedPose pose() const;
-  [[nodiscard]] WheelErrors wheels() const { return {mean_[3], mean_[4], mean_[5], mean_[6]}; }
+  [[nodiscard]] DriveCalibration calibration() const;
   [[nodiscard]] bool is_sound() const { return mean_.allFinite() && covariance_.diagonal().minCoeff() >= 0.0; }
 
  private:

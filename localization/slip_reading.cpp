@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace deltamap::localization {
 namespace {
@@ -23,9 +24,11 @@ SurfaceStand held(const Surface& surface) {
 
 }  // namespace
 
-SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch> switches, const PoseCovariance& slip)
+SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch> switches, const PoseCovariance& slip,
+                         std::vector<bool> in_view)
     : state_{state},
       switches_{switches},
+      in_view_{std::move(in_view)},
       known_{(state.pose().covariance + slip).inverse()},
       pose_inverse_{state.covariance().topLeftCorner<3, 3>().inverse()} {
   for (const SurfaceSwitch& of : switches) {
@@ -94,7 +97,8 @@ void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as,
     const auto number = static_cast<std::size_t>(followed_as);
     const SurfaceStand last = last_seen(number);
     const double as_last = -0.5 * seen.strangeness(last) - cost_of_moved(number) * (1.0 - switches_[number].holds);
-    gain = cost_of_moved_now(number);
+    // One that only this pose has in view may be another thing that stands there by chance.
+    if (in_view_[number]) gain = cost_of_moved_now(number);
     least = -gain;
     if (as_last >= evidence) {
       evidence = as_last;

@@ -18,8 +18,10 @@ namespace deltamap::localization {
 
 class SlipReading {
  public:
-  /// `slip`: how far the pose may lie from the state's, beyond what the state itself says.
-  SlipReading(const OffsetState& state, std::span<const SurfaceSwitch> switches, const PoseCovariance& slip);
+  /// `slip`: how far the pose may lie from the state's, beyond what the state itself says. `in_view`: the followed
+  /// surfaces that the scan shows where the wheels have not slipped.
+  SlipReading(const OffsetState& state, std::span<const SurfaceSwitch> switches, const PoseCovariance& slip,
+              std::vector<bool> in_view);
 
   struct Answer {
     Pose2 pose;
@@ -74,6 +76,7 @@ class SlipReading {
 
   const OffsetState& state_;
   std::span<const SurfaceSwitch> switches_;
+  std::vector<bool> in_view_;
   std::vector<double> share_of_face_;  // of each followed surface, among those that seem to have moved
   Eigen::Matrix3d known_;              // inverse of the spread
   Eigen::Matrix3d pose_inverse_;       // of the state's covariance

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "localization/weighing.hpp"
+
 namespace deltamap::localization {
 namespace {
 
 constexpr double kLeadsAbove = 0.82;  // share of ends on straight surfaces: what a hall of walls and containers shows
 constexpr double kCeasesBelow = 0.3;
+constexpr double kHeldAbove = 0.3;  // of the surfaces that fix the pose
 // What one Gaussian can hold, that surfaces are told apart from.
 constexpr double kOnePlaceM = 0.15;
 const double kOnePlaceRad = radians(4.0);
@@ -17,6 +20,7 @@ constexpr double kNewest = 0.1;             // share of one keyframe in the runn
 const double kKeyframeRad = radians(10.0);  // turned since the last keyframe,
 constexpr double kUnsureM = 0.01;           // or as unsure as what a surface tells
 constexpr double kUnsureRad = 0.004;
+constexpr double kSuddenly = 0.1;      // share of ends that the map ceases to explain: the wheels may have slipped
 constexpr double kStrangest = 25.0;    // squared deviations: a slip is no measure of how the wheels usually do
 constexpr double kLongestStepM = 0.5;  // of one correction
 
@@ -76,10 +80,12 @@ bool SurfaceTrack::is_one_place(const PoseCovariance& spread) {
   return spread(0, 0) + spread(1, 1) < kOnePlaceM * kOnePlaceM && spread(2, 2) < kOnePlaceRad * kOnePlaceRad;
 }
 
-bool SurfaceTrack::is_due() const {
+bool SurfaceTrack::is_due(const Seen& seen) const {
   if (!since_) return true;
-  return since_->by_wheels.position().norm() >= kKeyframeM || std::abs(since_->by_wheels.theta) >= kKeyframeRad ||
-         since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad;
+  const double explained = explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
+  return explained < since_->explained - kSuddenly || since_->by_wheels.position().norm() >= kKeyframeM ||
+         std::abs(since_->by_wheels.theta) >= kKeyframeRad || since_->variance_m2 > kUnsureM * kUnsureM ||
+         since_->variance_rad2 > kUnsureRad * kUnsureRad;
 }
 
 RefinedPose SurfaceTrack::carry(const ScanInstant& now) {
@@ -93,7 +99,7 @@ RefinedPose SurfaceTrack::observe(const Seen& seen) {
     cease();
     return filter_.believed();
   }
-  return is_due() && !seen.faced.empty() ? keyframe(seen) : filter_.believed();
+  return !seen.faced.empty() && is_due(seen) ? keyframe(seen) : filter_.believed();
 }
 
 RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
@@ -115,11 +121,16 @@ RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
     wheels_.learn(since_->corrected, after);
   }
   since_ = SinceKeyframe{};
+  since_->explained = explained_share(seen.field, seen.ends, after.map_from_robot);
   straight_ += kNewest * (shown.straight - straight_);
+  if (shown.slipped) holding_ = 0.0;
   holding_ += kNewest * (shown.holding - holding_);
+  holds_now_ = shown.holding;
   if (straight_ < kCeasesBelow) cease();
   return after;
 }
+
+bool SurfaceTrack::is_held() const { return leads_ && std::min(holding_, holds_now_) >= kHeldAbove; }
 
 void SurfaceTrack::learn_noise(const RefinedPose& before, const RefinedPose& after) {
   const Eigen::Vector3d correction = difference(before.map_from_robot, after.map_from_robot);

@@ -28,6 +28,7 @@ class SurfaceTrack {
     BodyVelocity velocity;
     std::span<const FacedEnd> faced;
     const LikelihoodField& field;
+    const BeamEnds& ends;  ///< those that score, robot frame
   };
   /// Is a pose sure enough to tell the surfaces around it apart?
   [[nodiscard]] static bool is_one_place(const PoseCovariance& spread);
@@ -45,8 +46,9 @@ class SurfaceTrack {
   /// No scan has come for long: along with the wheels. While it leads.
   RefinedPose carry(const ScanInstant& now);
 
-  /// Running mean of the share of ends on surfaces that stand where the map has them; 0 where it does not lead.
-  [[nodiscard]] double holding_share() const { return leads_ ? holding_ : 0.0; }
+  [[nodiscard]] DriveCalibration calibration() const { return filter_.calibration(); }
+  /// It leads, and surfaces that stand where the map has them fix the pose.
+  [[nodiscard]] bool is_held() const;
 
  private:
   struct Last {
@@ -55,7 +57,7 @@ class SurfaceTrack {
   };
   [[nodiscard]] PoseCovariance noise(const Pose2& motion, double unknown_s) const;
   void step_to(const ScanInstant& now, const BodyVelocity& velocity);
-  [[nodiscard]] bool is_due() const;
+  [[nodiscard]] bool is_due(const Seen& seen) const;
   RefinedPose keyframe(const Seen& seen);
   void learn_noise(const RefinedPose& before, const RefinedPose& after);
 
@@ -70,10 +72,12 @@ class SurfaceTrack {
     Pose2 corrected;
     double variance_m2 = 0.0;
     double variance_rad2 = 0.0;
+    double explained = 0.0;  // share of the keyframe's ends, by the map
   };
   std::optional<SinceKeyframe> since_;  // none: no keyframe yet
   double straight_ = 0.0;               // running means over keyframes, shares of ends
   double holding_ = 0.0;
+  double holds_now_ = 0.0;   // share at the last keyframe
   double surprise_m_ = 1.0;  // squared corrections as multiples of what was expected, running means
   double surprise_rad_ = 1.0;
 };

@@ -40,7 +40,11 @@ void Tracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& cha
   if (surfaces_) surfaces_->apply(std::move(map), changed);
 }
 
-double Tracker::holding_share() const { return surfaces_ ? surfaces_->holding_share() : 0.0; }
+bool Tracker::is_held() const { return surfaces_ && surfaces_->is_held(); }
+
+std::optional<DriveCalibration> Tracker::calibration() const {
+  return surfaces_ ? std::optional{surfaces_->calibration()} : std::nullopt;
+}
 
 RefinedPose Tracker::start_around(const InitialPose& pose) {
   filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
@@ -77,7 +81,7 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
 /// The particles rest. Where surfaces cease to lead, they begin anew around the pose, at this very scan.
 Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   Answer answer;
-  answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field});
+  answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field, seen.ends});
   const Pose2& pose = answer.believed.map_from_robot;
   if (!surfaces_->leads()) {
     go_on_from(answer.believed, seen.now);
@@ -103,7 +107,7 @@ void Tracker::go_on_from(const RefinedPose& believed, const ScanInstant& now) {
 void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
   const PoseCovariance& spread = best_.covariance;
   const bool one_place = best_.weight > kOnePlaceShare && SurfaceTrack::is_one_place(spread);
-  const SurfaceTrack::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field};
+  const SurfaceTrack::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field, seen.ends};
   if (!one_place || !surfaces_->could_lead(by_surfaces, answer.believed.map_from_robot)) return;
   answer.believed =
       surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, by_surfaces);

@@ -11,6 +11,7 @@
 
 #include "core/angle.hpp"
 #include "localization/beam_model.hpp"
+#include "localization/drive_calibration.hpp"
 #include "localization/hypotheses.hpp"
 #include "localization/particle_filter.hpp"
 #include "localization/pose_refinement.hpp"
@@ -39,7 +40,7 @@ struct TrackerParams {
   RefinementParams refinement;
   PoseTrackParams track;
   UpdateParams update;
-  bool follow_surfaces = false;  ///< where straight surfaces explain the scans they lead, and the particles rest
+  bool follow_surfaces = true;  ///< where straight surfaces explain the scans they lead, and the particles rest
 };
 
 class Tracker {
@@ -76,8 +77,10 @@ class Tracker {
   /// No scan has come for long: the particles and the track go along with the wheels up to this instant.
   void carry(const ScanInstant& now);
 
-  /// Of late, the share of ends on surfaces that stand where the map has them; 0 while the particles lead.
-  [[nodiscard]] double holding_share() const;
+  /// Nothing where surfaces are not followed. A scan's mount is to be corrected by it before the scan is seen.
+  [[nodiscard]] std::optional<DriveCalibration> calibration() const;
+  /// Surfaces that stand where the map has them fix the pose; never while the particles lead.
+  [[nodiscard]] bool is_held() const;
 
   /// The heaviest hypothesis at the last update.
   [[nodiscard]] const Hypothesis& best() const { return best_; }

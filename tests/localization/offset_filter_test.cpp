@@ -19,21 +19,24 @@ RefinedPose at_rest(double x, double y, double theta) {
   return {{x, y, theta}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
 }
 
+// Of the first surface that is followed.
+constexpr Eigen::Index kOffset = OffsetState::kFixed;
+
 TEST(OffsetState, TakesAFactorAsTheProductOfGaussians) {
   OffsetState state;
   state.start(at_rest(1.0, 2.0, 0.3));
   state.append(0.1, 0.5, 0.1);
-  state.update({{{{0, 1.0}, {7, -1.0}}}, 2}, 0.05, 0.01);  // ties pose and offset
+  state.update({{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);  // ties pose and offset
   const Eigen::MatrixXd information = state.covariance().inverse();
   const Eigen::VectorXd weighed = information * state.mean();
   Eigen::Matrix2d precision;
   precision << 40.0, 3.0, 3.0, 90.0;
   const Eigen::Vector2d pull{2.0, -1.0};
-  state.multiply<2>(7, precision, pull);
+  state.multiply<2>(kOffset, precision, pull);
   Eigen::MatrixXd expected = information;
-  expected.block<2, 2>(7, 7) += precision;
+  expected.block<2, 2>(kOffset, kOffset) += precision;
   Eigen::VectorXd expected_weighed = weighed;
-  expected_weighed.segment<2>(7) += pull;
+  expected_weighed.segment<2>(kOffset) += pull;
   EXPECT_LT((state.covariance() - expected.inverse()).norm(), 1e-9);
   EXPECT_LT((state.mean() - expected.inverse() * expected_weighed).norm(), 1e-9);
 }
@@ -43,13 +46,13 @@ TEST(OffsetState, KeepsThePoseWhenASurfaceIsForgotten) {
   state.start(at_rest(1.0, 2.0, 0.3));
   state.append(0.1, 0.5, 0.1);
   state.append(0.2, 0.5, 0.1);
-  state.update({{{{0, 1.0}, {7, -1.0}}}, 2}, 0.05, 0.01);
-  state.update({{{{1, 1.0}, {9, -1.0}}}, 2}, -0.05, 0.01);
+  state.update({{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);
+  state.update({{{{1, 1.0}, {kOffset + 2, -1.0}}}, 2}, -0.05, 0.01);
   const RefinedPose before = state.pose();
-  const double second_m = state.mean()[9];
+  const double second_m = state.mean()[kOffset + 2];
   state.remove(0);
-  EXPECT_EQ(state.mean().size(), 9);
-  EXPECT_EQ(state.mean()[7], second_m);
+  EXPECT_EQ(state.mean().size(), kOffset + 2);
+  EXPECT_EQ(state.mean()[kOffset], second_m);
   EXPECT_EQ(state.pose().map_from_robot, before.map_from_robot);
   EXPECT_EQ(state.pose().covariance, before.covariance);
 }
@@ -69,8 +72,8 @@ double holds_after(double offset_m, double pose_deviation_m) {
   pose.covariance(1, 1) = pose_deviation_m * pose_deviation_m;
   state.start(pose);
   state.append(0.0, kMovedM, kMovedRad);
-  state.update({{{{1, 1.0}, {7, -1.0}}}, 2}, -offset_m, 1e-4);
-  state.update({{{{2, -1.0}, {8, -1.0}}}, 2}, 0.0, 1e-5);
+  state.update({{{{1, 1.0}, {kOffset, -1.0}}}, 2}, -offset_m, 1e-4);
+  state.update({{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.0, 1e-5);
   std::vector<SurfaceSwitch> switches{{.surface = face(0.0)}};
   settle(switches, state);
   EXPECT_TRUE(state.is_sound());
@@ -125,7 +128,8 @@ class Drive {
     odometry_.time += duration_from_seconds(seconds);
   }
   void slip(const Pose2& robot_from_moved) { truth_ = truth_ * robot_from_moved; }
-  [[nodiscard]] double error_m() const { return distance_between(truth_, believed_); }
+  [[nodiscard]] double error_m() const { return distance_between(truth_, estimate_.map_from_robot); }
+  [[nodiscard]] const Estimate& estimate() const { return estimate_; }
   [[nodiscard]] double worst_m() const { return worst_m_; }
   void forget_worst() { worst_m_ = 0.0; }
   [[nodiscard]] const Pose2& truth() const { return truth_; }
@@ -146,15 +150,15 @@ class Drive {
     odometry_.odom_from_robot = odometry_.odom_from_robot * counted;
     odometry_.time += duration_from_seconds(0.1);
     localizer_.observe(odometry_);
-    believed_ = localizer_.observe(test::cast_scan(world_, truth_, odometry_.time, {.max_range_m = 8.0}, random_))
-                    .estimate.map_from_robot;
+    estimate_ =
+        localizer_.observe(test::cast_scan(world_, truth_, odometry_.time, {.max_range_m = 8.0}, random_)).estimate;
     worst_m_ = std::max(worst_m_, error_m());
   }
 
   OccupancyGrid world_;
   Localizer localizer_;
   Pose2 truth_ = start().map_from_robot;
-  Pose2 believed_;
+  Estimate estimate_;
   Odometry odometry_;
   Random random_{11};
   double worst_m_ = 0.0;
@@ -191,6 +195,17 @@ TEST(SurfaceTrack, HoldsThePoseInAHallThatIsAsItWas) {
   drive.forget_worst();
   drive.go(5.0, 0.0);
   EXPECT_LT(drive.worst_m(), 0.03);
+  EXPECT_EQ(drive.estimate().belief.verdict, PoseVerdict::kRight);
+}
+
+TEST(SurfaceTrack, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongTheAisle) {
+  Drive drive{test::containers_in_order(), true};
+  drive.go(5.0, 0.0);
+  const double deviation_m = std::sqrt(drive.estimate().covariance(0, 0));
+  drive.slip({0.0, 0.0, 0.07});
+  drive.go(0.05, 0.0);
+  EXPECT_NEAR(turn_between(drive.truth().theta, drive.estimate().map_from_robot.theta), 0.0, 0.015);
+  EXPECT_LT(std::sqrt(drive.estimate().covariance(0, 0)), deviation_m + 0.03);
 }
 
 TEST(SurfaceTrack, FindsThePoseAgainAfterASlip) {
@@ -245,29 +260,64 @@ TEST(SurfaceTrack, LeavesAPoseThatIsNotSureToTheParticles) {
   EXPECT_TRUE(SurfaceTrack::is_one_place(Eigen::Vector3d{1e-3, 1e-3, 1e-4}.asDiagonal().toDenseMatrix()));
 }
 
-TEST(OffsetFilter, FindsTheErrorsOfTheWheels) {
-  const auto map = std::make_shared<const OccupancyGrid>(test::map_of(test::containers_in_order()));
-  const OccupancyGrid world = test::world_of(test::containers_in_order());
-  const LikelihoodField field{*map, {}};
-  OffsetFilter filter{map};
-  Pose2 truth{2.0, 1.0, 0.0};
-  filter.start(at_rest(truth.x, truth.y, truth.theta));
-  Random random{4};
-  const PoseCovariance noise = Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix();
-  std::vector<FacedEnd> ends;
-  for (int side = 0; side < 8; ++side) {
-    for (int i = 0; i < 40 + 30; ++i) {
-      const Pose2 counted = i < 40 ? Pose2{side % 2 == 0 ? 0.2 : 0.075, 0.0, 0.0} : Pose2{0.0, 0.0, radians(3.0)};
-      truth = truth * Pose2{counted.x * 1.01, 0.0, counted.theta * 0.98};
-      filter.carry({.motion = counted}, noise);
-      const Scan scan = test::cast_scan(world, truth, timestamp_from_ns(i), {.max_range_m = 8.0}, random);
-      ends = faced_ends(scan, deskewed(scan, {}), std::move(ends));
-      (void)filter.observe(field, ends, 0.1, {});
+/// A robot by a fixed round through the aisles, whose scans are the filter's alone.
+class Round {
+ public:
+  explicit Round(const Pose2& mount_error)
+      : world_{test::world_of(test::containers_in_order())},
+        map_{std::make_shared<const OccupancyGrid>(test::map_of(test::containers_in_order()))},
+        field_{*map_, {}},
+        filter_{map_},
+        mount_error_{mount_error} {
+    filter_.start(at_rest(truth_.x, truth_.y, truth_.theta));
+  }
+
+  void drive(int sides) {
+    for (int side = 0; side < sides; ++side) {
+      for (int i = 0; i < 40 + 30; ++i)
+        step(i < 40 ? Pose2{side % 2 == 0 ? 0.2 : 0.075, 0.0, 0.0} : Pose2{0.0, 0.0, radians(3.0)});
     }
   }
-  EXPECT_NEAR(filter.wheels().distance, 0.01, 0.002);
-  EXPECT_NEAR(filter.wheels().turn, -0.02, 0.003);
-  EXPECT_LT(distance_between(filter.believed().map_from_robot, truth), 0.03);
+  [[nodiscard]] const OffsetFilter& filter() const { return filter_; }
+  [[nodiscard]] const Pose2& truth() const { return truth_; }
+
+ private:
+  void step(const Pose2& counted) {
+    truth_ = truth_ * Pose2{counted.x * 1.01, 0.0, counted.theta * 0.98};
+    filter_.carry({.motion = counted}, Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix());
+    const test::CastScanner scanner{.max_range_m = 8.0, .robot_from_laser = mount_error_};
+    Scan scan = test::cast_scan(world_, truth_, timestamp_from_ns(++scans_), scanner, random_);
+    scan.robot_from_laser = filter_.calibration().mount_error;  // told: the identity
+    ends_ = faced_ends(scan, deskewed(scan, {}), std::move(ends_));
+    (void)filter_.observe(field_, ends_, 0.1, {});
+  }
+
+  OccupancyGrid world_;
+  std::shared_ptr<const OccupancyGrid> map_;
+  LikelihoodField field_;
+  OffsetFilter filter_;
+  Pose2 mount_error_;
+  Pose2 truth_{2.0, 1.0, 0.0};
+  std::vector<FacedEnd> ends_;
+  Random random_{4};
+  int scans_ = 0;
+};
+
+TEST(OffsetFilter, FindsTheErrorsOfTheWheels) {
+  Round round{{}};
+  round.drive(8);
+  EXPECT_NEAR(round.filter().calibration().wheels.distance, 0.01, 0.002);
+  EXPECT_NEAR(round.filter().calibration().wheels.turn, -0.02, 0.003);
+  EXPECT_LT(distance_between(round.filter().believed().map_from_robot, round.truth()), 0.03);
+}
+
+TEST(OffsetFilter, FindsTheErrorOfTheMount) {
+  Round round{{0.015, -0.01, radians(0.5)}};
+  round.drive(16);
+  EXPECT_NEAR(round.filter().calibration().mount_error.x, 0.015, 0.01);
+  EXPECT_NEAR(round.filter().calibration().mount_error.y, -0.01, 0.01);
+  EXPECT_NEAR(round.filter().calibration().mount_error.theta, radians(0.5), radians(0.15));
+  EXPECT_LT(distance_between(round.filter().believed().map_from_robot, round.truth()), 0.03);
 }
 
 }  // namespace

@@ -35,13 +35,15 @@ TEST(Figure6, TurningLowersTheEffectiveSampleSizeAndAChangeDoesNot) {
   MeanShare straight;
   MeanShare past_a_change;
   MeanShare turning;
+  LocalizerParams params = test::HallDrive::params();
+  params.follow_surfaces = false;  // where surfaces lead the particles rest
   const auto settle = [](const TrackedScan&) {};
   for (const std::uint64_t seed : {41U, 42U, 43U}) {
-    test::HallDrive on_known{hall, {1.5, 7.0, 0.0}, seed};
+    test::HallDrive on_known{hall, {1.5, 7.0, 0.0}, seed, params};
     on_known.drive_to({3.0, 7.0}, hall, settle);
     on_known.drive_to({14.0, 7.0}, hall, [&](const TrackedScan& tracked) { straight(tracked); });
     on_known.turn(80, hall, [&](const TrackedScan& tracked) { turning(tracked); });
-    test::HallDrive on_changed{hall, {1.5, 7.0, 0.0}, seed};
+    test::HallDrive on_changed{hall, {1.5, 7.0, 0.0}, seed, params};
     on_changed.drive_to({3.0, 7.0}, changed, settle);
     on_changed.drive_to({14.0, 7.0}, changed, [&](const TrackedScan& tracked) { past_a_change(tracked); });
   }

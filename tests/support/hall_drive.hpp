@@ -21,8 +21,10 @@ class HallDrive {
   static constexpr double kSpeed_m_per_s = 0.4;
   static constexpr double kTurn_rad = 0.15;  // a scan period: 40°/s
 
-  HallDrive(const OccupancyGrid& map, const Pose2& start, std::uint64_t seed)
-      : localizer_{params(), std::make_shared<const OccupancyGrid>(map), localization::InitialPose{start}, seed},
+  HallDrive(const OccupancyGrid& map, const Pose2& start, std::uint64_t seed) : HallDrive{map, start, seed, params()} {}
+  HallDrive(const OccupancyGrid& map, const Pose2& start, std::uint64_t seed,
+            const localization::LocalizerParams& given)
+      : localizer_{given, std::make_shared<const OccupancyGrid>(map), localization::InitialPose{start}, seed},
         random_{seed + 1000},
         truth_{start} {
     odometry_.time = timestamp_from_ns(1'700'000'000'000'000'000);
