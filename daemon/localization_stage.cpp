@@ -222,6 +222,7 @@ void LocalizationStage::show(const Estimate& estimate, Timestamp received) {
   latency_.add(latency_s);
   wiring_.telemetry.localized.add(1);
   wiring_.telemetry.fit.set(step_.fit().value_or(-1.0));
+  wiring_.telemetry.calibration.set(step_.calibration());
   wiring_.telemetry.latency_s.set(latency_s);
   wiring_.telemetry.estimate.set(estimate);
 }

@@ -49,6 +49,7 @@ class LocalizationStep {
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
   /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
+  [[nodiscard]] std::optional<localization::DriveCalibration> calibration() const { return localizer_.calibration(); }
   [[nodiscard]] localization::StabilityRecord stability() const { return localizer_.stability(); }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }

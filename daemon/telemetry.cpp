@@ -75,6 +75,21 @@ void EstimateGauges::set(const Estimate& estimate) {
   rival_heading_rad.set(belief.map_from_rival.theta);
 }
 
+void CalibrationGauges::set(const std::optional<localization::DriveCalibration>& calibration) {
+  known.set(calibration.has_value());
+  if (!calibration) return;
+  const auto all = [](const localization::WheelErrors& wheels, const Pose2& mount) {
+    return std::array{wheels.distance, wheels.turn, wheels.drift_rad_per_m, wheels.lag_s, mount.x,
+                      mount.y,         mount.theta};
+  };
+  const auto found = all(calibration->wheels, calibration->mount_error);
+  const auto spread = all(calibration->wheel_deviations, calibration->mount_deviations);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    values[i].set(found[i]);
+    deviations[i].set(spread[i]);
+  }
+}
+
 void GateGauges::set(mapping::GateReason now, const mapping::GateTimes& times) {
   reason.set(static_cast<std::uint8_t>(now));
   for (std::size_t i = 0; i < times.size(); ++i) times_s[i].set(times[i]);

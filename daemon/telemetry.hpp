@@ -6,10 +6,12 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/messages.hpp"
 #include "daemon/output_board.hpp"
+#include "localization/drive_calibration.hpp"
 #include "mapping/write_gate.hpp"
 
 namespace deltamap::daemon {
@@ -46,6 +48,14 @@ struct EstimateGauges {
   void set(const Estimate& estimate);
 };
 
+/// What driving has told of wheels and mount, with deviations.
+struct CalibrationGauges {
+  Gauge<bool> known;
+  std::array<Gauge<double>, 7> values,
+      deviations;  ///< distance, turn, drift (rad/m), lag (s), mount x, y (m), yaw (rad)
+  void set(const std::optional<localization::DriveCalibration>& calibration);
+};
+
 struct GateGauges {
   Gauge<std::uint8_t> reason;  ///< mapping::GateReason
   std::array<Gauge<double>, mapping::kGateReasons> times_s;
@@ -68,6 +78,7 @@ struct Telemetry {
   // localization thread
   Gauge<std::uint64_t> localized, dropped, tracked_lost;
   EstimateGauges estimate;
+  CalibrationGauges calibration;
   Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none came back
   Gauge<double> latency_s;
   Gauge<bool> paused;  ///< by the operator: Δ-mapping sees no scans

@@ -166,6 +166,8 @@ TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
     EXPECT_GT(told["w_avg"], 0.0);
     EXPECT_EQ(told["revision"], 0);
     EXPECT_EQ(told["drive"], "off");
+    EXPECT_LT(std::abs(told["calibration"]["distance_percent"].get<double>()), 10.0);
+    EXPECT_GT(told["calibration"]["deviations"]["mount"]["yaw_deg"], 0.0);
     EXPECT_EQ(told["recording"]["file"], settings_.recording.file);
     EXPECT_EQ(told["recording"]["goes_on"], true);
     for (const char* output : {"trajectory", "localization", "changes", "map", "history", "recording"}) {

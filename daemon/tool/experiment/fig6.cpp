@@ -72,7 +72,9 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   simulation::VirtualDriveParams drive;
   drive.seed = seed;
   drive.route.round = path.round;
-  LocalizerDrive pair{scenario, drive, variant.params, first_map(scenario),
+  localization::LocalizerParams params = variant.params;
+  params.follow_surfaces = false;  // N_eff is the particles'; where surfaces lead they rest
+  LocalizerDrive pair{scenario, drive, params, first_map(scenario),
                       localization::InitialPose{scenario.robot.map_from_start}};
   if (path.changes) (void)pair.drive().change_many(kChangedShare, busy_forklift(1.0));
   if (path.turn_rad_per_s) pair.drive().hold({.turn_rate_rad_per_s = *path.turn_rad_per_s});
