@@ -8,6 +8,7 @@
 #include "daemon/live_messages.hpp"
 #include "daemon/map_picture.hpp"
 #include "daemon/metrics_text.hpp"
+#include "daemon/service.hpp"
 #include "daemon/status_report.hpp"
 #include "drivers/port/port_clock.hpp"
 
@@ -40,6 +41,7 @@ DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, co
       began_{port_clock_now()},
       server_{{.address = settings.dashboard.address,
                .port = settings.dashboard.port,
+               .descriptor = service::handed_over_socket("page"),
                .token = settings.dashboard.token_file.empty() ? std::string{}
                                                               : dashboard::read_token(settings.dashboard.token_file),
                .answer = [this](const Request& request) { return answer(request); },
@@ -49,11 +51,7 @@ DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, co
   news_.hello.set(hello_message(settings_));
 }
 
-std::string DashboardDesk::url() const {
-  const std::string& address = settings_.dashboard.address;
-  const bool is_v6 = address.find(':') != std::string::npos;
-  return "http://" + (is_v6 ? "[" + address + "]" : address) + ":" + std::to_string(server_.port()) + "/";
-}
+std::string DashboardDesk::url() const { return "http://" + server_.place() + "/"; }
 
 Answer DashboardDesk::answer(const Request& request) const {
   const std::string& path = request.path;

@@ -12,13 +12,13 @@ namespace deltamap::daemon::dashboard {
 
 /// The parts of a request that decide anything. Absent header fields are empty.
 struct Request {
-  std::string method;  ///< "GET"
-  std::string path;    ///< "/api/status": the target up to its '?'
-  std::string query;   ///< what follows the '?'
-  std::string host;
-  std::string origin;
-  std::string cookie;
-  std::string authorization;
+  std::string method{};  ///< "GET"
+  std::string path{};    ///< "/api/status": the target up to its '?'
+  std::string query{};   ///< what follows the '?'
+  std::string host{};
+  std::string origin{};
+  std::string cookie{};
+  std::string authorization{};
 };
 
 struct Answer {

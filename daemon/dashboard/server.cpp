@@ -2,6 +2,8 @@
 // The one source that includes Beast.
 #include "daemon/dashboard/server.hpp"
 
+#include <sys/socket.h>
+
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
 #include <boost/asio/executor_work_guard.hpp>
@@ -234,6 +236,22 @@ class Viewer final : public Connection, public std::enable_shared_from_this<View
   Clock::time_point sending_since_;
 };
 
+std::string text_of(const tcp::endpoint& endpoint) {
+  const std::string address = endpoint.address().to_string();
+  return (endpoint.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port());
+}
+
+/// One that somebody else has opened, systemd for example.
+tcp::acceptor inherited(asio::io_context& loop, int descriptor) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  const bool is_socket = ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+  if (!is_socket || (address.ss_family != AF_INET && address.ss_family != AF_INET6)) {
+    throw std::runtime_error("the socket that was handed over is none of TCP");
+  }
+  return {loop, address.ss_family == AF_INET ? tcp::v4() : tcp::v6(), descriptor};
+}
+
 tcp::acceptor listening_at(asio::io_context& loop, const std::string& address, std::uint16_t port) {
   try {
     const tcp::endpoint endpoint{asio::ip::make_address(address), port};
@@ -247,14 +265,21 @@ tcp::acceptor listening_at(asio::io_context& loop, const std::string& address, s
   }
 }
 
+tcp::acceptor acceptor_of(asio::io_context& loop, const Server::Options& options) {
+  tcp::acceptor acceptor =
+      options.descriptor >= 0 ? inherited(loop, options.descriptor) : listening_at(loop, options.address, options.port);
+  const tcp::endpoint place = acceptor.local_endpoint();
+  if (options.token.empty() && !place.address().is_loopback()) {
+    throw std::runtime_error(text_of(place) + ": leads beyond this machine, and no token is asked for");
+  }
+  return acceptor;
+}
+
 }  // namespace
 
 struct Server::State {
   explicit State(Options given)
-      : host{std::move(given)},
-        acceptor{listening_at(loop, host.options.address, host.options.port)},
-        retry_timer{loop},
-        period_timer{loop} {
+      : host{std::move(given)}, acceptor{acceptor_of(loop, host.options)}, retry_timer{loop}, period_timer{loop} {
     host.upgrade = [this](beast::tcp_stream stream, HttpRequest request) {
       welcome_viewer(std::move(stream), std::move(request));
     };
@@ -354,6 +379,8 @@ Server::Server(Options options) : state_{std::make_unique<State>(std::move(optio
 Server::~Server() = default;
 
 std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().port(); }
+
+std::string Server::place() const { return text_of(state_->acceptor.local_endpoint()); }
 
 void Server::run() {
   const auto keep_alive = asio::make_work_guard(state_->loop);

@@ -18,8 +18,9 @@ class Server {
   /// All functions are called in the server's thread.
   struct Options {
     std::string address = "127.0.0.1";
-    std::uint16_t port = 0;                           ///< 0: any that is free
-    std::string token{};                              ///< empty: none is asked for
+    std::uint16_t port = 0;  ///< 0: any that is free
+    int descriptor = -1;     ///< of a socket that listens already, in place of address and port; -1: none
+    std::string token{};     ///< empty: none is asked for
     std::function<Answer(const Request&)> answer;     ///< to a request that may be answered
     std::function<std::unique_ptr<Stream>()> open;    ///< for a viewer at /live that has come
     std::function<void()> refresh = [] {};            ///< every period, before viewers are served
@@ -29,14 +30,17 @@ class Server {
     std::size_t most_connections = 96;                ///< viewers among them
     std::size_t most_viewers = 32;
   };
-  /// Listens from now on. Throws std::runtime_error with one line that names address and port.
+  /// Listens from now on. Throws std::runtime_error with one line that names address and port: taken, or beyond this
+  /// machine without a token.
   explicit Server(Options options);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// The port that it listens on.
+  /// What it listens on.
   [[nodiscard]] std::uint16_t port() const;
+  /// "127.0.0.1:8484", "[::1]:8484"
+  [[nodiscard]] std::string place() const;
   /// The thread's work, until stop().
   void run();
   /// Any thread: every connection ends at once.

@@ -10,7 +10,7 @@ const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 2] };
 const line = (column, label, ink, dash = "solid") => ({ column, label, ink, dash });
 const CHARTS = [
   { title: "Belief", lines: [line("pose_right", "P(pose right)", "--blue"), line("map_wrong", "P(map wrong)", "--red", "dashed")], low: 0, high: 1, threshold: "pose_right" },
-  { title: "Scan weight", lines: [line("w_avg", "w_avg", "--sky"), line("w_fast", "w_fast", "--red", "dashed"), line("w_slow", "w_slow", "--text", "dotted")] },
+  { title: "Weight", lines: [line("w_avg", "w_avg", "--sky"), line("w_fast", "w_fast", "--red", "dashed"), line("w_slow", "w_slow", "--text", "dotted")] },
   { title: "Divergence ratio", lines: [line("r_d", "r_d", "--blue")], threshold: "r_d" },
   { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")], low: 0 },
   { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")], low: 0 },
@@ -222,7 +222,8 @@ export class Charts {
   draw() {
     this.is_due = false;
     const to = this.samples.at(-1)?.time ?? Date.now() / 1000;
-    const from = to - this.span_s;
+    // A young run fills the axis: from its beginning, a minute at least.
+    const from = Math.max(to - this.span_s, Math.min(this.samples[0]?.time ?? to, to - SPANS[0][1]));
     const shown = this.samples.filter((sample) => sample.time >= from);
     for (const chart of this.charts) {
       chart.draw(shown, from, to, this.thresholds[chart.kind.threshold] ?? null, this.instant);

@@ -8,6 +8,7 @@ const JUMP_M = 2;      // the path is not joined over such a step
 const SIGMAS = 2;      // of the covariance ellipse
 const ROBOT_M = 0.25;  // radius
 const LEAST_ROBOT_PX = 7;
+const LEAST_SHARE = 0.005;  // of the belief, of a hypothesis that is drawn
 
 const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -111,9 +112,12 @@ function draw_temporary(context, view, model) {
   });
 }
 
+/// A refused change that found nothing has none.
+export const has_place = ({ box_m: [left, bottom, right, top] }) => right > left && top > bottom;
+
 function draw_changes(context, view, model) {
   const newest = model.changes.filter((change) => change.accepted).slice(-12);
-  const shown = model.picked && !newest.includes(model.picked) ? [...newest, model.picked] : newest;
+  const shown = model.picked && has_place(model.picked) && !newest.includes(model.picked) ? [...newest, model.picked] : newest;
   for (const change of shown) {
     const [left, bottom, right, top] = change.box_m;
     const [x, y] = view.to_screen((left + right) / 2, (bottom + top) / 2);
@@ -130,13 +134,13 @@ function draw_changes(context, view, model) {
 
 function draw_rival(context, view, model) {
   const rival = model.pose?.rival;
-  if (!rival) return;
+  if (!rival || rival.share < LEAST_SHARE) return;
   const [x, y] = view.to_screen(rival.x_m, rival.y_m);
   context.globalAlpha = 0.35 + 0.65 * rival.share;
   robot_sign(context, x, y, rival.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink("--pink"));
   context.globalAlpha = 1;
   context.fillStyle = ink("--text");
-  context.fillText(`${(100 * rival.share).toFixed(0)} %`, x + 12, y - 10);
+  context.fillText(rival.share < 0.01 ? "< 1 %" : `${(100 * rival.share).toFixed(0)} %`, x + 12, y - 10);
 }
 
 /// Half axes and direction of the ellipse of so many sigmas.

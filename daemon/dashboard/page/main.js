@@ -3,12 +3,12 @@
 
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
-import { draw_scale_bar, fill_legend, LAYERS } from "./layers.js";
+import { draw_scale_bar, fill_legend, has_place, LAYERS } from "./layers.js";
 import { MapView } from "./map_view.js";
 import { add_changes, clear_changes, mark_picked, show_link, show_pose, show_status } from "./panels.js";
 
 const MOST_SAMPLES = 3600;
-const NARROW_PX = 760;
+const NARROW_PX = 1280; // the legend would cover the map
 
 const by_id = (id) => document.getElementById(id);
 const model = { samples: [], changes: [], pose: null, scan: null, temporary: null, status: null, picked: null };
@@ -57,9 +57,10 @@ function pick(change, button) {
   model.picked = model.picked === change ? null : change;
   mark_picked(model.picked ? button : null);
   if (!model.picked) return view.draw_soon();
+  if (!has_place(change)) return view.draw_soon();
   view.set_follow(false);
   const [left, bottom, right, top] = change.box_m;
-  view.scale = Math.max(view.scale, Math.min(80, 0.4 * view.width / Math.max(1, right - left, top - bottom)));
+  view.scale = Math.max(view.scale, Math.min(40, 0.4 * view.width / Math.max(1, right - left, top - bottom)));
   view.show((left + right) / 2, (bottom + top) / 2);
 }
 

@@ -9,7 +9,7 @@ const GATE_WORDS = {
 };
 const LEVELS = { tracking: "good", global: "warn", lost: "bad", right: "good", undecided: "warn", wrong: "bad" };
 
-const percent = (share) => `${(100 * share).toFixed(share > 0.99 || share < 0.01 ? 1 : 0)} %`;
+const percent = (share) => `${(100 * share).toFixed(share > 0 && share < 0.01 ? 1 : 0)} %`;
 const whole = (number) => Math.round(number).toLocaleString("en");
 
 function duration(time_s) {
@@ -34,7 +34,7 @@ export function show_link(link) {
 export function show_pose(pose) {
   badge("badge-state", pose.state, LEVELS[pose.state] ?? "none");
   badge("badge-verdict", `pose ${pose.verdict}`, LEVELS[pose.verdict] ?? "none");
-  badge("badge-gate", pose.gate.open ? "map is written" : `map waits: ${pose.gate.reason}`, pose.gate.open ? "good" : "warn");
+  badge("badge-gate", pose.gate.open ? "gate open" : `gate shut: ${pose.gate.reason}`, pose.gate.open ? "good" : "warn");
 }
 
 function share_bar(share) {
@@ -121,14 +121,10 @@ function item_of(change, on_pick) {
   what.textContent = words_of(change);
   const time = document.createElement("time");
   time.textContent = new Date(1000 * change.time).toLocaleTimeString([], { hour12: false });
-  button.title = `Δ-phase ${change.phase}, ${change.scans} scans, acceptance ${change.acceptance.toFixed(3)}`;
-  if (change.acceptance > 0) {
-    const acceptance = document.createElement("span");
-    acceptance.className = "why";
-    acceptance.textContent = ` · acceptance ${change.acceptance.toFixed(2)}`;
-    what.append(acceptance);
-  }
-  button.append(title, what, time);
+  const why = document.createElement("span");
+  why.className = "why";
+  why.textContent = `Δ-phase ${change.phase}, ${change.scans} scans, acceptance ${change.acceptance.toFixed(2)}`;
+  button.append(title, what, time, why);
   button.addEventListener("click", () => on_pick(change, button));
   item.append(button);
   return item;
