@@ -40,6 +40,7 @@ class Browser:
             pass
         self.driver.terminate()
         self.driver.wait(10)
+        self.driver.stdout.close()
         self.profile.cleanup()
 
     def _port(self):
