@@ -8,6 +8,7 @@ const JUMP_M = 2;      // the path is not joined over such a step
 const SIGMAS = 2;      // of the covariance ellipse
 const ROBOT_M = 0.25;  // radius
 const LEAST_ROBOT_PX = 7;
+const MOST_RINGS = 8;
 const LEAST_SHARE = 0.005;  // of the belief, of a hypothesis that is drawn
 
 const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -115,18 +116,26 @@ function draw_temporary(context, view, model) {
 /// A refused change that found nothing has none.
 export const has_place = ({ box_m: [left, bottom, right, top] }) => right > left && top > bottom;
 
+function ring_of(change) {
+  const [left, bottom, right, top] = change.box_m;
+  return { change, x: (left + right) / 2, y: (bottom + top) / 2, radius: Math.hypot(right - left, top - bottom) / 2 + 0.15 };
+}
+
+/// The newest ones; what lies inside a newer ring has none of its own.
 function draw_changes(context, view, model) {
-  const newest = model.changes.filter((change) => change.accepted).slice(-12);
-  const shown = model.picked && has_place(model.picked) && !newest.includes(model.picked) ? [...newest, model.picked] : newest;
-  for (const change of shown) {
-    const [left, bottom, right, top] = change.box_m;
-    const [x, y] = view.to_screen((left + right) / 2, (bottom + top) / 2);
+  const rings = [];
+  if (model.picked && has_place(model.picked)) rings.push(ring_of(model.picked));
+  for (let i = model.changes.length - 1; i >= 0 && rings.length < MOST_RINGS; --i) {
+    const ring = ring_of(model.changes[i]);
+    const is_covered = rings.some((other) => Math.hypot(ring.x - other.x, ring.y - other.y) < other.radius);
+    if (model.changes[i].accepted && !is_covered) rings.push(ring);
+  }
+  context.strokeStyle = ink("--red");
+  for (const { change, x, y, radius } of rings) {
     const is_picked = change === model.picked;
-    const radius = Math.max(10, (Math.hypot(right - left, top - bottom) / 2 + 0.15) * view.scale);
-    context.strokeStyle = ink("--red");
     context.setLineDash(is_picked ? [] : [5, 4]);
     context.lineWidth = is_picked ? 3.5 : 1.5;
-    circle(context, x, y, radius);
+    circle(context, ...view.to_screen(x, y), Math.max(10, radius * view.scale));
     context.stroke();
   }
   context.setLineDash([]);

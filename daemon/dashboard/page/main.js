@@ -98,8 +98,10 @@ const on = {
   scan(scan) { model.scan = scan; },  // a pose comes with it
   temporary(temporary) { model.temporary = temporary; view.draw_soon(); },
   status(message) {
-    model.status = message.status;
-    show_status(message, model.samples.at(-1)?.scans_per_s);
+    const before = model.status, now = message.status;
+    const passed_s = before ? now.since_start_s - before.since_start_s : 0;
+    model.status = now;
+    show_status(message, passed_s > 0 ? (now.localized - before.localized) / passed_s : null);
   },
   samples(rows) {
     model.samples.push(...rows);

@@ -69,7 +69,7 @@ function rows_of({ status, resident_bytes }, rate) {
     ["Waits", waiting_words(status)],
     ["Revision", `M${status.newest_revision}` + (status.newest_revision === status.revision ? "" : `, pose on M${status.revision}`) + (status.refused ? `; ${status.refused} refused` : "")],
     ["Pose", `${pose.x_m.toFixed(2)}, ${pose.y_m.toFixed(2)} m, ${pose.heading_deg.toFixed(0)}°; σ ${(100 * deviation).toFixed(1)} cm`],
-    ["Scans", (rate ? `${rate.toFixed(1)} a second` : "none") + (drops ? `; ${whole(drops)} dropped` : "")],
+    ["Scans", (rate === null ? "–" : rate > 0 ? `${rate.toFixed(1)} a second` : "none come") + (drops ? `; ${whole(drops)} dropped` : "")],
     ["Latency", `${status.latency_ms.toFixed(1)} ms`],
     ["Particles", `${whole(status.particles)}; N_eff ${status.n_eff.toFixed(0)}`],
     ["Ports", `robot ${status.ports.robot}, laser ${status.ports.laser}`],
@@ -123,7 +123,8 @@ function item_of(change, on_pick) {
   time.textContent = new Date(1000 * change.time).toLocaleTimeString([], { hour12: false });
   const why = document.createElement("span");
   why.className = "why";
-  why.textContent = `Δ-phase ${change.phase}, ${change.scans} scans, acceptance ${change.acceptance.toFixed(2)}`;
+  why.textContent = change.withdraws ? `takes back ${change.withdraws.map((number) => `M${number}`).join(", ")}`
+    : `Δ-phase ${change.phase}, ${change.scans} scans, acceptance ${change.acceptance.toFixed(2)}`;
   button.append(title, what, time, why);
   button.addEventListener("click", () => on_pick(change, button));
   item.append(button);
