@@ -30,7 +30,7 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 double unix_s(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
 
-Json rival_json(const Belief& belief) {
+Json hypothesis_json(const Belief& belief) {
   if (belief.rival_share <= 0.0) return nullptr;
   return {{"x_m", belief.map_from_rival.x},
           {"y_m", belief.map_from_rival.y},
@@ -98,7 +98,7 @@ std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
   json["map_wrong"] = row.belief.map_wrong;
   json["speed_m_per_s"] = row.speed_m_per_s;
   json["revision"] = row.revision;
-  json["rival"] = rival_json(row.belief);
+  json["other_hypothesis"] = hypothesis_json(row.belief);
   json["gate"] = gate_json(telemetry);
   json["latency_ms"] = 1e3 * scan.latency_s;
   return text_of(json);
@@ -118,9 +118,9 @@ std::string scan_message(const LiveScan& scan) {
   return bytes;
 }
 
-std::string temporary_message(const TemporaryThings* things) {
+std::string transient_message(const TemporaryThings* things) {
   Json json;
-  json["type"] = "temporary";
+  json["type"] = "transient";
   json["standing"] = Json::array();
   json["gone"] = Json::array();
   if (things != nullptr) {

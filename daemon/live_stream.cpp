@@ -32,7 +32,7 @@ std::optional<Message> LiveStream::next() {
                                                                                {&news_.pose, &pose_},
                                                                                {&news_.scan, &scan_},
                                                                                {&news_.status, &status_},
-                                                                               {&news_.temporary, &temporary_}}};
+                                                                               {&news_.transient, &transient_}}};
   for (const auto& [newest, sent] : shared) {
     if (newest->number == *sent) continue;
     *sent = newest->number;

@@ -217,7 +217,8 @@ class Viewer final : public Connection, public std::enable_shared_from_this<View
   }
 
  private:
-  /// Only so that pings, closing and errors are noticed: the page is read-only, whoever speaks is shown out.
+  /// Reads only to answer pings and to notice closing and errors. The page is read-only: a viewer that sends data is
+  /// closed.
   void listen() {
     socket_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->on_end_(self.get());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // HTTP and WebSocket for the live page, in a thread of its own. Everything is bounded: connections, viewers, headers,
-// incoming messages, what waits for a viewer, and time. A viewer that is slow, rude or gone troubles nobody else.
+// incoming messages, what waits for a viewer, and time. A viewer that is slow, malformed or gone does not affect the
+// others.
 #pragma once
 
 #include <cstddef>

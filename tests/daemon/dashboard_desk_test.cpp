@@ -185,10 +185,10 @@ TEST_F(DashboardDeskTest, AViewerSeesPoseScanMapAndWhatChangesInIt) {
     return true;
   };
   ASSERT_TRUE(
-      read_until([&] { return told.count("status") > 0 && told.count("temporary") > 0 && bytes.count(1) > 0; }));
+      read_until([&] { return told.count("status") > 0 && told.count("transient") > 0 && bytes.count(1) > 0; }));
   EXPECT_EQ(told["hello"]["protocol"], 1);
   EXPECT_EQ(told["pose"]["x_m"], 0.5);
-  EXPECT_EQ(told["pose"]["rival"]["share"], 0.25);
+  EXPECT_EQ(told["pose"]["other_hypothesis"]["share"], 0.25);
   EXPECT_EQ(told["pose"]["gate"]["open"], true);
   EXPECT_EQ(told["status"]["status"]["ok"], true);
   EXPECT_GT(told["status"]["resident_bytes"], 1'000'000);
@@ -211,9 +211,9 @@ TEST_F(DashboardDeskTest, AViewerSeesPoseScanMapAndWhatChangesInIt) {
   things->standing = {4, 7};
   told.clear();
   EXPECT_TRUE(desk_->board().show(things));
-  ASSERT_TRUE(read_until([&] { return told.count("temporary") > 0; }));
-  EXPECT_EQ(told["temporary"]["standing"], Json({4, 7}));
-  EXPECT_EQ(told["temporary"]["blocks_across"], 9);
+  ASSERT_TRUE(read_until([&] { return told.count("transient") > 0; }));
+  EXPECT_EQ(told["transient"]["standing"], Json({4, 7}));
+  EXPECT_EQ(told["transient"]["blocks_across"], 9);
 }
 
 // --- a whole daemon ---

@@ -47,7 +47,7 @@ function scan_of(view) {
   return { time: view.getFloat64(8, true), x, y, heading, ends };
 }
 
-/// `on` holds a function for each kind of message (hello, map, cells, pose, scan, temporary, status, samples, changes)
+/// `on` holds a function for each kind of message (hello, map, cells, pose, scan, transient, status, samples, changes)
 /// and link("connecting" | "live" | "lost").
 export class Connection {
   constructor(on) {

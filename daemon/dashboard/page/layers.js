@@ -71,11 +71,11 @@ function draw_scan(context, view, model) {
 }
 
 function each_block(model, kind, act) {
-  const { temporary } = model;
-  if (!temporary?.blocks_across) return;
-  for (const index of temporary[kind]) {
-    const column = index % temporary.blocks_across, row = Math.floor(index / temporary.blocks_across);
-    act(temporary.origin_m[0] + column * temporary.block_m, temporary.origin_m[1] + row * temporary.block_m, temporary.block_m);
+  const { transient } = model;
+  if (!transient?.blocks_across) return;
+  for (const index of transient[kind]) {
+    const column = index % transient.blocks_across, row = Math.floor(index / transient.blocks_across);
+    act(transient.origin_m[0] + column * transient.block_m, transient.origin_m[1] + row * transient.block_m, transient.block_m);
   }
 }
 
@@ -99,7 +99,7 @@ function hatched(context, x, y, width, height, colour) {
   context.restore();
 }
 
-function draw_temporary(context, view, model) {
+function draw_transient(context, view, model) {
   if (model.status?.mapping === "paused") return; // nobody looks after it
   each_block(model, "standing", (x, y, side) => {
     const [px, py] = view.to_screen(x, y + side);
@@ -141,15 +141,15 @@ function draw_changes(context, view, model) {
   context.setLineDash([]);
 }
 
-function draw_rival(context, view, model) {
-  const rival = model.pose?.rival;
-  if (!rival || rival.share < LEAST_SHARE) return;
-  const [x, y] = view.to_screen(rival.x_m, rival.y_m);
-  context.globalAlpha = 0.35 + 0.65 * rival.share;
-  robot_sign(context, x, y, rival.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink("--pink"));
+function draw_hypothesis(context, view, model) {
+  const other = model.pose?.other_hypothesis;
+  if (!other || other.share < LEAST_SHARE) return;
+  const [x, y] = view.to_screen(other.x_m, other.y_m);
+  context.globalAlpha = 0.35 + 0.65 * other.share;
+  robot_sign(context, x, y, other.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink("--pink"));
   context.globalAlpha = 1;
   context.fillStyle = ink("--text");
-  context.fillText(rival.share < 0.01 ? "< 1 %" : `${(100 * rival.share).toFixed(0)} %`, x + 12, y - 10);
+  context.fillText(other.share < 0.01 ? "< 1 %" : `${(100 * other.share).toFixed(0)} %`, x + 12, y - 10);
 }
 
 /// Half axes and direction of the ellipse of so many sigmas.
@@ -179,7 +179,7 @@ function draw_robot(context, view, model) {
 // From below to above.
 export const LAYERS = [
   { id: "path", label: "path", draw: draw_path, sign: (c) => { c.strokeStyle = ink("--sky"); c.lineWidth = 2; c.beginPath(); c.moveTo(1, 12); c.lineTo(9, 4); c.lineTo(21, 7); c.stroke(); } },
-  { id: "temporary", label: "not (yet) map", draw: draw_temporary,
+  { id: "transient", label: "not (yet) map", draw: draw_transient,
     keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink("--orange"))],
            ["seen gone", (c) => { c.strokeStyle = ink("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
@@ -187,7 +187,7 @@ export const LAYERS = [
     keys: [["on the map's obstacles", (c) => { c.fillStyle = ink("--green"); c.fillRect(8, 4, 6, 6); }],
            ["where the map is free", (c) => { c.fillStyle = ink("--orange"); circle(c, 11, 7, 4); c.fill(); }],
            ["where it is unknown", (c) => { c.fillStyle = ink("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
-  { id: "rival", label: "other hypothesis", draw: draw_rival, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink("--pink")) },
+  { id: "hypothesis", label: "other hypothesis", draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink("--pink")) },
   { id: "robot", label: `robot, ${SIGMAS} σ`, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink("--blue")) },
 ];
 

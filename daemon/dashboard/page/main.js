@@ -11,7 +11,7 @@ const MOST_SAMPLES = 3600;
 const NARROW_PX = 1280; // the legend would cover the map
 
 const by_id = (id) => document.getElementById(id);
-const model = { samples: [], changes: [], pose: null, scan: null, temporary: null, status: null, picked: null };
+const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null };
 const shown = new Set(LAYERS.map((layer) => layer.id));
 
 // --- dark and light: as the system, until a person says otherwise ---
@@ -96,7 +96,7 @@ const on = {
     view.draw_soon();
   },
   scan(scan) { model.scan = scan; },  // a pose comes with it
-  temporary(temporary) { model.temporary = temporary; view.draw_soon(); },
+  transient(transient) { model.transient = transient; view.draw_soon(); },
   status(message) {
     const before = model.status, now = message.status;
     const passed_s = before ? now.since_start_s - before.since_start_s : 0;

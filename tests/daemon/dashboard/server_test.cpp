@@ -198,7 +198,7 @@ TEST_F(DashboardServer, NothingRunsWithoutAViewer) {
   EXPECT_EQ(refreshes_, at_end);
 }
 
-TEST_F(DashboardServer, AViewerThatSpeaksIsShownOut) {
+TEST_F(DashboardServer, AViewerThatSendsDataIsClosed) {
   start();
   WebClient client{port()};
   EXPECT_EQ(client.upgraded().status, 101);
