@@ -8,6 +8,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
@@ -111,6 +112,11 @@ class WebClient {
   bool send_frame(unsigned opcode, const std::string& payload) const {
     std::string bytes{static_cast<char>(0x80U | opcode), static_cast<char>(0x80U | payload.size())};
     return send(bytes + std::string(4, '\0') + payload);
+  }
+  /// Says no more, and reads until the server hangs up.
+  [[nodiscard]] bool finishes() {
+    (void)::shutdown(descriptor_, SHUT_WR);
+    return is_hung_up();
   }
   /// Reads until the server hangs up. False where it does not within the patience of the socket.
   [[nodiscard]] bool is_hung_up() {

@@ -116,26 +116,28 @@ function draw_transient(context, view, model) {
 /// A refused change that found nothing has none.
 export const has_place = ({ box_m: [left, bottom, right, top] }) => right > left && top > bottom;
 
-function ring_of(change) {
-  const [left, bottom, right, top] = change.box_m;
-  return { change, x: (left + right) / 2, y: (bottom + top) / 2, radius: Math.hypot(right - left, top - bottom) / 2 + 0.15 };
-}
+const RING_M = 0.15;  // around the changed cells
+const LEAST_RING_PX = 20;
 
 /// The newest ones; what lies inside a newer ring has none of its own.
 function draw_changes(context, view, model) {
-  const rings = [];
-  if (model.picked && has_place(model.picked)) rings.push(ring_of(model.picked));
-  for (let i = model.changes.length - 1; i >= 0 && rings.length < MOST_RINGS; --i) {
-    const ring = ring_of(model.changes[i]);
-    const is_covered = rings.some((other) => Math.hypot(ring.x - other.x, ring.y - other.y) < other.radius);
-    if (model.changes[i].accepted && !is_covered) rings.push(ring);
+  const shown = model.picked && has_place(model.picked) ? [model.picked] : [];
+  for (let i = model.changes.length - 1; i >= 0 && shown.length < MOST_RINGS; --i) {
+    const [left, bottom, right, top] = model.changes[i].box_m;
+    const x = (left + right) / 2, y = (bottom + top) / 2;
+    const is_covered = shown.some(({ box_m: [l, b, r, t] }) => x > l - RING_M && x < r + RING_M && y > b - RING_M && y < t + RING_M);
+    if (model.changes[i].accepted && has_place(model.changes[i]) && !is_covered) shown.push(model.changes[i]);
   }
   context.strokeStyle = ink("--red");
-  for (const { change, x, y, radius } of rings) {
-    const is_picked = change === model.picked;
+  for (const change of shown) {
+    const [left, bottom, right, top] = change.box_m, is_picked = change === model.picked;
+    const [x, y] = view.to_screen((left + right) / 2, (bottom + top) / 2);
+    const width = Math.max(LEAST_RING_PX, (right - left + 2 * RING_M) * view.scale);
+    const height = Math.max(LEAST_RING_PX, (top - bottom + 2 * RING_M) * view.scale);
     context.setLineDash(is_picked ? [] : [5, 4]);
     context.lineWidth = is_picked ? 3.5 : 1.5;
-    circle(context, ...view.to_screen(x, y), Math.max(10, radius * view.scale));
+    context.beginPath();
+    context.roundRect(x - width / 2, y - height / 2, width, height, Math.min(width, height) / 2);
     context.stroke();
   }
   context.setLineDash([]);

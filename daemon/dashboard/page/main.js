@@ -80,6 +80,7 @@ const on = {
   hello(hello) {
     document.title = `deltamap ${hello.version.split(" ")[0]}`;
     charts.thresholds = hello.thresholds;
+    charts.instant = null;
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
     model.picked = null;
     clear_changes();

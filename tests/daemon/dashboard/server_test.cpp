@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <random>
 #include <semaphore>
 #include <stdexcept>
 #include <thread>
@@ -230,6 +231,29 @@ TEST_F(DashboardServer, MalformedFramesEndTheirConnectionAlone) {
     EXPECT_TRUE(client.is_hung_up());
   }
   EXPECT_TRUE(calm.frame());
+  EXPECT_EQ(got("/").status, 200);
+}
+
+TEST_F(DashboardServer, SurvivesDamagedRequestsAndFrames) {
+  start();
+  const std::string upgrade =
+      "GET /live HTTP/1.1\r\nHost: 127.0.0.1:1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+  std::mt19937 random{7};
+  const auto below = [&random](std::size_t end) {
+    return std::uniform_int_distribution<std::size_t>{0, end - 1}(random);
+  };
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::string bytes = upgrade;
+    for (std::size_t noise = below(40); noise > 0; --noise) bytes.push_back(static_cast<char>(below(256)));
+    const std::size_t first = trial % 2 == 0 ? 0 : upgrade.size() - 1;  // half of them leave the request as it is
+    for (std::size_t damages = below(6); damages > 0; --damages) {
+      bytes[first + below(bytes.size() - first)] = static_cast<char>(below(256));
+    }
+    WebClient client{port()};
+    (void)client.send(bytes.substr(0, trial % 3 == 0 ? below(bytes.size()) : bytes.size()));
+    ASSERT_TRUE(client.finishes()) << trial;
+  }
   EXPECT_EQ(got("/").status, 200);
 }
 
