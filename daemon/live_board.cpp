@@ -76,8 +76,8 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   const auto set = [&sample](LiveSample::Column column, double value) {
     sample.values[column] = static_cast<float>(value);
   };
-  set(LiveSample::kX_m, row.map_from_robot.x);
-  set(LiveSample::kY_m, row.map_from_robot.y);
+  set(LiveSample::kX, row.map_from_robot.x);
+  set(LiveSample::kY, row.map_from_robot.y);
   set(LiveSample::kWAvg, row.w_avg);
   set(LiveSample::kWFast, row.w_fast);
   set(LiveSample::kWSlow, row.w_slow);
@@ -86,7 +86,7 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   set(LiveSample::kPoseRight, row.belief.pose_right);
   set(LiveSample::kMapWrong, row.belief.map_wrong);
   set(LiveSample::kScansPerSecond, is_first || passed_s <= 0.0 ? 0.0 : scans / passed_s);
-  set(LiveSample::kLatency_ms, 1e3 * latency_s);
+  set(LiveSample::kLatency, 1e3 * latency_s);
   last_sample_ = row.time;
   scans_at_sample_ = scans_seen_;
   if (!is_first) samples_.add(sample);  // the first has no rate yet

@@ -34,8 +34,8 @@ struct LiveScan {
 /// About a second of a run, for path and charts.
 struct LiveSample {
   enum Column : std::uint8_t {
-    kX_m,
-    kY_m,
+    kX,  ///< m, as kY
+    kY,
     kWAvg,
     kWFast,
     kWSlow,
@@ -44,7 +44,7 @@ struct LiveSample {
     kPoseRight,
     kMapWrong,
     kScansPerSecond,
-    kLatency_ms,
+    kLatency,  ///< ms
     kColumns
   };
   Timestamp time;

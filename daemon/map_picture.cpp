@@ -8,10 +8,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include "core/grid_patch.hpp"
@@ -49,7 +49,7 @@ std::string png_of(const std::vector<std::uint8_t>& pixels, std::size_t width, s
   char* bytes = nullptr;
   std::size_t size = 0;
   std::unique_ptr<std::FILE, CloseFile> memory{::open_memstream(&bytes, &size)};
-  if (!memory) throw std::runtime_error(std::strerror(errno));
+  if (!memory) throw std::runtime_error(std::generic_category().message(errno));
   const bool is_drawn = png_image_write_to_stdio(&image, memory.get(), 0, pixels.data(), 0, kColours.data()) != 0;
   memory.reset();
   const std::unique_ptr<char, decltype(&std::free)> owner{bytes, &std::free};
@@ -91,7 +91,7 @@ void write_map_picture(const OccupancyGrid& before, const OccupancyGrid& after, 
   }
   std::ofstream file(png_file, std::ios::binary);
   if (!file || !file.write(picture.data(), static_cast<std::streamsize>(picture.size())).flush()) {
-    refuse(std::strerror(errno));
+    refuse(std::generic_category().message(errno));
   }
 }
 

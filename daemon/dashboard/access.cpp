@@ -7,9 +7,9 @@
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace deltamap::daemon::dashboard {
 namespace {
@@ -78,7 +78,8 @@ std::string read_token(const std::filesystem::path& file) {
   };
   std::ifstream in(file);
   std::string token;
-  if (!in || std::filesystem::is_directory(file)) throw refuse(in ? "is a folder" : std::strerror(errno));
+  if (!in || std::filesystem::is_directory(file))
+    throw refuse(in ? std::string("is a folder") : std::generic_category().message(errno));
   struct stat state {};
   if (::stat(file.c_str(), &state) == 0 && (state.st_mode & S_IROTH) != 0) throw refuse("everybody may read it");
   (void)std::getline(in, token);

@@ -96,7 +96,7 @@ class Connection {
 struct Host {
   Server::Options options;
   std::set<std::shared_ptr<Connection>> connections{};
-  std::function<void(beast::tcp_stream, HttpRequest)> upgrade{};
+  std::function<void(beast::tcp_stream, const HttpRequest&)> upgrade{};
 
   void end(Connection* ended) {
     ended->close();
@@ -143,13 +143,13 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   }
 
   void take_viewer() {
-    HttpRequest request = parser_->release();
+    const HttpRequest request = parser_->release();
     if (!websocket::is_upgrade(request)) {
       return say({.status = 426, .body = "/live is a WebSocket\n", .headers = {{"Upgrade", "websocket"}}}, 11, false);
     }
     const auto self = shared_from_this();  // outlives its place in the list
     stream_.expires_never();
-    host_.upgrade(std::move(stream_), std::move(request));
+    host_.upgrade(std::move(stream_), request);
     std::erase_if(host_.connections, [this](const auto& connection) { return connection.get() == this; });
   }
 
@@ -281,8 +281,8 @@ tcp::acceptor acceptor_of(asio::io_context& loop, const Server::Options& options
 struct Server::State {
   explicit State(Options given)
       : host{std::move(given)}, acceptor{acceptor_of(loop, host.options)}, retry_timer{loop}, period_timer{loop} {
-    host.upgrade = [this](beast::tcp_stream stream, HttpRequest request) {
-      welcome_viewer(std::move(stream), std::move(request));
+    host.upgrade = [this](beast::tcp_stream stream, const HttpRequest& request) {
+      welcome_viewer(std::move(stream), request);
     };
   }
   ~State() { close(); }
@@ -314,7 +314,7 @@ struct Server::State {
     connection->listen();
   }
 
-  void welcome_viewer(beast::tcp_stream stream, HttpRequest request) {
+  void welcome_viewer(beast::tcp_stream stream, const HttpRequest& request) {
     if (viewers.size() >= host.options.most_viewers) return;
     const auto viewer = std::make_shared<Viewer>(std::move(stream), host, [this](Viewer* ended) { end_viewer(ended); });
     host.connections.insert(viewer);

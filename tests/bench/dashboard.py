@@ -84,19 +84,17 @@ def watched(daemon, viewers, seconds):
             "latency_ms": latencies, "viewers": viewers}
 
 
-def memory_added(seconds):
-    """Resident memory with and without a page, each in a run of its own, after the same time."""
+def memory(seconds):
+    """Resident memory after the same time without a page, with one, and with a viewer since half of the time."""
     resident = {}
-    for name, port in (("off", 0), ("on", None)):
+    for name, port in (("off", 0), ("on", None), ("viewer", None)):
         with RunningDaemon(port, change_every_s=1000) as daemon:
             time.sleep(seconds)
-            resident[name] = daemon.resident_bytes()
-            if name == "off":
-                continue
-            viewer = Viewer(daemon.port)
+            viewer = Viewer(daemon.port) if name == "viewer" else None
             time.sleep(seconds)
-            resident["viewer"] = daemon.resident_bytes()
-            viewer.end()
+            resident[name] = daemon.resident_bytes()
+            if viewer:
+                viewer.end()
     return resident
 
 
@@ -118,7 +116,7 @@ def percent(share):
 
 def measured(seconds):
     rows = []
-    memory = memory_added(min(30, seconds))
+    resident = memory(min(30, seconds))
     with RunningDaemon() as daemon:
         alone = watched(daemon, 0, seconds)
         viewer = Viewer(daemon.port)
@@ -139,9 +137,9 @@ def measured(seconds):
     rows.append(("processor, page thread, one viewer, %.1f poses a second" % poses, percent(one["page"]), "≤ 5 %"))
     rows.append(("processor, whole daemon, no viewer", percent(alone["daemon"]), ""))
     rows.append(("processor, whole daemon, one viewer", percent(one["daemon"]), ""))
-    rows.append(("resident memory, page off", "%.1f MB" % (memory["off"] / 1e6), ""))
-    rows.append(("resident memory that the page adds, no viewer", "%.1f MB" % ((memory["on"] - memory["off"]) / 1e6), ""))
-    rows.append(("resident memory that the page adds, one viewer", "%.1f MB" % ((memory["viewer"] - memory["off"]) / 1e6), "≤ 2 MB"))
+    rows.append(("resident memory, page off", "%.1f MB" % (resident["off"] / 1e6), ""))
+    rows.append(("resident memory that the page adds, no viewer", "%.1f MB" % ((resident["on"] - resident["off"]) / 1e6), ""))
+    rows.append(("resident memory that the page adds, one viewer", "%.1f MB" % ((resident["viewer"] - resident["off"]) / 1e6), "≤ 2 MB"))
     rows.append(("bytes a second to one viewer", "%.1f kB" % (rate / 1e3), ""))
     rows.append(("age of a pose (from the scan's first beam) when it comes, p50 / p99",
                  "%.0f / %.0f ms" % (1e3 * quantile(ages, 0.5), 1e3 * quantile(ages, 0.99)), ""))
