@@ -34,8 +34,11 @@ class RunningDaemon:
                                            "--change-every", str(change_every_s), "--truth", self.place / "truth.jsonl"],
                                           stderr=self.log, stdout=self.log)
         self._until(lambda: (self.place / "robot").exists() and (self.place / "laser").exists())
-        self.daemon = None
-        self.start()
+        try:
+            self.start()
+        except BaseException:
+            self.__exit__()
+            raise
 
     def __enter__(self):
         return self
