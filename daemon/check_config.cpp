@@ -9,6 +9,8 @@
 #include "core/grid_file.hpp"
 #include "core/scratch_folder.hpp"
 #include "daemon/control/client.hpp"
+#include "daemon/dashboard/access.hpp"
+#include "daemon/dashboard/server.hpp"
 #include "daemon/kept_drive.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/output_place.hpp"
@@ -168,6 +170,20 @@ Finding control_finding(const std::string& socket) {
   }
 }
 
+/// Listens for a moment, as a start would.
+Finding page_finding(const DashboardSettings& page) {
+  try {
+    const dashboard::Server server{{.address = page.address,
+                                    .port = page.port,
+                                    .token = page.token_file.empty() ? "" : dashboard::read_token(page.token_file),
+                                    .answer = {},
+                                    .open = {}}};
+    return {Level::kOk, "page", "http://" + server.place() + "/"};
+  } catch (const std::exception& error) {
+    return {Level::kWarning, "page", std::string(error.what()) + ": a start would go on without it"};
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> check_config(const Settings& settings, const std::string& config, const std::string& out) {
@@ -178,6 +194,7 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   findings.push_back(port_finding("laser", settings.laser.port));
   findings.push_back(drive_finding(settings));
   if (!settings.control.socket.empty()) findings.push_back(control_finding(settings.control.socket));
+  if (settings.dashboard.port != 0) findings.push_back(page_finding(settings.dashboard));
   if (const std::string& file = settings.recording.file; !file.empty()) {
     findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));
   }

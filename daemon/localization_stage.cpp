@@ -102,6 +102,7 @@ void LocalizationStage::localize(Scan scan) {
   take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
   show(tracked.estimate, tracked.scan.received);
+  wiring_.show(tracked, step_.row(), wiring_.telemetry.latency_s.value());
   answer_relocalize(number);
   tell_changes();
   if (LogLine line = fit_watch_.observe(tracked, step_.fit()); !line.text.empty())

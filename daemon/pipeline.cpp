@@ -9,6 +9,7 @@
 #include "core/file_lock.hpp"
 #include "core/replace_file.hpp"
 #include "daemon/control_desk.hpp"
+#include "daemon/dashboard_desk.hpp"
 #include "daemon/gate_watch.hpp"
 #include "daemon/localization_stage.hpp"
 #include "daemon/map_outputs.hpp"
@@ -28,6 +29,7 @@ using Kind = Decision::Kind;
 constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even on one processor
 constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
+constexpr int kPageNiceness = 10;
 constexpr std::chrono::seconds kRetryPeriod{1};  // between looks at outputs that could not be written
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
@@ -87,6 +89,7 @@ struct Pipeline::State {
   // The first that touch a file: where another daemon is at work, this one ends before it does harm.
   std::optional<FileLock> out_lock;      // of --out
   std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
+  std::unique_ptr<DashboardDesk> page;   // what the stages show → browsers; may be null
   Recorder recorder;                     // bytes, decisions, lines → disk
   IoStage io;                            // bytes → Odometry, Scan
   LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
@@ -98,6 +101,7 @@ struct Pipeline::State {
   mapping::StoreScan store_scan;
   GateWatch gate_watch;
   std::uint32_t things_sent = 0;     // number of the newest snapshot that the localizer has been sent
+  std::uint32_t things_shown = 0;    // likewise, of the page
   std::deque<ScanSet> waiting_sets;  // the map thread was busy: offered again at the next scan; one set, and orders
   MapStep map_step;
   MapOutputs map_outputs;
@@ -117,7 +121,8 @@ struct Pipeline::State {
 
   Workload awareness_work, map_work;
   double wall_began_s = 0.0;
-  std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread;
+  std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread,
+      page_thread;
   bool ended = false;
 };
 
@@ -133,6 +138,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                         .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
                         .log = options.log},
                        options.warn)},
+      page{begun_dashboard(settings, options.start, telemetry, options.log, options.warn)},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),
@@ -164,6 +170,10 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .recorder = recorder.from_localization(),
                     .telemetry = telemetry,
                     .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
+                    .show =
+                        [this](const auto&... seen) {
+                          if (page) page->board().show(seen...);
+                        },
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       store_scan{settings.mapping.store_scan, settings.seed},
       map_step{settings, options.start},
@@ -190,9 +200,14 @@ Pipeline::State::State(const Settings& given, Options wanted)
       Stage::Options{"localization", 0}, [this] { localization.run(); }, options.failed);
   io_thread = std::make_unique<Stage>(
       Stage::Options{"io", 0}, [this] { io.run(); }, options.failed);
-  if (!control) return;
-  control_thread = std::make_unique<Stage>(
-      Stage::Options{"control", kControlNiceness}, [this] { control->run(); }, options.failed);
+  if (control) {
+    control_thread = std::make_unique<Stage>(
+        Stage::Options{"control", kControlNiceness}, [this] { control->run(); }, options.failed);
+  }
+  if (page) {
+    page_thread = std::make_unique<Stage>(
+        Stage::Options{"page", kPageNiceness}, [this] { page->run(); }, options.failed);
+  }
 }
 
 // --- delta thread ---
@@ -224,7 +239,9 @@ void Pipeline::State::offer_waiting_sets() {
 
 void Pipeline::State::offer_things() {
   const std::shared_ptr<const TemporaryThings>& newest = store_scan.temporary();
-  if (newest == nullptr || newest->number == things_sent) return;
+  if (newest == nullptr) return;
+  if (page && newest->number != things_shown && page->board().show(newest)) things_shown = newest->number;
+  if (newest->number == things_sent) return;
   const std::uint32_t number = newest->number;
   telemetry.things_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
   telemetry.things_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
@@ -267,6 +284,7 @@ void Pipeline::State::update_map(const ScanSet& set) {
   const Workload::Item item{map_work};
   MapStep::Result result = map_step.update(set);
   changes.add(result.note);
+  if (page) page->board().show(result.revision ? &*result.revision : nullptr, result.note);
   if (!result.revision) {
     telemetry.refused.add(1);
     options.log("map unchanged: phase=" + std::to_string(set.phase) + " reason=" + result.note.reason);
@@ -294,6 +312,10 @@ Pipeline::~Pipeline() { state_->end_threads(); }
 void Pipeline::State::end_threads() {
   if (ended) return;
   ended = true;
+  if (page) {
+    page->stop();
+    page_thread->join();
+  }
   if (control) {
     control->stop();
     control_thread->join();

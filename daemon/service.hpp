@@ -14,6 +14,8 @@ void tell_stopping();
 void tell_status(const std::string& line);
 /// To be called more often than watchdog_period() while everything moves.
 void feed_watchdog();
+/// The socket of this name that systemd has opened for us (FileDescriptorName=), or -1.
+[[nodiscard]] int handed_over_socket(const std::string& name);
 /// Nothing where no watchdog waits for us.
 [[nodiscard]] std::optional<Duration> watchdog_period();
 

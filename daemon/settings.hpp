@@ -70,6 +70,13 @@ struct ControlSettings {
   std::string socket;  ///< for `deltamap ctl`; empty: none
 };
 
+/// The live page, for browsers.
+struct DashboardSettings {
+  std::string address = "127.0.0.1";  ///< beyond loopback only with a token
+  std::uint16_t port = 0;             ///< 0: no page
+  std::string token_file;             ///< its first line is asked of every viewer; empty: nothing is asked
+};
+
 struct Settings {
   std::uint64_t seed = 1;
   RobotSettings robot;
@@ -81,6 +88,7 @@ struct Settings {
   MappingSettings mapping;
   NavigationSettings navigation;
   ControlSettings control;
+  DashboardSettings dashboard;
   RecordingSettings recording;
 };
 

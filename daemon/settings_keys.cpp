@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/dashboard/access.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/settings_keys.hpp"
 
@@ -159,6 +160,22 @@ void add_memory(MemorySettings& memory, Keys& keys) {
                   "of a kept pose"));
 }
 
+void add_dashboard(DashboardSettings& dashboard, Keys& keys) {
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(text_key("dashboard.address", dashboard.address,
+               "where the live page listens; beyond 127.0.0.1 only with a token"));
+  add(whole_key("dashboard.port", dashboard.port, "", 0, 65535, "of the live page; 0: none"));
+  add(text_key("dashboard.token_file", dashboard.token_file,
+               "its first line is asked of every viewer; empty: nothing is asked"));
+}
+
+std::optional<std::string> contradiction_in(const DashboardSettings& dashboard) {
+  const auto is_loopback = dashboard::is_loopback(dashboard.address);
+  if (!is_loopback) return "'dashboard.address' needs an IPv4 or IPv6 address, not '" + dashboard.address + "'";
+  if (*is_loopback || dashboard.port == 0 || !dashboard.token_file.empty()) return std::nullopt;
+  return "'dashboard.address' leads beyond this machine: that needs 'dashboard.token_file'";
+}
+
 }  // namespace
 
 std::vector<SettingKey> keys_of(Settings& settings) {
@@ -179,6 +196,7 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_navigation(settings.navigation, keys);
   keys.push_back(not_for_results(
       text_key("control.socket", settings.control.socket, "where `deltamap ctl` finds the daemon; empty: nowhere")));
+  add_dashboard(settings.dashboard, keys);
   keys.push_back(
       not_for_results(text_key("recording.file", settings.recording.file, "pcapng of both ports; empty: none")));
   keys.push_back(not_for_results(number_key("recording.max_gigabytes", settings.recording.max_gigabytes, "GB", 0.001,
@@ -205,7 +223,7 @@ std::optional<std::string> contradiction_in(const Settings& settings) {
     return "'navigation.wander.turn_away_m' must lie below 'navigation.wander.slow_down_m' and "
            "'navigation.wander.go_on_m'";
   }
-  return std::nullopt;
+  return contradiction_in(settings.dashboard);
 }
 
 }  // namespace deltamap::daemon

@@ -115,7 +115,7 @@ def play_demo(seed, seconds):
             "config/scenarios/demo.yaml", "--trajectory", folder / "run/trajectory.tum", "--start-map", folder / "m0.yaml",
             "--map", folder / "run/map.yaml", "--json"))
         return folder
-    run("tests/system/demo.sh", "--for", seconds, "--seed", seed, "--out", folder, "--pin", "0")
+    run("tests/system/demo.sh", "--for", seconds, "--seed", seed, "--out", folder, "--pin", "0", "--page", "0")
     return folder
 
 

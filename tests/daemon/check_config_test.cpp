@@ -9,6 +9,7 @@
 #include <map>
 
 #include "core/grid_file.hpp"
+#include "daemon/dashboard/server.hpp"
 #include "daemon/kept_drive.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/start_banner.hpp"
@@ -170,6 +171,17 @@ TEST_F(CheckConfig, AStartMakesTheFoldersThatAreMissing) {
   for (const char* name : {"state", "recordings", "sockets"}) EXPECT_TRUE(fs::is_directory(folder_.path() / name));
   settings_.control.socket = settings_.map.file + "/ctl.sock";
   EXPECT_NO_THROW(make_state_folders(settings_, "robot.yaml")) << "a daemon without ctl does its work";
+}
+
+TEST_F(CheckConfig, APageThatCannotBeServedIsAWarning) {
+  const dashboard::Server other{{.answer = {}, .open = {}}};
+  settings_.dashboard.port = other.port();
+  EXPECT_EQ(finding("page").level, Level::kWarning);
+  EXPECT_EQ(finding("page").text,
+            other.place() + ": cannot listen: Address already in use: a start would go on without it");
+  settings_.dashboard.token_file = folder_.path() / "missing";
+  EXPECT_NE(finding("page").text.find("missing: no token: "), std::string::npos) << finding("page").text;
+  EXPECT_TRUE(would_start());
 }
 
 TEST_F(CheckConfig, ALogBeginsWithWhatRuns) {

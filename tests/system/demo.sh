@@ -5,15 +5,16 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-seconds=120 seed=1 world=config/scenarios/demo.yaml out=build/demo bin=build/release/bin pin=()
+seconds=120 seed=1 world=config/scenarios/demo.yaml out=build/demo bin=build/release/bin pin=() page=8484
 while (($#)); do
   case $1 in
     --for) seconds=$2; shift 2 ;;
     --seed) seed=$2; shift 2 ;;
     --world) world=$2; shift 2 ;;
     --out) out=$2; shift 2 ;;
+    --page) page=$2; shift 2 ;;  # port of the live page; 0: none
     --pin) pin=(taskset -c "$2"); shift 2 ;;  # the daemon on one processor, as on the netbook
-    *) echo "usage: ./dev demo [--for SECONDS] [--seed N] [--world FILE] [--out DIR] [--pin CPU]" >&2; exit 2 ;;
+    *) echo "usage: ./dev demo [--for SECONDS] [--seed N] [--world FILE] [--out DIR] [--page PORT] [--pin CPU]" >&2; exit 2 ;;
   esac
 done
 
@@ -28,9 +29,10 @@ for _ in $(seq 50); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1;
 # A robot that nobody has switched on stands: here the one who called the demo does.
 (for _ in $(seq 150); do "$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null 2>&1 && break; sleep 0.2; done) &
 echo "the robot drives for $seconds s in $world (seed $seed); watch: $out" >&2
+((page == 0)) || echo "open http://127.0.0.1:$page/ in a browser" >&2
 # `timeout` ends the daemon as systemd would: SIGTERM, and the map is saved.
 "${pin[@]}" timeout --foreground --preserve-status -s TERM "$seconds" "$bin/deltamapd" --config config/simulation.yaml \
-  --set robot.port="$out/robot" --set laser.port="$out/laser" --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" \
+  --set robot.port="$out/robot" --set laser.port="$out/laser" --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" --set dashboard.port="$page" \
   --set recording.file="$out/recording.pcapng" --set seed="$seed" --out "$out/run"
 kill "$simulator" && wait "$simulator" || true
 trap - EXIT

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/tool/map_picture.hpp"
+#include "daemon/map_picture.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>

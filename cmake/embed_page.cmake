@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# Writes TARGET, a source that holds the FILES of FOLDER byte for byte.
+set(types_html "text/html; charset=utf-8")
+set(types_css "text/css; charset=utf-8")
+set(types_js "text/javascript; charset=utf-8")
+set(arrays "")
+set(table "")
+set(number 0)
+foreach(name IN LISTS FILES)
+  file(READ ${FOLDER}/${name} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${hex}")
+  string(REGEX REPLACE "^.*\\." "" extension ${name})
+  string(APPEND arrays "const char kFile${number}[] = {${bytes}};\n")
+  string(APPEND table "    {\"${name}\", \"${types_${extension}}\", {kFile${number}, sizeof kFile${number}}},\n")
+  math(EXPR number "${number} + 1")
+endforeach()
+file(WRITE ${TARGET} "// SPDX-License-Identifier: Apache-2.0
+#include \"daemon/dashboard/page_files.hpp\"
+
+namespace deltamap::daemon::dashboard {
+namespace {
+
+${arrays}
+const PageFile kFiles[] = {
+${table}};
+
+}  // namespace
+
+std::span<const PageFile> page_files() { return kFiles; }
+
+}  // namespace deltamap::daemon::dashboard
+")

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/dashboard/access.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <boost/asio/ip/address.hpp>
+#include <cctype>
+#include <cerrno>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace deltamap::daemon::dashboard {
+namespace {
+
+constexpr std::string_view kCookie = "deltamap_token=";
+constexpr std::string_view kTokenQuery = "token=";
+constexpr std::string_view kBearer = "Bearer ";
+
+std::optional<boost::asio::ip::address> address_of(std::string_view text) {
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address(std::string(text), error);
+  return error ? std::nullopt : std::optional{address};
+}
+
+bool is_port(std::string_view text) {
+  return !text.empty() && text.size() <= 5 &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+/// An IP address or "localhost", with any port: a tunnel may lead here from another one. A page of another site that
+/// lets its own name lead here ("DNS rebinding") comes with that name.
+bool is_no_foreign_name(std::string_view host) {
+  const bool is_bracketed = host.starts_with('[');
+  const auto end = is_bracketed ? host.find(']') : host.find(':');
+  const std::string_view name = host.substr(is_bracketed ? 1 : 0, is_bracketed ? end - 1 : end);
+  std::string_view rest = end == std::string_view::npos ? std::string_view{} : host.substr(end);
+  if (is_bracketed && end == std::string_view::npos) return false;
+  if (is_bracketed) rest.remove_prefix(1);
+  if (!rest.empty() && (rest.front() != ':' || !is_port(rest.substr(1)))) return false;
+  if (!is_bracketed && name == "localhost") return true;
+  const auto address = address_of(name);
+  return address && address->is_v6() == is_bracketed;
+}
+
+std::string_view cookie_token(std::string_view cookies) {
+  while (!cookies.empty()) {
+    const auto end = std::min(cookies.find(';'), cookies.size());
+    std::string_view one = cookies.substr(0, end);
+    cookies.remove_prefix(std::min(end + 1, cookies.size()));
+    while (one.starts_with(' ')) one.remove_prefix(1);
+    if (one.starts_with(kCookie)) return one.substr(kCookie.size());
+  }
+  return {};
+}
+
+bool has_token(const Request& request, const std::string& token) {
+  const std::string_view bearer = request.authorization;
+  if (bearer.starts_with(kBearer) && is_same_secret(bearer.substr(kBearer.size()), token)) return true;
+  return is_same_secret(cookie_token(request.cookie), token);
+}
+
+Answer refused(unsigned status, std::string why) { return {.status = status, .body = std::move(why) + "\n"}; }
+
+bool is_token_character(unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; }
+
+}  // namespace
+
+std::optional<bool> is_loopback(const std::string& address) {
+  const auto parsed = address_of(address);
+  return parsed ? std::optional{parsed->is_loopback()} : std::nullopt;
+}
+
+std::string read_token(const std::filesystem::path& file) {
+  const auto refuse = [&file](const std::string& why) -> std::runtime_error {
+    return std::runtime_error(file.string() + ": no token: " + why);
+  };
+  std::ifstream in(file);
+  std::string token;
+  if (!in || std::filesystem::is_directory(file))
+    throw refuse(in ? std::string("is a folder") : std::generic_category().message(errno));
+  struct stat state {};
+  if (::stat(file.c_str(), &state) == 0 && (state.st_mode & S_IROTH) != 0) throw refuse("everybody may read it");
+  (void)std::getline(in, token);
+  if (token.size() < kShortestToken) throw refuse("needs at least " + std::to_string(kShortestToken) + " characters");
+  if (!std::all_of(token.begin(), token.end(), is_token_character)) {
+    throw refuse("may hold letters, digits, '-', '_' and '.' only");
+  }
+  return token;
+}
+
+bool is_same_secret(std::string_view given, std::string_view secret) {
+  if (given.size() != secret.size() || secret.empty()) return false;
+  volatile unsigned char difference = 0;
+  for (std::size_t i = 0; i < secret.size(); ++i) {
+    difference = static_cast<unsigned char>(difference | static_cast<unsigned char>(given[i] ^ secret[i]));
+  }
+  return difference == 0;
+}
+
+std::optional<Answer> refusal_of(const Request& request, const std::string& token) {
+  if (request.method != "GET") {
+    Answer answer = refused(405, "only GET: this page shows and changes nothing");
+    answer.headers.emplace_back("Allow", "GET");
+    return answer;
+  }
+  if (!is_no_foreign_name(request.host)) {
+    return refused(421, "the Host of a request must be an IP address or localhost");
+  }
+  if (!request.origin.empty() && request.origin != "http://" + request.host) {
+    return refused(403, "a page of another origin may not read this one");
+  }
+  if (token.empty() || has_token(request, token)) return std::nullopt;
+  Answer answer = refused(401, "a token is needed: open /?token=… once, or send Authorization: Bearer …");
+  answer.headers.emplace_back("WWW-Authenticate", "Bearer");
+  return answer;
+}
+
+std::optional<Answer> entry_of(const Request& request, const std::string& token) {
+  const std::string_view query = request.query;
+  if (request.method != "GET" || !is_no_foreign_name(request.host)) return std::nullopt;
+  if (token.empty() || request.path != "/" || !query.starts_with(kTokenQuery)) return std::nullopt;
+  if (!is_same_secret(query.substr(kTokenQuery.size()), token)) return std::nullopt;
+  Answer answer{.status = 303, .body = ""};
+  answer.headers.emplace_back("Location", "/");
+  answer.headers.emplace_back("Set-Cookie", std::string(kCookie) + token + "; HttpOnly; SameSite=Strict; Path=/");
+  return answer;
+}
+
+}  // namespace deltamap::daemon::dashboard

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines over time on small canvases. All charts share the time axis and the instant under the pointer; the value axis
+// fits what is shown.
+
+const LEFT = 40, RIGHT = 6, TOP = 6, BOTTOM = 16; // px around the plot
+const GAP_S = 5;  // a line is not joined over a longer silence
+const SPANS = [["1 min", 60], ["10 min", 600], ["1 h", 3600]];
+const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 2] };
+
+const line = (column, label, ink, dash = "solid") => ({ column, label, ink, dash });
+const CHARTS = [
+  { title: "Belief", lines: [line("pose_right", "P(pose right)", "--blue"), line("map_wrong", "P(map wrong)", "--red", "dashed")], low: 0, high: 1, threshold: "pose_right" },
+  { title: "Weight", lines: [line("w_avg", "w_avg", "--sky"), line("w_fast", "w_fast", "--red", "dashed"), line("w_slow", "w_slow", "--text", "dotted")] },
+  { title: "Divergence ratio", lines: [line("r_d", "r_d", "--blue")], threshold: "r_d" },
+  { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")], low: 0 },
+  { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")], low: 0 },
+  { title: "Latency", lines: [line("latency_ms", "ms", "--pink")], low: 0 },
+];
+
+const ink_of = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/// A step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
+export function step_for(span, most) {
+  const power = 10 ** Math.floor(Math.log10(span / most));
+  return [1, 2, 5, 10].map((n) => n * power).find((step) => span / step <= most + 1e-9);
+}
+
+/// The axis from `low` to `high` with round ends.
+export function axis_for(low, high, most = 4) {
+  if (!(high > low)) [low, high] = [low - (Math.abs(low) || 1) * 0.1, high + (Math.abs(high) || 1) * 0.1];
+  const step = step_for(high - low, most);
+  return { low: Math.floor(low / step + 1e-9) * step, high: Math.ceil(high / step - 1e-9) * step, step };
+}
+
+export const short = (value) => {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  return size >= 100 ? value.toFixed(0) : size >= 10 ? value.toFixed(1) : size >= 0.095 || size === 0 ? value.toFixed(2) : value.toFixed(3);
+};
+
+const tick_text = (value, step) => value.toFixed(Math.max(0, Math.min(6, -Math.floor(Math.log10(step) + 1e-9))));
+const clock = (time) => new Date(1000 * time).toLocaleTimeString([], { hour12: false });
+
+class Chart {
+  constructor(host, kind, on_hover) {
+    this.kind = kind;
+    const figure = document.createElement("figure");
+    this.caption = document.createElement("figcaption");
+    this.canvas = document.createElement("canvas");
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    figure.append(this.caption, this.canvas);
+    host.append(figure);
+    const title = document.createElement("b");
+    title.textContent = kind.title;
+    this.values = kind.lines.map(({ ink, dash }) => {
+      const value = document.createElement("span");
+      value.style.setProperty("--ink", `var(${ink})`);
+      value.style.setProperty("--dash", dash);
+      return value;
+    });
+    this.caption.append(title, ...this.values);
+    this.canvas.addEventListener("pointermove", (event) => on_hover(this.time_at(event.offsetX)));
+    this.canvas.addEventListener("pointerleave", () => on_hover(null));
+    this.canvas.addEventListener("blur", () => on_hover(null));
+    this.canvas.addEventListener("keydown", (event) => {
+      if (event.key === "ArrowLeft") on_hover("earlier");
+      else if (event.key === "ArrowRight") on_hover("later");
+      else if (event.key === "Escape") on_hover(null);
+      else return;
+      event.preventDefault();
+    });
+  }
+
+  time_at(px) {
+    const share = (px - LEFT) / Math.max(1, this.canvas.clientWidth - LEFT - RIGHT);
+    return this.from + Math.min(1, Math.max(0, share)) * (this.to - this.from);
+  }
+
+  value_axis(samples, threshold) {
+    let low = this.kind.low ?? Infinity, high = this.kind.high ?? -Infinity;
+    for (const sample of samples) {
+      for (const { column } of this.kind.lines) {
+        low = Math.min(low, sample[column]);
+        high = Math.max(high, sample[column]);
+      }
+    }
+    if (threshold != null) [low, high] = [Math.min(low, threshold), Math.max(high, threshold)];
+    return low === Infinity || high === -Infinity ? axis_for(0, 1) : axis_for(low, high);
+  }
+
+  draw(samples, from, to, threshold, instant) {
+    [this.from, this.to] = [from, to];
+    const dots = Math.min(2, devicePixelRatio || 1);
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (!width) return;
+    this.canvas.width = Math.round(width * dots);
+    this.canvas.height = Math.round(height * dots);
+    const context = this.canvas.getContext("2d");
+    context.scale(dots, dots);
+    const axis = this.value_axis(samples, threshold);
+    const x_of = (time) => LEFT + (time - from) / (to - from) * (width - LEFT - RIGHT);
+    const y_of = (value) => TOP + (axis.high - value) / (axis.high - axis.low) * (height - TOP - BOTTOM);
+    this.draw_axes(context, axis, x_of, y_of, width, height);
+    if (threshold != null) this.draw_threshold(context, y_of(threshold), width);
+    for (const kind of this.kind.lines) this.draw_line(context, samples, kind, x_of, y_of);
+    if (instant) this.draw_instant(context, x_of(instant.time), height);
+    this.tell(instant ?? samples.at(-1), threshold);
+  }
+
+  draw_axes(context, axis, x_of, y_of, width, height) {
+    context.font = "11px system-ui, sans-serif";
+    context.fillStyle = ink_of("--soft");
+    context.strokeStyle = ink_of("--line");
+    context.lineWidth = 1;
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    for (let i = 0, value = axis.low; value <= axis.high + axis.step / 2; value = axis.low + ++i * axis.step) {
+      const y = Math.round(y_of(value)) + 0.5;
+      context.beginPath();
+      context.moveTo(LEFT, y);
+      context.lineTo(width - RIGHT, y);
+      context.stroke();
+      context.fillText(tick_text(value, axis.step), LEFT - 5, y);
+    }
+    context.textBaseline = "alphabetic";
+    context.textAlign = "left";
+    context.fillText(clock(this.from), LEFT, height - 3);
+    context.textAlign = "right";
+    context.fillText(clock(this.to), width - RIGHT, height - 3);
+  }
+
+  draw_threshold(context, y, width) {
+    context.strokeStyle = ink_of("--soft");
+    context.setLineDash([1, 3]);
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.moveTo(LEFT, y);
+    context.lineTo(width - RIGHT, y);
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  draw_line(context, samples, { column, ink, dash }, x_of, y_of) {
+    context.strokeStyle = ink_of(ink);
+    context.setLineDash(DASHES[dash]);
+    context.lineWidth = 1.5;
+    context.beginPath();
+    let last = -Infinity;
+    for (const sample of samples) {
+      const x = x_of(sample.time), y = y_of(sample[column]);
+      if (sample.time - last > GAP_S) context.moveTo(x, y); else context.lineTo(x, y);
+      last = sample.time;
+    }
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  draw_instant(context, x, height) {
+    context.strokeStyle = ink_of("--text");
+    context.lineWidth = 1;
+    context.beginPath();
+    context.moveTo(Math.round(x) + 0.5, TOP);
+    context.lineTo(Math.round(x) + 0.5, height - BOTTOM);
+    context.stroke();
+  }
+
+  tell(sample, threshold) {
+    this.kind.lines.forEach(({ column, label }, i) => {
+      this.values[i].textContent = `${label} ${sample ? short(sample[column]) : "–"}`;
+    });
+    const told = this.values.map((value) => value.textContent).join(", ");
+    this.canvas.setAttribute("aria-label", `${this.kind.title}: ${told}` + (threshold != null ? `, threshold ${short(threshold)}` : ""));
+  }
+}
+
+export class Charts {
+  constructor(host, spans_host, instant_host) {
+    this.instant_host = instant_host;
+    this.samples = [];
+    this.thresholds = {};
+    this.span_s = SPANS[1][1];
+    this.instant = null; // the sample under the pointer
+    this.charts = CHARTS.map((kind) => new Chart(host, kind, (at) => this.hover(at)));
+    this.add_spans(spans_host);
+    new ResizeObserver(() => this.draw_soon()).observe(host);
+  }
+
+  add_spans(host) {
+    for (const [label, span_s] of SPANS) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = label;
+      button.setAttribute("aria-pressed", String(span_s === this.span_s));
+      button.addEventListener("click", () => {
+        this.span_s = span_s;
+        for (const other of host.children) other.setAttribute("aria-pressed", String(other === button));
+        this.draw_soon();
+      });
+      host.append(button);
+    }
+  }
+
+  hover(at) {
+    const samples = this.samples;
+    if (at === null || !samples.length) this.instant = null;
+    else if (typeof at === "number") {
+      this.instant = samples.reduce((best, one) => (Math.abs(one.time - at) < Math.abs(best.time - at) ? one : best));
+    } else {
+      const now = this.instant ? samples.indexOf(this.instant) : samples.length - 1;
+      this.instant = samples[Math.min(samples.length - 1, Math.max(0, now + (at === "later" ? 1 : -1)))];
+    }
+    this.draw_soon();
+  }
+
+  draw_soon() {
+    if (this.is_due) return;
+    this.is_due = true;
+    requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    this.is_due = false;
+    const to = this.samples.at(-1)?.time ?? Date.now() / 1000;
+    // A young run fills the axis: from its beginning, a minute at least.
+    const from = Math.max(to - this.span_s, Math.min(this.samples[0]?.time ?? to, to - SPANS[0][1]));
+    const shown = this.samples.filter((sample) => sample.time >= from);
+    for (const chart of this.charts) {
+      chart.draw(shown, from, to, this.thresholds[chart.kind.threshold] ?? null, this.instant);
+    }
+    this.instant_host.textContent = this.instant ? `at ${clock(this.instant.time)}` : "";
+  }
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The live stream (docs/api.md): keeps a WebSocket open, decodes what comes, and tries again when it ends.
+
+const CELLS = 1, SAMPLES = 2, SCAN = 3;
+const FIRST_PAUSE_MS = 500, LONGEST_PAUSE_MS = 5000;
+const SILENCE_MS = 4000; // a status comes every second
+
+function cells_of(view) {
+  const [column, row, width, height] = [8, 12, 16, 20].map((at) => view.getInt32(at, true));
+  const states = new Uint8Array(width * height);
+  let next = 0;
+  for (let at = 24; at + 1 < view.byteLength; at += 2) {
+    const run = view.getUint16(at, true);
+    states.fill(run >> 14, next, next + (run & 0x3fff));
+    next += run & 0x3fff;
+  }
+  return { revision: view.getUint32(4, true), column, row, width, height, states };
+}
+
+function samples_of(view, columns) {
+  const count = view.getUint32(4, true), began = view.getFloat64(8, true);
+  const rows = [];
+  for (let i = 0, at = 16; i < count; ++i) {
+    const row = { time: began + view.getFloat32(at, true) };
+    at += 4;
+    for (const name of columns) {
+      row[name] = view.getFloat32(at, true);
+      at += 4;
+    }
+    rows.push(row);
+  }
+  return rows;
+}
+
+function scan_of(view) {
+  const count = view.getUint32(4, true);
+  const [x, y, heading] = [16, 20, 24].map((at) => view.getFloat32(at, true));
+  const beams = new Int16Array(2 * count);
+  for (let i = 0; i < 2 * count; ++i) beams[i] = view.getInt16(28 + 2 * i, true);
+  const cos = Math.cos(heading), sin = Math.sin(heading);
+  const ends = new Float32Array(2 * count);
+  for (let i = 0; i < count; ++i) {
+    const bx = beams[2 * i] / 100, by = beams[2 * i + 1] / 100;
+    ends[2 * i] = x + cos * bx - sin * by;
+    ends[2 * i + 1] = y + sin * bx + cos * by;
+  }
+  return { time: view.getFloat64(8, true), x, y, heading, ends };
+}
+
+/// `on` holds a function for each kind of message (hello, map, cells, pose, scan, transient, status, samples, changes)
+/// and link("connecting" | "live" | "lost").
+export class Connection {
+  constructor(on) {
+    this.on = on;
+    this.pause_ms = FIRST_PAUSE_MS;
+    this.columns = [];
+    this.last = 0;
+    setInterval(() => this.look(), 1000);
+    this.open();
+  }
+
+  open() {
+    this.on.link("connecting");
+    const socket = new WebSocket(`ws://${location.host}/live`);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = (event) => this.take(event.data);
+    socket.onclose = () => this.lose();
+    this.socket = socket;
+    this.last = Date.now();
+  }
+
+  lose() {
+    this.socket = null;
+    this.on.link("lost");
+    setTimeout(() => this.open(), this.pause_ms);
+    this.pause_ms = Math.min(2 * this.pause_ms, LONGEST_PAUSE_MS);
+  }
+
+  /// A link that is silent has died, whatever the browser thinks.
+  look() {
+    if (this.socket && !document.hidden && Date.now() - this.last > SILENCE_MS) this.socket.close();
+  }
+
+  take(data) {
+    this.last = Date.now();
+    if (typeof data === "string") {
+      const message = JSON.parse(data);
+      if (message.type === "hello") {
+        this.columns = message.sample_columns;
+        this.pause_ms = FIRST_PAUSE_MS;
+        this.on.link("live");
+      }
+      this.on[message.type]?.(message);
+      return;
+    }
+    const view = new DataView(data);
+    const kind = view.getUint32(0, true);
+    if (kind === CELLS) this.on.cells(cells_of(view));
+    if (kind === SAMPLES) this.on.samples(samples_of(view, this.columns));
+    if (kind === SCAN) this.on.scan(scan_of(view));
+  }
+}

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is drawn over the map: one layer a kind of thing, each with its sign in the legend, and a scale bar.
+
+import { FREE, OCCUPIED } from "./map_view.js";
+
+const REACH_M = 0.15;  // a beam that ends so close to an occupied cell agrees with the map
+const JUMP_M = 2;      // the path is not joined over such a step
+const SIGMAS = 2;      // of the covariance ellipse
+const ROBOT_M = 0.25;  // radius
+const LEAST_ROBOT_PX = 7;
+const MOST_RINGS = 8;
+const LEAST_SHARE = 0.005;  // of the belief, of a hypothesis that is drawn
+
+const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+function circle(context, x, y, radius) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+}
+
+/// A triangle that points ahead, on a disc.
+function robot_sign(context, x, y, heading, radius, colour) {
+  context.fillStyle = colour;
+  circle(context, x, y, radius);
+  context.fill();
+  context.lineWidth = 1.5;
+  context.strokeStyle = ink("--card");
+  context.stroke();
+  context.save();
+  context.translate(x, y);
+  context.rotate(-heading);
+  context.fillStyle = ink("--card");
+  context.beginPath();
+  context.moveTo(0.8 * radius, 0);
+  context.lineTo(-0.45 * radius, 0.55 * radius);
+  context.lineTo(-0.45 * radius, -0.55 * radius);
+  context.fill();
+  context.restore();
+}
+
+function draw_path(context, view, model) {
+  context.strokeStyle = ink("--sky");
+  context.lineWidth = 2;
+  context.globalAlpha = 0.75;
+  context.beginPath();
+  let last = null;
+  const points = model.pose ? [...model.samples, model.pose] : model.samples;
+  for (const { x_m, y_m } of points) {
+    const [px, py] = view.to_screen(x_m, y_m);
+    const is_joined = last && Math.hypot(x_m - last.x_m, y_m - last.y_m) < JUMP_M;
+    if (is_joined) context.lineTo(px, py); else context.moveTo(px, py);
+    last = { x_m, y_m };
+  }
+  context.stroke();
+  context.globalAlpha = 1;
+}
+
+function draw_scan(context, view, model) {
+  const scan = model.scan;
+  if (!scan) return;
+  const colours = [ink("--green"), ink("--orange"), ink("--pink")];
+  const size = Math.max(3, Math.min(7, 0.07 * view.scale));
+  for (let i = 0; i < scan.ends.length; i += 2) {
+    const x = scan.ends[i], y = scan.ends[i + 1];
+    const state = view.state_near(x, y, REACH_M);
+    const [px, py] = view.to_screen(x, y);
+    context.fillStyle = colours[state === OCCUPIED ? 0 : state === FREE ? 1 : 2];
+    if (state === OCCUPIED) context.fillRect(px - size / 2, py - size / 2, size, size);
+    else { circle(context, px, py, 0.6 * size); context.fill(); }
+  }
+}
+
+function each_block(model, kind, act) {
+  const { transient } = model;
+  if (!transient?.blocks_across) return;
+  for (const index of transient[kind]) {
+    const column = index % transient.blocks_across, row = Math.floor(index / transient.blocks_across);
+    act(transient.origin_m[0] + column * transient.block_m, transient.origin_m[1] + row * transient.block_m, transient.block_m);
+  }
+}
+
+function hatched(context, x, y, width, height, colour) {
+  context.save();
+  context.beginPath();
+  context.rect(x, y, width, height);
+  context.clip();
+  context.globalAlpha = 0.35;
+  context.fillStyle = colour;
+  context.fillRect(x, y, width, height);
+  context.globalAlpha = 1;
+  context.strokeStyle = colour;
+  context.lineWidth = 1.5;
+  context.beginPath();
+  for (let at = x - height - ((x - height) % 6); at < x + width; at += 6) {
+    context.moveTo(at, y + height);
+    context.lineTo(at + height, y);
+  }
+  context.stroke();
+  context.restore();
+}
+
+function draw_transient(context, view, model) {
+  if (model.status?.mapping === "paused") return; // nobody looks after it
+  each_block(model, "standing", (x, y, side) => {
+    const [px, py] = view.to_screen(x, y + side);
+    hatched(context, px, py, side * view.scale, side * view.scale, ink("--orange"));
+  });
+  context.strokeStyle = ink("--blue");
+  context.lineWidth = 1.5;
+  each_block(model, "gone", (x, y, side) => {
+    const [px, py] = view.to_screen(x, y + side);
+    context.strokeRect(px + 1, py + 1, side * view.scale - 2, side * view.scale - 2);
+  });
+}
+
+/// A refused change that found nothing has none.
+export const has_place = ({ box_m: [left, bottom, right, top] }) => right > left && top > bottom;
+
+const RING_M = 0.15;  // around the changed cells
+const LEAST_RING_PX = 20;
+
+/// The newest ones; what lies inside a newer ring has none of its own.
+function draw_changes(context, view, model) {
+  const shown = model.picked && has_place(model.picked) ? [model.picked] : [];
+  for (let i = model.changes.length - 1; i >= 0 && shown.length < MOST_RINGS; --i) {
+    const [left, bottom, right, top] = model.changes[i].box_m;
+    const x = (left + right) / 2, y = (bottom + top) / 2;
+    const is_covered = shown.some(({ box_m: [l, b, r, t] }) => x > l - RING_M && x < r + RING_M && y > b - RING_M && y < t + RING_M);
+    if (model.changes[i].accepted && has_place(model.changes[i]) && !is_covered) shown.push(model.changes[i]);
+  }
+  context.strokeStyle = ink("--red");
+  for (const change of shown) {
+    const [left, bottom, right, top] = change.box_m, is_picked = change === model.picked;
+    const [x, y] = view.to_screen((left + right) / 2, (bottom + top) / 2);
+    const width = Math.max(LEAST_RING_PX, (right - left + 2 * RING_M) * view.scale);
+    const height = Math.max(LEAST_RING_PX, (top - bottom + 2 * RING_M) * view.scale);
+    context.setLineDash(is_picked ? [] : [5, 4]);
+    context.lineWidth = is_picked ? 3.5 : 1.5;
+    context.beginPath();
+    context.roundRect(x - width / 2, y - height / 2, width, height, Math.min(width, height) / 2);
+    context.stroke();
+  }
+  context.setLineDash([]);
+}
+
+function draw_hypothesis(context, view, model) {
+  const other = model.pose?.other_hypothesis;
+  if (!other || other.share < LEAST_SHARE) return;
+  const [x, y] = view.to_screen(other.x_m, other.y_m);
+  context.globalAlpha = 0.35 + 0.65 * other.share;
+  robot_sign(context, x, y, other.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink("--pink"));
+  context.globalAlpha = 1;
+  context.fillStyle = ink("--text");
+  context.fillText(other.share < 0.01 ? "< 1 %" : `${(100 * other.share).toFixed(0)} %`, x + 12, y - 10);
+}
+
+/// Half axes and direction of the ellipse of so many sigmas.
+export function ellipse_of({ xx_m2: a, xy_m2: b, yy_m2: c }, sigmas) {
+  const middle = (a + c) / 2, root = Math.hypot((a - c) / 2, b);
+  return { long: sigmas * Math.sqrt(Math.max(0, middle + root)), short: sigmas * Math.sqrt(Math.max(0, middle - root)),
+           angle: 0.5 * Math.atan2(2 * b, a - c) };
+}
+
+function draw_robot(context, view, model) {
+  const pose = model.pose;
+  if (!pose) return;
+  const [x, y] = view.to_screen(pose.x_m, pose.y_m);
+  const { long, short, angle } = ellipse_of(pose.covariance, SIGMAS);
+  context.beginPath();
+  context.ellipse(x, y, Math.max(1, long * view.scale), Math.max(1, short * view.scale), -angle, 0, 2 * Math.PI);
+  context.globalAlpha = 0.25;
+  context.fillStyle = ink("--blue");
+  context.fill();
+  context.globalAlpha = 1;
+  context.strokeStyle = ink("--blue");
+  context.lineWidth = 1.5;
+  context.stroke();
+  robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink("--blue"));
+}
+
+// From below to above.
+export const LAYERS = [
+  { id: "path", label: "path", draw: draw_path, sign: (c) => { c.strokeStyle = ink("--sky"); c.lineWidth = 2; c.beginPath(); c.moveTo(1, 12); c.lineTo(9, 4); c.lineTo(21, 7); c.stroke(); } },
+  { id: "transient", label: "not (yet) map", draw: draw_transient,
+    keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink("--orange"))],
+           ["seen gone", (c) => { c.strokeStyle = ink("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
+  { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
+  { id: "scan", label: "scan: beam ends", draw: draw_scan,
+    keys: [["on the map's obstacles", (c) => { c.fillStyle = ink("--green"); c.fillRect(8, 4, 6, 6); }],
+           ["where the map is free", (c) => { c.fillStyle = ink("--orange"); circle(c, 11, 7, 4); c.fill(); }],
+           ["where it is unknown", (c) => { c.fillStyle = ink("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
+  { id: "hypothesis", label: "other hypothesis", draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink("--pink")) },
+  { id: "robot", label: `robot, ${SIGMAS} σ`, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink("--blue")) },
+];
+
+function sign_of(draw) {
+  const canvas = document.createElement("canvas");
+  const dots = 2;
+  canvas.width = 22 * dots;
+  canvas.height = 14 * dots;
+  canvas.setAttribute("aria-hidden", "true");
+  const context = canvas.getContext("2d");
+  context.scale(dots, dots);
+  draw(context);
+  return canvas;
+}
+
+/// Check boxes that are the legend too. `shown` holds the ids of the layers that are on.
+export function fill_legend(host, shown, on_change) {
+  host.replaceChildren();
+  for (const layer of [...LAYERS].reverse()) {
+    const label = document.createElement("label");
+    const box = document.createElement("input");
+    box.type = "checkbox";
+    box.id = `layer-${layer.id}`;
+    box.checked = shown.has(layer.id);
+    box.addEventListener("change", () => {
+      if (box.checked) shown.add(layer.id); else shown.delete(layer.id);
+      on_change();
+    });
+    label.append(box, ...(layer.sign ? [sign_of(layer.sign)] : []), layer.label);
+    host.append(label);
+    for (const [text, draw] of layer.keys ?? []) {
+      const key = document.createElement("div");
+      key.className = "key";
+      key.append(sign_of(draw), text);
+      host.append(key);
+    }
+  }
+}
+
+export function draw_scale_bar(context, view) {
+  const most_px = Math.min(160, view.width / 3);
+  const power = 10 ** Math.floor(Math.log10(most_px / view.scale));
+  const length_m = [5, 2, 1].map((n) => n * power).find((m) => m * view.scale <= most_px);
+  const length_px = length_m * view.scale, x = 14, y = view.height - 14;
+  const text = length_m >= 1 ? `${length_m} m` : `${Math.round(100 * length_m)} cm`;
+  context.font = "12px system-ui, sans-serif";
+  context.fillStyle = ink("--card");
+  context.globalAlpha = 0.85;
+  context.fillRect(x - 6, y - 20, Math.max(length_px, context.measureText(text).width) + 12, 27);
+  context.globalAlpha = 1;
+  context.strokeStyle = context.fillStyle = ink("--text");
+  context.lineWidth = 2;
+  context.beginPath();
+  context.moveTo(x, y - 5);
+  context.lineTo(x, y);
+  context.lineTo(x + length_px, y);
+  context.lineTo(x + length_px, y - 5);
+  context.stroke();
+  context.fillText(text, x + 2, y - 8);
+}

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joins the live stream, the map, the charts and the panels.
+
+import { Charts } from "./charts.js";
+import { Connection } from "./connection.js";
+import { draw_scale_bar, fill_legend, has_place, LAYERS } from "./layers.js";
+import { MapView } from "./map_view.js";
+import { add_changes, clear_changes, mark_picked, show_link, show_pose, show_status } from "./panels.js";
+
+const MOST_SAMPLES = 3600;
+const NARROW_PX = 1280; // the legend would cover the map
+
+const by_id = (id) => document.getElementById(id);
+const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null };
+const shown = new Set(LAYERS.map((layer) => layer.id));
+
+// --- dark and light: as the system, until a person says otherwise ---
+
+const system_dark = matchMedia("(prefers-color-scheme: dark)");
+function apply_theme() {
+  document.documentElement.dataset.theme = localStorage.getItem("theme") ?? (system_dark.matches ? "dark" : "light");
+}
+apply_theme();
+
+const view = new MapView(by_id("map"), (context) => {
+  for (const layer of LAYERS) if (shown.has(layer.id)) layer.draw(context, view, model);
+  draw_scale_bar(context, view);
+});
+const charts = new Charts(by_id("charts"), by_id("spans"), by_id("charts-instant"));
+
+function take_theme() {
+  apply_theme();
+  fill_legend(by_id("layers"), shown, () => view.draw_soon());
+  view.repaint();
+  charts.draw_soon();
+}
+by_id("theme").addEventListener("click", () => {
+  localStorage.setItem("theme", document.documentElement.dataset.theme === "dark" ? "light" : "dark");
+  take_theme();
+});
+system_dark.addEventListener("change", take_theme);
+take_theme();
+
+// --- the map's tools ---
+
+if (innerWidth <= NARROW_PX) by_id("layers-box").open = false;
+by_id("zoom-in").addEventListener("click", () => view.zoom(1.4));
+by_id("zoom-out").addEventListener("click", () => view.zoom(1 / 1.4));
+by_id("fit").addEventListener("click", () => view.fit());
+by_id("follow").addEventListener("click", () => view.set_follow(!view.follows));
+view.on_follow = (follows) => {
+  by_id("follow").setAttribute("aria-pressed", String(follows));
+  if (follows && model.pose) view.show(model.pose.x_m, model.pose.y_m);
+};
+
+function pick(change, button) {
+  model.picked = model.picked === change ? null : change;
+  mark_picked(model.picked ? button : null);
+  if (!model.picked) return view.draw_soon();
+  if (!has_place(change)) return view.draw_soon();
+  view.set_follow(false);
+  const [left, bottom, right, top] = change.box_m;
+  view.scale = Math.max(view.scale, Math.min(40, 0.4 * view.width / Math.max(1, right - left, top - bottom)));
+  view.show((left + right) / 2, (bottom + top) / 2);
+}
+
+// --- what the daemon sends ---
+
+function note(text) {
+  by_id("map-note").hidden = !text;
+  by_id("map-note").textContent = text;
+}
+
+const on = {
+  link(link) {
+    show_link(link);
+    if (link === "lost") note("No connection to the daemon. What is shown is old; trying again …");
+    if (link === "live") note("");
+  },
+  hello(hello) {
+    document.title = `deltamap ${hello.version.split(" ")[0]}`;
+    charts.thresholds = hello.thresholds;
+    charts.instant = null;
+    model.samples.length = model.changes.length = 0;  // the stream begins with the past
+    model.picked = null;
+    clear_changes();
+  },
+  map(frame) { view.set_frame(frame); },
+  cells(box) {
+    model.revision = box.revision;
+    view.set_cells(box);
+  },
+  pose(pose) {
+    model.pose = pose;
+    show_pose(pose);
+    if (view.follows) view.show(pose.x_m, pose.y_m);
+    view.draw_soon();
+  },
+  scan(scan) { model.scan = scan; },  // a pose comes with it
+  transient(transient) { model.transient = transient; view.draw_soon(); },
+  status(message) {
+    const before = model.status, now = message.status;
+    const passed_s = before ? now.since_start_s - before.since_start_s : 0;
+    model.status = now;
+    show_status(message, passed_s > 0 ? (now.localized - before.localized) / passed_s : null);
+  },
+  samples(rows) {
+    model.samples.push(...rows);
+    model.samples.splice(0, model.samples.length - MOST_SAMPLES);
+    charts.samples = model.samples;
+    charts.draw_soon();
+  },
+  changes({ changes }) {
+    model.changes.push(...changes);
+    add_changes(changes, model.changes, pick);
+    view.draw_soon();
+  },
+};
+
+window.deltamap = { model, view, connection: new Connection(on) };  // to look at in the browser's console

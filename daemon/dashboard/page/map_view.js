@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map on a canvas: cells in tiles, and the part of it that is shown; mouse, touch and keyboard move it.
+
+const SIDE = 256; // cells of a tile
+export const FREE = 0, OCCUPIED = 1, UNKNOWN = 2;
+const LEAST_SCALE = 0.5, MOST_SCALE = 400; // pixels a metre
+
+function rgb(name) {
+  const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
+}
+
+export class MapView {
+  constructor(canvas, draw_over) {
+    this.canvas = canvas;
+    this.context = canvas.getContext("2d");
+    this.draw_over = draw_over;
+    this.frame = null;
+    this.tiles = new Map();
+    this.centre = { x: 0, y: 0 };
+    this.scale = 20;
+    this.is_fitted = true; // until a person moves the view
+    this.follows = false;
+    this.on_follow = () => {};
+    this.pointers = new Map();
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.take_pointers();
+    this.take_keys();
+  }
+
+  // --- cells ---
+
+  set_frame(frame) {
+    const is_same = this.frame && ["width", "height", "resolution_m", "origin_m"].every((key) => String(frame[key]) === String(this.frame[key]));
+    this.frame = frame;
+    this.tiles.clear();
+    if (!is_same) {
+      this.known = null;
+      this.is_fitted = true;
+    }
+    this.draw_soon();
+  }
+
+  tile_at(column, row) {
+    const key = `${Math.floor(column / SIDE)},${Math.floor(row / SIDE)}`;
+    let tile = this.tiles.get(key);
+    if (!tile) {
+      const picture = document.createElement("canvas");
+      picture.width = picture.height = SIDE;
+      tile = { column: Math.floor(column / SIDE) * SIDE, row: Math.floor(row / SIDE) * SIDE, picture,
+               states: new Uint8Array(SIDE * SIDE).fill(UNKNOWN) };
+      this.tiles.set(key, tile);
+    }
+    return tile;
+  }
+
+  /// A box of cells; it lies in one tile.
+  set_cells(box) {
+    const tile = this.tile_at(box.column, box.row);
+    for (let row = 0; row < box.height; ++row) {
+      const to = (box.row - tile.row + row) * SIDE + box.column - tile.column;
+      tile.states.set(box.states.subarray(row * box.width, (row + 1) * box.width), to);
+    }
+    this.paint(tile);
+    this.grow_known(box);
+    if (this.is_fitted) this.fit();
+    this.draw_soon();
+  }
+
+  grow_known(box) {
+    const k = this.known ?? { low_x: Infinity, low_y: Infinity, high_x: -Infinity, high_y: -Infinity };
+    this.known = { low_x: Math.min(k.low_x, box.column), low_y: Math.min(k.low_y, box.row),
+                   high_x: Math.max(k.high_x, box.column + box.width), high_y: Math.max(k.high_y, box.row + box.height) };
+  }
+
+  paint(tile) {
+    const colours = [rgb("--map-free"), rgb("--map-occupied"), rgb("--map-unknown")];
+    const context = tile.picture.getContext("2d");
+    const image = context.createImageData(SIDE, SIDE);
+    for (let row = 0; row < SIDE; ++row) {
+      for (let column = 0; column < SIDE; ++column) {
+        const colour = colours[tile.states[row * SIDE + column]] ?? colours[UNKNOWN];
+        const at = 4 * ((SIDE - 1 - row) * SIDE + column);
+        image.data[at] = colour[0];
+        image.data[at + 1] = colour[1];
+        image.data[at + 2] = colour[2];
+        image.data[at + 3] = 255;
+      }
+    }
+    context.putImageData(image, 0, 0);
+  }
+
+  repaint() {
+    for (const tile of this.tiles.values()) this.paint(tile);
+    this.draw_soon();
+  }
+
+  state_of(column, row) {
+    const tile = this.tiles.get(`${Math.floor(column / SIDE)},${Math.floor(row / SIDE)}`);
+    return tile ? tile.states[(row - tile.row) * SIDE + column - tile.column] : UNKNOWN;
+  }
+
+  /// What the map has at a point: OCCUPIED also where an occupied cell lies within `reach_m`.
+  state_near(x, y, reach_m) {
+    if (!this.frame) return UNKNOWN;
+    const cell_m = this.frame.resolution_m;
+    const column = Math.floor((x - this.frame.origin_m[0]) / cell_m);
+    const row = Math.floor((y - this.frame.origin_m[1]) / cell_m);
+    const reach = Math.ceil(reach_m / cell_m);
+    for (let r = row - reach; r <= row + reach; ++r) {
+      for (let c = column - reach; c <= column + reach; ++c) {
+        if (this.state_of(c, r) === OCCUPIED) return OCCUPIED;
+      }
+    }
+    return this.state_of(column, row);
+  }
+
+  // --- what is shown ---
+
+  to_screen(x, y) {
+    return [this.width / 2 + (x - this.centre.x) * this.scale, this.height / 2 - (y - this.centre.y) * this.scale];
+  }
+  to_map(px, py) {
+    return { x: this.centre.x + (px - this.width / 2) / this.scale, y: this.centre.y - (py - this.height / 2) / this.scale };
+  }
+
+  fit() {
+    if (!this.known || !this.frame || !this.width) return;
+    const { resolution_m: m, origin_m: [x, y] } = this.frame;
+    const wide = (this.known.high_x - this.known.low_x) * m, high = (this.known.high_y - this.known.low_y) * m;
+    this.centre = { x: x + (this.known.low_x + this.known.high_x) * m / 2, y: y + (this.known.low_y + this.known.high_y) * m / 2 };
+    this.scale = Math.min(MOST_SCALE, 0.96 * Math.min(this.width / wide, this.height / high));
+    this.is_fitted = true;
+    this.set_follow(false);
+    this.draw_soon();
+  }
+
+  move_by(dx_px, dy_px) {
+    this.centre = { x: this.centre.x - dx_px / this.scale, y: this.centre.y + dy_px / this.scale };
+    this.is_fitted = false;
+    this.set_follow(false);
+    this.draw_soon();
+  }
+
+  /// The point of the map under (px, py) stays there.
+  zoom(factor, px = this.width / 2, py = this.height / 2) {
+    const held = this.to_map(px, py);
+    this.scale = Math.min(MOST_SCALE, Math.max(LEAST_SCALE, this.scale * factor));
+    const moved = this.to_map(px, py);
+    this.centre = { x: this.centre.x + held.x - moved.x, y: this.centre.y + held.y - moved.y };
+    this.is_fitted = false;
+    this.draw_soon();
+  }
+
+  show(x, y) {
+    this.centre = { x, y };
+    this.is_fitted = false;
+    this.draw_soon();
+  }
+
+  set_follow(follows) {
+    if (this.follows === follows) return;
+    this.follows = follows;
+    this.on_follow(follows);
+  }
+
+  // --- hands ---
+
+  take_pointers() {
+    const canvas = this.canvas;
+    const at = (event) => ({ x: event.offsetX, y: event.offsetY });
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(-Math.sign(event.deltaY) * Math.min(0.4, Math.abs(event.deltaY) / 400)), event.offsetX, event.offsetY);
+    }, { passive: false });
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      this.pointers.set(event.pointerId, at(event));
+      canvas.classList.add("dragging");
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (!this.pointers.has(event.pointerId)) return;
+      const before = [...this.pointers.values()];
+      const own = this.pointers.get(event.pointerId), now = at(event);
+      this.pointers.set(event.pointerId, now);
+      if (before.length === 1) return this.move_by(now.x - own.x, now.y - own.y);
+      this.pinch(before, [...this.pointers.values()]);
+    });
+    for (const end of ["pointerup", "pointercancel"]) {
+      canvas.addEventListener(end, (event) => {
+        this.pointers.delete(event.pointerId);
+        if (!this.pointers.size) canvas.classList.remove("dragging");
+      });
+    }
+  }
+
+  pinch([a, b], [c, d]) {
+    const middle = (p, q) => ({ x: (p.x + q.x) / 2, y: (p.y + q.y) / 2 });
+    const apart = (p, q) => Math.max(1, Math.hypot(p.x - q.x, p.y - q.y));
+    const from = middle(a, b), to = middle(c, d);
+    this.move_by(to.x - from.x, to.y - from.y);
+    this.zoom(apart(c, d) / apart(a, b), to.x, to.y);
+  }
+
+  take_keys() {
+    const step_px = 60;
+    const keys = {
+      ArrowLeft: () => this.move_by(step_px, 0), ArrowRight: () => this.move_by(-step_px, 0),
+      ArrowUp: () => this.move_by(0, step_px), ArrowDown: () => this.move_by(0, -step_px),
+      "+": () => this.zoom(1.25), "=": () => this.zoom(1.25), "-": () => this.zoom(0.8),
+      f: () => this.fit(), 0: () => this.fit(), r: () => this.set_follow(!this.follows),
+    };
+    this.canvas.addEventListener("keydown", (event) => {
+      const act = keys[event.key];
+      if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      act();
+    });
+  }
+
+  // --- drawing ---
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    const dots = Math.min(2, devicePixelRatio || 1);
+    [this.width, this.height] = [clientWidth, clientHeight];
+    this.canvas.width = Math.round(clientWidth * dots);
+    this.canvas.height = Math.round(clientHeight * dots);
+    this.dots = dots;
+    if (this.is_fitted) this.fit();
+    this.draw();
+  }
+
+  draw_soon() {
+    if (this.is_due) return;
+    this.is_due = true;
+    requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    this.is_due = false;
+    if (!this.width) return;
+    const context = this.context;
+    context.setTransform(this.dots, 0, 0, this.dots, 0, 0);
+    context.clearRect(0, 0, this.width, this.height);
+    if (!this.frame) return;
+    const m = this.frame.resolution_m;
+    context.imageSmoothingEnabled = m * this.scale * this.dots < 1;
+    for (const tile of this.tiles.values()) {
+      const [left, bottom] = this.to_screen(this.frame.origin_m[0] + tile.column * m, this.frame.origin_m[1] + tile.row * m);
+      const side = SIDE * m * this.scale;
+      if (left > this.width || bottom < 0 || left + side < 0 || bottom - side > this.height) continue;
+      context.drawImage(tile.picture, left, bottom - side, side, side);
+    }
+    this.draw_over(context, this);
+  }
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// The status, the badges and the list of changes.
+
+const GATE_WORDS = {
+  searching: "the robot does not know where it is", lost: "the robot is lost", wrong: "the pose is called wrong",
+  jumped: "the pose has jumped", disbelieved: "the pose is rather wrong", confirming: "the pose has to hold for a while first",
+  doubtful: "P(pose right) is low", misfit: "scans have suddenly stopped fitting", rival: "another place fits as well",
+  spread: "the pose is too uncertain",
+};
+const LEVELS = { tracking: "good", global: "warn", lost: "bad", right: "good", undecided: "warn", wrong: "bad" };
+
+const percent = (share) => `${(100 * share).toFixed(share > 0 && share < 0.01 ? 1 : 0)} %`;
+const whole = (number) => Math.round(number).toLocaleString("en");
+
+function duration(time_s) {
+  const s = Math.round(time_s);
+  if (s < 60) return `${s} s`;
+  if (s < 3600) return `${Math.floor(s / 60)} min ${s % 60} s`;
+  return `${Math.floor(s / 3600)} h ${Math.floor((s % 3600) / 60)} min`;
+}
+
+function badge(id, text, level) {
+  const host = document.getElementById(id);
+  if (host.textContent !== text) host.textContent = text;
+  host.dataset.level = level;
+}
+
+export function show_link(link) {
+  const words = { connecting: "connecting", live: "live", lost: "no connection" };
+  badge("badge-link", words[link], { connecting: "wait", live: "good", lost: "bad" }[link]);
+  document.body.dataset.link = link;
+}
+
+export function show_pose(pose) {
+  badge("badge-state", pose.state, LEVELS[pose.state] ?? "none");
+  badge("badge-verdict", `pose ${pose.verdict}`, LEVELS[pose.verdict] ?? "none");
+  badge("badge-gate", pose.gate.open ? "gate open" : `gate shut: ${pose.gate.reason}`, pose.gate.open ? "good" : "warn");
+}
+
+function share_bar(share) {
+  const bar = document.createElement("span");
+  bar.className = "bar";
+  const filled = document.createElement("i");
+  filled.style.width = `${Math.round(100 * share)}%`;
+  bar.append(filled);
+  return [bar, percent(share)];
+}
+
+function waiting_words(status) {
+  const blocks = status.temporary.standing_blocks + status.temporary.gone_blocks;
+  const differs = blocks ? `${whole(blocks)} blocks differ` : "nothing differs";
+  return status.phase.open ? `${differs}; Δ-phase ${status.phase.number}, ${status.phase.stored_scans} scans` : differs;
+}
+
+function gate_words(status) {
+  if (status.mapping !== "on") return `mapping is ${status.mapping}`;
+  return status.gate.open ? "open" : `shut: ${GATE_WORDS[status.gate.reason] ?? status.gate.reason}`;
+}
+
+function rows_of({ status, resident_bytes }, rate) {
+  const { pose, belief, covariance } = status;
+  const deviation = Math.sqrt(Math.max(covariance.xx_m2, covariance.yy_m2));
+  const drops = Object.values(status.drops).reduce((sum, count) => sum + count, 0);
+  return [
+    ["P(pose right)", share_bar(belief.pose_right)],
+    ["P(map wrong)", share_bar(belief.map_wrong)],
+    ["Scan fits", status.fit === null ? "–" : share_bar(status.fit)],
+    ["Write gate", gate_words(status)],
+    ["Waits", waiting_words(status)],
+    ["Revision", `M${status.newest_revision}` + (status.newest_revision === status.revision ? "" : `, pose on M${status.revision}`) + (status.refused ? `; ${status.refused} refused` : "")],
+    ["Pose", `${pose.x_m.toFixed(2)}, ${pose.y_m.toFixed(2)} m, ${pose.heading_deg.toFixed(0)}°; σ ${(100 * deviation).toFixed(1)} cm`],
+    ["Scans", (rate === null ? "–" : rate > 0 ? `${rate.toFixed(1)} a second` : "none come") + (drops ? `; ${whole(drops)} dropped` : "")],
+    ["Latency", `${status.latency_ms.toFixed(1)} ms`],
+    ["Particles", `${whole(status.particles)}; N_eff ${status.n_eff.toFixed(0)}`],
+    ["Ports", `robot ${status.ports.robot}, laser ${status.ports.laser}`],
+    ["Driving", status.drive === "off" ? "off" : `${status.drive}` + (status.stopped_by === "none" ? "" : `; stands: ${status.stopped_by}`)],
+    ["Battery", status.battery_v > 0 ? `${status.battery_v.toFixed(1)} V` : "–"],
+    ["Memory", `${(resident_bytes / 1048576).toFixed(1)} MB`],
+    ["Runs for", duration(status.since_start_s)],
+  ];
+}
+
+function problems_of(status) {
+  const problems = Object.entries(status.outputs).filter(([, output]) => !output.written).map(([name, output]) => `${name} is not written: ${output.why}`);
+  for (const [port, state] of Object.entries(status.ports)) if (state === "down") problems.push(`${port} does not answer`);
+  return problems;
+}
+
+export function show_status(message, rate) {
+  const host = document.getElementById("status");
+  const rows = rows_of(message, rate);
+  if (host.children.length !== 2 * rows.length) {
+    host.replaceChildren(...rows.flatMap(([name]) => {
+      const title = document.createElement("dt");
+      title.textContent = name;
+      return [title, document.createElement("dd")];
+    }));
+  }
+  rows.forEach(([, value], i) => host.children[2 * i + 1].replaceChildren(...(Array.isArray(value) ? value : [value])));
+  const problems = problems_of(message.status), alert = document.getElementById("problems");
+  alert.hidden = !problems.length;
+  if (alert.textContent !== problems.join("; ")) alert.textContent = problems.join("; ");
+}
+
+function words_of(change) {
+  if (!change.accepted) return `refused: ${change.reason}`;
+  const parts = [[change.added, "occupied"], [change.freed, "free"], [change.forgotten, "forgotten"]];
+  const cells = parts.filter(([count]) => count).map(([count, kind]) => `${whole(count)} ${kind}`).join(", ");
+  return (change.reason ? `${change.reason}: ` : "") + (cells || "no cells");
+}
+
+function item_of(change, on_pick) {
+  const item = document.createElement("li");
+  const button = document.createElement("button");
+  button.type = "button";
+  button.setAttribute("aria-pressed", "false");
+  const title = document.createElement("b");
+  title.textContent = change.accepted ? `M${change.revision}` : "–";
+  const what = document.createElement("span");
+  what.className = "what";
+  what.textContent = words_of(change);
+  const time = document.createElement("time");
+  time.textContent = new Date(1000 * change.time).toLocaleTimeString([], { hour12: false });
+  const why = document.createElement("span");
+  why.className = "why";
+  why.textContent = change.withdraws ? `takes back ${change.withdraws.map((number) => `M${number}`).join(", ")}`
+    : `Δ-phase ${change.phase}, ${change.scans} scans, acceptance ${change.acceptance.toFixed(2)}`;
+  button.append(title, what, time, why);
+  button.addEventListener("click", () => on_pick(change, button));
+  item.append(button);
+  return item;
+}
+
+/// Adds changes on top: newest first.
+export function add_changes(changes, all, on_pick) {
+  const host = document.getElementById("changes");
+  host.querySelector(".hint")?.remove();
+  host.prepend(...[...changes].reverse().map((change) => item_of(change, on_pick)));
+  const refused = all.filter((change) => !change.accepted).length;
+  document.getElementById("changes-count").textContent = `${all.length - refused} accepted, ${refused} refused`;
+}
+
+export function clear_changes() {
+  document.getElementById("changes").replaceChildren();
+  document.getElementById("changes-count").textContent = "";
+}
+
+export function mark_picked(button) {
+  for (const other of document.querySelectorAll("#changes button")) other.setAttribute("aria-pressed", String(other === button));
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a browser asks and what it is answered, without the library that speaks HTTP.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace deltamap::daemon::dashboard {
+
+/// The parts of a request that decide anything. Absent header fields are empty.
+struct Request {
+  std::string method{};  ///< "GET"
+  std::string path{};    ///< "/api/status": the target up to its '?'
+  std::string query{};   ///< what follows the '?'
+  std::string host{};
+  std::string origin{};
+  std::string cookie{};
+  std::string authorization{};
+};
+
+struct Answer {
+  unsigned status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers{};  ///< beside those that every answer has
+};
+
+/// One message to viewers; several viewers share its bytes.
+struct Message {
+  bool is_binary = false;
+  std::shared_ptr<const std::string> bytes;
+};
+
+/// What one viewer is sent. It keeps what is due as marks, not as messages: a slow viewer skips what has become old.
+class Stream {
+ public:
+  Stream() = default;
+  virtual ~Stream() = default;
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  /// The next message; nothing until there is news.
+  [[nodiscard]] virtual std::optional<Message> next() = 0;
+};
+
+}  // namespace deltamap::daemon::dashboard

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/dashboard_desk.hpp"
+
+#include <algorithm>
+
+#include "daemon/dashboard/access.hpp"
+#include "daemon/dashboard/page_files.hpp"
+#include "daemon/live_messages.hpp"
+#include "daemon/map_picture.hpp"
+#include "daemon/metrics_text.hpp"
+#include "daemon/service.hpp"
+#include "daemon/status_report.hpp"
+#include "drivers/port/port_clock.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using dashboard::Answer;
+using dashboard::Request;
+using drivers::port::port_clock_now;
+
+constexpr double kScanPeriod_s = 0.19;    // with a look every 0.1 s: five scans a second at most
+constexpr double kStatusPeriod_s = 0.99;  // likewise: once a second
+constexpr const char* kJson = "application/json";
+
+Answer page_file(std::string_view name) {
+  for (const dashboard::PageFile& file : dashboard::page_files()) {
+    if (file.name == name) return {.type = std::string(file.type), .body = std::string(file.content)};
+  }
+  return {.status = 404, .body = "there is no such page\n"};
+}
+
+bool is_due(Timestamp last, Timestamp now, double period_s) { return now < last || seconds(now - last) >= period_s; }
+
+}  // namespace
+
+DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry)
+    : settings_{settings},
+      board_{start.map, start.revision},
+      telemetry_{telemetry},
+      began_{port_clock_now()},
+      server_{{.address = settings.dashboard.address,
+               .port = settings.dashboard.port,
+               .descriptor = service::handed_over_socket("page"),
+               .token = settings.dashboard.token_file.empty() ? std::string{}
+                                                              : dashboard::read_token(settings.dashboard.token_file),
+               .answer = [this](const Request& request) { return answer(request); },
+               .open = [this] { return std::make_unique<LiveStream>(news_, board_); },
+               .refresh = [this] { refresh(); },
+               .watched = [this](bool is_watched) { board_.watch(is_watched); }}} {
+  news_.hello.set(hello_message(settings_));
+}
+
+std::string DashboardDesk::url() const { return "http://" + server_.place() + "/"; }
+
+Answer DashboardDesk::answer(const Request& request) const {
+  const std::string& path = request.path;
+  if (path == "/") return page_file("index.html");
+  if (path.starts_with("/page/")) return page_file(std::string_view(path).substr(6));
+  if (path == "/api/status") return {.type = kJson, .body = status_json() + "\n"};
+  if (path == "/api/history") return {.type = kJson, .body = history_json(board_) + "\n"};
+  if (path == "/api/map.png") return picture();
+  if (path == "/metrics") {
+    return {.type = "text/plain; version=0.0.4; charset=utf-8", .body = metrics_text(telemetry_, since_start_s())};
+  }
+  return page_file(path);  // has no '/' in front: never found
+}
+
+Answer DashboardDesk::picture() const {
+  const auto map = board_.map();
+  try {
+    return {.type = "image/png",
+            .body = map_picture(*map.grid, *map.grid),
+            .headers = {{"X-Deltamap-Revision", std::to_string(map.revision)}}};
+  } catch (const std::runtime_error& error) {
+    return {.status = 500, .body = std::string(error.what()) + "\n"};
+  }
+}
+
+std::string DashboardDesk::status_json() const { return status_json_line(telemetry_, settings_, since_start_s()); }
+
+double DashboardDesk::since_start_s() const { return seconds(port_clock_now() - began_); }
+
+void DashboardDesk::refresh() {
+  const Timestamp now = port_clock_now();
+  refresh_scan(now);
+  if (auto things = board_.things(); things != things_ || news_.transient.number == 0) {
+    things_ = std::move(things);
+    news_.transient.set(transient_message(things_.get()));
+  }
+  if (!is_due(status_sent_, now, kStatusPeriod_s)) return;
+  status_sent_ = now;
+  news_.status.set(status_message(status_json()));
+}
+
+void DashboardDesk::refresh_scan(Timestamp now) {
+  if (!board_.fetch(scan_)) return;
+  news_.pose.set(pose_message(scan_, telemetry_));
+  if (!is_due(scan_sent_, now, kScanPeriod_s)) return;
+  scan_sent_ = now;
+  news_.scan.set(scan_message(scan_), true);
+}
+
+std::unique_ptr<DashboardDesk> begun_dashboard(const Settings& settings, const StartMap& start,
+                                               const Telemetry& telemetry,
+                                               const std::function<void(const std::string&)>& log,
+                                               const std::function<void(const std::string&)>& warn) {
+  if (settings.dashboard.port == 0) return nullptr;
+  try {
+    auto desk = std::make_unique<DashboardDesk>(settings, start, telemetry);
+    log("live page: " + desk->url());
+    return desk;
+  } catch (const std::exception& error) {
+    warn(std::string("no live page in this run: ") + error.what());
+    return nullptr;
+  }
+}
+
+}  // namespace deltamap::daemon

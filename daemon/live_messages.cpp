@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/live_messages.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "daemon/dashboard/wire.hpp"
+#include "daemon/version.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using dashboard::append_kind;
+using dashboard::append_number;
+using dashboard::MessageKind;
+
+constexpr int kProtocol = 1;
+constexpr std::size_t kMostBlocks = 20'000;  // of a kind; more are not drawn
+
+// In the order of LiveSample::Column.
+constexpr const char* kSampleColumns[] = {"x_m",   "y_m",        "w_avg",     "w_fast",      "w_slow",    "r_d",
+                                          "n_eff", "pose_right", "map_wrong", "scans_per_s", "latency_ms"};
+static_assert(std::size(kSampleColumns) == LiveSample::kColumns);
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+double unix_s(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
+
+Json hypothesis_json(const Belief& belief) {
+  if (belief.rival_share <= 0.0) return nullptr;
+  return {{"x_m", belief.map_from_rival.x},
+          {"y_m", belief.map_from_rival.y},
+          {"heading_rad", belief.map_from_rival.theta},
+          {"share", belief.rival_share}};
+}
+
+Json gate_json(const Telemetry& telemetry) {
+  const auto reason = static_cast<mapping::GateReason>(telemetry.gate.reason.value());
+  const bool is_open = reason == mapping::GateReason::kOpen;
+  return {{"open", is_open}, {"reason", is_open ? Json(nullptr) : Json(mapping::name_of(reason))}};
+}
+
+Json blocks_json(const std::vector<std::uint32_t>& blocks) {
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(blocks.size(), kMostBlocks));
+  return std::vector<std::uint32_t>(blocks.begin(), blocks.begin() + shown);
+}
+
+Json list_of(const std::vector<ChangeNote>& changes) {
+  Json list = Json::array();
+  for (const ChangeNote& change : changes) list.push_back(Json::parse(json_line(change)));
+  return list;
+}
+
+}  // namespace
+
+std::string hello_message(const Settings& settings) {
+  const bool is_paper = settings.mapping.store_scan.method == MappingMethod::kPaper;
+  const auto& gate = settings.mapping.store_scan.gate;
+  Json json;
+  json["type"] = "hello";
+  json["protocol"] = kProtocol;
+  json["version"] = version_text();
+  json["method"] = is_paper ? "paper" : "evidence";
+  json["thresholds"] = {{"r_d", is_paper ? Json(0.0) : Json(nullptr)},
+                        {"pose_right", !is_paper && gate.enabled ? Json(gate.least_pose_right) : Json(nullptr)}};
+  json["sample_columns"] = kSampleColumns;
+  return text_of(json);
+}
+
+std::string map_message(const GridGeometry& geometry, std::uint32_t revision) {
+  Json json;
+  json["type"] = "map";
+  json["width"] = geometry.width;
+  json["height"] = geometry.height;
+  json["resolution_m"] = geometry.resolution_m;
+  json["origin_m"] = {geometry.origin.x(), geometry.origin.y()};
+  json["revision"] = revision;
+  return text_of(json);
+}
+
+std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
+  const LocalizationRow& row = scan.row;
+  const PoseCovariance& c = row.covariance;
+  Json json;
+  json["type"] = "pose";
+  json["time"] = unix_s(row.time);
+  json["x_m"] = row.map_from_robot.x;
+  json["y_m"] = row.map_from_robot.y;
+  json["heading_rad"] = row.map_from_robot.theta;
+  json["covariance"] = {{"xx_m2", c(0, 0)}, {"xy_m2", c(0, 1)}, {"yy_m2", c(1, 1)}, {"hh_rad2", c(2, 2)}};
+  json["state"] = name_of(row.state);
+  json["verdict"] = name_of(row.belief.verdict);
+  json["pose_right"] = row.belief.pose_right;
+  json["map_wrong"] = row.belief.map_wrong;
+  json["speed_m_per_s"] = row.speed_m_per_s;
+  json["revision"] = row.revision;
+  json["other_hypothesis"] = hypothesis_json(row.belief);
+  json["gate"] = gate_json(telemetry);
+  json["latency_ms"] = 1e3 * scan.latency_s;
+  return text_of(json);
+}
+
+std::string scan_message(const LiveScan& scan) {
+  std::string bytes;
+  append_kind(bytes, MessageKind::kScan);
+  append_number(bytes, static_cast<std::uint32_t>(scan.beams.size()));
+  append_number(bytes, unix_s(scan.row.time));
+  const Pose2& pose = scan.row.map_from_robot;
+  for (const double number : {pose.x, pose.y, pose.theta}) append_number(bytes, static_cast<float>(number));
+  for (const LiveBeam& beam : scan.beams) {
+    append_number(bytes, beam.x_cm);
+    append_number(bytes, beam.y_cm);
+  }
+  return bytes;
+}
+
+std::string transient_message(const TemporaryThings* things) {
+  Json json;
+  json["type"] = "transient";
+  json["standing"] = Json::array();
+  json["gone"] = Json::array();
+  if (things != nullptr) {
+    json["block_m"] = things->blocks.resolution_m;
+    json["origin_m"] = {things->blocks.origin.x(), things->blocks.origin.y()};
+    json["blocks_across"] = things->blocks.width;
+    json["standing"] = blocks_json(things->standing);
+    json["gone"] = blocks_json(things->gone);
+  }
+  return text_of(json);
+}
+
+std::string status_message(const std::string& status_json) {
+  return "{\"type\":\"status\",\"resident_bytes\":" + std::to_string(resident_bytes()) + ",\"status\":" + status_json +
+         "}";
+}
+
+std::string samples_message(const LiveBoard::Past<LiveSample>& past) {
+  std::string bytes;
+  append_kind(bytes, MessageKind::kSamples);
+  append_number(bytes, static_cast<std::uint32_t>(past.items.size()));
+  const Timestamp began = past.items.empty() ? Timestamp{} : past.items.front().time;
+  append_number(bytes, unix_s(began));
+  for (const LiveSample& sample : past.items) {
+    append_number(bytes, static_cast<float>(seconds(sample.time - began)));
+    for (const float value : sample.values) append_number(bytes, value);
+  }
+  return bytes;
+}
+
+std::string changes_message(const LiveBoard::Past<ChangeNote>& past) {
+  Json json;
+  json["type"] = "changes";
+  json["first"] = past.first;
+  json["changes"] = list_of(past.items);
+  return text_of(json);
+}
+
+std::string history_json(const LiveBoard& board) {
+  const auto changes = board.changes_from(0, LiveBoard::kChangesKept);
+  Json json;
+  json["revision"] = board.map().revision;
+  json["forgotten"] = changes.first;
+  json["changes"] = list_of(changes.items);
+  return text_of(json);
+}
+
+std::uint64_t resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::uint64_t all = 0;
+  std::uint64_t resident = 0;
+  if (!(statm >> all >> resident)) return 0;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace deltamap::daemon

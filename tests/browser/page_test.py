@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The live page in Chromium, with a simulated robot behind it: ./dev test browser. Screenshots go to build/browser."""
+
+import json
+import pathlib
+import time
+import unittest
+
+from running_daemon import ROOT, RunningDaemon
+from webdriver import Browser
+
+PICTURES = ROOT / "build/browser"
+SIZES = {"phone": (390, 844, True), "netbook": (1024, 600, False), "desk": (1920, 1080, False)}
+SHOWS_MAP = "window.deltamap?.model.revision !== undefined && window.deltamap.view.tiles.size > 0 && window.deltamap.model.scan"
+IS_LIVE = 'document.body.dataset.link === "live"'
+# Cells of a box of the map (centre and sides, m) that the page shows as free, as a share.
+FREE_SHARE = """
+const [x, y, wide, high] = arguments[0], { view } = window.deltamap, m = view.frame.resolution_m;
+let free = 0, all = 0;
+for (let px = x - wide / 2 + m; px < x + wide / 2 - m; px += m) {
+  for (let py = y - high / 2 + m; py < y + high / 2 - m; py += m) {
+    ++all;
+    if (view.state_near(px, py, 0) === 0) ++free;
+  }
+}
+return free / all;"""
+# Pixels of the map's canvas that differ from the first one: something is drawn.
+DRAWN = """
+const canvas = document.querySelector("#map"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+const colours = new Set();
+for (let i = 0; i < data.length; i += 64) colours.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+return colours.size;"""
+
+
+class PageTest(unittest.TestCase):
+    """One robot for all."""
+
+    @classmethod
+    def setUpClass(cls):
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        cls.daemon = RunningDaemon(change_every_s=10)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.__exit__()
+
+    def open(self, width=1280, height=800, mobile=False, dark=False):
+        browser = Browser(width, height, dark, mobile)
+        self.addCleanup(browser.__exit__)
+        browser.open(self.daemon.url)
+        return browser
+
+    def expect_calm(self, browser):
+        self.assertEqual(browser.errors(), [])
+
+    def test_shows_the_map_within_two_seconds(self):
+        browser = Browser()
+        self.addCleanup(browser.__exit__)
+        began = time.monotonic()
+        browser.open(self.daemon.url)
+        browser.wait(SHOWS_MAP, 5)
+        self.assertLess(time.monotonic() - began, 2.0)
+        browser.wait(IS_LIVE)
+        self.assertGreater(browser.run(DRAWN), 5)
+        paint_ms = browser.run('return performance.getEntriesByName("first-contentful-paint")[0].startTime')
+        self.assertLess(paint_ms, 1000)
+        self.expect_calm(browser)
+
+    def test_fits_every_size_light_and_dark(self):
+        for name, (width, height, mobile) in SIZES.items():
+            for dark in (False, True):
+                with self.subTest(size=name, dark=dark):
+                    browser = self.open(width, height, mobile, dark)
+                    browser.wait(SHOWS_MAP)
+                    browser.wait('document.querySelectorAll("#status dd").length > 5 && window.deltamap.model.samples.length > 1')
+                    browser.run("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+                    self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark" if dark else "light")
+                    self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+                    wide = browser.run("""return [...document.querySelectorAll("body *")].filter((one) =>
+                        one.getBoundingClientRect().right > innerWidth + 0.5 || one.getBoundingClientRect().left < -0.5).map((one) => one.tagName + "#" + one.id)""")
+                    self.assertEqual(wide, [])
+                    if not mobile:
+                        self.assertLessEqual(browser.run("return document.documentElement.scrollHeight"), height)
+                    browser.screenshot(PICTURES / f"{name}-{'dark' if dark else 'light'}.png", whole=mobile)
+                    self.expect_calm(browser)
+
+    def test_a_container_that_changes_in_the_hall_changes_on_the_page(self):
+        browser = self.open(1440, 900)
+        browser.wait(SHOWS_MAP)
+        first = {}
+        give_up_at = time.monotonic() + 240
+        while time.monotonic() < give_up_at:
+            for change in self.daemon.changes():
+                if change["kind"] not in ("removed", "added"):
+                    continue
+                now = browser.run(FREE_SHARE, change["box"][:4])
+                before = first.setdefault(json.dumps(change), now)
+                if abs(now - before) > 0.3:
+                    browser.wait("document.querySelectorAll('#changes button').length > 0")
+                    browser.screenshot(PICTURES / "changed.png")
+                    return self.expect_calm(browser)
+            time.sleep(0.3)
+        self.fail("no container has changed on the page in four minutes")
+
+    def test_the_connection_drops_and_comes_back(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        self.daemon.stop()
+        browser.wait('document.body.dataset.link === "lost" && !document.querySelector("#map-note").hidden')
+        browser.screenshot(PICTURES / "lost.png")
+        self.daemon.start()
+        browser.wait(IS_LIVE, 20)
+        browser.wait(SHOWS_MAP)
+        self.assertTrue(browser.run('return document.querySelector("#map-note").hidden'))
+        refused = [line for line in browser.errors() if "ERR_CONNECTION_REFUSED" not in line]
+        self.assertEqual(refused, [])
+
+    def test_mouse_and_keyboard_move_the_map(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        scale = "return window.deltamap.view.scale"
+        centre = "return window.deltamap.view.centre.x"
+        fitted = browser.run(scale)
+        browser.press("#map", "+")
+        self.assertGreater(browser.run(scale), fitted)
+        before = browser.run(centre)
+        browser.press("#map", "\ue014")  # the right arrow
+        self.assertGreater(browser.run(centre), before)
+        before = browser.run(centre)
+        browser.drag((300, 300), (400, 300))
+        self.assertLess(browser.run(centre), before)
+        browser.press("#map", "f")
+        self.assertAlmostEqual(browser.run(scale), fitted, 3)
+        browser.press("#map", "r")
+        self.assertEqual(browser.run('return document.querySelector("#follow").getAttribute("aria-pressed")'), "true")
+        self.expect_calm(browser)
+
+    def test_a_picked_change_is_ringed_and_layers_switch(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        browser.wait("document.querySelectorAll('#changes button').length > 0", 90)
+        browser.run("document.querySelector('#changes button').click()")
+        self.assertIsNotNone(browser.run("return window.deltamap.model.picked"))
+        self.assertEqual(browser.run("return document.querySelector('#changes button').getAttribute('aria-pressed')"), "true")
+        browser.wait("document.querySelectorAll('#layers input').length === 6")
+        browser.run("document.querySelectorAll('#layers input').forEach((box) => box.click())")
+        browser.run("return new Promise((done) => requestAnimationFrame(done))")
+        self.expect_calm(browser)
+
+    def test_hover_shows_one_instant_in_all_charts(self):
+        browser = self.open()
+        browser.wait("window.deltamap?.model.samples.length > 3")
+        place = browser.run("""const box = document.querySelector("#charts canvas").getBoundingClientRect();
+                               return [Math.round(box.left + box.width * 0.8), Math.round(box.top + 20)]""")
+        browser.move(place)
+        browser.wait('document.querySelector("#charts-instant").textContent.startsWith("at ")')
+        self.expect_calm(browser)
+
+    def test_everything_that_can_be_used_has_a_name(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        nameless = browser.run("""return [...document.querySelectorAll("button, input, canvas[tabindex], summary, section")].filter((one) =>
+            !(one.ariaLabel || one.textContent.trim() || one.labels?.length || one.getAttribute("aria-labelledby"))).map((one) => one.outerHTML)""")
+        self.assertEqual(nameless, [])
+        self.assertEqual(browser.run("return document.documentElement.lang"), "en")
+
+    def test_nothing_is_asked_of_anybody_else(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        foreign = browser.run("return performance.getEntriesByType('resource').map((one) => one.name).filter((name) => !name.startsWith(location.origin))")
+        self.assertEqual([name for name in foreign if not name.startswith("data:")], [])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

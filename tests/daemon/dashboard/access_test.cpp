@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/dashboard/access.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon::dashboard {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kToken = "0123456789abcdef-secret";
+
+Request good_request() { return {.method = "GET", .path = "/", .query = "", .host = "127.0.0.1:8484"}; }
+
+unsigned status_of(const Request& request, const std::string& token = "") {
+  const auto refusal = refusal_of(request, token);
+  return refusal ? refusal->status : 200;
+}
+
+TEST(DashboardAccess, KnowsWhatLeadsBeyondThisMachine) {
+  EXPECT_EQ(is_loopback("127.0.0.1"), true);
+  EXPECT_EQ(is_loopback("127.3.2.1"), true);
+  EXPECT_EQ(is_loopback("::1"), true);
+  EXPECT_EQ(is_loopback("0.0.0.0"), false);
+  EXPECT_EQ(is_loopback("192.168.1.7"), false);
+  for (const char* none : {"localhost", "", "127.0.0.1:80", "1.2.3", "robot.example"}) {
+    EXPECT_EQ(is_loopback(none), std::nullopt) << none;
+  }
+}
+
+TEST(DashboardAccess, OnlyGetIsAnswered) {
+  for (const char* method : {"POST", "PUT", "DELETE", "HEAD", "OPTIONS", "PATCH", "get", ""}) {
+    Request request = good_request();
+    request.method = method;
+    EXPECT_EQ(status_of(request), 405u) << method;
+  }
+}
+
+TEST(DashboardAccess, HostsThatAreAddressesOrLocalhostAreAnswered) {
+  for (const char* host :
+       {"127.0.0.1", "127.0.0.1:8484", "localhost", "localhost:9000", "[::1]", "[::1]:8484", "192.168.1.7:8484"}) {
+    Request request = good_request();
+    request.host = host;
+    EXPECT_EQ(status_of(request), 200u) << host;
+  }
+}
+
+TEST(DashboardAccess, HostsThatAreNamesAreRefused) {
+  for (const char* host : {"", "evil.example", "evil.example:8484", "localhost.evil.example", "127.0.0.1.evil.example",
+                           "localhost:evil", "127.0.0.1:", "127.0.0.1:123456", "[::1", "[::1]x", "::1", "[127.0.0.1]",
+                           "[localhost]", "127.0.0.1@evil.example", "127.0.0.1 ", "[]", "["}) {
+    Request request = good_request();
+    request.host = host;
+    EXPECT_EQ(status_of(request), 421u) << host;
+  }
+}
+
+TEST(DashboardAccess, OtherOriginsAreRefused) {
+  Request request = good_request();
+  request.origin = "http://127.0.0.1:8484";
+  EXPECT_EQ(status_of(request), 200u);
+  for (const char* origin : {"http://evil.example", "null", "https://127.0.0.1:8484", "http://127.0.0.1:8485",
+                             "http://localhost:8484", "file://", "http://127.0.0.1:8484/"}) {
+    request.origin = origin;
+    EXPECT_EQ(status_of(request), 403u) << origin;
+  }
+}
+
+TEST(DashboardAccess, TheTokenIsAskedForEverywhere) {
+  Request request = good_request();
+  EXPECT_EQ(status_of(request, kToken), 401u);
+  for (const std::string& wrong :
+       {std::string{}, std::string{"x"}, kToken + "x", kToken.substr(1), std::string{"0123456789abcdef-secreT"}}) {
+    request.authorization = "Bearer " + wrong;
+    request.cookie = "deltamap_token=" + wrong;
+    EXPECT_EQ(status_of(request, kToken), 401u) << wrong;
+  }
+  request.authorization = "Bearer " + kToken;
+  EXPECT_EQ(status_of(request, kToken), 200u);
+  request.authorization = "Basic " + kToken;
+  EXPECT_EQ(status_of(request, kToken), 401u);
+  request.cookie = "a=b; deltamap_token=" + kToken + "; c=d";
+  EXPECT_EQ(status_of(request, kToken), 200u);
+}
+
+TEST(DashboardAccess, TheTokenInTheAddressBecomesACookieThatNoScriptSees) {
+  Request request = good_request();
+  request.query = "token=" + kToken;
+  const auto entry = entry_of(request, kToken);
+  ASSERT_TRUE(entry);
+  EXPECT_EQ(entry->status, 303u);
+  EXPECT_EQ(entry->headers.at(0).second, "/");
+  EXPECT_NE(entry->headers.at(1).second.find("HttpOnly; SameSite=Strict"), std::string::npos);
+  EXPECT_FALSE(entry_of(request, "another-token-0123456789"));
+  EXPECT_FALSE(entry_of(request, ""));
+  request.host = "evil.example";
+  EXPECT_FALSE(entry_of(request, kToken));
+}
+
+TEST(DashboardAccess, ComparesSecretsByAllTheirCharacters) {
+  EXPECT_TRUE(is_same_secret("abc", "abc"));
+  EXPECT_FALSE(is_same_secret("abd", "abc"));
+  EXPECT_FALSE(is_same_secret("xbc", "abc"));
+  EXPECT_FALSE(is_same_secret("ab", "abc"));
+  EXPECT_FALSE(is_same_secret("", ""));
+}
+
+TEST(DashboardAccess, ReadsATokenThatOthersMayNotRead) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("token", kToken + "\nmore\n");
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(read_token(file), kToken);
+  fs::permissions(file, fs::perms::others_read, fs::perm_options::add);
+  EXPECT_THROW((void)read_token(file), std::runtime_error);
+}
+
+TEST(DashboardAccess, RefusesTokensThatAreNone) {
+  const test::TemporaryFolder folder;
+  for (const char* content : {"", "short", "\n0123456789abcdef", "0123456789abcdef;x", "0123456789 abcdef"}) {
+    const auto file = folder.write("token", content);
+    fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+    EXPECT_THROW((void)read_token(file), std::runtime_error) << content;
+  }
+  EXPECT_THROW((void)read_token(folder.path()), std::runtime_error);
+  try {
+    (void)read_token(folder.path() / "missing");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("missing: no token: "), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::daemon::dashboard

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// A client of the live page over plain sockets: HTTP and WebSocket, as rude as a test needs it.
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace deltamap::test {
+
+struct WebAnswer {
+  int status = 0;  ///< 0: the server has hung up without an answer
+  std::map<std::string, std::string> headers;
+  std::string body;
+};
+
+struct WebFrame {
+  unsigned opcode = 0;  ///< 1 text, 2 binary, 8 close, 9 ping
+  std::string payload;
+};
+
+class WebClient {
+ public:
+  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : descriptor_{::socket(AF_INET, SOCK_STREAM, 0)} {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{20, 0};
+    (void)::setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    if (receive_buffer > 0) {
+      (void)::setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    }
+    is_connected_ = ::connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+  ~WebClient() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  WebClient(const WebClient&) = delete;
+  WebClient& operator=(const WebClient&) = delete;
+
+  [[nodiscard]] bool is_connected() const { return is_connected_; }
+
+  bool send(const std::string& bytes) const {
+    std::size_t sent = 0;
+    while (sent < bytes.size()) {
+      const ssize_t n = ::send(descriptor_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (n <= 0) return false;
+      sent += static_cast<std::size_t>(n);
+    }
+    return true;
+  }
+
+  [[nodiscard]] WebAnswer answer() {
+    WebAnswer answer;
+    std::string line = text_line();
+    if (line.size() < 12) return answer;
+    answer.status = std::atoi(line.c_str() + 9);
+    for (line = text_line(); !line.empty(); line = text_line()) {
+      const auto colon = line.find(": ");
+      if (colon == std::string::npos) break;
+      answer.headers[line.substr(0, colon)] = line.substr(colon + 2);
+    }
+    const auto length = answer.headers.find("Content-Length");
+    if (length != answer.headers.end())
+      answer.body = taken(static_cast<std::size_t>(std::atoi(length->second.c_str())));
+    return answer;
+  }
+
+  /// Lines without their ends; a Host is added unless they bring one.
+  [[nodiscard]] WebAnswer asked(const std::string& request_line, const std::string& headers = "") {
+    const bool has_host = headers.find("Host:") != std::string::npos;
+    (void)send(request_line + " HTTP/1.1\r\n" + (has_host ? "" : "Host: 127.0.0.1:1\r\n") + headers + "\r\n");
+    return answer();
+  }
+  [[nodiscard]] WebAnswer got(const std::string& path, const std::string& headers = "") {
+    return asked("GET " + path, headers);
+  }
+  [[nodiscard]] WebAnswer upgraded(const std::string& headers = "") {
+    return got("/live",
+               "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+                   headers);
+  }
+
+  /// Nothing where the connection has ended.
+  [[nodiscard]] std::optional<WebFrame> frame() {
+    const std::string head = taken(2);
+    if (head.size() < 2) return std::nullopt;
+    const auto byte = [](const std::string& text, std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    std::uint64_t length = byte(head, 1) & 0x7FU;
+    if (length >= 126) {
+      const std::string more = taken(length == 126 ? 2 : 8);
+      length = 0;
+      for (std::size_t i = 0; i < more.size(); ++i) length = length << 8U | byte(more, i);
+    }
+    WebFrame frame{byte(head, 0) & 0x0FU, taken(static_cast<std::size_t>(length))};
+    if (frame.payload.size() < length) return std::nullopt;
+    return frame;
+  }
+  /// With a mask of zeros, as a client must have one.
+  bool send_frame(unsigned opcode, const std::string& payload) const {
+    std::string bytes{static_cast<char>(0x80U | opcode), static_cast<char>(0x80U | payload.size())};
+    return send(bytes + std::string(4, '\0') + payload);
+  }
+  /// Says no more, and reads until the server hangs up.
+  [[nodiscard]] bool finishes() {
+    (void)::shutdown(descriptor_, SHUT_WR);
+    return is_hung_up();
+  }
+  /// Reads until the server hangs up. False where it does not within the patience of the socket.
+  [[nodiscard]] bool is_hung_up() {
+    char bytes[4096];
+    for (;;) {
+      const ssize_t n = ::recv(descriptor_, bytes, sizeof bytes, 0);
+      if (n == 0) return true;
+      if (n < 0) return errno == ECONNRESET || errno == EPIPE;
+    }
+  }
+
+ private:
+  [[nodiscard]] std::string text_line() {
+    for (;;) {
+      if (const auto end = received_.find("\r\n"); end != std::string::npos) {
+        std::string line = received_.substr(0, end);
+        received_.erase(0, end + 2);
+        return line;
+      }
+      if (!receive()) return std::exchange(received_, {});
+    }
+  }
+  [[nodiscard]] std::string taken(std::size_t size) {
+    while (received_.size() < size && receive()) {
+    }
+    std::string text = received_.substr(0, size);
+    received_.erase(0, size);
+    return text;
+  }
+  bool receive() {
+    char bytes[4096];
+    const ssize_t n = ::recv(descriptor_, bytes, sizeof bytes, 0);
+    if (n > 0) received_.append(bytes, static_cast<std::size_t>(n));
+    return n > 0;
+  }
+
+  int descriptor_;
+  bool is_connected_ = false;
+  std::string received_;
+};
+
+}  // namespace deltamap::test
