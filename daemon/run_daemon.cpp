@@ -147,7 +147,10 @@ OccupancyGrid first_map(const Settings& settings, const CommandLine& line) {
 std::filesystem::path folder_to_write(const std::string& out, const std::filesystem::path& map) {
   std::error_code error;
   std::filesystem::create_directories(out, error);
-  if (error) throw StartError(out + ": is no folder: " + error.message());
+  if (error) {
+    const std::string why = why_no_folder_for(std::filesystem::path(out) / "report.json");
+    throw StartError(out + ": cannot be made: " + (why.empty() ? error.message() : why));
+  }
   (void)judged_out_place(out, map);
   return out;
 }
@@ -240,7 +243,7 @@ int run_daemon(int argc, const char* const* argv) {
     if (line.check_only) return check(settings, line);
     return line.print_only ? 0 : run_pipeline(settings, line);
   } catch (const SettingsError& error) {
-    std::cerr << "deltamapd: " << error.what() << '\n';
+    for (const std::string& problem : error.lines()) std::cerr << "deltamapd: " << problem << '\n';
     return 2;
   } catch (const StartError& error) {
     std::cerr << "deltamapd: " << error.what() << '\n';

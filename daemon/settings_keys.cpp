@@ -186,26 +186,24 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   return keys;
 }
 
-std::optional<std::string> contradiction_in(const Settings& settings) {
+std::vector<Contradiction> contradictions_in(const Settings& settings) {
+  std::vector<Contradiction> found;
+  const auto expect_not = [&](bool is_wrong, const std::string& key, const std::string& rule) {
+    if (is_wrong) found.push_back({key, "'" + key + "' must " + rule});
+  };
   const auto& localizer = settings.localizer;
-  if (localizer.particles.min > localizer.particles.max) {
-    return "'localization.particles.min' must not exceed 'localization.particles.max'";
-  }
-  if (localizer.fit.lost_below > localizer.fit.found_above) {
-    return "'localization.fit.lost_below' must not exceed 'localization.fit.found_above'";
-  }
-  if (localizer.field.unknown_likelihood < localizer.field.random_share) {
-    return "'localization.field.unknown_likelihood' must not lie below 'localization.field.random_share'";
-  }
+  expect_not(localizer.particles.min > localizer.particles.max, "localization.particles.min",
+             "not exceed 'localization.particles.max'");
+  expect_not(localizer.fit.lost_below > localizer.fit.found_above, "localization.fit.lost_below",
+             "not exceed 'localization.fit.found_above'");
+  expect_not(localizer.field.unknown_likelihood < localizer.field.random_share, "localization.field.unknown_likelihood",
+             "not lie below 'localization.field.random_share'");
   const auto& wander = settings.navigation.wander;
-  if (wander.shortest_leg_s > wander.longest_leg_s) {
-    return "'navigation.wander.shortest_leg_s' must not exceed 'navigation.wander.longest_leg_s'";
-  }
-  if (wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m)) {
-    return "'navigation.wander.turn_away_m' must lie below 'navigation.wander.slow_down_m' and "
-           "'navigation.wander.go_on_m'";
-  }
-  return std::nullopt;
+  expect_not(wander.shortest_leg_s > wander.longest_leg_s, "navigation.wander.shortest_leg_s",
+             "not exceed 'navigation.wander.longest_leg_s'");
+  expect_not(wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m), "navigation.wander.turn_away_m",
+             "lie below 'navigation.wander.slow_down_m' and 'navigation.wander.go_on_m'");
+  return found;
 }
 
 }  // namespace deltamap::daemon
