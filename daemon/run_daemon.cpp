@@ -120,13 +120,23 @@ void remember_stability(const Settings& settings, const mapping::MapStore& store
   options.memory ^= answer.fingerprint;
 }
 
-/// Until a signal to stop comes, or a stage fails.
-void watch(const Pipeline& pipeline, Console& console) {
+void reload(Pipeline& pipeline) {
+  service::tell_reloading();
+  (void)pipeline.reload();  // the log has what came of it
+  service::tell_ready();
+}
+
+/// Until a signal to stop comes, or a stage fails. `hangup_reloads`: SIGHUP is no reason to stop.
+void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
   const sigset_t signals = stop_signals();
   const timespec second{1, 0};
   for (;;) {
     const int signal = sigtimedwait(&signals, nullptr, &second);
-    if (signal > 0) return;
+    if (signal == SIGHUP && hangup_reloads) {
+      reload(pipeline);
+    } else if (signal > 0) {
+      return;
+    }
     const std::string status = status_line(pipeline.telemetry());
     console.show(status);
     service::tell_status(status);
@@ -190,9 +200,12 @@ int check(const Settings& settings, const CommandLine& line) {
 
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
+  const bool hangup_reloads = !has_terminal();
   take_signals();  // all threads begin with them blocked: only watch() takes them
 
   Pipeline::Options options;
+  options.live =
+      std::make_shared<LiveSettings>(settings, [line] { return read_settings(line.config, line.overrides); });
   const OccupancyGrid first = first_map(settings, line);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);
@@ -214,7 +227,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   options.warn = [&console](const std::string& text) { console.log(spdlog::level::warn, text); };
   const std::unique_ptr<Pipeline> pipeline = begun(settings, std::move(options));
   service::tell_ready();
-  watch(*pipeline, console);
+  watch(*pipeline, console, hangup_reloads);
   service::tell_stopping();
   console.end();
   const RunReport report = pipeline->stop();

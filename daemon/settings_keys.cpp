@@ -110,6 +110,7 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
   add(drive_mode_key(settings.mode));
   add(flag_key("navigation.drive_without_pose", settings.drive_without_pose,
                "also while the pose is unknown, lost or called wrong; a robot that must find itself needs it"));
+  const auto first_live = static_cast<std::ptrdiff_t>(keys.size());
   auto& safety = settings.safety;
   add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
                  "swing circle around the axle"));
@@ -145,6 +146,7 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
                  "before it thinks of another direction"));
   add(number_key("navigation.wander.longest_leg_s", wander.longest_leg_s, "s", 0.1, 3600.0,
                  "before it thinks of another direction"));
+  std::for_each(keys.begin() + first_live, keys.end(), [](SettingKey& key) { key.is_live = true; });
 }
 
 void add_memory(MemorySettings& memory, Keys& keys) {
