@@ -6,6 +6,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/settings.hpp"
@@ -26,8 +27,14 @@ class LiveSettings {
   /// cannot take them now: then nothing has changed.
   [[nodiscard]] Outcome reload(const std::function<bool(const Settings&)>& take);
 
+  /// Any thread.
+  [[nodiscard]] Settings in_force() const {
+    const std::scoped_lock lock{mutex_};
+    return in_force_;
+  }
+
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   Settings in_force_;
   std::function<Settings()> read_;
 };

@@ -317,7 +317,7 @@ void Pipeline::State::end_threads() {
 /// The run has ended well whether or not there is room for its report.
 void Pipeline::State::write_report(const RunReport& report) const {
   try {
-    replace_file(*options.out / "report.json", json_text(report, settings));
+    replace_file(*options.out / "report.json", json_text(report, options.live ? options.live->in_force() : settings));
   } catch (const std::exception& error) {
     options.warn(std::string("no report of this run: ") + error.what());
   }

@@ -46,6 +46,7 @@ TEST_F(LiveSettingsTest, TakesLiveKeysAndNamesThoseThatNeedARestart) {
   EXPECT_NEAR(taken_[0].navigation.wander.turn_rate_rad_per_s, radians(30.0), 1e-12);
   EXPECT_EQ(taken_[0].navigation.mode, navigation::DriveMode::kOff) << "no reload lets a robot drive";
   EXPECT_EQ(taken_[0].seed, 3u);
+  EXPECT_EQ(settings_as_yaml(live.in_force()), settings_as_yaml(taken_[0]));
 }
 
 TEST_F(LiveSettingsTest, WhatWaitsForARestartIsNamedAtEveryReload) {

@@ -118,7 +118,7 @@ run_dpkg -r deltamap
 holds "the programs are gone" fails test -e /usr/bin/deltamapd -o -e /usr/bin/deltamap -o -e /lib/systemd/system/deltamap.service
 holds "configuration, maps and their owner stay" test -f /etc/deltamap/deltamap.yaml -a -f /var/lib/deltamap/maps/site.pgm
 holds "the store stays its owner's" is 'deltamap:deltamap 644' /var/lib/deltamap/map_store.sqlite
-run_dpkg -i "/deltamap_$version.deb"
+run_dpkg --force-confold -i "/deltamap_$version+2.deb"
 holds "back again, with the edited configuration" grep -q '^laser: # ours' /etc/deltamap/deltamap.yaml
 holds "and with its maps" test -f /var/lib/deltamap/maps/site.pgm -a -f /var/lib/deltamap/map_store.sqlite
 

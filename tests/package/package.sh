@@ -52,7 +52,8 @@ cp "$deb" "$root/deltamap_$version.deb"
 as_version "$version+1"
 as_version "$version+2"
 install -m 755 "$here/inside.sh" "$root/inside.sh"
-unshare --mount --propagation private bash -c '
+# Processes of its own, too: what runs on this machine is not seen, and not ended.
+unshare --mount --pid --fork --propagation private bash -c '
   root=$1; shift
   mount -t proc proc "$root/proc"; mount --bind /dev "$root/dev"
   exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 "$@"
