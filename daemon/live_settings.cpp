@@ -4,6 +4,16 @@
 #include <cstddef>
 
 namespace deltamap::daemon {
+namespace {
+
+/// "seed: 4 (in force 3)"
+std::string changed_line(const std::string& key, const std::string& value, const char* what, const std::string& other) {
+  std::string line = key;
+  line.append(": ").append(value).append(" (").append(what).append(" ").append(other).append(")");
+  return line;
+}
+
+}  // namespace
 
 MergedSettings with_live_keys_of(const Settings& wanted, const Settings& in_force) {
   MergedSettings merged{.settings = in_force, .taken = {}, .for_a_restart = {}};
@@ -16,9 +26,9 @@ MergedSettings with_live_keys_of(const Settings& wanted, const Settings& in_forc
     if (before == after) continue;
     // A live key is a number or a word: its text is its value.
     if (from[i].is_live && !to[i].assign({SettingValue::Kind::kScalar, {after}})) {
-      merged.taken.push_back(from[i].name + ": " + after + " (before " + before + ")");
+      merged.taken.push_back(changed_line(from[i].name, after, "before", before));
     } else {
-      merged.for_a_restart.push_back(from[i].name + ": " + after + " (in force " + before + ")");
+      merged.for_a_restart.push_back(changed_line(from[i].name, after, "in force", before));
     }
   }
   return merged;

@@ -11,10 +11,10 @@ namespace {
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
+  for (const char letter : a) {
     std::size_t diagonal = row[0]++;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      const std::size_t changed = diagonal + (letter == b[j] ? 0 : 1);
       diagonal = row[j + 1];
       row[j + 1] = std::min({row[j + 1] + 1, row[j] + 1, changed});
     }
@@ -37,6 +37,7 @@ std::optional<std::string> nearest_of(const std::vector<std::string>& names, con
 
 std::vector<std::string> names_of(const std::vector<SettingKey>& keys) {
   std::vector<std::string> names;
+  names.reserve(keys.size());
   for (const SettingKey& key : keys) names.push_back(key.name);
   return names;
 }

@@ -30,11 +30,11 @@ fs::path scenario_folder() {
 }
 
 fs::path scenario_file(const std::string& given) {
-  const fs::path path = given;
+  fs::path path = given;
   std::error_code error;
   if (fs::exists(path, error) || path.has_parent_path() || path.has_extension()) return path;
   const fs::path folder = scenario_folder();
-  const fs::path delivered = folder / (given + ".yaml");
+  fs::path delivered = folder / (given + ".yaml");
   if (fs::exists(delivered, error)) return delivered;
   throw std::runtime_error(given + ": no such file, and no scenario: " + folder.string() + " has " + names_in(folder));
 }
