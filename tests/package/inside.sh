@@ -22,10 +22,10 @@ holds() {
 fails() { ! "$@"; }
 is() { [[ $(stat -c '%U:%G %a' "$2") == "$1" ]] || { stat -c '%n is %U:%G %a' "$2"; return 1; }; }
 run_dpkg() { dpkg "$@" >/tmp/dpkg.log 2>&1 || { cat /tmp/dpkg.log >&2; fail "dpkg $*"; }; }
-# Everything but what dpkg, ldconfig and this test write themselves.
+# Everything but what dpkg, ldconfig, systemctl and this test write themselves.
 everything() {
   find / -xdev \( -path /proc -o -path /dev -o -path /tmp -o -path /var/lib/dpkg -o -path /var/log/dpkg.log \
-    -o -path /var/cache/ldconfig -o -name '.pwd.lock' -o -path '/etc/*-' \) -prune -o -printf '%y %m %u:%g %p\n' | sort
+    -o -path /run/systemd -o -path /var/cache/ldconfig -o -name '.pwd.lock' -o -path '/etc/*-' \) -prune -o -printf '%y %m %u:%g %p\n' | sort
 }
 users() { sort /etc/passwd /etc/group /etc/shadow /etc/gshadow; }
 is_enabled() { [[ -L /etc/systemd/system/multi-user.target.wants/deltamap.service ]]; }
