@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # Writes which commit the source is at into a small C++ file: cmake -DSOURCE=DIR -DTARGET=FILE -P commit.cmake.
 # Runs at every build; the file is touched only where the commit has changed, so that nothing else is built again.
-# Without git, or in a folder that is no repository of its own (a tarball), the commit is "unknown".
+# In a folder that is no repository of its own the file COMMIT names it, where there is one (`./dev deb` writes it);
+# otherwise the commit is "unknown".
 set(commit unknown)
+if(EXISTS ${SOURCE}/COMMIT)
+  file(STRINGS ${SOURCE}/COMMIT commit LIMIT_COUNT 1)
+endif()
 find_program(GIT git)
 if(GIT)
   # Whoever builds may be another user than the owner of the files: root, in a container.

@@ -129,10 +129,22 @@ FileLock& FileLock::operator=(FileLock&& other) noexcept {
 
 std::filesystem::path file_behind(std::filesystem::path name) {
   constexpr int kMostLinks = 40;  // as the kernel has it
-  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(name)); ++i) {
-    name = name.parent_path() / std::filesystem::read_symlink(name);
+  namespace fs = std::filesystem;
+  const std::string given = name.string();
+  std::error_code error;
+  const auto expect_seen = [&] {
+    if (error) throw std::system_error(error, given + ": cannot be looked at");
+  };
+  name = fs::absolute(name, error);  // the folder of a bare name is known, too
+  expect_seen();
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(name, error)); ++i) {
+    const fs::path target = fs::read_symlink(name, error);
+    expect_seen();
+    name = name.parent_path() / target;
   }
-  return std::filesystem::weakly_canonical(name);
+  name = fs::weakly_canonical(name, error);
+  expect_seen();
+  return name;
 }
 
 std::optional<FileLock> lock_of_file(const std::filesystem::path& file) {

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <span>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/replace_file.hpp"
 #include "core/shortest_text.hpp"
@@ -39,7 +40,8 @@ struct MapKeys {
 }
 
 std::ifstream open_file(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) refuse(file, "is a directory");
+  std::error_code told_below;
+  if (std::filesystem::is_directory(file, told_below)) refuse(file, "is a directory");
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file, std::strerror(errno));
   return in;
@@ -48,6 +50,25 @@ std::ifstream open_file(const std::filesystem::path& file) {
 std::string read_bytes(const std::filesystem::path& file) {
   std::ifstream in = open_file(file);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Whoever gives the picture, or another file that is no text, is told so before YAML makes a riddle of it.
+void require_description(const std::filesystem::path& file, const std::string& text) {
+  if (is_carmen_map(file, text)) refuse(file, "is a CARMEN map; give a map_server map (YAML and PGM)");
+  std::filesystem::path yaml = file;
+  yaml.replace_extension(".yaml");
+  std::error_code ignored;
+  const bool is_beside = yaml != file && std::filesystem::exists(yaml, ignored);
+  const std::string beside = is_beside ? ", " + yaml.string() : std::string{};
+  if (text.starts_with("P5") || text.starts_with("P2")) {
+    refuse(file, "is the picture of a map; give its description (YAML)" + beside);
+  }
+  const auto binary = std::find_if(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
+  });
+  if (binary != text.end()) {
+    refuse(file, "byte " + std::to_string(binary - text.begin()) + ": is no text; give a map's description (YAML)");
+  }
 }
 
 double number(const YAML::Node& map, const std::string& key, const std::filesystem::path& file) {
@@ -64,7 +85,7 @@ double number(const YAML::Node& map, const std::string& key, const std::filesyst
 MapKeys parse_keys(const std::filesystem::path& file) {
   YAML::Node map;
   const std::string text = read_bytes(file);
-  if (is_carmen_map(file, text)) refuse(file, "is a CARMEN map; give a map_server map (YAML and PGM)");
+  require_description(file, text);
   try {
     map = YAML::Load(text);
   } catch (const YAML::Exception& error) {

@@ -40,6 +40,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return command(Command::Kind::kResume, request, std::move(reply));
     case Request::Kind::kSave:
       return command(Command::Kind::kSave, request, std::move(reply));
+    case Request::Kind::kReload:
+      return reply(reloaded());
     case Request::Kind::kRelocalize:
       if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position())))
         return reply(error_line("that pose lies outside the map"));
@@ -54,6 +56,13 @@ void ControlDesk::drive(bool may_drive, const Request& request, control::Server:
   const std::uint64_t ticket = next_ticket_++;
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
   wiring_.let_drive(may_drive, ticket);
+}
+
+std::string ControlDesk::reloaded() const {
+  const LiveSettings::Outcome outcome = wiring_.reload();
+  std::string text;
+  for (const std::string& line : outcome.lines) text += (text.empty() ? "" : "\n") + line;
+  return outcome.done ? done_line(text) : error_line(text);
 }
 
 void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
@@ -72,6 +81,19 @@ void ControlDesk::tell(const CommandOutcome& outcome) {
     found->second.reply(outcome.done ? done_line(outcome.message) : error_line(outcome.message));
     waiting_.erase(found);
   });
+}
+
+std::unique_ptr<ControlDesk> begun_control_desk(const Settings& settings, ControlDesk::Wiring wiring,
+                                                const std::function<void(const std::string&)>& warn) {
+  if (settings.control.socket.empty()) return nullptr;
+  try {
+    return std::make_unique<ControlDesk>(settings, std::move(wiring));
+  } catch (const control::AlreadyServed&) {
+    throw;
+  } catch (const std::exception& error) {
+    warn(std::string("no `deltamap ctl` in this run: ") + error.what());
+    return nullptr;
+  }
 }
 
 }  // namespace deltamap::daemon

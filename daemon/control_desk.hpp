@@ -3,13 +3,17 @@
 // sent to the localization thread, which takes it before its next scan; who drives is the io thread's.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
+#include <string>
 
 #include "core/channel.hpp"
 #include "core/occupancy_grid.hpp"
 #include "daemon/command.hpp"
 #include "daemon/control/request.hpp"
 #include "daemon/control/server.hpp"
+#include "daemon/live_settings.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/telemetry.hpp"
 
@@ -23,6 +27,7 @@ class ControlDesk {
     const Telemetry& telemetry;
     std::function<void(bool may_drive, std::uint64_t ticket)> let_drive;
     std::function<void(const std::string&)> log;
+    std::function<LiveSettings::Outcome()> reload;
   };
   /// Listens from now on. Throws control::AlreadyServed, or std::runtime_error with one line that names the socket.
   ControlDesk(const Settings& settings, Wiring wiring);
@@ -40,6 +45,7 @@ class ControlDesk {
   };
   void answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply);
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
+  [[nodiscard]] std::string reloaded() const;
   void command(Command::Kind kind, const control::Request& request, control::Server::Reply reply);
 
   Settings settings_;
@@ -49,5 +55,10 @@ class ControlDesk {
   std::map<std::uint64_t, Waiting> waiting_;  // by ticket
   control::Server server_;                    // last: its handler uses the others
 };
+
+/// Null where the settings name no socket, or it cannot be had: a daemon that cannot be commanded still does its work,
+/// and warns. But not beside another one: throws control::AlreadyServed.
+[[nodiscard]] std::unique_ptr<ControlDesk> begun_control_desk(const Settings& settings, ControlDesk::Wiring wiring,
+                                                              const std::function<void(const std::string&)>& warn);
 
 }  // namespace deltamap::daemon

@@ -265,6 +265,10 @@ void IoStage::let_drive(bool may_drive, std::uint64_t ticket) {
   });
 }
 
+void IoStage::set_safety(const navigation::SafetyParams& params) {
+  asio::post(state_->loop, [state = state_.get(), params] { state->safety.set_params(params); });
+}
+
 double IoStage::silence_s() const {
   const std::int64_t now_ns = unix_ns(drivers::port::port_clock_now());
   if (const std::int64_t asked_ns = state_->asked_ns; asked_ns != 0) {

@@ -41,6 +41,8 @@ class IoStage {
   /// Any thread. A person lets the pilot drive (again), or not: the robot is then told to stand at once. Kept on disk
   /// before it is answered. Where the settings say that nobody drives, no velocity is ever sent.
   void let_drive(bool may_drive, std::uint64_t ticket);
+  /// Any thread. From the next decision on.
+  void set_safety(const navigation::SafetyParams& params);
 
   /// Any one thread, now and then: for how long the loop owes an answer to an earlier call. It takes many small turns:
   /// one that hangs shows in that no other comes.

@@ -57,6 +57,9 @@ void LocalizationStage::run() {
   last_scan_came_ = drivers::port::port_clock_now();
   while (!wiring_.sensors.is_drained()) {
     auto message = wiring_.sensors.receive_within(kLookEvery);
+    while (const auto params = wiring_.wander.try_receive()) {
+      if (pilot_) pilot_->set_params(*params);
+    }
     if (seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s) take_commands_without_scan();
     if (!message) continue;
     // After a stall the queue is drained: all odometry counts, of the scans only the newest.

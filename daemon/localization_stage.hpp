@@ -29,6 +29,7 @@ class LocalizationStage {
     Channel<MapRevision>& revisions;
     Channel<std::shared_ptr<const TemporaryThings>>& things;
     Channel<Command>& commands;
+    Channel<navigation::WanderParams>& wander;  ///< of a reload: the newest is taken
     Channel<TrackedScan>& tracked_scans;
     RecorderInput& recorder;
     Telemetry& telemetry;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/map_outputs.hpp"
 
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "core/grid_file.hpp"
@@ -8,11 +10,17 @@
 namespace deltamap::daemon {
 namespace {
 
+void remove_old(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error) throw std::runtime_error(file.string() + ": cannot be removed: " + error.message());
+}
+
 /// A history that begins with this run, whenever it can be opened: that of a run before goes.
 StoreToKeep begun_history(const std::filesystem::path& file, const StartMap& start) {
   return {.open =
               [file, first = start.map] {
-                for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + part);
+                for (const char* part : {"", "-wal", "-shm"}) remove_old(file.string() + part);
                 return mapping::MapStore{file, *first};
               },
           .numbers_before = start.revision};

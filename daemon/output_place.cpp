@@ -11,6 +11,7 @@
 #include "core/file_lock.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/start_error.hpp"
+#include "daemon/state_folders.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -37,7 +38,9 @@ fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.
 void require_file_in_folder(const fs::path& file) {
   std::error_code error;
   if (!fs::is_directory(folder_of(file), error)) {
-    throw StartError(file.string() + ": cannot be written: " + folder_of(file).string() + " is no folder");
+    const std::string why = why_no_folder_for(file);
+    throw StartError(file.string() +
+                     ": cannot be written: " + (why.empty() ? folder_of(file).string() + " does not exist" : why));
   }
   if (fs::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
 }
@@ -77,7 +80,7 @@ std::string judged_recording_place(const fs::path& recording) {
 std::string judged_out_place(const fs::path& out, const fs::path& map) {
   std::error_code error;
   if (!fs::is_directory(out, error)) {
-    throw StartError(out.string() + ": is no folder" + (error ? ": " + error.message() : std::string{}));
+    throw StartError(out.string() + (error ? ": cannot be opened: " + error.message() : ": is no folder"));
   }
   std::string why = why_not_writable(out, out);
   or_start_error([&] { require_lockable_folder(out); });

@@ -47,21 +47,6 @@ std::vector<std::string> first_notes(const Settings& settings, const Pipeline::O
   return notes;
 }
 
-/// Nothing where the settings name no socket. A daemon that cannot be commanded still does its work; but not beside
-/// another one.
-std::unique_ptr<ControlDesk> control_desk(const Settings& settings, ControlDesk::Wiring wiring,
-                                          const RetryingOutput::Warn& warn) {
-  if (settings.control.socket.empty()) return nullptr;
-  try {
-    return std::make_unique<ControlDesk>(settings, std::move(wiring));
-  } catch (const control::AlreadyServed&) {
-    throw;
-  } catch (const std::exception& error) {
-    warn(std::string("no `deltamap ctl` in this run: ") + error.what());
-    return nullptr;
-  }
-}
-
 Pipeline::Options with_warnings(Pipeline::Options options) {
   if (!options.warn) options.warn = options.log;
   return options;
@@ -84,7 +69,8 @@ struct Pipeline::State {
   Channel<ScanSet> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
   Channel<std::shared_ptr<const TemporaryThings>> things{8};  // delta → localization: offered again at the next scan
-  Channel<Command> commands{16};  // control → localization: the newest command, and its sender is told
+  Channel<Command> commands{16};                // control → localization: the newest command, and its sender is told
+  Channel<navigation::WanderParams> wander{4};  // whoever reloads → localization: refused, and who asked is told
 
   // The first that touch a file: where another daemon is at work, this one ends before it does harm.
   std::optional<FileLock> out_lock;      // of --out
@@ -110,6 +96,7 @@ struct Pipeline::State {
   void tell(const CommandOutcome& outcome) {
     if (control) control->tell(outcome);
   }
+  LiveSettings::Outcome reload();
   void hand_over(ScanSet set);
   void offer_waiting_sets();
   void offer_things();
@@ -130,14 +117,15 @@ Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{with_warnings(std::move(wanted))},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
-      control{
-          control_desk(settings,
-                       {.map = options.start.map->geometry(),
-                        .commands = commands,
-                        .telemetry = telemetry,
-                        .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
-                        .log = options.log},
-                       options.warn)},
+      control{begun_control_desk(
+          settings,
+          {.map = options.start.map->geometry(),
+           .commands = commands,
+           .telemetry = telemetry,
+           .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
+           .log = options.log,
+           .reload = [this] { return reload(); }},
+          options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, options.log, options.warn)},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
@@ -166,6 +154,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .revisions = revisions,
                     .things = things,
                     .commands = commands,
+                    .wander = wander,
                     .tracked_scans = tracked_scans,
                     .recorder = recorder.from_localization(),
                     .telemetry = telemetry,
@@ -302,6 +291,21 @@ void Pipeline::State::update_map(const ScanSet& set) {
   map_outputs.save(result, drivers::port::port_clock_now());
 }
 
+// --- whoever reloads ---
+
+LiveSettings::Outcome Pipeline::State::reload() {
+  if (options.live == nullptr) return {false, {"the settings of this run came from no file"}};
+  LiveSettings::Outcome outcome = options.live->reload([this](const Settings& wanted) {
+    if (!wander.try_send(navigation::WanderParams{wanted.navigation.wander})) return false;
+    io.set_safety(wanted.navigation.safety);
+    return true;
+  });
+  for (const std::string& line : outcome.lines) (outcome.done ? options.log : options.warn)("reload: " + line);
+  return outcome;
+}
+
+LiveSettings::Outcome Pipeline::reload() { return state_->reload(); }
+
 // --- start and stop ---
 
 Pipeline::Pipeline(const Settings& settings, Options options)
@@ -335,7 +339,7 @@ void Pipeline::State::end_threads() {
 /// The run has ended well whether or not there is room for its report.
 void Pipeline::State::write_report(const RunReport& report) const {
   try {
-    replace_file(*options.out / "report.json", json_text(report, settings));
+    replace_file(*options.out / "report.json", json_text(report, options.live ? options.live->in_force() : settings));
   } catch (const std::exception& error) {
     options.warn(std::string("no report of this run: ") + error.what());
   }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "daemon/io_stage.hpp"
+#include "daemon/live_settings.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/revision_keeper.hpp"
@@ -22,7 +23,8 @@ class Pipeline {
     StartMap start;
     std::uint64_t first_map = 0;  ///< grid_hash() of M_0
     std::uint64_t memory = 0;     ///< fingerprint of what else the run begins from (start.remembered); 0: nothing
-    StoreToKeep store{};          ///< of the settings: takes every revision and refusal in the map thread
+    std::shared_ptr<LiveSettings> live{};      ///< for reload(); null: the settings came from no file
+    StoreToKeep store{};                       ///< of the settings: takes every revision and refusal in the map thread
     std::optional<std::filesystem::path> out;  ///< an existing folder: the files of a replay, while it runs
     PortOpener open;                           ///< empty: the serial devices of the settings
     drivers::SessionMode mode = drivers::SessionMode::kLive;
@@ -42,6 +44,9 @@ class Pipeline {
   /// become revisions, the map is written. Answers what report.json says; throws std::runtime_error where that cannot
   /// be written.
   [[nodiscard]] RunReport stop();
+
+  /// Any thread. Reads the settings again; what was taken or refused is in the log, too.
+  LiveSettings::Outcome reload();
 
   [[nodiscard]] const Telemetry& telemetry() const;
   /// The longest time that a stage has been at work on one item: what the watchdog judges by.

@@ -120,13 +120,23 @@ void remember_stability(const Settings& settings, const mapping::MapStore& store
   options.memory ^= answer.fingerprint;
 }
 
-/// Until a signal to stop comes, or a stage fails.
-void watch(const Pipeline& pipeline, Console& console) {
+void reload(Pipeline& pipeline) {
+  service::tell_reloading();
+  (void)pipeline.reload();  // the log has what came of it
+  service::tell_ready();
+}
+
+/// Until a signal to stop comes, or a stage fails. `hangup_reloads`: SIGHUP is no reason to stop.
+void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
   const sigset_t signals = stop_signals();
   const timespec second{1, 0};
   for (;;) {
     const int signal = sigtimedwait(&signals, nullptr, &second);
-    if (signal > 0) return;
+    if (signal == SIGHUP && hangup_reloads) {
+      reload(pipeline);
+    } else if (signal > 0) {
+      return;
+    }
     const std::string status = status_line(pipeline.telemetry());
     console.show(status);
     service::tell_status(status);
@@ -147,7 +157,10 @@ OccupancyGrid first_map(const Settings& settings, const CommandLine& line) {
 std::filesystem::path folder_to_write(const std::string& out, const std::filesystem::path& map) {
   std::error_code error;
   std::filesystem::create_directories(out, error);
-  if (error) throw StartError(out + ": is no folder: " + error.message());
+  if (error) {
+    const std::string why = why_no_folder_for(std::filesystem::path(out) / "report.json");
+    throw StartError(out + ": cannot be made: " + (why.empty() ? error.message() : why));
+  }
   (void)judged_out_place(out, map);
   return out;
 }
@@ -187,9 +200,12 @@ int check(const Settings& settings, const CommandLine& line) {
 
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
+  const bool hangup_reloads = !has_terminal();
   take_signals();  // all threads begin with them blocked: only watch() takes them
 
   Pipeline::Options options;
+  options.live =
+      std::make_shared<LiveSettings>(settings, [line] { return read_settings(line.config, line.overrides); });
   const OccupancyGrid first = first_map(settings, line);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);
@@ -211,7 +227,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   options.warn = [&console](const std::string& text) { console.log(spdlog::level::warn, text); };
   const std::unique_ptr<Pipeline> pipeline = begun(settings, std::move(options));
   service::tell_ready();
-  watch(*pipeline, console);
+  watch(*pipeline, console, hangup_reloads);
   service::tell_stopping();
   console.end();
   const RunReport report = pipeline->stop();
@@ -240,7 +256,7 @@ int run_daemon(int argc, const char* const* argv) {
     if (line.check_only) return check(settings, line);
     return line.print_only ? 0 : run_pipeline(settings, line);
   } catch (const SettingsError& error) {
-    std::cerr << "deltamapd: " << error.what() << '\n';
+    for (const std::string& problem : error.lines()) std::cerr << "deltamapd: " << problem << '\n';
     return 2;
   } catch (const StartError& error) {
     std::cerr << "deltamapd: " << error.what() << '\n';

@@ -8,6 +8,7 @@
 namespace deltamap::daemon::service {
 
 void tell_ready() { (void)sd_notify(0, "READY=1"); }
+void tell_reloading() { (void)sd_notify(0, "RELOADING=1"); }
 void tell_stopping() { (void)sd_notify(0, "STOPPING=1"); }
 void tell_status(const std::string& line) { (void)sd_notify(0, ("STATUS=" + line).c_str()); }
 void feed_watchdog() { (void)sd_notify(0, "WATCHDOG=1"); }

@@ -10,6 +10,8 @@
 namespace deltamap::daemon::service {
 
 void tell_ready();
+/// Until tell_ready().
+void tell_reloading();
 void tell_stopping();
 void tell_status(const std::string& line);
 /// To be called more often than watchdog_period() while everything moves.

@@ -28,6 +28,7 @@ struct SettingKey {
   std::string meaning;                ///< one line
   std::string limits;                 ///< unit and range in words: "m, 0 to 100"
   bool affects_result = true;         ///< whether another value can give another trajectory or map from the same bytes
+  bool is_live = false;               ///< whether a reload may change it while the daemon runs
   std::function<std::string()> text;  ///< the present value as YAML
   /// Sets the field, or answers what the key needs and leaves the field alone.
   std::function<std::optional<std::string>(const SettingValue&)> assign;

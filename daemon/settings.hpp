@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the operator may choose. Read strictly from one YAML file and --set overrides: an unknown key, a value of the
-// wrong type or outside its range stops the start with one line. Behind this door everything is in metres, radians and
-// seconds.
+// wrong type or outside its range stops the start, with a line for each mistake. Behind this door everything is in
+// metres, radians and seconds.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/pose2.hpp"
 #include "daemon/setting_key.hpp"
+#include "daemon/settings_error.hpp"
 #include "drivers/lms200/session.hpp"
 #include "drivers/pioneer/session.hpp"
 #include "localization/localizer_params.hpp"
@@ -95,15 +95,15 @@ struct Settings {
 /// Every key, in the order of config/default.yaml. The keys refer to `settings`, which must outlive them.
 [[nodiscard]] std::vector<SettingKey> keys_of(Settings& settings);
 
-/// Values that are each in range and cannot be together: one line that names both keys.
-[[nodiscard]] std::optional<std::string> contradiction_in(const Settings& settings);
-
-/// One line that names file, line and key: what main prints before it ends with 2.
-class SettingsError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// Values that are each in range and cannot be together.
+struct Contradiction {
+  std::string key;   ///< the first of those that the line names
+  std::string what;  ///< one line that names all
 };
+[[nodiscard]] std::vector<Contradiction> contradictions_in(const Settings& settings);
 
-/// `overrides` are "key=value" as given to --set, in order, after the file. Throws SettingsError.
+/// `overrides` are "key=value" as given to --set, in order, after the file. Throws SettingsError with all
+/// mistakes of both.
 [[nodiscard]] Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 /// The same from text; `name` stands for the file in errors.
 [[nodiscard]] Settings parse_settings(const std::string& yaml, const std::string& name,

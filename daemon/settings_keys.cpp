@@ -111,6 +111,7 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
   add(drive_mode_key(settings.mode));
   add(flag_key("navigation.drive_without_pose", settings.drive_without_pose,
                "also while the pose is unknown, lost or called wrong; a robot that must find itself needs it"));
+  const auto first_live = static_cast<std::ptrdiff_t>(keys.size());
   auto& safety = settings.safety;
   add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
                  "swing circle around the axle"));
@@ -146,6 +147,7 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
                  "before it thinks of another direction"));
   add(number_key("navigation.wander.longest_leg_s", wander.longest_leg_s, "s", 0.1, 3600.0,
                  "before it thinks of another direction"));
+  std::for_each(keys.begin() + first_live, keys.end(), [](SettingKey& key) { key.is_live = true; });
 }
 
 void add_memory(MemorySettings& memory, Keys& keys) {
@@ -169,11 +171,15 @@ void add_dashboard(DashboardSettings& dashboard, Keys& keys) {
                "its first line is asked of every viewer; empty: nothing is asked"));
 }
 
-std::optional<std::string> contradiction_in(const DashboardSettings& dashboard) {
+std::optional<Contradiction> contradiction_in(const DashboardSettings& dashboard) {
   const auto is_loopback = dashboard::is_loopback(dashboard.address);
-  if (!is_loopback) return "'dashboard.address' needs an IPv4 or IPv6 address, not '" + dashboard.address + "'";
+  if (!is_loopback) {
+    return Contradiction{"dashboard.address",
+                         "'dashboard.address' needs an IPv4 or IPv6 address, not '" + dashboard.address + "'"};
+  }
   if (*is_loopback || dashboard.port == 0 || !dashboard.token_file.empty()) return std::nullopt;
-  return "'dashboard.address' leads beyond this machine: that needs 'dashboard.token_file'";
+  return Contradiction{"dashboard.address",
+                       "'dashboard.address' leads beyond this machine: that needs 'dashboard.token_file'"};
 }
 
 }  // namespace
@@ -204,26 +210,25 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   return keys;
 }
 
-std::optional<std::string> contradiction_in(const Settings& settings) {
+std::vector<Contradiction> contradictions_in(const Settings& settings) {
+  std::vector<Contradiction> found;
+  const auto expect_not = [&](bool is_wrong, const std::string& key, const std::string& rule) {
+    if (is_wrong) found.push_back({key, "'" + key + "' must " + rule});
+  };
   const auto& localizer = settings.localizer;
-  if (localizer.particles.min > localizer.particles.max) {
-    return "'localization.particles.min' must not exceed 'localization.particles.max'";
-  }
-  if (localizer.fit.lost_below > localizer.fit.found_above) {
-    return "'localization.fit.lost_below' must not exceed 'localization.fit.found_above'";
-  }
-  if (localizer.field.unknown_likelihood < localizer.field.random_share) {
-    return "'localization.field.unknown_likelihood' must not lie below 'localization.field.random_share'";
-  }
+  expect_not(localizer.particles.min > localizer.particles.max, "localization.particles.min",
+             "not exceed 'localization.particles.max'");
+  expect_not(localizer.fit.lost_below > localizer.fit.found_above, "localization.fit.lost_below",
+             "not exceed 'localization.fit.found_above'");
+  expect_not(localizer.field.unknown_likelihood < localizer.field.random_share, "localization.field.unknown_likelihood",
+             "not lie below 'localization.field.random_share'");
   const auto& wander = settings.navigation.wander;
-  if (wander.shortest_leg_s > wander.longest_leg_s) {
-    return "'navigation.wander.shortest_leg_s' must not exceed 'navigation.wander.longest_leg_s'";
-  }
-  if (wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m)) {
-    return "'navigation.wander.turn_away_m' must lie below 'navigation.wander.slow_down_m' and "
-           "'navigation.wander.go_on_m'";
-  }
-  return contradiction_in(settings.dashboard);
+  expect_not(wander.shortest_leg_s > wander.longest_leg_s, "navigation.wander.shortest_leg_s",
+             "not exceed 'navigation.wander.longest_leg_s'");
+  expect_not(wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m), "navigation.wander.turn_away_m",
+             "lie below 'navigation.wander.slow_down_m' and 'navigation.wander.go_on_m'");
+  if (auto contradiction = contradiction_in(settings.dashboard)) found.push_back(*std::move(contradiction));
+  return found;
 }
 
 }  // namespace deltamap::daemon

@@ -34,11 +34,12 @@ std::string why_no_folder_for(const fs::path& file) {
   fs::path folder = folder_of(file);
   std::error_code error;
   fs::file_status status = fs::status(folder, error);
-  while (status.type() == fs::file_type::not_found && folder.has_relative_path()) {
+  // Up to what can be seen: what lies below is not there yet, or hidden by a folder that may not be entered.
+  while (!fs::exists(status) && folder.has_relative_path()) {
     folder = folder.parent_path();
     status = fs::status(folder, error);
   }
-  if (status.type() != fs::file_type::none && !fs::is_directory(status)) return folder.string() + " is no folder";
+  if (fs::exists(status) && !fs::is_directory(status)) return folder.string() + " is no folder";
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return "";
   return folder.string() + " cannot be written to (" + std::generic_category().message(errno) + ")";
 }

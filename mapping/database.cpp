@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/database.hpp"
 
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
 namespace deltamap::mapping {
@@ -52,13 +56,31 @@ StoreError::Kind kind_of(int code) {
   }
 }
 
+/// SQLite has one sentence for all that the system refuses: of the file, or of its log, which lies beside it.
+std::string why_not_opened(const std::filesystem::path& file, const std::string& otherwise) {
+  const auto may = [](const std::filesystem::path& place, int mode) {
+    return ::faccessat(AT_FDCWD, place.c_str(), mode, AT_EACCESS) == 0;
+  };
+  const auto because = [](int reason) { return std::generic_category().message(reason); };
+  if (!may(file, R_OK) && errno != ENOENT) return "cannot be opened: " + because(errno);
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::absolute(file, ignored).parent_path();
+  if (!may(folder, W_OK | X_OK)) return "cannot be opened: its log beside it cannot be written: " + because(errno);
+  return otherwise;
+}
+
+std::string reason_of(const std::filesystem::path& file, sqlite3* handle, int code) {
+  const std::string told = handle == nullptr ? sqlite3_errstr(code) : sqlite3_errmsg(handle);
+  return (code & 0xFF) == SQLITE_CANTOPEN ? why_not_opened(file, told) : told;
+}
+
 }  // namespace
 
 Database::Database(std::filesystem::path file, Mode mode) : file_{std::move(file)} {
   const int result =
       sqlite3_open_v2(name_of(file_, mode).c_str(), &handle_, flags_of(mode) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (result != SQLITE_OK) {
-    const std::string why = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(result);
+    const std::string why = reason_of(file_, handle_, result);
     sqlite3_close(handle_);
     handle_ = nullptr;
     fail(why, kind_of(result));
@@ -75,7 +97,10 @@ void Database::fail(const std::string& why, StoreError::Kind kind) const {
   throw StoreError(file_.string() + ": " + why, kind);
 }
 
-void Database::fail_by_code() const { fail(sqlite3_errmsg(handle_), kind_of(sqlite3_errcode(handle_))); }
+void Database::fail_by_code() const {
+  const int code = sqlite3_errcode(handle_);
+  fail(reason_of(file_, handle_, code), kind_of(code));
+}
 
 void Database::run(const std::string& sql) {
   if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail_by_code();

@@ -58,11 +58,12 @@ void bring_up_to_date(Database& database) {
 
 Database opened_store(const std::filesystem::path& file, Database::Mode mode) {
   const bool create = mode == Database::Mode::kCreate;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored))
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error))
     throw StoreError(file.string() + ": is a directory", StoreError::Kind::kOther);
-  if (!create && !std::filesystem::exists(file, ignored)) {
-    throw StoreError(file.string() + ": no such file", StoreError::Kind::kOther);
+  if (!create && !std::filesystem::exists(file, error)) {
+    const std::string why = error ? "cannot be opened: " + error.message() : "no such file";
+    throw StoreError(file.string() + ": " + why, StoreError::Kind::kOther);
   }
   Database database{file, mode};
   database.run("PRAGMA cache_size = -" + std::to_string(kCache_kB));  // negative: in kB, not in pages

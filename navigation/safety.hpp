@@ -60,6 +60,11 @@ class Safety {
   [[nodiscard]] StopReason waits_for() const;
   /// The laser session tells what its variant and baud give.
   void set_nominal_scan_period(double period_s) { params_.nominal_scan_period_s = period_s; }
+  /// In the middle of a run: from the next allowed() on. The scan period stays as the session told it.
+  void set_params(SafetyParams params) {
+    params.nominal_scan_period_s = params_.nominal_scan_period_s;
+    params_ = params;
+  }
   /// The robot's session tells what its controller has confirmed.
   void set_stopping_behaviour(const StoppingBehaviour& behaviour) { stopping_ = behaviour; }
 

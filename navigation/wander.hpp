@@ -37,6 +37,9 @@ class Wander {
   /// that the scan saw.
   [[nodiscard]] DriveCommand step(const TrackedScan& tracked, std::span<const Point2> also_in_robot = {});
 
+  /// In the middle of a run: from the next step on. A turn or a leg that was begun is ended.
+  void set_params(const WanderParams& params) { params_ = params; }
+
  private:
   /// A turn on the spot. The side is kept to the end, so that a corner cannot make the robot waver.
   struct Turn {

@@ -16,8 +16,11 @@ using Kind = Request::Kind;
 constexpr double kFarthest_m = 1e6;
 constexpr double kLargest_deg = 1e6;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 4> kPlainCommands{
-    {{"status", Kind::kStatus}, {"pause", Kind::kPause}, {"resume", Kind::kResume}, {"save", Kind::kSave}}};
+constexpr std::array<std::pair<std::string_view, Kind>, 5> kPlainCommands{{{"status", Kind::kStatus},
+                                                                           {"pause", Kind::kPause},
+                                                                           {"resume", Kind::kResume},
+                                                                           {"save", Kind::kSave},
+                                                                           {"reload", Kind::kReload}}};
 
 std::optional<double> number_in(const Json& json, const char* key, double largest) {
   const auto found = json.find(key);

@@ -21,6 +21,7 @@ struct Request {
     kPause,       ///< the map stays as it is; the localizer goes on
     kResume,      ///< the map follows the world again
     kSave,        ///< map and pose on disk, now
+    kReload,      ///< the settings file again: what can change is taken
     kRelocalize,  ///< the robot stands at map_from_robot
     kDriveOff,
     kDriveWander

@@ -67,6 +67,7 @@ void add_ctl(CLI::App& app) {
   add_plain(ctl, options, "pause", Kind::kPause, "the map stays as it is; the localizer goes on");
   add_plain(ctl, options, "resume", Kind::kResume, "the map follows the world again");
   add_plain(ctl, options, "save", Kind::kSave, "write map and pose now");
+  add_plain(ctl, options, "reload", Kind::kReload, "read the settings file again: take what can change, name the rest");
   CLI::App& relocalize = *ctl.add_subcommand("relocalize", "say where the robot is");
   relocalize.add_option("pose", options->pose, "X,Y,DEG of the robot in the map, good to 0.2 m and 10 degrees")
       ->required();

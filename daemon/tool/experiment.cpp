@@ -13,6 +13,7 @@
 #include "daemon/tool/experiment/result_files.hpp"
 #include "daemon/tool/experiment/run_pool.hpp"
 #include "daemon/tool/progress.hpp"
+#include "daemon/tool/scenario_place.hpp"
 #include "daemon/tool/subcommands.hpp"
 
 namespace deltamap::daemon::tool {
@@ -97,6 +98,7 @@ void run(const ExperimentOptions& given) {
 
 void add_experiment(CLI::App& app) {
   auto given = std::make_shared<ExperimentOptions>();
+  given->options.scenarios = scenario_folder();
   CLI::App& command = *app.add_subcommand("experiment", "what the localizer reaches in simulated drives");
   std::string names;
   for (const auto& known : experiment::experiments()) names += (names.empty() ? "" : ", ") + known->name();
@@ -115,7 +117,8 @@ void add_experiment(CLI::App& app) {
   command.add_option("--repeats", given->options.repeats, "seeds, or runs of each kind, in place of the experiment's")
       ->check(CLI::Range(1, 10000));
   command.add_option("--only", given->only, "only runs with this in their name, for example depot-bay");
-  command.add_option("--scenarios", given->options.scenarios, "folder of the scenarios (default config/scenarios)");
+  command.add_option("--scenarios", given->options.scenarios,
+                     "folder of the scenarios (default: config/scenarios, or where they are installed)");
   command.add_option("--data", given->options.data, "folder of recorded maps (default: DELTAMAP_DATA)")
       ->envname("DELTAMAP_DATA");
   command.add_option("--config", given->config, "settings of the localizer, YAML (default: as delivered)");

@@ -39,7 +39,7 @@ int run_tool(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const SettingsError& error) {
-    std::cerr << "deltamap: " << error.what() << '\n';
+    for (const std::string& problem : error.lines()) std::cerr << "deltamap: " << problem << '\n';
     return 2;
   } catch (const std::exception& error) {
     std::cerr << "deltamap: " << error.what() << '\n';

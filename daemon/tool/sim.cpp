@@ -2,9 +2,11 @@
 // `deltamap sim`: plays a P3-DX and an LMS200 in a simulated world, or draws that world's first map.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
 
 #include "core/grid_file.hpp"
 #include "daemon/tool/live_simulation.hpp"
+#include "daemon/tool/scenario_place.hpp"
 #include "daemon/tool/subcommands.hpp"
 #include "simulation/start_map.hpp"
 
@@ -12,14 +14,14 @@ namespace deltamap::daemon::tool {
 namespace {
 
 struct SimOptions {
-  std::filesystem::path world;
+  std::string world;
   std::filesystem::path write_map;
   double resolution_m = 0.05;
   LiveSimulationOptions live;
 };
 
 void simulate(const SimOptions& options) {
-  const simulation::Scenario scenario = simulation::read_scenario(options.world);
+  const simulation::Scenario scenario = simulation::read_scenario(scenario_file(options.world));
   if (options.write_map.empty()) return run_live(scenario, options.live);
   write_grid(simulation::start_map(scenario, options.resolution_m), options.write_map);
 }
@@ -29,7 +31,7 @@ void simulate(const SimOptions& options) {
 void add_sim(CLI::App& app) {
   auto options = std::make_shared<SimOptions>();
   CLI::App& sim = *app.add_subcommand("sim", "a robot and its laser on two pseudo-terminals, in a world that changes");
-  sim.add_option("--world", options->world, "scenario (YAML)")->required();
+  sim.add_option("--world", options->world, "scenario: a YAML file, or the name of a delivered one")->required();
   sim.add_option("--links", options->live.links, "folder for the links robot and laser (default: here)");
   sim.add_option("--seed", options->live.seed, "seed of everything that happens by chance (default 1)");
   sim.add_option("--truth", options->live.truth, "write the true pose and every change, JSON lines");

@@ -36,7 +36,8 @@ std::string name_of_user(uid_t id) {
 bool is_acting_as(gid_t id) {
   if (::getegid() == id) return true;
   std::vector<gid_t> groups(static_cast<std::size_t>(std::max(0, ::getgroups(0, nullptr))));
-  (void)::getgroups(static_cast<int>(groups.size()), groups.data());
+  const int known = ::getgroups(static_cast<int>(groups.size()), groups.data());
+  groups.resize(static_cast<std::size_t>(std::max(0, known)));
   return std::find(groups.begin(), groups.end(), id) != groups.end();
 }
 

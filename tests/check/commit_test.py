@@ -53,6 +53,12 @@ class Commit(unittest.TestCase):
         self.repository(at=self.source.parent)
         self.assertEqual(self.told(), "unknown", "a repository around it is another project")
 
+    def test_a_copy_without_a_repository_is_of_the_commit_that_it_brings(self):
+        (self.source / "COMMIT").write_text("fc42533-dirty\n")
+        self.assertEqual(self.told(), "fc42533-dirty")
+        head = self.repository()
+        self.assertEqual(self.told(), head, "a repository knows better")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -104,6 +104,30 @@ TEST(FileLock, ThatMayNotEvenBeReadIsAnError) {
   EXPECT_THROW((void)lock_of_file(folder.path() / "store.sqlite"), std::system_error);
 }
 
+TEST(FileLock, OfANewFileInThePresentFolder) {
+  const test::TemporaryFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  EXPECT_EQ(file_behind("store.sqlite"), std::filesystem::canonical(folder.path()) / "store.sqlite");
+  EXPECT_NO_THROW(require_lockable_file("store.sqlite"));
+  EXPECT_TRUE(lock_of_file("store.sqlite"));
+  std::filesystem::current_path(before);
+}
+
+TEST(FileLock, BehindAFolderThatMayNotBeEnteredTellsSo) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "inside/store.sqlite";
+  std::filesystem::create_directory(folder.path() / "inside");
+  std::filesystem::permissions(folder.path() / "inside", std::filesystem::perms::none);
+  const test::NotRoot another_user;
+  try {
+    (void)file_behind(file);
+    ADD_FAILURE() << "it was seen";
+  } catch (const std::system_error& error) {
+    EXPECT_EQ(error.what(), file.string() + ": cannot be looked at: Permission denied");
+  }
+}
+
 TEST(FileLock, WhereThereIsNoFolderIsAnError) {
   EXPECT_THROW((void)lock_of_file("/nowhere/store.sqlite"), std::system_error);
 }

@@ -6,6 +6,7 @@
 #include "core/random.hpp"
 #include "core/replace_file.hpp"
 #include "tests/support/drawn_grid.hpp"
+#include "tests/support/not_root.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap {
@@ -54,6 +55,30 @@ TEST(GridFile, NamesAMapOfCarmen) {
   EXPECT_NE(refusal(folder.write("unpacked", "####\nCARMENMAPFILEv020")).find("unpacked" + told), std::string::npos);
 }
 
+TEST(GridFile, NamesThePictureThatWasGivenForItsDescription) {
+  const test::TemporaryFolder folder;
+  const auto picture = folder.write("site.pgm", "P5\n2 1\n255\n\x01\x02");
+  const std::string told = picture.string() + ": is the picture of a map; give its description (YAML)";
+  EXPECT_EQ(refusal(picture), told);
+  const auto description = folder.write("site.yaml", "image: site.pgm\n");
+  EXPECT_EQ(refusal(picture), told + ", " + description.string());
+}
+
+TEST(GridFile, NamesAFileThatIsNoText) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("site.yaml", std::string("image: a\n\0", 10));
+  EXPECT_EQ(refusal(file), file.string() + ": byte 9: is no text; give a map's description (YAML)");
+}
+
+TEST(GridFile, TellsWhatTheSystemForbids) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "inside");
+  const auto file = folder.write("inside/site.yaml", "image: site.pgm\n");
+  std::filesystem::permissions(folder.path() / "inside", std::filesystem::perms::none);
+  const test::NotRoot another_user;
+  EXPECT_EQ(refusal(file), file.string() + ": Permission denied");
+}
+
 TEST(GridFile, WritesNumbersAsPeopleDoAndReadsThemBackExactly) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "map.yaml";
@@ -83,7 +108,7 @@ TEST(GridFile, NamesFileAndPlaceOfWhatItCannotRead) {
   const test::TemporaryFolder folder;
   EXPECT_NE(refusal(folder.path() / "none.yaml").find("none.yaml: No such file"), std::string::npos);
   EXPECT_NE(refusal(folder.write("empty.yaml", "")).find("empty.yaml: line 1"), std::string::npos);
-  EXPECT_NE(refusal(folder.write("noise.yaml", "\x01{[")).find("noise.yaml: line 1"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("noise.yaml", "\x01{[")).find("noise.yaml: byte 0: is no text"), std::string::npos);
   EXPECT_NE(refusal(folder.write("turned.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n"))
                 .find("rotated origin"),
             std::string::npos);

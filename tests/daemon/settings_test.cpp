@@ -77,29 +77,29 @@ TEST(Settings, OneKeySaysHowFarABeamSaysAndDrawsSomething) {
 
 TEST(Settings, AnUnknownKeyIsNamedWithFileLineAndTheNearestKnownOne) {
   EXPECT_EQ(error_of("seed: 1\nlaser:\n  prot: /dev/ttyS0\n"),
-            "robot.yaml:3: unknown key 'laser.prot'; the nearest known key is 'laser.port'");
+            "robot.yaml:3:3: unknown key 'laser.prot'; the nearest known key is 'laser.port'");
   EXPECT_EQ(error_of("laser: {mount: {x: 1}}"),
-            "robot.yaml:1: unknown key 'laser.mount.x'; the nearest known key is 'laser.mount.x_m'");
+            "robot.yaml:1:17: unknown key 'laser.mount.x'; the nearest known key is 'laser.mount.x_m'");
 }
 
 TEST(Settings, AnIllTypedValueIsNamedWithWhatTheKeyNeeds) {
   EXPECT_EQ(error_of("laser:\n  max_range_m: far"),
-            "robot.yaml:2: 'laser.max_range_m' needs a number (m, 0 to 90), not 'far'");
-  EXPECT_EQ(error_of("seed: 1.5"), "robot.yaml:1: 'seed' needs a whole number (from 0), not '1.5'");
-  EXPECT_EQ(error_of("seed: \"1\""), "robot.yaml:1: 'seed' needs a whole number (from 0), not '1'");
-  EXPECT_EQ(error_of("robot: {sonar: yes}"), "robot.yaml:1: 'robot.sonar' needs true or false, not 'yes'");
-  EXPECT_EQ(error_of("laser: {units: inch}"), "robot.yaml:1: 'laser.units' needs one of cm | mm, not 'inch'");
+            "robot.yaml:2:16: 'laser.max_range_m' needs a number (m, 0 to 90), not 'far'");
+  EXPECT_EQ(error_of("seed: 1.5"), "robot.yaml:1:7: 'seed' needs a whole number (from 0), not '1.5'");
+  EXPECT_EQ(error_of("seed: \"1\""), "robot.yaml:1:7: 'seed' needs a whole number (from 0), not '1'");
+  EXPECT_EQ(error_of("robot: {sonar: yes}"), "robot.yaml:1:16: 'robot.sonar' needs true or false, not 'yes'");
+  EXPECT_EQ(error_of("laser: {units: inch}"), "robot.yaml:1:16: 'laser.units' needs one of cm | mm, not 'inch'");
   EXPECT_EQ(error_of("localization: {initial_pose: [1, 2]}"),
-            "robot.yaml:1: 'localization.initial_pose' needs [x m, y m, heading degrees] or null, not a list");
-  EXPECT_EQ(error_of("laser: {port: [a]}"), "robot.yaml:1: 'laser.port' needs text (\"\" for none), not a list");
+            "robot.yaml:1:30: 'localization.initial_pose' needs [x m, y m, heading degrees] or null, not a list");
+  EXPECT_EQ(error_of("laser: {port: [a]}"), "robot.yaml:1:15: 'laser.port' needs text (\"\" for none), not a list");
   EXPECT_EQ(error_of("laser: {max_range_m: .nan}"),
-            "robot.yaml:1: 'laser.max_range_m' needs a number (m, 0 to 90), not '.nan'");
-  EXPECT_EQ(error_of("seed: {a: 1}"), "robot.yaml:1: 'seed' takes one value, not keys");
+            "robot.yaml:1:22: 'laser.max_range_m' needs a number (m, 0 to 90), not '.nan'");
+  EXPECT_EQ(error_of("seed: {a: 1}"), "robot.yaml:1:7: 'seed' takes one value, not keys");
 }
 
 TEST(Settings, AValueOutsideItsRangeIsRefused) {
   EXPECT_EQ(error_of("\n\nlaser: {max_range_m: -1}"),
-            "robot.yaml:3: 'laser.max_range_m' needs a number in its range (m, 0 to 90), not '-1'");
+            "robot.yaml:3:22: 'laser.max_range_m' needs a number in its range (m, 0 to 90), not '-1'");
 }
 
 TEST(Settings, EveryKeyThatScriptsSetIsKnown) {
@@ -133,17 +133,17 @@ TEST(Settings, EveryKeyThatScriptsSetIsKnown) {
 
 TEST(Settings, PatrolIsRefusedUntilItIsBuilt) {
   const std::string why = "'navigation.mode' needs off or wander (patrol does not exist yet), not 'patrol'";
-  EXPECT_EQ(error_of("seed: 1\nnavigation:\n  mode: patrol\n"), "robot.yaml:3: " + why);
+  EXPECT_EQ(error_of("seed: 1\nnavigation:\n  mode: patrol\n"), "robot.yaml:3:9: " + why);
   EXPECT_EQ(error_of("", {"navigation.mode=patrol"}), "--set navigation.mode=patrol: " + why);
 }
 
 TEST(Settings, AKeyGivenTwiceIsRefused) {
-  EXPECT_EQ(error_of("seed: 1\nseed: 2"), "robot.yaml:2: 'seed' is given twice");
+  EXPECT_EQ(error_of("seed: 1\nseed: 2"), "robot.yaml:2:1: 'seed' is given twice, first in line 1");
 }
 
 TEST(Settings, ValuesThatContradictEachOtherAreRefused) {
   EXPECT_EQ(error_of("localization: {particles: {min: 900, max: 800}}"),
-            "robot.yaml: 'localization.particles.min' must not exceed 'localization.particles.max'");
+            "robot.yaml:1:33: 'localization.particles.min' must not exceed 'localization.particles.max'");
 }
 
 TEST(Settings, TheLivePageLeavesThisMachineOnlyWithAToken) {
@@ -161,7 +161,7 @@ TEST(Settings, BrokenYamlIsNamedWithItsLine) {
   EXPECT_TRUE(error_of("seed: 1\nlaser: [1, 2\nrobot: {").starts_with("robot.yaml:"))
       << error_of("seed: 1\nlaser: [1, 2\nrobot: {");
   EXPECT_EQ(error_of("seed: 1\nlaser: [1, 2\nrobot: {").find('\n'), std::string::npos);
-  EXPECT_EQ(error_of("just words"), "robot.yaml:1: the file must hold keys");
+  EXPECT_EQ(error_of("just words"), "robot.yaml:1:1: the file must hold keys, not 'just words'");
 }
 
 TEST(Settings, AMissingFileIsNamedWithTheReason) {

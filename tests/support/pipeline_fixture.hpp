@@ -51,6 +51,7 @@ class PipelineFixture : public testing::Test {
     daemon::Pipeline::Options options;
     options.start.map = std::make_shared<const OccupancyGrid>(read_grid(folder_.path() / "room.yaml"));
     options.first_map = grid_hash(*options.start.map);
+    options.live = live_;
     options.log = [](const std::string&) {};
     options.failed = [](const std::string& why) { FAIL() << why; };
     return options;
@@ -95,6 +96,7 @@ class PipelineFixture : public testing::Test {
 
   TemporaryFolder folder_;
   daemon::Settings settings_;
+  std::shared_ptr<daemon::LiveSettings> live_;  ///< null: nothing is reloaded
   std::function<void(daemon::Pipeline::Options&)> prepare_ = [](daemon::Pipeline::Options&) {};  ///< of run_live()
 };
 

@@ -33,6 +33,7 @@ checked() {
 }
 # started OPTION...: the verdict of a start
 started() {
+  : >"$out/start.log"  # the lines of the start before must not be taken for this one's
   "$@" 2>"$out/start.log" &
   daemon=$!
   for _ in $(seq 200); do  # the pipeline is up where it looks for the devices

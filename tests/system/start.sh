@@ -9,15 +9,20 @@ source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 write_first_map
 plain=("${on_the_world[@]}" --set robot.port="$out/none" --set laser.port="$out/none"
   --set map.store= --set recording.file= --set control.socket=)
+# Root may all: what is forbidden is tried as another user.
+as_other=()
+((EUID != 0)) || as_other=(setpriv --reuid=65534 --regid=65534 --clear-groups)
+chmod 755 "$out"
 # expect CODE WORDS OPTION...: it ends so, with one line that has the words
 expect() {
   local code=0 wanted=$1 words=$2
   shift 2
-  timeout -s KILL 20 "$bin/deltamapd" "${plain[@]}" "$@" 2>"$out/daemon.log" || code=$?
+  timeout -s KILL 20 "${as[@]}" "$bin/deltamapd" "${plain[@]}" "$@" 2>"$out/daemon.log" || code=$?
   [[ $code == "$wanted" ]] || fail "exit code $code in place of $wanted: $*"
   grep '^deltamapd: ' "$out/daemon.log" | grep -q -- "$words" || fail "no line with '$words': $*"
 }
 
+as=()
 echo 'image: none.pgm' >"$out/bad.yaml"
 echo >"$out/file"
 expect 2 "map.file" --set map.file=
@@ -28,6 +33,20 @@ expect 2 "is no folder" --set map.store="$out/file/store.sqlite"
 expect 2 "is a directory" --set map.store="$out"
 expect 2 "is no folder" --set recording.file="$out/file/bytes.pcapng"
 expect 2 "map.fiel" --set map.fiel=x
+expect 2 "m0.pgm: is the picture of a map; give its description (YAML), $out/m0.yaml" --set map.file="$out/m0.pgm"
+
+as=("${as_other[@]}")
+mkdir "$out/forbidden" "$out/mine"
+cp "$out"/m0.* "$out/forbidden"
+chmod 000 "$out/forbidden"
+chmod 555 "$out/mine"
+expect 2 "forbidden/m0.yaml: Permission denied" --set map.file="$out/forbidden/m0.yaml"
+expect 2 "forbidden/run: cannot be made: $out/forbidden cannot be written to (Permission denied)" --out "$out/forbidden/run"
+expect 2 "'map.store': $out/mine cannot be written to (Permission denied)" --set map.store="$out/mine/new/store.sqlite"
+expect 2 "forbidden/bytes.pcapng: cannot be looked at: Permission denied" --set recording.file="$out/forbidden/bytes.pcapng"
+expect 2 "bytes.pcapng: cannot be written: $out/mine cannot be written to (Permission denied)" --set recording.file="$out/mine/new/bytes.pcapng"
+as=()
+chmod 755 "$out/forbidden" "$out/mine"
 
 mkdir "$out/run"
 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/first.log" &
@@ -60,4 +79,4 @@ daemon=
 grep -q "warning map store set aside as $out/store.sqlite.set-aside-1: " "$out/second.log" || fail "no warning"
 [[ $(stat -c %s "$out/store.sqlite.set-aside-1") == 20000 ]] || fail "the damaged store was not kept"
 [[ ! -e $out/run/.lock && ! -e $out/store.sqlite.lock && ! -e $out/bytes.pcapng.lock ]] || fail "locks are left behind"
-echo "start: 8 mistakes end with exit code 2, 4 conflicts with 1"
+echo "start: 14 mistakes end with exit code 2, 4 conflicts with 1"

@@ -10,7 +10,7 @@ using Kind = Request::Kind;
 
 TEST(Request, EveryRequestSurvivesTheSocket) {
   for (const Kind kind :
-       {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kDriveOff, Kind::kDriveWander}) {
+       {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kReload, Kind::kDriveOff, Kind::kDriveWander}) {
     const Request request{kind, {}};
     const RequestAnswer answer = request_of_line(line_of(request));
     ASSERT_TRUE(answer.request) << line_of(request) << answer.refused;

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A running daemon reads its settings again, by `ctl reload` and by SIGHUP without a terminal: it takes what can change,
+# names what needs a restart, and keeps all as it was where the file has mistakes. usage: reload.sh FOLDER-OF-PROGRAMS
+set -euo pipefail
+bin=$1
+source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
+write_first_map
+cp config/simulation.yaml "$out/robot.yaml"
+plain=("${on_the_world[@]}")
+plain[1]=$out/robot.yaml
+
+setsid "$bin/deltamapd" "${plain[@]}" --set robot.port="$out/none" --set laser.port="$out/none" --set map.store= --set recording.file= \
+  --set control.socket="$out/ctl.sock" 2>"$out/daemon.log" &
+daemon=$!
+for _ in $(seq 100); do ctl status >/dev/null 2>&1 && break; sleep 0.1; done
+ctl status >/dev/null || fail "the daemon does not answer"
+
+# reloads CODE WORDS: by ctl
+reloads() {
+  local code=0
+  ctl reload >"$out/reload.log" 2>&1 || code=$?
+  [[ $code == "$1" ]] || fail "exit code $code in place of $1"
+  grep -qF -- "$2" "$out/reload.log" || fail "no line with '$2'"
+}
+# logs WORDS: within three seconds
+logs() {
+  for _ in $(seq 30); do grep -qF -- "$1" "$out/daemon.log" && return; sleep 0.1; done
+  fail "the log has no '$1'"
+}
+key() { "$bin/deltamapd" --config "$out/robot.yaml" --print-config | grep -c "$1" >/dev/null || fail "the file is not as it should be"; }
+
+reloads 0 "the settings are as they were"
+printf '\nrecording: {max_gigabytes: 2}\n' >>"$out/robot.yaml"
+reloads 0 "needs a restart: recording.max_gigabytes: 2 (in force 8)"
+logs "reload: needs a restart: recording.max_gigabytes"
+
+"$bin/deltamapd" --config config/simulation.yaml --set navigation.safety.margin_m=0.21 --print-config >"$out/robot.yaml"
+key 'margin_m: 0.21'
+kill -s HUP "$daemon"
+logs "reload: taken: navigation.safety.margin_m: 0.21 (before "
+reloads 0 "the settings are as they were"
+
+printf 'seed: x\nlazer: {port: a}\nnavigation: {safety: {margin_m: 0.5}}\n' >"$out/robot.yaml"
+reloads 1 "the settings stay as they are: the file has mistakes"
+grep -qF "robot.yaml:1:7: 'seed' needs a whole number" "$out/reload.log" || fail "the first mistake is not told"
+grep -qF "robot.yaml:2:1: unknown section 'lazer'; the nearest known section is 'laser'" "$out/reload.log" || fail "nor the second"
+kill -s HUP "$daemon"
+logs "warning reload: $out/robot.yaml:2:1: unknown section"
+rm "$out/robot.yaml"
+reloads 1 "cannot read the settings: No such file or directory"
+
+"$bin/deltamapd" --config config/simulation.yaml --set navigation.safety.margin_m=0.21 --print-config >"$out/robot.yaml"
+reloads 0 "the settings are as they were"
+kill "$daemon"
+wait "$daemon" || fail "the daemon did not end well"
+daemon=
+echo "reload: 6 by ctl, 2 by SIGHUP"
