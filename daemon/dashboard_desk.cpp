@@ -66,15 +66,19 @@ Answer DashboardDesk::answer(const Request& request) const {
   return page_file(path);  // has no '/' in front: never found
 }
 
+/// Drawn whole, a byte a cell: larger ones would cost the memory that the robot needs.
 Answer DashboardDesk::picture() const {
+  constexpr std::int64_t kMostCells = 4'000'000;
   const auto map = board_.map();
-  try {
-    return {.type = "image/png",
-            .body = map_picture(*map.grid, *map.grid),
-            .headers = {{"X-Deltamap-Revision", std::to_string(map.revision)}}};
-  } catch (const std::runtime_error& error) {
-    return {.status = 500, .body = std::string(error.what()) + "\n"};
+  const CellBox known = known_box(*map.grid);
+  const CellBox drawn = known.empty() ? map.grid->box() : known;
+  const std::int64_t cells = std::int64_t{drawn.width()} * drawn.height();
+  if (cells > kMostCells) {
+    return {.status = 413, .body = "the map is too large for a picture: " + std::to_string(cells) + " cells\n"};
   }
+  return {.type = "image/png",
+          .body = map_picture(*map.grid, *map.grid),
+          .headers = {{"X-Deltamap-Revision", std::to_string(map.revision)}}};
 }
 
 std::string DashboardDesk::status_json() const { return status_json_line(telemetry_, settings_, since_start_s()); }

@@ -194,8 +194,9 @@ Pipeline::State::State(const Settings& given, Options wanted)
         Stage::Options{"control", kControlNiceness}, [this] { control->run(); }, options.failed);
   }
   if (page) {
+    const auto without_page = [this](const std::string& why) { options.warn("no live page any more: " + why); };
     page_thread = std::make_unique<Stage>(
-        Stage::Options{"page", kPageNiceness}, [this] { page->run(); }, options.failed);
+        Stage::Options{"page", kPageNiceness}, [this] { page->run(); }, without_page);
   }
 }
 
@@ -316,6 +317,8 @@ Pipeline::~Pipeline() { state_->end_threads(); }
 void Pipeline::State::end_threads() {
   if (ended) return;
   ended = true;
+  io.stop();  // first of all: the robot stands, whatever the others are about
+  io_thread->join();
   if (page) {
     page->stop();
     page_thread->join();
@@ -324,8 +327,6 @@ void Pipeline::State::end_threads() {
     control->stop();
     control_thread->join();
   }
-  io.stop();
-  io_thread->join();
   sensors.close();
   localization_thread->join();
   tracked_scans.close();

@@ -2,10 +2,9 @@
 // The one source that includes Beast.
 #include "daemon/dashboard/server.hpp"
 
-#include <sys/socket.h>
-
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
+#include <atomic>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -26,6 +25,7 @@
 #include <vector>
 
 #include "daemon/dashboard/access.hpp"
+#include "daemon/dashboard/listening_socket.hpp"
 
 namespace deltamap::daemon::dashboard {
 namespace {
@@ -95,6 +95,7 @@ class Connection {
 /// What connections may ask of the server's state.
 struct Host {
   Server::Options options;
+  std::atomic<bool> is_ending{false};  // what waits its turn is not answered any more
   std::set<std::shared_ptr<Connection>> connections{};
   std::function<void(beast::tcp_stream, const HttpRequest&)> upgrade{};
 
@@ -129,7 +130,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     if (is_bad_http(error)) {
       return say({.status = 400, .body = "that is no HTTP request\n"}, 11, false);
     }
-    if (error) return host_.end(this);
+    if (error || host_.is_ending) return host_.end(this);
     const bool has_body = parser_->chunked() || parser_->content_length().value_or(0) > 0;
     const HttpRequest& received = parser_->get();
     const Request request = request_of(received);
@@ -139,7 +140,16 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     if (auto refusal = refusal_of(request, token)) return say(*refusal, version, false);
     if (has_body) return say({.status = 413, .body = "a request has no body here\n"}, version, false);
     if (request.path == "/live") return take_viewer();
-    say(host_.options.answer(request), version, received.keep_alive());
+    say(answer_to(request), version, received.keep_alive());
+  }
+
+  /// A request that cannot be answered, for want of memory say, fails alone.
+  [[nodiscard]] Answer answer_to(const Request& request) const {
+    try {
+      return host_.options.answer(request);
+    } catch (const std::exception& error) {
+      return {.status = 500, .body = std::string(error.what()) + "\n"};
+    }
   }
 
   void take_viewer() {
@@ -237,50 +247,14 @@ class Viewer final : public Connection, public std::enable_shared_from_this<View
   Clock::time_point sending_since_;
 };
 
-std::string text_of(const tcp::endpoint& endpoint) {
-  const std::string address = endpoint.address().to_string();
-  return (endpoint.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port());
-}
-
-/// One that somebody else has opened, systemd for example.
-tcp::acceptor inherited(asio::io_context& loop, int descriptor) {
-  sockaddr_storage address{};
-  socklen_t size = sizeof address;
-  const bool is_socket = ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-  if (!is_socket || (address.ss_family != AF_INET && address.ss_family != AF_INET6)) {
-    throw std::runtime_error("the socket that was handed over is none of TCP");
-  }
-  return {loop, address.ss_family == AF_INET ? tcp::v4() : tcp::v6(), descriptor};
-}
-
-tcp::acceptor listening_at(asio::io_context& loop, const std::string& address, std::uint16_t port) {
-  try {
-    const tcp::endpoint endpoint{asio::ip::make_address(address), port};
-    tcp::acceptor acceptor{loop, endpoint.protocol()};
-    acceptor.set_option(tcp::acceptor::reuse_address(true));
-    acceptor.bind(endpoint);
-    acceptor.listen();
-    return acceptor;
-  } catch (const boost::system::system_error& error) {
-    throw std::runtime_error(address + ":" + std::to_string(port) + ": cannot listen: " + error.code().message());
-  }
-}
-
-tcp::acceptor acceptor_of(asio::io_context& loop, const Server::Options& options) {
-  tcp::acceptor acceptor =
-      options.descriptor >= 0 ? inherited(loop, options.descriptor) : listening_at(loop, options.address, options.port);
-  const tcp::endpoint place = acceptor.local_endpoint();
-  if (options.token.empty() && !place.address().is_loopback()) {
-    throw std::runtime_error(text_of(place) + ": leads beyond this machine, and no token is asked for");
-  }
-  return acceptor;
-}
-
 }  // namespace
 
 struct Server::State {
   explicit State(Options given)
-      : host{std::move(given)}, acceptor{acceptor_of(loop, host.options)}, retry_timer{loop}, period_timer{loop} {
+      : host{.options = std::move(given)},
+        acceptor{listening_socket(loop, host.options)},
+        retry_timer{loop},
+        period_timer{loop} {
     host.upgrade = [this](beast::tcp_stream stream, const HttpRequest& request) {
       welcome_viewer(std::move(stream), request);
     };
@@ -381,7 +355,7 @@ Server::~Server() = default;
 
 std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().port(); }
 
-std::string Server::place() const { return text_of(state_->acceptor.local_endpoint()); }
+std::string Server::place() const { return place_of(state_->acceptor.local_endpoint()); }
 
 void Server::run() {
   const auto keep_alive = asio::make_work_guard(state_->loop);
@@ -390,6 +364,7 @@ void Server::run() {
 }
 
 void Server::stop() {
+  state_->host.is_ending = true;
   asio::post(state_->loop, [this] { state_->close(); });
 }
 

@@ -7,6 +7,8 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
+#include <new>
 #include <random>
 #include <semaphore>
 #include <stdexcept>
@@ -84,6 +86,16 @@ TEST_F(DashboardServer, AnswersGetAfterGetOnOneConnection) {
     EXPECT_EQ(answer.status, 200);
     EXPECT_EQ(answer.body, "you asked for " + std::string(path).substr(0, 4) + "\n");
   }
+}
+
+TEST_F(DashboardServer, AnAnswerThatFailsFailsAlone) {
+  options_.answer = [](const Request& request) -> Answer {
+    if (request.path == "/large") throw std::bad_alloc{};
+    return {.body = "well"};
+  };
+  start();
+  EXPECT_EQ(got("/large").status, 500);
+  EXPECT_EQ(got("/small").body, "well");
 }
 
 TEST_F(DashboardServer, EveryAnswerForbidsOtherSites) {
