@@ -198,14 +198,27 @@ int check(const Settings& settings, const CommandLine& line) {
   return has_error(findings) ? 2 : 0;
 }
 
+/// What a running daemon reads again: a pipe, or a disk's worth of text, would hold it up.
+void require_plain_file(const std::filesystem::path& settings) {
+  constexpr std::uintmax_t kLargest = 1'000'000;
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(settings, error);
+  if (!std::filesystem::exists(status)) return;  // its reader says why
+  if (!std::filesystem::is_regular_file(status) || std::filesystem::file_size(settings, error) > kLargest) {
+    throw SettingsError(settings.string() + ": is no plain file of at most 1 MB");
+  }
+}
+
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
   const bool hangup_reloads = !has_terminal();
   take_signals();  // all threads begin with them blocked: only watch() takes them
 
   Pipeline::Options options;
-  options.live =
-      std::make_shared<LiveSettings>(settings, [line] { return read_settings(line.config, line.overrides); });
+  options.live = std::make_shared<LiveSettings>(settings, [line] {
+    require_plain_file(line.config);
+    return read_settings(line.config, line.overrides);
+  });
   const OccupancyGrid first = first_map(settings, line);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);

@@ -30,6 +30,7 @@ std::string meaning_of(const std::string& message) {
   return known == kMeanings.end() ? message : std::string(known->second);
 }
 
+constexpr std::size_t kMostMistakes = 50;  // that are told: a file with more is another kind of file
 constexpr std::size_t kLongestQuote = 40;  // of what was found, in a mistake
 
 std::string quoted(const std::string& text) {
@@ -61,6 +62,8 @@ class Walk {
 
   /// `key` is the node that names `node`.
   void read(const std::string& path, const YAML::Node& node, const YAML::Node& key) {
+    if (problems_.size() == kMostMistakes) problems_.push_back(place_.of(key, key) + ": more mistakes follow");
+    if (problems_.size() > kMostMistakes) return;
     const auto known = std::find_if(keys_.begin(), keys_.end(), [&](const SettingKey& k) { return k.name == path; });
     if (known != keys_.end()) return assign(*known, node, key);
     if (!path.empty() && !is_section(path)) return add(key, key, unknown_key_line(keys_, path, node.IsMap()));

@@ -82,7 +82,7 @@ class Lines {
     for (std::size_t at = 0; at < line.size(); ++at) {
       const char c = line[at];
       if (c == '#' && is_blank(before)) return;
-      const bool begins_value = last_visible == '\n' || (is_blank(before) && last_visible == ':') ||
+      const bool begins_value = last_visible == '\n' || ((is_blank(before) || depth_ > 0) && last_visible == ':') ||
                                 last_visible == '[' || last_visible == '{' || (depth_ > 0 && last_visible == ',');
       if (begins_value && (c == '"' || c == '\'')) {
         const auto end = end_of_quoted(line, at);

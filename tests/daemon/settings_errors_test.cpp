@@ -73,6 +73,18 @@ TEST(SettingsErrors, AQuoteThatIsNotClosedOnItsLineIsRefused) {
             Lines{"--set map.file=\"a: the quote \" that is opened here is not closed on its line"});
 }
 
+TEST(SettingsErrors, AFlowOfQuotedKeysNeedsNoBlankBehindAColon) {
+  EXPECT_EQ(errors_of(R"({"map":{"file":"a, 'b.yaml","store":"x: 'c"}})"), Lines{});
+}
+
+TEST(SettingsErrors, AFileOfMistakesIsNotToldToItsEnd) {
+  std::string yaml;
+  for (int i = 0; i < 3000; ++i) yaml += "key" + std::to_string(i) + ": 1\n";
+  const Lines lines = errors_of(yaml);
+  ASSERT_EQ(lines.size(), 51u);
+  EXPECT_EQ(lines.back(), "f:51:1: more mistakes follow");
+}
+
 TEST(SettingsErrors, QuotesThatAreClosedAndThoseWithinWordsAreNotRefused) {
   EXPECT_EQ(errors_of("map:\n  file: \"a \\\" b\"   # don't\n  store: 'it''s'\nlaser: {port: \"a\", units: 'mm'}\n"
                       "recording:\n  file: o'clock\n"),

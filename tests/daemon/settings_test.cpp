@@ -148,13 +148,13 @@ TEST(Settings, ValuesThatContradictEachOtherAreRefused) {
 
 TEST(Settings, TheLivePageLeavesThisMachineOnlyWithAToken) {
   EXPECT_EQ(error_of("dashboard: {address: 0.0.0.0, port: 8484}"),
-            "robot.yaml: 'dashboard.address' leads beyond this machine: that needs 'dashboard.token_file'");
+            "robot.yaml:1:22: 'dashboard.address' leads beyond this machine: that needs 'dashboard.token_file'");
   EXPECT_EQ(error_of("dashboard: {address: 0.0.0.0, port: 8484, token_file: t}"), "no error");
   EXPECT_EQ(error_of("dashboard: {address: \"::1\", port: 8484}"), "no error");
   EXPECT_EQ(error_of("dashboard: {address: robot.example}"),
-            "robot.yaml: 'dashboard.address' needs an IPv4 or IPv6 address, not 'robot.example'");
+            "robot.yaml:1:22: 'dashboard.address' needs an IPv4 or IPv6 address, not 'robot.example'");
   EXPECT_EQ(error_of("dashboard: {port: 65536}"),
-            "robot.yaml:1: 'dashboard.port' needs a whole number in its range (0 to 65535), not '65536'");
+            "robot.yaml:1:19: 'dashboard.port' needs a whole number in its range (0 to 65535), not '65536'");
 }
 
 TEST(Settings, BrokenYamlIsNamedWithItsLine) {
