@@ -68,6 +68,11 @@ void OffsetFilter::start(const RefinedPose& at) {
   state_.start(at);
 }
 
+void OffsetFilter::begin_anew() {
+  std::swap(state_, last_);
+  start(state_.pose());
+}
+
 void OffsetFilter::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
   if (!map_.apply(std::move(map), changed)) {
     visits_.clear();
@@ -272,6 +277,8 @@ OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span
                                          double rest_share, const MotionModelParams& motion) {
   Seen seen;
   if (ends.empty()) return seen;
+  last_ = state_;
+  const Eigen::Vector3d mount = state_.mean().segment<3>(OffsetState::kMount);
   std::vector<Sighting> sightings = followed_from(field, ends, state_.pose().map_from_robot);
   std::vector<bool> fits = fit_of(sightings);
   seen.slipped = follows_slip(field, ends, sightings, fits, motion);
@@ -290,7 +297,7 @@ OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span
     correct_by(sightings, fits, at);
   }
   note_visits(sightings, fits);
-  correct_by_rest(field, rest_share);
+  correct_by_rest(field, rest_share, mount);
   settle(switches_, state_);
   const auto count = static_cast<double>(ends.size());
   seen.straight = 1.0 - static_cast<double>(finder_.rest().size()) / count;
@@ -334,13 +341,14 @@ void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::v
 }
 
 /// Ends on no surface correct the pose alone, as pose_refinement.hpp does: slid to where they fit, held by the rest.
-void OffsetFilter::correct_by_rest(const LikelihoodField& field, double share) {
+/// `mount`: as the scan was corrected by.
+void OffsetFilter::correct_by_rest(const LikelihoodField& field, double share, const Eigen::Vector3d& mount) {
   if (finder_.rest().size() == 0) return;
   const Eigen::Vector<double, 6> before = state_.mean().head<6>();
-  const Eigen::Vector3d start = before.head<OffsetState::kPose>();
   // How pose and mount move the scan.
   Eigen::Matrix<double, 3, 6> by;
-  by << Eigen::Matrix3d::Identity(), Eigen::AngleAxisd{start.z(), Eigen::Vector3d::UnitZ()}.toRotationMatrix();
+  by << Eigen::Matrix3d::Identity(), Eigen::AngleAxisd{before[2], Eigen::Vector3d::UnitZ()}.toRotationMatrix();
+  const Eigen::Vector3d start = before.head<3>() + by.rightCols<3>() * (before.tail<3>() - mount);
   const Eigen::Matrix3d spread = by * state_.covariance().topLeftCorner<6, 6>() * by.transpose();
   Eigen::Vector3d at = start;
   Eigen::Matrix3d information;

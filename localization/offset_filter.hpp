@@ -23,6 +23,8 @@ class OffsetFilter {
 
   /// Follows no surface yet. What was learned of the wheels is kept.
   void start(const RefinedPose& at);
+  /// What the last keyframe has told is taken back, of pose, wheels and mount. Follows no surface.
+  void begin_anew();
   /// Another map, the same but for a box of cells: a surface that lies there as before is still followed.
   void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
 
@@ -68,7 +70,7 @@ class OffsetFilter {
   void renumber();
   [[nodiscard]] std::vector<bool> fit_of(std::span<const Sighting> sightings) const;
   void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
-  void correct_by_rest(const LikelihoodField& field, double share);
+  void correct_by_rest(const LikelihoodField& field, double share, const Eigen::Vector3d& mount);
   [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;
   [[nodiscard]] double share_of_ends_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const;
   [[nodiscard]] double share_of_surfaces_held() const;
@@ -77,6 +79,7 @@ class OffsetFilter {
   SurfaceMap map_;
   SightingFinder finder_;
   OffsetState state_;
+  OffsetState last_;                     ///< before the newest keyframe
   std::vector<SurfaceSwitch> switches_;  ///< of the surfaces of the state, in its order
   std::vector<Visit> visits_;            ///< likewise
   double since_doubt_m_ = 0.0;           ///< driven since another reading was last looked for

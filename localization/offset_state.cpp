@@ -17,6 +17,9 @@ const Eigen::Vector4d kLargestWheelErrors{0.1, 0.1, 0.15, 0.3};
 const Eigen::Vector4d kWheelWalk{1e-7, 1e-7, 1e-8, 1e-8};
 // A laser that was screwed on with a ruler: m, m, rad.
 const Eigen::Vector3d kMountDeviations{0.015, 0.015, 0.005};
+const Eigen::Vector3d kLargestMountErrors{0.1, 0.1, 0.05};
+// Screws work loose: 2 mm and 0.05 degrees in 100 m.
+const Eigen::Vector3d kMountWalk{4e-8, 4e-8, 8e-9};
 
 Point2 turned_left(const Point2& p) { return {-p.y(), p.x()}; }
 
@@ -83,6 +86,9 @@ void OffsetState::carry(const WheelStep& step, const PoseCovariance& added) {
   covariance_.leftCols<kPose>() = (covariance_.leftCols<kFixed>() * by.transpose()).eval();
   covariance_.topLeftCorner<kPose, kPose>() += added;
   covariance_.diagonal().segment<4>(kWheels) += length_m * kWheelWalk;
+  mean_.segment<3>(kMount) =
+      mean_.segment<3>(kMount).cwiseMax(-kLargestMountErrors).cwiseMin(kLargestMountErrors).eval();
+  covariance_.diagonal().segment<3>(kMount) += length_m * kMountWalk;
 }
 
 void OffsetState::jump(const Pose2& to, const PoseCovariance& slip) {

@@ -112,7 +112,7 @@ RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
   const bool runs_away =
       !shown.slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
   if (!filter_.is_sound() || runs_away) {
-    filter_.start(before);
+    filter_.begin_anew();
     cease();
     return before;
   }

@@ -57,6 +57,16 @@ TEST(OffsetState, KeepsThePoseWhenASurfaceIsForgotten) {
   EXPECT_EQ(state.pose().covariance, before.covariance);
 }
 
+TEST(OffsetState, LetsTheMountWorkLooseAndNoFartherThanALaserCan) {
+  OffsetState state;
+  state.start(at_rest(0.0, 0.0, 0.0));
+  state.update({{{{OffsetState::kMount, 1.0}}}, 1}, 1.0, 1e-6);
+  const double sure_m = state.calibration().mount_deviations.x;
+  for (int i = 0; i < 1000; ++i) state.carry({.motion = {0.2, 0.0, 0.0}}, PoseCovariance::Zero());
+  EXPECT_LE(state.calibration().mount_error.x, 0.1);
+  EXPECT_GT(state.calibration().mount_deviations.x, sure_m + 0.001);
+}
+
 Surface face(double x) {
   return {.centre = {x, 0.0},
           .normal = {0.0, 1.0},
