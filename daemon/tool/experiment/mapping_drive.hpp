@@ -51,6 +51,7 @@ class MappingDrive {
 
   [[nodiscard]] simulation::VirtualDrive& drive() { return drive_; }
   [[nodiscard]] const OccupancyGrid& map() const { return *map_->map(); }
+  [[nodiscard]] const localization::Localizer& localizer() const { return *localizer_; }
 
  private:
   Settings settings_;

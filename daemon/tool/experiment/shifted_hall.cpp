@@ -90,7 +90,7 @@ Series error_series(const Outcome& outcome) {
 Report ShiftedHall::report(const std::vector<Outcome>& outcomes) const {
   Report report;
   for (const Kind& kind : kinds()) {
-    std::vector<double> rms_m, most_m, off, jumps;
+    std::vector<double> rms_m, most_m, off, jumps, wheel_distance, wheel_turn, wheel_lag_s;
     Chart errors{kind.name + ": error", "time, min", "position, m", {}};
     for (const Outcome& outcome : outcomes) {
       if (outcome.label("kind") != kind.name) continue;
@@ -98,6 +98,9 @@ Report ShiftedHall::report(const std::vector<Outcome>& outcomes) const {
       most_m.push_back(outcome.number("error_most_m"));
       off.push_back(outcome.number("off_share"));
       jumps.push_back(outcome.number("jumps"));
+      wheel_distance.push_back(outcome.number("wheel_distance_error"));
+      wheel_turn.push_back(outcome.number("wheel_turn_error"));
+      wheel_lag_s.push_back(outcome.number("wheel_lag_error_s"));
       errors.series.push_back(error_series(outcome));
     }
     if (rms_m.empty()) continue;  // not asked for
@@ -106,6 +109,13 @@ Report ShiftedHall::report(const std::vector<Outcome>& outcomes) const {
     report.figures.push_back({kind.name + ": farthest scan", quantile(most_m, 1.0), "m"});
     report.figures.push_back({kind.name + ": time off by more than 0.5 m", mean_of(off)});
     report.figures.push_back({kind.name + ": jumps away from a right pose, most", quantile(jumps, 1.0)});
+    const auto of_wheels = [&](const char* what, const std::vector<double>& errors_of, const char* unit, double most) {
+      const std::string name = kind.name + ": wheels at the end, " + what + ", worst error";
+      report.figures.push_back({name, quantile(errors_of, 1.0), unit, Target{.most = most}});
+    };
+    of_wheels("distance", wheel_distance, "", 0.002);
+    of_wheels("turn", wheel_turn, "", 0.003);
+    of_wheels("lag", wheel_lag_s, "s", 0.02);
     report.charts.push_back(std::move(errors));
   }
   TextTable runs{"Every drive", {"kind", "seed", "RMSE, m", "farthest, m", "off", "jumps", "cause"}, {}};

@@ -77,6 +77,19 @@ std::vector<std::pair<std::string, double>> map_numbers(std::optional<MappingWat
   return chosen;
 }
 
+/// How far what was found of the wheels is from the truth; not a number where nothing is looked for.
+std::vector<std::pair<std::string, double>> wheel_numbers(const WatchedRun& run,
+                                                          const localization::Localizer& localizer) {
+  const simulation::RobotParams& body = run.scenario.robot.body;
+  const double driven_of_counted = 1.0 + 0.5 * (body.left_wheel_error + body.right_wheel_error);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  localization::WheelErrors found{kUnknown, kUnknown, kUnknown, kUnknown};
+  if (const auto calibration = localizer.calibration()) found = calibration->wheels;
+  return {{"wheel_distance_error", std::abs(1.0 + found.distance - driven_of_counted)},
+          {"wheel_turn_error", std::abs(1.0 + found.turn - driven_of_counted / (1.0 + body.track_error))},
+          {"wheel_lag_error_s", std::abs(found.lag_s - run.drive.odometry_lag_s)}};
+}
+
 }  // namespace
 
 Outcome watched_drive(const WatchedRun& run) {
@@ -113,6 +126,7 @@ Outcome watched_drive(const WatchedRun& run) {
   outcome.labels = {{"cause", course.cause()}};
   outcome.numbers = course.numbers();
   for (auto& number : map_numbers(watch, drive.map())) outcome.numbers.push_back(std::move(number));
+  for (auto& number : wheel_numbers(run, drive.localizer())) outcome.numbers.push_back(std::move(number));
   return outcome;
 }
 
