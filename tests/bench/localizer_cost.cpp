@@ -129,6 +129,7 @@ void observe(const Job& job, const localization::LocalizerParams& params) {
 /// Every scan moves and weighs 500 particles, draws them anew where N_eff asks for it, and refines the best one.
 void update(const Job& job) {
   localization::LocalizerParams params;
+  params.follow_surfaces = false;
   params.particles.min = params.particles.max = 500;
   params.beams = job.beams;
   params.update = {.distance_m = 0.0, .turn_rad = 0.0, .time_s = 1e-9};
@@ -154,6 +155,7 @@ void track_few(const Job& job) {
 void beam_model(const Job& job) {
   const std::vector<DriveStep> steps = drive(1);
   localization::LocalizerParams params;
+  params.follow_surfaces = false;
   const localization::BeamModel model{surveyed_hall(), params.beam_model, 80.0};
   const auto ends =
       localization::scoring_ends(steps.front().scan, localization::deskewed(steps.front().scan, {}), job.beams);
