@@ -69,7 +69,7 @@ void OffsetFilter::start(const RefinedPose& at) {
 }
 
 void OffsetFilter::begin_anew() {
-  std::swap(state_, last_);
+  state_ = last_;
   start(state_.pose());
 }
 
@@ -277,7 +277,7 @@ OffsetFilter::Seen OffsetFilter::observe(const LikelihoodField& field, std::span
                                          double rest_share, const MotionModelParams& motion) {
   Seen seen;
   if (ends.empty()) return seen;
-  last_ = state_;
+  last_ = state_.without_surfaces();
   const Eigen::Vector3d mount = state_.mean().segment<3>(OffsetState::kMount);
   std::vector<Sighting> sightings = followed_from(field, ends, state_.pose().map_from_robot);
   std::vector<bool> fits = fit_of(sightings);

@@ -4,42 +4,61 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace deltamap::localization {
 namespace {
 
-// Before anything was learned: deviations of distance, turn, drift (rad/m) and lag (s).
-const Eigen::Vector4d kWheelDeviations{0.03, 0.03, 0.01, 0.05};
-// Beyond these the wheels are broken, not biased.
-const Eigen::Vector4d kLargestWheelErrors{0.1, 0.1, 0.15, 0.3};
-// How fast they change: variances a metre. Tyres wear, loads shift.
-const Eigen::Vector4d kWheelWalk{1e-7, 1e-7, 1e-8, 1e-8};
-// A laser that was screwed on with a ruler: m, m, rad.
-const Eigen::Vector3d kMountDeviations{0.015, 0.015, 0.005};
-const Eigen::Vector3d kLargestMountErrors{0.1, 0.1, 0.05};
-// Screws work loose: 2 mm and 0.05 degrees in 100 m.
-const Eigen::Vector3d kMountWalk{4e-8, 4e-8, 8e-9};
+constexpr Eigen::Index kLearned = OffsetState::kFixed - OffsetState::kPose;
+using Learned = Eigen::Vector<double, kLearned>;
+
+/// Of the laser's mount (x and y, m; heading, rad) and of the wheels, in the order of the state.
+Learned learned(const Eigen::Vector3d& mount, const Eigen::Vector4d& wheels) {
+  Learned both;
+  both << mount, wheels;
+  return both;
+}
+
+// Before anything was learned: a laser that was screwed on with a ruler, wheels of which nothing is known.
+const Learned kDeviations = learned({0.015, 0.015, 0.005}, {0.03, 0.03, 0.01, 0.05});
+// Beyond these it is broken, not biased.
+const Learned kLargestErrors = learned({0.1, 0.1, 0.05}, {0.1, 0.1, 0.15, 0.3});
+// How fast they change: variances a metre. Screws work loose by 2 mm and 0.05 degrees in 100 m, tyres wear, loads
+// shift.
+const Learned kWalk = learned({4e-8, 4e-8, 8e-9}, {1e-7, 1e-7, 1e-8, 1e-8});
+
+template <typename Values>
+WheelErrors wheels_in(const Values& state) {
+  constexpr Eigen::Index kWheels = OffsetState::kWheels;
+  return {state[kWheels], state[kWheels + 1], state[kWheels + 2], state[kWheels + 3]};
+}
+
+template <typename Values>
+Pose2 mount_in(const Values& state) {
+  constexpr Eigen::Index kMount = OffsetState::kMount;
+  return {state[kMount], state[kMount + 1], state[kMount + 2]};
+}
 
 Point2 turned_left(const Point2& p) { return {-p.y(), p.x()}; }
 
 }  // namespace
 
 OffsetState::OffsetState() : mean_{Eigen::VectorXd::Zero(kFixed)}, covariance_{Eigen::MatrixXd::Zero(kFixed, kFixed)} {
-  covariance_.diagonal().segment<4>(kWheels) = kWheelDeviations.cwiseAbs2();
-  covariance_.diagonal().segment<3>(kMount) = kMountDeviations.cwiseAbs2();
+  covariance_.diagonal().tail<kLearned>() = kDeviations.cwiseAbs2();
+}
+
+OffsetState OffsetState::without_surfaces() const {
+  OffsetState alone;
+  alone.mean_ = mean_.head<kFixed>();
+  alone.covariance_ = covariance_.topLeftCorner<kFixed, kFixed>();
+  return alone;
 }
 
 void OffsetState::start(const RefinedPose& at) {
-  constexpr Eigen::Index kLearned = kFixed - kPose;
-  OffsetState anew;
-  if (is_sound()) {
-    anew.mean_.tail<kLearned>() = mean_.segment<kLearned>(kPose);
-    anew.covariance_.bottomRightCorner<kLearned, kLearned>() = covariance_.block<kLearned, kLearned>(kPose, kPose);
-  }
-  anew.mean_.head<kPose>() << at.map_from_robot.x, at.map_from_robot.y, at.map_from_robot.theta;
-  anew.covariance_.topLeftCorner<kPose, kPose>() = at.covariance;
-  *this = std::move(anew);
+  *this = is_sound() ? without_surfaces() : OffsetState{};
+  mean_.head<kPose>() << at.map_from_robot.x, at.map_from_robot.y, at.map_from_robot.theta;
+  covariance_.topRows<kPose>().setZero();
+  covariance_.leftCols<kPose>().setZero();
+  covariance_.topLeftCorner<kPose, kPose>() = at.covariance;
 }
 
 RefinedPose OffsetState::pose() const {
@@ -48,15 +67,11 @@ RefinedPose OffsetState::pose() const {
 
 DriveCalibration OffsetState::calibration() const {
   const Eigen::Vector<double, kFixed> deviations = covariance_.diagonal().head<kFixed>().cwiseMax(0.0).cwiseSqrt();
-  const auto wheels = [](const auto& of) {
-    return WheelErrors{of[kWheels], of[kWheels + 1], of[kWheels + 2], of[kWheels + 3]};
-  };
-  const auto mount = [](const auto& of) { return Pose2{of[kMount], of[kMount + 1], of[kMount + 2]}; };
-  return {wheels(mean_), wheels(deviations), mount(mean_), mount(deviations)};
+  return {wheels_in(mean_), wheels_in(deviations), mount_in(mean_), mount_in(deviations)};
 }
 
 Pose2 OffsetState::corrected(const WheelStep& step) const {
-  const WheelErrors errors = calibration().wheels;
+  const WheelErrors errors = wheels_in(mean_);
   const double further_rad = errors.turn * step.motion.theta + errors.drift_rad_per_m * step.motion.position().norm() +
                              errors.lag_s * step.turn_rate_change_rad_per_s;
   const Pose2 along_the_arc = Pose2{0.0, 0.0, 0.5 * further_rad} * step.motion;
@@ -80,15 +95,12 @@ void OffsetState::carry(const WheelStep& step, const PoseCovariance& added) {
       by_half_turn * step.turn_rate_change_rad_per_s + turned * Point2{step.speed_change_m_per_s, 0.0};
   by.row(2).segment<4>(kWheels) << 0.0, step.motion.theta, length_m, step.turn_rate_change_rad_per_s;
   mean_.head<kPose>() += Eigen::Vector3d{moved.x(), moved.y(), motion.theta};
-  mean_.segment<4>(kWheels) =
-      mean_.segment<4>(kWheels).cwiseMax(-kLargestWheelErrors).cwiseMin(kLargestWheelErrors).eval();
+  mean_.segment<kLearned>(kPose) =
+      mean_.segment<kLearned>(kPose).cwiseMax(-kLargestErrors).cwiseMin(kLargestErrors).eval();
   covariance_.topRows<kPose>() = (by * covariance_.topRows<kFixed>()).eval();
   covariance_.leftCols<kPose>() = (covariance_.leftCols<kFixed>() * by.transpose()).eval();
   covariance_.topLeftCorner<kPose, kPose>() += added;
-  covariance_.diagonal().segment<4>(kWheels) += length_m * kWheelWalk;
-  mean_.segment<3>(kMount) =
-      mean_.segment<3>(kMount).cwiseMax(-kLargestMountErrors).cwiseMin(kLargestMountErrors).eval();
-  covariance_.diagonal().segment<3>(kMount) += length_m * kMountWalk;
+  covariance_.diagonal().segment<kLearned>(kPose) += length_m * kWalk;
 }
 
 void OffsetState::jump(const Pose2& to, const PoseCovariance& slip) {

@@ -43,6 +43,9 @@ class OffsetState {
   /// No surface is followed. What was learned of the wheels and the mount is kept.
   void start(const RefinedPose& at);
 
+  /// Pose, mount and wheels alone.
+  [[nodiscard]] OffsetState without_surfaces() const;
+
   /// The robot's motion, by the wheels and what is known of their errors.
   [[nodiscard]] Pose2 corrected(const WheelStep& step) const;
   /// `added`: covariance of the step's own noise, map frame.

@@ -82,10 +82,11 @@ bool SurfaceTrack::is_one_place(const PoseCovariance& spread) {
 
 bool SurfaceTrack::is_due(const Seen& seen) const {
   if (!since_) return true;
+  if (since_->by_wheels.position().norm() >= kKeyframeM || std::abs(since_->by_wheels.theta) >= kKeyframeRad ||
+      since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad)
+    return true;
   const double explained = explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
-  return explained < since_->explained - kSuddenly || since_->by_wheels.position().norm() >= kKeyframeM ||
-         std::abs(since_->by_wheels.theta) >= kKeyframeRad || since_->variance_m2 > kUnsureM * kUnsureM ||
-         since_->variance_rad2 > kUnsureRad * kUnsureRad;
+  return explained < since_->explained - kSuddenly;
 }
 
 RefinedPose SurfaceTrack::carry(const ScanInstant& now) {
