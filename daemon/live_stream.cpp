@@ -59,8 +59,7 @@ std::optional<Message> LiveStream::next_of_map() {
   if (!frame_ || !(*frame_ == map.grid->geometry())) {
     frame_ = map.grid->geometry();
     boxes_ = map.changed.next();
-    const auto pieces = dashboard::pieces_of(known_box(*map.grid));
-    due_.assign(pieces.begin(), pieces.end());
+    mark_all(*map.grid);
     return message_of(map_message(*frame_, map.revision), false);
   }
   mark(map);
@@ -78,8 +77,11 @@ void LiveStream::mark(const LiveBoard::Map& map) {
     due_.insert(due_.end(), pieces.begin(), pieces.end());
     has_missed = has_missed || due_.size() > kMostDue;
   }
-  if (!has_missed) return;
-  const auto pieces = dashboard::pieces_of(known_box(*map.grid));
+  if (has_missed) mark_all(*map.grid);
+}
+
+void LiveStream::mark_all(const OccupancyGrid& map) {
+  const auto pieces = dashboard::pieces_of(known_box(map));
   due_.assign(pieces.begin(), pieces.end());
 }
 

@@ -34,6 +34,7 @@ class LiveStream final : public dashboard::Stream {
   [[nodiscard]] std::optional<dashboard::Message> next_past();
   [[nodiscard]] std::optional<dashboard::Message> next_of_map();
   void mark(const LiveBoard::Map& map);
+  void mark_all(const OccupancyGrid& map);
 
   const LiveNews& news_;
   const LiveBoard& board_;
