@@ -2,11 +2,9 @@
 #include "daemon/settings.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
-#include <sstream>
-#include <system_error>
+#include <stdexcept>
 
+#include "core/text_of_file.hpp"
 #include "daemon/fingerprint.hpp"
 #include "daemon/settings_reader.hpp"
 
@@ -44,17 +42,13 @@ Settings parse_settings(const std::string& yaml, const std::string& name, const 
 }
 
 Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  std::ifstream in(file, std::ios::binary);
-  const int reason = errno;
-  std::error_code ignored;
-  const bool is_folder = std::filesystem::is_directory(file, ignored);
-  if (!in || is_folder) {
-    const std::string why = is_folder ? "is a folder" : std::generic_category().message(reason);
-    throw SettingsError(file.string() + ": cannot read the settings: " + why);
+  std::string text;
+  try {
+    text = text_of_file(file);
+  } catch (const std::runtime_error& error) {
+    throw SettingsError(file.string() + ": cannot read the settings: " + error.what());
   }
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse_settings(text.str(), file.string(), overrides);
+  return parse_settings(text, file.string(), overrides);
 }
 
 std::string settings_as_yaml(const Settings& settings) {

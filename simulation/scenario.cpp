@@ -5,13 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
-#include <system_error>
 
+#include "core/text_of_file.hpp"
 #include "simulation/scenario_actors.hpp"
 #include "simulation/scenario_world.hpp"
 #include "simulation/yaml_section.hpp"
@@ -153,15 +150,13 @@ Scenario parse_scenario(const std::string& yaml, const std::string& name) {
 }
 
 Scenario read_scenario(const std::filesystem::path& yaml_file) {
-  std::ifstream in(yaml_file, std::ios::binary);
-  const int reason = errno;
-  std::error_code told_by_reason;
-  const bool is_folder = std::filesystem::is_directory(yaml_file, told_by_reason);
-  if (!in || is_folder) {
-    const std::string why = is_folder ? "is a folder" : std::generic_category().message(reason);
-    throw std::runtime_error(yaml_file.string() + ": cannot be read: " + why);
+  std::string text;
+  try {
+    text = text_of_file(yaml_file);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(yaml_file.string() + ": cannot be read: " + error.what());
   }
-  return parse_scenario({std::istreambuf_iterator<char>(in), {}}, yaml_file.string());
+  return parse_scenario(text, yaml_file.string());
 }
 
 }  // namespace deltamap::simulation
