@@ -19,6 +19,7 @@
 #include <chrono>
 #include <set>
 
+#include "daemon/accept_loop.hpp"
 #include "daemon/control/request.hpp"
 
 namespace deltamap::daemon::control {
@@ -29,7 +30,6 @@ using Protocol = asio::local::stream_protocol;
 using boost::system::error_code;
 
 constexpr std::size_t kMostClients = 16;
-constexpr std::chrono::milliseconds kPauseAfterFailure{200};  // no descriptor is free: look again then
 constexpr mode_t kOwnerAndGroup = 0660;
 
 [[noreturn]] void refuse(const std::filesystem::path& socket, const std::string& why) {
@@ -154,23 +154,9 @@ class Session : public std::enable_shared_from_this<Session> {
 
 struct Server::State {
   explicit State(Options given)
-      : options{std::move(given)}, acceptor{listening_at(loop, options.socket)}, retry_timer{loop} {}
-
-  void accept() {
-    acceptor.async_accept([this](const error_code& error, Protocol::socket socket) {
-      if (error == asio::error::operation_aborted) return;
-      if (error) return accept_later();
-      welcome(std::move(socket));
-      accept();
-    });
-  }
-
-  void accept_later() {
-    retry_timer.expires_after(kPauseAfterFailure);
-    retry_timer.async_wait([this](const error_code& error) {
-      if (!error) accept();
-    });
-  }
+      : options{std::move(given)}, clients{listening_at(loop, options.socket), [this](Protocol::socket socket) {
+                                             welcome(std::move(socket));
+                                           }} {}
 
   void welcome(Protocol::socket socket) {
     const bool is_full = sessions.size() >= kMostClients;
@@ -186,9 +172,7 @@ struct Server::State {
   }
 
   void close() {
-    error_code ignored;
-    acceptor.close(ignored);
-    retry_timer.cancel();
+    clients.close();
     for (const auto& session : sessions) session->close();
     sessions.clear();
     loop.stop();
@@ -196,8 +180,7 @@ struct Server::State {
 
   asio::io_context loop{1};
   Options options;
-  Protocol::acceptor acceptor;
-  asio::steady_timer retry_timer;
+  AcceptLoop<Protocol> clients;
   std::set<std::shared_ptr<Session>> sessions;
 };
 
@@ -210,7 +193,7 @@ Server::~Server() {
 
 void Server::run() {
   const auto keep_alive = asio::make_work_guard(state_->loop);
-  state_->accept();
+  state_->clients.start();
   state_->loop.run();
 }
 

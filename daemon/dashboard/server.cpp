@@ -24,6 +24,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "daemon/accept_loop.hpp"
 #include "daemon/dashboard/access.hpp"
 #include "daemon/dashboard/listening_socket.hpp"
 
@@ -43,8 +44,7 @@ constexpr std::uint32_t kMostHeaderBytes = 8192;
 constexpr std::size_t kMostIncomingBytes = 1024;  // a viewer has nothing to say
 constexpr int kSendBuffer = 128 * 1024;           // of the kernel, for each connection
 constexpr std::chrono::seconds kHttpPatience{10};
-constexpr std::chrono::seconds kViewerSilence{30};            // then a ping, which it must answer
-constexpr std::chrono::milliseconds kPauseAfterFailure{200};  // no descriptor is free: look again then
+constexpr std::chrono::seconds kViewerSilence{30};  // then a ping, which it must answer
 
 // Nothing of another site runs or is shown here, and nothing of this page there.
 constexpr std::pair<const char*, const char*> kEveryAnswer[] = {
@@ -252,30 +252,13 @@ class Viewer final : public Connection, public std::enable_shared_from_this<View
 struct Server::State {
   explicit State(Options given)
       : host{.options = std::move(given)},
-        acceptor{listening_socket(loop, host.options)},
-        retry_timer{loop},
+        clients{listening_socket(loop, host.options), [this](tcp::socket socket) { welcome(std::move(socket)); }},
         period_timer{loop} {
     host.upgrade = [this](beast::tcp_stream stream, const HttpRequest& request) {
       welcome_viewer(std::move(stream), request);
     };
   }
   ~State() { close(); }
-
-  void accept() {
-    acceptor.async_accept([this](const error_code& error, tcp::socket socket) {
-      if (error == asio::error::operation_aborted) return;
-      if (error) return accept_later();
-      welcome(std::move(socket));
-      accept();
-    });
-  }
-
-  void accept_later() {
-    retry_timer.expires_after(kPauseAfterFailure);
-    retry_timer.async_wait([this](const error_code& error) {
-      if (!error) accept();
-    });
-  }
 
   /// One too many is not answered: that would keep it.
   void welcome(tcp::socket socket) {
@@ -331,9 +314,7 @@ struct Server::State {
   }
 
   void close() {
-    error_code ignored;
-    acceptor.close(ignored);
-    retry_timer.cancel();
+    clients.close();
     period_timer.cancel();
     for (const auto& connection : host.connections) connection->close();
     host.connections.clear();
@@ -344,8 +325,7 @@ struct Server::State {
   Host host;
   std::set<Viewer*> viewers;  // among the connections
   asio::io_context loop{1};
-  tcp::acceptor acceptor;
-  asio::steady_timer retry_timer;
+  AcceptLoop<tcp> clients;
   asio::steady_timer period_timer;
   Clock::time_point next_period;
 };
@@ -353,13 +333,13 @@ struct Server::State {
 Server::Server(Options options) : state_{std::make_unique<State>(std::move(options))} {}
 Server::~Server() = default;
 
-std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().port(); }
+std::uint16_t Server::port() const { return state_->clients.place().port(); }
 
-std::string Server::place() const { return place_of(state_->acceptor.local_endpoint()); }
+std::string Server::place() const { return place_of(state_->clients.place()); }
 
 void Server::run() {
   const auto keep_alive = asio::make_work_guard(state_->loop);
-  state_->accept();
+  state_->clients.start();
   state_->loop.run();
 }
 
