@@ -5,8 +5,6 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/time.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
@@ -15,6 +13,8 @@
 #include <optional>
 #include <string>
 #include <utility>
+
+#include "tests/support/stream_socket.hpp"
 
 namespace deltamap::test {
 
@@ -31,35 +31,17 @@ struct WebFrame {
 
 class WebClient {
  public:
-  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : descriptor_{::socket(AF_INET, SOCK_STREAM, 0)} {
+  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : socket_{AF_INET, receive_buffer} {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const timeval patience{20, 0};
-    (void)::setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    if (receive_buffer > 0) {
-      (void)::setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
-    }
-    is_connected_ = ::connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    socket_.connect(address);
   }
-  ~WebClient() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  WebClient(const WebClient&) = delete;
-  WebClient& operator=(const WebClient&) = delete;
 
-  [[nodiscard]] bool is_connected() const { return is_connected_; }
+  [[nodiscard]] bool is_connected() const { return socket_.is_connected(); }
 
-  bool send(const std::string& bytes) const {
-    std::size_t sent = 0;
-    while (sent < bytes.size()) {
-      const ssize_t n = ::send(descriptor_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-      if (n <= 0) return false;
-      sent += static_cast<std::size_t>(n);
-    }
-    return true;
-  }
+  bool send(const std::string& bytes) const { return socket_.send(bytes); }
 
   [[nodiscard]] WebAnswer answer() {
     WebAnswer answer;
@@ -115,14 +97,14 @@ class WebClient {
   }
   /// Says no more, and reads until the server hangs up.
   [[nodiscard]] bool finishes() {
-    (void)::shutdown(descriptor_, SHUT_WR);
+    (void)::shutdown(socket_.descriptor(), SHUT_WR);
     return is_hung_up();
   }
   /// Reads until the server hangs up. False where it does not within the patience of the socket.
   [[nodiscard]] bool is_hung_up() {
     char bytes[4096];
     for (;;) {
-      const ssize_t n = ::recv(descriptor_, bytes, sizeof bytes, 0);
+      const ssize_t n = ::recv(socket_.descriptor(), bytes, sizeof bytes, 0);
       if (n == 0) return true;
       if (n < 0) return errno == ECONNRESET || errno == EPIPE;
     }
@@ -146,15 +128,9 @@ class WebClient {
     received_.erase(0, size);
     return text;
   }
-  bool receive() {
-    char bytes[4096];
-    const ssize_t n = ::recv(descriptor_, bytes, sizeof bytes, 0);
-    if (n > 0) received_.append(bytes, static_cast<std::size_t>(n));
-    return n > 0;
-  }
+  bool receive() { return socket_.receive(received_); }
 
-  int descriptor_;
-  bool is_connected_ = false;
+  StreamSocket socket_;
   std::string received_;
 };
 
