@@ -2,6 +2,8 @@
 // Lines over time on small canvases. All charts share the time axis and the instant under the pointer; the value axis
 // fits what is shown.
 
+import { dots_per_px, ink_of, once_a_frame } from "./canvas.js";
+
 const LEFT = 40, RIGHT = 6, TOP = 6, BOTTOM = 16; // px around the plot
 const GAP_S = 5;  // a line is not joined over a longer silence
 const SPANS = [["1 min", 60], ["10 min", 600], ["1 h", 3600]];
@@ -16,8 +18,6 @@ const CHARTS = [
   { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")], low: 0 },
   { title: "Latency", lines: [line("latency_ms", "ms", "--pink")], low: 0 },
 ];
-
-const ink_of = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 /// A step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
 export function step_for(span, most) {
@@ -91,7 +91,7 @@ class Chart {
 
   draw(samples, from, to, threshold, instant) {
     [this.from, this.to] = [from, to];
-    const dots = Math.min(2, devicePixelRatio || 1);
+    const dots = dots_per_px();
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
     if (!width) return;
     this.canvas.width = Math.round(width * dots);
@@ -177,6 +177,7 @@ class Chart {
 export class Charts {
   constructor(host, spans_host, instant_host) {
     this.instant_host = instant_host;
+    this.draw_soon = once_a_frame(() => this.draw());
     this.samples = [];
     this.thresholds = {};
     this.span_s = SPANS[1][1];
@@ -213,14 +214,7 @@ export class Charts {
     this.draw_soon();
   }
 
-  draw_soon() {
-    if (this.is_due) return;
-    this.is_due = true;
-    requestAnimationFrame(() => this.draw());
-  }
-
   draw() {
-    this.is_due = false;
     const to = this.samples.at(-1)?.time ?? Date.now() / 1000;
     // A young run fills the axis: from its beginning, a minute at least.
     const from = Math.max(to - this.span_s, Math.min(this.samples[0]?.time ?? to, to - SPANS[0][1]));

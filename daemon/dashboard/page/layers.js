@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn over the map: one layer a kind of thing, each with its sign in the legend, and a scale bar.
 
+import { ink_of } from "./canvas.js";
 import { FREE, OCCUPIED } from "./map_view.js";
 
 const REACH_M = 0.15;  // a beam that ends so close to an occupied cell agrees with the map
@@ -10,8 +11,6 @@ const ROBOT_M = 0.25;  // radius
 const LEAST_ROBOT_PX = 7;
 const MOST_RINGS = 8;
 const LEAST_SHARE = 0.005;  // of the belief, of a hypothesis that is drawn
-
-const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 function circle(context, x, y, radius) {
   context.beginPath();
@@ -24,12 +23,12 @@ function robot_sign(context, x, y, heading, radius, colour) {
   circle(context, x, y, radius);
   context.fill();
   context.lineWidth = 1.5;
-  context.strokeStyle = ink("--card");
+  context.strokeStyle = ink_of("--card");
   context.stroke();
   context.save();
   context.translate(x, y);
   context.rotate(-heading);
-  context.fillStyle = ink("--card");
+  context.fillStyle = ink_of("--card");
   context.beginPath();
   context.moveTo(0.8 * radius, 0);
   context.lineTo(-0.45 * radius, 0.55 * radius);
@@ -39,7 +38,7 @@ function robot_sign(context, x, y, heading, radius, colour) {
 }
 
 function draw_path(context, view, model) {
-  context.strokeStyle = ink("--sky");
+  context.strokeStyle = ink_of("--sky");
   context.lineWidth = 2;
   context.globalAlpha = 0.75;
   context.beginPath();
@@ -58,7 +57,7 @@ function draw_path(context, view, model) {
 function draw_scan(context, view, model) {
   const scan = model.scan;
   if (!scan) return;
-  const colours = [ink("--green"), ink("--orange"), ink("--pink")];
+  const colours = [ink_of("--green"), ink_of("--orange"), ink_of("--pink")];
   const size = Math.max(3, Math.min(7, 0.07 * view.scale));
   for (let i = 0; i < scan.ends.length; i += 2) {
     const x = scan.ends[i], y = scan.ends[i + 1];
@@ -103,9 +102,9 @@ function draw_transient(context, view, model) {
   if (model.status?.mapping === "paused") return; // nobody looks after it
   each_block(model, "standing", (x, y, side) => {
     const [px, py] = view.to_screen(x, y + side);
-    hatched(context, px, py, side * view.scale, side * view.scale, ink("--orange"));
+    hatched(context, px, py, side * view.scale, side * view.scale, ink_of("--orange"));
   });
-  context.strokeStyle = ink("--blue");
+  context.strokeStyle = ink_of("--blue");
   context.lineWidth = 1.5;
   each_block(model, "gone", (x, y, side) => {
     const [px, py] = view.to_screen(x, y + side);
@@ -128,7 +127,7 @@ function draw_changes(context, view, model) {
     const is_covered = shown.some(({ box_m: [l, b, r, t] }) => x > l - RING_M && x < r + RING_M && y > b - RING_M && y < t + RING_M);
     if (model.changes[i].accepted && has_place(model.changes[i]) && !is_covered) shown.push(model.changes[i]);
   }
-  context.strokeStyle = ink("--red");
+  context.strokeStyle = ink_of("--red");
   for (const change of shown) {
     const [left, bottom, right, top] = change.box_m, is_picked = change === model.picked;
     const [x, y] = view.to_screen((left + right) / 2, (bottom + top) / 2);
@@ -148,9 +147,9 @@ function draw_hypothesis(context, view, model) {
   if (!other || other.share < LEAST_SHARE) return;
   const [x, y] = view.to_screen(other.x_m, other.y_m);
   context.globalAlpha = 0.35 + 0.65 * other.share;
-  robot_sign(context, x, y, other.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink("--pink"));
+  robot_sign(context, x, y, other.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--pink"));
   context.globalAlpha = 1;
-  context.fillStyle = ink("--text");
+  context.fillStyle = ink_of("--text");
   context.fillText(other.share < 0.01 ? "< 1 %" : `${(100 * other.share).toFixed(0)} %`, x + 12, y - 10);
 }
 
@@ -169,28 +168,28 @@ function draw_robot(context, view, model) {
   context.beginPath();
   context.ellipse(x, y, Math.max(1, long * view.scale), Math.max(1, short * view.scale), -angle, 0, 2 * Math.PI);
   context.globalAlpha = 0.25;
-  context.fillStyle = ink("--blue");
+  context.fillStyle = ink_of("--blue");
   context.fill();
   context.globalAlpha = 1;
-  context.strokeStyle = ink("--blue");
+  context.strokeStyle = ink_of("--blue");
   context.lineWidth = 1.5;
   context.stroke();
-  robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink("--blue"));
+  robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--blue"));
 }
 
 // From below to above.
 export const LAYERS = [
-  { id: "path", label: "path", draw: draw_path, sign: (c) => { c.strokeStyle = ink("--sky"); c.lineWidth = 2; c.beginPath(); c.moveTo(1, 12); c.lineTo(9, 4); c.lineTo(21, 7); c.stroke(); } },
+  { id: "path", label: "path", draw: draw_path, sign: (c) => { c.strokeStyle = ink_of("--sky"); c.lineWidth = 2; c.beginPath(); c.moveTo(1, 12); c.lineTo(9, 4); c.lineTo(21, 7); c.stroke(); } },
   { id: "transient", label: "not (yet) map", draw: draw_transient,
-    keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink("--orange"))],
-           ["seen gone", (c) => { c.strokeStyle = ink("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
-  { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
+    keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink_of("--orange"))],
+           ["seen gone", (c) => { c.strokeStyle = ink_of("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
+  { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
   { id: "scan", label: "scan: beam ends", draw: draw_scan,
-    keys: [["on the map's obstacles", (c) => { c.fillStyle = ink("--green"); c.fillRect(8, 4, 6, 6); }],
-           ["where the map is free", (c) => { c.fillStyle = ink("--orange"); circle(c, 11, 7, 4); c.fill(); }],
-           ["where it is unknown", (c) => { c.fillStyle = ink("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
-  { id: "hypothesis", label: "other hypothesis", draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink("--pink")) },
-  { id: "robot", label: `robot, ${SIGMAS} σ`, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink("--blue")) },
+    keys: [["on the map's obstacles", (c) => { c.fillStyle = ink_of("--green"); c.fillRect(8, 4, 6, 6); }],
+           ["where the map is free", (c) => { c.fillStyle = ink_of("--orange"); circle(c, 11, 7, 4); c.fill(); }],
+           ["where it is unknown", (c) => { c.fillStyle = ink_of("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
+  { id: "hypothesis", label: "other hypothesis", draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
+  { id: "robot", label: `robot, ${SIGMAS} σ`, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--blue")) },
 ];
 
 function sign_of(draw) {
@@ -236,11 +235,11 @@ export function draw_scale_bar(context, view) {
   const length_px = length_m * view.scale, x = 14, y = view.height - 14;
   const text = length_m >= 1 ? `${length_m} m` : `${Math.round(100 * length_m)} cm`;
   context.font = "12px system-ui, sans-serif";
-  context.fillStyle = ink("--card");
+  context.fillStyle = ink_of("--card");
   context.globalAlpha = 0.85;
   context.fillRect(x - 6, y - 20, Math.max(length_px, context.measureText(text).width) + 12, 27);
   context.globalAlpha = 1;
-  context.strokeStyle = context.fillStyle = ink("--text");
+  context.strokeStyle = context.fillStyle = ink_of("--text");
   context.lineWidth = 2;
   context.beginPath();
   context.moveTo(x, y - 5);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map on a canvas: cells in tiles, and the part of it that is shown; mouse, touch and keyboard move it.
 
+import { dots_per_px, ink_of, once_a_frame } from "./canvas.js";
+
 const SIDE = 256; // cells of a tile
 export const FREE = 0, OCCUPIED = 1, UNKNOWN = 2;
 const LEAST_SCALE = 0.5, MOST_SCALE = 400; // pixels a metre
 
 function rgb(name) {
-  const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const text = ink_of(name);
   return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
 }
 
@@ -15,6 +17,7 @@ export class MapView {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
     this.draw_over = draw_over;
+    this.draw_soon = once_a_frame(() => this.draw());
     this.frame = null;
     this.tiles = new Map();
     this.centre = { x: 0, y: 0 };
@@ -222,7 +225,7 @@ export class MapView {
 
   resize() {
     const { clientWidth, clientHeight } = this.canvas;
-    const dots = Math.min(2, devicePixelRatio || 1);
+    const dots = dots_per_px();
     [this.width, this.height] = [clientWidth, clientHeight];
     this.canvas.width = Math.round(clientWidth * dots);
     this.canvas.height = Math.round(clientHeight * dots);
@@ -231,14 +234,7 @@ export class MapView {
     this.draw();
   }
 
-  draw_soon() {
-    if (this.is_due) return;
-    this.is_due = true;
-    requestAnimationFrame(() => this.draw());
-  }
-
   draw() {
-    this.is_due = false;
     if (!this.width) return;
     const context = this.context;
     context.setTransform(this.dots, 0, 0, this.dots, 0, 0);
