@@ -54,6 +54,7 @@ RefinedPose Tracker::start_around(const InitialPose& pose) {
   if (surfaces_) surfaces_->cease();
   slip_finder_.forget();
   last_update_.reset();
+  has_driven_blind_ = false;
   return {best_.map_from_robot, best_.covariance};
 }
 
@@ -128,11 +129,12 @@ void Tracker::carry(const ScanInstant& now) {
   motion.slip_probability = 0.0;  // only a scan can tell of a slip
   filter_.move(since.motion, since.unknown_s, motion);
   last_update_ = now;
+  has_driven_blind_ = true;
   track_.carry(now);
 }
 
 bool Tracker::update_due(const MotionSince& since) const {
-  return !last_update_ || since.motion.position().norm() >= params_.update.distance_m ||
+  return !last_update_ || has_driven_blind_ || since.motion.position().norm() >= params_.update.distance_m ||
          std::abs(since.motion.theta) >= params_.update.turn_rad || since.passed_s >= params_.update.time_s;
 }
 
@@ -141,6 +143,7 @@ Tracker::Answer Tracker::update(const Seen& seen, const MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
   if (last_update_) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
   last_update_ = seen.now;
+  has_driven_blind_ = false;
   const std::span<const Pose2> slips_that_fit = sees ? slips(seen) : std::span<const Pose2>{};
   filter_.propose_slips(slips_that_fit);
   std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};

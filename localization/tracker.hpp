@@ -110,7 +110,8 @@ class Tracker {
   BeamErrors errors_;
   SlipFinder slip_finder_;
   std::optional<ScanInstant> last_update_;
-  bool drawn_anew_ = false;  ///< the particles, so that `hypotheses_` must look at them again
+  bool has_driven_blind_ = false;  ///< the particles have moved since the last update, so that `best_` lies behind
+  bool drawn_anew_ = false;        ///< the particles, so that `hypotheses_` must look at them again
 };
 
 }  // namespace deltamap::localization
