@@ -117,10 +117,8 @@ void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
 void Tracker::carry(const ScanInstant& now) {
   if (!last_update_) return;
   if (surfaces_ && surfaces_->leads()) {
-    const RefinedPose believed = surfaces_->carry(now);
-    surfaces_->cease();
-    go_on_from(believed, now);
-    track_.after_scan(now, believed);
+    (void)surfaces_->carry(now);
+    last_update_ = now;
     return;
   }
   const MotionSince since = motion_since(*last_update_, now, params_.update.time_s);
