@@ -14,6 +14,16 @@ struct WheelErrors {
   double lag_s = 0.0;            ///< the wheels' stamps are that much too late
 };
 
+/// What the wheels counted from one instant to the next.
+struct WheelStep {
+  Pose2 motion;
+  double speed_change_m_per_s = 0.0;  ///< between the two instants
+  double turn_rate_change_rad_per_s = 0.0;
+};
+
+/// What the robot did meanwhile.
+[[nodiscard]] Pose2 corrected(const WheelStep& step, const WheelErrors& errors);
+
 struct DriveCalibration {
   WheelErrors wheels;
   WheelErrors wheel_deviations;

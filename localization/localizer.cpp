@@ -30,6 +30,7 @@ TrackedScan Localizer::observe(Scan scan) {
   const ScanInstant now{scan.time, state.odometry.at(scan.time)};
   const BodyVelocity velocity = state.odometry.velocity_at(scan.time);
   if (const auto known = state.tracker.calibration()) {
+    state.odometry.calibrate(known->wheels);
     scan.robot_from_laser = known->mount_error * scan.robot_from_laser;
   }
   tracked.rays = deskewed(scan, velocity);
@@ -45,7 +46,7 @@ TrackedScan Localizer::observe(Scan scan) {
 
   tracked.estimate = state.estimate(scan.time, believed);
   if (now.odometry) {
-    tracked.odom_from_robot = now.odometry->odom_from_robot;
+    tracked.odom_from_robot = now.odometry->joined_from_robot;
     tracked.odometry_epoch = now.odometry->epoch;
   }
   tracked.speed_m_per_s = velocity.speed_m_per_s;

@@ -42,10 +42,10 @@ void OdometryBuffer::add(const Odometry& odometry) {
                odometry.epoch,
                {odometry.speed_m_per_s, odometry.turn_rate_rad_per_s}};
   if (!is_finite(odometry)) return;
-  const auto join_to = [&fresh](const Report& last) {
+  const auto join_to = [&](const Report& last) {
     const bool same_frame = fresh.epoch == last.epoch;
-    const Pose2 motion = same_frame ? motion_between(last.odom_from_robot, fresh.odom_from_robot) : Pose2{};
-    fresh.joined_from_robot = last.joined_from_robot * motion;
+    const Pose2 counted = same_frame ? motion_between(last.odom_from_robot, fresh.odom_from_robot) : Pose2{};
+    fresh.joined_from_robot = last.joined_from_robot * corrected({.motion = counted}, errors_);
   };
   if (count_ > 0 && seconds(newest().time - fresh.time) > kClockFellBackS) begin_anew();
   if (count_ > 0) {
@@ -91,6 +91,12 @@ std::size_t OdometryBuffer::first_not_before(Timestamp time) const {
 }
 
 std::optional<OdometryAt> OdometryBuffer::at(Timestamp time) const {
+  std::optional<OdometryAt> told = told_at(time);
+  if (told) told->joined_from_robot = told->joined_from_robot * motion_at(velocity_at(time), errors_.lag_s);
+  return told;
+}
+
+std::optional<OdometryAt> OdometryBuffer::told_at(Timestamp time) const {
   if (count_ == 0) return std::nullopt;
   const std::size_t next = first_not_before(time);
   if (next == count_) return extrapolated(newest(), seconds(time - newest().time));
@@ -138,7 +144,7 @@ BodyVelocity OdometryBuffer::velocity_at(Timestamp time) const {
     const double silent_s = seconds(time - newest().time);
     return silent_s > params_.extrapolation_s ? BodyVelocity{} : newest_velocity();
   }
-  const Pose2 motion = motion_between(at(from)->joined_from_robot, at(to)->joined_from_robot);
+  const Pose2 motion = motion_between(told_at(from)->joined_from_robot, told_at(to)->joined_from_robot);
   return clamped(velocity_of(motion, base_s));
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/angle.hpp"
 #include "core/messages.hpp"
+#include "localization/drive_calibration.hpp"
 
 namespace deltamap::localization {
 
@@ -29,7 +30,8 @@ struct BodyVelocity {
 struct OdometryAt {
   Pose2 odom_from_robot;  ///< in the frame of `epoch`
   std::uint32_t epoch = 0;
-  Pose2 joined_from_robot;   ///< in one frame over all epochs; the jump between two epochs counts as standing still
+  Pose2 joined_from_robot;   ///< in one frame over all epochs, without what is known of the wheels' systematic errors;
+                             ///< the jump between two epochs counts as standing still
   double uncovered_s = 0.0;  ///< seconds between the instant and the nearest report that could speak for it
 };
 
@@ -40,6 +42,9 @@ class OdometryBuffer {
   /// Reports must come in order of time; one that is not newer than the last is left out, unless the clock fell back by
   /// more than a second: then the past is forgotten. One that is no number is left out.
   void add(const Odometry& odometry);
+
+  /// What is known of the wheels: from the next report on.
+  void calibrate(const WheelErrors& errors) { errors_ = errors; }
 
   /// A scan is older than the one before it: unless the reports have fallen back already, nothing is known until the
   /// next one comes, which goes on from where the last one was.
@@ -66,11 +71,14 @@ class OdometryBuffer {
   [[nodiscard]] const Report& newest() const { return report(count_ - 1); }
   void begin_anew();
   [[nodiscard]] std::size_t first_not_before(Timestamp time) const;
+  /// As the reports tell it: `lag_s` behind.
+  [[nodiscard]] std::optional<OdometryAt> told_at(Timestamp time) const;
   [[nodiscard]] OdometryAt extrapolated(const Report& last, double ahead_s) const;
   [[nodiscard]] BodyVelocity newest_velocity() const;
   [[nodiscard]] BodyVelocity clamped(const BodyVelocity& velocity) const;
 
   OdometryBufferParams params_;
+  WheelErrors errors_;
   std::vector<Report> ring_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;

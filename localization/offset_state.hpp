@@ -13,13 +13,6 @@
 
 namespace deltamap::localization {
 
-/// What the wheels counted from one scan to the next.
-struct WheelStep {
-  Pose2 motion;
-  double speed_change_m_per_s = 0.0;  ///< between the two instants
-  double turn_rate_change_rad_per_s = 0.0;
-};
-
 /// A row of a measurement's Jacobian: most of it is zero.
 struct SparseRow {
   struct Entry {

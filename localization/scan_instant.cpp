@@ -27,6 +27,11 @@ MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double
   return since;
 }
 
+Pose2 counted_between(const ScanInstant& before, const ScanInstant& now) {
+  if (!now.odometry || !before.odometry || now.odometry->epoch != before.odometry->epoch) return {};
+  return motion_between(before.odometry->odom_from_robot, now.odometry->odom_from_robot);
+}
+
 MotionSince step_between(const ScanInstant& before, const ScanInstant& now) {
   MotionSince step;
   step.passed_s = std::max(0.0, seconds(now.time - before.time));

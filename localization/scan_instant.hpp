@@ -24,6 +24,9 @@ struct MotionSince {
 /// the epoch has changed too.
 [[nodiscard]] MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double usual_s);
 
+/// What the wheels counted, their systematic errors included; nothing across two epochs.
+[[nodiscard]] Pose2 counted_between(const ScanInstant& before, const ScanInstant& now);
+
 /// From one scan to the next: where the epoch has changed, nothing is known of what passed between.
 [[nodiscard]] MotionSince step_between(const ScanInstant& before, const ScanInstant& now);
 

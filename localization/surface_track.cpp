@@ -59,14 +59,13 @@ PoseCovariance SurfaceTrack::noise(const Pose2& motion, double unknown_s) const 
 }
 
 void SurfaceTrack::step_to(const ScanInstant& now, const BodyVelocity& velocity) {
-  const MotionSince since = step_between(last_->instant, now);
-  WheelStep step{.motion = since.motion};
+  WheelStep step{.motion = counted_between(last_->instant, now)};
   if (now.odometry && last_->instant.odometry) {
     step.speed_change_m_per_s = velocity.speed_m_per_s - last_->velocity.speed_m_per_s;
     step.turn_rate_change_rad_per_s = velocity.turn_rate_rad_per_s - last_->velocity.turn_rate_rad_per_s;
   }
   const Pose2 corrected = filter_.corrected(step);
-  const PoseCovariance added = noise(corrected, since.unknown_s);
+  const PoseCovariance added = noise(corrected, step_between(last_->instant, now).unknown_s);
   filter_.carry(step, added);
   last_ = Last{now, velocity};
   if (!since_) return;
