@@ -304,7 +304,7 @@ Pose2 Localizer::State::joined_at(const ScanInstant& now) const {
 Estimate Localizer::State::estimate(Timestamp time, const RefinedPose& believed) const {
   return {.time = time,
           .map_from_robot = believed.map_from_robot,
-          .covariance = believed.covariance,
+          .covariance = believed.covariance + tracker.unknown_mount(believed.map_from_robot.theta),
           .state = monitor.state(),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(

@@ -2,7 +2,6 @@
 #include "localization/offset_filter.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -71,6 +70,10 @@ void OffsetFilter::start(const RefinedPose& at) {
 void OffsetFilter::begin_anew() {
   state_ = last_;
   start(state_.pose());
+}
+
+void OffsetFilter::take(const RefinedPose& found) {
+  if (!visits_.empty() || !state_.update(found)) start(found);
 }
 
 void OffsetFilter::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
@@ -345,9 +348,7 @@ void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::v
 void OffsetFilter::correct_by_rest(const LikelihoodField& field, double share, const Eigen::Vector3d& mount) {
   if (finder_.rest().size() == 0) return;
   const Eigen::Vector<double, 6> before = state_.mean().head<6>();
-  // How pose and mount move the scan.
-  Eigen::Matrix<double, 3, 6> by;
-  by << Eigen::Matrix3d::Identity(), Eigen::AngleAxisd{before[2], Eigen::Vector3d::UnitZ()}.toRotationMatrix();
+  const Eigen::Matrix<double, 3, 6> by = state_.scan_by_pose_and_mount();
   const Eigen::Vector3d start = before.head<3>() + by.rightCols<3>() * (before.tail<3>() - mount);
   const Eigen::Matrix3d spread = by * state_.covariance().topLeftCorner<6, 6>() * by.transpose();
   Eigen::Vector3d at = start;

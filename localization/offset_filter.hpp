@@ -28,6 +28,9 @@ class OffsetFilter {
   /// Another map, the same but for a box of cells: a surface that lies there as before is still followed.
   void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
 
+  /// A pose that was found otherwise: it tells how the wheels have erred. Follows no surface.
+  void take(const RefinedPose& found);
+
   [[nodiscard]] Pose2 corrected(const WheelStep& step) const { return state_.corrected(step); }
   void carry(const WheelStep& step, const PoseCovariance& added);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/offset_state.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 namespace deltamap::localization {
 namespace {
 
+constexpr double kStrange = 16.0;  // squared deviations: no measurement of this pose
 constexpr Eigen::Index kLearned = OffsetState::kFixed - OffsetState::kPose;
 using Learned = Eigen::Vector<double, kLearned>;
 
@@ -70,9 +72,7 @@ DriveCalibration OffsetState::calibration() const {
   return {wheels_in(mean_), wheels_in(deviations), mount_in(mean_), mount_in(deviations)};
 }
 
-Pose2 OffsetState::corrected(const WheelStep& step) const {
-  return localization::corrected(step, wheels_in(mean_));
-}
+Pose2 OffsetState::corrected(const WheelStep& step) const { return localization::corrected(step, wheels_in(mean_)); }
 
 void OffsetState::carry(const WheelStep& step, const PoseCovariance& added) {
   const Pose2 motion = corrected(step);
@@ -92,9 +92,12 @@ void OffsetState::carry(const WheelStep& step, const PoseCovariance& added) {
   mean_.head<kPose>() += Eigen::Vector3d{moved.x(), moved.y(), motion.theta};
   mean_.segment<kLearned>(kPose) =
       mean_.segment<kLearned>(kPose).cwiseMax(-kLargestErrors).cwiseMin(kLargestErrors).eval();
-  covariance_.topRows<kPose>() = (by * covariance_.topRows<kFixed>()).eval();
-  covariance_.leftCols<kPose>() = (covariance_.leftCols<kFixed>() * by.transpose()).eval();
-  covariance_.topLeftCorner<kPose, kPose>() += added;
+  const PoseCovariance of_pose = by * covariance_.topLeftCorner<kFixed, kFixed>() * by.transpose() + added;
+  const Eigen::Matrix<double, kPose, Eigen::Dynamic> beside = by * covariance_.topRows<kFixed>();
+  // Written as each other's mirror: a difference between the two halves would grow from update to update.
+  covariance_.topRows<kPose>() = beside;
+  covariance_.leftCols<kPose>() = beside.transpose();
+  covariance_.topLeftCorner<kPose, kPose>() = 0.5 * (of_pose + of_pose.transpose());
   covariance_.diagonal().segment<kLearned>(kPose) += length_m * kWalk;
 }
 
@@ -122,6 +125,22 @@ void OffsetState::remove(std::size_t surface) {
   covariance_.middleRows(at, after) = covariance_.bottomRows(after).eval();
   covariance_.middleCols(at, after) = covariance_.rightCols(after).eval();
   covariance_.conservativeResize(at + after, at + after);
+}
+
+bool OffsetState::update(const RefinedPose& seen) {
+  const Eigen::Vector3d innovation = difference(pose().map_from_robot, seen.map_from_robot);
+  const PoseCovariance inverse = (covariance_.topLeftCorner<kPose, kPose>() + seen.covariance).inverse();
+  if (innovation.dot(inverse * innovation) > kStrange) return false;
+  const Eigen::Matrix<double, Eigen::Dynamic, kPose> cross = covariance_.leftCols<kPose>();
+  mean_ += cross * (inverse * innovation);
+  covariance_ -= (cross * inverse * cross.transpose()).eval();
+  return true;
+}
+
+Eigen::Matrix<double, 3, 6> OffsetState::scan_by_pose_and_mount() const {
+  Eigen::Matrix<double, kPose, kPosed> by;
+  by << Eigen::Matrix3d::Identity(), Eigen::AngleAxisd{mean_[2], Eigen::Vector3d::UnitZ()}.toRotationMatrix();
+  return by;
 }
 
 void OffsetState::update(const SparseRow& row, double innovation, double variance) {

@@ -29,6 +29,7 @@ class OffsetState {
  public:
   static constexpr Eigen::Index kPose = 3;
   static constexpr Eigen::Index kMount = 3;   ///< three entries from there, after the pose
+  static constexpr Eigen::Index kPosed = 6;   ///< pose and mount
   static constexpr Eigen::Index kWheels = 6;  ///< four
   static constexpr Eigen::Index kFixed = 10;  ///< pose, mount and wheels
 
@@ -52,6 +53,8 @@ class OffsetState {
   /// Ceases to follow surface number `surface`: what it has told of the pose stays.
   void remove(std::size_t surface);
 
+  /// A measurement of the pose, with the mount as it is known. False where that is too far off: nothing has changed.
+  bool update(const RefinedPose& seen);
   /// A measurement: row · state was found to be greater than expected by `innovation`.
   void update(const SparseRow& row, double innovation, double variance);
   /// As a factor: precision and precision · mean, over kCount entries from `first` on.
@@ -74,6 +77,8 @@ class OffsetState {
     return kFixed + 2 * static_cast<Eigen::Index>(surface);
   }
   [[nodiscard]] RefinedPose pose() const;
+  /// How pose and mount move where a scan lies in the map.
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> scan_by_pose_and_mount() const;
   [[nodiscard]] DriveCalibration calibration() const;
   [[nodiscard]] bool is_sound() const { return mean_.allFinite() && covariance_.diagonal().minCoeff() >= 0.0; }
 

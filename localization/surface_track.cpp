@@ -20,7 +20,9 @@ constexpr double kNewest = 0.1;             // share of one keyframe in the runn
 const double kKeyframeRad = radians(10.0);  // turned since the last keyframe,
 constexpr double kUnsureM = 0.01;           // or as unsure as what a surface tells
 constexpr double kUnsureRad = 0.004;
-constexpr double kSuddenly = 0.1;      // share of ends that the map ceases to explain: the wheels may have slipped
+constexpr double kSuddenly = 0.1;  // share of ends that the map ceases to explain: the wheels may have slipped
+// How far a pose that the particles have found is off, besides what they say: cells, and a map drawn a little wrong.
+const PoseCovariance kOfAPose = Eigen::Vector3d{9e-4, 9e-4, 2.5e-5}.asDiagonal();
 constexpr double kStrangest = 25.0;    // squared deviations: a slip is no measure of how the wheels usually do
 constexpr double kLongestStepM = 0.5;  // of one correction
 
@@ -37,6 +39,20 @@ void SurfaceTrack::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox
 bool SurfaceTrack::could_lead(const Seen& seen, const Pose2& map_from_robot) {
   straight_ += kNewest * (filter_.straight_share(seen.field, seen.faced, map_from_robot) - straight_);
   return straight_ >= kLeadsAbove;
+}
+
+void SurfaceTrack::learn_from(const RefinedPose& found, const ScanInstant& now, const BodyVelocity& velocity) {
+  const RefinedPose measured{found.map_from_robot, found.covariance + kOfAPose};
+  if (!last_) {
+    filter_.start(measured);
+    last_ = Last{now, velocity};
+    since_ = SinceKeyframe{};
+    return;
+  }
+  step_to(now, velocity);
+  if (since_->by_wheels.position().norm() < kKeyframeM && std::abs(since_->by_wheels.theta) < kKeyframeRad) return;
+  filter_.take(measured);
+  since_ = SinceKeyframe{};
 }
 
 RefinedPose SurfaceTrack::lead_from(const RefinedPose& at, const Seen& seen) {
@@ -88,9 +104,8 @@ bool SurfaceTrack::is_due(const Seen& seen) const {
   return explained < since_->explained - kSuddenly;
 }
 
-RefinedPose SurfaceTrack::carry(const ScanInstant& now) {
-  step_to(now, last_->velocity);
-  return filter_.believed();
+void SurfaceTrack::carry(const ScanInstant& now) {
+  if (last_) step_to(now, last_->velocity);
 }
 
 RefinedPose SurfaceTrack::observe(const Seen& seen) {

@@ -36,15 +36,20 @@ class SurfaceTrack {
   [[nodiscard]] bool leads() const { return leads_; }
   /// Looks at a scan while the particles lead. True where straight surfaces have explained the scans of late.
   [[nodiscard]] bool could_lead(const Seen& seen, const Pose2& map_from_robot);
+  /// The particles lead: how the wheels err is learned from where they find the robot.
+  void learn_from(const RefinedPose& found, const ScanInstant& now, const BodyVelocity& velocity);
   /// Leads from here on.
   RefinedPose lead_from(const RefinedPose& at, const Seen& seen);
   /// The pose was set, or the particles have taken over.
-  void cease() { leads_ = false; }
+  void cease() {
+    leads_ = false;
+    last_.reset();
+  }
 
   /// The pose at one more scan. It may have ceased to lead.
   RefinedPose observe(const Seen& seen);
-  /// No scan has come for long: along with the wheels. While it leads.
-  RefinedPose carry(const ScanInstant& now);
+  /// No scan has come for long: along with the wheels.
+  void carry(const ScanInstant& now);
 
   [[nodiscard]] DriveCalibration calibration() const { return filter_.calibration(); }
   /// It leads, and surfaces that stand where the map has them fix the pose.

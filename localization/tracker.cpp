@@ -46,6 +46,13 @@ std::optional<DriveCalibration> Tracker::calibration() const {
   return surfaces_ ? std::optional{surfaces_->calibration()} : std::nullopt;
 }
 
+PoseCovariance Tracker::unknown_mount(double heading_rad) const {
+  if (!surfaces_ || surfaces_->leads()) return PoseCovariance::Zero();
+  const Pose2 deviations = surfaces_->calibration().mount_deviations;
+  return covariance_along(heading_rad, deviations.x * deviations.x, deviations.y * deviations.y,
+                          deviations.theta * deviations.theta);
+}
+
 RefinedPose Tracker::start_around(const InitialPose& pose) {
   filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
   best_ = hypotheses_.best(filter_.particles());
@@ -75,7 +82,10 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
   answer.unknown_s = since.unknown_s;
   if (surfaces_ && surfaces_->leads()) return answer;
   track_.after_scan(seen.now, answer.believed);
-  if (surfaces_ && seen.ends.size() > 0) let_surfaces_lead(seen, answer);
+  if (surfaces_ && seen.ends.size() > 0) {
+    surfaces_->learn_from(answer.believed, seen.now, seen.velocity);
+    let_surfaces_lead(seen, answer);
+  }
   return answer;
 }
 
@@ -116,8 +126,8 @@ void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
 
 void Tracker::carry(const ScanInstant& now) {
   if (!last_update_) return;
+  if (surfaces_) surfaces_->carry(now);
   if (surfaces_ && surfaces_->leads()) {
-    (void)surfaces_->carry(now);
     last_update_ = now;
     return;
   }
