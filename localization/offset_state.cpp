@@ -128,10 +128,11 @@ void OffsetState::remove(std::size_t surface) {
 }
 
 bool OffsetState::update(const RefinedPose& seen) {
+  const Eigen::Matrix<double, kPose, kPosed> by = scan_by_pose_and_mount();
   const Eigen::Vector3d innovation = difference(pose().map_from_robot, seen.map_from_robot);
-  const PoseCovariance inverse = (covariance_.topLeftCorner<kPose, kPose>() + seen.covariance).inverse();
+  const Eigen::Matrix<double, Eigen::Dynamic, kPose> cross = covariance_.leftCols<kPosed>() * by.transpose();
+  const PoseCovariance inverse = (by * cross.topRows<kPosed>() + seen.covariance).inverse();
   if (innovation.dot(inverse * innovation) > kStrange) return false;
-  const Eigen::Matrix<double, Eigen::Dynamic, kPose> cross = covariance_.leftCols<kPose>();
   mean_ += cross * (inverse * innovation);
   covariance_ -= (cross * inverse * cross.transpose()).eval();
   return true;
