@@ -128,7 +128,8 @@ void OffsetState::remove(std::size_t surface) {
 }
 
 bool OffsetState::update(const RefinedPose& seen) {
-  const Eigen::Matrix<double, kPose, kPosed> by = scan_by_pose_and_mount();
+  Eigen::Matrix<double, kPose, kPosed> by = scan_by_pose_and_mount();
+  by.middleCols<2>(kMount).setZero();  // a centre of rotation that is told wrong looks the same
   const Eigen::Vector3d innovation = difference(pose().map_from_robot, seen.map_from_robot);
   const Eigen::Matrix<double, Eigen::Dynamic, kPose> cross = covariance_.leftCols<kPosed>() * by.transpose();
   const PoseCovariance inverse = (by * cross.topRows<kPosed>() + seen.covariance).inverse();
