@@ -122,7 +122,7 @@ struct TrackedScan {
   Scan scan;
   std::vector<RayInRobot> rays;  ///< one for each beam
   Estimate estimate;
-  Pose2 odom_from_robot;  ///< at Scan::time
+  Pose2 odom_from_robot;  ///< at Scan::time, without what is known of the wheels' errors; in one frame over all epochs
   std::uint32_t odometry_epoch = 0;
   double speed_m_per_s = 0.0;        ///< measured around Scan::time
   double turn_rate_rad_per_s = 0.0;  ///< measured around Scan::time

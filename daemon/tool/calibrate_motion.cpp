@@ -61,7 +61,9 @@ bool is_sure(const Estimate& estimate) {
 Drive driven(const CalibrateOptions& options, const Settings& settings) {
   std::optional<localization::InitialPose> start;
   if (settings.initial_pose) start = localization::InitialPose{*settings.initial_pose};
-  localization::Localizer localizer{settings.localizer, std::make_shared<const OccupancyGrid>(read_grid(options.map)),
+  localization::LocalizerParams params = settings.localizer;
+  params.follow_surfaces = false;  // wheels as they count, not as they have been corrected
+  localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)),
                                     start, settings.seed};
   const auto& update = settings.localizer.update;
   localization::MotionSegments pairs{

@@ -79,6 +79,29 @@ TEST(OdometryBuffer, NeverIntegratesAcrossEpochs) {
   EXPECT_EQ(buffer.at(at_s(0.18))->epoch, 1u);
 }
 
+TEST(OdometryBuffer, TakesOutWhatIsKnownOfTheWheelsFromTheNextReportOn) {
+  OdometryBuffer buffer{{}};
+  buffer.add(report(0.0, {1.0, 0.0, 0.0}));
+  buffer.add(report(0.1, {1.1, 0.0, 0.0}));
+  buffer.calibrate({.distance = 0.02, .turn = -0.05});
+  const Pose2 before = buffer.at(at_s(0.1))->joined_from_robot;
+  EXPECT_NEAR(before.x, 1.1, kSame) << "what was told before stays";
+  buffer.add(report(0.2, {1.2, 0.0, 0.2}));
+  const OdometryAt after = *buffer.at(at_s(0.2));
+  EXPECT_NEAR(after.odom_from_robot.x, 1.2, kSame) << "as counted";
+  const Pose2 motion = motion_between(before, after.joined_from_robot);
+  EXPECT_NEAR(motion.position().norm(), 0.102, kSame);
+  EXPECT_NEAR(motion.theta, 0.19, kSame);
+}
+
+TEST(OdometryBuffer, AddsWhatWasDrivenSinceReportsThatAreStampedLate) {
+  OdometryBuffer buffer{{}};
+  for (int i = 0; i < 20; ++i) buffer.add(report(0.1 * i, {0.05 * i, 0.0, 0.0}));
+  const double told_m = buffer.at(at_s(1.5))->joined_from_robot.x;
+  buffer.calibrate({.lag_s = 0.08});
+  EXPECT_NEAR(buffer.at(at_s(1.5))->joined_from_robot.x - told_m, 0.5 * 0.08, 1e-6);
+}
+
 TEST(OdometryBuffer, LeavesOutReportsThatComeOutOfOrder) {
   OdometryBuffer buffer{{}};
   buffer.add(report(1.0, {1.0, 0.0, 0.0}));

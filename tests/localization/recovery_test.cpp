@@ -249,6 +249,23 @@ TEST(ScanGap, IsBridgedByTheWheelsAndThePoseStaysTracked) {
   EXPECT_LE(strayed, 1);
 }
 
+TEST(ScanGap, TheFirstScanFindsTheRobotWhereTheWheelsHaveBroughtIt) {
+  for (const bool surfaces : {true, false}) {
+    Tour tour{2};
+    LocalizerParams params;
+    params.follow_surfaces = surfaces;
+    Localizer localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()), InitialPose{tour.truth()},
+                        2};
+    for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
+    tour.drive_unseen(localizer, 12.0);
+    for (int i = 0; i < 4; ++i) {  // it stands: the scan itself shows no motion
+      tour.wait(kScanPeriodS);
+      localizer.observe(tour.odometry());
+    }
+    EXPECT_TRUE(right(localizer.observe(tour.scan()), tour)) << "surfaces: " << surfaces;
+  }
+}
+
 /// A view that fits little is no proof against a pose that the wheels have kept.
 TEST(ScanGap, ThePoseIsKeptWhereTheWorldHasChangedMeanwhile) {
   Tour tour{3};
