@@ -63,8 +63,8 @@ Drive driven(const CalibrateOptions& options, const Settings& settings) {
   if (settings.initial_pose) start = localization::InitialPose{*settings.initial_pose};
   localization::LocalizerParams params = settings.localizer;
   params.follow_surfaces = false;  // wheels as they count, not as they have been corrected
-  localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)),
-                                    start, settings.seed};
+  localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), start,
+                                    settings.seed};
   const auto& update = settings.localizer.update;
   localization::MotionSegments pairs{
       {.step_m = std::max(1e-3, update.distance_m), .step_rad = std::max(1e-3, update.turn_rad)}};
