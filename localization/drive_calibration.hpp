@@ -2,6 +2,10 @@
 // What driving among surfaces has told of the robot itself: systematic errors of its wheels and of the laser's mount.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <span>
+
 #include "core/pose2.hpp"
 
 namespace deltamap::localization {
@@ -30,5 +34,10 @@ struct DriveCalibration {
   Pose2 mount_error;  ///< moves a beam's end from where the mount that was told has it, robot frame
   Pose2 mount_deviations;
 };
+
+/// Wheels, their deviations, mount, its deviations, each in the order of its fields: to be kept and read again.
+[[nodiscard]] std::array<double, 14> numbers_of(const DriveCalibration& calibration);
+/// Nothing where it is not what numbers_of() gives.
+[[nodiscard]] std::optional<DriveCalibration> calibration_of(std::span<const double> numbers);
 
 }  // namespace deltamap::localization

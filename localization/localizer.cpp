@@ -89,6 +89,11 @@ StabilityRecord Localizer::stability() const { return state_->judgement.stabilit
 
 bool Localizer::restore(const StabilityRecord& record) { return state_->judgement.restore(record); }
 
+void Localizer::restore(const DriveCalibration& learned) {
+  state_->tracker.restore(learned);
+  if (const auto known = calibration()) state_->odometry.calibrate(known->wheels);
+}
+
 FieldPatch prepared_field_patch(const LocalizerParams& params, const OccupancyGrid& map,
                                 std::span<const CellChange> changes) {
   return field_patch(map, changes, params.field);

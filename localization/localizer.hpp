@@ -56,6 +56,8 @@ class Localizer {
   [[nodiscard]] StabilityRecord stability() const;
   /// Takes what an earlier run has learned; false, and nothing taken, where it belongs to a map of another geometry.
   [[nodiscard]] bool restore(const StabilityRecord& record);
+  /// Before the first scan: what an earlier run has learned of wheels and mount.
+  void restore(const DriveCalibration& learned);
 
  private:
   struct State;

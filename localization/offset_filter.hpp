@@ -23,6 +23,7 @@ class OffsetFilter {
 
   /// Follows no surface yet. What was learned of the wheels is kept.
   void start(const RefinedPose& at);
+  void restore(const DriveCalibration& learned) { state_.restore(learned); }
   /// What the last keyframe has told is taken back, of pose, wheels and mount. Follows no surface.
   void begin_anew();
   /// Another map, the same but for a box of cells: a surface that lies there as before is still followed.

@@ -48,6 +48,21 @@ OffsetState::OffsetState() : mean_{Eigen::VectorXd::Zero(kFixed)}, covariance_{E
   covariance_.diagonal().tail<kLearned>() = kDeviations.cwiseAbs2();
 }
 
+void OffsetState::restore(const DriveCalibration& known) {
+  constexpr double kAsOverM = 1000.0;
+  const auto of = [](const Pose2& mount, const WheelErrors& wheels) {
+    return learned({mount.x, mount.y, mount.theta},
+                   {wheels.distance, wheels.turn, wheels.drift_rad_per_m, wheels.lag_s});
+  };
+  const Learned deviations = of(known.mount_deviations, known.wheel_deviations);
+  mean_.segment<kLearned>(kPose) =
+      of(known.mount_error, known.wheels).cwiseMax(-kLargestErrors).cwiseMin(kLargestErrors);
+  covariance_.middleRows<kLearned>(kPose).setZero();
+  covariance_.middleCols<kLearned>(kPose).setZero();
+  covariance_.diagonal().segment<kLearned>(kPose) =
+      (deviations.cwiseAbs2() + kAsOverM * kWalk).cwiseMin(kDeviations.cwiseAbs2());
+}
+
 OffsetState OffsetState::without_surfaces() const {
   OffsetState alone;
   alone.mean_ = mean_.head<kFixed>();

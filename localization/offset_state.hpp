@@ -37,6 +37,9 @@ class OffsetState {
   /// No surface is followed. What was learned of the wheels and the mount is kept.
   void start(const RefinedPose& at);
 
+  /// What an earlier run has learned of wheels and mount; both may have changed since, as over a kilometre.
+  void restore(const DriveCalibration& learned);
+
   /// Pose, mount and wheels alone.
   [[nodiscard]] OffsetState without_surfaces() const;
 

@@ -51,6 +51,8 @@ class SurfaceTrack {
   /// No scan has come for long: along with the wheels.
   void carry(const ScanInstant& now);
 
+  /// Before the first scan: what an earlier run has learned.
+  void restore(const DriveCalibration& learned) { filter_.restore(learned); }
   [[nodiscard]] DriveCalibration calibration() const { return filter_.calibration(); }
   /// It leads, and surfaces that stand where the map has them fix the pose.
   [[nodiscard]] bool is_held() const;

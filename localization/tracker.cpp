@@ -46,6 +46,10 @@ std::optional<DriveCalibration> Tracker::calibration() const {
   return surfaces_ ? std::optional{surfaces_->calibration()} : std::nullopt;
 }
 
+void Tracker::restore(const DriveCalibration& learned) {
+  if (surfaces_) surfaces_->restore(learned);
+}
+
 PoseCovariance Tracker::unknown_mount(double heading_rad) const {
   if (!surfaces_ || surfaces_->leads()) return PoseCovariance::Zero();
   const Pose2 deviations = surfaces_->calibration().mount_deviations;

@@ -79,6 +79,8 @@ class Tracker {
 
   /// Nothing where surfaces are not followed. A scan's mount is to be corrected by it before the scan is seen.
   [[nodiscard]] std::optional<DriveCalibration> calibration() const;
+  /// Before the first scan: what an earlier run has learned.
+  void restore(const DriveCalibration& learned);
   /// What the particles cannot know of the pose, because the laser's mount is not known better; nothing while the
   /// surfaces lead, who count it in.
   [[nodiscard]] PoseCovariance unknown_mount(double heading_rad) const;

@@ -102,6 +102,29 @@ TEST(OffsetState, StaysSoundHoweverFarTheRobotDrives) {
   EXPECT_NEAR(state.calibration().wheels.distance, 0.01, 0.003);
 }
 
+TEST(OffsetState, GoesOnFromWhatAnEarlierRunHasLearnedAndIsALittleLessSure) {
+  const DriveCalibration learned = after_metres(200.0).calibration();
+  const auto read = calibration_of(numbers_of(learned));
+  ASSERT_TRUE(read);
+  OffsetState state;
+  state.restore(*read);
+  state.start(at_rest(0.0, 0.0, 0.0));
+  EXPECT_EQ(state.calibration().wheels.turn, learned.wheels.turn);
+  EXPECT_EQ(state.calibration().mount_error, learned.mount_error);
+  EXPECT_GT(state.calibration().wheel_deviations.turn, learned.wheel_deviations.turn);
+  EXPECT_LT(state.calibration().wheel_deviations.turn, 0.02);
+  EXPECT_TRUE(state.is_sound());
+}
+
+TEST(DriveCalibration, OfTooFewNumbersOrOfNoneIsRefused) {
+  std::array<double, 14> numbers = numbers_of(after_metres(10.0).calibration());
+  EXPECT_FALSE(calibration_of(std::span(numbers).first(13)));
+  numbers[12] = -0.001;  // a deviation
+  EXPECT_FALSE(calibration_of(numbers));
+  numbers[12] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(calibration_of(numbers));
+}
+
 TEST(OffsetState, TakesNoPoseThatIsFarFromWhereItIsExpected) {
   OffsetState state;
   state.start(at_rest(0.0, 0.0, 0.0));
