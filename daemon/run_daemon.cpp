@@ -16,9 +16,9 @@
 #include <system_error>
 
 #include "core/file_lock.hpp"
-#include "core/grid_file.hpp"
 #include "daemon/check_config.hpp"
 #include "daemon/control/server.hpp"
+#include "daemon/first_map.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/kept_stability.hpp"
 #include "daemon/output_place.hpp"
@@ -144,10 +144,12 @@ void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
   }
 }
 
-OccupancyGrid first_map(const Settings& settings, const CommandLine& line) {
+OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Console& console) {
   if (settings.map.file.empty()) throw StartError(line.config + ": 'map.file' names no map");
   try {
-    return read_grid(settings.map.file);
+    FirstMap map = read_first_map(settings.map.file, memory_limit());
+    for (const std::string& warning : map.warnings) console.log(spdlog::level::warn, warning);
+    return std::move(map.grid);
   } catch (const std::runtime_error& error) {
     throw StartError(error.what());
   }
@@ -219,7 +221,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
     require_plain_file(line.config);
     return read_settings(line.config, line.overrides);
   });
-  const OccupancyGrid first = first_map(settings, line);
+  const OccupancyGrid first = first_map(settings, line, console);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);
   options.start.map = std::make_shared<const OccupancyGrid>(first);
