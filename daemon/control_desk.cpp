@@ -40,6 +40,10 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return command(Command::Kind::kResume, request, std::move(reply));
     case Request::Kind::kSave:
       return command(Command::Kind::kSave, request, std::move(reply));
+    case Request::Kind::kUndo:
+      return command(Command::Kind::kUndo, request, std::move(reply));
+    case Request::Kind::kRollBack:
+      return command(Command::Kind::kRollBack, request, std::move(reply));
     case Request::Kind::kReload:
       return reply(reloaded());
     case Request::Kind::kRelocalize:
@@ -67,7 +71,7 @@ std::string ControlDesk::reloaded() const {
 
 void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
   const std::uint64_t ticket = next_ticket_++;
-  if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, ticket})) {
+  if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, request.revision, ticket})) {
     return reply(error_line("too many commands wait already"));
   }
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});

@@ -50,6 +50,7 @@ void Recorder::run() {
     bool found = drain(from_io_);
     found = drain(from_localization_) || found;
     found = drain(from_awareness_) || found;
+    found = drain(from_map_) || found;
     if (closed && !found) break;
     if (const auto now = std::chrono::steady_clock::now(); now - last_flush >= kFlushPeriod) {
       flush();

@@ -72,6 +72,7 @@ class Recorder {
   RecorderInput& from_io() { return from_io_; }
   RecorderInput& from_localization() { return from_localization_; }
   RecorderInput& from_awareness() { return from_awareness_; }
+  RecorderInput& from_map() { return from_map_; }
 
   /// The recorder thread's work, until close().
   void run();
@@ -79,7 +80,7 @@ class Recorder {
   void close();
 
   [[nodiscard]] std::uint64_t refused() const {
-    return from_io_.refused() + from_localization_.refused() + from_awareness_.refused();
+    return from_io_.refused() + from_localization_.refused() + from_awareness_.refused() + from_map_.refused();
   }
 
  private:
@@ -103,6 +104,7 @@ class Recorder {
   RecorderInput from_io_{4096, bell_};            // full: bytes are missing from the recording
   RecorderInput from_localization_{2048, bell_};  // full: lines and decisions are missing
   RecorderInput from_awareness_{256, bell_};      // full: decisions are missing
+  RecorderInput from_map_{256, bell_};            // full: an operator's cells are missing
 };
 
 }  // namespace deltamap::daemon

@@ -29,6 +29,8 @@ class RetryingOutput {
   /// Something was thrown away while it did not work.
   void count_lost(std::uint64_t count = 1);
 
+  /// Empty where it works.
+  [[nodiscard]] const std::string& why() const { return status_.why; }
   [[nodiscard]] bool works() const { return status_.written; }
   [[nodiscard]] std::uint64_t lost() const { return status_.lost; }
 

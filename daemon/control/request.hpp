@@ -23,10 +23,13 @@ struct Request {
     kSave,        ///< map and pose on disk, now
     kReload,      ///< the settings file again: what can change is taken
     kRelocalize,  ///< the robot stands at map_from_robot
+    kUndo,        ///< Δ `revision` alone is taken back
+    kRollBack,    ///< the map is M_`revision` again
     kDriveOff,
     kDriveWander
   } kind = Kind::kStatus;
-  Pose2 map_from_robot;  ///< kRelocalize
+  Pose2 map_from_robot{};                ///< kRelocalize
+  std::uint32_t revision = 0;            ///< kUndo, kRollBack
   friend bool operator==(const Request&, const Request&) = default;
 };
 

@@ -5,6 +5,8 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "daemon/control/client.hpp"
 #include "daemon/control/request.hpp"
@@ -18,10 +20,12 @@ using control::Request;
 using Kind = Request::Kind;
 using Json = nlohmann::ordered_json;
 
+
 struct CtlOptions {
   std::string socket = "/run/deltamap/ctl.sock";
   std::string pose;
   std::string mode;
+  std::uint32_t revision = 0;
   bool as_json = false;
 };
 
@@ -56,6 +60,17 @@ void add_plain(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options, const 
   ctl.add_subcommand(name, meaning)->callback([options, kind] { ask(*options, Request{kind, {}}); });
 }
 
+void add_map_order(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options, const char* name, Kind kind,
+                   const char* meaning) {
+  CLI::App& order = *ctl.add_subcommand(name, meaning);
+  order.add_option("K", options->revision, "number of the revision (deltamap map history STORE list)")->required();
+  order.callback([options, kind] {
+    Request request{kind, {}};
+    request.revision = options->revision;
+    ask(*options, request);
+  });
+}
+
 }  // namespace
 
 void add_ctl(CLI::App& app) {
@@ -68,6 +83,8 @@ void add_ctl(CLI::App& app) {
   add_plain(ctl, options, "resume", Kind::kResume, "the map follows the world again");
   add_plain(ctl, options, "save", Kind::kSave, "write map and pose now");
   add_plain(ctl, options, "reload", Kind::kReload, "read the settings file again: take what can change, name the rest");
+  add_map_order(ctl, options, "undo", Kind::kUndo, "take revision K back and keep what came later");
+  add_map_order(ctl, options, "rollback", Kind::kRollBack, "make the map what revision K was; nothing is lost");
   CLI::App& relocalize = *ctl.add_subcommand("relocalize", "say where the robot is");
   relocalize.add_option("pose", options->pose, "X,Y,DEG of the robot in the map, good to 0.2 m and 10 degrees")
       ->required();

@@ -22,6 +22,14 @@ TEST(Request, EveryRequestSurvivesTheSocket) {
   EXPECT_DOUBLE_EQ(answer.request->map_from_robot.x, -1.25);
   EXPECT_DOUBLE_EQ(answer.request->map_from_robot.y, 2.5);
   EXPECT_NEAR(answer.request->map_from_robot.theta, radians(-90.0), 1e-12);
+  for (const Kind kind : {Kind::kUndo, Kind::kRollBack}) {
+    for (const std::uint32_t revision : {0u, 7u, 4294967295u}) {
+      const Request order{.kind = kind, .revision = revision};
+      const auto back = request_of_line(line_of(order));
+      ASSERT_TRUE(back.request) << line_of(order) << back.refused;
+      EXPECT_EQ(*back.request, order);
+    }
+  }
 }
 
 TEST(Request, WhatIsWrongIsSaidInOneLine) {
@@ -42,6 +50,11 @@ TEST(Request, WhatIsWrongIsSaidInOneLine) {
                            R"({"command":"relocalize","x_m":1e300,"y_m":2,"heading_deg":3})"}) {
     EXPECT_EQ(refusal(pose), "'relocalize' needs the numbers x_m, y_m and heading_deg") << pose;
   }
+  for (const char* revision :
+       {R"({"command":"undo"})", R"({"command":"undo","revision":-1})", R"({"command":"undo","revision":"7"})",
+        R"({"command":"undo","revision":1.5})", R"({"command":"undo","revision":4294967296})"}) {
+    EXPECT_EQ(refusal(revision), "'undo' needs the number of a revision: 0, 1, 2 …") << revision;
+  }
   EXPECT_EQ(refusal(R"({"command":"drive"})"), "'drive' needs the mode off or wander");
   EXPECT_EQ(refusal(R"({"command":"drive","mode":"patrol"})"), "'drive' needs the mode off or wander");
 }
@@ -55,6 +68,7 @@ TEST(Request, ARepliedTextIsOneLineOfJsonWhateverItHolds) {
 TEST(Request, IsLoggedAsAPersonWouldTypeIt) {
   EXPECT_EQ(words_of({Kind::kRelocalize, {1.0, -2.0, radians(90.0)}}), "relocalize 1.00,-2.00,90");
   EXPECT_EQ(words_of({Kind::kDriveOff, {}}), "drive off");
+  EXPECT_EQ(words_of({.kind = Kind::kRollBack, .revision = 3}), "rollback 3");
   EXPECT_EQ(words_of({Kind::kSave, {}}), "save");
 }
 
