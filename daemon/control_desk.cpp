@@ -10,6 +10,12 @@ using control::done_line;
 using control::error_line;
 using control::Request;
 
+namespace {
+
+constexpr double kPatience_s = 1.0;  // longer than the localization thread takes to notice that no scan comes
+
+}  // namespace
+
 ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
     : settings_{settings},
       wiring_{std::move(wiring)},
@@ -17,7 +23,8 @@ ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
       server_{{.socket = settings.control.socket,
                .handle = [this](const std::string& line, bool sender_is_gone,
                                 control::Server::Reply reply) { answer(line, sender_is_gone, std::move(reply)); },
-               .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it")}} {}
+               .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it"),
+               .patience_s = kPatience_s}} {}
 
 void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply) {
   const control::RequestAnswer answer = control::request_of_line(line);

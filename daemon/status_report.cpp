@@ -137,6 +137,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["battery_v"] = t.battery_v.value();
   json["latency_ms"] = t.latency_s.value() * 1e3;
   json["since_start_s"] = since_start_s;
+  json["line"] = status_line(t);
   json["recording"] = recording_json(t, settings);
   json["outputs"] = outputs_json(t);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
