@@ -53,6 +53,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return command(Command::Kind::kRollBack, request, std::move(reply));
     case Request::Kind::kReload:
       return reply(reloaded());
+    case Request::Kind::kLogLevel:
+      return reply(with_log_level(request.log_level));
     case Request::Kind::kRelocalize:
       if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position())))
         return reply(error_line("that pose lies outside the map"));
@@ -74,6 +76,11 @@ std::string ControlDesk::reloaded() const {
   std::string text;
   for (const std::string& line : outcome.lines) text += (text.empty() ? "" : "\n") + line;
   return outcome.done ? done_line(text) : error_line(text);
+}
+
+std::string ControlDesk::with_log_level(LogLevel level) const {
+  if (!wiring_.set_log_level(level)) return error_line("the log of this run has no levels");
+  return done_line("the log shows " + std::string(name_of(level)) + " and above until the next start");
 }
 
 void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {

@@ -99,6 +99,7 @@ struct Pipeline::State {
     if (control) control->tell(outcome);
   }
   LiveSettings::Outcome reload();
+  bool set_log_level(LogLevel level);
   void look_for_changes(const TrackedScan& tracked);
   void hand_over(MapWork work);
   void offer_waiting_sets();
@@ -126,7 +127,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
            .telemetry = telemetry,
            .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
            .log = options.log,
-           .reload = [this] { return reload(); }},
+           .reload = [this] { return reload(); },
+           .set_log_level = [this](LogLevel level) { return set_log_level(level); }},
           options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, options.log, options.warn)},
       recorder{{.recording = settings.recording.file,
@@ -182,6 +184,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                },
            .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       store_scan{settings.mapping.store_scan, settings.seed} {
+  telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
   telemetry.newest_revision.set(options.start.revision);
   telemetry.estimate.revision.set(options.start.revision);
   wall_began_s = seconds(drivers::port::port_clock_now().time_since_epoch());
@@ -285,6 +288,13 @@ LiveSettings::Outcome Pipeline::State::reload() {
   });
   for (const std::string& line : outcome.lines) (outcome.done ? options.log : options.warn)("reload: " + line);
   return outcome;
+}
+
+bool Pipeline::State::set_log_level(LogLevel level) {
+  if (!options.set_log_level) return false;
+  options.set_log_level(level);
+  telemetry.log_level.set(static_cast<std::uint8_t>(level));
+  return true;
 }
 
 LiveSettings::Outcome Pipeline::reload() { return state_->reload(); }

@@ -54,6 +54,16 @@ RequestAnswer map_order_in(const Json& json, Kind kind, const std::string& name)
   return {request, ""};
 }
 
+RequestAnswer log_level_in(const Json& json) {
+  const auto level = json.find("level");
+  const auto known =
+      level != json.end() && level->is_string() ? log_level_of(level->get_ref<const std::string&>()) : std::nullopt;
+  if (!known) return {std::nullopt, "'log-level' needs the level trace, debug, info, warn or error"};
+  Request request{Kind::kLogLevel, {}};
+  request.log_level = *known;
+  return {request, ""};
+}
+
 RequestAnswer drive_in(const Json& json) {
   const auto mode = json.find("mode");
   if (mode != json.end() && *mode == "off") return {Request{Kind::kDriveOff, {}}, ""};
@@ -68,6 +78,7 @@ std::string_view name_of(Kind kind) {
   for (const auto& [name, order] : kMapOrders) {
     if (order == kind) return name;
   }
+  if (kind == Kind::kLogLevel) return "log-level";
   return kind == Kind::kRelocalize ? "relocalize" : "drive";
 }
 
@@ -86,6 +97,7 @@ RequestAnswer request_of_line(std::string_view line) {
     if (name == order) return map_order_in(json, kind, name);
   }
   if (name == "relocalize") return relocalization_in(json);
+  if (name == "log-level") return log_level_in(json);
   if (name == "drive") return drive_in(json);
   return {std::nullopt, "unknown command '" + name + "'"};
 }
@@ -99,6 +111,7 @@ std::string line_of(const Request& request) {
     json["heading_deg"] = degrees(request.map_from_robot.theta);
   }
   if (is_map_order(request.kind)) json["revision"] = request.revision;
+  if (request.kind == Kind::kLogLevel) json["level"] = name_of(request.log_level);
   if (request.kind == Kind::kDriveOff) json["mode"] = "off";
   if (request.kind == Kind::kDriveWander) json["mode"] = "wander";
   return json.dump();
@@ -121,6 +134,7 @@ std::string error_line(std::string_view error) {
 std::string words_of(const Request& request) {
   if (request.kind == Kind::kDriveOff) return "drive off";
   if (request.kind == Kind::kDriveWander) return "drive wander";
+  if (request.kind == Kind::kLogLevel) return "log-level " + std::string(name_of(request.log_level));
   if (is_map_order(request.kind)) return std::string(name_of(request.kind)) + " " + std::to_string(request.revision);
   if (request.kind != Kind::kRelocalize) return std::string(name_of(request.kind));
   const Pose2& pose = request.map_from_robot;

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/pose2.hpp"
+#include "daemon/log_level.hpp"
 
 namespace deltamap::daemon::control {
 
@@ -25,11 +26,13 @@ struct Request {
     kRelocalize,  ///< the robot stands at map_from_robot
     kUndo,        ///< Δ `revision` alone is taken back
     kRollBack,    ///< the map is M_`revision` again
+    kLogLevel,    ///< the log shows `log_level` and above
     kDriveOff,
     kDriveWander
   } kind = Kind::kStatus;
   Pose2 map_from_robot{};                ///< kRelocalize
   std::uint32_t revision = 0;            ///< kUndo, kRollBack
+  LogLevel log_level = LogLevel::kInfo;  ///< kLogLevel
   friend bool operator==(const Request&, const Request&) = default;
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "daemon/control/request.hpp"
+#include "daemon/log_level.hpp"
 #include "daemon/tool/daemon_reply.hpp"
 #include "daemon/tool/status_table.hpp"
 #include "daemon/tool/status_watch.hpp"
@@ -29,6 +30,7 @@ struct CtlOptions {
   std::string pose;
   std::string mode;
   std::string watch;  // seconds; empty: one
+  std::string level;
   std::uint32_t revision = 0;
   bool as_json = false;
 };
@@ -90,6 +92,19 @@ void add_status(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
   });
 }
 
+void add_log_level(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
+  CLI::App& log_level = *ctl.add_subcommand("log-level", "what goes into the log from now on, until the next start");
+  const std::vector<std::string> names(kLogLevelNames.begin(), kLogLevelNames.end());
+  log_level.add_option("level", options->level, "trace, debug, info, warn or error")
+      ->required()
+      ->check(CLI::IsMember(names));
+  log_level.callback([options] {
+    Request request{Kind::kLogLevel, {}};
+    request.log_level = log_level_of(options->level).value();
+    ask(*options, request);
+  });
+}
+
 void add_map_order(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options, const char* name, Kind kind,
                    const char* meaning) {
   CLI::App& order = *ctl.add_subcommand(name, meaning);
@@ -115,6 +130,7 @@ void add_ctl(CLI::App& app) {
   add_plain(ctl, options, "reload", Kind::kReload, "read the settings file again: take what can change, name the rest");
   add_map_order(ctl, options, "undo", Kind::kUndo, "take revision K back and keep what came later");
   add_map_order(ctl, options, "rollback", Kind::kRollBack, "make the map what revision K was; nothing is lost");
+  add_log_level(ctl, options);
   CLI::App& relocalize = *ctl.add_subcommand("relocalize", "say where the robot is");
   relocalize.add_option("pose", options->pose, "X,Y,DEG of the robot in the map, good to 0.2 m and 10 degrees")
       ->required();

@@ -22,6 +22,12 @@ TEST(Request, EveryRequestSurvivesTheSocket) {
   EXPECT_DOUBLE_EQ(answer.request->map_from_robot.x, -1.25);
   EXPECT_DOUBLE_EQ(answer.request->map_from_robot.y, 2.5);
   EXPECT_NEAR(answer.request->map_from_robot.theta, radians(-90.0), 1e-12);
+  for (std::size_t i = 0; i < kLogLevelNames.size(); ++i) {
+    const Request level{.kind = Kind::kLogLevel, .log_level = static_cast<LogLevel>(i)};
+    const auto back = request_of_line(line_of(level));
+    ASSERT_TRUE(back.request) << line_of(level) << back.refused;
+    EXPECT_EQ(*back.request, level);
+  }
   for (const Kind kind : {Kind::kUndo, Kind::kRollBack}) {
     for (const std::uint32_t revision : {0u, 7u, 4294967295u}) {
       const Request order{.kind = kind, .revision = revision};
@@ -54,6 +60,10 @@ TEST(Request, WhatIsWrongIsSaidInOneLine) {
        {R"({"command":"undo"})", R"({"command":"undo","revision":-1})", R"({"command":"undo","revision":"7"})",
         R"({"command":"undo","revision":1.5})", R"({"command":"undo","revision":4294967296})"}) {
     EXPECT_EQ(refusal(revision), "'undo' needs the number of a revision: 0, 1, 2 …") << revision;
+  }
+  for (const char* level : {R"({"command":"log-level"})", R"({"command":"log-level","level":"off"})",
+                            R"({"command":"log-level","level":2})", R"({"command":"log-level","level":"INFO"})"}) {
+    EXPECT_EQ(refusal(level), "'log-level' needs the level trace, debug, info, warn or error") << level;
   }
   EXPECT_EQ(refusal(R"({"command":"drive"})"), "'drive' needs the mode off or wander");
   EXPECT_EQ(refusal(R"({"command":"drive","mode":"patrol"})"), "'drive' needs the mode off or wander");
