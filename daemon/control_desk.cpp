@@ -53,6 +53,10 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return command(Command::Kind::kRollBack, request, std::move(reply));
     case Request::Kind::kReload:
       return reply(reloaded());
+    case Request::Kind::kRecordStart:
+      return record(true, request, std::move(reply));
+    case Request::Kind::kRecordStop:
+      return record(false, request, std::move(reply));
     case Request::Kind::kLogLevel:
       return reply(with_log_level(request.log_level));
     case Request::Kind::kRelocalize:
@@ -69,6 +73,12 @@ void ControlDesk::drive(bool may_drive, const Request& request, control::Server:
   const std::uint64_t ticket = next_ticket_++;
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
   wiring_.let_drive(may_drive, ticket);
+}
+
+void ControlDesk::record(bool goes_on, const Request& request, control::Server::Reply reply) {
+  const std::uint64_t ticket = next_ticket_++;
+  if (!wiring_.record(goes_on, ticket)) return reply(error_line("the disk is too slow: try again"));
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
 }
 
 std::string ControlDesk::reloaded() const {

@@ -128,6 +128,10 @@ Pipeline::State::State(const Settings& given, Options wanted)
            .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
            .log = options.log,
            .reload = [this] { return reload(); },
+           .record =
+               [this](bool goes_on, std::uint64_t ticket) {
+                 return recorder.from_control().send(RecordOrder{goes_on, ticket});
+               },
            .set_log_level = [this](LogLevel level) { return set_log_level(level); }},
           options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, options.log, options.warn)},

@@ -54,6 +54,13 @@ RequestAnswer map_order_in(const Json& json, Kind kind, const std::string& name)
   return {request, ""};
 }
 
+RequestAnswer record_in(const Json& json) {
+  const auto mode = json.find("mode");
+  if (mode != json.end() && *mode == "start") return {Request{Kind::kRecordStart, {}}, ""};
+  if (mode != json.end() && *mode == "stop") return {Request{Kind::kRecordStop, {}}, ""};
+  return {std::nullopt, "'record' needs the mode start or stop"};
+}
+
 RequestAnswer log_level_in(const Json& json) {
   const auto level = json.find("level");
   const auto known =
@@ -79,6 +86,7 @@ std::string_view name_of(Kind kind) {
     if (order == kind) return name;
   }
   if (kind == Kind::kLogLevel) return "log-level";
+  if (kind == Kind::kRecordStart || kind == Kind::kRecordStop) return "record";
   return kind == Kind::kRelocalize ? "relocalize" : "drive";
 }
 
@@ -97,6 +105,7 @@ RequestAnswer request_of_line(std::string_view line) {
     if (name == order) return map_order_in(json, kind, name);
   }
   if (name == "relocalize") return relocalization_in(json);
+  if (name == "record") return record_in(json);
   if (name == "log-level") return log_level_in(json);
   if (name == "drive") return drive_in(json);
   return {std::nullopt, "unknown command '" + name + "'"};
@@ -112,6 +121,8 @@ std::string line_of(const Request& request) {
   }
   if (is_map_order(request.kind)) json["revision"] = request.revision;
   if (request.kind == Kind::kLogLevel) json["level"] = name_of(request.log_level);
+  if (request.kind == Kind::kRecordStart) json["mode"] = "start";
+  if (request.kind == Kind::kRecordStop) json["mode"] = "stop";
   if (request.kind == Kind::kDriveOff) json["mode"] = "off";
   if (request.kind == Kind::kDriveWander) json["mode"] = "wander";
   return json.dump();
@@ -132,6 +143,8 @@ std::string error_line(std::string_view error) {
 }
 
 std::string words_of(const Request& request) {
+  if (request.kind == Kind::kRecordStart) return "record start";
+  if (request.kind == Kind::kRecordStop) return "record stop";
   if (request.kind == Kind::kDriveOff) return "drive off";
   if (request.kind == Kind::kDriveWander) return "drive wander";
   if (request.kind == Kind::kLogLevel) return "log-level " + std::string(name_of(request.log_level));

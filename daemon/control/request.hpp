@@ -19,14 +19,16 @@ inline constexpr std::size_t kLongestLine = 4096;  ///< bytes of a request with 
 struct Request {
   enum class Kind : std::uint8_t {
     kStatus,
-    kPause,       ///< the map stays as it is; the localizer goes on
-    kResume,      ///< the map follows the world again
-    kSave,        ///< map and pose on disk, now
-    kReload,      ///< the settings file again: what can change is taken
-    kRelocalize,  ///< the robot stands at map_from_robot
-    kUndo,        ///< Δ `revision` alone is taken back
-    kRollBack,    ///< the map is M_`revision` again
-    kLogLevel,    ///< the log shows `log_level` and above
+    kPause,        ///< the map stays as it is; the localizer goes on
+    kResume,       ///< the map follows the world again
+    kSave,         ///< map and pose on disk, now
+    kReload,       ///< the settings file again: what can change is taken
+    kRelocalize,   ///< the robot stands at map_from_robot
+    kUndo,         ///< Δ `revision` alone is taken back
+    kRollBack,     ///< the map is M_`revision` again
+    kRecordStart,  ///< a recording that was stopped goes on
+    kRecordStop,   ///< the recording stops; the daemon goes on
+    kLogLevel,     ///< the log shows `log_level` and above
     kDriveOff,
     kDriveWander
   } kind = Kind::kStatus;

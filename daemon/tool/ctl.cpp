@@ -131,6 +131,11 @@ void add_ctl(CLI::App& app) {
   add_map_order(ctl, options, "undo", Kind::kUndo, "take revision K back and keep what came later");
   add_map_order(ctl, options, "rollback", Kind::kRollBack, "make the map what revision K was; nothing is lost");
   add_log_level(ctl, options);
+  CLI::App& record = *ctl.add_subcommand("record", "stop the recording of this run, or let it go on behind a gap");
+  record.add_option("mode", options->mode, "start or stop")->required()->check(CLI::IsMember({"start", "stop"}));
+  record.callback([options] {
+    ask(*options, Request{options->mode == "start" ? Kind::kRecordStart : Kind::kRecordStop, {}});
+  });
   CLI::App& relocalize = *ctl.add_subcommand("relocalize", "say where the robot is");
   relocalize.add_option("pose", options->pose, "X,Y,DEG of the robot in the map, good to 0.2 m and 10 degrees")
       ->required();

@@ -9,8 +9,8 @@ namespace {
 using Kind = Request::Kind;
 
 TEST(Request, EveryRequestSurvivesTheSocket) {
-  for (const Kind kind :
-       {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kReload, Kind::kDriveOff, Kind::kDriveWander}) {
+  for (const Kind kind : {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kReload, Kind::kRecordStart,
+                          Kind::kRecordStop, Kind::kDriveOff, Kind::kDriveWander}) {
     const Request request{kind, {}};
     const RequestAnswer answer = request_of_line(line_of(request));
     ASSERT_TRUE(answer.request) << line_of(request) << answer.refused;
@@ -65,6 +65,8 @@ TEST(Request, WhatIsWrongIsSaidInOneLine) {
                             R"({"command":"log-level","level":2})", R"({"command":"log-level","level":"INFO"})"}) {
     EXPECT_EQ(refusal(level), "'log-level' needs the level trace, debug, info, warn or error") << level;
   }
+  EXPECT_EQ(refusal(R"({"command":"record"})"), "'record' needs the mode start or stop");
+  EXPECT_EQ(refusal(R"({"command":"record","mode":1})"), "'record' needs the mode start or stop");
   EXPECT_EQ(refusal(R"({"command":"drive"})"), "'drive' needs the mode off or wander");
   EXPECT_EQ(refusal(R"({"command":"drive","mode":"patrol"})"), "'drive' needs the mode off or wander");
 }
