@@ -14,16 +14,20 @@
 #include <span>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
+#include <vector>
 
+#include "core/grid_file_facts.hpp"
 #include "core/replace_file.hpp"
 #include "core/shortest_text.hpp"
+#include "core/tiled.hpp"
 
 namespace deltamap {
 namespace {
 
 constexpr double kFinest_m = 0.001;  // sides of a cell
 constexpr double kCoarsest_m = 100.0;
-constexpr int kTogether = 64;    // pixels
+constexpr int kTogether = Tiled<CellState>::kSide;  // pixels
 constexpr int kMaxSide = 32767;  // cells; 16-bit indices suffice everywhere
 
 struct MapKeys {
@@ -173,8 +177,10 @@ CellState state_of(double darkness, const MapKeys& keys) {
   return darkness < keys.free_threshold ? CellState::kFree : CellState::kUnknown;
 }
 
-std::array<CellState, 256> cell_states(int brightest, const MapKeys& keys) {
-  std::array<CellState, 256> states{};
+using CellStates = std::array<CellState, 256>;
+
+CellStates cell_states(int brightest, const MapKeys& keys) {
+  CellStates states{};
   for (int shade = 0; shade < 256; ++shade) {
     const double light = static_cast<double>(std::min(shade, brightest)) / brightest;
     states[static_cast<std::size_t>(shade)] = state_of(keys.negate ? light : 1.0 - light, keys);
@@ -185,6 +191,51 @@ std::array<CellState, 256> cell_states(int brightest, const MapKeys& keys) {
 bool is_of_one_shade(std::string_view pixels) {
   return std::memcmp(pixels.data(), pixels.data() + 1, pixels.size() - 1) == 0;
 }
+
+/// Both files of a map, read from the beginning.
+class MapFiles {
+ public:
+  explicit MapFiles(const std::filesystem::path& yaml_file)
+      : keys_{parse_keys(yaml_file)},
+        image_{yaml_file.parent_path() / keys_.image},  // an absolute image path stands for itself
+        pgm_{image_} {
+    const int width = pgm_.next_number(kMaxSide);
+    const int height = pgm_.next_number(kMaxSide);
+    brightest_ = pgm_.next_number(255);
+    pgm_.begin_pixels(width, height);
+    geometry_ = {width, height, keys_.resolution_m, keys_.origin};
+  }
+  MapFiles(const MapFiles&) = delete;
+  MapFiles& operator=(const MapFiles&) = delete;
+
+  [[nodiscard]] const MapKeys& keys() const { return keys_; }
+  [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }
+  [[nodiscard]] CellStates states() const { return cell_states(brightest_, keys_); }
+
+  /// Once: `visit(Cell first, std::string_view shades)` for the pieces of rows in which something is known, from the
+  /// top. A piece lies in one column of tiles.
+  template <typename Visit>
+  void visit_shown(Visit&& visit) {
+    const CellStates states = this->states();
+    std::string shades(static_cast<std::size_t>(geometry_.width), '\0');
+    for (int row = geometry_.height - 1; row >= 0; --row) {
+      pgm_.read_row(shades);
+      for (int column = 0; column < geometry_.width; column += kTogether) {
+        const std::string_view piece = std::string_view{shades}.substr(static_cast<std::size_t>(column), kTogether);
+        const CellState first = states[static_cast<unsigned char>(piece.front())];
+        if (first == CellState::kUnknown && is_of_one_shade(piece)) continue;  // most of a large map
+        visit({column, row}, piece);
+      }
+    }
+  }
+
+ private:
+  MapKeys keys_;
+  std::filesystem::path image_;
+  PgmReader pgm_;
+  int brightest_ = 255;
+  GridGeometry geometry_;
+};
 
 char shade_of(CellState state) {
   switch (state) {
@@ -246,28 +297,32 @@ bool is_carmen_map(const std::filesystem::path& file, std::string_view first_byt
 }
 
 OccupancyGrid read_grid(const std::filesystem::path& yaml_file) {
-  const MapKeys keys = parse_keys(yaml_file);
-  const std::filesystem::path image = yaml_file.parent_path() / keys.image;  // an absolute image path stands for itself
-  PgmReader pgm{image};
-  const int width = pgm.next_number(kMaxSide);
-  const int height = pgm.next_number(kMaxSide);
-  const int brightest = pgm.next_number(255);
-  pgm.begin_pixels(width, height);
-  const auto states = cell_states(brightest, keys);
-  const auto state_of = [&](char shade) { return states[static_cast<unsigned char>(shade)]; };
-  OccupancyGrid grid{{width, height, keys.resolution_m, keys.origin}};
-  std::string shades(static_cast<std::size_t>(width), '\0');
-  for (int row = height - 1; row >= 0; --row) {
-    pgm.read_row(shades);
-    for (int column = 0; column < width; column += kTogether) {
-      const std::string_view piece = std::string_view{shades}.substr(static_cast<std::size_t>(column), kTogether);
-      if (state_of(piece.front()) == CellState::kUnknown && is_of_one_shade(piece)) continue;  // most of a large map
-      for (int i = 0; i < static_cast<int>(piece.size()); ++i) {
-        grid.set({column + i, row}, state_of(piece[static_cast<std::size_t>(i)]));
-      }
+  MapFiles files{yaml_file};
+  const CellStates states = files.states();
+  OccupancyGrid grid{files.geometry()};
+  files.visit_shown([&](Cell first, std::string_view shades) {
+    for (int i = 0; i < static_cast<int>(shades.size()); ++i) {
+      grid.set({first.column + i, first.row}, states[static_cast<unsigned char>(shades[static_cast<std::size_t>(i)])]);
     }
-  }
+  });
   return grid;
+}
+
+GridFileFacts grid_file_facts(const std::filesystem::path& yaml_file) {
+  const MapFiles files{yaml_file};
+  return {files.geometry(), files.keys().occupied_threshold, files.keys().free_threshold};
+}
+
+std::uint64_t shown_cells(const std::filesystem::path& yaml_file) {
+  MapFiles files{yaml_file};
+  std::uint64_t tiles = 0;
+  std::vector<int> last_row((static_cast<std::size_t>(files.geometry().width) + kTogether - 1) / kTogether, -1);
+  files.visit_shown([&](Cell first, std::string_view) {
+    int& row = last_row[static_cast<std::size_t>(first.column / kTogether)];
+    const int of_tiles = first.row / kTogether;
+    if (std::exchange(row, of_tiles) != of_tiles) ++tiles;
+  });
+  return tiles * kTogether * kTogether;
 }
 
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file) {

@@ -21,6 +21,7 @@ Json as_json(const ChangeNote& change) {
   json["box_m"] = {change.box_low.x(), change.box_low.y(), change.box_high.x(), change.box_high.y()};
   json["acceptance"] = change.acceptance;
   json["reason"] = change.reason;
+  if (change.by_operator) json["operator"] = true;
   if (!change.withdraws.empty()) json["withdraws"] = change.withdraws;
   return json;
 }

@@ -24,9 +24,10 @@ struct ChangeNote {
   std::uint32_t forgotten = 0;            ///< cells that became unknown
   Point2 box_low{0.0, 0.0};               ///< bounding box of the changed cells in the map, m
   Point2 box_high{0.0, 0.0};
-  double acceptance = 0.0;               ///< Eq. 11
-  std::string reason;                    ///< of a refusal; "withdrawn" of a revision that takes others back; else empty
-  std::vector<std::uint32_t> withdraws;  ///< the revisions that this one takes back
+  double acceptance = 0.0;   ///< Eq. 11
+  std::string reason;        ///< of a refusal; of a revision "withdrawn", or what an operator has done; else empty
+  bool by_operator = false;  ///< an operator did it, and no localizer had a part in it
+  std::vector<std::uint32_t> withdraws;                ///< the revisions that this one takes back
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the phase ended
 };
 

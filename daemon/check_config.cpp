@@ -5,12 +5,13 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <utility>
 
-#include "core/grid_file.hpp"
 #include "core/scratch_folder.hpp"
 #include "daemon/control/client.hpp"
 #include "daemon/dashboard/access.hpp"
 #include "daemon/dashboard/server.hpp"
+#include "daemon/first_map.hpp"
 #include "daemon/kept_drive.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/output_place.hpp"
@@ -45,11 +46,12 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
                                        std::vector<Finding>& findings) {
   try {
     if (settings.map.file.empty()) throw std::runtime_error(config + ": 'map.file' names no map");
-    OccupancyGrid grid = read_grid(settings.map.file);
-    require_pose_on(grid.geometry(), settings);
+    FirstMap map = read_first_map(settings.map.file, memory_limit());
+    require_pose_on(map.grid.geometry(), settings);
     findings.push_back(
-        {Level::kOk, "map", settings.map.file + ": " + size_text(grid.geometry()) + ": " + cells_text(grid)});
-    return grid;
+        {Level::kOk, "map", settings.map.file + ": " + size_text(map.grid.geometry()) + ": " + cells_text(map.grid)});
+    for (std::string& warning : map.warnings) findings.push_back({Level::kWarning, "map", std::move(warning)});
+    return std::move(map.grid);
   } catch (const std::exception& error) {
     findings.push_back({Level::kError, "map", error.what()});
     return std::nullopt;

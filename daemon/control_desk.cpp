@@ -10,6 +10,12 @@ using control::done_line;
 using control::error_line;
 using control::Request;
 
+namespace {
+
+constexpr double kPatience_s = 1.0;  // longer than the localization thread takes to notice that no scan comes
+
+}  // namespace
+
 ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
     : settings_{settings},
       wiring_{std::move(wiring)},
@@ -17,7 +23,8 @@ ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
       server_{{.socket = settings.control.socket,
                .handle = [this](const std::string& line, bool sender_is_gone,
                                 control::Server::Reply reply) { answer(line, sender_is_gone, std::move(reply)); },
-               .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it")}} {}
+               .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it"),
+               .patience_s = kPatience_s}} {}
 
 void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply) {
   const control::RequestAnswer answer = control::request_of_line(line);
@@ -40,8 +47,18 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return command(Command::Kind::kResume, request, std::move(reply));
     case Request::Kind::kSave:
       return command(Command::Kind::kSave, request, std::move(reply));
+    case Request::Kind::kUndo:
+      return command(Command::Kind::kUndo, request, std::move(reply));
+    case Request::Kind::kRollBack:
+      return command(Command::Kind::kRollBack, request, std::move(reply));
     case Request::Kind::kReload:
       return reply(reloaded());
+    case Request::Kind::kRecordStart:
+      return record(true, request, std::move(reply));
+    case Request::Kind::kRecordStop:
+      return record(false, request, std::move(reply));
+    case Request::Kind::kLogLevel:
+      return reply(with_log_level(request.log_level));
     case Request::Kind::kRelocalize:
       if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position())))
         return reply(error_line("that pose lies outside the map"));
@@ -58,6 +75,12 @@ void ControlDesk::drive(bool may_drive, const Request& request, control::Server:
   wiring_.let_drive(may_drive, ticket);
 }
 
+void ControlDesk::record(bool goes_on, const Request& request, control::Server::Reply reply) {
+  const std::uint64_t ticket = next_ticket_++;
+  if (!wiring_.record(goes_on, ticket)) return reply(error_line("the disk is too slow: try again"));
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+}
+
 std::string ControlDesk::reloaded() const {
   const LiveSettings::Outcome outcome = wiring_.reload();
   std::string text;
@@ -65,9 +88,14 @@ std::string ControlDesk::reloaded() const {
   return outcome.done ? done_line(text) : error_line(text);
 }
 
+std::string ControlDesk::with_log_level(LogLevel level) const {
+  if (!wiring_.set_log_level(level)) return error_line("the log of this run has no levels");
+  return done_line("the log shows " + std::string(name_of(level)) + " and above until the next start");
+}
+
 void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
   const std::uint64_t ticket = next_ticket_++;
-  if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, ticket})) {
+  if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, request.revision, ticket})) {
     return reply(error_line("too many commands wait already"));
   }
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});

@@ -28,6 +28,8 @@ class ControlDesk {
     std::function<void(bool may_drive, std::uint64_t ticket)> let_drive;
     std::function<void(const std::string&)> log;
     std::function<LiveSettings::Outcome()> reload;
+    std::function<bool(bool goes_on, std::uint64_t ticket)> record;  ///< false: too busy
+    std::function<bool(LogLevel)> set_log_level;                     ///< false: this run's log has no levels
   };
   /// Listens from now on. Throws control::AlreadyServed, or std::runtime_error with one line that names the socket.
   ControlDesk(const Settings& settings, Wiring wiring);
@@ -45,7 +47,9 @@ class ControlDesk {
   };
   void answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply);
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
+  void record(bool goes_on, const control::Request& request, control::Server::Reply reply);
   [[nodiscard]] std::string reloaded() const;
+  [[nodiscard]] std::string with_log_level(LogLevel level) const;
   void command(Command::Kind kind, const control::Request& request, control::Server::Reply reply);
 
   Settings settings_;

@@ -98,6 +98,8 @@ std::string note_of(const Decision& decision) {
       return note_of_command("mapping resumed", decision);
     case Kind::kRelocalized:
       return note_of_command(words_of_relocalization(decision.map_from_robot), decision);
+    case Kind::kMapSet:
+      break;
   }
   return {};
 }
@@ -125,6 +127,12 @@ void Journal::read(std::string_view note) {
     return;
   }
   has_gap_ = has_gap_ || note == kGapNote;
+  if (auto set = set_cells_.read(note)) {
+    Decision command{.kind = Kind::kMapSet, .scan = set->order.scan};
+    command.scan_time = set->order.scan_time;
+    command.set = std::move(set);
+    return add_command(std::move(command));
+  }
   const auto decision = decision_of_note(note);
   if (!decision) return;
   switch (decision->kind) {
@@ -156,9 +164,18 @@ void Journal::read(std::string_view note) {
     case Kind::kResumed:
     case Kind::kRelocalized:
       // What was in force is said again behind a gap.
-      if (std::find(commands_.begin(), commands_.end(), *decision) == commands_.end()) commands_.push_back(*decision);
+      if (std::find(commands_.begin(), commands_.end(), *decision) == commands_.end()) add_command(*decision);
+      break;
+    case Kind::kMapSet:
       break;
   }
+}
+
+/// What the map thread has done is noted behind what the localization thread has noted in the meantime.
+void Journal::add_command(Decision command) {
+  const auto place = std::upper_bound(commands_.begin(), commands_.end(), command.scan,
+                                      [](std::uint32_t scan, const Decision& other) { return scan < other.scan; });
+  commands_.insert(place, std::move(command));
 }
 
 std::strong_ordering Journal::place_of(const Decision& command, const Scan& scan) const {

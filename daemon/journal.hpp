@@ -7,6 +7,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "core/messages.hpp"
 #include "core/pose2.hpp"
+#include "daemon/map_order.hpp"
 
 namespace deltamap::daemon {
 
@@ -38,17 +40,20 @@ struct Decision {
     kPhaseClosed,   ///< Δ-phase `number` ended at scan `scan`
     kPaused,        ///< by the operator: Δ-mapping does not see scan `scan` and those after it
     kResumed,       ///< by the operator: it sees scan `scan` again
-    kRelocalized    ///< by the operator: to `map_from_robot` before scan `scan`
+    kRelocalized,   ///< by the operator: to `map_from_robot` before scan `scan`
+    kMapSet         ///< by the operator: the cells `set` before scan `scan`
   } kind = Kind::kRevision;
   std::uint32_t scan = 0;
   std::uint32_t number = 0;
   Pose2 map_from_robot{};
   /// Of an operator's command: Scan.time of `scan`. Nothing in recordings of older versions.
   std::optional<Timestamp> scan_time{};
+  std::shared_ptr<const SetCells> set{};  ///< of kMapSet; else null
   friend bool operator==(const Decision&, const Decision&) = default;
 };
 
 [[nodiscard]] std::string note_of(const RunIdentity& run);
+/// Of any kind but kMapSet, which takes several notes (map_order).
 [[nodiscard]] std::string note_of(const Decision& decision);
 [[nodiscard]] std::optional<RunIdentity> run_of_note(std::string_view note);
 [[nodiscard]] std::optional<Decision> decision_of_note(std::string_view note);
@@ -77,19 +82,22 @@ class Journal {
   /// The scan at which a Δ-phase ended in the recorded run.
   [[nodiscard]] std::optional<std::uint32_t> closing_scan(std::uint32_t phase) const;
   [[nodiscard]] std::size_t closed_phases() const { return closed_.size(); }
-  /// What the operator asked for, in the order in which it was done.
+  /// What the operator asked for, in the order of the scans before which it was done.
   [[nodiscard]] const std::vector<Decision>& commands() const { return commands_; }
   /// Whether a command was done before this scan (equal), before an earlier (less) or a later one (greater). Where
   /// records are missing a replay counts fewer scans than the run did: there the time of its scan places a command.
   [[nodiscard]] std::strong_ordering place_of(const Decision& command, const Scan& scan) const;
 
  private:
+  void add_command(Decision command);
+
   std::optional<RunIdentity> run_;
   bool has_gap_ = false;
   std::map<std::uint32_t, std::uint32_t> revisions_;  // scan → revision
   std::map<std::uint32_t, std::uint32_t> things_;     // scan → snapshot
   std::map<std::uint32_t, std::uint32_t> closed_;     // phase → scan
   std::vector<Decision> commands_;
+  SetCellsReader set_cells_;
   std::set<std::uint32_t> dropped_, lost_, lost_odometry_, lost_tracked_, lost_sets_;
 };
 

@@ -2,6 +2,8 @@
 #include "daemon/live_recording.hpp"
 
 #include <cerrno>
+#include <cstdio>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +16,8 @@ namespace {
 
 using drivers::port::ByteRecord;
 using drivers::port::PortId;
+
+constexpr const char* kFull = "it has reached recording.max_gigabytes";
 
 /// A service that has crashed is started again at once: the recording of the crash must outlive that. Answers why it
 /// cannot be kept now.
@@ -101,6 +105,7 @@ void LiveRecording::remember(const ByteRecord& record) {
 void LiveRecording::write(const ByteRecord& record, Timestamp now) {
   if (ended_) return;
   last_stamp_ = record.stamp;
+  if (stopped_) return remember(record);
   attempt(now, [&] {
     go_on();
     writer_->write(record);
@@ -108,16 +113,43 @@ void LiveRecording::write(const ByteRecord& record, Timestamp now) {
   remember(record);
   if (!output_.works()) return output_.count_lost();
   if (static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
-  const std::string why = "it has reached recording.max_gigabytes";
-  log_("the recording ends: " + why);
+  log_(std::string("the recording ends: ") + kFull);
   ended_ = true;
-  output_.end(now, why);
+  output_.end(now, kFull);
   writer_.reset();
   telemetry_.records.set(false);
 }
 
+std::string LiveRecording::stop(Timestamp now) {
+  if (ended_) throw std::runtime_error(std::string("the recording has ended: ") + kFull);
+  if (stopped_) throw std::runtime_error("the recording is stopped already");
+  flush(now);
+  const std::string behind = output_.works() ? "" : "; its end is missing: " + output_.why();
+  stopped_ = true;
+  output_.end(now, "stopped by an operator");
+  telemetry_.records.set(false);
+  const double megabytes = writer_ ? 1e-6 * static_cast<double>(writer_->size_bytes()) : 0.0;
+  char text[32];
+  (void)std::snprintf(text, sizeof text, "%.1f MB", megabytes);
+  return "the recording stops: " + options_.file.string() + ", " + text + behind;
+}
+
+std::string LiveRecording::start(Timestamp now) {
+  if (ended_) throw std::runtime_error(std::string("the recording has ended: ") + kFull);
+  if (!stopped_) throw std::runtime_error("it records already: " + options_.file.string());
+  stopped_ = false;
+  has_gap_ = true;
+  output_.begin_again();
+  flush(now);
+  const std::string where =
+      options_.file.string() +
+      ", behind a gap: a replay begins at the start of the run and does not repeat it bit for bit";
+  return output_.works() ? "the recording goes on in " + where
+                         : "the recording goes on as soon as it can (" + output_.why() + ") in " + where;
+}
+
 void LiveRecording::flush(Timestamp now) {
-  if (ended_) return;
+  if (ended_ || stopped_) return;
   attempt(now, [this] {
     go_on();
     writer_->flush();
@@ -126,6 +158,11 @@ void LiveRecording::flush(Timestamp now) {
 
 void LiveRecording::close(Timestamp now) {
   if (ended_) return;
+  if (stopped_) {
+    stopped_ = false;
+    has_gap_ = false;
+    output_.begin_again();
+  }
   output_.hurry();
   attempt(now, [this] {
     go_on();

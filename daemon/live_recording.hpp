@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The recording of the running daemon. Where the disk is full it pauses, and goes on behind the last whole block when
 // there is room again, with a note of the gap: what was sent in the meantime is lost, and a replay then knows that it
-// cannot reproduce the run.
+// cannot reproduce the run. An operator may stop it and start it again, with such a gap between.
 #pragma once
 
 #include <array>
@@ -32,6 +32,12 @@ class LiveRecording {
   void write(const drivers::port::ByteRecord& record, Timestamp now);
   /// Records never came here: the channel was full.
   void note_loss() { has_gap_ = true; }
+  /// An operator wants no more of it: what was recorded is handed to the disk, and what comes is left out. Answers what
+  /// there is; throws std::runtime_error with one line where it is not going on.
+  std::string stop(Timestamp now);
+  /// And wants more: it goes on in the same file, behind a gap. Throws std::runtime_error with one line where it is
+  /// going on, or has come to its end.
+  std::string start(Timestamp now);
   void flush(Timestamp now);
   /// Flushes, syncs to the disk and closes.
   void close(Timestamp now);
@@ -56,7 +62,8 @@ class LiveRecording {
   Timestamp last_stamp_;
   bool is_previous_kept_ = false;
   bool has_gap_ = false;
-  bool ended_ = false;
+  bool ended_ = false;    // full
+  bool stopped_ = false;  // by an operator
 };
 
 }  // namespace deltamap::daemon

@@ -157,6 +157,8 @@ void LocalizationStage::take_commands(const Scan& scan) {
       save(*command);
     } else if (command->kind == Command::Kind::kRelocalize) {
       relocalize(*command, scan);
+    } else if (command->kind == Command::Kind::kUndo || command->kind == Command::Kind::kRollBack) {
+      order_map(*command, scan);
     } else {
       pause(*command, scan);
     }
@@ -193,6 +195,20 @@ void LocalizationStage::answer_relocalize(std::uint32_t scan) {
   wiring_.answer({*relocalized_, true,
                   "the robot starts there with scan " + std::to_string(scan) + ": " + fit_words(step_.fit())});
   relocalized_.reset();
+}
+
+void LocalizationStage::order_map(const Command& command, const Scan& scan) {
+  if (!mapping_enabled_) {
+    return wiring_.answer({command.ticket, false, "'mapping.enabled' is false: nobody works on the map"});
+  }
+  MapOrder order;
+  order.kind = command.kind == Command::Kind::kUndo ? MapOrder::Kind::kUndo : MapOrder::Kind::kRollBack;
+  order.revision = command.revision;
+  order.scan = scan.number;
+  order.scan_time = scan.time;
+  order.ticket = command.ticket;
+  if (wiring_.tracked_scans.try_send(order)) return;
+  wiring_.answer({command.ticket, false, "not done: too many scans wait for Δ-mapping, try again"});
 }
 
 void LocalizationStage::pause(const Command& command, const Scan& scan) {

@@ -13,6 +13,7 @@
 #include "daemon/fit_watch.hpp"
 #include "daemon/latency_histogram.hpp"
 #include "daemon/localization_step.hpp"
+#include "daemon/map_order.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/stage.hpp"
@@ -30,7 +31,7 @@ class LocalizationStage {
     Channel<std::shared_ptr<const TemporaryThings>>& things;
     Channel<Command>& commands;
     Channel<navigation::WanderParams>& wander;  ///< of a reload: the newest is taken
-    Channel<TrackedScan>& tracked_scans;
+    Channel<DeltaWork>& tracked_scans;          ///< and what an operator wants of the map
     RecorderInput& recorder;
     Telemetry& telemetry;
     /// What the pilot wants, or why it does not drive.
@@ -63,6 +64,8 @@ class LocalizationStage {
   /// No scan comes: a save is done, everything else is answered as not done.
   void take_commands_without_scan();
   void pause(const Command& command, const Scan& scan);
+  /// Passed on before the scan, whether or not Δ-mapping sees that.
+  void order_map(const Command& command, const Scan& scan);
   void relocalize(const Command& command, const Scan& scan);
   /// How well the scan fits there.
   void answer_relocalize(std::uint32_t scan);

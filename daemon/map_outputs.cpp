@@ -62,6 +62,15 @@ void MapOutputs::save(const MapStep::Result& result, Timestamp now) {
   if (store_) store_->take(result, now);
 }
 
+const RevisionKeeper* MapOutputs::memory() const { return store_ ? &*store_ : history_ ? &*history_ : nullptr; }
+
+mapping::MapStore::Undoing MapOutputs::cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const {
+  if (memory() == nullptr) throw std::runtime_error("'map.store' is not set: nothing remembers the revisions");
+  return memory()->cells_of(order, newest_map);
+}
+
+std::string MapOutputs::why_behind() const { return memory() == nullptr ? std::string{} : memory()->why_behind(); }
+
 void MapOutputs::retry(Timestamp now) {
   if (changes_) changes_->flush(now);
   if (map_) map_->retry(now);

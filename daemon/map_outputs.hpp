@@ -29,6 +29,11 @@ class MapOutputs {
   MapOutputs(Options options, OutputBoard& board, const RetryingOutput::Warn& warn, Timestamp now);
 
   void save(const MapStep::Result& result, Timestamp now);
+  /// As RevisionKeeper::cells_of(), from the store of the settings, else from the history of --out. Throws
+  /// std::runtime_error where there is neither.
+  [[nodiscard]] mapping::MapStore::Undoing cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const;
+  /// Why what remembers the revisions does not hold the newest; empty where it does.
+  [[nodiscard]] std::string why_behind() const;
   /// Once a second: what could not be written is tried again.
   void retry(Timestamp now);
   /// The last attempt.
@@ -41,6 +46,8 @@ class MapOutputs {
     std::shared_ptr<const OccupancyGrid> waiting;  // null: what is on disk is the newest
     void retry(Timestamp now);
   };
+
+  [[nodiscard]] const RevisionKeeper* memory() const;
 
   std::optional<LiveLines> changes_;
   std::optional<MapFile> map_;

@@ -11,12 +11,8 @@ namespace {
 
 constexpr std::size_t kMostProvisional = 256;  // of a robot that stands for hours: older ones count as settled
 
-ChangeNote note_of(const ScanSet& set, std::span<const CellChange> changes, const GridGeometry& geometry) {
-  ChangeNote note;
-  note.time = set.ended;
-  note.phase = set.phase;
-  note.scans = static_cast<std::uint32_t>(set.scans.size());
-  note.covariance = set.covariance;
+/// Adds what the changes are.
+ChangeNote with_cells(ChangeNote note, std::span<const CellChange> changes, const GridGeometry& geometry) {
   if (changes.empty()) return note;
   const auto count = [&](CellState state) {
     return static_cast<std::uint32_t>(
@@ -31,13 +27,24 @@ ChangeNote note_of(const ScanSet& set, std::span<const CellChange> changes, cons
   return note;
 }
 
+ChangeNote note_of(const ScanSet& set, std::span<const CellChange> changes, const GridGeometry& geometry) {
+  ChangeNote note;
+  note.time = set.ended;
+  note.phase = set.phase;
+  note.scans = static_cast<std::uint32_t>(set.scans.size());
+  note.covariance = set.covariance;
+  return with_cells(std::move(note), changes, geometry);
+}
+
 }  // namespace
 
 MapStep::MapStep(const Settings& settings, StartMap start)
     : method_{settings.mapping.store_scan.method == MappingMethod::kPaper ? "paper" : "evidence"},
       update_{settings.mapping.update},
       localizer_{settings.localizer},
-      newest_{std::move(start)} {}
+      newest_{std::move(start)},
+      held_{{.hold_s = settings.mapping.store_scan.evidence.passing.persistence_s,
+             .margin_cells = settings.mapping.update.evidence.added_reach_cells}} {}
 
 MapRevision MapStep::publish(Timestamp time, std::vector<CellChange> changes) {
   newest_.map = std::make_shared<const OccupancyGrid>(patched(*newest_.map, changes));
@@ -59,6 +66,10 @@ MapStep::Result MapStep::update(const ScanSet& set) {
   if (set.withdraw_from) return withdraw(set);
   settle(set.settled);
   mapping::MapUpdate update = mapping::map_update(*newest_.map, set, update_);
+  if (update.accepted()) {
+    update.changes = held_.allowed(std::move(update.changes), set);
+    if (update.changes.empty()) update.refusal = mapping::Refusal::kSetByOperator;
+  }
   Result result{.revision = std::nullopt, .note = note_of(set, update.changes, newest_.map->geometry())};
   result.note.acceptance = update.acceptance;
   if (!update.accepted()) {
@@ -68,6 +79,32 @@ MapStep::Result MapStep::update(const ScanSet& set) {
   result.revision = publish(set.ended, std::move(update.changes));
   result.note.revision = result.revision->number;
   provisional_.push_back({result.revision->number, set.ended, result.revision->changes});
+  return result;
+}
+
+MapStep::Result MapStep::obey(const SetCells& wanted) {
+  const GridGeometry& geometry = newest_.map->geometry();
+  Result result;
+  result.note.time = wanted.order.scan_time;
+  result.note.by_operator = true;
+  result.note.reason = reason_of(wanted.order);
+  if (wanted.width != geometry.width || wanted.height != geometry.height) {
+    result.note.reason += ": another map";
+    return result;
+  }
+  held_.hold(geometry, wanted.changes, wanted.order.scan_time);
+  std::vector<CellChange> changes;
+  for (const auto& [cell, before, after] : wanted.changes) {
+    const CellState now = (*newest_.map)[cell];
+    if (now != after) changes.push_back({cell, now, after});
+  }
+  result.note = with_cells(std::move(result.note), changes, geometry);
+  if (changes.empty()) {
+    result.note.reason += ": it is so already";
+    return result;
+  }
+  result.revision = publish(wanted.order.scan_time, std::move(changes));
+  result.note.revision = result.revision->number;
   return result;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the map thread does with each S(k), and what a replay does in its place: updates the newest map, prepares the
 // localizer's patch, and says what became of the Δ-phase. What it writes is provisional until a later set says that it
-// is settled; an order takes it back. The revision goes to the localizer, the note to changes.jsonl.
+// is settled; an order takes it back. An operator sets cells as he wants them. The revision goes to the localizer, the
+// note to changes.jsonl.
 #pragma once
 
 #include <deque>
@@ -11,8 +12,10 @@
 
 #include "core/messages.hpp"
 #include "daemon/localization_step.hpp"
+#include "daemon/map_order.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/settings.hpp"
+#include "mapping/held_cells.hpp"
 
 namespace deltamap::daemon {
 
@@ -26,6 +29,9 @@ class MapStep {
   };
   /// A set, or an order to withdraw.
   [[nodiscard]] Result update(const ScanSet& set);
+  /// An operator's cells take the states that the order gives them, whatever they are. Older evidence does not write
+  /// them again. No revision where they are so already, or the map has another size.
+  [[nodiscard]] Result obey(const SetCells& wanted);
 
   /// "paper" or "evidence": kept with each revision.
   [[nodiscard]] std::string_view method() const { return method_; }
@@ -49,6 +55,7 @@ class MapStep {
   localization::LocalizerParams localizer_;
   StartMap newest_;
   std::deque<Provisional> provisional_;  // oldest first
+  mapping::HeldCells held_;              // that an operator has set
 };
 
 }  // namespace deltamap::daemon

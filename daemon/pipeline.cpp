@@ -12,8 +12,8 @@
 #include "daemon/dashboard_desk.hpp"
 #include "daemon/gate_watch.hpp"
 #include "daemon/localization_stage.hpp"
-#include "daemon/map_outputs.hpp"
-#include "daemon/map_step.hpp"
+#include "daemon/map_order.hpp"
+#include "daemon/map_stage.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
@@ -30,7 +30,6 @@ constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even 
 constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
 constexpr int kPageNiceness = 10;
-constexpr std::chrono::seconds kRetryPeriod{1};  // between looks at outputs that could not be written
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
@@ -45,6 +44,12 @@ std::vector<std::string> first_notes(const Settings& settings, const Pipeline::O
     notes.push_back(std::move(note));
   }
   return notes;
+}
+
+/// Null where it is an order.
+const ScanSet* set_in(const MapWork& work) {
+  const auto* set = std::get_if<ScanSet>(&work);
+  return set != nullptr && !set->withdraw_from ? set : nullptr;
 }
 
 Pipeline::Options with_warnings(Pipeline::Options options) {
@@ -63,10 +68,10 @@ struct Pipeline::State {
   Options options;
   Telemetry telemetry;
 
-  Channel<SensorMessage> sensors{128};  // io → localization: the newest message, journaled
-  Channel<TrackedScan> tracked_scans{
-      128};                           // localization → delta: the newest scan is not looked at for changes, journaled
-  Channel<ScanSet> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
+  Channel<SensorMessage> sensors{128};    // io → localization: the newest message, journaled
+  Channel<DeltaWork> tracked_scans{128};  // localization → delta: the newest scan is not looked at for changes,
+                                          // journaled; of an order its sender is told
+  Channel<MapWork> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
   Channel<std::shared_ptr<const TemporaryThings>> things{8};  // delta → localization: offered again at the next scan
   Channel<Command> commands{16};                // control → localization: the newest command, and its sender is told
@@ -80,7 +85,7 @@ struct Pipeline::State {
   IoStage io;                            // bytes → Odometry, Scan
   LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
   void look_for_changes();         // TrackedScan → ScanSet, TemporaryThings
-  void update_maps();              // ScanSet → MapRevision
+  MapStage map;                    // ScanSet, MapOrder → MapRevision
 
   // --- what each thread owns ---
 
@@ -88,25 +93,23 @@ struct Pipeline::State {
   GateWatch gate_watch;
   std::uint32_t things_sent = 0;     // number of the newest snapshot that the localizer has been sent
   std::uint32_t things_shown = 0;    // likewise, of the page
-  std::deque<ScanSet> waiting_sets;  // the map thread was busy: offered again at the next scan; one set, and orders
-  MapStep map_step;
-  MapOutputs map_outputs;
-  ChangeTally changes;
+  std::deque<MapWork> waiting_sets;  // the map thread was busy: offered again at the next scan; one set, and orders
 
   void tell(const CommandOutcome& outcome) {
     if (control) control->tell(outcome);
   }
   LiveSettings::Outcome reload();
-  void hand_over(ScanSet set);
+  bool set_log_level(LogLevel level);
+  void look_for_changes(const TrackedScan& tracked);
+  void hand_over(MapWork work);
   void offer_waiting_sets();
   void offer_things();
   void tell_of_gate(const mapping::Awareness& awareness);
-  void update_map(const ScanSet& set);
   void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
   void end_threads();
   void write_report(const RunReport& report) const;
 
-  Workload awareness_work, map_work;
+  Workload awareness_work;
   double wall_began_s = 0.0;
   std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread,
       page_thread;
@@ -124,7 +127,12 @@ Pipeline::State::State(const Settings& given, Options wanted)
            .telemetry = telemetry,
            .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
            .log = options.log,
-           .reload = [this] { return reload(); }},
+           .reload = [this] { return reload(); },
+           .record =
+               [this](bool goes_on, std::uint64_t ticket) {
+                 return recorder.from_control().send(RecordOrder{goes_on, ticket});
+               },
+           .set_log_level = [this](LogLevel level) { return set_log_level(level); }},
           options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, options.log, options.warn)},
       recorder{{.recording = settings.recording.file,
@@ -164,16 +172,23 @@ Pipeline::State::State(const Settings& given, Options wanted)
                           if (page) page->board().show(seen...);
                         },
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
-      store_scan{settings.mapping.store_scan, settings.seed},
-      map_step{settings, options.start},
-      map_outputs{{.out = options.out,
-                   .store_file = settings.map.store,
-                   .store = std::move(options.store),
-                   .start = {options.start.map, options.start.revision},
-                   .method = map_step.method()},
-                  telemetry.outputs,
-                  options.warn,
-                  drivers::port::port_clock_now()} {
+      map{settings,
+          options.start,
+          options.out,
+          std::move(options.store),
+          {.work = sets,
+           .revisions = revisions,
+           .recorder = recorder.from_map(),
+           .telemetry = telemetry,
+           .log = options.log,
+           .warn = options.warn,
+           .show =
+               [this](const MapRevision* revision, const ChangeNote& note) {
+                 if (page) page->board().show(revision, note);
+               },
+           .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
+      store_scan{settings.mapping.store_scan, settings.seed} {
+  telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
   telemetry.newest_revision.set(options.start.revision);
   telemetry.estimate.revision.set(options.start.revision);
   wall_began_s = seconds(drivers::port::port_clock_now().time_since_epoch());
@@ -182,7 +197,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
   recorder_thread = std::make_unique<Stage>(
       Stage::Options{"recorder", kRecorderNiceness}, [this] { recorder.run(); }, options.failed);
   map_thread = std::make_unique<Stage>(
-      Stage::Options{"map", kMapNiceness}, [this] { update_maps(); }, options.failed);
+      Stage::Options{"map", kMapNiceness}, [this] { map.run(waiting_sets); }, options.failed);
   awareness_thread = std::make_unique<Stage>(
       Stage::Options{"delta", 0}, [this] { look_for_changes(); }, options.failed);
   localization_thread = std::make_unique<Stage>(
@@ -203,24 +218,32 @@ Pipeline::State::State(const Settings& given, Options wanted)
 // --- delta thread ---
 
 void Pipeline::State::look_for_changes() {
-  while (const auto tracked = tracked_scans.receive()) {
+  while (const auto work = tracked_scans.receive()) {
     const Workload::Item item{awareness_work};
     offer_waiting_sets();
-    auto set = store_scan.observe(*tracked);
-    offer_things();
-    const mapping::Awareness& awareness = store_scan.awareness();
-    telemetry.r_d.set(awareness.r_d);
-    telemetry.in_phase.set(awareness.in_phase);
-    telemetry.phase.set(awareness.phase);
-    telemetry.stored_scans.set(awareness.stored_scans);
-    tell_of_gate(awareness);
-    if (!set) continue;
-    if (!set->withdraw_from) {
-      telemetry.phases_closed.add(1);
-      note(recorder.from_awareness(), {Kind::kPhaseClosed, tracked->scan.number, set->phase});
+    if (const auto* order = std::get_if<MapOrder>(&*work)) {
+      hand_over(*order);
+    } else {
+      look_for_changes(std::get<TrackedScan>(*work));
     }
-    hand_over(std::move(*set));
   }
+}
+
+void Pipeline::State::look_for_changes(const TrackedScan& tracked) {
+  auto set = store_scan.observe(tracked);
+  offer_things();
+  const mapping::Awareness& awareness = store_scan.awareness();
+  telemetry.r_d.set(awareness.r_d);
+  telemetry.in_phase.set(awareness.in_phase);
+  telemetry.phase.set(awareness.phase);
+  telemetry.stored_scans.set(awareness.stored_scans);
+  tell_of_gate(awareness);
+  if (!set) return;
+  if (!set->withdraw_from) {
+    telemetry.phases_closed.add(1);
+    note(recorder.from_awareness(), {Kind::kPhaseClosed, tracked.scan.number, set->phase});
+  }
+  hand_over(std::move(*set));
 }
 
 void Pipeline::State::offer_waiting_sets() {
@@ -244,52 +267,18 @@ void Pipeline::State::tell_of_gate(const mapping::Awareness& awareness) {
   if (!line.empty()) options.log(line);
 }
 
-/// An order is never lost: there are no more of them than sets that were handed over before.
-void Pipeline::State::hand_over(ScanSet set) {
-  const bool set_waits = std::any_of(waiting_sets.begin(), waiting_sets.end(),
-                                     [](const ScanSet& waiting) { return !waiting.withdraw_from; });
-  if (set_waits && !set.withdraw_from) {
+/// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an
+/// operator gives few.
+void Pipeline::State::hand_over(MapWork work) {
+  const ScanSet* set = set_in(work);
+  const bool set_waits = std::any_of(waiting_sets.begin(), waiting_sets.end(), set_in);
+  if (set_waits && set != nullptr) {
     telemetry.sets_lost.add(1);
-    note(recorder.from_awareness(), {Kind::kSetLost, 0, set.phase});
+    note(recorder.from_awareness(), {Kind::kSetLost, 0, set->phase});
     return;
   }
-  waiting_sets.push_back(std::move(set));
+  waiting_sets.push_back(std::move(work));
   offer_waiting_sets();
-}
-
-// --- map thread ---
-
-void Pipeline::State::update_maps() {
-  while (!sets.is_drained()) {
-    if (const auto set = sets.receive_within(kRetryPeriod)) update_map(*set);
-    const Workload::Item item{map_work};
-    map_outputs.retry(drivers::port::port_clock_now());
-  }
-  // The delta thread has ended: what it could not hand over is worked off too.
-  for (const ScanSet& set : waiting_sets) update_map(set);
-  map_outputs.close(drivers::port::port_clock_now());
-}
-
-void Pipeline::State::update_map(const ScanSet& set) {
-  const Workload::Item item{map_work};
-  MapStep::Result result = map_step.update(set);
-  changes.add(result.note);
-  if (page) page->board().show(result.revision ? &*result.revision : nullptr, result.note);
-  if (!result.revision) {
-    telemetry.refused.add(1);
-    options.log("map unchanged: phase=" + std::to_string(set.phase) + " reason=" + result.note.reason);
-    return map_outputs.save(result, drivers::port::port_clock_now());
-  }
-  telemetry.newest_revision.set(result.revision->number);
-  if (!result.note.withdraws.empty()) {
-    options.log("pose proved wrong: withdrawn=" + std::to_string(result.note.withdraws.size()) + " revisions");
-  }
-  options.log("map changed: revision=" + std::to_string(result.revision->number) +
-              " phase=" + std::to_string(set.phase) + " added=" + std::to_string(result.note.added) +
-              " freed=" + std::to_string(result.note.freed));
-  MapRevision published = *result.revision;
-  (void)revisions.try_send(std::move(published));
-  map_outputs.save(result, drivers::port::port_clock_now());
 }
 
 // --- whoever reloads ---
@@ -303,6 +292,13 @@ LiveSettings::Outcome Pipeline::State::reload() {
   });
   for (const std::string& line : outcome.lines) (outcome.done ? options.log : options.warn)("reload: " + line);
   return outcome;
+}
+
+bool Pipeline::State::set_log_level(LogLevel level) {
+  if (!options.set_log_level) return false;
+  options.set_log_level(level);
+  telemetry.log_level.set(static_cast<std::uint8_t>(level));
+  return true;
 }
 
 LiveSettings::Outcome Pipeline::reload() { return state_->reload(); }
@@ -361,7 +357,7 @@ RunReport Pipeline::stop() {
                   .sets_lost = t.sets_lost.value(),
                   .recording_lost = s.recorder.refused()};
   report.phases = t.phases_closed.value();
-  report.changes = s.changes;
+  report.changes = s.map.changes();
   const LocalizationStep& localization = s.localization.step();
   report.time_lost_s = localization.time_lost_s();
   report.time_global_s = localization.time_global_s();
@@ -387,9 +383,9 @@ const Telemetry& Pipeline::telemetry() const { return state_->telemetry; }
 
 double Pipeline::longest_work_s() const {
   return std::max({state_->io.silence_s(), state_->localization.workload().busy_s(), state_->awareness_work.busy_s(),
-                   state_->map_work.busy_s() / 10.0});
+                   state_->map.workload().busy_s() / 10.0});
 }
 
-std::shared_ptr<const OccupancyGrid> Pipeline::newest_map() const { return state_->map_step.map(); }
+std::shared_ptr<const OccupancyGrid> Pipeline::newest_map() const { return state_->map.map(); }
 
 }  // namespace deltamap::daemon

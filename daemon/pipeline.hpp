@@ -10,6 +10,7 @@
 #include "daemon/io_stage.hpp"
 #include "daemon/live_settings.hpp"
 #include "daemon/localization_step.hpp"
+#include "daemon/log_level.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/revision_keeper.hpp"
 #include "daemon/settings.hpp"
@@ -30,6 +31,7 @@ class Pipeline {
     drivers::SessionMode mode = drivers::SessionMode::kLive;
     std::function<void(const std::string&)> log;     ///< any thread: a short line
     std::function<void(const std::string&)> warn{};  ///< likewise, of what is degraded; empty: log
+    std::function<void(LogLevel)> set_log_level{};   ///< control thread; empty: the log has no levels
     std::function<void(const std::string&)> failed;  ///< any thread: a stage has ended by an exception
   };
   /// Begins at once. Throws FileInUse where another program writes its files, control::AlreadyServed where another

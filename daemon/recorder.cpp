@@ -2,6 +2,7 @@
 #include "daemon/recorder.hpp"
 
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "drivers/port/port_clock.hpp"
@@ -10,6 +11,9 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr std::chrono::seconds kFlushPeriod{1};
+constexpr const char* kOnlyFromTheStart =
+    "a recording begins with the run, for a replay needs what the devices said and the map was then; set it and "
+    "restart";
 
 Recorder::Hooks with_warnings(Recorder::Hooks hooks) {
   if (!hooks.warn) hooks.warn = hooks.log;
@@ -50,6 +54,8 @@ void Recorder::run() {
     bool found = drain(from_io_);
     found = drain(from_localization_) || found;
     found = drain(from_awareness_) || found;
+    found = drain(from_map_) || found;
+    found = drain(from_control_) || found;
     if (closed && !found) break;
     if (const auto now = std::chrono::steady_clock::now(); now - last_flush >= kFlushPeriod) {
       flush();
@@ -99,6 +105,8 @@ void Recorder::write(RecorderItem&& item) {
     memory_.keep(**stability, now_);
   } else if (const auto* order = std::get_if<std::unique_ptr<const SaveOrder>>(&item)) {
     save(**order);
+  } else if (const auto* wanted = std::get_if<RecordOrder>(&item)) {
+    obey(*wanted);
   } else {
     const auto& line = std::get<LogLine>(item);
     (line.is_warning ? hooks_.warn : hooks_.log)(line.text);
@@ -107,6 +115,17 @@ void Recorder::write(RecorderItem&& item) {
 
 void Recorder::save(const SaveOrder& order) {
   const CommandOutcome outcome = memory_.save(order);
+  if (hooks_.saved) hooks_.saved(outcome);
+}
+
+void Recorder::obey(const RecordOrder& order) {
+  CommandOutcome outcome{order.ticket, true, ""};
+  try {
+    if (!recording_) throw std::runtime_error("'recording.file' is not set: " + std::string(kOnlyFromTheStart));
+    outcome.message = order.goes_on ? recording_->start(now_) : recording_->stop(now_);
+  } catch (const std::runtime_error& error) {
+    outcome = {order.ticket, false, error.what()};
+  }
   if (hooks_.saved) hooks_.saved(outcome);
 }
 

@@ -24,9 +24,17 @@
 namespace deltamap::daemon {
 
 using JournalNote = std::string;
-using RecorderItem = std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint,
-                                  std::unique_ptr<const LocalizationRow>, std::unique_ptr<const KeptPose>,
-                                  std::unique_ptr<const KeptStability>, std::unique_ptr<const SaveOrder>, LogLine>;
+
+/// `ctl record start`, `stop`.
+struct RecordOrder {
+  bool goes_on = false;
+  std::uint64_t ticket = 0;
+};
+
+using RecorderItem =
+    std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint, std::unique_ptr<const LocalizationRow>,
+                 std::unique_ptr<const KeptPose>, std::unique_ptr<const KeptStability>,
+                 std::unique_ptr<const SaveOrder>, RecordOrder, LogLine>;
 
 /// One sender's way to the recorder.
 class RecorderInput {
@@ -62,7 +70,7 @@ class Recorder {
   };
   struct Hooks {
     std::function<void(const std::string&)> log;         ///< a short line
-    std::function<void(const CommandOutcome&)> saved{};  ///< a save order is done; may be empty
+    std::function<void(const CommandOutcome&)> saved{};  ///< an operator's order is done; may be empty
     std::function<void(const std::string&)> warn{};      ///< a short line of what is degraded; empty: log
   };
   /// Throws FileInUse and StartError as LiveRecording does. A full disk is no reason.
@@ -72,6 +80,8 @@ class Recorder {
   RecorderInput& from_io() { return from_io_; }
   RecorderInput& from_localization() { return from_localization_; }
   RecorderInput& from_awareness() { return from_awareness_; }
+  RecorderInput& from_map() { return from_map_; }
+  RecorderInput& from_control() { return from_control_; }
 
   /// The recorder thread's work, until close().
   void run();
@@ -79,7 +89,7 @@ class Recorder {
   void close();
 
   [[nodiscard]] std::uint64_t refused() const {
-    return from_io_.refused() + from_localization_.refused() + from_awareness_.refused();
+    return from_io_.refused() + from_localization_.refused() + from_awareness_.refused() + from_map_.refused();
   }
 
  private:
@@ -87,6 +97,7 @@ class Recorder {
   void write(RecorderItem&& item);
   void record(const drivers::port::ByteRecord& record);
   void save(const SaveOrder& order);
+  void obey(const RecordOrder& order);
   /// Once a second: everything to the disk, and another attempt where one has failed.
   void flush();
 
@@ -103,6 +114,8 @@ class Recorder {
   RecorderInput from_io_{4096, bell_};            // full: bytes are missing from the recording
   RecorderInput from_localization_{2048, bell_};  // full: lines and decisions are missing
   RecorderInput from_awareness_{256, bell_};      // full: decisions are missing
+  RecorderInput from_map_{256, bell_};            // full: an operator's cells are missing
+  RecorderInput from_control_{16, bell_};         // full: whoever asked is told
 };
 
 }  // namespace deltamap::daemon

@@ -74,6 +74,7 @@ class Replay {
   void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
   void update_map(const ScanSet& set);
+  void keep_result(MapStep::Result result);
 
   const ReplayJob& job_;
   const Journal& journal_;
@@ -175,6 +176,7 @@ void Replay::obey_commands_before(const Scan& scan) {
     ++report_.commands;
     const bool is_of_before = !has_begun_ && place < 0;  // the window begins later
     if (command.kind == Decision::Kind::kRelocalized && !is_of_before) localization_.relocalize(command.map_from_robot);
+    if (command.kind == Decision::Kind::kMapSet) keep_result(map_.obey(*command.set));
     if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
     if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
     if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
@@ -208,7 +210,10 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
 
 void Replay::update_map(const ScanSet& set) {
   const CpuTimer timer{report_.cpu.map_update_s};
-  MapStep::Result result = map_.update(set);
+  keep_result(map_.update(set));
+}
+
+void Replay::keep_result(MapStep::Result result) {
   changes_.write(json_line(result.note));
   keep(store_, result, map_.method(), first_revision_);
   report_.changes.add(result.note);

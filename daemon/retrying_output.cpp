@@ -58,6 +58,13 @@ void RetryingOutput::end(Timestamp now, const std::string& why) {
   board_.set(status_);
 }
 
+void RetryingOutput::begin_again() {
+  ended_ = false;
+  status_.written = true;
+  status_.why.clear();
+  board_.set(status_);
+}
+
 void RetryingOutput::count_lost(std::uint64_t count) {
   status_.lost += count;
   board_.set(status_);

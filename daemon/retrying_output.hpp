@@ -24,11 +24,15 @@ class RetryingOutput {
   void hurry() { next_attempt_ = Timestamp{}; }
   /// It has failed elsewhere: for instance it could not be opened.
   void fail(Timestamp now, const std::string& why);
-  /// Ends for good, and that is no failure.
+  /// Ends, and that is no failure.
   void end(Timestamp now, const std::string& why);
+  /// What has ended is wanted again.
+  void begin_again();
   /// Something was thrown away while it did not work.
   void count_lost(std::uint64_t count = 1);
 
+  /// Empty where it works.
+  [[nodiscard]] const std::string& why() const { return status_.why; }
   [[nodiscard]] bool works() const { return status_.written; }
   [[nodiscard]] std::uint64_t lost() const { return status_.lost; }
 

@@ -2,7 +2,9 @@
 #include "daemon/revision_keeper.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace deltamap::daemon {
 namespace {
@@ -10,7 +12,7 @@ namespace {
 mapping::RevisionNote note_of(const MapStep::Result& result, std::string_view method) {
   const ChangeNote& note = result.note;
   const std::string cause = result.revision && note.reason.empty() ? std::string(method) : note.reason;
-  return {note.phase, note.acceptance, cause, note.covariance};
+  return {note.phase, note.acceptance, cause, note.by_operator ? std::nullopt : std::optional{note.covariance}};
 }
 
 }  // namespace
@@ -43,6 +45,30 @@ void RevisionKeeper::take(const MapStep::Result& result, Timestamp now) {
 
 bool RevisionKeeper::follows(const MapRevision& revision) const {
   return revision.number - to_.numbers_before == to_.store->newest() + 1;
+}
+
+mapping::MapStore::Undoing RevisionKeeper::cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const {
+  if (const std::string why = why_behind(); !why.empty()) {
+    throw std::runtime_error("the newest revisions are not in the store yet: " + why);
+  }
+  const std::uint32_t number = number_in_store(order.revision);
+  if (order.kind == MapOrder::Kind::kUndo) return to_.store->undoing(number, newest_map);
+  std::vector<CellChange> changes = changes_between(newest_map, to_.store->grid(number));
+  if (changes.empty()) {
+    throw std::runtime_error("the map is as revision " + std::to_string(order.revision) + " was: nothing to do");
+  }
+  return {std::move(changes), 0};
+}
+
+std::uint32_t RevisionKeeper::number_in_store(std::uint32_t revision) const {
+  const std::int64_t number = std::int64_t{revision} - static_cast<std::int32_t>(to_.numbers_before);
+  if (number >= 0) return static_cast<std::uint32_t>(number);
+  throw std::runtime_error("revision " + std::to_string(revision) + " is of a run before: only a map.store knows it");
+}
+
+std::string RevisionKeeper::why_behind() const {
+  if (to_.store && !missed_revision_) return {};
+  return output_.works() ? "it is tried again in a moment" : output_.why();
 }
 
 void RevisionKeeper::lock() {

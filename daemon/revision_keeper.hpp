@@ -39,6 +39,11 @@ class RevisionKeeper {
   RevisionKeeper(StoreToKeep store, std::string_view method, RetryingOutput output, Timestamp now);
 
   void take(const MapStep::Result& result, Timestamp now);
+  /// What an order would set in the newest map of the run; `kept` as MapStore has it, 0 for a rollback. Throws
+  /// std::runtime_error with one line: the store is behind, it has no such revision, or there is nothing to do.
+  [[nodiscard]] mapping::MapStore::Undoing cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const;
+  /// Why the store does not hold the newest revision; empty where it does.
+  [[nodiscard]] std::string why_behind() const;
   /// Now and then: what could not be stored is tried again.
   void retry(Timestamp now);
   /// The last attempt.
@@ -47,6 +52,8 @@ class RevisionKeeper {
  private:
   /// Throws FileInUse where another program has the store by now.
   void lock();
+  /// Of a revision of the run. Throws std::runtime_error where it is older than the store.
+  [[nodiscard]] std::uint32_t number_in_store(std::uint32_t revision) const;
   /// The store's newest revision is the one before this.
   [[nodiscard]] bool follows(const MapRevision& revision) const;
   struct Missed {

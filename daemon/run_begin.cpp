@@ -2,12 +2,9 @@
 #include "daemon/run_begin.hpp"
 
 #include <algorithm>
-#include <cinttypes>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "daemon/fingerprint.hpp"
 #include "mapping/map_codec.hpp"
 
 namespace deltamap::daemon {
@@ -16,44 +13,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kPartChars = 60'000;  // a pcapng option holds 65535
-constexpr std::size_t kTileBytes = 4;       // of a StabilityRecord
-constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr std::string_view kHead = "began from";
+constexpr std::size_t kTileBytes = 4;  // of a StabilityRecord
 
 std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-/// RFC 4648, section 4.
-std::string base64_of(std::string_view bytes) {
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t held = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      group = group << 8 | (j < held ? static_cast<unsigned char>(bytes[i + j]) : 0u);
-    }
-    for (std::size_t j = 0; j < 4; ++j) text += j <= held ? kAlphabet[group >> (18 - 6 * j) & 63] : '=';
-  }
-  return text;
-}
-
-/// Nothing where the text is no base64.
-std::optional<std::string> bytes_of_base64(std::string_view text) {
-  std::string bytes;
-  std::uint32_t group = 0;
-  int bits = 0;
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  for (const char c : text) {
-    const std::size_t value = kAlphabet.find(c);
-    if (value == std::string_view::npos) return std::nullopt;
-    group = (group << 6 | static_cast<std::uint32_t>(value)) & 0xFFFFFFu;
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes += static_cast<char>(group >> bits & 0xFF);
-  }
-  return bytes;
 }
 
 /// Runs of equal tiles, as most of them have nothing to tell: length (1 to 255), tile.
@@ -119,19 +83,12 @@ std::optional<RunBegin> begin_in(const Json& head, std::string_view bytes) {
   return begin;
 }
 
-/// 16 hexadecimal digits: the checksum of all that follows.
-std::string sealed(const std::string& content) {
-  char checksum[24];
-  (void)std::snprintf(checksum, sizeof checksum, "%016" PRIx64, fingerprint_of(content));
-  return checksum + content;
-}
-
-std::optional<RunBegin> begin_of(const std::string& bytes) {
-  const auto end = bytes.find('\n');
-  if (end == std::string::npos || end < 16 || sealed(bytes.substr(16)) != bytes) return std::nullopt;
+std::optional<RunBegin> begin_of(const std::string& content) {
+  const auto end = content.find('\n');
+  if (end == std::string::npos) return std::nullopt;
   try {
-    return begin_in(Json::parse(bytes.begin() + 16, bytes.begin() + static_cast<std::ptrdiff_t>(end)),
-                    std::string_view(bytes).substr(end + 1));
+    return begin_in(Json::parse(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(end)),
+                    std::string_view(content).substr(end + 1));
   } catch (const Json::exception&) {
     return std::nullopt;
   }
@@ -156,30 +113,15 @@ std::vector<std::string> begin_notes(const RunBegin& begin) {
     const Bytes tiles = packed_tiles(start.stability->bytes);
     bytes.insert(bytes.end(), tiles.begin(), tiles.end());
   }
-  const std::string text = base64_of(sealed(head.dump().append("\n").append(as_text(bytes))));
-  const std::size_t parts = (text.size() + kPartChars - 1) / kPartChars;
-  std::vector<std::string> notes;
-  for (std::size_t part = 0; part < parts; ++part) {
-    notes.push_back("began from " + std::to_string(part + 1) + "/" + std::to_string(parts) + " " +
-                    text.substr(part * kPartChars, kPartChars));
-  }
-  return notes;
+  return notes_in_parts(kHead, head.dump().append("\n").append(as_text(bytes)));
 }
 
+BeginReader::BeginReader() : parts_{kHead} {}
+
 void BeginReader::read(std::string_view note) {
-  unsigned part = 0;
-  unsigned parts = 0;
-  int head = 0;
-  const std::string start{note.substr(0, 40)};
-  if (std::sscanf(start.c_str(), "began from %u/%u %n", &part, &parts, &head) != 2 || head == 0 || parts == 0) return;
-  if (part == 1) forget();
-  parts_ = parts;
-  if (part != read_ + 1) return;  // one is missing: never complete
-  ++read_;
-  text_ += note.substr(static_cast<std::size_t>(head));
-  if (read_ != parts_) return;
-  if (const auto bytes = bytes_of_base64(text_)) begin_ = begin_of(*bytes);
-  text_ = {};
+  if (!parts_.read(note)) return;
+  begin_.reset();
+  if (const auto& content = parts_.content()) begin_ = begin_of(*content);
 }
 
 }  // namespace deltamap::daemon

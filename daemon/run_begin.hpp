@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "daemon/localization_step.hpp"
+#include "daemon/note_parts.hpp"
 
 namespace deltamap::daemon {
 
@@ -25,19 +26,18 @@ struct RunBegin {
 /// Puts the notes of one recording together again.
 class BeginReader {
  public:
+  BeginReader();
   /// Any note, in order; those of other kinds are passed over. The first part of another run forgets the one before.
   void read(std::string_view note);
   /// A new run: what was read belongs to the one before.
   void forget() { *this = {}; }
 
   /// Some notes were there, and not all, or they are damaged.
-  [[nodiscard]] bool is_incomplete() const { return parts_ > 0 && !begin_; }
+  [[nodiscard]] bool is_incomplete() const { return parts_.has_begun() && !begin_; }
   [[nodiscard]] const std::optional<RunBegin>& begin() const { return begin_; }
 
  private:
-  unsigned parts_ = 0;  // that there should be
-  unsigned read_ = 0;
-  std::string text_;
+  PartsReader parts_;
   std::optional<RunBegin> begin_;
 };
 

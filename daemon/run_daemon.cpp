@@ -16,9 +16,9 @@
 #include <system_error>
 
 #include "core/file_lock.hpp"
-#include "core/grid_file.hpp"
 #include "daemon/check_config.hpp"
 #include "daemon/control/server.hpp"
+#include "daemon/first_map.hpp"
 #include "daemon/kept_pose.hpp"
 #include "daemon/kept_stability.hpp"
 #include "daemon/output_place.hpp"
@@ -38,7 +38,7 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr double kStuck_s = 10.0;      // a stage that is at work on one item for so long (a map update: 100 s) has hung
-constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches
+constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches; those between are for debugging
 
 struct CommandLine {
   std::string config;
@@ -61,8 +61,8 @@ class Console {
     const std::scoped_lock lock{mutex_};
     if (on_terminal_) {
       std::cerr << "\r\033[K" << status << std::flush;
-    } else if (seconds_++ % kQuietLogPeriod_s == 0) {
-      spdlog::info("{}", status);
+    } else {
+      spdlog::log(seconds_++ % kQuietLogPeriod_s == 0 ? spdlog::level::info : spdlog::level::debug, "{}", status);
     }
   }
   void end() {
@@ -144,10 +144,12 @@ void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
   }
 }
 
-OccupancyGrid first_map(const Settings& settings, const CommandLine& line) {
+OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Console& console) {
   if (settings.map.file.empty()) throw StartError(line.config + ": 'map.file' names no map");
   try {
-    return read_grid(settings.map.file);
+    FirstMap map = read_first_map(settings.map.file, memory_limit());
+    for (const std::string& warning : map.warnings) console.log(spdlog::level::warn, warning);
+    return std::move(map.grid);
   } catch (const std::runtime_error& error) {
     throw StartError(error.what());
   }
@@ -209,6 +211,22 @@ void require_plain_file(const std::filesystem::path& settings) {
   }
 }
 
+spdlog::level::level_enum spdlog_level_of(LogLevel level) {
+  switch (level) {
+    case LogLevel::kTrace:
+      return spdlog::level::trace;
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarn:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      break;
+  }
+  return spdlog::level::err;
+}
+
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
   const bool hangup_reloads = !has_terminal();
@@ -219,7 +237,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
     require_plain_file(line.config);
     return read_settings(line.config, line.overrides);
   });
-  const OccupancyGrid first = first_map(settings, line);
+  const OccupancyGrid first = first_map(settings, line, console);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);
   options.start.map = std::make_shared<const OccupancyGrid>(first);
@@ -238,6 +256,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
     (void)kill(getpid(), SIGTERM);
   };
   options.warn = [&console](const std::string& text) { console.log(spdlog::level::warn, text); };
+  options.set_log_level = [](LogLevel level) { spdlog::set_level(spdlog_level_of(level)); };
   const std::unique_ptr<Pipeline> pipeline = begun(settings, std::move(options));
   service::tell_ready();
   watch(*pipeline, console, hangup_reloads);

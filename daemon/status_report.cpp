@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/angle.hpp"
+#include "daemon/log_level.hpp"
 #include "drivers/pioneer/drive_permission.hpp"
 #include "navigation/drive_mode.hpp"
 #include "navigation/safety.hpp"
@@ -137,6 +138,8 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["battery_v"] = t.battery_v.value();
   json["latency_ms"] = t.latency_s.value() * 1e3;
   json["since_start_s"] = since_start_s;
+  json["log_level"] = name_of(static_cast<LogLevel>(t.log_level.value()));
+  json["line"] = status_line(t);
   json["recording"] = recording_json(t, settings);
   json["outputs"] = outputs_json(t);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

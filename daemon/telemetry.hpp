@@ -75,6 +75,8 @@ struct Telemetry {
   Gauge<std::uint64_t> recorded_bytes;
   Gauge<bool> records;  ///< false: never began, has ended, or pauses
   OutputBoard outputs;  ///< recorder and map thread
+  // control thread
+  Gauge<std::uint8_t> log_level;  ///< LogLevel
   // localization thread
   Gauge<std::uint64_t> localized, dropped, tracked_lost;
   EstimateGauges estimate;

@@ -314,24 +314,31 @@ std::vector<CellChange> MapStore::changes(std::uint32_t number) const {
   return number == 0 ? std::vector<CellChange>{} : state_->changes_of(number);
 }
 
-std::uint32_t MapStore::undo(std::uint32_t number, Timestamp time) {
+MapStore::Undoing MapStore::undoing(std::uint32_t number, const OccupancyGrid& newest_map) const {
   State& s = *state_;
   if (number == 0) s.database.fail("revision 0 is the first map: there is nothing to undo");
   std::vector<CellChange> delta = changes(number);
-  OccupancyGrid map = grid(s.newest);
+  const std::size_t all = delta.size();
   std::vector<bool> changed_later(s.geometry.cell_count(), false);
   for (const std::uint32_t later : s.numbers_after(number)) {
     for (const CellChange& change : s.changes_of(later)) changed_later[s.geometry.index_of(change.cell)] = true;
   }
   std::erase_if(delta, [&](const CellChange& change) { return changed_later[s.geometry.index_of(change.cell)]; });
 
-  MapRevision revision;
-  revision.number = s.newest + 1;
-  revision.time = time;
-  revision.changes = taken_back(map, delta);
-  if (revision.changes.empty()) {
+  Undoing undoing{.changes = taken_back(newest_map, delta)};
+  if (undoing.changes.empty()) {
     s.database.fail("nothing of revision " + std::to_string(number) + " is left to undo");
   }
+  undoing.kept = all - undoing.changes.size();
+  return undoing;
+}
+
+std::uint32_t MapStore::undo(std::uint32_t number, Timestamp time) {
+  OccupancyGrid map = grid(state_->newest);
+  MapRevision revision;
+  revision.number = state_->newest + 1;
+  revision.time = time;
+  revision.changes = undoing(number, map).changes;
   revision.map = std::make_shared<const OccupancyGrid>(patched(std::move(map), revision.changes));
   append(revision, {.cause = "undo of " + std::to_string(number)});
   return revision.number;

@@ -68,9 +68,15 @@ class MapStore {
   [[nodiscard]] std::vector<CellChange> changes(std::uint32_t number) const;
   /// Writes M_k once more as the newest revision (nothing is lost), and returns its number.
   std::uint32_t roll_back(std::uint32_t number, Timestamp time);
-  /// Takes Δ k back and leaves what came later as it is: its cells that no later revision has changed take the states
-  /// they had before it. Writes that as the newest revision and returns its number. Throws std::runtime_error where
-  /// there is no such Δ, or nothing of it is left.
+  struct Undoing {
+    std::vector<CellChange> changes;  ///< at least one
+    std::size_t kept = 0;             ///< cells of the Δ that have changed since
+  };
+  /// What takes Δ k back and leaves what came later as it is: its cells that no later revision has changed take the
+  /// states they had before it. `newest_map` is that of the newest revision. Throws std::runtime_error where there is
+  /// no such Δ, or nothing of it is left.
+  [[nodiscard]] Undoing undoing(std::uint32_t number, const OccupancyGrid& newest_map) const;
+  /// Writes undoing() as the newest revision and returns its number. Throws as that does.
   std::uint32_t undo(std::uint32_t number, Timestamp time);
 
  private:

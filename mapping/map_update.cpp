@@ -23,6 +23,8 @@ std::string_view name_of(Refusal refusal) {
       return "nothing changed";
     case Refusal::kPoseInDoubt:
       return "pose in doubt";
+    case Refusal::kSetByOperator:
+      return "set by an operator";
   }
   return "?";
 }

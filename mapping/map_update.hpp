@@ -20,7 +20,8 @@ enum class Refusal : std::uint8_t {
   kLowAcceptance,  ///< Eq. 11 below its threshold
   kImplausible,    ///< the merge contradicts the localizer's pose by more than its covariance allows (χ²)
   kNothingChanged,
-  kPoseInDoubt  ///< the set rests on a pose that has proven wrong, or may have been (write gate)
+  kPoseInDoubt,   ///< the set rests on a pose that has proven wrong, or may have been (write gate)
+  kSetByOperator  ///< all that it would change has been set by an operator a moment ago
 };
 [[nodiscard]] std::string_view name_of(Refusal refusal);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,6 +23,11 @@ constexpr std::array<std::pair<std::string_view, Kind>, 5> kPlainCommands{{{"sta
                                                                            {"save", Kind::kSave},
                                                                            {"reload", Kind::kReload}}};
 
+constexpr std::array<std::pair<std::string_view, Kind>, 2> kMapOrders{
+    {{"undo", Kind::kUndo}, {"rollback", Kind::kRollBack}}};
+
+bool is_map_order(Kind kind) { return kind == Kind::kUndo || kind == Kind::kRollBack; }
+
 std::optional<double> number_in(const Json& json, const char* key, double largest) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_number()) return std::nullopt;
@@ -37,6 +43,34 @@ RequestAnswer relocalization_in(const Json& json) {
   return {Request{Kind::kRelocalize, {*x_m, *y_m, wrapped_angle(radians(*heading_deg))}}, ""};
 }
 
+/// "undo", "rollback".
+RequestAnswer map_order_in(const Json& json, Kind kind, const std::string& name) {
+  const auto revision = json.find("revision");
+  const bool is_number = revision != json.end() && revision->is_number_unsigned() &&
+                         revision->get<std::uint64_t>() <= std::numeric_limits<std::uint32_t>::max();
+  if (!is_number) return {std::nullopt, "'" + name + "' needs the number of a revision: 0, 1, 2 …"};
+  Request request{kind, {}};
+  request.revision = revision->get<std::uint32_t>();
+  return {request, ""};
+}
+
+RequestAnswer record_in(const Json& json) {
+  const auto mode = json.find("mode");
+  if (mode != json.end() && *mode == "start") return {Request{Kind::kRecordStart, {}}, ""};
+  if (mode != json.end() && *mode == "stop") return {Request{Kind::kRecordStop, {}}, ""};
+  return {std::nullopt, "'record' needs the mode start or stop"};
+}
+
+RequestAnswer log_level_in(const Json& json) {
+  const auto level = json.find("level");
+  const auto known =
+      level != json.end() && level->is_string() ? log_level_of(level->get_ref<const std::string&>()) : std::nullopt;
+  if (!known) return {std::nullopt, "'log-level' needs the level trace, debug, info, warn or error"};
+  Request request{Kind::kLogLevel, {}};
+  request.log_level = *known;
+  return {request, ""};
+}
+
 RequestAnswer drive_in(const Json& json) {
   const auto mode = json.find("mode");
   if (mode != json.end() && *mode == "off") return {Request{Kind::kDriveOff, {}}, ""};
@@ -48,6 +82,11 @@ std::string_view name_of(Kind kind) {
   for (const auto& [name, plain] : kPlainCommands) {
     if (plain == kind) return name;
   }
+  for (const auto& [name, order] : kMapOrders) {
+    if (order == kind) return name;
+  }
+  if (kind == Kind::kLogLevel) return "log-level";
+  if (kind == Kind::kRecordStart || kind == Kind::kRecordStop) return "record";
   return kind == Kind::kRelocalize ? "relocalize" : "drive";
 }
 
@@ -62,7 +101,12 @@ RequestAnswer request_of_line(std::string_view line) {
   for (const auto& [plain, kind] : kPlainCommands) {
     if (name == plain) return {Request{kind, {}}, ""};
   }
+  for (const auto& [order, kind] : kMapOrders) {
+    if (name == order) return map_order_in(json, kind, name);
+  }
   if (name == "relocalize") return relocalization_in(json);
+  if (name == "record") return record_in(json);
+  if (name == "log-level") return log_level_in(json);
   if (name == "drive") return drive_in(json);
   return {std::nullopt, "unknown command '" + name + "'"};
 }
@@ -75,6 +119,10 @@ std::string line_of(const Request& request) {
     json["y_m"] = request.map_from_robot.y;
     json["heading_deg"] = degrees(request.map_from_robot.theta);
   }
+  if (is_map_order(request.kind)) json["revision"] = request.revision;
+  if (request.kind == Kind::kLogLevel) json["level"] = name_of(request.log_level);
+  if (request.kind == Kind::kRecordStart) json["mode"] = "start";
+  if (request.kind == Kind::kRecordStop) json["mode"] = "stop";
   if (request.kind == Kind::kDriveOff) json["mode"] = "off";
   if (request.kind == Kind::kDriveWander) json["mode"] = "wander";
   return json.dump();
@@ -95,8 +143,12 @@ std::string error_line(std::string_view error) {
 }
 
 std::string words_of(const Request& request) {
+  if (request.kind == Kind::kRecordStart) return "record start";
+  if (request.kind == Kind::kRecordStop) return "record stop";
   if (request.kind == Kind::kDriveOff) return "drive off";
   if (request.kind == Kind::kDriveWander) return "drive wander";
+  if (request.kind == Kind::kLogLevel) return "log-level " + std::string(name_of(request.log_level));
+  if (is_map_order(request.kind)) return std::string(name_of(request.kind)) + " " + std::to_string(request.revision);
   if (request.kind != Kind::kRelocalize) return std::string(name_of(request.kind));
   const Pose2& pose = request.map_from_robot;
   char text[96];

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/pose2.hpp"
+#include "daemon/log_level.hpp"
 
 namespace deltamap::daemon::control {
 
@@ -18,15 +19,22 @@ inline constexpr std::size_t kLongestLine = 4096;  ///< bytes of a request with 
 struct Request {
   enum class Kind : std::uint8_t {
     kStatus,
-    kPause,       ///< the map stays as it is; the localizer goes on
-    kResume,      ///< the map follows the world again
-    kSave,        ///< map and pose on disk, now
-    kReload,      ///< the settings file again: what can change is taken
-    kRelocalize,  ///< the robot stands at map_from_robot
+    kPause,        ///< the map stays as it is; the localizer goes on
+    kResume,       ///< the map follows the world again
+    kSave,         ///< map and pose on disk, now
+    kReload,       ///< the settings file again: what can change is taken
+    kRelocalize,   ///< the robot stands at map_from_robot
+    kUndo,         ///< Δ `revision` alone is taken back
+    kRollBack,     ///< the map is M_`revision` again
+    kRecordStart,  ///< a recording that was stopped goes on
+    kRecordStop,   ///< the recording stops; the daemon goes on
+    kLogLevel,     ///< the log shows `log_level` and above
     kDriveOff,
     kDriveWander
   } kind = Kind::kStatus;
-  Pose2 map_from_robot;  ///< kRelocalize
+  Pose2 map_from_robot{};                ///< kRelocalize
+  std::uint32_t revision = 0;            ///< kUndo, kRollBack
+  LogLevel log_level = LogLevel::kInfo;  ///< kLogLevel
   friend bool operator==(const Request&, const Request&) = default;
 };
 

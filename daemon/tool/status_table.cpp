@@ -122,7 +122,7 @@ std::string status_table(const std::string& reply_line) {
                word(s, "/ports/laser").c_str());
   text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),
                word(s, "/stopped_by").c_str());
-  text += line("running", "%.0f s", number(s, "/since_start_s"));
+  text += line("running", "%.0f s, log from %s on", number(s, "/since_start_s"), word(s, "/log_level").c_str());
   if (s.contains("recording") && s["recording"].is_object()) {
     text += line("recording", "%s, %.1f MB%s", word(s, "/recording/file").c_str(), number(s, "/recording/bytes") * 1e-6,
                  s.value("/recording/goes_on"_json_pointer, false) ? "" : ", is not being written");

@@ -161,6 +161,7 @@ TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
     EXPECT_GT(told["covariance"]["xx_m2"], 0.0);
     EXPECT_TRUE(told["belief"]["verdict"].is_string());
     EXPECT_GE(told["belief"]["pose_right"], 0.0);
+    EXPECT_EQ(told["line"].get<std::string>().rfind("robot=", 0), 0u) << told["line"];
     EXPECT_EQ(told["particles"], 200);
     EXPECT_GE(told["n_eff"], 1.0);
     EXPECT_GT(told["w_avg"], 0.0);
@@ -187,6 +188,31 @@ TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
     testing::internal::CaptureStdout();
     EXPECT_EQ(exit_code({"status", "--json"}), 0);
     EXPECT_EQ(Json::parse(testing::internal::GetCapturedStdout())["state"], "tracking");
+  });
+}
+
+TEST_F(ControlDeskTest, TheLogLevelChangesWhileItRunsAndIsTold) {
+  std::vector<LogLevel> set;  // by the control thread, which has ended before they are read
+  prepare_ = [&](Pipeline::Options& options) {
+    options.set_log_level = [&set](LogLevel level) { set.push_back(level); };
+  };
+  (void)run_live(1ms, [&](const Pipeline&) {
+    EXPECT_EQ(status()["log_level"], "info");
+    EXPECT_EQ(exit_code({"log-level", "debug"}), 0);
+    EXPECT_EQ(status()["log_level"], "debug");
+    const Json reply = asked({.kind = Request::Kind::kLogLevel, .log_level = LogLevel::kError});
+    EXPECT_EQ(reply["message"], "the log shows error and above until the next start");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(exit_code({"log-level", "off"}), 2);
+    EXPECT_EQ(exit_code({"log-level"}), 2);
+    (void)testing::internal::GetCapturedStderr();
+    EXPECT_EQ(status()["log_level"], "error");
+  });
+  EXPECT_EQ(set, (std::vector{LogLevel::kDebug, LogLevel::kError}));
+  prepare_ = [](Pipeline::Options&) {};
+  (void)run_live(0ms, [&](const Pipeline&) {
+    EXPECT_EQ(status()["log_level"], "info") << "not kept";
+    EXPECT_EQ(asked({.kind = Request::Kind::kLogLevel})["error"], "the log of this run has no levels");
   });
 }
 

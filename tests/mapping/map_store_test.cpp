@@ -146,6 +146,9 @@ TEST_F(Store, TakesADeltaBackAndKeepsWhatCameLater) {
   OccupancyGrid wanted = store.grid(3);
   wanted.set({1, 1}, CellState::kFree);
   wanted.set({2, 1}, CellState::kFree);
+  const MapStore::Undoing undoing = store.undoing(1, store.grid(3));
+  EXPECT_EQ(undoing.changes.size(), 2u);
+  EXPECT_EQ(undoing.kept, 1u);
   EXPECT_EQ(store.undo(1, timestamp_from_ns(9)), 4u);
   EXPECT_EQ(store.grid(4), wanted);
   EXPECT_EQ(store.history().back().note.cause, "undo of 1");

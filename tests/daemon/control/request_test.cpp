@@ -9,8 +9,8 @@ namespace {
 using Kind = Request::Kind;
 
 TEST(Request, EveryRequestSurvivesTheSocket) {
-  for (const Kind kind :
-       {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kReload, Kind::kDriveOff, Kind::kDriveWander}) {
+  for (const Kind kind : {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kReload, Kind::kRecordStart,
+                          Kind::kRecordStop, Kind::kDriveOff, Kind::kDriveWander}) {
     const Request request{kind, {}};
     const RequestAnswer answer = request_of_line(line_of(request));
     ASSERT_TRUE(answer.request) << line_of(request) << answer.refused;
@@ -22,6 +22,20 @@ TEST(Request, EveryRequestSurvivesTheSocket) {
   EXPECT_DOUBLE_EQ(answer.request->map_from_robot.x, -1.25);
   EXPECT_DOUBLE_EQ(answer.request->map_from_robot.y, 2.5);
   EXPECT_NEAR(answer.request->map_from_robot.theta, radians(-90.0), 1e-12);
+  for (std::size_t i = 0; i < kLogLevelNames.size(); ++i) {
+    const Request level{.kind = Kind::kLogLevel, .log_level = static_cast<LogLevel>(i)};
+    const auto back = request_of_line(line_of(level));
+    ASSERT_TRUE(back.request) << line_of(level) << back.refused;
+    EXPECT_EQ(*back.request, level);
+  }
+  for (const Kind kind : {Kind::kUndo, Kind::kRollBack}) {
+    for (const std::uint32_t revision : {0u, 7u, 4294967295u}) {
+      const Request order{.kind = kind, .revision = revision};
+      const auto back = request_of_line(line_of(order));
+      ASSERT_TRUE(back.request) << line_of(order) << back.refused;
+      EXPECT_EQ(*back.request, order);
+    }
+  }
 }
 
 TEST(Request, WhatIsWrongIsSaidInOneLine) {
@@ -42,6 +56,17 @@ TEST(Request, WhatIsWrongIsSaidInOneLine) {
                            R"({"command":"relocalize","x_m":1e300,"y_m":2,"heading_deg":3})"}) {
     EXPECT_EQ(refusal(pose), "'relocalize' needs the numbers x_m, y_m and heading_deg") << pose;
   }
+  for (const char* revision :
+       {R"({"command":"undo"})", R"({"command":"undo","revision":-1})", R"({"command":"undo","revision":"7"})",
+        R"({"command":"undo","revision":1.5})", R"({"command":"undo","revision":4294967296})"}) {
+    EXPECT_EQ(refusal(revision), "'undo' needs the number of a revision: 0, 1, 2 …") << revision;
+  }
+  for (const char* level : {R"({"command":"log-level"})", R"({"command":"log-level","level":"off"})",
+                            R"({"command":"log-level","level":2})", R"({"command":"log-level","level":"INFO"})"}) {
+    EXPECT_EQ(refusal(level), "'log-level' needs the level trace, debug, info, warn or error") << level;
+  }
+  EXPECT_EQ(refusal(R"({"command":"record"})"), "'record' needs the mode start or stop");
+  EXPECT_EQ(refusal(R"({"command":"record","mode":1})"), "'record' needs the mode start or stop");
   EXPECT_EQ(refusal(R"({"command":"drive"})"), "'drive' needs the mode off or wander");
   EXPECT_EQ(refusal(R"({"command":"drive","mode":"patrol"})"), "'drive' needs the mode off or wander");
 }
@@ -55,6 +80,7 @@ TEST(Request, ARepliedTextIsOneLineOfJsonWhateverItHolds) {
 TEST(Request, IsLoggedAsAPersonWouldTypeIt) {
   EXPECT_EQ(words_of({Kind::kRelocalize, {1.0, -2.0, radians(90.0)}}), "relocalize 1.00,-2.00,90");
   EXPECT_EQ(words_of({Kind::kDriveOff, {}}), "drive off");
+  EXPECT_EQ(words_of({.kind = Kind::kRollBack, .revision = 3}), "rollback 3");
   EXPECT_EQ(words_of({Kind::kSave, {}}), "save");
 }
 

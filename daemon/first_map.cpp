@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/first_map.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "core/grid_file.hpp"
+#include "core/grid_file_facts.hpp"
+#include "core/shortest_text.hpp"
+#include "daemon/start_banner.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr double kBytesOfAll = 24e6;  // the daemon on a map of a building, 181 beams, 500 particles
+constexpr double kBytesOfACell =
+    3.3;  // of what is shown: grid, field, votes; 64 million cells: 229 MB with all stages at work
+constexpr double kCoarsest_m = 0.25;  // walls are drawn a cell thick, and poses found to a fraction of one
+
+std::string megabytes(double bytes) { return std::to_string(std::llround(bytes * 1e-6)) + " MB"; }
+
+double bytes_needed(std::uint64_t cells) { return kBytesOfAll + kBytesOfACell * static_cast<double>(cells); }
+
+/// What the map needs beyond the limits: throws, or answers a warning. Most maps fit whatever they show: only of a
+/// larger one it is counted how much that is.
+std::string judged_size(const std::filesystem::path& file, const GridGeometry& geometry, const MemoryLimit& limit) {
+  const auto fits = [](double bytes, std::uint64_t most) { return bytes <= static_cast<double>(most); };
+  const double at_most = bytes_needed(geometry.cell_count());
+  if (fits(at_most, limit.most_bytes) && fits(at_most, limit.high_bytes)) return {};
+  const double needed = bytes_needed(shown_cells(file));
+  const std::string needs =
+      file.string() + ": " + size_text(geometry) + " need about " + megabytes(needed) + " of memory, and there are ";
+  if (!fits(needed, limit.most_bytes)) {
+    throw std::runtime_error(needs + megabytes(static_cast<double>(limit.most_bytes)) + " (" + limit.most_of +
+                             "): crop the map, make its cells larger, or give it more memory");
+  }
+  if (fits(needed, limit.high_bytes)) return {};
+  return needs + megabytes(static_cast<double>(limit.high_bytes)) + " (" + limit.high_of + "): it will be slow";
+}
+
+}  // namespace
+
+FirstMap read_first_map(const std::filesystem::path& file, const MemoryLimit& limit) {
+  const GridFileFacts facts = grid_file_facts(file);
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::string& what) { warnings.push_back(file.string() + ": " + what); };
+  if (std::string slow = judged_size(file, facts.geometry, limit); !slow.empty()) warnings.push_back(std::move(slow));
+  if (facts.geometry.resolution_m > kCoarsest_m) {
+    warn("cells of " + shortest_text(facts.geometry.resolution_m) + " m are coarse: 0.05 to 0.1 m are usual");
+  }
+  const bool is_swapped = facts.occupied_threshold < facts.free_threshold;
+  if (is_swapped) {
+    warn("'occupied_thresh' (" + shortest_text(facts.occupied_threshold) + ") lies below 'free_thresh' (" +
+         shortest_text(facts.free_threshold) + "): are they swapped?");
+  }
+  FirstMap map{read_grid(file), std::move(warnings)};
+  if (count_of(map.grid, CellState::kFree) == 0) {
+    throw std::runtime_error(file.string() + ": has no free cell, nowhere could a robot be" +
+                             (is_swapped ? ": are 'occupied_thresh' and 'free_thresh' swapped?" : ""));
+  }
+  return map;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is told of M_0 before a run begins on it, by file name.
+#include "daemon/first_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/grid_file.hpp"
+#include "core/grid_file_facts.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FirstMapTest : public testing::Test {
+ protected:
+  /// All unknown but for free floor in the corner.
+  [[nodiscard]] OccupancyGrid map_of(int side, int free_side, double resolution_m = 0.05) const {
+    OccupancyGrid grid{{side, side, resolution_m, {0.0, 0.0}}};
+    for (int row = 0; row < free_side; ++row) {
+      for (int column = 0; column < free_side; ++column) grid.set({column, row}, CellState::kFree);
+    }
+    return grid;
+  }
+  [[nodiscard]] std::string complaint(const MemoryLimit& limit = {}) const {
+    try {
+      (void)read_first_map(file_, limit);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  void write(const fs::path& file, const std::string& text) const {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+
+  test::TemporaryFolder folder_;
+  fs::path file_ = folder_.path() / "hall.yaml";
+};
+
+TEST_F(FirstMapTest, AGoodOneIsReadWithoutAWord) {
+  write_grid(map_of(100, 50), file_);
+  const FirstMap map = read_first_map(file_, memory_limit());
+  EXPECT_EQ(map.grid, map_of(100, 50));
+  EXPECT_TRUE(map.warnings.empty());
+}
+
+TEST_F(FirstMapTest, OneThatNeedsMoreMemoryThanThereMayBeIsRefusedWithBothFigures) {
+  write_grid(map_of(1000, 960), file_);
+  EXPECT_EQ(shown_cells(file_), 15u * 15u * 64u * 64u);
+  EXPECT_EQ(complaint({.most_bytes = 20'000'000, .most_of = "MemoryMax of /x"}),
+            file_.string() +
+                ": 1000 x 1000 cells of 0.05 m need about 27 MB of memory, and there are 20 MB (MemoryMax of /x): crop "
+                "the map, make its cells larger, or give it more memory");
+  EXPECT_EQ(complaint({.most_bytes = 28'000'000, .most_of = "MemoryMax of /x"}), "");
+}
+
+TEST_F(FirstMapTest, WhatIsUnknownNeedsNoMemory) {
+  write_grid(map_of(4000, 100), file_);
+  EXPECT_EQ(shown_cells(file_), 2u * 2u * 64u * 64u);
+  EXPECT_EQ(complaint({.most_bytes = 30'000'000, .most_of = "MemoryMax of /x"}), "") << "77 MB if all of it were shown";
+}
+
+TEST_F(FirstMapTest, OneThatWouldBeSlowedDownIsWarnedOf) {
+  write_grid(map_of(1000, 960), file_);
+  const auto warnings = read_first_map(file_, {.most_bytes = 30'000'000,
+                                               .most_of = "MemoryMax of /x",
+                                               .high_bytes = 25'000'000,
+                                               .high_of = "MemoryHigh of /x"})
+                            .warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], file_.string() +
+                             ": 1000 x 1000 cells of 0.05 m need about 27 MB of memory, and there are 25 MB "
+                             "(MemoryHigh of /x): it will be slow");
+}
+
+TEST_F(FirstMapTest, CoarseCellsAreWarnedOf) {
+  write_grid(map_of(100, 50, 1.0), file_);
+  EXPECT_EQ(read_first_map(file_, {}).warnings,
+            std::vector{file_.string() + ": cells of 1 m are coarse: 0.05 to 0.1 m are usual"});
+  write_grid(map_of(100, 50, 0.1), file_);
+  EXPECT_TRUE(read_first_map(file_, {}).warnings.empty());
+}
+
+TEST_F(FirstMapTest, SwappedThresholdsAreWarnedOf) {
+  write_grid(map_of(100, 50), file_);
+  write(file_, "image: hall.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.196\nfree_thresh: 0.65\n");
+  EXPECT_EQ(
+      read_first_map(file_, {}).warnings,
+      std::vector{file_.string() + ": 'occupied_thresh' (0.196) lies below 'free_thresh' (0.65): are they swapped?"});
+}
+
+TEST_F(FirstMapTest, OneWithoutFloorIsRefusedByName) {
+  write_grid(map_of(100, 0), file_);
+  EXPECT_EQ(complaint(), file_.string() + ": has no free cell, nowhere could a robot be");
+  write(file_, "image: hall.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: -1\nfree_thresh: 0.65\n");
+  EXPECT_EQ(complaint(),
+            file_.string() +
+                ": has no free cell, nowhere could a robot be: are 'occupied_thresh' and 'free_thresh' swapped?");
+}
+
+TEST_F(FirstMapTest, ACutOrEmptyPictureIsRefusedBeforeAnythingElse) {
+  write_grid(map_of(100, 50), file_);
+  fs::resize_file(folder_.path() / "hall.pgm", 100);
+  EXPECT_NE(complaint({.most_bytes = 1, .most_of = "nobody"}).find("cut short"), std::string::npos);
+  fs::resize_file(folder_.path() / "hall.pgm", 0);
+  EXPECT_NE(complaint().find("not a binary PGM"), std::string::npos);
+}
+
+TEST_F(FirstMapTest, TheLimitIsTheLowestOfMachineServiceAndWhatItLiesIn) {
+  const fs::path root = folder_.path() / "root";
+  EXPECT_EQ(memory_limit(root).most_bytes, UINT64_MAX) << "what cannot be read limits nothing";
+  write(root / "proc/meminfo", "MemTotal:  2000000 kB\nMemAvailable:   1000000 kB\n");
+  EXPECT_EQ(memory_limit(root).most_bytes, 1'024'000'000u);
+  EXPECT_EQ(memory_limit(root).most_of, "free on this machine");
+  write(root / "proc/self/cgroup", "1:name=systemd:/\n0::/system.slice/deltamap.service\n");
+  write(root / "sys/fs/cgroup/system.slice/deltamap.service/memory.max", "max\n");
+  write(root / "sys/fs/cgroup/system.slice/deltamap.service/memory.high", "96000000\n");
+  write(root / "sys/fs/cgroup/system.slice/memory.max", "128000000\n");
+  const MemoryLimit limit = memory_limit(root);
+  EXPECT_EQ(limit.most_bytes, 128'000'000u);
+  EXPECT_EQ(limit.most_of, "MemoryMax of /system.slice");
+  EXPECT_EQ(limit.high_bytes, 96'000'000u);
+  EXPECT_EQ(limit.high_of, "MemoryHigh of /system.slice/deltamap.service");
+}
+
+}  // namespace
+}  // namespace deltamap::daemon
