@@ -10,6 +10,12 @@ using control::done_line;
 using control::error_line;
 using control::Request;
 
+namespace {
+
+constexpr double kPatience_s = 2.0;  // of whoever asks, as of a client of the socket
+
+}  // namespace
+
 ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
     : settings_{settings},
       wiring_{std::move(wiring)},
@@ -47,6 +53,14 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
         return reply(error_line("that pose lies outside the map"));
       return command(Command::Kind::kRelocalize, request, std::move(reply));
   }
+}
+
+void ControlDesk::ask(std::string line, control::Server::Reply reply) {
+  const Timestamp asked = drivers::port::port_clock_now();
+  server_.post([this, asked, line = std::move(line), reply = std::move(reply)]() mutable {
+    const bool is_old = seconds(drivers::port::port_clock_now() - asked) > kPatience_s;
+    answer(line, is_old, std::move(reply));
+  });
 }
 
 void ControlDesk::drive(bool may_drive, const Request& request, control::Server::Reply reply) {

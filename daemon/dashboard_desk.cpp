@@ -34,20 +34,30 @@ bool is_due(Timestamp last, Timestamp now, double period_s) { return now < last 
 
 }  // namespace
 
-DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry)
+DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry,
+                             PageControl control)
     : settings_{settings},
+      control_{std::move(control)},
       board_{start.map, start.revision},
       telemetry_{telemetry},
       began_{port_clock_now()},
-      server_{{.address = settings.dashboard.address,
-               .port = settings.dashboard.port,
-               .descriptor = service::handed_over_socket("page"),
-               .token = settings.dashboard.token_file.empty() ? std::string{}
-                                                              : dashboard::read_token(settings.dashboard.token_file),
-               .answer = [this](const Request& request) { return answer(request); },
-               .open = [this] { return std::make_unique<LiveStream>(news_, board_); },
-               .refresh = [this] { refresh(); },
-               .watched = [this](bool is_watched) { board_.watch(is_watched); }}} {
+      server_{
+          {.address = settings.dashboard.address,
+           .port = settings.dashboard.port,
+           .descriptor = service::handed_over_socket("page"),
+           .guard = {.token = dashboard::token_in(settings.dashboard.token_file),
+                     .takes_commands = settings.dashboard.control},
+           .answer = [this](const Request& request) { return answer(request); },
+           .open = [this] { return std::make_unique<LiveStream>(news_, board_); },
+           .command =
+               [this](const Request& request, dashboard::Reply reply) {
+                 take_command(control_, !settings_.dashboard.token_file.empty(), request, std::move(reply));
+               },
+           .converse =
+               [this] { return std::make_unique<HandDrive>(++drivers_, control_.hand, telemetry_, &port_clock_now); },
+           .late_answer = refused_command(504, "not answered yet: the log will say what became of it"),
+           .refresh = [this] { refresh(); },
+           .watched = [this](bool is_watched) { board_.watch(is_watched); }}} {
   news_.hello.set(hello_message(settings_));
 }
 
@@ -106,12 +116,12 @@ void DashboardDesk::refresh_scan(Timestamp now) {
 }
 
 std::unique_ptr<DashboardDesk> begun_dashboard(const Settings& settings, const StartMap& start,
-                                               const Telemetry& telemetry,
+                                               const Telemetry& telemetry, PageControl control,
                                                const std::function<void(const std::string&)>& log,
                                                const std::function<void(const std::string&)>& warn) {
   if (settings.dashboard.port == 0) return nullptr;
   try {
-    auto desk = std::make_unique<DashboardDesk>(settings, start, telemetry);
+    auto desk = std::make_unique<DashboardDesk>(settings, start, telemetry, std::move(control));
     log("live page: " + desk->url());
     return desk;
   } catch (const std::exception& error) {

@@ -68,6 +68,9 @@ std::string hello_message(const Settings& settings) {
   json["thresholds"] = {{"r_d", is_paper ? Json(0.0) : Json(nullptr)},
                         {"pose_right", !is_paper && gate.enabled ? Json(gate.least_pose_right) : Json(nullptr)}};
   json["sample_columns"] = kSampleColumns;
+  const DashboardSettings& page = settings.dashboard;
+  const bool drives = settings.navigation.mode != navigation::DriveMode::kOff;
+  json["control"] = page.control ? Json{{"drive", drives && !page.token_file.empty()}} : Json(nullptr);
   return text_of(json);
 }
 

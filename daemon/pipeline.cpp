@@ -14,6 +14,7 @@
 #include "daemon/localization_stage.hpp"
 #include "daemon/map_outputs.hpp"
 #include "daemon/map_step.hpp"
+#include "daemon/page_commands.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
@@ -126,7 +127,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
            .log = options.log,
            .reload = [this] { return reload(); }},
           options.warn)},
-      page{begun_dashboard(settings, options.start, telemetry, options.log, options.warn)},
+      page{begun_dashboard(settings, options.start, telemetry, page_control(control.get(), io), options.log,
+                           options.warn)},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),
