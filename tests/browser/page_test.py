@@ -39,7 +39,7 @@ class PageTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         PICTURES.mkdir(parents=True, exist_ok=True)
-        cls.daemon = RunningDaemon(change_every_s=10)
+        cls.daemon = RunningDaemon(change_every_s=10, token="of-the-browser-tests")
 
     @classmethod
     def tearDownClass(cls):
@@ -48,7 +48,7 @@ class PageTest(unittest.TestCase):
     def open(self, width=1280, height=800, mobile=False, dark=False):
         browser = Browser(width, height, dark, mobile)
         self.addCleanup(browser.__exit__)
-        browser.open(self.daemon.url)
+        browser.open(self.daemon.page())
         return browser
 
     def expect_calm(self, browser):
@@ -58,7 +58,7 @@ class PageTest(unittest.TestCase):
         browser = Browser()
         self.addCleanup(browser.__exit__)
         began = time.monotonic()
-        browser.open(self.daemon.url)
+        browser.open(self.daemon.page())
         browser.wait(SHOWS_MAP, 5)
         self.assertLess(time.monotonic() - began, 2.0)
         browser.wait(IS_LIVE)

@@ -54,13 +54,34 @@ function draw_path(context, view, model) {
   context.globalAlpha = 1;
 }
 
+/// Where the beams of a scan (cm, robot's frame) would end if the robot were there.
+export function placed_ends(scan, { x, y, heading }) {
+  const beams = scan?.beams ?? [], cos = Math.cos(heading), sin = Math.sin(heading);
+  const ends = new Float32Array(beams.length);
+  for (let i = 0; i < beams.length; i += 2) {
+    const bx = beams[i] / 100, by = beams[i + 1] / 100;
+    ends[i] = x + cos * bx - sin * by;
+    ends[i + 1] = y + sin * bx + cos * by;
+  }
+  return ends;
+}
+
+/// Null where there is no beam.
+export function share_on_obstacles(view, ends) {
+  let fitting = 0;
+  for (let i = 0; i < ends.length; i += 2) if (view.state_near(ends[i], ends[i + 1], REACH_M) === OCCUPIED) ++fitting;
+  return ends.length ? fitting / (ends.length / 2) : null;
+}
+
 function draw_scan(context, view, model) {
-  const scan = model.scan;
-  if (!scan) return;
+  if (model.scan && !model.wish) draw_ends(context, view, model.scan.ends);
+}
+
+function draw_ends(context, view, ends) {
   const colours = [ink_of("--green"), ink_of("--orange"), ink_of("--pink")];
   const size = Math.max(3, Math.min(7, 0.07 * view.scale));
-  for (let i = 0; i < scan.ends.length; i += 2) {
-    const x = scan.ends[i], y = scan.ends[i + 1];
+  for (let i = 0; i < ends.length; i += 2) {
+    const x = ends[i], y = ends[i + 1];
     const state = view.state_near(x, y, REACH_M);
     const [px, py] = view.to_screen(x, y);
     context.fillStyle = colours[state === OCCUPIED ? 0 : state === FREE ? 1 : 2];
@@ -175,6 +196,24 @@ function draw_robot(context, view, model) {
   context.lineWidth = 1.5;
   context.stroke();
   robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--blue"));
+}
+
+/// Where a person is about to say that the robot is. No layer: it cannot be switched off.
+export function draw_wish(context, view, { wish }) {
+  if (!wish) return;
+  draw_ends(context, view, wish.ends);
+  const [x, y] = view.to_screen(wish.x, wish.y);
+  const length = 60, [cos, sin] = [Math.cos(wish.heading), Math.sin(wish.heading)];
+  context.strokeStyle = ink_of("--accent");
+  context.lineWidth = 3;
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(x + length * cos, y - length * sin);
+  context.lineTo(x + (length - 10) * cos + 6 * sin, y - (length - 10) * sin + 6 * cos);
+  context.moveTo(x + length * cos, y - length * sin);
+  context.lineTo(x + (length - 10) * cos - 6 * sin, y - (length - 10) * sin - 6 * cos);
+  context.stroke();
+  robot_sign(context, x, y, wish.heading, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--accent"));
 }
 
 // From below to above.

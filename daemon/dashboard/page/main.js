@@ -3,7 +3,8 @@
 
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
-import { draw_scale_bar, fill_legend, has_place, LAYERS } from "./layers.js";
+import { Control } from "./control.js";
+import { draw_scale_bar, draw_wish, fill_legend, has_place, LAYERS } from "./layers.js";
 import { MapView } from "./map_view.js";
 import { add_changes, clear_changes, mark_picked, show_link, show_pose, show_status } from "./panels.js";
 
@@ -11,7 +12,7 @@ const MOST_SAMPLES = 3600;
 const NARROW_PX = 1280; // the legend would cover the map
 
 const by_id = (id) => document.getElementById(id);
-const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null };
+const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null, wish: null };
 const shown = new Set(LAYERS.map((layer) => layer.id));
 
 // --- dark and light: as the system, until a person says otherwise ---
@@ -24,6 +25,7 @@ apply_theme();
 
 const view = new MapView(by_id("map"), (context) => {
   for (const layer of LAYERS) if (shown.has(layer.id)) layer.draw(context, view, model);
+  draw_wish(context, view, model);
   draw_scale_bar(context, view);
 });
 const charts = new Charts(by_id("charts"), by_id("spans"), by_id("charts-instant"));
@@ -64,6 +66,8 @@ function pick(change, button) {
   view.show((left + right) / 2, (bottom + top) / 2);
 }
 
+const control = new Control(view, model);
+
 // --- what the daemon sends ---
 
 function note(text) {
@@ -74,6 +78,7 @@ function note(text) {
 const on = {
   link(link) {
     show_link(link);
+    control.link(link);
     if (link === "lost") note("No connection to the daemon. What is shown is old; trying again …");
     if (link === "live") note("");
   },
@@ -81,6 +86,7 @@ const on = {
     document.title = `deltamap ${hello.version.split(" ")[0]}`;
     charts.thresholds = hello.thresholds;
     charts.instant = null;
+    control.allow(hello.control);
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
     model.picked = null;
     clear_changes();
@@ -96,12 +102,16 @@ const on = {
     if (view.follows) view.show(pose.x_m, pose.y_m);
     view.draw_soon();
   },
-  scan(scan) { model.scan = scan; },  // a pose comes with it
+  scan(scan) {  // a pose comes with it
+    model.scan = scan;
+    control.relocalize.update();
+  },
   transient(transient) { model.transient = transient; view.draw_soon(); },
   status(message) {
     const before = model.status, now = message.status;
     const passed_s = before ? now.since_start_s - before.since_start_s : 0;
     model.status = now;
+    control.show(now);
     show_status(message, passed_s > 0 ? (now.localized - before.localized) / passed_s : null);
   },
   samples(rows) {
@@ -117,4 +127,4 @@ const on = {
   },
 };
 
-window.deltamap = { model, view, connection: new Connection(on) };  // to look at in the browser's console
+window.deltamap = { model, view, control, connection: new Connection(on) };  // to look at in the browser's console

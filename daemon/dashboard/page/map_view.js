@@ -25,6 +25,8 @@ export class MapView {
     this.is_fitted = true; // until a person moves the view
     this.follows = false;
     this.on_follow = () => {};
+    this.hand = null;    // takes one pointer and keys instead: press, drag, release, key
+    this.handed = null;  // the pointer that it has
     this.pointers = new Map();
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.take_pointers();
@@ -178,10 +180,15 @@ export class MapView {
     }, { passive: false });
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
+      if (this.hand && this.handed === null && !this.pointers.size) {
+        this.handed = event.pointerId;
+        return this.hand.press(this.to_map(event.offsetX, event.offsetY), at(event));
+      }
       this.pointers.set(event.pointerId, at(event));
       canvas.classList.add("dragging");
     });
     canvas.addEventListener("pointermove", (event) => {
+      if (this.handed === event.pointerId) return this.hand?.drag(this.to_map(event.offsetX, event.offsetY), at(event));
       if (!this.pointers.has(event.pointerId)) return;
       const before = [...this.pointers.values()];
       const own = this.pointers.get(event.pointerId), now = at(event);
@@ -191,6 +198,10 @@ export class MapView {
     });
     for (const end of ["pointerup", "pointercancel"]) {
       canvas.addEventListener(end, (event) => {
+        if (this.handed === event.pointerId) {
+          this.handed = null;
+          this.hand?.release();
+        }
         this.pointers.delete(event.pointerId);
         if (!this.pointers.size) canvas.classList.remove("dragging");
       });
@@ -215,7 +226,9 @@ export class MapView {
     };
     this.canvas.addEventListener("keydown", (event) => {
       const act = keys[event.key];
-      if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (this.hand?.key(event.key)) return event.preventDefault();
+      if (!act) return;
       event.preventDefault();
       act();
     });
