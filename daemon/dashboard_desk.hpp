@@ -13,6 +13,7 @@
 #include "daemon/live_stream.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/page_commands.hpp"
+#include "daemon/page_history.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/telemetry.hpp"
 
@@ -33,8 +34,10 @@ class DashboardDesk {
   [[nodiscard]] std::string url() const;
 
  private:
-  [[nodiscard]] dashboard::Answer answer(const dashboard::Request& request) const;
-  [[nodiscard]] dashboard::Answer picture() const;
+  [[nodiscard]] dashboard::Answer answer(const dashboard::Request& request);
+  /// The newest map: as a picture, as map_server's YAML, as its PGM.
+  [[nodiscard]] dashboard::Answer map_as(std::string_view form) const;
+  [[nodiscard]] dashboard::Answer newest_scan() const;
   [[nodiscard]] std::string status_json() const;
   [[nodiscard]] double since_start_s() const;
   /// Every period while there are viewers.
@@ -45,6 +48,7 @@ class DashboardDesk {
   PageControl control_;
   std::uint64_t drivers_ = 0;  // who have come
   LiveBoard board_;
+  PageHistory history_;
   const Telemetry& telemetry_;
   Timestamp began_;
   LiveNews news_;

@@ -121,6 +121,18 @@ std::string scan_message(const LiveScan& scan) {
   return bytes;
 }
 
+std::string scan_json(const LiveScan& scan) {
+  const Pose2& pose = scan.row.map_from_robot;
+  Json json;
+  json["time"] = unix_s(scan.row.time);
+  json["pose"] = {{"x_m", pose.x}, {"y_m", pose.y}, {"heading_rad", pose.theta}};
+  json["state"] = name_of(scan.row.state);
+  json["verdict"] = name_of(scan.row.belief.verdict);
+  json["ends_m"] = Json::array();
+  for (const LiveBeam& beam : scan.beams) json["ends_m"].push_back({beam.x_cm / 100.0, beam.y_cm / 100.0});
+  return text_of(json);
+}
+
 std::string transient_message(const TemporaryThings* things) {
   Json json;
   json["type"] = "transient";
