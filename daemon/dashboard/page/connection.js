@@ -7,7 +7,8 @@ const CELLS = 1, SAMPLES = 2, SCAN = 3;
 const FIRST_PAUSE_MS = 500, LONGEST_PAUSE_MS = 5000;
 const SILENCE_MS = 4000; // a status comes every second
 
-function cells_of(view) {
+/// A box of cells (kind 1).
+export function cells_of(view) {
   const [column, row, width, height] = [8, 12, 16, 20].map((at) => view.getInt32(at, true));
   const states = new Uint8Array(width * height);
   let next = 0;

@@ -198,6 +198,38 @@ function draw_robot(context, view, model) {
   robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--blue"));
 }
 
+const LEAST_CELL_PX = 3;
+// By the state that a cell took: filled, hollow, crossed out.
+const DELTA_SIGNS = [
+  ["--blue", (c, x, y, side) => c.strokeRect(x + 0.75, y + 0.75, side - 1.5, side - 1.5)],
+  ["--red", (c, x, y, side) => c.fillRect(x, y, side, side)],
+  ["--pink", (c, x, y, side) => { c.beginPath(); c.moveTo(x, y); c.lineTo(x + side, y + side); c.stroke(); }],
+];
+
+/// The cells of the Δ that a person looks at: [column, row, before, after].
+export function draw_delta(context, view, { delta, is_before }) {
+  if (!delta || is_before || !view.frame) return;
+  const { resolution_m: m, origin_m: [x, y] } = view.frame, side = Math.max(LEAST_CELL_PX, m * view.scale);
+  context.lineWidth = 1.5;
+  for (const [column, row, , after] of delta) {
+    const [px, py] = view.to_screen(x + column * m, y + (row + 1) * m);
+    const [ink, draw] = DELTA_SIGNS[after];
+    context.fillStyle = context.strokeStyle = ink_of(ink);
+    draw(context, px, py, side);
+  }
+}
+
+/// The signs of a Δ's cells, as keys.
+export function fill_delta_legend(host) {
+  host.replaceChildren(...[[1, "became occupied"], [0, "became free"], [2, "forgotten"]].map(([state, text]) => {
+    const key = document.createElement("span");
+    key.className = "key";
+    const [ink, draw] = DELTA_SIGNS[state];
+    key.append(sign_of((c) => { c.fillStyle = c.strokeStyle = ink_of(ink); c.lineWidth = 1.5; draw(c, 6, 2, 10); }), text);
+    return key;
+  }));
+}
+
 /// Where a person is about to say that the robot is. No layer: it cannot be switched off.
 export function draw_wish(context, view, { wish }) {
   if (!wish) return;
@@ -219,16 +251,16 @@ export function draw_wish(context, view, { wish }) {
 // From below to above.
 export const LAYERS = [
   { id: "path", label: "path", draw: draw_path, sign: (c) => { c.strokeStyle = ink_of("--sky"); c.lineWidth = 2; c.beginPath(); c.moveTo(1, 12); c.lineTo(9, 4); c.lineTo(21, 7); c.stroke(); } },
-  { id: "transient", label: "not (yet) map", draw: draw_transient,
+  { id: "transient", label: "not (yet) map", is_of_now: true, draw: draw_transient,
     keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink_of("--orange"))],
            ["seen gone", (c) => { c.strokeStyle = ink_of("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
-  { id: "scan", label: "scan: beam ends", draw: draw_scan,
+  { id: "scan", label: "scan: beam ends", is_of_now: true, draw: draw_scan,
     keys: [["on the map's obstacles", (c) => { c.fillStyle = ink_of("--green"); c.fillRect(8, 4, 6, 6); }],
            ["where the map is free", (c) => { c.fillStyle = ink_of("--orange"); circle(c, 11, 7, 4); c.fill(); }],
            ["where it is unknown", (c) => { c.fillStyle = ink_of("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
-  { id: "hypothesis", label: "other hypothesis", draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
-  { id: "robot", label: `robot, ${SIGMAS} σ`, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--blue")) },
+  { id: "hypothesis", label: "other hypothesis", is_of_now: true, draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
+  { id: "robot", label: `robot, ${SIGMAS} σ`, is_of_now: true, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--blue")) },
 ];
 
 function sign_of(draw) {

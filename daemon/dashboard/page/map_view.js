@@ -20,6 +20,7 @@ export class MapView {
     this.draw_soon = once_a_frame(() => this.draw());
     this.frame = null;
     this.tiles = new Map();
+    this.past = null; // tiles of an older revision, shown in their place
     this.centre = { x: 0, y: 0 };
     this.scale = 20;
     this.is_fitted = true; // until a person moves the view
@@ -46,30 +47,40 @@ export class MapView {
     this.draw_soon();
   }
 
-  tile_at(column, row) {
+  tile_at(column, row, tiles) {
     const key = `${Math.floor(column / SIDE)},${Math.floor(row / SIDE)}`;
-    let tile = this.tiles.get(key);
+    let tile = tiles.get(key);
     if (!tile) {
       const picture = document.createElement("canvas");
       picture.width = picture.height = SIDE;
       tile = { column: Math.floor(column / SIDE) * SIDE, row: Math.floor(row / SIDE) * SIDE, picture,
                states: new Uint8Array(SIDE * SIDE).fill(UNKNOWN) };
-      this.tiles.set(key, tile);
+      tiles.set(key, tile);
     }
     return tile;
   }
 
   /// A box of cells; it lies in one tile.
   set_cells(box) {
-    const tile = this.tile_at(box.column, box.row);
+    this.put(box, this.tiles);
+    this.grow_known(box);
+    if (this.is_fitted) this.fit();
+    this.draw_soon();
+  }
+
+  tiles_of(boxes) {
+    const tiles = new Map();
+    for (const box of boxes) this.put(box, tiles);
+    return tiles;
+  }
+
+  put(box, tiles) {
+    const tile = this.tile_at(box.column, box.row, tiles);
     for (let row = 0; row < box.height; ++row) {
       const to = (box.row - tile.row + row) * SIDE + box.column - tile.column;
       tile.states.set(box.states.subarray(row * box.width, (row + 1) * box.width), to);
     }
     this.paint(tile);
-    this.grow_known(box);
-    if (this.is_fitted) this.fit();
-    this.draw_soon();
   }
 
   grow_known(box) {
@@ -96,7 +107,7 @@ export class MapView {
   }
 
   repaint() {
-    for (const tile of this.tiles.values()) this.paint(tile);
+    for (const tile of [...this.tiles.values(), ...(this.past?.values() ?? [])]) this.paint(tile);
     this.draw_soon();
   }
 
@@ -255,7 +266,7 @@ export class MapView {
     if (!this.frame) return;
     const m = this.frame.resolution_m;
     context.imageSmoothingEnabled = m * this.scale * this.dots < 1;
-    for (const tile of this.tiles.values()) {
+    for (const tile of (this.past ?? this.tiles).values()) {
       const [left, bottom] = this.to_screen(this.frame.origin_m[0] + tile.column * m, this.frame.origin_m[1] + tile.row * m);
       const side = SIDE * m * this.scale;
       if (left > this.width || bottom < 0 || left + side < 0 || bottom - side > this.height) continue;
