@@ -14,6 +14,7 @@ using Json = nlohmann::ordered_json;
 using dashboard::Message;
 
 constexpr double kBeatPeriod_s = 0.09;  // with a look every 0.1 s: ten a second
+constexpr int kMostAnswers = 40;        // to one beat: a hand on a pad gives a few
 constexpr double kSilence_s = 1.0;      // then whoever drove is gone
 
 Message message_of(const Json& json) {
@@ -67,6 +68,7 @@ void HandDrive::hear(const std::string& message) {
   if (stage_ == Stage::kOver) return;
   const auto spoken = spoken_in(message);
   if (!spoken) return end("refused", "a message needs the numbers beat, speed_m_per_s and turn_rate_rad_per_s");
+  if (++answers_ > kMostAnswers) return end("refused", "too many messages");
   heard_at_ = now_();
   const bool is_known = spoken->beat < beats_ && spoken->beat + sent_at_.size() >= beats_;
   if (stage_ != Stage::kDrives || !is_known) return;
@@ -89,6 +91,7 @@ std::optional<Message> HandDrive::next() {
   const bool is_due = beats_ == 0 || seconds(now - sent_at_[(beats_ - 1) % sent_at_.size()]) >= kBeatPeriod_s;
   if (stage_ != Stage::kDrives || !is_due) return std::nullopt;
   sent_at_[beats_ % sent_at_.size()] = now;
+  answers_ = 0;
   return message_of({{"type", "beat"}, {"number", beats_++}});
 }
 

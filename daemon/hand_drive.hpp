@@ -51,6 +51,7 @@ class HandDrive final : public dashboard::Dialog {
   std::uint64_t beats_ = 0;           // sent so far; beat n at n modulo their number
   std::array<Timestamp, 8> sent_at_;  // the newest
   Timestamp heard_at_;
+  int answers_ = 0;  // since the newest beat
 };
 
 }  // namespace deltamap::daemon

@@ -183,8 +183,12 @@ struct IoStage::State {
   CommandOutcome take_by_hand(std::uint64_t who, Timestamp asked) {
     if (!drives) return {who, false, "'navigation.mode' is off: this daemon never drives"};
     if (in_hand_of != 0) return {who, false, "somebody else drives it by hand"};
-    put_in_hand_of(who);  // first: the "on" that follows is not kept on disk
-    const CommandOutcome outcome = switch_on({true, who, asked}, drivers::port::port_clock_now());
+    put_in_hand_of(who);
+    keep_switch();  // off, before the motors come on: a restart is no hand
+    const std::string& why = kept.why_not_kept();
+    const CommandOutcome outcome =
+        why.empty() ? switch_on({true, who, asked}, drivers::port::port_clock_now())
+                    : CommandOutcome{who, false, "that the pilot stays off cannot be kept on disk: " + why};
     if (!outcome.done) put_in_hand_of(0);
     return outcome;
   }

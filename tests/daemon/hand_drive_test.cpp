@@ -103,6 +103,15 @@ TEST_F(HandDriveTest, AnswersToBeatsThatWereNeverOrLongAgoSentAreNotObeyed) {
   EXPECT_EQ(commands_.size(), 1u);
 }
 
+TEST_F(HandDriveTest, AFloodEndsIt) {
+  begin_and_take();
+  (void)heard();
+  for (int i = 0; i < 1000; ++i) say(0, 0.1);
+  EXPECT_LT(commands_.size(), 50u);
+  EXPECT_EQ(heard()["why"], "too many messages");
+  EXPECT_EQ(let_go_, std::vector<std::uint64_t>{7});
+}
+
 TEST_F(HandDriveTest, SilenceEndsIt) {
   begin_and_take();
   (void)heard();

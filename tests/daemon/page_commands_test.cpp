@@ -101,7 +101,9 @@ class PageCommandsTest : public test::DriveTest {
       const bool is_speed = command.number == static_cast<std::uint8_t>(drivers::pioneer::CommandNumber::kVel) ||
                             command.number == static_cast<std::uint8_t>(drivers::pioneer::CommandNumber::kEstop);
       const bool is_zero = command.argument.size() < 3 || (command.argument[1] == 0 && command.argument[2] == 0);
-      if (is_speed && is_zero && command.sent >= from) return seconds(command.sent - from);
+      if (!is_speed || !is_zero || command.sent < from) continue;
+      RecordProperty("stood_after_ms", static_cast<int>(1e3 * seconds(command.sent - from)));
+      return seconds(command.sent - from);
     }
     return 1e9;
   }
@@ -246,6 +248,20 @@ TEST_F(PageCommandsTest, StopEndsDrivingByHandAndWandering) {
     EXPECT_EQ(told["why"], "driving was switched off");
     expect_it_stays(ports);
     EXPECT_EQ(switch_on_disk(), drivers::pioneer::DriveSwitch::kOffByOperator);
+  });
+}
+
+TEST_F(PageCommandsTest, WhereTheOffCannotBeKeptOnDiskNobodyTakesIt) {
+  ask_for_token();
+  const auto file = drive_place(settings_.map.store, settings_.robot.port).file;
+  std::filesystem::create_directories(std::filesystem::path{file.string() + ".part"} / "in the way");
+  run([&](test::SimulatedPorts& ports) {
+    Hands hands = this->hands();
+    const std::string why = hands.first().value("why", "");
+    EXPECT_TRUE(why.starts_with("that the pilot stays off cannot be kept on disk: ")) << hands.first();
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 5));
+    EXPECT_FALSE(moves(ports));
   });
 }
 

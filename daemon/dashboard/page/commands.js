@@ -40,6 +40,7 @@ export class TaskRow {
   ask(text, choices, on_cancel = () => {}) {
     this.set(text, "none", [...choices, ["Cancel", () => this.cancel()]]);
     this.on_cancel = on_cancel;
+    if (document.activeElement?.tagName !== "CANVAS") this.buttons.firstChild.focus();  // by keyboard alone: Enter, or Escape
   }
 
   set_text(text) { this.text.textContent = text; }
