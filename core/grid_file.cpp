@@ -279,6 +279,8 @@ class PgmWriter {
   std::string piece_;
 };
 
+}  // namespace
+
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
   const Point2& origin = grid.geometry().origin;
   return "image: " + image + "\nresolution: " + shortest_text(grid.resolution_m()) + "\norigin: [" +
@@ -286,7 +288,12 @@ std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
          ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 }
 
-}  // namespace
+std::string pgm_of(const OccupancyGrid& grid) {
+  std::string bytes;
+  PgmWriter pgm{grid};
+  for (std::string_view piece = pgm.next_piece(); !piece.empty(); piece = pgm.next_piece()) bytes += piece;
+  return bytes;
+}
 
 bool is_carmen_map(const std::filesystem::path& file, std::string_view first_bytes) {
   constexpr std::size_t kLongestHeader = 4096;  // lines of comment come before the magic word

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "core/occupancy_grid.hpp"
@@ -20,5 +21,9 @@ namespace deltamap {
 /// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a
 /// temporary file that is synced and renamed. Throws std::runtime_error naming the file.
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
+
+/// The texts of these two files, for whoever does not write them.
+[[nodiscard]] std::string yaml_of(const OccupancyGrid& grid, const std::string& image);
+[[nodiscard]] std::string pgm_of(const OccupancyGrid& grid);
 
 }  // namespace deltamap

@@ -177,7 +177,7 @@ Finding page_finding(const DashboardSettings& page) {
   try {
     const dashboard::Server server{{.address = page.address,
                                     .port = page.port,
-                                    .token = page.token_file.empty() ? "" : dashboard::read_token(page.token_file),
+                                    .guard = {.token = dashboard::token_in(page.token_file)},
                                     .answer = {},
                                     .open = {}}};
     return {Level::kOk, "page", "http://" + server.place() + "/"};

@@ -66,6 +66,14 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
   }
 }
 
+void ControlDesk::ask(std::string line, control::Server::Reply reply) {
+  const Timestamp asked = drivers::port::port_clock_now();
+  server_.post([this, asked, line = std::move(line), reply = std::move(reply)]() mutable {
+    const bool is_old = seconds(drivers::port::port_clock_now() - asked) > kPatience_s;
+    answer(line, is_old, std::move(reply));
+  });
+}
+
 void ControlDesk::drive(bool may_drive, const Request& request, control::Server::Reply reply) {
   if (may_drive && settings_.navigation.mode != navigation::DriveMode::kWander) {
     return reply(error_line("'navigation.mode' is not wander: this daemon never drives"));

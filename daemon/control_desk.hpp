@@ -37,6 +37,9 @@ class ControlDesk {
   /// The control thread's work, until stop().
   void run() { server_.run(); }
   void stop() { server_.stop(); }
+  /// Any thread: a line that has not come by the socket. The reply is given in the control thread, or never where what
+  /// was asked for is lost.
+  void ask(std::string line, control::Server::Reply reply);
   /// Any thread: a command has been taken, or could not be.
   void tell(const CommandOutcome& outcome);
 

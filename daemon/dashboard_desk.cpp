@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/grid_file.hpp"
 #include "daemon/dashboard/access.hpp"
 #include "daemon/dashboard/page_files.hpp"
 #include "daemon/live_messages.hpp"
@@ -34,51 +35,83 @@ bool is_due(Timestamp last, Timestamp now, double period_s) { return now < last 
 
 }  // namespace
 
-DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry)
+DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry,
+                             PageControl control)
     : settings_{settings},
+      control_{std::move(control)},
       board_{start.map, start.revision},
+      history_{settings.map.store},
       telemetry_{telemetry},
       began_{port_clock_now()},
-      server_{{.address = settings.dashboard.address,
-               .port = settings.dashboard.port,
-               .descriptor = service::handed_over_socket("page"),
-               .token = settings.dashboard.token_file.empty() ? std::string{}
-                                                              : dashboard::read_token(settings.dashboard.token_file),
-               .answer = [this](const Request& request) { return answer(request); },
-               .open = [this] { return std::make_unique<LiveStream>(news_, board_); },
-               .refresh = [this] { refresh(); },
-               .watched = [this](bool is_watched) { board_.watch(is_watched); }}} {
+      server_{
+          {.address = settings.dashboard.address,
+           .port = settings.dashboard.port,
+           .descriptor = service::handed_over_socket("page"),
+           .guard = {.token = dashboard::token_in(settings.dashboard.token_file),
+                     .takes_commands = settings.dashboard.control},
+           .answer = [this](const Request& request) { return answer(request); },
+           .open = [this] { return std::make_unique<LiveStream>(news_, board_); },
+           .command =
+               [this](const Request& request, dashboard::Reply reply) {
+                 take_command(control_, !settings_.dashboard.token_file.empty(), request, std::move(reply));
+               },
+           .converse =
+               [this] { return std::make_unique<HandDrive>(++drivers_, control_.hand, telemetry_, &port_clock_now); },
+           .late_answer = refused_command(504, "not answered yet: the log will say what became of it"),
+           .refresh = [this] { refresh(); },
+           .watched = [this](bool is_watched) { board_.watch(is_watched); }}} {
   news_.hello.set(hello_message(settings_));
 }
 
 std::string DashboardDesk::url() const { return "http://" + server_.place() + "/"; }
 
-Answer DashboardDesk::answer(const Request& request) const {
+Answer DashboardDesk::answer(const Request& request) {
   const std::string& path = request.path;
   if (path == "/") return page_file("index.html");
   if (path.starts_with("/page/")) return page_file(std::string_view(path).substr(6));
   if (path == "/api/status") return {.type = kJson, .body = status_json() + "\n"};
   if (path == "/api/history") return {.type = kJson, .body = history_json(board_) + "\n"};
-  if (path == "/api/map.png") return picture();
+  if (path == "/api/scan") return newest_scan();
+  if (path.starts_with("/api/revision/")) return history_.answer(path);
+  for (const char* form : {"png", "yaml", "pgm"}) {
+    if (path == std::string("/api/map.") + form) return map_as(form);
+  }
   if (path == "/metrics") {
     return {.type = "text/plain; version=0.0.4; charset=utf-8", .body = metrics_text(telemetry_, since_start_s())};
   }
   return page_file(path);  // has no '/' in front: never found
 }
 
-/// Drawn whole, a byte a cell: larger ones would cost the memory that the robot needs.
-Answer DashboardDesk::picture() const {
+/// Laid out whole, a byte a cell: larger ones would cost the memory that the robot needs.
+Answer DashboardDesk::map_as(std::string_view form) const {
   constexpr std::int64_t kMostCells = 4'000'000;
   const auto map = board_.map();
   const CellBox known = known_box(*map.grid);
-  const CellBox drawn = known.empty() ? map.grid->box() : known;
+  const CellBox drawn = form != "png" || known.empty() ? map.grid->box() : known;
   const std::int64_t cells = std::int64_t{drawn.width()} * drawn.height();
-  if (cells > kMostCells) {
+  if (form != "yaml" && cells > kMostCells) {
     return {.status = 413, .body = "the map is too large for a picture: " + std::to_string(cells) + " cells\n"};
   }
-  return {.type = "image/png",
-          .body = map_picture(*map.grid, *map.grid),
-          .headers = {{"X-Deltamap-Revision", std::to_string(map.revision)}}};
+  Answer answer;
+  answer.headers = {{"X-Deltamap-Revision", std::to_string(map.revision)}};
+  if (form == "png") {
+    answer.type = "image/png";
+    answer.body = map_picture(*map.grid, *map.grid);
+  } else if (form == "pgm") {
+    answer.type = "image/x-portable-graymap";
+    answer.body = pgm_of(*map.grid);
+  } else {
+    answer.type = "application/yaml";
+    answer.body = yaml_of(*map.grid, "map.pgm");
+  }
+  return answer;
+}
+
+/// Without a viewer about a second old.
+Answer DashboardDesk::newest_scan() const {
+  LiveScan scan;
+  if (!board_.fetch(scan)) return {.status = 404, .body = "no scan has come yet\n"};
+  return {.type = kJson, .body = scan_json(scan) + "\n"};
 }
 
 std::string DashboardDesk::status_json() const { return status_json_line(telemetry_, settings_, since_start_s()); }
@@ -106,12 +139,12 @@ void DashboardDesk::refresh_scan(Timestamp now) {
 }
 
 std::unique_ptr<DashboardDesk> begun_dashboard(const Settings& settings, const StartMap& start,
-                                               const Telemetry& telemetry,
+                                               const Telemetry& telemetry, PageControl control,
                                                const std::function<void(const std::string&)>& log,
                                                const std::function<void(const std::string&)>& warn) {
   if (settings.dashboard.port == 0) return nullptr;
   try {
-    auto desk = std::make_unique<DashboardDesk>(settings, start, telemetry);
+    auto desk = std::make_unique<DashboardDesk>(settings, start, telemetry, std::move(control));
     log("live page: " + desk->url());
     return desk;
   } catch (const std::exception& error) {

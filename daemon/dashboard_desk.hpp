@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live page, in the page thread: answers what a browser asks from telemetry and from what the stages have shown,
-// and keeps viewers up to date. Reads alone: nothing here reaches a stage, and no stage waits for it.
+// and keeps viewers up to date. What it commands goes through the control desk; no stage waits for it.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,8 @@
 #include "daemon/live_board.hpp"
 #include "daemon/live_stream.hpp"
 #include "daemon/localization_step.hpp"
+#include "daemon/page_commands.hpp"
+#include "daemon/page_history.hpp"
 #include "daemon/settings.hpp"
 #include "daemon/telemetry.hpp"
 
@@ -20,7 +22,7 @@ namespace deltamap::daemon {
 class DashboardDesk {
  public:
   /// Listens from now on. Throws std::runtime_error with one line that names the address, or the token's file.
-  DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry);
+  DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry, PageControl control = {});
 
   /// Where the stages show themselves.
   [[nodiscard]] LiveBoard& board() { return board_; }
@@ -32,8 +34,10 @@ class DashboardDesk {
   [[nodiscard]] std::string url() const;
 
  private:
-  [[nodiscard]] dashboard::Answer answer(const dashboard::Request& request) const;
-  [[nodiscard]] dashboard::Answer picture() const;
+  [[nodiscard]] dashboard::Answer answer(const dashboard::Request& request);
+  /// The newest map: as a picture, as map_server's YAML, as its PGM.
+  [[nodiscard]] dashboard::Answer map_as(std::string_view form) const;
+  [[nodiscard]] dashboard::Answer newest_scan() const;
   [[nodiscard]] std::string status_json() const;
   [[nodiscard]] double since_start_s() const;
   /// Every period while there are viewers.
@@ -41,7 +45,10 @@ class DashboardDesk {
   void refresh_scan(Timestamp now);
 
   Settings settings_;
+  PageControl control_;
+  std::uint64_t drivers_ = 0;  // who have come
   LiveBoard board_;
+  PageHistory history_;
   const Telemetry& telemetry_;
   Timestamp began_;
   LiveNews news_;
@@ -54,7 +61,7 @@ class DashboardDesk {
 /// Null where the settings name no port, and, with a warning, where the page cannot be served: a daemon that cannot be
 /// watched still does its work.
 [[nodiscard]] std::unique_ptr<DashboardDesk> begun_dashboard(const Settings& settings, const StartMap& start,
-                                                             const Telemetry& telemetry,
+                                                             const Telemetry& telemetry, PageControl control,
                                                              const std::function<void(const std::string&)>& log,
                                                              const std::function<void(const std::string&)>& warn);
 

@@ -20,6 +20,7 @@ using drivers::port::PortId;
 
 constexpr std::chrono::milliseconds kSafetyPeriod{50};   // twice a controller cycle (protocols.md A6)
 constexpr std::chrono::seconds kRequestLife{1};          // to drive: this thread has hung, or the machine
+constexpr double kHandLife_s = 0.25;                     // of a command by hand: with one safety period below 0.3 s
 constexpr std::chrono::milliseconds kRobotSilence{500};  // five controller cycles: it is not heard, and may not hear
 constexpr std::chrono::milliseconds kFarewell{300};      // for the last packets to leave at 9600 baud
 
@@ -109,7 +110,9 @@ struct IoStage::State {
   }
 
   void keep_switch() {
-    const auto value = switch_to_keep(robot.session().permission().drive_switch(), safety.waits_for());
+    const auto value = in_hand_of != 0
+                           ? drivers::pioneer::DriveSwitch::kOffByOperator
+                           : switch_to_keep(robot.session().permission().drive_switch(), safety.waits_for());
     const std::string line = kept.keep(value, drivers::port::port_clock_now());
     if (!line.empty()) wiring.log(line);
   }
@@ -150,6 +153,7 @@ struct IoStage::State {
   void send_allowed_motion() {
     if (!robot.is_open() || !robot.session().is_connected()) return;
     const Timestamp now = drivers::port::port_clock_now();
+    if (in_hand_of != 0 && seconds(now - hand_moved) > kHandLife_s) safety.release();
     const auto limits = robot.session().stopping_limits();
     safety.set_stopping_behaviour(
         {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
@@ -162,7 +166,41 @@ struct IoStage::State {
 
   CommandOutcome let_drive(const DriveRequest& request) {
     const Timestamp now = drivers::port::port_clock_now();
+    if (request.may_drive && in_hand_of != 0)
+      return {request.ticket, false, "it is driven by hand: that must end first"};
+    if (!request.may_drive) put_in_hand_of(0);
     return request.may_drive ? switch_on(request, now) : switch_off(request.ticket, now);
+  }
+
+  void put_in_hand_of(std::uint64_t who) {
+    if (in_hand_of == who) return;
+    in_hand_of = who;
+    wiring.log(who != 0 ? "drive: taken by hand" : "drive: let go by hand");
+    wiring.telemetry.by_hand.set(who != 0);
+    safety.release();
+  }
+
+  CommandOutcome take_by_hand(std::uint64_t who, Timestamp asked) {
+    if (!drives) return {who, false, "'navigation.mode' is off: this daemon never drives"};
+    if (in_hand_of != 0) return {who, false, "somebody else drives it by hand"};
+    put_in_hand_of(who);
+    keep_switch();  // off, before the motors come on: a restart is no hand
+    const std::string& why = kept.why_not_kept();
+    const CommandOutcome outcome =
+        why.empty() ? switch_on({true, who, asked}, drivers::port::port_clock_now())
+                    : CommandOutcome{who, false, "that the pilot stays off cannot be kept on disk: " + why};
+    if (!outcome.done) put_in_hand_of(0);
+    return outcome;
+  }
+
+  void drive_by_hand(std::uint64_t who, const DriveCommand& command) {
+    if (in_hand_of != who || command.time < hand_moved || !robot.session().permission().holds()) return;
+    hand_moved = command.time;
+    safety.command(command, command.time);
+  }
+
+  void let_go(std::uint64_t who) {
+    if (in_hand_of == who) (void)let_drive({false, who, {}});
   }
 
   /// Refused as long as anything speaks against it: a refusal must not drive later, by itself.
@@ -205,7 +243,7 @@ struct IoStage::State {
   }
 
   void take(const DriveCommand& command, navigation::StopReason held_by) {
-    if (!robot.session().permission().holds()) return;
+    if (in_hand_of != 0 || !robot.session().permission().holds()) return;
     safety.command(command, drivers::port::port_clock_now(), held_by);
   }
 
@@ -226,7 +264,9 @@ struct IoStage::State {
   asio::io_context loop{1};
   std::atomic<std::int64_t> asked_ns{0};  // port clock; 0: the loop owes no answer
   Wiring wiring;
-  bool drives;  // by the settings
+  bool drives;                   // by the settings
+  std::uint64_t in_hand_of = 0;  // nobody else's commands are listened to; 0: in nobody's
+  Timestamp hand_moved{};        // of the newest command by hand
   Timestamp robot_heard_at{};
   KeptDrive kept;
   navigation::Safety safety;
@@ -263,6 +303,19 @@ void IoStage::let_drive(bool may_drive, std::uint64_t ticket) {
     const CommandOutcome outcome = state->let_drive(request);
     if (state->wiring.answer) state->wiring.answer(outcome);
   });
+}
+
+void IoStage::take_by_hand(std::uint64_t who, std::function<void(const CommandOutcome&)> answer) {
+  asio::post(state_->loop, [state = state_.get(), who, asked = drivers::port::port_clock_now(),
+                            answer = std::move(answer)] { answer(state->take_by_hand(who, asked)); });
+}
+
+void IoStage::drive_by_hand(std::uint64_t who, const DriveCommand& command) {
+  asio::post(state_->loop, [state = state_.get(), who, command] { state->drive_by_hand(who, command); });
+}
+
+void IoStage::let_go(std::uint64_t who) {
+  asio::post(state_->loop, [state = state_.get(), who] { state->let_go(who); });
 }
 
 void IoStage::set_safety(const navigation::SafetyParams& params) {

@@ -41,6 +41,13 @@ class IoStage {
   /// Any thread. A person lets the pilot drive (again), or not: the robot is then told to stand at once. Kept on disk
   /// before it is answered. Where the settings say that nobody drives, no velocity is ever sent.
   void let_drive(bool may_drive, std::uint64_t ticket);
+  /// Any thread, each of the three. A person takes the robot in hand: the pilot is not listened to, on disk driving is
+  /// off, and after let_go() it stands until a person says otherwise. `answer` is called in the io thread. `who` is not
+  /// 0.
+  void take_by_hand(std::uint64_t who, std::function<void(const CommandOutcome&)> answer);
+  /// Counts for a moment from the command's time on, however late it comes. Only of the one who has taken it.
+  void drive_by_hand(std::uint64_t who, const DriveCommand& command);
+  void let_go(std::uint64_t who);
   /// Any thread. From the next decision on.
   void set_safety(const navigation::SafetyParams& params);
 

@@ -68,6 +68,9 @@ std::string hello_message(const Settings& settings) {
   json["thresholds"] = {{"r_d", is_paper ? Json(0.0) : Json(nullptr)},
                         {"pose_right", !is_paper && gate.enabled ? Json(gate.least_pose_right) : Json(nullptr)}};
   json["sample_columns"] = kSampleColumns;
+  const DashboardSettings& page = settings.dashboard;
+  const bool drives = settings.navigation.mode != navigation::DriveMode::kOff;
+  json["control"] = page.control ? Json{{"drive", drives && !page.token_file.empty()}} : Json(nullptr);
   return text_of(json);
 }
 
@@ -116,6 +119,18 @@ std::string scan_message(const LiveScan& scan) {
     append_number(bytes, beam.y_cm);
   }
   return bytes;
+}
+
+std::string scan_json(const LiveScan& scan) {
+  const Pose2& pose = scan.row.map_from_robot;
+  Json json;
+  json["time"] = unix_s(scan.row.time);
+  json["pose"] = {{"x_m", pose.x}, {"y_m", pose.y}, {"heading_rad", pose.theta}};
+  json["state"] = name_of(scan.row.state);
+  json["verdict"] = name_of(scan.row.belief.verdict);
+  json["ends_m"] = Json::array();
+  for (const LiveBeam& beam : scan.beams) json["ends_m"].push_back({beam.x_cm / 100.0, beam.y_cm / 100.0});
+  return text_of(json);
 }
 
 std::string transient_message(const TemporaryThings* things) {

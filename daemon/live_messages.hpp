@@ -18,6 +18,8 @@ namespace deltamap::daemon {
 [[nodiscard]] std::string pose_message(const LiveScan& scan, const Telemetry& telemetry);
 /// Binary: the pose of a scan and where its beams ended.
 [[nodiscard]] std::string scan_message(const LiveScan& scan);
+/// /api/scan: the same in words.
+[[nodiscard]] std::string scan_json(const LiveScan& scan);
 /// "transient": blocks that differ from the map for now. `things` may be null.
 [[nodiscard]] std::string transient_message(const TemporaryThings* things);
 /// "status": /api/status, and the memory that this process has now.

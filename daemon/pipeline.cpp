@@ -14,6 +14,7 @@
 #include "daemon/localization_stage.hpp"
 #include "daemon/map_order.hpp"
 #include "daemon/map_stage.hpp"
+#include "daemon/page_commands.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
@@ -134,7 +135,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
                },
            .set_log_level = [this](LogLevel level) { return set_log_level(level); }},
           options.warn)},
-      page{begun_dashboard(settings, options.start, telemetry, options.log, options.warn)},
+      page{begun_dashboard(settings, options.start, telemetry, page_control(control.get(), io), options.log,
+                           options.warn)},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),

@@ -75,6 +75,7 @@ struct DashboardSettings {
   std::string address = "127.0.0.1";  ///< beyond loopback only with a token
   std::uint16_t port = 0;             ///< 0: no page
   std::string token_file;             ///< its first line is asked of every viewer; empty: nothing is asked
+  bool control = false;               ///< the page may command, not only show; what moves the robot needs a token
 };
 
 struct Settings {

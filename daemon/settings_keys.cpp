@@ -169,6 +169,8 @@ void add_dashboard(DashboardSettings& dashboard, Keys& keys) {
   add(whole_key("dashboard.port", dashboard.port, "", 0, 65535, "of the live page; 0: none"));
   add(text_key("dashboard.token_file", dashboard.token_file,
                "its first line is asked of every viewer; empty: nothing is asked"));
+  add(flag_key("dashboard.control", dashboard.control,
+               "the page may command as `deltamap ctl` does; what moves the robot only with a token"));
 }
 
 std::optional<Contradiction> contradiction_in(const DashboardSettings& dashboard) {
@@ -228,6 +230,9 @@ std::vector<Contradiction> contradictions_in(const Settings& settings) {
   expect_not(wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m), "navigation.wander.turn_away_m",
              "lie below 'navigation.wander.slow_down_m' and 'navigation.wander.go_on_m'");
   if (auto contradiction = contradiction_in(settings.dashboard)) found.push_back(*std::move(contradiction));
+  if (settings.dashboard.control && settings.dashboard.port != 0 && settings.control.socket.empty()) {
+    found.push_back({"dashboard.control", "'dashboard.control' needs 'control.socket': one desk takes all commands"});
+  }
   return found;
 }
 

@@ -132,7 +132,9 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["odometry"] = t.odometry.value();
   json["drops"] = drops_json(t);
   json["ports"] = {{"robot", t.robot_up.value() ? "up" : "down"}, {"laser", t.laser_up.value() ? "up" : "down"}};
-  json["drive"] = t.drives.value() ? navigation::name_of(settings.navigation.mode) : "off";
+  json["drive"] = !t.drives.value()   ? "off"
+                  : t.by_hand.value() ? "by hand"
+                                      : navigation::name_of(settings.navigation.mode);
   json["drive_switch"] = drivers::pioneer::name_of(static_cast<drivers::pioneer::DriveSwitch>(t.drive_switch.value()));
   json["stopped_by"] = navigation::name_of(static_cast<navigation::StopReason>(t.stop_reason.value()));
   json["battery_v"] = t.battery_v.value();

@@ -67,6 +67,7 @@ struct Telemetry {
   // io thread
   Gauge<bool> robot_up, laser_up;
   Gauge<bool> drives;                ///< the pilot's commands are listened to
+  Gauge<bool> by_hand;               ///< a person's are, and the pilot's are not
   Gauge<std::uint8_t> drive_switch;  ///< drivers::pioneer::DriveSwitch: what a person said last
   Gauge<double> battery_v;
   Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason

@@ -63,6 +63,34 @@ bool has_token(const Request& request, const std::string& token) {
 
 Answer refused(unsigned status, std::string why) { return {.status = status, .body = std::move(why) + "\n"}; }
 
+/// With or without parameters: "application/json; charset=utf-8".
+bool is_json(std::string_view type) {
+  constexpr std::string_view kJson = "application/json";
+  if (!type.starts_with(kJson)) return false;
+  type.remove_prefix(kJson.size());
+  return type.empty() || type.front() == ';' || type.front() == ' ';
+}
+
+std::optional<Answer> refusal_of_method(const Request& request) {
+  const bool is_command = request.path == kCommandPath;
+  if (request.method == (is_command ? "POST" : "GET")) return std::nullopt;
+  Answer answer =
+      refused(405, is_command ? "only POST, with a command as JSON" : "only GET: this is read, not changed");
+  answer.headers.emplace_back("Allow", is_command ? "POST" : "GET");
+  return answer;
+}
+
+/// Of what commands and drives, once the sender may read.
+std::optional<Answer> refusal_of_command(const Request& request, const Guard& guard) {
+  if (request.path != kCommandPath && request.path != kDrivePath) return std::nullopt;
+  if (!guard.takes_commands) return refused(403, "no commands are taken here: 'dashboard.control' is off");
+  if (request.path == kDrivePath) {
+    return guard.token.empty() ? std::optional{refused(403, std::string(kDrivingNeedsToken))} : std::nullopt;
+  }
+  if (!is_json(request.content_type)) return refused(415, "a command needs Content-Type: application/json");
+  return std::nullopt;
+}
+
 bool is_token_character(unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; }
 
 }  // namespace
@@ -99,19 +127,15 @@ bool is_same_secret(std::string_view given, std::string_view secret) {
   return difference == 0;
 }
 
-std::optional<Answer> refusal_of(const Request& request, const std::string& token) {
-  if (request.method != "GET") {
-    Answer answer = refused(405, "only GET: this page shows and changes nothing");
-    answer.headers.emplace_back("Allow", "GET");
-    return answer;
-  }
+std::optional<Answer> refusal_of(const Request& request, const Guard& guard) {
+  if (auto refusal = refusal_of_method(request)) return refusal;
   if (!is_no_foreign_name(request.host)) {
     return refused(421, "the Host of a request must be an IP address or localhost");
   }
   if (!request.origin.empty() && request.origin != "http://" + request.host) {
     return refused(403, "a page of another origin may not read this one");
   }
-  if (token.empty() || has_token(request, token)) return std::nullopt;
+  if (guard.token.empty() || has_token(request, guard.token)) return refusal_of_command(request, guard);
   Answer answer = refused(401, "a token is needed: open /?token=… once, or send Authorization: Bearer …");
   answer.headers.emplace_back("WWW-Authenticate", "Bearer");
   return answer;

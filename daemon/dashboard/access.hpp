@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may read the live page: programs of this machine, and beyond it whoever has the token. Knows no socket.
+// Who may read the live page: programs of this machine, and beyond it whoever has the token; and who may command by it.
+// Knows no socket.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +12,9 @@
 
 namespace deltamap::daemon::dashboard {
 
-inline constexpr std::size_t kShortestToken = 16;  ///< characters
+inline constexpr std::size_t kShortestToken = 16;                 ///< characters
+inline constexpr std::string_view kCommandPath = "/api/command";  ///< takes POST, and nothing else does
+inline constexpr std::string_view kDrivePath = "/drive";          ///< a WebSocket that takes messages
 
 /// Nothing where `address` is no IPv4 or IPv6 address.
 [[nodiscard]] std::optional<bool> is_loopback(const std::string& address);
@@ -20,12 +23,25 @@ inline constexpr std::size_t kShortestToken = 16;  ///< characters
 /// by everybody, shorter than kShortestToken, or with other characters than letters, digits, '-', '_' and '.'.
 [[nodiscard]] std::string read_token(const std::filesystem::path& file);
 
+/// Likewise; empty where there is no file.
+[[nodiscard]] inline std::string token_in(const std::filesystem::path& file) {
+  return file.empty() ? std::string{} : read_token(file);
+}
+
 /// Takes as long for a wrong text as for the right one; only its length may show.
 [[nodiscard]] bool is_same_secret(std::string_view given, std::string_view secret);
 
-/// Why a request is not answered: another method than GET, a host that is a name (DNS rebinding), an origin of another
-/// site, no or a wrong token. Nothing: it may be answered. `token`: empty where none is asked for.
-[[nodiscard]] std::optional<Answer> refusal_of(const Request& request, const std::string& token);
+inline constexpr std::string_view kDrivingNeedsToken = "what moves the robot needs 'dashboard.token_file'";
+
+struct Guard {
+  std::string token{};          ///< empty: none is asked for
+  bool takes_commands = false;  ///< from the page
+};
+
+/// Why a request is not answered: another method than its path takes, a host that is a name (DNS rebinding), an origin
+/// of another site, no or a wrong token; a command where none is taken, or not as JSON (a form of another site cannot
+/// send that); driving where there is no token at all. Nothing: it may be answered.
+[[nodiscard]] std::optional<Answer> refusal_of(const Request& request, const Guard& guard);
 
 /// The answer to /?token=…: keeps the right token in a cookie and leads to the page. Nothing for any other request.
 [[nodiscard]] std::optional<Answer> entry_of(const Request& request, const std::string& token);

@@ -48,7 +48,7 @@ tcp::acceptor listening_socket(asio::io_context& loop, const Server::Options& op
   tcp::acceptor acceptor =
       options.descriptor >= 0 ? inherited(loop, options.descriptor) : listening_at(loop, options.address, options.port);
   const tcp::endpoint place = acceptor.local_endpoint();
-  if (options.token.empty() && !place.address().is_loopback()) {
+  if (options.guard.token.empty() && !place.address().is_loopback()) {
     throw std::runtime_error(place_of(place) + ": leads beyond this machine, and no token is asked for");
   }
   return acceptor;

@@ -2,6 +2,7 @@
 // What a browser asks and what it is answered, without the library that speaks HTTP.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,8 @@ struct Request {
   std::string origin{};
   std::string cookie{};
   std::string authorization{};
+  std::string content_type{};
+  std::string body{};  ///< of a command, else empty
 };
 
 struct Answer {
@@ -27,6 +30,9 @@ struct Answer {
   std::string body;
   std::vector<std::pair<std::string, std::string>> headers{};  ///< beside those that every answer has
 };
+
+/// Any thread, now or later; the first one counts.
+using Reply = std::function<void(Answer)>;
 
 /// One message to viewers; several viewers share its bytes.
 struct Message {
@@ -43,6 +49,14 @@ class Stream {
   Stream& operator=(const Stream&) = delete;
   /// The next message; nothing until there is news.
   [[nodiscard]] virtual std::optional<Message> next() = 0;
+};
+
+/// Somebody who is sent messages and sends some. Destroyed when the connection ends, for whatever reason.
+class Dialog : public Stream {
+ public:
+  virtual void hear(const std::string& message) = 0;
+  /// Nothing is heard any more: what next() still has is sent, then the connection ends.
+  [[nodiscard]] virtual bool is_over() const = 0;
 };
 
 }  // namespace deltamap::daemon::dashboard

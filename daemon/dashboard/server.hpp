@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "daemon/dashboard/access.hpp"
 #include "daemon/dashboard/request.hpp"
 
 namespace deltamap::daemon::dashboard {
@@ -21,10 +22,14 @@ class Server {
     std::string address = "127.0.0.1";
     std::uint16_t port = 0;  ///< 0: any that is free
     int descriptor = -1;     ///< of a socket that listens already, in place of address and port; -1: none
-    std::string token{};     ///< empty: none is asked for
-    std::function<Answer(const Request&)> answer;     ///< to a request that may be answered
-    std::function<std::unique_ptr<Stream>()> open;    ///< for a viewer at /live that has come
-    std::function<void()> refresh = [] {};            ///< every period, before viewers are served
+    Guard guard{};
+    std::function<Answer(const Request&)> answer;          ///< to a request that may be answered
+    std::function<std::unique_ptr<Stream>()> open;         ///< for a viewer at /live that has come
+    std::function<void(const Request&, Reply)> command{};  ///< a POST that may be answered; its body has come
+    std::function<std::unique_ptr<Dialog>()> converse{};   ///< for somebody at /drive who has come
+    Answer late_answer{.status = 504, .body = "not answered yet\n"};  ///< to a command
+    double command_patience_s = 3.0;                                  ///< so long
+    std::function<void()> refresh = [] {};                            ///< every period, before viewers are served
     std::function<void(bool)> watched = [](bool) {};  ///< the first viewer has come, the last one has gone
     double period_s = 0.1;                            ///< nothing runs where nobody views
     double patience_s = 10.0;                         ///< a viewer takes a message within that time, or is dropped

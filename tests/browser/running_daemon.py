@@ -21,13 +21,17 @@ def free_port():
 
 
 class RunningDaemon:
-    """Simulator and daemon, until the `with` block ends. `port` 0: without a page."""
+    """Simulator and daemon, until the `with` block ends. `port` 0: without a page. `token`: asked of every viewer."""
 
-    def __init__(self, port=None, change_every_s=15):
+    def __init__(self, port=None, change_every_s=15, token=None):
         self.port = free_port() if port is None else port
         self.url = f"http://127.0.0.1:{self.port}/"
         self.folder = tempfile.TemporaryDirectory(prefix="deltamap-page-")
         self.place = pathlib.Path(self.folder.name)
+        self.token = token
+        if token:
+            (self.place / "token").write_text(token + "\n")
+            (self.place / "token").chmod(0o600)
         subprocess.run([BIN / "deltamap", "sim", "--world", WORLD, "--write-map", self.place / "m0.yaml"], check=True, capture_output=True)
         self.log = (self.place / "log").open("w")
         self.simulator = subprocess.Popen([BIN / "deltamap", "sim", "--world", WORLD, "--links", self.place, "--seed", "1",
@@ -60,11 +64,13 @@ class RunningDaemon:
     def start(self):
         places = {"robot.port": "robot", "laser.port": "laser", "map.file": "m0.yaml", "map.store": "store.sqlite", "control.socket": "ctl.sock"}
         command = [BIN / "deltamapd", "--config", ROOT / "config/simulation.yaml", "--set", f"dashboard.port={self.port}"]
+        if self.token:
+            places["dashboard.token_file"] = "token"
         for key, name in places.items():
             command += ["--set", f"{key}={self.place / name}"]
         self.daemon = subprocess.Popen(command, stderr=self.log, stdout=self.log, cwd=ROOT)
         self._until(lambda: self.ctl("drive", "wander").returncode == 0)
-        self._until(lambda: json.loads(self.ctl("status", "--json").stdout)["localized"] > 5)
+        self._until(lambda: self.status()["localized"] > 5)
 
     def stop(self):
         self.daemon.terminate()
@@ -79,8 +85,16 @@ class RunningDaemon:
         return [json.loads(line)["change"] for line in lines if '"change"' in line and line.endswith("}")]
 
     def get(self, path):
-        with urllib.request.urlopen(self.url + path.lstrip("/"), timeout=10) as answer:
+        headers = {"Authorization": f"Bearer {self.token}"} if self.token else {}
+        with urllib.request.urlopen(urllib.request.Request(self.url + path.lstrip("/"), headers=headers), timeout=10) as answer:
             return answer.read()
+
+    def status(self):
+        return json.loads(self.ctl("status", "--json").stdout)
+
+    def page(self):
+        """Where a browser begins."""
+        return self.url + (f"?token={self.token}" if self.token else "")
 
     def resident_bytes(self):
         return int(pathlib.Path(f"/proc/{self.daemon.pid}/statm").read_text().split()[1]) * 4096

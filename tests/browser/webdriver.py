@@ -92,6 +92,12 @@ class Browser:
         self._call("POST", f"/session/{self.session}/actions",
                    {"actions": [{"type": "key", "id": "keys", "actions": actions}]})
 
+    def keys(self, *strokes):
+        """Keys that go down or up in whatever has the focus: ("down", "a"), ("up", "a"), and pauses ("wait", seconds)."""
+        actions = [{"type": "pause", "duration": round(1000 * value)} if kind == "wait"
+                   else {"type": "keyDown" if kind == "down" else "keyUp", "value": value} for kind, value in strokes]
+        self._call("POST", f"/session/{self.session}/actions", {"actions": [{"type": "key", "id": "keys", "actions": actions}]})
+
     def drag(self, start, end):
         """The mouse, from one point of the page to another."""
         actions = [{"type": "pointerMove", "duration": 0, "x": start[0], "y": start[1]}, {"type": "pointerDown", "button": 0},

@@ -12,9 +12,11 @@
 #include <sstream>
 #include <thread>
 
+#include "core/grid_file.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/live_decoding.hpp"
 #include "tests/support/pipeline_fixture.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/web_client.hpp"
 
 namespace deltamap::daemon {
@@ -123,6 +125,30 @@ TEST_F(DashboardDeskTest, TheMapIsAPictureOfTheNewestRevision) {
   ASSERT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
   EXPECT_LT(pixels[2], 50) << "what has changed, upper right";
   EXPECT_GT(pixels[1], 200);
+}
+
+TEST_F(DashboardDeskTest, TheMapComesInMapServersFormAndReadsBack) {
+  start();
+  show_change({2, 2});
+  const test::TemporaryFolder folder;
+  for (const char* name : {"map.yaml", "map.pgm"}) {
+    const WebAnswer answer = got(std::string("/api/") + name);
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_EQ(answer.headers.at("X-Deltamap-Revision"), "1");
+    (void)folder.write(name, answer.body);
+  }
+  const OccupancyGrid read = read_grid(folder.path() / "map.yaml");
+  EXPECT_EQ(grid_hash(read), grid_hash(*desk_->board().map().grid));
+}
+
+TEST_F(DashboardDeskTest, TheNewestScanComesWithItsPose) {
+  start();
+  EXPECT_EQ(got("/api/scan").status, 404);
+  show_scan();
+  const Json scan = Json::parse(got("/api/scan").body);
+  EXPECT_EQ(scan["time"], 1'700'000'000.5);
+  EXPECT_EQ(scan["pose"], (Json{{"x_m", 0.5}, {"y_m", 0.25}, {"heading_rad", 0.125}}));
+  EXPECT_EQ(scan["ends_m"], Json::parse("[[1.25, 0.5]]"));
 }
 
 TEST_F(DashboardDeskTest, TheHistoryListsWhatThisRunHasChanged) {

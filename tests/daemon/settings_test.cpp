@@ -153,6 +153,10 @@ TEST(Settings, TheLivePageLeavesThisMachineOnlyWithAToken) {
   EXPECT_EQ(error_of("dashboard: {address: \"::1\", port: 8484}"), "no error");
   EXPECT_EQ(error_of("dashboard: {address: robot.example}"),
             "robot.yaml:1:22: 'dashboard.address' needs an IPv4 or IPv6 address, not 'robot.example'");
+  EXPECT_EQ(error_of("dashboard: {port: 8484, control: true}"),
+            "robot.yaml:1:34: 'dashboard.control' needs 'control.socket': one desk takes all commands");
+  EXPECT_EQ(error_of("dashboard: {port: 8484, control: true}\ncontrol: {socket: s}"), "no error");
+  EXPECT_EQ(error_of("dashboard: {control: true}"), "no error") << "there is no page";
   EXPECT_EQ(error_of("dashboard: {port: 65536}"),
             "robot.yaml:1:19: 'dashboard.port' needs a whole number in its range (0 to 65535), not '65536'");
 }

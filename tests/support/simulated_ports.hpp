@@ -49,6 +49,7 @@ class SimulatedPorts {
   struct SentCommand {
     std::uint8_t number = 0;
     std::vector<std::uint8_t> argument;  ///< with its type byte
+    Timestamp sent{};
   };
   /// What the robot was told so far. Any thread.
   [[nodiscard]] std::vector<SentCommand> commands() const {
@@ -92,7 +93,7 @@ class SimulatedPorts {
     if (hears_config_ || !asks_config) simulation_.send_to_robot(bytes, baud(id));
     const std::scoped_lock lock{mutex_};
     for (const auto& packet : packets) {
-      commands_.push_back({packet.type(), {packet.body().begin(), packet.body().end()}});
+      commands_.push_back({packet.type(), {packet.body().begin(), packet.body().end()}, now});
     }
   }
 

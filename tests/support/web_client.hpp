@@ -68,8 +68,13 @@ class WebClient {
   [[nodiscard]] WebAnswer got(const std::string& path, const std::string& headers = "") {
     return asked("GET " + path, headers);
   }
-  [[nodiscard]] WebAnswer upgraded(const std::string& headers = "") {
-    return got("/live",
+  [[nodiscard]] WebAnswer posted(const std::string& path, const std::string& body, const std::string& headers = "") {
+    (void)send("POST " + path + " HTTP/1.1\r\nHost: 127.0.0.1:1\r\nContent-Type: application/json\r\nContent-Length: " +
+               std::to_string(body.size()) + "\r\n" + headers + "\r\n" + body);
+    return answer();
+  }
+  [[nodiscard]] WebAnswer upgraded(const std::string& headers = "", const std::string& path = "/live") {
+    return got(path,
                "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
                    headers);
@@ -92,7 +97,13 @@ class WebClient {
   }
   /// With a mask of zeros, as a client must have one.
   bool send_frame(unsigned opcode, const std::string& payload) const {
-    std::string bytes{static_cast<char>(0x80U | opcode), static_cast<char>(0x80U | payload.size())};
+    std::string bytes{static_cast<char>(0x80U | opcode)};
+    if (payload.size() < 126) {
+      bytes += static_cast<char>(0x80U | payload.size());
+    } else {  // 16 bits
+      bytes +=
+          {static_cast<char>(0xFE), static_cast<char>(payload.size() >> 8U), static_cast<char>(payload.size() & 0xFFU)};
+    }
     return send(bytes + std::string(4, '\0') + payload);
   }
   /// Says no more, and reads until the server hangs up.

@@ -26,13 +26,16 @@ simulator=$!
 trap 'kill $simulator 2>/dev/null || true' EXIT
 for _ in $(seq 50); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1; done
 
+# The page asks for a token where it may drive.
+(umask 077; head -c 24 /dev/urandom | base64 | tr '+/' '-_' >"$out/token")
+
 # A robot that nobody has switched on stands: here the one who called the demo does.
 (for _ in $(seq 150); do "$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null 2>&1 && break; sleep 0.2; done) &
 echo "the robot drives for $seconds s in $world (seed $seed); watch: $out" >&2
-((page == 0)) || echo "open http://127.0.0.1:$page/ in a browser" >&2
+((page == 0)) || echo "open http://127.0.0.1:$page/?token=$(<"$out/token") in a browser" >&2
 # `timeout` ends the daemon as systemd would: SIGTERM, and the map is saved.
 "${pin[@]}" timeout --foreground --preserve-status -s TERM "$seconds" "$bin/deltamapd" --config config/simulation.yaml \
-  --set robot.port="$out/robot" --set laser.port="$out/laser" --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" --set dashboard.port="$page" \
+  --set robot.port="$out/robot" --set laser.port="$out/laser" --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" --set dashboard.port="$page" --set dashboard.token_file="$out/token" \
   --set recording.file="$out/recording.pcapng" --set seed="$seed" --out "$out/run"
 kill "$simulator" && wait "$simulator" || true
 trap - EXIT

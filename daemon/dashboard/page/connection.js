@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live stream (docs/api.md): keeps a WebSocket open, decodes what comes, and tries again when it ends.
 
+import { placed_ends } from "./layers.js";
+
 const CELLS = 1, SAMPLES = 2, SCAN = 3;
 const FIRST_PAUSE_MS = 500, LONGEST_PAUSE_MS = 5000;
 const SILENCE_MS = 4000; // a status comes every second
 
-function cells_of(view) {
+/// A box of cells (kind 1).
+export function cells_of(view) {
   const [column, row, width, height] = [8, 12, 16, 20].map((at) => view.getInt32(at, true));
   const states = new Uint8Array(width * height);
   let next = 0;
@@ -37,14 +40,8 @@ function scan_of(view) {
   const [x, y, heading] = [16, 20, 24].map((at) => view.getFloat32(at, true));
   const beams = new Int16Array(2 * count);
   for (let i = 0; i < 2 * count; ++i) beams[i] = view.getInt16(28 + 2 * i, true);
-  const cos = Math.cos(heading), sin = Math.sin(heading);
-  const ends = new Float32Array(2 * count);
-  for (let i = 0; i < count; ++i) {
-    const bx = beams[2 * i] / 100, by = beams[2 * i + 1] / 100;
-    ends[2 * i] = x + cos * bx - sin * by;
-    ends[2 * i + 1] = y + sin * bx + cos * by;
-  }
-  return { time: view.getFloat64(8, true), x, y, heading, ends };
+  const scan = { time: view.getFloat64(8, true), x, y, heading, beams };
+  return { ...scan, ends: placed_ends(scan, scan) };
 }
 
 /// `on` holds a function for each kind of message (hello, map, cells, pose, scan, transient, status, samples, changes)

@@ -54,13 +54,34 @@ function draw_path(context, view, model) {
   context.globalAlpha = 1;
 }
 
+/// Where the beams of a scan (cm, robot's frame) would end if the robot were there.
+export function placed_ends(scan, { x, y, heading }) {
+  const beams = scan?.beams ?? [], cos = Math.cos(heading), sin = Math.sin(heading);
+  const ends = new Float32Array(beams.length);
+  for (let i = 0; i < beams.length; i += 2) {
+    const bx = beams[i] / 100, by = beams[i + 1] / 100;
+    ends[i] = x + cos * bx - sin * by;
+    ends[i + 1] = y + sin * bx + cos * by;
+  }
+  return ends;
+}
+
+/// Null where there is no beam.
+export function share_on_obstacles(view, ends) {
+  let fitting = 0;
+  for (let i = 0; i < ends.length; i += 2) if (view.state_near(ends[i], ends[i + 1], REACH_M) === OCCUPIED) ++fitting;
+  return ends.length ? fitting / (ends.length / 2) : null;
+}
+
 function draw_scan(context, view, model) {
-  const scan = model.scan;
-  if (!scan) return;
+  if (model.scan && !model.wish) draw_ends(context, view, model.scan.ends);
+}
+
+function draw_ends(context, view, ends) {
   const colours = [ink_of("--green"), ink_of("--orange"), ink_of("--pink")];
   const size = Math.max(3, Math.min(7, 0.07 * view.scale));
-  for (let i = 0; i < scan.ends.length; i += 2) {
-    const x = scan.ends[i], y = scan.ends[i + 1];
+  for (let i = 0; i < ends.length; i += 2) {
+    const x = ends[i], y = ends[i + 1];
     const state = view.state_near(x, y, REACH_M);
     const [px, py] = view.to_screen(x, y);
     context.fillStyle = colours[state === OCCUPIED ? 0 : state === FREE ? 1 : 2];
@@ -177,19 +198,69 @@ function draw_robot(context, view, model) {
   robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--blue"));
 }
 
+const LEAST_CELL_PX = 3;
+// By the state that a cell took: filled, hollow, crossed out.
+const DELTA_SIGNS = [
+  ["--blue", (c, x, y, side) => c.strokeRect(x + 0.75, y + 0.75, side - 1.5, side - 1.5)],
+  ["--red", (c, x, y, side) => c.fillRect(x, y, side, side)],
+  ["--pink", (c, x, y, side) => { c.beginPath(); c.moveTo(x, y); c.lineTo(x + side, y + side); c.stroke(); }],
+];
+
+/// The cells of the Δ that a person looks at: [column, row, before, after].
+export function draw_delta(context, view, { delta, is_before }) {
+  if (!delta || is_before || !view.frame) return;
+  const { resolution_m: m, origin_m: [x, y] } = view.frame, side = Math.max(LEAST_CELL_PX, m * view.scale);
+  context.lineWidth = 1.5;
+  for (const [column, row, , after] of delta) {
+    const [px, py] = view.to_screen(x + column * m, y + (row + 1) * m);
+    const [ink, draw] = DELTA_SIGNS[after];
+    context.fillStyle = context.strokeStyle = ink_of(ink);
+    draw(context, px, py, side);
+  }
+}
+
+/// The signs of a Δ's cells, as keys.
+export function fill_delta_legend(host) {
+  host.replaceChildren(...[[1, "became occupied"], [0, "became free"], [2, "forgotten"]].map(([state, text]) => {
+    const key = document.createElement("span");
+    key.className = "key";
+    const [ink, draw] = DELTA_SIGNS[state];
+    key.append(sign_of((c) => { c.fillStyle = c.strokeStyle = ink_of(ink); c.lineWidth = 1.5; draw(c, 6, 2, 10); }), text);
+    return key;
+  }));
+}
+
+/// Where a person is about to say that the robot is. No layer: it cannot be switched off.
+export function draw_wish(context, view, { wish }) {
+  if (!wish) return;
+  draw_ends(context, view, wish.ends);
+  const [x, y] = view.to_screen(wish.x, wish.y);
+  const length = 60, [cos, sin] = [Math.cos(wish.heading), Math.sin(wish.heading)];
+  context.strokeStyle = ink_of("--accent");
+  context.lineWidth = 3;
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(x + length * cos, y - length * sin);
+  context.lineTo(x + (length - 10) * cos + 6 * sin, y - (length - 10) * sin + 6 * cos);
+  context.moveTo(x + length * cos, y - length * sin);
+  context.lineTo(x + (length - 10) * cos - 6 * sin, y - (length - 10) * sin - 6 * cos);
+  context.stroke();
+  robot_sign(context, x, y, wish.heading, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--accent"));
+}
+
 // From below to above.
 export const LAYERS = [
   { id: "path", label: "path", draw: draw_path, sign: (c) => { c.strokeStyle = ink_of("--sky"); c.lineWidth = 2; c.beginPath(); c.moveTo(1, 12); c.lineTo(9, 4); c.lineTo(21, 7); c.stroke(); } },
-  { id: "transient", label: "not (yet) map", draw: draw_transient,
+  { id: "transient", label: "not (yet) map", is_of_now: true, draw: draw_transient,
     keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink_of("--orange"))],
            ["seen gone", (c) => { c.strokeStyle = ink_of("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
-  { id: "scan", label: "scan: beam ends", draw: draw_scan,
+  { id: "scan", label: "scan: beam ends", is_of_now: true, draw: draw_scan,
     keys: [["on the map's obstacles", (c) => { c.fillStyle = ink_of("--green"); c.fillRect(8, 4, 6, 6); }],
            ["where the map is free", (c) => { c.fillStyle = ink_of("--orange"); circle(c, 11, 7, 4); c.fill(); }],
            ["where it is unknown", (c) => { c.fillStyle = ink_of("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
-  { id: "hypothesis", label: "other hypothesis", draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
-  { id: "robot", label: `robot, ${SIGMAS} σ`, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--blue")) },
+  { id: "hypothesis", label: "other hypothesis", is_of_now: true, draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
+  { id: "robot", label: `robot, ${SIGMAS} σ`, is_of_now: true, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--blue")) },
 ];
 
 function sign_of(draw) {

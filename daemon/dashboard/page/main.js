@@ -3,7 +3,9 @@
 
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
-import { draw_scale_bar, fill_legend, has_place, LAYERS } from "./layers.js";
+import { Control } from "./control.js";
+import { History } from "./history.js";
+import { draw_delta, draw_scale_bar, draw_wish, fill_delta_legend, fill_legend, has_place, LAYERS } from "./layers.js";
 import { MapView } from "./map_view.js";
 import { add_changes, clear_changes, mark_picked, show_link, show_pose, show_status } from "./panels.js";
 
@@ -11,7 +13,7 @@ const MOST_SAMPLES = 3600;
 const NARROW_PX = 1280; // the legend would cover the map
 
 const by_id = (id) => document.getElementById(id);
-const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null };
+const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null, wish: null, delta: null };
 const shown = new Set(LAYERS.map((layer) => layer.id));
 
 // --- dark and light: as the system, until a person says otherwise ---
@@ -23,7 +25,9 @@ function apply_theme() {
 apply_theme();
 
 const view = new MapView(by_id("map"), (context) => {
-  for (const layer of LAYERS) if (shown.has(layer.id)) layer.draw(context, view, model);
+  for (const layer of LAYERS) if (shown.has(layer.id) && !(view.past && layer.is_of_now)) layer.draw(context, view, model);
+  draw_delta(context, view, model);
+  draw_wish(context, view, model);
   draw_scale_bar(context, view);
 });
 const charts = new Charts(by_id("charts"), by_id("spans"), by_id("charts-instant"));
@@ -31,6 +35,7 @@ const charts = new Charts(by_id("charts"), by_id("spans"), by_id("charts-instant
 function take_theme() {
   apply_theme();
   fill_legend(by_id("layers"), shown, () => view.draw_soon());
+  fill_delta_legend(by_id("history-keys"));
   view.repaint();
   charts.draw_soon();
 }
@@ -56,6 +61,8 @@ view.on_follow = (follows) => {
 function pick(change, button) {
   model.picked = model.picked === change ? null : change;
   mark_picked(model.picked ? button : null);
+  if (!model.picked || !change.accepted) history.close();
+  else history.show(change.revision);
   if (!model.picked) return view.draw_soon();
   if (!has_place(change)) return view.draw_soon();
   view.set_follow(false);
@@ -63,6 +70,9 @@ function pick(change, button) {
   view.scale = Math.max(view.scale, Math.min(40, 0.4 * view.width / Math.max(1, right - left, top - bottom)));
   view.show((left + right) / 2, (bottom + top) / 2);
 }
+
+const control = new Control(view, model);
+const history = new History(view, model, control.row);
 
 // --- what the daemon sends ---
 
@@ -74,6 +84,7 @@ function note(text) {
 const on = {
   link(link) {
     show_link(link);
+    control.link(link);
     if (link === "lost") note("No connection to the daemon. What is shown is old; trying again …");
     if (link === "live") note("");
   },
@@ -81,6 +92,9 @@ const on = {
     document.title = `deltamap ${hello.version.split(" ")[0]}`;
     charts.thresholds = hello.thresholds;
     charts.instant = null;
+    control.allow(hello.control);
+    history.allow_undo(Boolean(hello.control));
+    history.close();
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
     model.picked = null;
     clear_changes();
@@ -96,12 +110,17 @@ const on = {
     if (view.follows) view.show(pose.x_m, pose.y_m);
     view.draw_soon();
   },
-  scan(scan) { model.scan = scan; },  // a pose comes with it
+  scan(scan) {  // a pose comes with it
+    model.scan = scan;
+    control.relocalize.update();
+  },
   transient(transient) { model.transient = transient; view.draw_soon(); },
   status(message) {
     const before = model.status, now = message.status;
     const passed_s = before ? now.since_start_s - before.since_start_s : 0;
     model.status = now;
+    control.show(now);
+    history.update();
     show_status(message, passed_s > 0 ? (now.localized - before.localized) / passed_s : null);
   },
   samples(rows) {
@@ -117,4 +136,4 @@ const on = {
   },
 };
 
-window.deltamap = { model, view, connection: new Connection(on) };  // to look at in the browser's console
+window.deltamap = { model, view, control, history, connection: new Connection(on) };  // to look at in the browser's console

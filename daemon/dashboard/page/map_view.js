@@ -20,11 +20,14 @@ export class MapView {
     this.draw_soon = once_a_frame(() => this.draw());
     this.frame = null;
     this.tiles = new Map();
+    this.past = null; // tiles of an older revision, shown in their place
     this.centre = { x: 0, y: 0 };
     this.scale = 20;
     this.is_fitted = true; // until a person moves the view
     this.follows = false;
     this.on_follow = () => {};
+    this.hand = null;    // takes one pointer and keys instead: press, drag, release, key
+    this.handed = null;  // the pointer that it has
     this.pointers = new Map();
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.take_pointers();
@@ -44,30 +47,40 @@ export class MapView {
     this.draw_soon();
   }
 
-  tile_at(column, row) {
+  tile_at(column, row, tiles) {
     const key = `${Math.floor(column / SIDE)},${Math.floor(row / SIDE)}`;
-    let tile = this.tiles.get(key);
+    let tile = tiles.get(key);
     if (!tile) {
       const picture = document.createElement("canvas");
       picture.width = picture.height = SIDE;
       tile = { column: Math.floor(column / SIDE) * SIDE, row: Math.floor(row / SIDE) * SIDE, picture,
                states: new Uint8Array(SIDE * SIDE).fill(UNKNOWN) };
-      this.tiles.set(key, tile);
+      tiles.set(key, tile);
     }
     return tile;
   }
 
   /// A box of cells; it lies in one tile.
   set_cells(box) {
-    const tile = this.tile_at(box.column, box.row);
+    this.put(box, this.tiles);
+    this.grow_known(box);
+    if (this.is_fitted) this.fit();
+    this.draw_soon();
+  }
+
+  tiles_of(boxes) {
+    const tiles = new Map();
+    for (const box of boxes) this.put(box, tiles);
+    return tiles;
+  }
+
+  put(box, tiles) {
+    const tile = this.tile_at(box.column, box.row, tiles);
     for (let row = 0; row < box.height; ++row) {
       const to = (box.row - tile.row + row) * SIDE + box.column - tile.column;
       tile.states.set(box.states.subarray(row * box.width, (row + 1) * box.width), to);
     }
     this.paint(tile);
-    this.grow_known(box);
-    if (this.is_fitted) this.fit();
-    this.draw_soon();
   }
 
   grow_known(box) {
@@ -94,7 +107,7 @@ export class MapView {
   }
 
   repaint() {
-    for (const tile of this.tiles.values()) this.paint(tile);
+    for (const tile of [...this.tiles.values(), ...(this.past?.values() ?? [])]) this.paint(tile);
     this.draw_soon();
   }
 
@@ -178,10 +191,15 @@ export class MapView {
     }, { passive: false });
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
+      if (this.hand && this.handed === null && !this.pointers.size) {
+        this.handed = event.pointerId;
+        return this.hand.press(this.to_map(event.offsetX, event.offsetY), at(event));
+      }
       this.pointers.set(event.pointerId, at(event));
       canvas.classList.add("dragging");
     });
     canvas.addEventListener("pointermove", (event) => {
+      if (this.handed === event.pointerId) return this.hand?.drag(this.to_map(event.offsetX, event.offsetY), at(event));
       if (!this.pointers.has(event.pointerId)) return;
       const before = [...this.pointers.values()];
       const own = this.pointers.get(event.pointerId), now = at(event);
@@ -191,6 +209,10 @@ export class MapView {
     });
     for (const end of ["pointerup", "pointercancel"]) {
       canvas.addEventListener(end, (event) => {
+        if (this.handed === event.pointerId) {
+          this.handed = null;
+          this.hand?.release();
+        }
         this.pointers.delete(event.pointerId);
         if (!this.pointers.size) canvas.classList.remove("dragging");
       });
@@ -215,7 +237,9 @@ export class MapView {
     };
     this.canvas.addEventListener("keydown", (event) => {
       const act = keys[event.key];
-      if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (this.hand?.key(event.key)) return event.preventDefault();
+      if (!act) return;
       event.preventDefault();
       act();
     });
@@ -242,7 +266,7 @@ export class MapView {
     if (!this.frame) return;
     const m = this.frame.resolution_m;
     context.imageSmoothingEnabled = m * this.scale * this.dots < 1;
-    for (const tile of this.tiles.values()) {
+    for (const tile of (this.past ?? this.tiles).values()) {
       const [left, bottom] = this.to_screen(this.frame.origin_m[0] + tile.column * m, this.frame.origin_m[1] + tile.row * m);
       const side = SIDE * m * this.scale;
       if (left > this.width || bottom < 0 || left + side < 0 || bottom - side > this.height) continue;

@@ -18,7 +18,7 @@ const std::string kToken = "0123456789abcdef-secret";
 Request good_request() { return {.method = "GET", .path = "/", .query = "", .host = "127.0.0.1:8484"}; }
 
 unsigned status_of(const Request& request, const std::string& token = "") {
-  const auto refusal = refusal_of(request, token);
+  const auto refusal = refusal_of(request, {.token = token});
   return refusal ? refusal->status : 200;
 }
 
@@ -39,6 +39,73 @@ TEST(DashboardAccess, OnlyGetIsAnswered) {
     request.method = method;
     EXPECT_EQ(status_of(request), 405u) << method;
   }
+}
+
+// --- commands ---
+
+Request good_command() {
+  Request request = good_request();
+  request.method = "POST";
+  request.path = "/api/command";
+  request.origin = "http://127.0.0.1:8484";
+  request.content_type = "application/json";
+  return request;
+}
+
+unsigned status_of_command(const Request& request, const std::string& token = "") {
+  const auto refusal = refusal_of(request, {.token = token, .takes_commands = true});
+  return refusal ? refusal->status : 200;
+}
+
+TEST(DashboardAccess, ACommandIsTakenWhereTheSettingsSaySoAndNowhereElse) {
+  EXPECT_EQ(status_of_command(good_command()), 200u);
+  EXPECT_EQ(status_of(good_command()), 403u) << "control is off";
+  Request elsewhere = good_command();
+  elsewhere.path = "/api/status";
+  EXPECT_EQ(status_of_command(elsewhere), 405u);
+}
+
+TEST(DashboardAccess, OnlyPostIsACommand) {
+  for (const char* method : {"GET", "PUT", "DELETE", "HEAD", "OPTIONS", "post", ""}) {
+    Request request = good_command();
+    request.method = method;
+    EXPECT_EQ(status_of_command(request), 405u) << method;
+  }
+}
+
+TEST(DashboardAccess, WhatAFormOfAnotherSiteCanSendIsNoCommand) {
+  for (const char* type : {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x",
+                           "application/jsonp", "text/plain; application/json"}) {
+    Request request = good_command();
+    request.content_type = type;
+    EXPECT_EQ(status_of_command(request), 415u) << type;
+  }
+  Request with_charset = good_command();
+  with_charset.content_type = "application/json; charset=utf-8";
+  EXPECT_EQ(status_of_command(with_charset), 200u);
+  Request foreign = good_command();
+  foreign.origin = "http://evil.example";
+  EXPECT_EQ(status_of_command(foreign), 403u);
+  Request rebound = good_command();
+  rebound.host = "evil.example";
+  EXPECT_EQ(status_of_command(rebound), 421u);
+}
+
+TEST(DashboardAccess, ACommandNeedsTheTokenAsEverythingDoes) {
+  Request request = good_command();
+  EXPECT_EQ(status_of_command(request, kToken), 401u);
+  request.authorization = "Bearer " + kToken;
+  EXPECT_EQ(status_of_command(request, kToken), 200u);
+}
+
+TEST(DashboardAccess, DrivingNeedsATokenAlsoOnThisMachine) {
+  Request request = good_request();
+  request.path = "/drive";
+  EXPECT_EQ(status_of(request), 403u) << "control is off";
+  EXPECT_EQ(status_of_command(request), 403u) << "no token is asked for";
+  EXPECT_EQ(status_of_command(request, kToken), 401u);
+  request.cookie = "deltamap_token=" + kToken;
+  EXPECT_EQ(status_of_command(request, kToken), 200u);
 }
 
 TEST(DashboardAccess, HostsThatAreAddressesOrLocalhostAreAnswered) {

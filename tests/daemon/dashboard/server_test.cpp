@@ -143,7 +143,7 @@ TEST_F(DashboardServer, RefusesLongHeaders) {
 }
 
 TEST_F(DashboardServer, AsksForTheTokenOnEveryPath) {
-  options_.token = "0123456789abcdef";
+  options_.guard.token = "0123456789abcdef";
   start();
   EXPECT_EQ(got("/").status, 401);
   EXPECT_EQ(got("/api/status", "Authorization: Bearer 0123456789abcdeX\r\n").status, 401);

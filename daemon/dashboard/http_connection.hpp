@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// One client over HTTP: a request, its answer, the next request. Included by server.cpp alone.
+#pragma once
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+
+#include "daemon/dashboard/access.hpp"
+#include "daemon/dashboard/connection.hpp"
+
+namespace deltamap::daemon::dashboard {
+
+inline constexpr std::uint32_t kMostHeaderBytes = 8192;
+inline constexpr std::uint64_t kMostBodyBytes = 4096;  // as a line of the control socket
+
+// Nothing of another site runs or is shown here, and nothing of this page there.
+inline constexpr std::pair<const char*, const char*> kEveryAnswer[] = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; base-uri "
+     "'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"X-Frame-Options", "DENY"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cache-Control", "no-store"}};
+
+inline std::string text_of(boost::string_view text) { return {text.data(), text.size()}; }
+
+inline Request request_of(const HttpRequest& request) {
+  const std::string target = text_of(request.target());
+  const auto query = target.find('?');
+  const auto field = [&request](http::field name) { return text_of(request[name]); };
+  return {.method = text_of(request.method_string()),
+          .path = target.substr(0, query),
+          .query = query == std::string::npos ? "" : target.substr(query + 1),
+          .host = field(http::field::host),
+          .origin = field(http::field::origin),
+          .cookie = field(http::field::cookie),
+          .authorization = field(http::field::authorization),
+          .content_type = field(http::field::content_type)};
+}
+
+inline bool is_bad_http(const error_code& error) {
+  return error.category() == make_error_code(http::error::bad_method).category() &&
+         error != http::error::end_of_stream && error != http::error::partial_message;
+}
+
+class HttpConnection final : public Connection, public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(tcp::socket socket, Host& host)
+      : stream_{std::move(socket)}, host_{host}, patience_{stream_.get_executor()} {}
+
+  void listen() {
+    parser_.emplace();
+    parser_->header_limit(kMostHeaderBytes);
+    parser_->body_limit(kMostBodyBytes);
+    stream_.expires_after(kHttpPatience);
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](const error_code& error, std::size_t) { self->take(error); });
+  }
+  void close() override {
+    error_code ignored;
+    patience_.cancel();
+    stream_.socket().close(ignored);
+  }
+
+ private:
+  void take(const error_code& error) {
+    if (tells_why_not_read(error)) return;
+    if (error || host_.is_ending) return host_.end(this);
+    const bool has_body = parser_->chunked() || parser_->content_length().value_or(0) > 0;
+    const HttpRequest& received = parser_->get();
+    const Request request = request_of(received);
+    const unsigned version = received.version();
+    const Guard& guard = host_.options.guard;
+    if (const auto entry = entry_of(request, guard.token)) return say(*entry, version, false);
+    if (auto refusal = refusal_of(request, guard)) return say(*refusal, version, false);
+    if (request.path == kCommandPath) return read_command(request, version);
+    if (has_body) return say({.status = 413, .body = "a request has no body here\n"}, version, false);
+    if (request.path == "/live" || request.path == kDrivePath) return take_viewer(request.path);
+    say(answer_to(request), version, received.keep_alive());
+  }
+
+  bool tells_why_not_read(const error_code& error) {
+    if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+      say({.status = 431, .body = "the header is too long\n"}, 11, false);
+    } else if (error == http::error::body_limit) {
+      say({.status = 413, .body = "the body is too long\n"}, 11, false);
+    } else if (is_bad_http(error)) {
+      say({.status = 400, .body = "that is no HTTP request\n"}, 11, false);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  /// A request that cannot be answered, for want of memory say, fails alone.
+  [[nodiscard]] Answer answer_to(const Request& request) const {
+    try {
+      return host_.options.answer(request);
+    } catch (const std::exception& error) {
+      return {.status = 500, .body = std::string(error.what()) + "\n"};
+    }
+  }
+
+  void read_command(const Request& request, unsigned version) {
+    if (parser_->chunked() || !parser_->content_length()) {
+      return say({.status = 411, .body = "a command needs Content-Length\n"}, version, false);
+    }
+    stream_.expires_after(kHttpPatience);
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this(), request](const error_code& error, std::size_t) {
+                       self->take_command(error, request);
+                     });
+  }
+
+  void take_command(const error_code& error, Request request) {
+    if (tells_why_not_read(error)) return;
+    if (error || host_.is_ending) return host_.end(this);
+    request.body = parser_->get().body();
+    const unsigned version = parser_->get().version();
+    const bool goes_on = parser_->get().keep_alive();
+    patience_.expires_after(duration_of(host_.options.command_patience_s));
+    patience_.async_wait([self = shared_from_this(), number = ++command_, version](const error_code& cancelled) {
+      if (!cancelled) self->reply(number, self->host_.options.late_answer, version, false);
+    });
+    host_.options.command(request, [self = weak_from_this(), number = command_, version, goes_on,
+                                    to = stream_.get_executor()](Answer answer) {
+      asio::post(to, [self, number, version, goes_on, answer = std::move(answer)] {
+        if (const auto connection = self.lock()) connection->reply(number, answer, version, goes_on);
+      });
+    });
+  }
+
+  void reply(std::uint64_t number, const Answer& answer, unsigned version, bool goes_on) {
+    if (number != command_ || !stream_.socket().is_open()) return;
+    ++command_;  // the first one counts
+    patience_.cancel();
+    say(answer, version, goes_on);
+  }
+
+  void take_viewer(const std::string& path) {
+    const HttpRequest request = parser_->release();
+    if (!websocket::is_upgrade(request)) {
+      return say({.status = 426, .body = path + " is a WebSocket\n", .headers = {{"Upgrade", "websocket"}}}, 11, false);
+    }
+    const auto self = shared_from_this();  // outlives its place in the list
+    stream_.expires_never();
+    host_.upgrade(std::move(stream_), request);
+    std::erase_if(host_.connections, [this](const auto& connection) { return connection.get() == this; });
+  }
+
+  void say(const Answer& answer, unsigned version, bool goes_on) {
+    response_ = {static_cast<http::status>(answer.status), version};
+    for (const auto& [name, value] : kEveryAnswer) response_.set(name, value);
+    for (const auto& [name, value] : answer.headers) response_.set(name, value);
+    response_.set(http::field::content_type, answer.type);
+    response_.body() = answer.body;
+    response_.keep_alive(goes_on);
+    response_.prepare_payload();
+    stream_.expires_after(kHttpPatience);
+    http::async_write(stream_, response_, [self = shared_from_this(), goes_on](const error_code& error, std::size_t) {
+      if (!error && goes_on) return self->listen();
+      self->host_.end(self.get());
+    });
+  }
+
+  beast::tcp_stream stream_;
+  Host& host_;
+  asio::steady_timer patience_;  // for what becomes of a command
+  std::uint64_t command_ = 0;    // counts the commands that were taken, and their answers
+  beast::flat_buffer buffer_{kMostHeaderBytes + kMostBodyBytes + 1024};
+  std::optional<http::request_parser<http::string_body>> parser_;
+  http::response<http::string_body> response_;
+};
+
+}  // namespace deltamap::daemon::dashboard

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The buttons that command. They are there where the daemon takes commands from the page; STOP is never covered.
+
+import { command, TaskRow } from "./commands.js";
+import { HandDrive } from "./drive.js";
+import { Relocalize } from "./relocalize.js";
+
+const by_id = (id) => document.getElementById(id);
+
+export class Control {
+  constructor(view, model) {
+    this.row = new TaskRow(by_id("task"));
+    this.relocalize = new Relocalize(view, model, this.row, () => this.mark());
+    this.hand = new HandDrive(by_id("pad"), (why) => {
+      this.mark();
+      this.row.tell(`No longer driven by hand: ${why}. The robot stands.`, "warn");
+    });
+    by_id("stop").addEventListener("click", () => this.stop());
+    by_id("save").addEventListener("click", () => this.row.run({ command: "save" }, "saving …"));
+    by_id("pause").addEventListener("click", () => this.pause());
+    by_id("relocalize").addEventListener("click", () => (this.relocalize.is_on ? this.relocalize.end() : this.relocalize.begin()));
+    by_id("wander").addEventListener("click", () => this.wander());
+    by_id("drive").addEventListener("click", () => this.drive());
+  }
+
+  /// `allowed`: null, or {drive}.
+  allow(allowed) {
+    by_id("controls").hidden = !allowed;
+    by_id("drive").hidden = by_id("wander").hidden = !allowed?.drive;
+    this.is_allowed = Boolean(allowed);
+  }
+
+  link(link) {
+    for (const button of by_id("controls").querySelectorAll("button:not(#stop)")) button.disabled = link !== "live";
+    if (link === "lost") this.hand.end("the connection is lost");
+  }
+
+  show(status) {
+    this.mapping = status.mapping;
+    by_id("pause").textContent = status.mapping === "paused" ? "Resume mapping" : "Pause mapping";
+    by_id("pause").disabled = status.mapping !== "paused" && status.mapping !== "on";
+    by_id("stop").dataset.drives = String(status.drive !== "off");
+  }
+
+  mark() {
+    by_id("relocalize").setAttribute("aria-pressed", String(this.relocalize.is_on));
+    by_id("drive").setAttribute("aria-pressed", String(this.hand.drives));
+  }
+
+  /// First of all, and whatever else is going on; again until the daemon says that it is done.
+  async stop() {
+    this.hand.end("STOP");
+    this.row.tell("stopping …", "wait", 60000);
+    let answer = await command({ command: "drive", mode: "off" });
+    for (let i = 0; i < 3 && !answer.ok; ++i) answer = await command({ command: "drive", mode: "off" });
+    if (answer.ok) this.row.tell(`STOP: ${answer.message}`, "good");
+    else this.row.tell(`STOP: ${answer.error}. Press STOP on the robot.`, "bad", 60000);
+  }
+
+  async pause() {
+    const to = this.mapping === "paused" ? "resume" : "pause";
+    await this.row.run({ command: to }, `${to} …`);
+  }
+
+  wander() {
+    this.row.ask("Let the robot drive about by itself?", [["Let it drive", () => this.row.run({ command: "drive", mode: "wander" }, "switching on …")]]);
+  }
+
+  drive() {
+    if (this.hand.drives) return this.hand.end("ended here");
+    this.row.ask("Take the robot in hand? Its motors come on; the pilot stays off until somebody says wander.", [["Drive by hand", () => {
+      this.row.hide();
+      this.hand.begin();
+      this.mark();
+    }]]);
+  }
+}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Driving by hand (docs/api.md, /drive): while keys or the pad are held the robot moves. The daemon asks ten times a
+// second; whatever keeps the answer from it (a lost connection, a closed or hidden tab) makes the robot stand.
+
+const SPEED_M_PER_S = 0.25, TURN_RAD_PER_S = 0.7;
+const SILENCE_MS = 1000; // of the daemon
+const KEYS = { ArrowUp: "ahead", w: "ahead", ArrowLeft: "left", a: "left", ArrowRight: "right", d: "right" };
+
+export class HandDrive {
+  /// `on_end(why)` when it is over, by whom ever; `pad` holds a button for each of ahead, left, right (data-go).
+  constructor(pad, on_end) {
+    this.pad = pad;
+    this.on_end = on_end;
+    this.held = new Set();
+    this.socket = null;
+    document.addEventListener("keydown", (event) => this.take_key(event, true), true);
+    document.addEventListener("keyup", (event) => this.take_key(event, false), true);
+    for (const button of pad.querySelectorAll("[data-go]")) this.take_button(button);
+    addEventListener("blur", () => this.release());
+    document.addEventListener("visibilitychange", () => { if (document.hidden) this.end("the tab was hidden"); });
+    addEventListener("pagehide", () => this.end("the page was left"));
+  }
+
+  get drives() { return this.socket !== null; }
+
+  begin() {
+    if (this.drives || document.hidden) return;
+    this.held.clear();
+    this.beat = null;
+    const socket = new WebSocket(`ws://${location.host}/drive`);
+    this.socket = socket;
+    socket.onmessage = (event) => { if (socket === this.socket) this.hear(JSON.parse(event.data)); };
+    socket.onclose = () => { if (socket === this.socket) this.end("the connection is lost"); };
+    this.await_beat();
+  }
+
+  hear(message) {
+    if (message.type === "taken") {
+      this.pad.hidden = false;
+      this.pad.querySelector("[data-go]").focus();
+    } else if (message.type === "beat") {
+      this.beat = message.number;
+      this.await_beat();
+      this.speak();
+    } else {
+      this.end(message.why);
+    }
+  }
+
+  await_beat() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.end("the daemon is not heard"), SILENCE_MS);
+  }
+
+  /// Nothing is piled up: what cannot leave now would come too late.
+  speak() {
+    if (this.beat === null || this.socket?.readyState !== WebSocket.OPEN || this.socket.bufferedAmount > 0) return;
+    const turn = (this.held.has("left") ? 1 : 0) - (this.held.has("right") ? 1 : 0);
+    this.socket.send(JSON.stringify({ beat: this.beat, speed_m_per_s: this.held.has("ahead") ? SPEED_M_PER_S : 0,
+                                      turn_rate_rad_per_s: turn * TURN_RAD_PER_S }));
+  }
+
+  hold(way, is_held) {
+    if (is_held === this.held.has(way)) return;
+    if (is_held) this.held.add(way); else this.held.delete(way);
+    this.pad.querySelector(`[data-go="${way}"]`).classList.toggle("held", is_held);
+    this.speak();
+  }
+
+  release() {
+    for (const way of [...this.held]) this.hold(way, false);
+  }
+
+  end(why) {
+    if (!this.drives) return;
+    const socket = this.socket;
+    this.release();
+    this.socket = null;
+    clearTimeout(this.timer);
+    socket.close();
+    this.pad.hidden = true;
+    this.on_end(why);
+  }
+
+  take_key(event, is_down) {
+    if (!this.drives || this.pad.hidden) return;
+    if (is_down && event.key === "Escape") {
+      event.preventDefault();
+      return this.end("ended by Escape");
+    }
+    const way = KEYS[event.key];
+    if (!way || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    event.stopPropagation(); // the map does not move as well
+    this.hold(way, is_down);
+  }
+
+  take_button(button) {
+    const way = button.dataset.go;
+    button.addEventListener("pointerdown", (event) => {
+      event.preventDefault();
+      button.setPointerCapture(event.pointerId);
+      this.hold(way, true);
+    });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      button.addEventListener(end, () => this.hold(way, false));
+    }
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+}

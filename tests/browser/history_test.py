@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The history of the map on the live page, in Chromium, with a simulated robot behind it: ./dev test browser."""
+
+import json
+import unittest
+
+from page_test import PICTURES, SHOWS_MAP
+from running_daemon import RunningDaemon
+from webdriver import Browser
+
+TEXT = 'document.querySelector("#history-text").textContent'
+IS_SHOWN = f'!document.querySelector("#history-bar").hidden && window.deltamap.model.delta && !{TEXT}.endsWith("…")'
+# Cells that the shown tiles have, by state.
+COUNTS = """const { view } = window.deltamap, counts = [0, 0, 0];
+for (const tile of (view.past ?? view.tiles).values()) for (const state of tile.states) ++counts[state];
+return counts;"""
+# How the cells of the shown delta stand in the shown tiles: as before it, and as after it.
+OF_DELTA = """const { view, model } = window.deltamap, side = 256;
+const state = (column, row) => {
+  const tile = view.past.get(`${Math.floor(column / side)},${Math.floor(row / side)}`);
+  return tile ? tile.states[(row - tile.row) * side + column - tile.column] : 2;
+};
+return [2, 3].map((at) => model.delta.filter((cell) => state(cell[0], cell[1]) === cell[at]).length).concat(model.delta.length);"""
+
+
+class HistoryTest(unittest.TestCase):
+    """One robot for all, which has changed its map."""
+
+    @classmethod
+    def setUpClass(cls):
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        cls.daemon = RunningDaemon(change_every_s=10, token="of-the-browser-tests")
+        cls.daemon._until(lambda: cls.daemon.status()["newest_revision"] >= 3, 240)
+        cls.daemon.ctl("pause")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.__exit__()
+
+    def open(self, width=1280, height=800, mobile=False, dark=False):
+        browser = Browser(width, height, dark, mobile)
+        self.addCleanup(browser.__exit__)
+        browser.open(self.daemon.page())
+        browser.wait(SHOWS_MAP)
+        browser.wait("window.deltamap.model.status && document.querySelectorAll('#changes button').length > 2")
+        return browser
+
+    def pick(self, browser, revision):
+        browser.run("""const name = `M${arguments[0]}`;
+            [...document.querySelectorAll("#changes button")].find((one) => one.querySelector("b").textContent === name).click()""", revision)
+        browser.wait(f"{IS_SHOWN} && {TEXT}.startsWith('M{revision} of ')")
+
+    def slide_to(self, browser, revision):
+        browser.run("""const slider = document.querySelector("#history-slider");
+            slider.value = arguments[0];
+            slider.dispatchEvent(new Event("input"))""", revision)
+        browser.wait(f"{IS_SHOWN} && {TEXT}.startsWith('M{revision} of ')")
+
+    def test_a_picked_change_is_shown_before_and_after(self):
+        for dark in (False, True):
+            browser = self.open(1440, 900, dark=dark)
+            self.pick(browser, 2)
+            before, after, cells = browser.run(OF_DELTA)
+            self.assertEqual((before, after), (0, cells))
+            self.assertGreater(cells, 0)
+            browser.screenshot(PICTURES / f"history-{'dark' if dark else 'light'}.png")
+            browser.run("document.querySelector('#history-before').click()")
+            self.assertEqual(browser.run(OF_DELTA), [cells, 0, cells])
+            browser.screenshot(PICTURES / f"history-before-{'dark' if dark else 'light'}.png")
+            self.assertEqual(browser.errors(), [])
+
+    def test_the_slider_walks_from_the_first_map_to_the_newest(self):
+        browser = self.open()
+        live = browser.run(COUNTS)
+        newest = self.daemon.status()["newest_revision"]
+        browser.run("document.querySelector('#history').click()")
+        browser.wait(IS_SHOWN)
+        self.assertEqual(browser.run("return Number(document.querySelector('#history-slider').max)"), newest)
+        shown = browser.run(COUNTS)
+        self.assertEqual(shown[:2], live[:2])
+        self.slide_to(browser, 0)
+        self.assertNotEqual(browser.run(COUNTS)[:2], live[:2])
+        self.assertTrue(browser.run("return document.querySelector('#history-undo').disabled"))
+        browser.press("#history-slider", "\ue014")  # the right arrow
+        browser.wait(f"{TEXT}.startsWith('M1 of ')")
+        browser.press("#history-slider", "\ue00c")  # Escape
+        self.assertEqual(browser.run("return window.deltamap.view.past"), None)
+        self.assertEqual(browser.run(COUNTS), live)
+        self.assertEqual(browser.errors(), [])
+
+    def test_undo_asks_first_and_shows_what_the_daemon_says(self):
+        browser = self.open()
+        self.pick(browser, 1)
+        browser.run("""window.sent = [];
+            const real = window.fetch;
+            window.fetch = (address, options) => { if (address === "/api/command") window.sent.push(options.body); return real(address, options); };""")
+        browser.run("document.querySelector('#history-undo').click()")
+        browser.wait("!document.querySelector('#task').hidden")
+        self.assertEqual(browser.run("return window.sent"), [])
+        browser.run("document.querySelector('.task-buttons button').click()")
+        browser.wait("['good', 'bad'].includes(document.querySelector('#task').dataset.level)")
+        self.assertEqual([json.loads(body) for body in browser.run("return window.sent")], [{"command": "undo", "revision": 1}])
+        self.assertGreater(len(browser.run("return document.querySelector('.task-text').textContent")), 5)
+
+    def test_fits_a_phone_and_a_netbook(self):
+        for width, height, mobile in ((390, 844, True), (1024, 600, False)):
+            with self.subTest(width=width):
+                browser = self.open(width, height, mobile)
+                self.pick(browser, 2)
+                self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+                wide = browser.run("""const map = document.querySelector("#map-section").getBoundingClientRect();
+                    return [...document.querySelectorAll("#map-foot *")].filter((one) => one.getBoundingClientRect().right > map.right
+                      || one.getBoundingClientRect().bottom > map.bottom).map((one) => one.id)""")
+                self.assertEqual(wide, [])
+                browser.screenshot(PICTURES / f"history-{width}.png")
+
+    def test_machines_read_maps_and_scan(self):
+        self.assertTrue(self.daemon.get("/api/map.pgm").startswith(b"P5\n"))
+        self.assertIn(b"image: map.pgm", self.daemon.get("/api/map.yaml"))
+        self.assertGreater(len(json.loads(self.daemon.get("/api/scan"))["ends_m"]), 50)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
