@@ -109,13 +109,15 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   return answer;
 }
 
-/// The particles take over from the surfaces. These may have erred by as much as a slip.
+/// The particles take over from the surfaces, as unsure as these were, or where they were sure and have failed, by as
+/// much as a slip.
 void Tracker::go_on_from(const RefinedPose& believed, const ScanInstant& now) {
   const PoseCovariance& spread = believed.covariance;
   const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
   const double deviation_rad = std::sqrt(std::max(0.0, spread(2, 2)));
-  (void)start_around({believed.map_from_robot, std::max(params_.motion.slip_m, deviation_m),
-                      std::max(params_.motion.slip_rad, deviation_rad)},
+  const double slipped = SurfaceTrack::is_one_place(spread) ? 1.0 : 0.0;
+  (void)start_around({believed.map_from_robot, std::max(slipped * params_.motion.slip_m, deviation_m),
+                      std::max(slipped * params_.motion.slip_rad, deviation_rad)},
                      now);
 }
 
