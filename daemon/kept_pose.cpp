@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "daemon/fingerprint.hpp"
 
@@ -30,6 +31,17 @@ std::optional<double> number_in(const Json& json, const char* key) {
   return std::isfinite(number) ? std::optional{number} : std::nullopt;
 }
 
+/// Nothing where none was written, or something else.
+std::optional<localization::DriveCalibration> calibration_in(const Json& json) {
+  const auto found = json.find("calibration");
+  if (found == json.end() || !found->is_array()) return std::nullopt;
+  std::vector<double> numbers;
+  for (const Json& number : *found) {
+    if (number.is_number()) numbers.push_back(number.get<double>());
+  }
+  return localization::calibration_of(numbers);
+}
+
 /// Nothing where it is not what json_text() writes.
 std::optional<KeptPose> pose_in(const Json& json, std::uint64_t first_map) {
   if (!json.is_object()) return std::nullopt;
@@ -48,6 +60,7 @@ std::optional<KeptPose> pose_in(const Json& json, std::uint64_t first_map) {
   pose.time = timestamp_from_ns(time->get<std::int64_t>());
   pose.map_from_robot = {*x, *y, wrapped_angle(*heading)};
   pose.is_sure = sure->get<bool>();
+  pose.calibration = calibration_in(json);
   return pose;
 }
 
@@ -73,6 +86,7 @@ std::string json_text(const KeptPose& pose) {
   const PoseCovariance& c = pose.covariance;
   json["covariance"] = {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
   json["sure"] = pose.is_sure;
+  if (pose.calibration) json["calibration"] = localization::numbers_of(*pose.calibration);
   return json.dump() + "\n";
 }
 
@@ -91,6 +105,8 @@ KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t f
   const Json json = Json::parse(text.str(), nullptr, false);
   const auto pose = pose_in(json, first_map);
   if (!pose) return refused("holds no pose");
+  answer.calibration = pose->calibration;
+  if (answer.calibration) answer.fingerprint = fingerprint_of(text.str());
   const auto map = json.find("map");
   if (map == json.end() || *map != hex_of(first_map)) return refused("the pose belongs to another map");
   if (!pose->is_sure) return refused("the robot did not know where it was");

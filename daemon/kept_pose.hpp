@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What outlives a run besides the revisions of the map: where the robot stood last. A small file beside the store,
+// What outlives a run besides the revisions of the map: where the robot stood last, and what was learned of its wheels
+// and its laser's mount. A small file beside the store,
 // replaced whole every few seconds and at the stop, so that a start after a crash or a power cut finds the robot where
 // it was left. Belongs to one M_0: a pose in another map means nothing.
 #pragma once
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "core/messages.hpp"
+#include "localization/drive_calibration.hpp"
 
 namespace deltamap::daemon {
 
@@ -20,6 +22,7 @@ struct KeptPose {
   Pose2 map_from_robot;
   PoseCovariance covariance = PoseCovariance::Zero();
   bool is_sure = false;  ///< tracking, and nothing spoke against the pose; else a start does not use it
+  std::optional<localization::DriveCalibration> calibration{};  ///< a start uses it whatever the pose is worth
 };
 
 /// Where things are kept that belong to a store; all empty where there is none.
@@ -35,8 +38,9 @@ struct MemoryPlaces {
 /// The pose that a start may use, or why there is none.
 struct KeptPoseAnswer {
   std::optional<KeptPose> pose;
+  std::optional<localization::DriveCalibration> calibration{};
   std::string why_not;            ///< one line that names the file; empty where there is none to be read
-  std::uint64_t fingerprint = 0;  ///< of the file, where its pose may be used
+  std::uint64_t fingerprint = 0;  ///< of the file, where anything in it may be used
 };
 [[nodiscard]] KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t first_map);
 

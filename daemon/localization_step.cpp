@@ -36,6 +36,7 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
       last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
   if (start.revision > 0)
     apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
+  if (start.calibration) localizer_.restore(*start.calibration);
   if (start.stability) (void)localizer_.restore(*start.stability);  // of other tiles than ours: begins anew
 }
 

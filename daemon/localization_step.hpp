@@ -23,7 +23,8 @@ struct StartMap {
   std::uint32_t revision = 0;
   /// map_from_robot at the end of the run before; the settings' pose goes before it.
   std::optional<Pose2> remembered{};
-  std::optional<localization::StabilityRecord> stability{};  ///< what earlier runs have learned of this map
+  std::optional<localization::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
+  std::optional<localization::DriveCalibration> calibration{};  ///< and of wheels and mount
 };
 
 /// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.

@@ -8,11 +8,12 @@
 namespace deltamap::daemon {
 namespace {
 
-/// "revision=3, kept pose, stability"
+/// "revision=3, kept pose, stability, wheels and mount"
 std::string content_of(const StartMap& start) {
   std::string content = "revision=" + std::to_string(start.revision);
   if (start.remembered) content += ", kept pose";
   if (start.stability) content += ", stability";
+  if (start.calibration) content += ", wheels and mount";
   return content;
 }
 

@@ -68,6 +68,10 @@ std::optional<RunBegin> begin_in(const Json& head, std::string_view bytes) {
   if (const auto pose = head.find("pose"); pose != head.end()) {
     begin.start.remembered = Pose2{pose->at(0).get<double>(), pose->at(1).get<double>(), pose->at(2).get<double>()};
   }
+  if (const auto calibration = head.find("calibration"); calibration != head.end()) {
+    begin.start.calibration = localization::calibration_of(calibration->get<std::vector<double>>());
+    if (!begin.start.calibration) return std::nullopt;
+  }
   const auto map_size = head.at("map_bytes").get<std::size_t>();
   if (map_size > bytes.size()) return std::nullopt;
   if (const auto map = head.find("map"); map != head.end()) {
@@ -98,7 +102,7 @@ std::optional<RunBegin> begin_of(const std::string& content) {
 
 std::vector<std::string> begin_notes(const RunBegin& begin) {
   const StartMap& start = begin.start;
-  if (start.revision == 0 && !start.remembered && !start.stability) return {};
+  if (start.revision == 0 && !start.remembered && !start.stability && !start.calibration) return {};
   Json head{{"first_map", begin.first_map}, {"memory", begin.memory}, {"revision", start.revision}};
   Bytes bytes;
   if (start.revision > 0) {
@@ -106,6 +110,7 @@ std::vector<std::string> begin_notes(const RunBegin& begin) {
     bytes = mapping::encoded_grid(*start.map);
   }
   head["map_bytes"] = bytes.size();
+  if (start.calibration) head["calibration"] = localization::numbers_of(*start.calibration);
   if (start.remembered) head["pose"] = {start.remembered->x, start.remembered->y, start.remembered->theta};
   if (start.stability) {
     head["stability"] = as_json(start.stability->geometry);

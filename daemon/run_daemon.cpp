@@ -92,14 +92,16 @@ void tell_start(const Settings& settings, const CommandLine& line, const StartMa
   }
 }
 
-/// Where the run before has left the robot; a pose that a person gave goes before it.
+/// Where the run before has left the robot, and what it has learned of wheels and mount; a pose that a person gave goes
+/// before its pose.
 void remember_pose(const Settings& settings, Pipeline::Options& options, Console& console) {
-  if (settings.initial_pose) return;
   const auto answer = read_kept_pose(memory_places(settings.map.store).pose, options.first_map);
+  options.start.calibration = answer.calibration;
+  options.memory ^= answer.fingerprint;
+  if (settings.initial_pose) return;
   if (!answer.why_not.empty()) console.log(spdlog::level::warn, "no pose to begin with: " + answer.why_not);
   if (!answer.pose) return;
   options.start.remembered = answer.pose->map_from_robot;
-  options.memory ^= answer.fingerprint;
   console.log(spdlog::level::info, begin_line(*answer.pose));
 }
 

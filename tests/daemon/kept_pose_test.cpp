@@ -42,6 +42,20 @@ TEST(KeptPose, ComesBackBitForBit) {
   EXPECT_NE(answer.fingerprint, 0u);
 }
 
+TEST(KeptPose, WheelsAndMountComeBackThoughThePoseIsOfNoUse) {
+  const test::TemporaryFolder folder;
+  KeptPose lost = some_pose();
+  lost.is_sure = false;
+  lost.calibration = localization::DriveCalibration{
+      {1.0 / 7.0, -0.02, 1e-9, 0.1}, {0.01, 0.02, 0.03, 0.04}, {0.01, -0.01, 1.0 / 300.0}, {0.001, 0.002, 0.003}};
+  const auto file = folder.write("store.pose.json", json_text(lost));
+  const KeptPoseAnswer answer = read_kept_pose(file, 1);
+  EXPECT_FALSE(answer.pose);
+  ASSERT_TRUE(answer.calibration);
+  EXPECT_EQ(numbers_of(*answer.calibration), numbers_of(*lost.calibration));
+  EXPECT_NE(answer.fingerprint, 0u) << "the run begins from it";
+}
+
 TEST(KeptPose, WithoutAFileThereIsNothingToSay) {
   const test::TemporaryFolder folder;
   const KeptPoseAnswer answer = read_kept_pose(folder.path() / "store.pose.json", 1);

@@ -47,6 +47,8 @@ class RestartTest : public test::PipelineFixture {
     options.start = {std::make_shared<const OccupancyGrid>(store.grid(store.newest())), store.newest()};
     options.start.remembered = pose.pose->map_from_robot;
     options.start.stability = stability.kept->record;
+    ASSERT_TRUE(pose.calibration);
+    options.start.calibration = pose.calibration;
     options.memory = pose.fingerprint ^ stability.fingerprint;
   }
 
@@ -70,7 +72,7 @@ TEST_F(RestartTest, ItsRecordingGivesTheSameBytesFromTheFirstMapAlone) {
   for (const char* left : {"store.pose.json", "store.stability"}) fs::remove(folder_.path() / left);
   const RunReport again = replay("live.pcapng", "replayed");
   EXPECT_EQ(again.began.find("what the recorded run began from: revision="), 0u) << again.began;
-  EXPECT_NE(again.began.find(", kept pose, stability"), std::string::npos) << again.began;
+  EXPECT_NE(again.began.find(", kept pose, stability, wheels and mount"), std::string::npos) << again.began;
   EXPECT_EQ(again.journal, "obeyed");
   EXPECT_EQ(again.journal_differences, 0u);
   expect_same_files("live", "replayed");

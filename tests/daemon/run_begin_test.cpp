@@ -28,6 +28,8 @@ RunBegin large_begin() {
   begin.start.revision = 7;
   begin.start.remembered = Pose2{1.0 / 3.0, -2e-9, 3.0 / 7.0};
   begin.start.stability = std::move(stability);
+  begin.start.calibration = localization::DriveCalibration{
+      {1.0 / 7.0, -0.02, 1e-9, 0.1}, {0.01, 0.02, 0.03, 0.04}, {0.01, -0.01, 1.0 / 300.0}, {0.001, 0.002, 0.003}};
   return begin;
 }
 
@@ -53,6 +55,8 @@ TEST(RunBegin, SurvivesTheRecordingBitForBitWhateverItsSize) {
   EXPECT_EQ(back.start.revision, 7u);
   EXPECT_EQ(*back.start.map, *begin.start.map);
   EXPECT_EQ(back.start.remembered, begin.start.remembered);
+  ASSERT_TRUE(back.start.calibration);
+  EXPECT_EQ(numbers_of(*back.start.calibration), numbers_of(*begin.start.calibration));
   EXPECT_EQ(back.start.stability->bytes, begin.start.stability->bytes);
   EXPECT_EQ(back.start.stability->geometry, begin.start.stability->geometry);
   EXPECT_EQ(back.start.stability->cells_a_tile, 4);
@@ -110,7 +114,7 @@ TEST(ReplayStart, IsWhatTheRunBeganFromOnTheFirstMapAndOnItsOwn) {
   for (const auto& given : {first, begin.start.map}) {
     const ReplayStart on = replay_start(recorded, ReplayJob{}, given);
     EXPECT_EQ(on.journal, "obeyed");
-    EXPECT_EQ(on.began, "what the recorded run began from: revision=7, kept pose, stability");
+    EXPECT_EQ(on.began, "what the recorded run began from: revision=7, kept pose, stability, wheels and mount");
     EXPECT_EQ(*on.start.map, *begin.start.map);
     EXPECT_EQ(on.start.revision, 7u);
     EXPECT_EQ(on.start.remembered, begin.start.remembered);
