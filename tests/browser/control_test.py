@@ -20,7 +20,7 @@ return document.elementFromPoint(box.left + box.width / 2, box.top + box.height 
 
 
 class ControlTest(unittest.TestCase):
-    """One robot for all; each test leaves it wandering."""
+    """One robot for all; each test finds it wandering."""
 
     @classmethod
     def setUpClass(cls):
@@ -31,9 +31,9 @@ class ControlTest(unittest.TestCase):
     def tearDownClass(cls):
         cls.daemon.__exit__()
 
-    def tearDown(self):
+    def setUp(self):
         self.daemon.ctl("drive", "off")  # out of whose hand ever
-        self.until(lambda: self.daemon.ctl("drive", "wander").returncode == 0)
+        self.until(lambda: self.daemon.ctl("drive", "wander").returncode == 0, 30)
 
     def open(self, width=1280, height=800, mobile=False, dark=False):
         browser = Browser(width, height, dark, mobile)
