@@ -11,6 +11,7 @@ from running_daemon import RunningDaemon
 from webdriver import Browser
 
 UP, LEFT, ESCAPE, ENTER = "\ue013", "\ue012", "\ue00c", "\ue007"
+SHIFT, CONTROL = "\ue008", "\ue009"
 HAS_CONTROL = '!document.querySelector("#controls").hidden'
 TASK = 'document.querySelector("#task .task-text").textContent'
 IS_TAKEN = '!document.querySelector("#pad").hidden'
@@ -181,6 +182,21 @@ class ControlTest(unittest.TestCase):
         browser.wait("window.deltamap.control.hand.held.size === 1")
         browser.run("dispatchEvent(new Event('blur'))")
         self.assertEqual(browser.run("return window.deltamap.control.hand.held.size"), 0)
+        self.until(self.is_still)
+
+    def test_a_key_that_goes_up_under_a_modifier_is_released(self):
+        held = "return window.deltamap.control.hand.held.size"
+        browser = self.open()
+        self.take_in_hand(browser)
+        for key, modifier in (UP, CONTROL), ("w", SHIFT):
+            with self.subTest(key):
+                browser.keys(("down", key))
+                self.assertEqual(browser.run(held), 1)
+                browser.keys(("down", modifier), ("up", key))
+                self.assertEqual(browser.run(held), 0)
+                browser.keys(("up", modifier))
+        browser.keys(("down", UP), ("down", CONTROL))
+        self.assertEqual(browser.run(held), 0)
         self.until(self.is_still)
 
     def test_nothing_to_command_where_control_is_off(self):

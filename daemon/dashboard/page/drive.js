@@ -4,7 +4,7 @@
 
 const SPEED_M_PER_S = 0.25, TURN_RAD_PER_S = 0.7;
 const SILENCE_MS = 1000; // of the daemon
-const KEYS = { ArrowUp: "ahead", w: "ahead", ArrowLeft: "left", a: "left", ArrowRight: "right", d: "right" };
+const KEYS = { ArrowUp: "ahead", KeyW: "ahead", ArrowLeft: "left", KeyA: "left", ArrowRight: "right", KeyD: "right" }; // by place
 
 export class HandDrive {
   /// `on_end(why)` when it is over, by whom ever; `pad` holds a button for each of ahead, left, right (data-go).
@@ -88,8 +88,10 @@ export class HandDrive {
       event.preventDefault();
       return this.end("ended by Escape");
     }
-    const way = KEYS[event.key];
-    if (!way || event.ctrlKey || event.metaKey || event.altKey) return;
+    // A release under a modifier counts; and some systems never tell of one.
+    if (is_down && (event.ctrlKey || event.metaKey || event.altKey)) return this.release();
+    const way = KEYS[event.code];
+    if (!way) return;
     event.preventDefault();
     event.stopPropagation(); // the map does not move as well
     this.hold(way, is_down);
