@@ -28,8 +28,11 @@ MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double
 }
 
 Pose2 counted_between(const ScanInstant& before, const ScanInstant& now) {
-  if (!now.odometry || !before.odometry || now.odometry->epoch != before.odometry->epoch) return {};
-  return motion_between(before.odometry->odom_from_robot, now.odometry->odom_from_robot);
+  if (!now.odometry || !before.odometry) return {};
+  const OdometryAt& from = *before.odometry;
+  const OdometryAt& to = *now.odometry;
+  return from.epoch == to.epoch ? motion_between(from.odom_from_robot, to.odom_from_robot)
+                                : motion_between(from.joined_from_robot, to.joined_from_robot);
 }
 
 MotionSince step_between(const ScanInstant& before, const ScanInstant& now) {

@@ -24,7 +24,8 @@ struct MotionSince {
 /// the epoch has changed too.
 [[nodiscard]] MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double usual_s);
 
-/// What the wheels counted, their systematic errors included; nothing across two epochs.
+/// What the wheels counted, their systematic errors included; across two epochs without them, as nothing else joins
+/// these.
 [[nodiscard]] Pose2 counted_between(const ScanInstant& before, const ScanInstant& now);
 
 /// From one scan to the next: where the epoch has changed, nothing is known of what passed between.

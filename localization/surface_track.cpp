@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/surface_track.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -26,6 +27,18 @@ const PoseCovariance kOfAPose = Eigen::Vector3d{9e-4, 9e-4, 2.5e-5}.asDiagonal()
 constexpr double kStrangest = 25.0;    // squared deviations: a slip is no measure of how the wheels usually do
 constexpr double kLongestStepM = 0.5;  // of one correction
 
+/// Along an axis in which the particles are less sure than a scan would make them they tell what the wheels have told.
+PoseCovariance unobserved_along(const PoseCovariance& spread) {
+  constexpr double kNothing_m2 = 100.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{Eigen::Matrix2d{spread.topLeftCorner<2, 2>()}};
+  PoseCovariance more = PoseCovariance::Zero();
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const Eigen::Vector2d axis = axes.eigenvectors().col(i);
+    if (axes.eigenvalues()[i] > kOfAPose(0, 0)) more.topLeftCorner<2, 2>() += kNothing_m2 * axis * axis.transpose();
+  }
+  return more;
+}
+
 }  // namespace
 
 SurfaceTrack::SurfaceTrack(const WheelTrustParams& wheels, const MotionModelParams& motion, double evidence_beams,
@@ -42,7 +55,7 @@ bool SurfaceTrack::could_lead(const Seen& seen, const Pose2& map_from_robot) {
 }
 
 void SurfaceTrack::learn_from(const RefinedPose& found, const ScanInstant& now, const BodyVelocity& velocity) {
-  const RefinedPose measured{found.map_from_robot, found.covariance + kOfAPose};
+  const RefinedPose measured{found.map_from_robot, found.covariance + kOfAPose + unobserved_along(found.covariance)};
   if (!last_) {
     filter_.start(measured);
     last_ = Last{now, velocity};
