@@ -78,12 +78,8 @@ void EstimateGauges::set(const Estimate& estimate) {
 void CalibrationGauges::set(const std::optional<localization::DriveCalibration>& calibration) {
   known.set(calibration.has_value());
   if (!calibration) return;
-  const auto all = [](const localization::WheelErrors& wheels, const Pose2& mount) {
-    return std::array{wheels.distance, wheels.turn, wheels.drift_rad_per_m, wheels.lag_s, mount.x,
-                      mount.y,         mount.theta};
-  };
-  const auto found = all(calibration->wheels, calibration->mount_error);
-  const auto spread = all(calibration->wheel_deviations, calibration->mount_deviations);
+  const auto found = numbers_of(calibration->wheels, calibration->mount_error);
+  const auto spread = numbers_of(calibration->wheel_deviations, calibration->mount_deviations);
   for (std::size_t i = 0; i < found.size(); ++i) {
     values[i].set(found[i]);
     deviations[i].set(spread[i]);

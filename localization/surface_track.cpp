@@ -55,16 +55,14 @@ bool SurfaceTrack::could_lead(const Seen& seen, const Pose2& map_from_robot) {
 }
 
 void SurfaceTrack::learn_from(const RefinedPose& found, const ScanInstant& now, const BodyVelocity& velocity) {
-  const RefinedPose measured{found.map_from_robot, found.covariance + kOfAPose + unobserved_along(found.covariance)};
-  if (!last_) {
-    filter_.start(measured);
-    last_ = Last{now, velocity};
-    since_ = SinceKeyframe{};
-    return;
+  const bool begins = !last_;
+  if (!begins) {
+    step_to(now, velocity);
+    if (!has_moved()) return;
   }
-  step_to(now, velocity);
-  if (since_->by_wheels.position().norm() < kKeyframeM && std::abs(since_->by_wheels.theta) < kKeyframeRad) return;
-  filter_.take(measured);
+  const RefinedPose measured{found.map_from_robot, found.covariance + kOfAPose + unobserved_along(found.covariance)};
+  begins ? filter_.start(measured) : filter_.take(measured);
+  last_ = Last{now, velocity};
   since_ = SinceKeyframe{};
 }
 
@@ -108,11 +106,13 @@ bool SurfaceTrack::is_one_place(const PoseCovariance& spread) {
   return spread(0, 0) + spread(1, 1) < kOnePlaceM * kOnePlaceM && spread(2, 2) < kOnePlaceRad * kOnePlaceRad;
 }
 
+bool SurfaceTrack::has_moved() const {
+  return since_->by_wheels.position().norm() >= kKeyframeM || std::abs(since_->by_wheels.theta) >= kKeyframeRad;
+}
+
 bool SurfaceTrack::is_due(const Seen& seen) const {
-  if (!since_) return true;
-  if (since_->by_wheels.position().norm() >= kKeyframeM || std::abs(since_->by_wheels.theta) >= kKeyframeRad ||
-      since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad)
-    return true;
+  if (!since_ || has_moved()) return true;
+  if (since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad) return true;
   const double explained = explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
   return explained < since_->explained - kSuddenly;
 }

@@ -64,6 +64,7 @@ class SurfaceTrack {
   };
   [[nodiscard]] PoseCovariance noise(const Pose2& motion, double unknown_s) const;
   void step_to(const ScanInstant& now, const BodyVelocity& velocity);
+  [[nodiscard]] bool has_moved() const;  ///< far enough since the last keyframe for another
   [[nodiscard]] bool is_due(const Seen& seen) const;
   RefinedPose keyframe(const Seen& seen);
   void learn_noise(const RefinedPose& before, const RefinedPose& after);
