@@ -30,7 +30,7 @@ void ImageWatch::carry(const Pose2& motion) {
 
 void ImageWatch::observe(const Seen& seen, std::span<const Place> followed) {
   bank_.believe(seen.map_from_believed);
-  own_fit_ = mean_log_likelihood(seen.field, seen.ends, {}, seen.map_from_believed);
+  own_fit_ = mean_log_likelihood(seen.field, seen.ends, seen.map_from_believed);
   bank_.slide_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
   if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.telling);
   note(followed, seen.map_from_believed);
@@ -52,7 +52,7 @@ void ImageWatch::look_again(const Seen& seen) {
   for (int i = 0; i < effort_.images_a_scan; ++i) {
     const std::optional<Pose2> there = images_.next(seen.map_from_believed);
     if (!there || bank_.knows(*there)) continue;
-    if (mean_log_likelihood(seen.field, seen.ends, {}, *there) < own_fit_ - kBeforeItIsSlid) continue;
+    if (mean_log_likelihood(seen.field, seen.ends, *there) < own_fit_ - kBeforeItIsSlid) continue;
     admit(*there, seen);
   }
 }
@@ -79,9 +79,9 @@ void ImageWatch::probe(const Seen& seen) {
 void ImageWatch::admit(const Pose2& rough, const Seen& seen) {
   const Pose2 pose = settled(seen.field, seen.ends, rough);
   if (bank_.knows(pose) || is_within(pose, seen.map_from_believed, effort_.nearby_m, effort_.nearby_rad)) return;
-  if (mean_log_likelihood(seen.field, seen.ends, {}, pose) < own_fit_ - kFitsNearlyAsWell) return;
+  if (mean_log_likelihood(seen.field, seen.ends, pose) < own_fit_ - kFitsNearlyAsWell) return;
   const Comparison lately = seen.stack.compared_lately(seen.field, pose, seen.map_from_believed, seen.joined_from_robot,
-                                                       bank_.params().evidence_beams);
+                                                       bank_.params().evidence_of_a_beam());
   bank_.admit({.map_from_robot = pose,
                .log_evidence = bank_.places().front().log_evidence + lately.ahead(),
                .log_prior = std::log(effort_.prior),

@@ -17,37 +17,33 @@ std::uint8_t steps_at_end(const LikelihoodField& field, const PointsInMap& in_ma
   return field.steps_at(field.geometry().cell_at(in_map(Eigen::Vector2f{ends.x_m[i], ends.y_m[i]})));
 }
 
-double weighted_mean(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
-                     const Pose2& pose) {
+}  // namespace
+
+double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends, const Pose2& pose) {
+  if (ends.size() == 0) return 0.0;
+  return -LikelihoodField::kStep * misfit_steps(field, ends, pose) / static_cast<double>(ends.size());
+}
+
+double weighted_log_likelihood(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
+                               const Pose2& pose) {
   const PointsInMap in_map{pose};
   double sum = 0.0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     sum += static_cast<double>(weights[i]) * steps_at_end(field, in_map, ends, i);
   }
-  return -LikelihoodField::kStep * sum / static_cast<double>(ends.size());
-}
-
-}  // namespace
-
-double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
-                           const Pose2& pose) {
-  if (ends.size() == 0) return 0.0;
-  if (!weights.empty()) return weighted_mean(field, ends, weights, pose);
-  return -LikelihoodField::kStep * misfit_steps(field, ends, pose) / static_cast<double>(ends.size());
+  return -LikelihoodField::kStep * sum;
 }
 
 Comparison compared(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
-                    const Pose2& place, const Pose2& other, double evidence_beams) {
+                    const Pose2& place, const Pose2& other, double of_a_beam) {
   const PointsInMap from_place{place};
   const PointsInMap from_other{other};
   Comparison result;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const int more = steps_at_end(field, from_other, ends, i) - steps_at_end(field, from_place, ends, i);
-    const double weight = weights.empty() ? 1.0 : static_cast<double>(weights[i]);
-    (more > 0 ? result.gained : result.lost) += weight * std::abs(more);
+    (more > 0 ? result.gained : result.lost) += static_cast<double>(weights[i]) * std::abs(more);
   }
-  const double of_a_step =
-      evidence_beams * LikelihoodField::kStep / static_cast<double>(std::max<std::size_t>(1, ends.size()));
+  const double of_a_step = of_a_beam * LikelihoodField::kStep;
   return {of_a_step * result.gained, of_a_step * result.lost};
 }
 
@@ -131,9 +127,10 @@ void PlaceBank::slide_others(const LikelihoodField& field, const BeamEnds& ends,
 void PlaceBank::weigh(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
                       double telling) {
   const double kept = 1.0 - 1.0 / params_.memory_steps;
+  const double of_a_beam = params_.evidence_of_a_beam();
   double of_believed = 0.0;
   for (Place& place : places_) {
-    const double says = params_.evidence_beams * mean_log_likelihood(field, ends, weights, place.map_from_robot);
+    const double says = of_a_beam * weighted_log_likelihood(field, ends, weights, place.map_from_robot);
     place.log_evidence = kept * place.log_evidence + says;
     if (&place == &places_.front()) of_believed = says;
     const double since_carried = kept * place.since_carried + telling * (says - of_believed);
@@ -142,7 +139,7 @@ void PlaceBank::weigh(const LikelihoodField& field, const BeamEnds& ends, std::s
       place.lost_since = 0.0;
     } else {
       const Comparison beside =
-          compared(field, ends, weights, place.map_from_robot, places_.front().map_from_robot, params_.evidence_beams);
+          compared(field, ends, weights, place.map_from_robot, places_.front().map_from_robot, of_a_beam);
       place.lost_since = kept * place.lost_since + telling * beside.lost;
     }
   }

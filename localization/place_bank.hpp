@@ -3,6 +3,7 @@
 // collects evidence: what independent beams of decorrelated scans say, with a memory that fades over metres.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -18,14 +19,17 @@ struct PlaceBankParams {
   int most = 200;                   ///< places while nothing is believed; 1..1000
   int most_while_believing = 24;    ///< and beside a believed pose; 1..most
   int beams = 60;                   ///< of a scan that judge a place; > 0
-  double evidence_beams = 12.0;     ///< independent beams that a scan would count as if each hit a new surface; no scan
-                                    ///< counts as more than a quarter; > 0
+  double evidence_beams = 12.0;     ///< independent beams that so many count as if each hit a new surface; fewer count
+                                    ///< as less, no scan as more than a quarter; > 0
   double step_m = 0.2;              ///< driven until a scan tells something new, m; > 0
   double step_rad = radians(15.0);  ///< or turned, rad; > 0
   double memory_steps = 40.0;       ///< scans that count until their evidence has faded to 1/e; > 1
   double hopeless = 14.0;           ///< behind the best one by this log evidence a place is given up; > 0
   double same_m = 0.3;              ///< two places nearer than this are one, m; > 0
   double same_rad = radians(10.0);  ///< and turned less, rad; > 0
+
+  /// Independent beams that one of a scan's counts as.
+  [[nodiscard]] double evidence_of_a_beam() const { return evidence_beams / std::max(1, beams); }
 };
 
 struct Place {
@@ -46,13 +50,16 @@ struct Comparison {
   [[nodiscard]] double ahead() const { return gained - lost; }
 };
 
-/// Mean over the beams of weight · ln p(z) with the robot at the pose; no weights: all 1. 0 without beams.
-[[nodiscard]] double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends,
-                                         std::span<const float> weights, const Pose2& pose);
+/// Mean over the beams of ln p(z) with the robot at the pose. 0 without beams.
+[[nodiscard]] double mean_log_likelihood(const LikelihoodField& field, const BeamEnds& ends, const Pose2& pose);
 
-/// From `evidence_beams` independent beams.
+/// Sum over the beams of weight · ln p(z): what a scan says, the less the fewer beams it has.
+[[nodiscard]] double weighted_log_likelihood(const LikelihoodField& field, const BeamEnds& ends,
+                                             std::span<const float> weights, const Pose2& pose);
+
+/// Where each beam, times its weight, counts as `of_a_beam` independent ones.
 [[nodiscard]] Comparison compared(const LikelihoodField& field, const BeamEnds& ends, std::span<const float> weights,
-                                  const Pose2& place, const Pose2& other, double evidence_beams);
+                                  const Pose2& place, const Pose2& other, double of_a_beam);
 
 [[nodiscard]] bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad);
 

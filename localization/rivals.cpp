@@ -180,7 +180,7 @@ const RivalReport& Rivals::observe(const LikelihoodField& field, const Seen& see
 }
 
 Rivals::Odds Rivals::odds_beside_believed(const ScanStack::Sums& its, const ScanStack::Sums& others) const {
-  const double of_a_beam = bank_.params().evidence_beams;
+  const double of_a_beam = bank_.params().evidence_of_a_beam();
   double lately = 0.0;
   double in_all = 0.0;
   for (std::size_t k = 0; k < stack_.size(); ++k) {
@@ -195,14 +195,14 @@ Rivals::Odds Rivals::odds_beside_believed(const ScanStack::Sums& its, const Scan
 Rivals::Odds Rivals::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
                                      const ScanStack::Sums& others) const {
   const std::size_t scans = stack_.size();
-  const double ahead = scans == 0 ? 0.0 : bank_.params().evidence_beams * (its[scans - 1] - others[scans - 1]);
+  const double ahead = scans == 0 ? 0.0 : bank_.params().evidence_of_a_beam() * (its[scans - 1] - others[scans - 1]);
   return {ahead, log_prior_unbelieved(pose)};
 }
 
 Comparison Rivals::brought_by(const LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
   if (!believing_ || bank_.places().empty()) return {};
-  const double beams = usual_misfit_.telling() * bank_.params().evidence_beams;
-  return stack_.compared_lately(field, pose, bank_.places().front().map_from_robot, joined, beams);
+  const double of_a_beam = usual_misfit_.telling() * bank_.params().evidence_of_a_beam();
+  return stack_.compared_lately(field, pose, bank_.places().front().map_from_robot, joined, of_a_beam);
 }
 
 void Rivals::admit_all(const LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined) {
@@ -257,7 +257,7 @@ void Rivals::probe(const LikelihoodField& field, const Pose2& joined) {
   probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
   probe_nearby_next_ = !probe_nearby_next_;
   const Pose2 believed = bank_.places().front().map_from_robot;
-  const double own_fit = mean_log_likelihood(field, ends_, {}, believed);
+  const double own_fit = mean_log_likelihood(field, ends_, believed);
   const std::optional<Pose2> found =
       probe_nearby_next_ ? probes_.best_nearby(field, ends_, bank_, {believed, params_.nearby_m, params_.nearby_rad},
                                                params_.probes_nearby)
@@ -270,11 +270,12 @@ void Rivals::admit_rival(const LikelihoodField& field, const Pose2& rough, const
   const Place& own = bank_.places().front();
   const Pose2 pose = settled(field, ends_, rough);
   if (bank_.knows(pose)) return;
-  const double gain = mean_log_likelihood(field, ends_, {}, pose) - own_fit;
+  const double gain = mean_log_likelihood(field, ends_, pose) - own_fit;
   if (gain < -kFitsNearlyAsWell) return;
   const bool nearby = is_within(pose, own.map_from_robot, params_.nearby_m, params_.nearby_rad);
   if (nearby) {  // a slip lies behind it: before that, the scans say nothing of it
-    const double ahead = std::clamp(bank_.params().evidence_beams * gain, -kFarthestBehind, 0.0);
+    const double beams = bank_.params().evidence_of_a_beam() * static_cast<double>(ends_.size());
+    const double ahead = std::clamp(beams * gain, -kFarthestBehind, 0.0);
     return bank_.admit({.map_from_robot = pose,
                         .log_evidence = own.log_evidence + ahead,
                         .log_prior = std::log(params_.nearby_prior)});

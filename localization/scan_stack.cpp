@@ -39,14 +39,14 @@ ScanStack::Sums ScanStack::log_likelihoods(const LikelihoodField& field, const P
   for (std::size_t back = 0; back < count_; ++back) {
     const Kept& kept = newest_but(back);
     const Pose2 now_from_then = motion_between(joined_from_robot, kept.joined_from_robot);
-    sum += mean_log_likelihood(field, kept.ends, kept.weights, map_from_robot * now_from_then);
+    sum += weighted_log_likelihood(field, kept.ends, kept.weights, map_from_robot * now_from_then);
     sums[back] = sum;
   }
   return sums;
 }
 
 Comparison ScanStack::compared_lately(const LikelihoodField& field, const Pose2& place, const Pose2& other,
-                                      const Pose2& joined_from_robot, double evidence_beams) const {
+                                      const Pose2& joined_from_robot, double of_a_beam) const {
   constexpr std::size_t kLately = 6;
   Comparison sum;
   Comparison most;
@@ -54,7 +54,7 @@ Comparison ScanStack::compared_lately(const LikelihoodField& field, const Pose2&
     const Kept& kept = newest_but(back);
     const Pose2 now_from_then = motion_between(joined_from_robot, kept.joined_from_robot);
     const Comparison then =
-        compared(field, kept.ends, kept.weights, place * now_from_then, other * now_from_then, evidence_beams);
+        compared(field, kept.ends, kept.weights, place * now_from_then, other * now_from_then, of_a_beam);
     sum.gained += then.gained;
     sum.lost += then.lost;
     if (sum.ahead() > most.ahead()) most = sum;

@@ -32,8 +32,8 @@ class ScanStack {
 
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// Element k: the sum over the k + 1 newest scans of the mean ln p(z), surfaces counted once, had the robot now been
-  /// at the pose, <= 0.
+  /// Element k: the sum over the beams of the k + 1 newest scans of ln p(z), surfaces counted once, had the robot now
+  /// been at the pose, <= 0.
   using Sums = std::array<double, kScans>;
   [[nodiscard]] Sums log_likelihoods(const LikelihoodField& field, const Pose2& map_from_robot,
                                      const Pose2& joined_from_robot) const;
@@ -42,7 +42,7 @@ class ScanStack {
   /// do. Older ones lie too far back for a robot that has just been carried, and among hundreds of places chance
   /// favours one.
   [[nodiscard]] Comparison compared_lately(const LikelihoodField& field, const Pose2& place, const Pose2& other,
-                                           const Pose2& joined_from_robot, double evidence_beams) const;
+                                           const Pose2& joined_from_robot, double of_a_beam) const;
 
  private:
   struct Kept {

@@ -44,5 +44,27 @@ TEST(PlaceBank, SlidesAtEachScanWhatComesClose) {
   EXPECT_EQ(slid(bank), (std::vector<bool>{false, true, true, true}));
 }
 
+/// How far a wrong place falls behind the believed one by one scan with so many ends.
+double falls_behind_by(int beams) {
+  const OccupancyGrid map = test::drawn_flat();
+  const LikelihoodField field{map, {}};
+  Random random{3};
+  const Scan scan = test::cast_scan(map, kTruth, {}, {}, random);
+  const BeamEnds ends = scoring_ends(scan, deskewed(scan, {}), beams);
+  const std::vector<float> each_new(ends.size(), 1.0F);
+  PlaceBank bank{{}};
+  bank.believe(kTruth);
+  bank.admit({.map_from_robot = {1.5, 1.0, 1.1}});
+  bank.weigh(field, ends, each_new, 1.0);
+  return bank.places()[0].log_evidence - bank.places()[1].log_evidence;
+}
+
+// A person who stands before the only wall in reach is a handful of ends, not a whole scan.
+TEST(PlaceBank, AFewEndsSayLessThanMany) {
+  EXPECT_GT(falls_behind_by(60), 1.0);
+  EXPECT_GT(falls_behind_by(6), 0.0);
+  EXPECT_NEAR(falls_behind_by(6), 0.1 * falls_behind_by(60), 0.04 * falls_behind_by(60));
+}
+
 }  // namespace
 }  // namespace deltamap::localization

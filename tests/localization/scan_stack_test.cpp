@@ -8,7 +8,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kBeams = 12.0;
+constexpr double kOfABeam = 0.2;
 const Pose2 kTruth{7.0, 3.5, 1.0};  // at the newest scan; odometry is exact and in the map's frame
 const Pose2 kWrong{1.5, 2.0, -0.7};
 
@@ -26,7 +26,7 @@ ScanStack driven_to_the_truth(const OccupancyGrid& world) {
 
 TEST(ScanStack, SaysNothingForAPlaceThatTheScansNeverSpeakFor) {
   const OccupancyGrid map = test::drawn_flat();
-  const Comparison said = driven_to_the_truth(map).compared_lately({map, {}}, kWrong, kTruth, kTruth, kBeams);
+  const Comparison said = driven_to_the_truth(map).compared_lately({map, {}}, kWrong, kTruth, kTruth, kOfABeam);
   EXPECT_EQ(said.gained, 0.0);
   EXPECT_EQ(said.lost, 0.0);
 }
@@ -35,11 +35,11 @@ TEST(ScanStack, SaysWhatAPlaceGainsAndLosesSinceWhenTheScansSpeakForItMost) {
   const OccupancyGrid map = test::drawn_flat();
   const LikelihoodField field{map, {}};
   const ScanStack stack = driven_to_the_truth(map);
-  const Comparison said = stack.compared_lately(field, kTruth, kWrong, kTruth, kBeams);
+  const Comparison said = stack.compared_lately(field, kTruth, kWrong, kTruth, kOfABeam);
   const ScanStack::Sums its = stack.log_likelihoods(field, kTruth, kTruth);
   const ScanStack::Sums others = stack.log_likelihoods(field, kWrong, kTruth);
   double most = 0.0;
-  for (std::size_t k = 0; k < stack.size(); ++k) most = std::max(most, kBeams * (its[k] - others[k]));
+  for (std::size_t k = 0; k < stack.size(); ++k) most = std::max(most, kOfABeam * (its[k] - others[k]));
   EXPECT_NEAR(said.ahead(), most, 1e-9);
   EXPECT_GT(said.lost, 0.0) << "some beams fit a wrong pose better by chance";
 }
