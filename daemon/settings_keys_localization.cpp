@@ -29,24 +29,6 @@ void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
                             "passed until a scan is weighed again"));
 }
 
-void add_beam_model(localization::LocalizerParams& localizer, Keys& keys) {
-  using localization::ScanModel;
-  keys.push_back(choice_key("localization.model", localizer.model,
-                            {{"likelihood_field", ScanModel::kLikelihoodField}, {"beam", ScanModel::kBeam}},
-                            "what weighs the particles; beam: for comparison, a hundred times as dear"));
-  auto& beam = localizer.beam_model;
-  keys.push_back(number_key("localization.beam_model.hit_deviation_m", beam.hit_deviation_m, "m", 0.001, 2.0,
-                            "of laser and map together (sigma_hit)"));
-  keys.push_back(number_key("localization.beam_model.short_share", beam.short_share, "", 0.0, 0.3,
-                            "of beams that something unmapped stops (z_short)"));
-  keys.push_back(number_key("localization.beam_model.short_per_m", beam.short_per_m, "1/m", 0.001, 10.0,
-                            "how thick it stands (lambda_short)"));
-  keys.push_back(number_key("localization.beam_model.max_share", beam.max_share, "", 0.0, 0.3,
-                            "of beams that bring nothing back (z_max)"));
-  keys.push_back(number_key("localization.beam_model.random_share", beam.random_share, "", 0.001, 0.3,
-                            "of beams that nothing explains (z_rand)"));
-}
-
 void add_models(localization::LocalizerParams& localizer, Keys& keys) {
   auto& motion = localizer.motion;
   keys.push_back(number_key("localization.motion.turn_per_turn", motion.turn_per_turn, "rad/rad", 0.0, 10.0,
@@ -96,7 +78,6 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                             "share of beams that hit what no map knows (z_rand)"));
   keys.push_back(number_key("localization.field.unknown_likelihood", field.unknown_likelihood, "", 0.02, 1.0,
                             "of a beam that ends in unknown space"));
-  add_beam_model(localizer, keys);
   auto& refinement = localizer.refinement;
   keys.push_back(
       whole_key("localization.refinement.steps", refinement.steps, "", 0, 30, "Gauss-Newton steps at most; 0: off"));

@@ -37,11 +37,8 @@ TrackedScan Localizer::observe(Scan scan) {
   state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
   if (state.params.follow_surfaces) state.faced = faced_ends(scan, tracked.rays, std::move(state.faced));
   state.velocity = velocity;
-  if (state.params.model == ScanModel::kBeam && !state.beam_model) {
-    state.beam_model.emplace(*state.map, state.params.beam_model, scan.max_range_m);
-  }
   state.note_oddities(now);
-  const RefinedPose believed = state.believed(now, scan.robot_from_laser.position());
+  const RefinedPose believed = state.believed(now);
   state.judge(scan, tracked.rays, now, believed);
 
   tracked.estimate = state.estimate(scan.time, believed);
@@ -70,7 +67,6 @@ void Localizer::apply(const MapRevision& revision) {
   state.tracker.apply(revision.map, follows ? bounding_box(revision.changes) : revision.map->box());
   state.map = revision.map;
   state.revision = revision.number;
-  state.beam_model.reset();
 }
 
 void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->things = std::move(things); }

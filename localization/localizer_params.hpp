@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/angle.hpp"
-#include "localization/beam_model.hpp"
 #include "localization/fit_monitor.hpp"
 #include "localization/global_search.hpp"
 #include "localization/hypotheses.hpp"
@@ -27,9 +26,7 @@ struct LocalizerParams {
   ParticleFilterParams particles;
   OdometryBufferParams odometry;
   MotionModelParams motion;
-  ScanModel model = ScanModel::kLikelihoodField;  ///< what weighs the particles
   LikelihoodFieldParams field;
-  BeamModelParams beam_model;  ///< with kBeam
   HypothesisParams hypothesis;
   RefinementParams refinement;
   PoseTrackParams track;

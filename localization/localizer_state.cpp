@@ -139,9 +139,7 @@ void Localizer::State::note_oddities(const ScanInstant& now) {
   check_pose();
 }
 
-RefinedPose Localizer::State::believed(const ScanInstant& now, const Point2& robot_from_laser) {
-  return searches() ? search(now) : track(now, robot_from_laser);
-}
+RefinedPose Localizer::State::believed(const ScanInstant& now) { return searches() ? search(now) : track(now); }
 
 RefinedPose Localizer::State::search(const ScanInstant& now) {
   const RivalReport& report = rivals.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
@@ -159,14 +157,9 @@ RefinedPose Localizer::State::search(const ScanInstant& now) {
   return {best.map_from_robot, best.covariance};
 }
 
-RefinedPose Localizer::State::track(const ScanInstant& now, const Point2& robot_from_laser) {
-  const Tracker::Answer tracked = tracker.observe({.now = now,
-                                                   .ends = weighing_ends(now),
-                                                   .field = field,
-                                                   .beam_model = beam_model ? &*beam_model : nullptr,
-                                                   .robot_from_laser = robot_from_laser,
-                                                   .faced = faced,
-                                                   .velocity = velocity});
+RefinedPose Localizer::State::track(const ScanInstant& now) {
+  const Tracker::Answer tracked =
+      tracker.observe({.now = now, .ends = weighing_ends(now), .field = field, .faced = faced, .velocity = velocity});
   best = tracker.best();
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);

@@ -23,7 +23,6 @@ struct Localizer::State {
   std::shared_ptr<const OccupancyGrid> map;
   std::uint32_t revision = 0;
   LikelihoodField field;
-  std::optional<BeamModel> beam_model;  ///< only where it is chosen
   OdometryBuffer odometry;
   Tracker tracker;
   FitMonitor monitor;
@@ -69,7 +68,7 @@ struct Localizer::State {
   // One scan, in this order.
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
   void note_oddities(const ScanInstant& now);
-  RefinedPose believed(const ScanInstant& now, const Point2& robot_from_laser);
+  RefinedPose believed(const ScanInstant& now);
   void judge(const Scan& scan, std::span<const RayInRobot> rays, const ScanInstant& now, const RefinedPose& believed);
   [[nodiscard]] Estimate estimate(Timestamp time, const RefinedPose& believed) const;
 
@@ -78,7 +77,7 @@ struct Localizer::State {
   /// The best place that has come to mind leads, until it is believed; at first, what has been given up: the place that
   /// has beaten it may be the image of one that nobody has looked at yet.
   RefinedPose search(const ScanInstant& now);
-  RefinedPose track(const ScanInstant& now, const Point2& robot_from_laser);
+  RefinedPose track(const ScanInstant& now);
   /// Those that weigh the believed pose: without what stands about for now, where enough are left.
   const BeamEnds& weighing_ends(const ScanInstant& now);
   /// The best pose that a slip may have led to and that explains at least this share of the ends; nothing without one.

@@ -22,7 +22,6 @@ constexpr double kForgottenAfterM = 15.0;  // driven without a view of it
 constexpr std::size_t kMostFollowed = 32;
 constexpr std::size_t kMostSightings = 24;
 constexpr double kVisitsBefore = 3.0;  // that a surface is taken to have had
-constexpr double kUsuallyHolds = 0.9;  // of these
 constexpr double kUnknownM = 0.3;      // deviation of a place that no visit has told of
 constexpr double kReassignM = 0.02;    // a keyframe that moves the pose further is read once more
 constexpr double kReassignRad = 0.005;

@@ -85,16 +85,20 @@ void ParticleFilter::spread_chosen(const MotionModelParams& model, double share)
   particles_.set_pose(0, kept);
 }
 
-std::span<const std::int32_t> ParticleFilter::weigh(const LikelihoodField& field, const BeamEnds& ends,
-                                                    double evidence_beams) {
+std::span<const std::int32_t> ParticleFilter::weigh(const LikelihoodField& field, const BeamEnds& ends) {
   assert(ends.size() > 0 && "a scan without ends weighs nothing");
-  return weigh_by([&](const Pose2& pose) { return misfit_steps(field, ends, pose); }, ends.size(), evidence_beams);
-}
-
-void ParticleFilter::accumulate(std::size_t beams, double evidence_beams) {
-  const double per_step = -LikelihoodField::kStep * std::min(1.0, evidence_beams / static_cast<double>(beams));
-  for (std::size_t i = 0; i < particles_.size(); ++i) particles_.log_weight[i] += per_step * misfits_[i];
+  const double of_a_beam = std::min(1.0, params_.evidence_beams / static_cast<double>(ends.size()));
+  const double of_a_step = of_a_beam * LikelihoodField::kStep;
+  const SegmentBound bound = segment_bound(field.params(), field.hit_deviation_m(), of_a_beam);
+  segments_ = segmented(ends, bound.fewest, std::move(segments_));
+  misfits_.resize(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const SegmentedMisfit misfit = segmented_misfit(field, ends, segments_, bound.steps, particles_.pose(i));
+    misfits_[i] = misfit.all;
+    particles_.log_weight[i] -= of_a_step * misfit.bounded;
+  }
   normalize_weights();
+  return misfits_;
 }
 
 void ParticleFilter::normalize_weights() {

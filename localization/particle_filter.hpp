@@ -14,6 +14,7 @@
 #include "localization/likelihood_field.hpp"
 #include "localization/motion_model.hpp"
 #include "localization/particle_set.hpp"
+#include "localization/scan_segments.hpp"
 
 namespace deltamap::localization {
 
@@ -21,7 +22,7 @@ struct ParticleFilterParams {
   int min = 500;                 ///< fewest particles; 10..max
   int max = 5000;                ///< most particles: what global localization starts with; min..200000
   double resample_below = 0.5;   ///< share of the particles below which N_eff calls for resampling; 0..1
-  double evidence_beams = 20.0;  ///< independent beams that a scan counts as; > 0: neighbours see the same things
+  double evidence_beams = 20.0;  ///< independent beams that a scan counts as at most; > 0
   double kld_error = 0.05;       ///< bound of the approximation error that sets the number of particles; > 0 (ε)
   double kld_quantile = 2.33;    ///< of the normal distribution, how surely the bound holds; > 0 (z)
 };
@@ -37,18 +38,9 @@ class ParticleFilter {
 
   void move(const Pose2& motion, double unknown_s, const MotionModelParams& model);
 
-  /// Accumulates the scan into the weights. Answers each particle's misfit (weighing.hpp); valid until the next call.
-  /// `ends` must not be empty; together they count as `evidence_beams` independent ones at most.
-  std::span<const std::int32_t> weigh(const LikelihoodField& field, const BeamEnds& ends, double evidence_beams);
-
-  /// The same by another measure: `misfit_at(Pose2)` answers steps, the sum over `beams` ends.
-  template <typename MisfitAt>
-  std::span<const std::int32_t> weigh_by(MisfitAt&& misfit_at, std::size_t beams, double evidence_beams) {
-    misfits_.resize(particles_.size());
-    for (std::size_t i = 0; i < particles_.size(); ++i) misfits_[i] = misfit_at(particles_.pose(i));
-    accumulate(beams, evidence_beams);
-    return misfits_;
-  }
+  /// Accumulates the scan into the weights, by segments. Answers each particle's misfit, the sum over all ends
+  /// (weighing.hpp); valid until the next call. `ends` must not be empty.
+  std::span<const std::int32_t> weigh(const LikelihoodField& field, const BeamEnds& ends);
 
   /// N_eff (Eq. 5) of the accumulated weights.
   [[nodiscard]] double n_eff() const;
@@ -68,7 +60,6 @@ class ParticleFilter {
   [[nodiscard]] Random& random() { return random_; }
 
  private:
-  void accumulate(std::size_t beams, double evidence_beams);
   [[nodiscard]] std::size_t best() const;
   void draw(std::size_t count);
   void let_some_slip(const MotionModelParams& model);
@@ -81,6 +72,7 @@ class ParticleFilter {
   ParticleSet drawn_;
   std::optional<std::uint32_t> first_slip_;  // of the particles that the last move let slip
   std::vector<std::uint32_t> choice_;
+  std::vector<ScanSegment> segments_;
   std::vector<std::int32_t> misfits_;
 };
 

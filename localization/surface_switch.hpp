@@ -17,13 +17,15 @@ inline constexpr double kKeyframeM = 0.2;
 /// Deviations of a surface that was moved, about where it stood.
 inline constexpr double kMovedM = 0.5;
 inline constexpr double kMovedRad = 0.1;
+/// P(holds) of a surface that nothing is known of.
+inline constexpr double kUsuallyHolds = 0.9;
 
 struct SurfaceSwitch {
   Surface surface;
-  double usual_m = 0.0;   ///< its offset while it holds
-  double prior = 0.9;     ///< P(holds) before it was in view
-  double holds = 0.5;     ///< P(holds) now
-  double unseen_m = 0.0;  ///< driven since it was last in view
+  double usual_m = 0.0;          ///< its offset while it holds
+  double prior = kUsuallyHolds;  ///< P(holds) before it was in view
+  double holds = 0.5;            ///< P(holds) now
+  double unseen_m = 0.0;         ///< driven since it was last in view
   /// What the switch adds to the Gaussian: precision and precision · mean of offset and turn.
   Eigen::Matrix2d precision = Eigen::Matrix2d::Zero();
   Eigen::Vector2d pull = Eigen::Vector2d::Zero();

@@ -16,11 +16,6 @@ constexpr double kOnePlaceShare = 0.98;
 
 constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are spread once a slip fits best
 
-std::int32_t misfit_at(const Pose2& map_from_robot, const Tracker::Seen& seen) {
-  return seen.beam_model != nullptr ? seen.beam_model->misfit_steps(seen.ends, seen.robot_from_laser, map_from_robot)
-                                    : misfit_steps(seen.field, seen.ends, map_from_robot);
-}
-
 }  // namespace
 
 Tracker::Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed)
@@ -160,10 +155,11 @@ Tracker::Answer Tracker::update(const Seen& seen, const MotionSince& since) {
   has_driven_blind_ = false;
   const std::span<const Pose2> slips_that_fit = sees ? slips(seen) : std::span<const Pose2>{};
   filter_.propose_slips(slips_that_fit);
-  std::span<const std::int32_t> misfits = sees ? weighed(seen) : std::span<const std::int32_t>{};
+  std::span<const std::int32_t> misfits;
+  if (sees) misfits = filter_.weigh(seen.field, seen.ends);
   if (!slips_that_fit.empty() && filter_.best_has_slipped()) {
     filter_.spread_chosen(params_.motion, kAroundSlip);
-    misfits = weighed(seen);
+    misfits = filter_.weigh(seen.field, seen.ends);
   }
   Answer answer;
   answer.n_eff = filter_.n_eff();
@@ -190,12 +186,6 @@ Tracker::Answer Tracker::follow(const Seen& seen, const MotionSince& since) {
   return answer;
 }
 
-std::span<const std::int32_t> Tracker::weighed(const Seen& seen) {
-  const double evidence_beams = params_.particles.evidence_beams;
-  if (seen.beam_model == nullptr) return filter_.weigh(seen.field, seen.ends, evidence_beams);
-  return filter_.weigh_by([&](const Pose2& pose) { return misfit_at(pose, seen); }, seen.ends.size(), evidence_beams);
-}
-
 std::span<const Pose2> Tracker::slips(const Seen& seen) {
   const std::optional<Pose2> by_wheels = track_.carried_to(seen.now);
   if (!by_wheels) return {};
@@ -216,7 +206,7 @@ double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) co
   double sum = 0.0;
   for (std::size_t nth = 0; nth < count; ++nth) {
     const Pose2 standing = filter_.particles().pose(members[nth * members.size() / count]);
-    sum += mean_likelihood(misfit_at(standing * motion, seen), seen.ends.size());
+    sum += mean_likelihood(misfit_steps(seen.field, seen.ends, standing * motion), seen.ends.size());
   }
   return sum / static_cast<double>(count);
 }

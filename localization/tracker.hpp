@@ -10,7 +10,6 @@
 #include <span>
 
 #include "core/angle.hpp"
-#include "localization/beam_model.hpp"
 #include "localization/drive_calibration.hpp"
 #include "localization/hypotheses.hpp"
 #include "localization/particle_filter.hpp"
@@ -62,8 +61,6 @@ class Tracker {
     const ScanInstant& now;
     const BeamEnds& ends;  ///< robot frame; may be empty
     const LikelihoodField& field;
-    const BeamModel* beam_model = nullptr;  ///< where chosen, it weighs the particles in place of the field
-    Point2 robot_from_laser{0.0, 0.0};
     std::span<const FacedEnd> faced{};  ///< the same scan's, for the surfaces; may be empty
     BodyVelocity velocity{};            ///< at the scan, by the wheels
   };
@@ -98,7 +95,6 @@ class Tracker {
   void go_on_from(const RefinedPose& believed, const ScanInstant& now);
   void let_surfaces_lead(const Seen& seen, Answer& answer);
   [[nodiscard]] bool update_due(const MotionSince& since) const;
-  [[nodiscard]] std::span<const std::int32_t> weighed(const Seen& seen);
   [[nodiscard]] std::span<const Pose2> slips(const Seen& seen);
   [[nodiscard]] double beam_share(const Seen& seen) const;
   [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const;

@@ -26,10 +26,10 @@ struct PoseInCells {
   float x, y, c, s;
 };
 
-/// Calls `take` with the field's byte at each end.
+/// Calls `take` with the field's bytes and, for a block of ends after the other, their places among them.
 template <typename Take>
-[[gnu::always_inline]] inline void for_each_byte(const LikelihoodField& field, const BeamEnds& ends,
-                                                 const Pose2& map_from_robot, Take&& take) {
+[[gnu::always_inline]] inline void for_each_block(const LikelihoodField& field, const BeamEnds& ends,
+                                                  const Pose2& map_from_robot, Take&& take) {
   const LikelihoodField::Bordered bordered = field.bordered();
   const double cells_per_m = 1.0 / field.geometry().resolution_m;
   const auto heading_rad = static_cast<float>(map_from_robot.theta);
@@ -56,8 +56,17 @@ template <typename Take>
       const auto row = static_cast<std::int32_t>(y_up < last_row ? y_up : last_row);
       cells[i] = row * bordered.width + column;
     }
-    for (std::size_t i = 0; i < count; ++i) take(bordered.bytes[cells[i]]);
+    take(bordered.bytes, std::span{cells.data(), count});
   }
+}
+
+/// Calls `take` with the field's byte at each end.
+template <typename Take>
+[[gnu::always_inline]] inline void for_each_byte(const LikelihoodField& field, const BeamEnds& ends,
+                                                 const Pose2& map_from_robot, Take&& take) {
+  for_each_block(field, ends, map_from_robot, [&](const std::uint8_t* bytes, std::span<const std::int32_t> cells) {
+    for (const std::int32_t cell : cells) take(bytes[cell]);
+  });
 }
 
 }  // namespace
@@ -67,6 +76,37 @@ std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends, co
   std::int32_t sum = 0;
   for_each_byte(field, ends, map_from_robot, [&](std::uint8_t steps) { sum += steps; });
   return sum;
+}
+
+DELTAMAP_ALSO_FOR_AVX2
+SegmentedMisfit segmented_misfit(const LikelihoodField& field, const BeamEnds& ends,
+                                 std::span<const ScanSegment> segments, std::int32_t most,
+                                 const Pose2& map_from_robot) {
+  if (segments.empty()) {
+    const std::int32_t sum = misfit_steps(field, ends, map_from_robot);
+    return {sum, sum};
+  }
+  std::array<std::int32_t, kBlock + 1> before;  // sums of the ends before each of the block
+  std::int32_t sum = 0;
+  std::int32_t beyond = 0;
+  std::int32_t before_segment = 0;
+  std::size_t start = 0;  // of the block
+  auto segment = segments.begin();
+  for_each_block(field, ends, map_from_robot, [&](const std::uint8_t* bytes, std::span<const std::int32_t> cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      before[i] = sum;
+      sum += bytes[cells[i]];
+    }
+    before[cells.size()] = sum;
+    const std::size_t past = start + cells.size();
+    for (; segment != segments.end() && segment->first < past; ++segment) {
+      if (segment->first >= start) before_segment = before[segment->first - start];
+      if (segment->past > past) break;
+      beyond += std::max(0, before[segment->past - start] - before_segment - most);
+    }
+    start = past;
+  });
+  return {sum, sum - beyond};
 }
 
 double explained_share(const LikelihoodField& field, const BeamEnds& ends, const Pose2& map_from_robot) {

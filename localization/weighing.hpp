@@ -9,12 +9,22 @@
 
 #include "localization/deskew.hpp"
 #include "localization/likelihood_field.hpp"
+#include "localization/scan_segments.hpp"
 
 namespace deltamap::localization {
 
 /// Σ over the ends of the field's steps of -ln p(z), with the robot at the pose.
 [[nodiscard]] std::int32_t misfit_steps(const LikelihoodField& field, const BeamEnds& ends,
                                         const Pose2& map_from_robot);
+
+/// The same sum, and one in which none of the segments counts more than `most` steps.
+struct SegmentedMisfit {
+  std::int32_t all = 0;
+  std::int32_t bounded = 0;
+};
+[[nodiscard]] SegmentedMisfit segmented_misfit(const LikelihoodField& field, const BeamEnds& ends,
+                                               std::span<const ScanSegment> segments, std::int32_t most,
+                                               const Pose2& map_from_robot);
 
 /// Share of the ends that a contour of the map explains rather than chance: p(hit | d) > 1/2. In [0, 1]; 0 without
 /// ends.

@@ -14,7 +14,6 @@ from measuring import OUT, ROOT, mark, provenance, run, settings_section, table_
 # In the order of the table. Each answers a list of rows.
 PARTS = {
     "cost": localizer_cost.rows,
-    "beam-model": localizer_cost.beam_model_rows,
     "patch": localizer_cost.patch_rows,
     "memory": localizer_cost.memory_rows,
     "hall": on_experiments.hall_rows,

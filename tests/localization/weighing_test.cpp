@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/random.hpp"
 #include "tests/support/drawn_grid.hpp"
@@ -41,6 +43,28 @@ TEST(Weighing, SumsTheFieldUnderEachEnd) {
     }
     // An end on a cell's border may fall to either side in single precision: rare, and here none does.
     EXPECT_EQ(misfit_steps(field, ends, pose), expected);
+  }
+}
+
+TEST(Weighing, BoundsWhatEachSegmentCounts) {
+  const LikelihoodField field{kMap, {}};
+  Random random{2};
+  const BeamEnds ends = random_ends(150, random);
+  const std::vector<ScanSegment> segments{{0, 1}, {1, 40}, {50, 63}, {63, 64}, {64, 65}, {66, 129}, {130, 150}};
+  const Pose2 pose{0.2, 0.5, 0.4};
+  for (const std::int32_t most : {0, 300, 2000, 1'000'000}) {
+    std::int32_t beyond = 0;
+    for (const ScanSegment& segment : segments) {
+      BeamEnds part;
+      for (std::size_t i = segment.first; i < segment.past; ++i) {
+        part.x_m.push_back(ends.x_m[i]);
+        part.y_m.push_back(ends.y_m[i]);
+      }
+      beyond += std::max(0, misfit_steps(field, part, pose) - most);
+    }
+    const SegmentedMisfit misfit = segmented_misfit(field, ends, segments, most, pose);
+    EXPECT_EQ(misfit.all, misfit_steps(field, ends, pose));
+    EXPECT_EQ(misfit.bounded, misfit.all - beyond) << most;
   }
 }
 
