@@ -26,6 +26,7 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
 #include "daemon/settings.hpp"
+#include "daemon/settings_documents.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/start_error.hpp"
 #include "daemon/state_folders.hpp"
@@ -83,6 +84,15 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--initial-pose", line.initial_pose, "X,Y,DEG of the robot in the map at the first scan");
   auto* check = app.add_flag("--check-config", line.check_only, "look at settings, map, store and ports, and end");
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
+  const auto prints = [&app](const std::string& name, std::string (*text)(), const std::string& what) {
+    const auto print = [text] {
+      std::cout << text();
+      throw CLI::Success();
+    };
+    app.add_flag_callback(name, print, what);
+  };
+  prints("--print-schema", settings_schema, "print the JSON schema of the settings, for editors, and end");
+  prints("--print-configuration-md", settings_page, "print the table of all settings (Markdown) and end");
 }
 
 void tell_start(const Settings& settings, const CommandLine& line, const StartMap& start, Console& console) {
