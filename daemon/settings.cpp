@@ -7,30 +7,50 @@
 #include "core/text_of_file.hpp"
 #include "daemon/fingerprint.hpp"
 #include "daemon/settings_reader.hpp"
+#include "daemon/settings_reading.hpp"
 
 namespace deltamap::daemon {
-Settings parse_settings(const std::string& yaml, const std::string& name, const std::vector<std::string>& overrides) {
-  Settings settings;
-  const std::vector<SettingKey> keys = keys_of(settings);
+namespace {
+
+SettingsReading reading_of(const std::string& yaml, const std::string& name,
+                           const std::vector<std::string>& overrides) {
+  SettingsReading reading;
+  const std::vector<SettingKey> keys = keys_of(reading.settings);
   SettingsReader reader{keys};
   reader.read_file(yaml, name);
   for (const std::string& text : overrides) reader.read_override(text);
-  for (const Contradiction& wrong : contradictions_in(settings)) {
+  for (const Contradiction& wrong : contradictions_in(reading.settings)) {
     reader.add_contradiction(wrong.key, wrong.what, wrong.others);
   }
-  std::vector<std::string> problems = reader.problems();
-  if (!problems.empty()) throw SettingsError(std::move(problems));
-  return settings;
+  reading.problems = reader.problems();
+  for (const auto& [key, place] : reader.read().places) reading.given.insert(key);
+  reading.doubtful = reader.read().doubtful;
+  reading.is_whole = reader.read().is_whole;
+  return reading;
 }
 
-Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  std::string text;
+std::string text_of_settings(const std::filesystem::path& file) {
   try {
-    text = text_of_file(file);
+    return text_of_file(file);
   } catch (const std::runtime_error& error) {
     throw SettingsError(file.string() + ": cannot read the settings: " + error.what());
   }
-  return parse_settings(text, file.string(), overrides);
+}
+
+}  // namespace
+
+Settings parse_settings(const std::string& yaml, const std::string& name, const std::vector<std::string>& overrides) {
+  SettingsReading reading = reading_of(yaml, name, overrides);
+  if (!reading.problems.empty()) throw SettingsError(std::move(reading.problems));
+  return std::move(reading.settings);
+}
+
+Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return parse_settings(text_of_settings(file), file.string(), overrides);
+}
+
+SettingsReading look_at_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return reading_of(text_of_settings(file), file.string(), overrides);
 }
 
 std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings) {

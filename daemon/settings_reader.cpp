@@ -104,9 +104,13 @@ class Walk {
     std::string line = path.empty() ? "the file must hold keys" : "must hold keys";
     if (!node.IsScalar()) return line + ", not a list";
     const std::string& found = node.Scalar();
-    line += ", not " + quoted(found);
-    if (found.find('=') < found.find(':')) return line + ": 'key=value' is for --set, the file has 'key: value'";
-    return found.find(':') == std::string::npos ? line : line + ": a blank belongs behind the colon";
+    return line + ", not " + quoted(found) + hint_of(found);
+  }
+
+  /// What somebody meant who wrote a line without "key: value".
+  static std::string hint_of(const std::string& words) {
+    if (words.find('=') < words.find(':')) return ": 'key=value' is for --set, the file has 'key: value'";
+    return words.find(':') == std::string::npos ? "" : ": a blank belongs behind the colon";
   }
 
   void assign(const SettingKey& key, const YAML::Node& node, const YAML::Node& named) {
@@ -130,7 +134,7 @@ class Walk {
   void add_unknown(const std::string& path, const YAML::Node& key, bool has_keys_below) {
     const UnknownKey unknown = unknown_key(keys_, path, has_keys_below);
     for (const std::string& meant : unknown.meant) doubt(meant);
-    problems_.add(place_of(key, key), path + ": " + unknown.rule);
+    problems_.add(place_of(key, key), path + ": " + unknown.rule + hint_of(path));
   }
 
   void add(const std::string& path, const YAML::Node& node, const YAML::Node& key, const std::string& what) {

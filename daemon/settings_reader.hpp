@@ -36,6 +36,7 @@ class SettingsReader {
 
   /// One line each: those of the file by line and column, then those of the overrides.
   [[nodiscard]] std::vector<std::string> problems() const { return problems_.lines(); }
+  [[nodiscard]] const ReadKeys& read() const { return read_; }
 
  private:
   const std::vector<SettingKey>& keys_;

@@ -86,6 +86,9 @@ INSTANTIATE_TEST_SUITE_P(
         {"map.file=m0.pgm\n",
          {"f:1:1: the file must hold keys, not 'map.file=m0.pgm': 'key=value' is for --set, the file has 'key: "
           "value'"}},
+        {"map: {}\nmap.file=m0.pgm\n",
+         {"f:2:1: the file must hold keys, not 'map.file=m0.pgm': 'key=value' is for --set, the file has 'key: "
+          "value'"}},
         {"laser:\n  port=/dev/x\n",
          {"f:2:3: laser: must hold keys, not 'port=/dev/x': 'key=value' is for --set, the file has 'key: value'"}},
         {"laser:\n  port:/dev/x\n",
@@ -162,6 +165,14 @@ TEST(SettingsText, AContradictionIsToldBesideOtherMistakesButNotOfValuesThatMayB
   EXPECT_EQ(errors_of("navigation: {wander: {shortest_leg_s: 30, longest_leg: 40}}\n"),
             Lines{"f:1:43: navigation.wander.longest_leg: unknown key (nearest key navigation.wander.longest_leg_s)"});
   EXPECT_EQ(errors_of("navigation:\n  wander:\n    shortest_leg_s: 30\n    longest_leg_s: \"40\n").size(), 1u);
+}
+
+TEST(SettingsText, ALastLineWithoutAKeyGetsItsHint) {
+  EXPECT_EQ(errors_of("map: {}\nmap.file=m0.pgm\n"),
+            Lines{"f:2:1: map.file=m0.pgm: unknown key (nearest key map.file): 'key=value' is for --set, the file has "
+                  "'key: value'"});
+  EXPECT_EQ(errors_of("map: {}\nseed:3\n"),
+            Lines{"f:2:1: seed:3: unknown key (nearest key seed): a blank belongs behind the colon"});
 }
 
 TEST(SettingsText, ANestOfBracketsEndsInOneLine) {
