@@ -23,8 +23,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+constexpr std::size_t kLongest = 200;  // longer is like no name, and the distance to each takes its time
+
 /// Nothing where more than half of it would have to be written anew.
 std::optional<std::string> nearest_of(const std::vector<std::string>& names, const std::string& path) {
+  if (path.size() > kLongest) return std::nullopt;
   std::optional<std::string> nearest;
   std::size_t least = path.size() / 2 + 1;
   for (const std::string& name : names) {

@@ -8,12 +8,12 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr std::size_t kMostTold = 50;
-
 std::string text_of(const SettingPlace& place) {
   if (place.line == 0) return place.name;
   return place.name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
 }
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 }  // namespace
 
@@ -31,6 +31,7 @@ std::vector<std::string> SettingsProblems::lines() const {
   for (const Problem& one : sorted) {
     const bool is_enough = lines.size() == kMostTold;
     lines.push_back(text_of(one.place) + ": " + (is_enough ? "more mistakes follow" : one.what));
+    std::replace_if(lines.back().begin(), lines.back().end(), is_control, ' ');
     if (is_enough) break;
   }
   return lines;

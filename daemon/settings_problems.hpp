@@ -2,6 +2,7 @@
 // The mistakes of a settings file and of the overrides behind it, each with its place.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,14 @@ struct SettingPlace {
 
 class SettingsProblems {
  public:
+  static constexpr std::size_t kMostTold = 50;
+
   /// `what` is "key: rule that is broken", or what is wrong with the text.
   void add(SettingPlace place, std::string what);
 
   [[nodiscard]] bool empty() const { return problems_.empty(); }
-  /// One line each, "file:line:column: what": the file's by line and column, then the overrides' in their order. The
-  /// first fifty, and where more follow: a file with more is another kind of file.
+  /// One line each, whatever line ends a value has, "file:line:column: what": the file's by line and column, then the
+  /// overrides' in their order. The first fifty, and where more follow: a file with more is another kind of file.
   [[nodiscard]] std::vector<std::string> lines() const;
 
  private:

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/settings_reader.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -15,8 +17,11 @@
 namespace deltamap::daemon {
 namespace {
 
+constexpr std::string_view kBelongsToNothing = "belongs to nothing";  // our own, beside the YAML reader's
+
 /// The YAML reader's words, and what they mean to whoever wrote the file.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kMeanings{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kMeanings{{
+    {kBelongsToNothing, "this belongs to no key: look at the indentation of this line and of those above"},
     {"illegal map value", "a ':' is out of place: look at the indentation, or put the value into quotes"},
     {"end of map not found", "the indentation does not fit the lines above"},
     {"end of sequence not found", "the indentation does not fit the lines above"},
@@ -34,10 +39,13 @@ std::string meaning_of(const std::string& message) {
 }
 
 constexpr std::size_t kLongestQuote = 40;  // of what was found, in a mistake
+constexpr std::size_t kLongestName = 100;
 
-std::string quoted(const std::string& text) {
-  return "'" + (text.size() <= kLongestQuote ? text : text.substr(0, kLongestQuote) + "...") + "'";
+std::string shortened(const std::string& text, std::size_t longest) {
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
 }
+
+std::string quoted(const std::string& text) { return "'" + shortened(text, kLongestQuote) + "'"; }
 
 /// Walks YAML trees of one file or override and hands every leaf to its key.
 class Walk {
@@ -50,6 +58,7 @@ class Walk {
 
   /// `key` is the node that names `node`.
   void read(const std::string& path, const YAML::Node& node, const YAML::Node& key) {
+    if (has_enough()) return;
     const auto known = std::find_if(keys_.begin(), keys_.end(), [&](const SettingKey& k) { return k.name == path; });
     if (known != keys_.end()) return assign(*known, node, key);
     if (!path.empty() && !is_section(path)) return add_unknown(path, key, node.IsMap());
@@ -66,6 +75,13 @@ class Walk {
     if (!is_section(child)) return std::nullopt;
     if (!is_new(child, entry->first)) return "";
     return child;
+  }
+
+  /// More mistakes than are told: what follows stands behind them.
+  [[nodiscard]] bool has_enough() {
+    if (told_ <= SettingsProblems::kMostTold) return false;
+    read_.is_whole = false;
+    return true;
   }
 
   void add_text_problem(int line, int column, std::string what) {
@@ -134,12 +150,17 @@ class Walk {
   void add_unknown(const std::string& path, const YAML::Node& key, bool has_keys_below) {
     const UnknownKey unknown = unknown_key(keys_, path, has_keys_below);
     for (const std::string& meant : unknown.meant) doubt(meant);
-    problems_.add(place_of(key, key), path + ": " + unknown.rule + hint_of(path));
+    tell(place_of(key, key), path, unknown.rule + hint_of(path));
   }
 
   void add(const std::string& path, const YAML::Node& node, const YAML::Node& key, const std::string& what) {
     doubt(path);
-    problems_.add(place_of(node, key), (path.empty() ? "" : path + ": ") + what);
+    tell(place_of(node, key), path, what);
+  }
+
+  void tell(SettingPlace place, const std::string& path, const std::string& what) {
+    ++told_;
+    problems_.add(std::move(place), (path.empty() ? "" : shortened(path, kLongestName) + ": ") + what);
   }
 
   /// The key, or all keys of the section: what they are meant to be is not known.
@@ -166,13 +187,41 @@ class Walk {
   ReadKeys& read_;
   std::map<std::string, int> lines_;  // of every key and section that was given
   int first_line_ = 0;
+  std::size_t told_ = 0;
+};
+
+/// Notes where a document begins, and forgets what is in it.
+class BeginOfDocument : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {}
+  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                       YAML::EmitterStyle::value /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapEnd() override {}
+
+  [[nodiscard]] YAML::Mark mark() const { return mark_; }
+
+ private:
+  YAML::Mark mark_;
 };
 
 /// YAML::Load reads up to where a text leaves its first tree, and says nothing of the rest. Throws YAML::Exception.
+/// Not YAML::LoadAll: where a sign is out of place it never ends.
 YAML::Node only_tree_of(const std::string& yaml) {
-  const std::vector<YAML::Node> trees = YAML::LoadAll(yaml);
-  if (trees.size() > 1) throw YAML::ParserException(trees[1].Mark(), "end of map not found");
-  return trees.empty() ? YAML::Node() : trees.front();
+  std::istringstream text(yaml);
+  YAML::Parser parser(text);
+  BeginOfDocument begin;
+  if (parser.HandleNextDocument(begin) && parser.HandleNextDocument(begin)) {
+    throw YAML::ParserException(begin.mark(), kBelongsToNothing.data());
+  }
+  return YAML::Load(yaml);
 }
 
 /// Reads as much as there is to be read: where lines cannot be read together, each part of them alone.
@@ -182,6 +231,7 @@ class PartReader {
 
   /// The lines from `first` up to `last`, which stand below the section `path`.
   void read(const std::string& path, std::size_t first, std::size_t last) {
+    if (walk_.has_enough()) return;
     const auto error = read_together(path, first, last);
     if (!error) return;
     const auto parts = parts_of(lines_, first, last);

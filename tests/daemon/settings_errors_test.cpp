@@ -2,6 +2,7 @@
 // What is told about a settings file that is no good: every mistake, each with its place and its true cause.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -83,6 +84,16 @@ TEST(SettingsErrors, AFileOfMistakesIsNotToldToItsEnd) {
   EXPECT_EQ(lines.back(), "f:51:1: more mistakes follow");
 }
 
+TEST(SettingsErrors, WhateverANameOrAValueHoldsAMistakeIsOneShortLine) {
+  for (const std::string& yaml : {std::string("\"a\\nb\": 1\n"), std::string("seed: \"a\\nb\\e[31m\"\n"),
+                                  std::string(500000, 'k') + ": 1\n", "seed: " + std::string(500000, 'v') + "\n"}) {
+    const Lines lines = errors_of(yaml);
+    ASSERT_EQ(lines.size(), 1u) << yaml.substr(0, 40);
+    EXPECT_LT(lines[0].size(), 250u);
+    EXPECT_TRUE(std::none_of(lines[0].begin(), lines[0].end(), [](char c) { return c >= 0 && c < 0x20; })) << lines[0];
+  }
+}
+
 TEST(SettingsErrors, QuotesThatAreClosedAndThoseWithinWordsAreNotRefused) {
   EXPECT_EQ(errors_of("map:\n  file: \"a \\\" b\"   # don't\n  store: 'it''s'\nlaser: {port: \"a\", units: 'mm'}\n"
                       "recording:\n  file: o'clock\n"),
@@ -120,7 +131,7 @@ TEST(SettingsErrors, WhatIsNoYamlIsToldInTheWordsOfTheFile) {
   EXPECT_EQ(errors_of("laser: {port: a\nseed: 1\n").size(), 1u);
   EXPECT_NE(errors_of("laser: {port: a\nseed: 1\n").front().find("a '{' is not closed"), std::string::npos);
   EXPECT_EQ(errors_of("laser:\n  port: a\n baud: 9600\n"),
-            Lines{"f:3:2: not YAML: the indentation does not fit the lines above"});
+            Lines{"f:3:2: not YAML: this belongs to no key: look at the indentation of this line and of those above"});
   EXPECT_EQ(errors_of("map:\n  file: |\n    a\n"),
             Lines{"f:2:9: '|' begins a text of several lines: no key takes one"});
 }

@@ -2,7 +2,9 @@
 // Every key of the configuration with every kind of bad value: exactly one line each, that names place, key and rule.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 

@@ -2,6 +2,7 @@
 // What is wrong with the text of a settings file is called by its true cause, and hides nothing of the other lines.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -97,9 +98,13 @@ INSTANTIATE_TEST_SUITE_P(
          {"f:1:1: the file must hold keys, not a list", "f:2:1: the file must hold keys, not a list"}},
         {"laser:\n  - port\n", {"f:2:3: laser: must hold keys, not a list"}},
         {"map:\n  file: /a b\n    c.yaml\n", {"f:3:5: goes on with the value of line 2: a value ends on its line"}},
-        {"  map: {}\nlaser: {}\n", {"f:2:1: not YAML: the indentation does not fit the lines above"}},
+        {"  map: {}\nlaser: {}\n",
+         {"f:2:1: not YAML: this belongs to no key: look at the indentation of this line and of those above"}},
         {"map:\n  file: |\n    \"a\n  store: 3\n", {"f:2:9: '|' begins a text of several lines: no key takes one"}},
-        {"laser:\n  port: a\n baud: 9600\n", {"f:3:2: not YAML: the indentation does not fit the lines above"}},
+        {"map:\n  , x\n",
+         {"f:2:3: not YAML: this belongs to no key: look at the indentation of this line and of those above"}},
+        {"laser:\n  port: a\n baud: 9600\n",
+         {"f:3:2: not YAML: this belongs to no key: look at the indentation of this line and of those above"}},
         {"map:\n  file: @x\n", {"f:2:9: not YAML: a character that begins no value: put the value into quotes"}},
         {"map:\n  file: x: y\n  store: 3\n",
          {"f:2:10: not YAML: a ':' is out of place: look at the indentation, or put the value into quotes"}},
