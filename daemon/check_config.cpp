@@ -51,6 +51,7 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
     findings.push_back(
         {Level::kOk, "map", settings.map.file + ": " + size_text(map.grid.geometry()) + ": " + cells_text(map.grid)});
     for (std::string& warning : map.warnings) findings.push_back({Level::kWarning, "map", std::move(warning)});
+    findings.push_back({Level::kOk, "memory", memory_text(settings.map.file, memory_limit())});
     return std::move(map.grid);
   } catch (const std::exception& error) {
     findings.push_back({Level::kError, "map", error.what()});
@@ -204,6 +205,18 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
     findings.push_back(place_finding("out", out, fs::path(out) / "report.json",
                                      [&] { return judged_out_place(out, settings.map.file); }));
   }
+  return findings;
+}
+
+std::vector<Finding> check_what_is_read(const SettingsReading& reading, const std::string& config) {
+  const std::size_t mistakes = reading.problems.size();
+  std::vector<Finding> findings{
+      {Level::kError, "settings",
+       config + ": " + std::to_string(mistakes) + (mistakes == 1 ? " mistake" : " mistakes") + ": see standard error"}};
+  const Settings& settings = reading.settings;
+  if (reading.knows("map.file") && !settings.map.file.empty()) (void)check_map(settings, config, findings);
+  if (reading.knows("robot.port")) findings.push_back(port_finding("robot", settings.robot.port));
+  if (reading.knows("laser.port")) findings.push_back(port_finding("laser", settings.laser.port));
   return findings;
 }
 

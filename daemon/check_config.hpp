@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/settings.hpp"
+#include "daemon/settings_reading.hpp"
 
 namespace deltamap::daemon {
 
@@ -22,6 +23,9 @@ struct Finding {
 /// would wait for what only a person can mend. `out` is the folder of --out; empty: none.
 [[nodiscard]] std::vector<Finding> check_config(const Settings& settings, const std::string& config,
                                                 const std::string& out);
+
+/// The same of settings with mistakes, as far as what a key means is known: map and ports.
+[[nodiscard]] std::vector<Finding> check_what_is_read(const SettingsReading& reading, const std::string& config);
 
 [[nodiscard]] bool has_error(const std::vector<Finding>& findings);
 

@@ -64,4 +64,14 @@ FirstMap read_first_map(const std::filesystem::path& file, const MemoryLimit& li
   return map;
 }
 
+std::string memory_text(const std::filesystem::path& file, const MemoryLimit& limit) {
+  const auto limit_text = [](std::uint64_t bytes, const std::string& of) {
+    return megabytes(static_cast<double>(bytes)) + " (" + of + ")";
+  };
+  std::string text = "about " + megabytes(bytes_needed(shown_cells(file)));
+  text += limit.most_of.empty() ? ", no limit is known" : " of " + limit_text(limit.most_bytes, limit.most_of);
+  if (!limit.high_of.empty()) text += ", slow from " + limit_text(limit.high_bytes, limit.high_of);
+  return text;
+}
+
 }  // namespace deltamap::daemon

@@ -20,4 +20,8 @@ struct FirstMap {
 /// than there may be (before its pixels are kept, with both figures), or where it has no free cell.
 [[nodiscard]] FirstMap read_first_map(const std::filesystem::path& file, const MemoryLimit& limit);
 
+/// What a run on that map needs and what there may be: "about 27 MB of 128 MB (MemoryMax of /x), slow from 96 MB
+/// (MemoryHigh of /x)". Reads the picture row by row; throws as read_grid() does.
+[[nodiscard]] std::string memory_text(const std::filesystem::path& file, const MemoryLimit& limit);
+
 }  // namespace deltamap::daemon

@@ -45,7 +45,7 @@ LiveSettings::Outcome LiveSettings::reload(const std::function<bool(const Settin
     lines.insert(lines.end(), error.lines().begin(), error.lines().end());
     return {false, lines};
   }
-  for (const Contradiction& wrong : contradictions_in(merged.settings)) lines.push_back(wrong.what);
+  for (const Contradiction& wrong : contradictions_in(merged.settings)) lines.push_back(wrong.key + ": " + wrong.what);
   if (!lines.empty()) {
     lines.insert(lines.begin(), "the settings stay as they are: with those that wait for a restart they contradict");
     return {false, lines};

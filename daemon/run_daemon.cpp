@@ -26,6 +26,7 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/service.hpp"
 #include "daemon/settings.hpp"
+#include "daemon/settings_documents.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/start_error.hpp"
 #include "daemon/state_folders.hpp"
@@ -83,6 +84,15 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--initial-pose", line.initial_pose, "X,Y,DEG of the robot in the map at the first scan");
   auto* check = app.add_flag("--check-config", line.check_only, "look at settings, map, store and ports, and end");
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
+  const auto prints = [&app](const std::string& name, std::string (*text)(), const std::string& what) {
+    const auto print = [text] {
+      std::cout << text();
+      throw CLI::Success();
+    };
+    app.add_flag_callback(name, print, what);
+  };
+  prints("--print-schema", settings_schema, "print the JSON schema of the settings, for editors, and end");
+  prints("--print-configuration-md", settings_page, "print the table of all settings (Markdown) and end");
 }
 
 void tell_start(const Settings& settings, const CommandLine& line, const StartMap& start, Console& console) {
@@ -195,9 +205,16 @@ std::unique_ptr<Pipeline> begun(const Settings& settings, Pipeline::Options opti
   }
 }
 
+void tell(const std::vector<std::string>& problems) {
+  for (const std::string& problem : problems) std::cerr << "deltamapd: " << problem << '\n';
+}
+
 /// --check-config
-int check(const Settings& settings, const CommandLine& line) {
-  const auto findings = check_config(settings, line.config, line.out);
+int check(const CommandLine& line) {
+  const SettingsReading reading = look_at_settings(line.config, line.overrides);
+  tell(reading.problems);
+  const auto findings = reading.problems.empty() ? check_config(reading.settings, line.config, line.out)
+                                                 : check_what_is_read(reading, line.config);
   std::cout << text_of(findings);
   return has_error(findings) ? 2 : 0;
 }
@@ -285,12 +302,12 @@ int run_daemon(int argc, const char* const* argv) {
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
   try {
     if (!line.initial_pose.empty()) line.overrides.push_back("localization.initial_pose=[" + line.initial_pose + "]");
+    if (line.check_only) return check(line);
     const Settings settings = read_settings(line.config, line.overrides);
     if (line.print_only) std::cout << settings_as_yaml(settings);
-    if (line.check_only) return check(settings, line);
     return line.print_only ? 0 : run_pipeline(settings, line);
   } catch (const SettingsError& error) {
-    for (const std::string& problem : error.lines()) std::cerr << "deltamapd: " << problem << '\n';
+    tell(error.lines());
     return 2;
   } catch (const StartError& error) {
     std::cerr << "deltamapd: " << error.what() << '\n';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One key of the configuration: its name, the field that it sets, unit, range and meaning. A list of these serves
-// reading, --print-config, the settings' fingerprint and the test that holds config/default.yaml against the defaults
-// in code.
+// One key of the configuration: its name, the field that it sets, type, unit, range, meaning and symbol. The list of
+// all keys is the one source of the strict reader, --print-config, the settings' fingerprint, config/default.yaml,
+// docs/configuration.md and the JSON schema; the default of a key is the value of its field in Settings{}.
 #pragma once
 
 #include <cstdint>
@@ -24,31 +24,42 @@ struct SettingValue {
 };
 
 struct SettingKey {
-  std::string name;                   ///< "laser.mount.x_m"
-  std::string meaning;                ///< one line
-  std::string limits;                 ///< unit and range in words: "m, 0 to 100"
-  bool affects_result = true;         ///< whether another value can give another trajectory or map from the same bytes
-  bool is_live = false;               ///< whether a reload may change it while the daemon runs
-  std::function<std::string()> text;  ///< the present value as YAML
+  enum class Type : std::uint8_t { kNumber, kWhole, kFlag, kText, kWord, kPose } type = Type::kText;
+  std::string name;                  ///< "laser.mount.x_m"
+  std::string meaning{};             ///< one line that stands alone
+  std::string unit{};                ///< of a number: "m/s"; empty: none
+  std::optional<double> low{};       ///< least number, in the unit of the file; nothing: no limit
+  std::optional<double> high{};      ///< greatest number
+  std::vector<std::string> words{};  ///< those that a kWord takes
+  std::string symbol{};              ///< in the paper, with its equation, or in the textbook; empty: none
+  bool affects_result = true;        ///< whether another value can give another trajectory or map from the same bytes
+  bool is_live = false;              ///< whether a reload may change it while the daemon runs
+  std::function<std::string()> text{};  ///< the present value as YAML
   /// Sets the field, or answers what the key needs and leaves the field alone.
-  std::function<std::optional<std::string>(const SettingValue&)> assign;
+  std::function<std::optional<std::string>(const SettingValue&)> assign{};
 };
+
+/// Unit and range, or the words that it takes: "m, 0 to 100", "cm | mm"; empty for a text.
+[[nodiscard]] std::string limits_of(const SettingKey& key);
 
 [[nodiscard]] SettingKey number_key(std::string name, double& field, std::string unit, double low, double high,
                                     std::string meaning);
-/// A field in radians that the file writes in degrees.
+/// A field in radians that the file writes in degrees; the name's end tells "deg", "deg_per_s" or "deg_per_s2".
 [[nodiscard]] SettingKey degrees_key(std::string name, double& field_rad, double low_deg, double high_deg,
                                      std::string meaning);
 [[nodiscard]] SettingKey flag_key(std::string name, bool& field, std::string meaning);
 [[nodiscard]] SettingKey text_key(std::string name, std::string& field, std::string meaning);
 /// [x m, y m, heading deg], or null for none.
 [[nodiscard]] SettingKey pose_key(std::string name, std::optional<Pose2>& field, std::string meaning);
-/// One word of several. `read` answers the index of the present one.
+/// One word of several; those that look like numbers are numbers in the file. `read` answers the index of the present
+/// one.
 [[nodiscard]] SettingKey word_key(std::string name, std::vector<std::string> words, std::function<std::size_t()> read,
                                   std::function<void(std::size_t)> write, std::string meaning);
 [[nodiscard]] SettingKey whole_key(std::string name, std::function<std::int64_t()> read,
                                    std::function<void(std::int64_t)> write, std::string unit, std::int64_t low,
                                    std::int64_t high, std::string meaning);
+/// The key, known by that symbol.
+[[nodiscard]] SettingKey with_symbol(SettingKey key, std::string symbol);
 
 template <typename Integer>
 [[nodiscard]] SettingKey whole_key(std::string name, Integer& field, std::string unit, std::int64_t low,

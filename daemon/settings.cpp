@@ -7,71 +7,50 @@
 #include "core/text_of_file.hpp"
 #include "daemon/fingerprint.hpp"
 #include "daemon/settings_reader.hpp"
+#include "daemon/settings_reading.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
-std::vector<std::string> parts_of(const std::string& name) {
-  std::vector<std::string> parts{""};
-  for (const char c : name) {
-    if (c == '.')
-      parts.emplace_back();
-    else
-      parts.back() += c;
+SettingsReading reading_of(const std::string& yaml, const std::string& name,
+                           const std::vector<std::string>& overrides) {
+  SettingsReading reading;
+  const std::vector<SettingKey> keys = keys_of(reading.settings);
+  SettingsReader reader{keys};
+  reader.read_file(yaml, name);
+  for (const std::string& text : overrides) reader.read_override(text);
+  for (const Contradiction& wrong : contradictions_in(reading.settings)) {
+    reader.add_contradiction(wrong.key, wrong.what, wrong.others);
   }
-  return parts;
+  reading.problems = reader.problems();
+  for (const auto& [key, place] : reader.read().places) reading.given.insert(key);
+  reading.doubtful = reader.read().doubtful;
+  reading.is_whole = reader.read().is_whole;
+  return reading;
+}
+
+std::string text_of_settings(const std::filesystem::path& file) {
+  try {
+    return text_of_file(file);
+  } catch (const std::runtime_error& error) {
+    throw SettingsError(file.string() + ": cannot read the settings: " + error.what());
+  }
 }
 
 }  // namespace
 
 Settings parse_settings(const std::string& yaml, const std::string& name, const std::vector<std::string>& overrides) {
-  Settings settings;
-  const std::vector<SettingKey> keys = keys_of(settings);
-  SettingsReader reader{keys};
-  reader.read_file(yaml, name);
-  for (const std::string& text : overrides) reader.read_override(text);
-  std::vector<std::string> problems = reader.problems();
-  // Of values that were not taken nothing can be said together.
-  if (problems.empty()) {
-    for (const Contradiction& wrong : contradictions_in(settings)) {
-      problems.push_back(reader.place_of(wrong.key, name) + ": " + wrong.what);
-    }
-  }
-  if (!problems.empty()) throw SettingsError(std::move(problems));
-  return settings;
+  SettingsReading reading = reading_of(yaml, name, overrides);
+  if (!reading.problems.empty()) throw SettingsError(std::move(reading.problems));
+  return std::move(reading.settings);
 }
 
 Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  std::string text;
-  try {
-    text = text_of_file(file);
-  } catch (const std::runtime_error& error) {
-    throw SettingsError(file.string() + ": cannot read the settings: " + error.what());
-  }
-  return parse_settings(text, file.string(), overrides);
+  return parse_settings(text_of_settings(file), file.string(), overrides);
 }
 
-std::string settings_as_yaml(const Settings& settings) {
-  Settings copy = settings;
-  std::string yaml =
-      "# SPDX-License-Identifier: Apache-2.0\n"
-      "# Every key of deltamap with its value: unit and range, then meaning.\n";
-  std::vector<std::string> section;
-  for (const SettingKey& key : keys_of(copy)) {
-    std::vector<std::string> parts = parts_of(key.name);
-    const std::string leaf = parts.back();
-    parts.pop_back();
-    const auto differ = std::mismatch(section.begin(), section.end(), parts.begin(), parts.end());
-    for (auto part = differ.second; part != parts.end(); ++part) {
-      const auto depth = static_cast<std::size_t>(part - parts.begin());
-      yaml += (depth == 0 ? "\n" : "") + std::string(2 * depth, ' ') + *part + ":\n";
-    }
-    section = parts;
-    std::string line = std::string(2 * parts.size(), ' ') + leaf + ": " + key.text();
-    line.resize(std::max<std::size_t>(line.size() + 1, 40), ' ');
-    yaml += line + "# " + (key.limits.empty() ? "" : key.limits + ": ") + key.meaning + "\n";
-  }
-  return yaml;
+SettingsReading look_at_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return reading_of(text_of_settings(file), file.string(), overrides);
 }
 
 std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings) {

@@ -98,8 +98,9 @@ struct Settings {
 
 /// Values that are each in range and cannot be together.
 struct Contradiction {
-  std::string key;   ///< the first of those that the line names
-  std::string what;  ///< one line that names all
+  std::string key;                  ///< the one that is told
+  std::string what;                 ///< the rule that is broken: "must not exceed 'laser.max_range_m'"
+  std::vector<std::string> others;  ///< the other keys that the rule concerns
 };
 [[nodiscard]] std::vector<Contradiction> contradictions_in(const Settings& settings);
 
@@ -109,9 +110,6 @@ struct Contradiction {
 /// The same from text; `name` stands for the file in errors.
 [[nodiscard]] Settings parse_settings(const std::string& yaml, const std::string& name,
                                       const std::vector<std::string>& overrides = {});
-
-/// All settings as a YAML file with unit, range and meaning of every key: --print-config and config/default.yaml.
-[[nodiscard]] std::string settings_as_yaml(const Settings& settings);
 
 /// Key and value, as YAML, of everything that is not as delivered, in the order of config/default.yaml.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings);

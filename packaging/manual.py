@@ -62,6 +62,8 @@ def read_help(program, path, arguments):
 
 def roff(text):
     text = text.replace("\\", "\\e").replace("-", "\\-").replace("°", "\\(de").replace("…", "...").replace("Δ", "\\(*D")
+    for letter, name in (("α", "*a"), ("δ", "*d"), ("ε", "*e"), ("λ", "*l"), ("σ", "*s"), ("√", "sr")):
+        text = text.replace(letter, "\\(" + name)
     return re.sub(r"^([.'])", r"\\&\1", text, flags=re.M)
 
 
@@ -101,6 +103,7 @@ EXITS = {
     "deltamap": items(("0", "done"), ("1", "could not; one line on standard error says why"), ("2", "wrong usage")),
 }
 PLACES = items(("/etc/deltamap/deltamap.yaml", "settings: see deltamap.yaml(5)"),
+               ("/usr/share/deltamap/deltamap.schema.json", "JSON schema of the settings, for editors"),
                ("/var/lib/deltamap", "maps, their revisions and what is kept for the next start"),
                ("/run/deltamap/ctl.sock", "where deltamap ctl finds the daemon"))
 SIGNALS = items(("SIGTERM, SIGINT, SIGQUIT", "stop the robot, write what is to be kept, end"),
@@ -141,7 +144,7 @@ def settings_page(listing, day, version):
                                      "each other, or for one run as --set laser.port=/dev/ttyUSB1. An unknown key, a value of the wrong "
                                      "type or outside its range ends the start; all mistakes of a file are told at once, each with file, line "
                                      "and column. A running daemon reads the file again with deltamap ctl reload.")),
-                ("KEYS", roff("Unit and range stand before the colon, the meaning behind it.") + "\n" + keys),
+                ("KEYS", roff("Unit and range stand before the colon, the meaning behind it, the symbol of paper or textbook in parentheses.") + "\n" + keys),
                 ("FILES", PLACES), ("SEE ALSO", ".BR deltamapd (8),\n.BR deltamap (1)"))
 
 

@@ -164,6 +164,30 @@ TEST_F(CheckConfig, SumsUpInOneLine) {
   EXPECT_TRUE(text.ends_with("\nit would start\n")) << text;
 }
 
+TEST_F(CheckConfig, TellsTheMemoryThatARunNeedsAgainstWhatThereIs) {
+  EXPECT_EQ(finding("memory").level, Level::kOk);
+  EXPECT_EQ(finding("memory").text.find("about 24 MB"), 0u) << finding("memory").text;
+  settings_.map.file = folder_.path() / "missing.yaml";
+  EXPECT_EQ(finding("memory").text, "nothing was found");
+}
+
+TEST_F(CheckConfig, OfSettingsWithMistakesTheRestIsLookedAt) {
+  const auto findings_for = [&](const std::string& yaml) {
+    return text_of(check_what_is_read(look_at_settings(folder_.write("robot.yaml", yaml), {}), "robot.yaml"));
+  };
+  const std::string good = "map: {file: " + settings_.map.file + "}\nlaser: {port: /nowhere/laser}\n";
+  const std::string text = findings_for(good + "robot: {port: [1], sonar: x}\n");
+  EXPECT_EQ(text.find("error    settings  robot.yaml: 2 mistakes: see standard error\nok       map       "), 0u)
+      << text;
+  EXPECT_NE(text.find("\nok       memory    about 24 MB"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nwarning  laser     /nowhere/laser is missing"), std::string::npos) << text;
+  EXPECT_EQ(text.find(" robot  "), std::string::npos) << "its port is not known: " << text;
+  EXPECT_TRUE(text.ends_with("\nit would not start, or not work: see each error\n")) << text;
+  const std::string half = findings_for(good + "robot: {sonar: \"x}\n");
+  EXPECT_NE(half.find("\nok       memory    about 24 MB"), std::string::npos) << half;
+  EXPECT_EQ(half.find(" robot  "), std::string::npos) << "its port may stand where nothing could be read: " << half;
+}
+
 TEST_F(CheckConfig, AStartMakesTheFoldersThatAreMissing) {
   settings_.recording.file = folder_.path() / "recordings/run.pcapng";
   settings_.control.socket = folder_.path() / "sockets/ctl.sock";

@@ -59,6 +59,16 @@ TEST_F(FirstMapTest, OneThatNeedsMoreMemoryThanThereMayBeIsRefusedWithBothFigure
   EXPECT_EQ(complaint({.most_bytes = 28'000'000, .most_of = "MemoryMax of /x"}), "");
 }
 
+TEST_F(FirstMapTest, ToldIsWhatARunNeedsAndWhatThereMayBe) {
+  write_grid(map_of(1000, 960), file_);
+  EXPECT_EQ(memory_text(file_, {.most_bytes = 128'000'000,
+                                .most_of = "MemoryMax of /x",
+                                .high_bytes = 96'000'000,
+                                .high_of = "MemoryHigh of /x"}),
+            "about 27 MB of 128 MB (MemoryMax of /x), slow from 96 MB (MemoryHigh of /x)");
+  EXPECT_EQ(memory_text(file_, {}), "about 27 MB, no limit is known");
+}
+
 TEST_F(FirstMapTest, WhatIsUnknownNeedsNoMemory) {
   write_grid(map_of(4000, 100), file_);
   EXPECT_EQ(shown_cells(file_), 2u * 2u * 64u * 64u);

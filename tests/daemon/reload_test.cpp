@@ -60,7 +60,7 @@ TEST_F(ReloadTest, OfAFileWithAMistakeIsRefusedAndTheRobotDrivesOnAsBefore) {
     EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
     ASSERT_TRUE(comes_true([&] { return test::DriveTest::moves(ports); }));
     wanted_.navigation.safety.max_speed_m_per_s = 0.01;
-    mistake_ = "robot.yaml:1:1: unknown key 'sede'";
+    mistake_ = "robot.yaml:1:1: sede: unknown key";
     const Json reply = asked({Request::Kind::kReload, {}});
     EXPECT_EQ(reply["ok"], false);
     EXPECT_EQ(reply["error"], "the settings stay as they are: the file has mistakes\n" + mistake_);

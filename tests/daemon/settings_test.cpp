@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
+#include "daemon/settings_documents.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::daemon {
@@ -18,17 +16,6 @@ std::string error_of(const std::string& yaml, const std::vector<std::string>& ov
     return error.what();
   }
   return "no error";
-}
-
-std::string content_of(const std::string& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-TEST(Settings, DefaultsInCodeAndInConfigDefaultYamlAreTheSame) {
-  EXPECT_EQ(content_of(DELTAMAP_SOURCE_DIR "/config/default.yaml"), settings_as_yaml(Settings{}))
-      << "write it anew: deltamapd --config /dev/null --print-config > config/default.yaml";
 }
 
 TEST(Settings, TheDeliveredFilesAreReadable) {
@@ -77,29 +64,29 @@ TEST(Settings, OneKeySaysHowFarABeamSaysAndDrawsSomething) {
 
 TEST(Settings, AnUnknownKeyIsNamedWithFileLineAndTheNearestKnownOne) {
   EXPECT_EQ(error_of("seed: 1\nlaser:\n  prot: /dev/ttyS0\n"),
-            "robot.yaml:3:3: unknown key 'laser.prot'; the nearest known key is 'laser.port'");
+            "robot.yaml:3:3: laser.prot: unknown key (nearest key laser.port)");
   EXPECT_EQ(error_of("laser: {mount: {x: 1}}"),
-            "robot.yaml:1:17: unknown key 'laser.mount.x'; the nearest known key is 'laser.mount.x_m'");
+            "robot.yaml:1:17: laser.mount.x: unknown key (nearest key laser.mount.x_m)");
 }
 
 TEST(Settings, AnIllTypedValueIsNamedWithWhatTheKeyNeeds) {
   EXPECT_EQ(error_of("laser:\n  max_range_m: far"),
-            "robot.yaml:2:16: 'laser.max_range_m' needs a number (m, 0 to 90), not 'far'");
-  EXPECT_EQ(error_of("seed: 1.5"), "robot.yaml:1:7: 'seed' needs a whole number (from 0), not '1.5'");
-  EXPECT_EQ(error_of("seed: \"1\""), "robot.yaml:1:7: 'seed' needs a whole number (from 0), not '1'");
-  EXPECT_EQ(error_of("robot: {sonar: yes}"), "robot.yaml:1:16: 'robot.sonar' needs true or false, not 'yes'");
-  EXPECT_EQ(error_of("laser: {units: inch}"), "robot.yaml:1:16: 'laser.units' needs one of cm | mm, not 'inch'");
+            "robot.yaml:2:16: laser.max_range_m: needs a number (m, 0 to 90), not 'far'");
+  EXPECT_EQ(error_of("seed: 1.5"), "robot.yaml:1:7: seed: needs a whole number (from 0), not '1.5'");
+  EXPECT_EQ(error_of("seed: \"1\""), "robot.yaml:1:7: seed: needs a whole number (from 0), not '1'");
+  EXPECT_EQ(error_of("robot: {sonar: yes}"), "robot.yaml:1:16: robot.sonar: needs true or false, not 'yes'");
+  EXPECT_EQ(error_of("laser: {units: inch}"), "robot.yaml:1:16: laser.units: needs one of cm | mm, not 'inch'");
   EXPECT_EQ(error_of("localization: {initial_pose: [1, 2]}"),
-            "robot.yaml:1:30: 'localization.initial_pose' needs [x m, y m, heading degrees] or null, not a list");
-  EXPECT_EQ(error_of("laser: {port: [a]}"), "robot.yaml:1:15: 'laser.port' needs text (\"\" for none), not a list");
+            "robot.yaml:1:30: localization.initial_pose: needs [x m, y m, heading degrees] or null, not a list");
+  EXPECT_EQ(error_of("laser: {port: [a]}"), "robot.yaml:1:15: laser.port: needs text (\"\" for none), not a list");
   EXPECT_EQ(error_of("laser: {max_range_m: .nan}"),
-            "robot.yaml:1:22: 'laser.max_range_m' needs a number (m, 0 to 90), not '.nan'");
-  EXPECT_EQ(error_of("seed: {a: 1}"), "robot.yaml:1:7: 'seed' takes one value, not keys");
+            "robot.yaml:1:22: laser.max_range_m: needs a number (m, 0 to 90), not '.nan'");
+  EXPECT_EQ(error_of("seed: {a: 1}"), "robot.yaml:1:7: seed: takes one value, not keys");
 }
 
 TEST(Settings, AValueOutsideItsRangeIsRefused) {
   EXPECT_EQ(error_of("\n\nlaser: {max_range_m: -1}"),
-            "robot.yaml:3:22: 'laser.max_range_m' needs a number in its range (m, 0 to 90), not '-1'");
+            "robot.yaml:3:22: laser.max_range_m: needs a number in its range (m, 0 to 90), not '-1'");
 }
 
 TEST(Settings, EveryKeyThatScriptsSetIsKnown) {
@@ -132,33 +119,33 @@ TEST(Settings, EveryKeyThatScriptsSetIsKnown) {
 }
 
 TEST(Settings, PatrolIsRefusedUntilItIsBuilt) {
-  const std::string why = "'navigation.mode' needs off or wander (patrol does not exist yet), not 'patrol'";
+  const std::string why = "navigation.mode: needs off or wander (patrol does not exist yet), not 'patrol'";
   EXPECT_EQ(error_of("seed: 1\nnavigation:\n  mode: patrol\n"), "robot.yaml:3:9: " + why);
   EXPECT_EQ(error_of("", {"navigation.mode=patrol"}), "--set navigation.mode=patrol: " + why);
 }
 
 TEST(Settings, AKeyGivenTwiceIsRefused) {
-  EXPECT_EQ(error_of("seed: 1\nseed: 2"), "robot.yaml:2:1: 'seed' is given twice, first in line 1");
+  EXPECT_EQ(error_of("seed: 1\nseed: 2"), "robot.yaml:2:1: seed: given twice, first in line 1");
 }
 
 TEST(Settings, ValuesThatContradictEachOtherAreRefused) {
   EXPECT_EQ(error_of("localization: {particles: {min: 900, max: 800}}"),
-            "robot.yaml:1:33: 'localization.particles.min' must not exceed 'localization.particles.max'");
+            "robot.yaml:1:33: localization.particles.min: must not exceed 'localization.particles.max'");
 }
 
 TEST(Settings, TheLivePageLeavesThisMachineOnlyWithAToken) {
   EXPECT_EQ(error_of("dashboard: {address: 0.0.0.0, port: 8484}"),
-            "robot.yaml:1:22: 'dashboard.address' leads beyond this machine: that needs 'dashboard.token_file'");
+            "robot.yaml:1:22: dashboard.address: leads beyond this machine: that needs 'dashboard.token_file'");
   EXPECT_EQ(error_of("dashboard: {address: 0.0.0.0, port: 8484, token_file: t}"), "no error");
   EXPECT_EQ(error_of("dashboard: {address: \"::1\", port: 8484}"), "no error");
   EXPECT_EQ(error_of("dashboard: {address: robot.example}"),
-            "robot.yaml:1:22: 'dashboard.address' needs an IPv4 or IPv6 address, not 'robot.example'");
+            "robot.yaml:1:22: dashboard.address: needs an IPv4 or IPv6 address, not 'robot.example'");
   EXPECT_EQ(error_of("dashboard: {port: 8484, control: true}"),
-            "robot.yaml:1:34: 'dashboard.control' needs 'control.socket': one desk takes all commands");
+            "robot.yaml:1:34: dashboard.control: needs 'control.socket': one desk takes all commands");
   EXPECT_EQ(error_of("dashboard: {port: 8484, control: true}\ncontrol: {socket: s}"), "no error");
   EXPECT_EQ(error_of("dashboard: {control: true}"), "no error") << "there is no page";
   EXPECT_EQ(error_of("dashboard: {port: 65536}"),
-            "robot.yaml:1:19: 'dashboard.port' needs a whole number in its range (0 to 65535), not '65536'");
+            "robot.yaml:1:19: dashboard.port: needs a whole number in its range (0 to 65535), not '65536'");
 }
 
 TEST(Settings, BrokenYamlIsNamedWithItsLine) {
@@ -186,8 +173,8 @@ TEST(Settings, AnOverrideFollowsTheSameRulesAndComesLast) {
   EXPECT_EQ(settings.seed, 5u);
   EXPECT_DOUBLE_EQ(settings.laser.session.robot_from_laser.x, 0.25);
   EXPECT_EQ(settings.robot.port, "");
-  EXPECT_EQ(error_of("", {"sede=5"}), "--set sede=5: unknown key 'sede'; the nearest known key is 'seed'");
-  EXPECT_EQ(error_of("", {"seed=many"}), "--set seed=many: 'seed' needs a whole number (from 0), not 'many'");
+  EXPECT_EQ(error_of("", {"sede=5"}), "--set sede=5: sede: unknown key (nearest key seed)");
+  EXPECT_EQ(error_of("", {"seed=many"}), "--set seed=many: seed: needs a whole number (from 0), not 'many'");
   EXPECT_EQ(error_of("", {"seed"}), "--set seed: give key=value");
 }
 

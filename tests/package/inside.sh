@@ -40,7 +40,7 @@ for program in deltamapd deltamap; do holds "/usr/bin/$program" is 'root:root 75
 for file in /lib/systemd/system/deltamap.service /lib/udev/rules.d/60-deltamap.rules /usr/lib/sysusers.d/deltamap.conf \
   /usr/lib/tmpfiles.d/deltamap.conf /etc/deltamap/deltamap.yaml /usr/share/man/man8/deltamapd.8.gz \
   /usr/share/man/man1/deltamap.1.gz /usr/share/man/man5/deltamap.yaml.5.gz /usr/share/bash-completion/completions/deltamap \
-  /usr/share/deltamap/default.yaml /usr/share/deltamap/simulation.yaml /usr/share/deltamap/scenarios/hall.yaml \
+  /usr/share/deltamap/default.yaml /usr/share/deltamap/deltamap.schema.json /usr/share/deltamap/simulation.yaml /usr/share/deltamap/scenarios/hall.yaml \
   /usr/share/doc/deltamap/copyright /usr/share/doc/deltamap/changelog.gz /usr/share/doc/deltamap/README.md \
   /usr/share/doc/deltamap/operating.md.gz /usr/share/doc/deltamap/examples/deltamap-page.socket \
   /usr/share/doc/deltamap/examples/deltamap-page.conf; do
@@ -63,6 +63,8 @@ holds "no daemon runs" fails pidof deltamapd
 mkdir /tmp/elsewhere && cd /tmp/elsewhere
 holds "--version of the daemon" grep -q "^deltamapd $version (commit [0-9a-f]" <(deltamapd --version)
 holds "--version of the tool" grep -q "^deltamap $version (commit [0-9a-f]" <(deltamap --version)
+holds "the settings name their schema" grep -qx '# yaml-language-server: $schema=/usr/share/deltamap/deltamap.schema.json' /etc/deltamap/deltamap.yaml
+holds "the schema is the program's" cmp -s /usr/share/deltamap/deltamap.schema.json <(deltamapd --print-schema)
 holds "the motors stay off" grep -qx '  mode: off *#.*' <(deltamapd --config /etc/deltamap/deltamap.yaml --print-config)
 code=0
 deltamapd --config /etc/deltamap/deltamap.yaml --check-config >check.log || code=$?
