@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/dashboard/wire.hpp"
+#include "daemon/pose_line.hpp"
 #include "daemon/version.hpp"
 
 namespace deltamap::daemon {
@@ -29,20 +30,6 @@ static_assert(std::size(kSampleColumns) == LiveSample::kColumns);
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 double unix_s(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
-
-Json hypothesis_json(const Belief& belief) {
-  if (belief.rival_share <= 0.0) return nullptr;
-  return {{"x_m", belief.map_from_rival.x},
-          {"y_m", belief.map_from_rival.y},
-          {"heading_rad", belief.map_from_rival.theta},
-          {"share", belief.rival_share}};
-}
-
-Json gate_json(const Telemetry& telemetry) {
-  const auto reason = static_cast<mapping::GateReason>(telemetry.gate.reason.value());
-  const bool is_open = reason == mapping::GateReason::kOpen;
-  return {{"open", is_open}, {"reason", is_open ? Json(nullptr) : Json(mapping::name_of(reason))}};
-}
 
 Json blocks_json(const std::vector<std::uint32_t>& blocks) {
   const auto shown = static_cast<std::ptrdiff_t>(std::min(blocks.size(), kMostBlocks));
@@ -86,25 +73,7 @@ std::string map_message(const GridGeometry& geometry, std::uint32_t revision) {
 }
 
 std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
-  const LocalizationRow& row = scan.row;
-  const PoseCovariance& c = row.covariance;
-  Json json;
-  json["type"] = "pose";
-  json["time"] = unix_s(row.time);
-  json["x_m"] = row.map_from_robot.x;
-  json["y_m"] = row.map_from_robot.y;
-  json["heading_rad"] = row.map_from_robot.theta;
-  json["covariance"] = {{"xx_m2", c(0, 0)}, {"xy_m2", c(0, 1)}, {"yy_m2", c(1, 1)}, {"hh_rad2", c(2, 2)}};
-  json["state"] = name_of(row.state);
-  json["verdict"] = name_of(row.belief.verdict);
-  json["pose_right"] = row.belief.pose_right;
-  json["map_wrong"] = row.belief.map_wrong;
-  json["speed_m_per_s"] = row.speed_m_per_s;
-  json["revision"] = row.revision;
-  json["other_hypothesis"] = hypothesis_json(row.belief);
-  json["gate"] = gate_json(telemetry);
-  json["latency_ms"] = 1e3 * scan.latency_s;
-  return text_of(json);
+  return pose_line({scan.row, scan.latency_s, static_cast<mapping::GateReason>(telemetry.gate.reason.value())});
 }
 
 std::string scan_message(const LiveScan& scan) {

@@ -204,6 +204,9 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_navigation(settings.navigation, keys);
   keys.push_back(not_for_results(
       text_key("control.socket", settings.control.socket, "where `deltamap ctl` finds the daemon; empty: nowhere")));
+  keys.push_back(not_for_results(
+      text_key("poses.socket", settings.poses.socket,
+               "Unix socket that tells other programs the pose of every scan, a line of JSON each; empty: none")));
   add_dashboard(settings.dashboard, keys);
   keys.push_back(
       not_for_results(text_key("recording.file", settings.recording.file, "pcapng of both ports; empty: none")));
@@ -233,6 +236,8 @@ std::vector<Contradiction> contradictions_in(const Settings& settings) {
   if (settings.dashboard.control && settings.dashboard.port != 0 && settings.control.socket.empty()) {
     found.push_back({"dashboard.control", "'dashboard.control' needs 'control.socket': one desk takes all commands"});
   }
+  expect_not(!settings.poses.socket.empty() && settings.poses.socket == settings.control.socket, "poses.socket",
+             "differ from 'control.socket'");
   return found;
 }
 
