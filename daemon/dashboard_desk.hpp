@@ -35,8 +35,6 @@ class DashboardDesk {
 
  private:
   [[nodiscard]] dashboard::Answer answer(const dashboard::Request& request);
-  /// The newest map: as a picture, as map_server's YAML, as its PGM.
-  [[nodiscard]] dashboard::Answer map_as(std::string_view form) const;
   [[nodiscard]] dashboard::Answer newest_scan() const;
   [[nodiscard]] std::string status_json() const;
   [[nodiscard]] double since_start_s() const;

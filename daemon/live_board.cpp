@@ -40,8 +40,20 @@ LiveBoard::Past<Item> LiveBoard::Ring<Item>::from(std::uint64_t number, std::siz
   return past;
 }
 
-LiveBoard::LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision)
-    : map_{std::move(map)}, revision_{revision} {}
+std::vector<LiveBeam> beams_of(const TrackedScan& tracked) {
+  std::vector<LiveBeam> beams;
+  const std::size_t count = std::min(tracked.rays.size(), tracked.scan.beams.size());
+  beams.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
+    const Eigen::Vector2f& end = tracked.rays[i].end;
+    beams.push_back({centimetres(end.x()), centimetres(end.y())});
+  }
+  return beams;
+}
+
+LiveBoard::LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision, const Kept& kept)
+    : map_{std::move(map)}, revision_{revision}, samples_{kept.samples}, changes_{kept.changes} {}
 
 void LiveBoard::show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s) {
   ++scans_seen_;
@@ -59,13 +71,7 @@ void LiveBoard::keep_scan(const TrackedScan& tracked, const LocalizationRow& row
   scan_.number = scans_seen_;
   scan_.row = row;
   scan_.latency_s = latency_s;
-  scan_.beams.clear();
-  const std::size_t beams = std::min(tracked.rays.size(), tracked.scan.beams.size());
-  for (std::size_t i = 0; i < beams; ++i) {
-    if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
-    const Eigen::Vector2f& end = tracked.rays[i].end;
-    scan_.beams.push_back({centimetres(end.x()), centimetres(end.y())});
-  }
+  scan_.beams = beams_of(tracked);
 }
 
 void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {

@@ -3,11 +3,13 @@
 // here for the page; with nobody viewing, a scan costs one look at a flag, and one scan a second is copied.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -22,6 +24,9 @@ struct LiveBeam {
   std::int16_t x_cm = 0;
   std::int16_t y_cm = 0;
 };
+
+/// Where the beams of a scan ended that brought back a range.
+[[nodiscard]] std::vector<LiveBeam> beams_of(const TrackedScan& tracked);
 
 /// The newest localized scan.
 struct LiveScan {
@@ -57,7 +62,15 @@ class LiveBoard {
   static constexpr std::size_t kChangesKept = 500;
   static constexpr std::size_t kBoxesKept = 256;  ///< of changed cells: who has missed more needs the whole map
 
-  LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision);
+  /// How much of the past.
+  struct Kept {
+    std::size_t samples = kSamplesKept;
+    std::size_t changes = kChangesKept;
+  };
+
+  LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision, const Kept& kept);
+  LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision)
+      : LiveBoard{std::move(map), revision, Kept{}} {}
 
   /// Localization thread. Shows nothing where the page is just looking: the next scan comes soon.
   void show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s);
@@ -97,11 +110,12 @@ class LiveBoard {
   template <typename Item>
   class Ring {
    public:
-    explicit Ring(std::size_t capacity) : capacity_{capacity} { items_.reserve(capacity); }
+    explicit Ring(std::size_t capacity) : capacity_{capacity} { items_.reserve(std::min(capacity, kReserved)); }
     void add(const Item& item);
     [[nodiscard]] Past<Item> from(std::uint64_t number, std::size_t most) const;
 
    private:
+    static constexpr std::size_t kReserved = kSamplesKept;
     std::size_t capacity_;
     std::uint64_t count_ = 0;
     std::vector<Item> items_;  // item n at n modulo capacity
@@ -120,8 +134,8 @@ class LiveBoard {
   std::shared_ptr<const OccupancyGrid> map_;
   std::uint32_t revision_;
   Ring<CellBox> boxes_{kBoxesKept};
-  Ring<LiveSample> samples_{kSamplesKept};
-  Ring<ChangeNote> changes_{kChangesKept};
+  Ring<LiveSample> samples_;
+  Ring<ChangeNote> changes_;
 };
 
 }  // namespace deltamap::daemon

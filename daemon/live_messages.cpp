@@ -44,7 +44,7 @@ Json list_of(const std::vector<ChangeNote>& changes) {
 
 }  // namespace
 
-std::string hello_message(const Settings& settings) {
+std::string hello_message(const Settings& settings, const std::optional<RunName>& run) {
   const bool is_paper = settings.mapping.store_scan.method == MappingMethod::kPaper;
   const auto& gate = settings.mapping.store_scan.gate;
   Json json;
@@ -56,6 +56,11 @@ std::string hello_message(const Settings& settings) {
                         {"pose_right", !is_paper && gate.enabled ? Json(gate.least_pose_right) : Json(nullptr)}};
   json["sample_columns"] = kSampleColumns;
   const DashboardSettings& page = settings.dashboard;
+  json["run"] = run ? Json{{"kind", run->kind},
+                           {"name", run->name},
+                           {"first_revision", run->first_revision},
+                           {"has_history", run->has_history}}
+                    : Json(nullptr);
   const bool drives = settings.navigation.mode != navigation::DriveMode::kOff;
   json["control"] = page.control ? Json{{"drive", drives && !page.token_file.empty()}} : Json(nullptr);
   return text_of(json);
