@@ -56,6 +56,10 @@ DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, co
 
 std::string DashboardDesk::url() const { return "http://" + server_.place() + "/"; }
 
+void DashboardDesk::watch(const WatchedStages& stages) {
+  board_.set_figures([this, stages] { return figures_of(stages, telemetry_); });
+}
+
 Answer DashboardDesk::answer(const Request& request) {
   const std::string& path = request.path;
   if (path == "/") return page_file("index.html");

@@ -10,6 +10,7 @@
 #include "core/time.hpp"
 #include "daemon/dashboard/server.hpp"
 #include "daemon/live_board.hpp"
+#include "daemon/live_figures.hpp"
 #include "daemon/live_stream.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/page_commands.hpp"
@@ -26,6 +27,9 @@ class DashboardDesk {
 
   /// Where the stages show themselves.
   [[nodiscard]] LiveBoard& board() { return board_; }
+
+  /// Once all have begun: what they cost is shown from now on.
+  void watch(const WatchedStages& stages);
 
   /// The page thread's work, until stop().
   void run() { server_.run(); }

@@ -93,9 +93,29 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   set(LiveSample::kMapWrong, row.belief.map_wrong);
   set(LiveSample::kScansPerSecond, is_first || passed_s <= 0.0 ? 0.0 : scans / passed_s);
   set(LiveSample::kLatency, 1e3 * latency_s);
+  add_figures(sample, passed_s);
   last_sample_ = row.time;
   scans_at_sample_ = scans_seen_;
   if (!is_first) samples_.add(sample);  // the first has no rate yet
+}
+
+/// CPU since the sample before: the stages' clocks run in real time, a live run's scans too.
+void LiveBoard::add_figures(LiveSample& sample, double passed_s) {
+  constexpr double kBytesPerMiB = 1024.0 * 1024.0;
+  const LiveFigures now = figures_();
+  for (std::size_t i = 0; i < now.cpu_s.size(); ++i) {
+    const double used_s = now.cpu_s[i] - figures_at_sample_.cpu_s[i];
+    sample.values[LiveSample::kCpuIo + i] = static_cast<float>(100.0 * used_s / passed_s);
+  }
+  sample.values[LiveSample::kMemory] = static_cast<float>(now.resident_bytes / kBytesPerMiB);
+  sample.values[LiveSample::kWheelDistance] = static_cast<float>(100.0 * now.wheel_distance);
+  sample.values[LiveSample::kWheelTurn] = static_cast<float>(100.0 * now.wheel_turn);
+  figures_at_sample_ = now;
+}
+
+void LiveBoard::set_figures(std::function<LiveFigures()> figures) {
+  const std::scoped_lock lock{mutex_};
+  figures_ = std::move(figures);
 }
 
 bool LiveBoard::show(const std::shared_ptr<const TemporaryThings>& things) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "core/messages.hpp"
 #include "core/temporary_things.hpp"
 #include "daemon/change_note.hpp"
+#include "daemon/live_figures.hpp"
 #include "daemon/localization_log.hpp"
 
 namespace deltamap::daemon {
@@ -50,6 +52,15 @@ struct LiveSample {
     kMapWrong,
     kScansPerSecond,
     kLatency,  ///< ms
+    kCpuIo,    ///< percent of one processor, as the next five
+    kCpuLocalization,
+    kCpuDelta,
+    kCpuMap,
+    kCpuRecorder,
+    kCpuPage,
+    kMemory,         ///< MiB, resident
+    kWheelDistance,  ///< percent driven beyond what the wheels count
+    kWheelTurn,      ///< percent turned beyond what the wheels count
     kColumns
   };
   Timestamp time;
@@ -78,6 +89,9 @@ class LiveBoard {
   [[nodiscard]] bool show(const std::shared_ptr<const TemporaryThings>& things);
   /// Map thread. `revision` may be null: refused.
   void show(const MapRevision* revision, const ChangeNote& note);
+
+  /// Before the first scan: asked once for each sample, in the localization thread.
+  void set_figures(std::function<LiveFigures()> figures);
 
   // --- the page's thread ---
 
@@ -123,6 +137,7 @@ class LiveBoard {
 
   void keep_scan(const TrackedScan& tracked, const LocalizationRow& row, double latency_s);
   void keep_sample(const LocalizationRow& row, double latency_s);
+  void add_figures(LiveSample& sample, double passed_s);
 
   std::atomic<bool> is_watched_{false};
   mutable std::mutex mutex_;
@@ -130,6 +145,8 @@ class LiveBoard {
   std::uint64_t scans_seen_ = 0;  // localization thread alone, as the next two
   std::uint64_t scans_at_sample_ = 0;
   Timestamp last_sample_;
+  std::function<LiveFigures()> figures_ = [] { return LiveFigures{}; };
+  LiveFigures figures_at_sample_;
   std::shared_ptr<const TemporaryThings> things_;
   std::shared_ptr<const OccupancyGrid> map_;
   std::uint32_t revision_;

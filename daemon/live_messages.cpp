@@ -23,8 +23,26 @@ constexpr int kProtocol = 1;
 constexpr std::size_t kMostBlocks = 20'000;  // of a kind; more are not drawn
 
 // In the order of LiveSample::Column.
-constexpr const char* kSampleColumns[] = {"x_m",   "y_m",        "w_avg",     "w_fast",      "w_slow",    "r_d",
-                                          "n_eff", "pose_right", "map_wrong", "scans_per_s", "latency_ms"};
+constexpr const char* kSampleColumns[] = {"x_m",
+                                          "y_m",
+                                          "w_avg",
+                                          "w_fast",
+                                          "w_slow",
+                                          "r_d",
+                                          "n_eff",
+                                          "pose_right",
+                                          "map_wrong",
+                                          "scans_per_s",
+                                          "latency_ms",
+                                          "cpu_io",
+                                          "cpu_localization",
+                                          "cpu_delta",
+                                          "cpu_map",
+                                          "cpu_recorder",
+                                          "cpu_page",
+                                          "memory_mib",
+                                          "wheel_distance",
+                                          "wheel_turn"};
 static_assert(std::size(kSampleColumns) == LiveSample::kColumns);
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }

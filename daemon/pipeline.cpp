@@ -208,6 +208,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
     const auto without_page = [this](const std::string& why) { options.warn("no live page any more: " + why); };
     page_thread = std::make_unique<Stage>(
         Stage::Options{"page", kPageNiceness}, [this] { page->run(); }, without_page);
+    page->watch({io_thread.get(), localization_thread.get(), awareness_thread.get(), map_thread.get(),
+                 recorder_thread.get(), page_thread.get()});
   }
   if (poses) {
     const auto without_poses = [this](const std::string& why) { options.warn("no stream of poses any more: " + why); };

@@ -18,6 +18,10 @@ const CHARTS = [
   { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")], low: 0 },
   { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")], low: 0 },
   { title: "Latency", lines: [line("latency_ms", "ms", "--pink")], low: 0 },
+  { title: "Processor, % of one", low: 0, lines: [line("cpu_localization", "pose", "--blue"), line("cpu_delta", "Δ", "--red", "dashed"), line("cpu_map", "map", "--green"),
+    line("cpu_io", "ports", "--text", "dotted"), line("cpu_recorder", "disk", "--pink", "dashed"), line("cpu_page", "page", "--orange", "dotted")] },
+  { title: "Memory", lines: [line("memory_mib", "MiB", "--blue")], low: 0 },
+  { title: "Wheels go beyond their count, %", lines: [line("wheel_distance", "distance", "--blue"), line("wheel_turn", "turn", "--red", "dashed")] },
 ];
 
 /// A step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
@@ -198,7 +202,6 @@ export class Charts {
   /// Of a run that is over: the whole of it, too.
   set_whole(is_whole) {
     this.until = null;
-    this.hides_empty = is_whole;
     const spans = is_whole ? [...SPANS, ["all", Infinity]] : SPANS;
     if (this.spans_host.children.length === spans.length) return;
     this.span_s = is_whole ? Infinity : SPANS[1][1];
@@ -241,7 +244,7 @@ export class Charts {
     const from = Math.max(to - this.span_s, Math.min(first, to - SPANS[0][1]));
     const inside = this.samples.filter((sample) => sample.time >= from && sample.time <= to);
     const every = Math.ceil(inside.length / MOST_POINTS), shown = inside.filter((_, i) => i % every === 0);
-    if (this.hides_empty) {
+    if (this.samples.length) {
       for (const chart of this.charts) chart.set_shown(this.samples.some((sample) => chart.kind.lines.some(({ column }) => Number.isFinite(sample[column]))));
     }
     const instant = this.instant ?? (this.until === null ? null : inside.findLast((sample) => sample.time <= this.until) ?? inside[0]);
