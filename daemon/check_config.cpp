@@ -153,23 +153,23 @@ Finding place_finding(const std::string& about, const std::string& name, const f
 }
 
 /// A daemon that cannot be commanded still does its work.
-Finding socket_finding(const fs::path& socket) {
+Finding socket_finding(const std::string& about, const fs::path& socket) {
   std::error_code ignored;
   std::string why = why_no_folder_for(socket);
   const fs::file_status status = fs::symlink_status(socket, ignored);
   if (fs::exists(status) && !fs::is_socket(status)) why = "a file that is no socket is in the way";
-  return {why.empty() ? Level::kOk : Level::kWarning, "control", socket.string() + (why.empty() ? "" : ": " + why)};
+  return {why.empty() ? Level::kOk : Level::kWarning, about, socket.string() + (why.empty() ? "" : ": " + why)};
 }
 
 /// Two daemons do not share a socket, nor ports.
-Finding control_finding(const std::string& socket) {
+Finding control_finding(const std::string& about, const std::string& socket) {
   std::error_code ignored;
-  if (!fs::is_socket(socket, ignored)) return socket_finding(socket);
+  if (!fs::is_socket(socket, ignored)) return socket_finding(about, socket);
   try {
     (void)control::exchange(socket, R"({"command":"status"})");
-    return {Level::kError, "control", socket + ": another daemon listens there"};
+    return {Level::kError, about, socket + ": another daemon listens there"};
   } catch (const std::exception&) {  // left by one that was killed: it is replaced
-    return socket_finding(socket);
+    return socket_finding(about, socket);
   }
 }
 
@@ -196,7 +196,8 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   findings.push_back(port_finding("robot", settings.robot.port));
   findings.push_back(port_finding("laser", settings.laser.port));
   findings.push_back(drive_finding(settings));
-  if (!settings.control.socket.empty()) findings.push_back(control_finding(settings.control.socket));
+  if (!settings.control.socket.empty()) findings.push_back(control_finding("control", settings.control.socket));
+  if (!settings.poses.socket.empty()) findings.push_back(control_finding("poses", settings.poses.socket));
   if (settings.dashboard.port != 0) findings.push_back(page_finding(settings.dashboard));
   if (const std::string& file = settings.recording.file; !file.empty()) {
     findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 
-#include "core/grid_file.hpp"
 #include "daemon/dashboard/access.hpp"
-#include "daemon/dashboard/page_files.hpp"
 #include "daemon/live_messages.hpp"
-#include "daemon/map_picture.hpp"
 #include "daemon/metrics_text.hpp"
+#include "daemon/page_answers.hpp"
 #include "daemon/service.hpp"
 #include "daemon/status_report.hpp"
 #include "drivers/port/port_clock.hpp"
@@ -23,13 +21,6 @@ using drivers::port::port_clock_now;
 constexpr double kScanPeriod_s = 0.19;    // with a look every 0.1 s: five scans a second at most
 constexpr double kStatusPeriod_s = 0.99;  // likewise: once a second
 constexpr const char* kJson = "application/json";
-
-Answer page_file(std::string_view name) {
-  for (const dashboard::PageFile& file : dashboard::page_files()) {
-    if (file.name == name) return {.type = std::string(file.type), .body = std::string(file.content)};
-  }
-  return {.status = 404, .body = "there is no such page\n"};
-}
 
 bool is_due(Timestamp last, Timestamp now, double period_s) { return now < last || seconds(now - last) >= period_s; }
 
@@ -65,6 +56,10 @@ DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, co
 
 std::string DashboardDesk::url() const { return "http://" + server_.place() + "/"; }
 
+void DashboardDesk::watch(const WatchedStages& stages) {
+  board_.set_figures([this, stages] { return figures_of(stages, telemetry_); });
+}
+
 Answer DashboardDesk::answer(const Request& request) {
   const std::string& path = request.path;
   if (path == "/") return page_file("index.html");
@@ -74,37 +69,12 @@ Answer DashboardDesk::answer(const Request& request) {
   if (path == "/api/scan") return newest_scan();
   if (path.starts_with("/api/revision/")) return history_.answer(path);
   for (const char* form : {"png", "yaml", "pgm"}) {
-    if (path == std::string("/api/map.") + form) return map_as(form);
+    if (path == std::string("/api/map.") + form) return map_answer(board_.map(), form);
   }
   if (path == "/metrics") {
     return {.type = "text/plain; version=0.0.4; charset=utf-8", .body = metrics_text(telemetry_, since_start_s())};
   }
   return page_file(path);  // has no '/' in front: never found
-}
-
-/// Laid out whole, a byte a cell: larger ones would cost the memory that the robot needs.
-Answer DashboardDesk::map_as(std::string_view form) const {
-  constexpr std::int64_t kMostCells = 4'000'000;
-  const auto map = board_.map();
-  const CellBox known = known_box(*map.grid);
-  const CellBox drawn = form != "png" || known.empty() ? map.grid->box() : known;
-  const std::int64_t cells = std::int64_t{drawn.width()} * drawn.height();
-  if (form != "yaml" && cells > kMostCells) {
-    return {.status = 413, .body = "the map is too large for a picture: " + std::to_string(cells) + " cells\n"};
-  }
-  Answer answer;
-  answer.headers = {{"X-Deltamap-Revision", std::to_string(map.revision)}};
-  if (form == "png") {
-    answer.type = "image/png";
-    answer.body = map_picture(*map.grid, *map.grid);
-  } else if (form == "pgm") {
-    answer.type = "image/x-portable-graymap";
-    answer.body = pgm_of(*map.grid);
-  } else {
-    answer.type = "application/yaml";
-    answer.body = yaml_of(*map.grid, "map.pgm");
-  }
-  return answer;
 }
 
 /// Without a viewer about a second old.

@@ -10,6 +10,7 @@
 #include "core/time.hpp"
 #include "daemon/dashboard/server.hpp"
 #include "daemon/live_board.hpp"
+#include "daemon/live_figures.hpp"
 #include "daemon/live_stream.hpp"
 #include "daemon/localization_step.hpp"
 #include "daemon/page_commands.hpp"
@@ -27,6 +28,9 @@ class DashboardDesk {
   /// Where the stages show themselves.
   [[nodiscard]] LiveBoard& board() { return board_; }
 
+  /// Once all have begun: what they cost is shown from now on.
+  void watch(const WatchedStages& stages);
+
   /// The page thread's work, until stop().
   void run() { server_.run(); }
   void stop() { server_.stop(); }
@@ -35,8 +39,6 @@ class DashboardDesk {
 
  private:
   [[nodiscard]] dashboard::Answer answer(const dashboard::Request& request);
-  /// The newest map: as a picture, as map_server's YAML, as its PGM.
-  [[nodiscard]] dashboard::Answer map_as(std::string_view form) const;
   [[nodiscard]] dashboard::Answer newest_scan() const;
   [[nodiscard]] std::string status_json() const;
   [[nodiscard]] double since_start_s() const;

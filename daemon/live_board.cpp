@@ -40,8 +40,20 @@ LiveBoard::Past<Item> LiveBoard::Ring<Item>::from(std::uint64_t number, std::siz
   return past;
 }
 
-LiveBoard::LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision)
-    : map_{std::move(map)}, revision_{revision} {}
+std::vector<LiveBeam> beams_of(const TrackedScan& tracked) {
+  std::vector<LiveBeam> beams;
+  const std::size_t count = std::min(tracked.rays.size(), tracked.scan.beams.size());
+  beams.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
+    const Eigen::Vector2f& end = tracked.rays[i].end;
+    beams.push_back({centimetres(end.x()), centimetres(end.y())});
+  }
+  return beams;
+}
+
+LiveBoard::LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision, const Kept& kept)
+    : map_{std::move(map)}, revision_{revision}, samples_{kept.samples}, changes_{kept.changes} {}
 
 void LiveBoard::show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s) {
   ++scans_seen_;
@@ -59,13 +71,7 @@ void LiveBoard::keep_scan(const TrackedScan& tracked, const LocalizationRow& row
   scan_.number = scans_seen_;
   scan_.row = row;
   scan_.latency_s = latency_s;
-  scan_.beams.clear();
-  const std::size_t beams = std::min(tracked.rays.size(), tracked.scan.beams.size());
-  for (std::size_t i = 0; i < beams; ++i) {
-    if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
-    const Eigen::Vector2f& end = tracked.rays[i].end;
-    scan_.beams.push_back({centimetres(end.x()), centimetres(end.y())});
-  }
+  scan_.beams = beams_of(tracked);
 }
 
 void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
@@ -87,9 +93,29 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   set(LiveSample::kMapWrong, row.belief.map_wrong);
   set(LiveSample::kScansPerSecond, is_first || passed_s <= 0.0 ? 0.0 : scans / passed_s);
   set(LiveSample::kLatency, 1e3 * latency_s);
+  add_figures(sample, passed_s);
   last_sample_ = row.time;
   scans_at_sample_ = scans_seen_;
   if (!is_first) samples_.add(sample);  // the first has no rate yet
+}
+
+/// CPU since the sample before: the stages' clocks run in real time, a live run's scans too.
+void LiveBoard::add_figures(LiveSample& sample, double passed_s) {
+  constexpr double kBytesPerMiB = 1024.0 * 1024.0;
+  const LiveFigures now = figures_();
+  for (std::size_t i = 0; i < now.cpu_s.size(); ++i) {
+    const double used_s = now.cpu_s[i] - figures_at_sample_.cpu_s[i];
+    sample.values[LiveSample::kCpuIo + i] = static_cast<float>(100.0 * used_s / passed_s);
+  }
+  sample.values[LiveSample::kMemory] = static_cast<float>(now.resident_bytes / kBytesPerMiB);
+  sample.values[LiveSample::kWheelDistance] = static_cast<float>(100.0 * now.wheel_distance);
+  sample.values[LiveSample::kWheelTurn] = static_cast<float>(100.0 * now.wheel_turn);
+  figures_at_sample_ = now;
+}
+
+void LiveBoard::set_figures(std::function<LiveFigures()> figures) {
+  const std::scoped_lock lock{mutex_};
+  figures_ = std::move(figures);
 }
 
 bool LiveBoard::show(const std::shared_ptr<const TemporaryThings>& things) {

@@ -3,16 +3,20 @@
 // here for the page; with nobody viewing, a scan costs one look at a flag, and one scan a second is copied.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "core/messages.hpp"
 #include "core/temporary_things.hpp"
 #include "daemon/change_note.hpp"
+#include "daemon/live_figures.hpp"
 #include "daemon/localization_log.hpp"
 
 namespace deltamap::daemon {
@@ -22,6 +26,9 @@ struct LiveBeam {
   std::int16_t x_cm = 0;
   std::int16_t y_cm = 0;
 };
+
+/// Where the beams of a scan ended that brought back a range.
+[[nodiscard]] std::vector<LiveBeam> beams_of(const TrackedScan& tracked);
 
 /// The newest localized scan.
 struct LiveScan {
@@ -45,6 +52,15 @@ struct LiveSample {
     kMapWrong,
     kScansPerSecond,
     kLatency,  ///< ms
+    kCpuIo,    ///< percent of one processor, as the next five
+    kCpuLocalization,
+    kCpuDelta,
+    kCpuMap,
+    kCpuRecorder,
+    kCpuPage,
+    kMemory,         ///< MiB, resident
+    kWheelDistance,  ///< percent driven beyond what the wheels count
+    kWheelTurn,      ///< percent turned beyond what the wheels count
     kColumns
   };
   Timestamp time;
@@ -57,7 +73,15 @@ class LiveBoard {
   static constexpr std::size_t kChangesKept = 500;
   static constexpr std::size_t kBoxesKept = 256;  ///< of changed cells: who has missed more needs the whole map
 
-  LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision);
+  /// How much of the past.
+  struct Kept {
+    std::size_t samples = kSamplesKept;
+    std::size_t changes = kChangesKept;
+  };
+
+  LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision, const Kept& kept);
+  LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision)
+      : LiveBoard{std::move(map), revision, Kept{}} {}
 
   /// Localization thread. Shows nothing where the page is just looking: the next scan comes soon.
   void show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s);
@@ -65,6 +89,9 @@ class LiveBoard {
   [[nodiscard]] bool show(const std::shared_ptr<const TemporaryThings>& things);
   /// Map thread. `revision` may be null: refused.
   void show(const MapRevision* revision, const ChangeNote& note);
+
+  /// Before the first scan: asked once for each sample, in the localization thread.
+  void set_figures(std::function<LiveFigures()> figures);
 
   // --- the page's thread ---
 
@@ -97,11 +124,12 @@ class LiveBoard {
   template <typename Item>
   class Ring {
    public:
-    explicit Ring(std::size_t capacity) : capacity_{capacity} { items_.reserve(capacity); }
+    explicit Ring(std::size_t capacity) : capacity_{capacity} { items_.reserve(std::min(capacity, kReserved)); }
     void add(const Item& item);
     [[nodiscard]] Past<Item> from(std::uint64_t number, std::size_t most) const;
 
    private:
+    static constexpr std::size_t kReserved = kSamplesKept;
     std::size_t capacity_;
     std::uint64_t count_ = 0;
     std::vector<Item> items_;  // item n at n modulo capacity
@@ -109,6 +137,7 @@ class LiveBoard {
 
   void keep_scan(const TrackedScan& tracked, const LocalizationRow& row, double latency_s);
   void keep_sample(const LocalizationRow& row, double latency_s);
+  void add_figures(LiveSample& sample, double passed_s);
 
   std::atomic<bool> is_watched_{false};
   mutable std::mutex mutex_;
@@ -116,12 +145,14 @@ class LiveBoard {
   std::uint64_t scans_seen_ = 0;  // localization thread alone, as the next two
   std::uint64_t scans_at_sample_ = 0;
   Timestamp last_sample_;
+  std::function<LiveFigures()> figures_ = [] { return LiveFigures{}; };
+  LiveFigures figures_at_sample_;
   std::shared_ptr<const TemporaryThings> things_;
   std::shared_ptr<const OccupancyGrid> map_;
   std::uint32_t revision_;
   Ring<CellBox> boxes_{kBoxesKept};
-  Ring<LiveSample> samples_{kSamplesKept};
-  Ring<ChangeNote> changes_{kChangesKept};
+  Ring<LiveSample> samples_;
+  Ring<ChangeNote> changes_;
 };
 
 }  // namespace deltamap::daemon

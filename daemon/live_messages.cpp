@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/dashboard/wire.hpp"
+#include "daemon/pose_line.hpp"
 #include "daemon/version.hpp"
 
 namespace deltamap::daemon {
@@ -22,27 +23,31 @@ constexpr int kProtocol = 1;
 constexpr std::size_t kMostBlocks = 20'000;  // of a kind; more are not drawn
 
 // In the order of LiveSample::Column.
-constexpr const char* kSampleColumns[] = {"x_m",   "y_m",        "w_avg",     "w_fast",      "w_slow",    "r_d",
-                                          "n_eff", "pose_right", "map_wrong", "scans_per_s", "latency_ms"};
+constexpr const char* kSampleColumns[] = {"x_m",
+                                          "y_m",
+                                          "w_avg",
+                                          "w_fast",
+                                          "w_slow",
+                                          "r_d",
+                                          "n_eff",
+                                          "pose_right",
+                                          "map_wrong",
+                                          "scans_per_s",
+                                          "latency_ms",
+                                          "cpu_io",
+                                          "cpu_localization",
+                                          "cpu_delta",
+                                          "cpu_map",
+                                          "cpu_recorder",
+                                          "cpu_page",
+                                          "memory_mib",
+                                          "wheel_distance",
+                                          "wheel_turn"};
 static_assert(std::size(kSampleColumns) == LiveSample::kColumns);
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 double unix_s(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
-
-Json hypothesis_json(const Belief& belief) {
-  if (belief.rival_share <= 0.0) return nullptr;
-  return {{"x_m", belief.map_from_rival.x},
-          {"y_m", belief.map_from_rival.y},
-          {"heading_rad", belief.map_from_rival.theta},
-          {"share", belief.rival_share}};
-}
-
-Json gate_json(const Telemetry& telemetry) {
-  const auto reason = static_cast<mapping::GateReason>(telemetry.gate.reason.value());
-  const bool is_open = reason == mapping::GateReason::kOpen;
-  return {{"open", is_open}, {"reason", is_open ? Json(nullptr) : Json(mapping::name_of(reason))}};
-}
 
 Json blocks_json(const std::vector<std::uint32_t>& blocks) {
   const auto shown = static_cast<std::ptrdiff_t>(std::min(blocks.size(), kMostBlocks));
@@ -57,7 +62,7 @@ Json list_of(const std::vector<ChangeNote>& changes) {
 
 }  // namespace
 
-std::string hello_message(const Settings& settings) {
+std::string hello_message(const Settings& settings, const std::optional<RunName>& run) {
   const bool is_paper = settings.mapping.store_scan.method == MappingMethod::kPaper;
   const auto& gate = settings.mapping.store_scan.gate;
   Json json;
@@ -69,6 +74,11 @@ std::string hello_message(const Settings& settings) {
                         {"pose_right", !is_paper && gate.enabled ? Json(gate.least_pose_right) : Json(nullptr)}};
   json["sample_columns"] = kSampleColumns;
   const DashboardSettings& page = settings.dashboard;
+  json["run"] = run ? Json{{"kind", run->kind},
+                           {"name", run->name},
+                           {"first_revision", run->first_revision},
+                           {"has_history", run->has_history}}
+                    : Json(nullptr);
   const bool drives = settings.navigation.mode != navigation::DriveMode::kOff;
   json["control"] = page.control ? Json{{"drive", drives && !page.token_file.empty()}} : Json(nullptr);
   return text_of(json);
@@ -86,25 +96,7 @@ std::string map_message(const GridGeometry& geometry, std::uint32_t revision) {
 }
 
 std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
-  const LocalizationRow& row = scan.row;
-  const PoseCovariance& c = row.covariance;
-  Json json;
-  json["type"] = "pose";
-  json["time"] = unix_s(row.time);
-  json["x_m"] = row.map_from_robot.x;
-  json["y_m"] = row.map_from_robot.y;
-  json["heading_rad"] = row.map_from_robot.theta;
-  json["covariance"] = {{"xx_m2", c(0, 0)}, {"xy_m2", c(0, 1)}, {"yy_m2", c(1, 1)}, {"hh_rad2", c(2, 2)}};
-  json["state"] = name_of(row.state);
-  json["verdict"] = name_of(row.belief.verdict);
-  json["pose_right"] = row.belief.pose_right;
-  json["map_wrong"] = row.belief.map_wrong;
-  json["speed_m_per_s"] = row.speed_m_per_s;
-  json["revision"] = row.revision;
-  json["other_hypothesis"] = hypothesis_json(row.belief);
-  json["gate"] = gate_json(telemetry);
-  json["latency_ms"] = 1e3 * scan.latency_s;
-  return text_of(json);
+  return pose_line({scan.row, scan.latency_s, static_cast<mapping::GateReason>(telemetry.gate.reason.value())});
 }
 
 std::string scan_message(const LiveScan& scan) {

@@ -2,6 +2,7 @@
 // The live page's messages (docs/api.md), from what the stages have shown.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "daemon/live_board.hpp"
@@ -10,8 +11,16 @@
 
 namespace deltamap::daemon {
 
-/// "hello": version, thresholds and the names of a sample's columns.
-[[nodiscard]] std::string hello_message(const Settings& settings);
+/// A run that is not live.
+struct RunName {
+  std::string kind;  ///< "recording", "folder", "map"
+  std::string name;  ///< for people
+  std::uint32_t first_revision = 0;
+  bool has_history = false;  ///< earlier revisions can be asked for
+};
+
+/// "hello": version, thresholds and the names of a sample's columns. `run`: nothing of a live daemon.
+[[nodiscard]] std::string hello_message(const Settings& settings, const std::optional<RunName>& run = std::nullopt);
 /// "map": the frame in which boxes of cells lie. Whoever gets it forgets all cells.
 [[nodiscard]] std::string map_message(const GridGeometry& geometry, std::uint32_t revision);
 /// "pose": the newest pose, what is believed of it, and the write gate.

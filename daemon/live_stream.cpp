@@ -28,7 +28,8 @@ void SharedMessage::set(std::string bytes, bool is_binary) {
 }
 
 std::optional<Message> LiveStream::next() {
-  const std::array<std::pair<const SharedMessage*, std::uint64_t*>, 5> shared{{{&news_.hello, &hello_},
+  const std::array<std::pair<const SharedMessage*, std::uint64_t*>, 6> shared{{{&news_.hello, &hello_},
+                                                                               {&news_.run, &run_},
                                                                                {&news_.pose, &pose_},
                                                                                {&news_.scan, &scan_},
                                                                                {&news_.status, &status_},

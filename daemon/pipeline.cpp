@@ -15,6 +15,7 @@
 #include "daemon/map_order.hpp"
 #include "daemon/map_stage.hpp"
 #include "daemon/page_commands.hpp"
+#include "daemon/pose_stream.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/run_begin.hpp"
 #include "daemon/stage.hpp"
@@ -34,17 +35,6 @@ constexpr int kPageNiceness = 10;
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
-}
-
-/// What the run begins from: enough for a replay to obey its journal.
-std::vector<std::string> first_notes(const Settings& settings, const Pipeline::Options& options) {
-  if (settings.recording.file.empty()) return {};
-  const std::uint64_t map = grid_hash(*options.start.map);
-  std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, options.memory})};
-  for (std::string& note : begin_notes({options.first_map, options.memory, options.start})) {
-    notes.push_back(std::move(note));
-  }
-  return notes;
 }
 
 /// Null where it is an order.
@@ -82,6 +72,7 @@ struct Pipeline::State {
   std::optional<FileLock> out_lock;      // of --out
   std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
   std::unique_ptr<DashboardDesk> page;   // what the stages show → browsers; may be null
+  std::unique_ptr<PoseStream> poses;     // of each scan → programs on this machine; may be null
   Recorder recorder;                     // bytes, decisions, lines → disk
   IoStage io;                            // bytes → Odometry, Scan
   LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
@@ -113,7 +104,7 @@ struct Pipeline::State {
   Workload awareness_work;
   double wall_began_s = 0.0;
   std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread,
-      page_thread;
+      page_thread, poses_thread;
   bool ended = false;
 };
 
@@ -137,10 +128,12 @@ Pipeline::State::State(const Settings& given, Options wanted)
           options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, page_control(control.get(), io), options.log,
                            options.warn)},
+      poses{begun_pose_stream(settings, telemetry, options.warn)},
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),
-                .first_notes = first_notes(settings, options),
+                .first_notes = first_notes(settings, grid_hash(*options.start.map),
+                                           {options.first_map, options.memory, options.start}),
                 .max_gigabytes = settings.recording.max_gigabytes,
                 .trajectory = in_folder(options.out, "trajectory.tum"),
                 .localization = in_folder(options.out, "localization.csv"),
@@ -170,8 +163,9 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .telemetry = telemetry,
                     .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
                     .show =
-                        [this](const auto&... seen) {
-                          if (page) page->board().show(seen...);
+                        [this](const TrackedScan& tracked, const LocalizationRow& row, double latency_s) {
+                          if (page) page->board().show(tracked, row, latency_s);
+                          if (poses) poses->show(row, latency_s);
                         },
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
       map{settings,
@@ -214,6 +208,13 @@ Pipeline::State::State(const Settings& given, Options wanted)
     const auto without_page = [this](const std::string& why) { options.warn("no live page any more: " + why); };
     page_thread = std::make_unique<Stage>(
         Stage::Options{"page", kPageNiceness}, [this] { page->run(); }, without_page);
+    page->watch({io_thread.get(), localization_thread.get(), awareness_thread.get(), map_thread.get(),
+                 recorder_thread.get(), page_thread.get()});
+  }
+  if (poses) {
+    const auto without_poses = [this](const std::string& why) { options.warn("no stream of poses any more: " + why); };
+    poses_thread = std::make_unique<Stage>(
+        Stage::Options{"poses", 0}, [this] { poses->run(); }, without_poses);
   }
 }
 
@@ -327,6 +328,10 @@ void Pipeline::State::end_threads() {
   }
   sensors.close();
   localization_thread->join();
+  if (poses) {
+    poses->stop();
+    poses_thread->join();
+  }
   tracked_scans.close();
   awareness_thread->join();
   sets.close();

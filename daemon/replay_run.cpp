@@ -150,13 +150,15 @@ void Replay::take(Scan&& scan) {
     return;
   }
   std::optional<TrackedScan> tracked;
+  double cost_s = 0.0;
   {
     const CpuTimer timer{report_.cpu.localization_s};
     while (const auto revision = revisions_.next_before(scan)) localization_.apply(*revision);
     if (auto things = things_.next_before(scan.number)) localization_.apply(std::move(things));
     obey_commands_before(scan);
     tracked = localization_.observe(std::move(scan));
-    step_times_.add(timer.elapsed_s());
+    cost_s = timer.elapsed_s();
+    step_times_.add(cost_s);
   }
   ++report_.scans.localized;
   {
@@ -164,6 +166,7 @@ void Replay::take(Scan&& scan) {
     trajectory_.write(tum_line({tracked->scan.time, tracked->estimate.map_from_robot}));
     localization_log_.write(csv_line(localization_.row()));
   }
+  if (job_.watch.scan) job_.watch.scan(*tracked, localization_.row(), cost_s);
   if (job_.settings.mapping.enabled && !is_paused_) look_for_changes(*tracked);
 }
 
@@ -217,6 +220,7 @@ void Replay::keep_result(MapStep::Result result) {
   changes_.write(json_line(result.note));
   keep(store_, result, map_.method(), first_revision_);
   report_.changes.add(result.note);
+  if (job_.watch.change) job_.watch.change(result.revision ? &*result.revision : nullptr, result.note);
   if (!result.revision) return;
   revisions_.push(std::move(*result.revision));
 }

@@ -8,10 +8,20 @@
 #include <functional>
 #include <limits>
 
+#include "core/messages.hpp"
+#include "daemon/change_note.hpp"
+#include "daemon/localization_log.hpp"
 #include "daemon/outputs.hpp"
 #include "daemon/settings.hpp"
 
 namespace deltamap::daemon {
+
+/// What others may look at while a replay goes on; empty: nobody looks. Called in the replay's thread.
+struct ReplayWatch {
+  /// Every scan that was localized, what is known of it, and the CPU seconds that it cost.
+  std::function<void(const TrackedScan&, const LocalizationRow&, double)> scan{};
+  std::function<void(const MapRevision*, const ChangeNote&)> change{};  ///< the revision may be null: refused
+};
 
 struct ReplayJob {
   std::filesystem::path recording;
@@ -21,6 +31,7 @@ struct ReplayJob {
   double from_s = 0.0;  ///< after the first record: before it only the sessions listen
   double to_s = std::numeric_limits<double>::infinity();
   double map_delay_s = 1.0;  ///< recorded time from the end of a Δ-phase until its revision is taken, without a journal
+  ReplayWatch watch{};
 };
 
 /// Called now and then with the share that is done, 0 to 1; answers whether to go on.

@@ -12,6 +12,7 @@
 
 #include "daemon/localization_step.hpp"
 #include "daemon/note_parts.hpp"
+#include "daemon/settings.hpp"
 
 namespace deltamap::daemon {
 
@@ -23,6 +24,10 @@ struct RunBegin {
 
 /// Empty where the run began from M_0 alone. Each note fits a pcapng comment.
 [[nodiscard]] std::vector<std::string> begin_notes(const RunBegin& begin);
+
+/// What a run begins from: enough for a replay to obey its journal. `map`: grid_hash() of the map it begins on. Empty
+/// where nothing is recorded.
+[[nodiscard]] std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map, const RunBegin& begin);
 
 /// Puts the notes of one recording together again.
 class BeginReader {

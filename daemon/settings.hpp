@@ -70,6 +70,11 @@ struct ControlSettings {
   std::string socket;  ///< for `deltamap ctl`; empty: none
 };
 
+/// Pose and verdict of every scan, for programs on this machine.
+struct PosesSettings {
+  std::string socket;  ///< empty: none
+};
+
 /// The live page, for browsers.
 struct DashboardSettings {
   std::string address = "127.0.0.1";  ///< beyond loopback only with a token
@@ -89,6 +94,7 @@ struct Settings {
   MappingSettings mapping;
   NavigationSettings navigation;
   ControlSettings control;
+  PosesSettings poses;
   DashboardSettings dashboard;
   RecordingSettings recording;
 };

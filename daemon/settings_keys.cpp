@@ -213,6 +213,9 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_navigation(settings.navigation, keys);
   keys.push_back(not_for_results(text_key("control.socket", settings.control.socket,
                                           "socket on which `deltamap ctl` finds the daemon; empty: none")));
+  keys.push_back(not_for_results(
+      text_key("poses.socket", settings.poses.socket,
+               "Unix socket that tells other programs the pose of every scan, a line of JSON each; empty: none")));
   add_dashboard(settings.dashboard, keys);
   keys.push_back(not_for_results(
       text_key("recording.file", settings.recording.file, "pcapng recording of both ports; empty: none")));
@@ -248,6 +251,8 @@ std::vector<Contradiction> contradictions_in(const Settings& settings) {
                      "needs 'control.socket': one desk takes all commands",
                      {"control.socket", "dashboard.port"}});
   }
+  expect_not(!settings.poses.socket.empty() && settings.poses.socket == settings.control.socket, "poses.socket",
+             "differ from", {"control.socket"});
   return found;
 }
 

@@ -11,6 +11,7 @@ const std::vector<SettingSection>& setting_sections() {
       {"laser", "the laser: port, line, field of view and where it is mounted"},
       {"laser.mount", "pose of the laser in the robot's frame"},
       {"map", "the first map, and where its revisions are kept"},
+      {"map.retention", "how long single revisions are kept: one of the two rules is enough; without a rule all stay"},
       {"localization", "where the robot is in the map"},
       {"localization.particles", "how many particles there are and when they are resampled"},
       {"localization.update", "when a scan is weighed again"},
@@ -41,6 +42,7 @@ const std::vector<SettingSection>& setting_sections() {
       {"navigation.safety", "limits that no command exceeds"},
       {"navigation.wander", "driving about: mode wander"},
       {"control", "commands of `deltamap ctl`"},
+      {"poses", "the pose of every scan, for other programs"},
       {"dashboard", "the live page for browsers"},
       {"recording", "the recording of both ports"},
   };

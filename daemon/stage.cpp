@@ -45,13 +45,23 @@ Stage::Stage(Options options, std::function<void()> body, std::function<void(con
     : thread_{[this, options = std::move(options), body = std::move(body), on_failure = std::move(on_failure)] {
         (void)pthread_setname_np(pthread_self(), options.name.c_str());
         step_back(options.niceness);
+        clockid_t clock = 0;
+        if (pthread_getcpuclockid(pthread_self(), &clock) == 0) clock_.store(clock, std::memory_order_relaxed);
         try {
           body();
         } catch (const std::exception& error) {
           on_failure(options.name + " stage: " + error.what());
         }
+        clock_.store(0, std::memory_order_relaxed);
         cpu_s_ = thread_cpu_s();
       }} {}
+
+std::optional<double> Stage::cpu_now_s() const {
+  const clockid_t clock = clock_.load(std::memory_order_relaxed);
+  timespec time{};
+  if (clock == 0 || clock_gettime(clock, &time) != 0) return std::nullopt;  // it may end at this moment
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 void Stage::join() {
   if (thread_.joinable()) thread_.join();

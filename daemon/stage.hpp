@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <ctime>
 #include <functional>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -49,8 +51,11 @@ class Stage {
   void join();
   /// After join().
   [[nodiscard]] double cpu_s() const { return cpu_s_; }
+  /// Any thread: so far; nothing before the stage's thread runs, and once it has ended.
+  [[nodiscard]] std::optional<double> cpu_now_s() const;
 
  private:
+  std::atomic<clockid_t> clock_{0};  // of the thread's CPU time, while it runs; 0: it does not
   double cpu_s_ = 0.0;
   std::jthread thread_;
 };

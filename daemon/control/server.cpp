@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/server.hpp"
 
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
 #include <boost/asio/buffer.hpp>
@@ -20,6 +15,7 @@
 #include <set>
 
 #include "daemon/accept_loop.hpp"
+#include "daemon/control/listening_socket.hpp"
 #include "daemon/control/request.hpp"
 
 namespace deltamap::daemon::control {
@@ -30,43 +26,6 @@ using Protocol = asio::local::stream_protocol;
 using boost::system::error_code;
 
 constexpr std::size_t kMostClients = 16;
-constexpr mode_t kOwnerAndGroup = 0660;
-
-[[noreturn]] void refuse(const std::filesystem::path& socket, const std::string& why) {
-  throw std::runtime_error(socket.string() + ": cannot listen: " + why);
-}
-
-/// What lies at the path is no socket, or somebody answers there: refused. What a crash left is removed.
-void clear_the_way(asio::io_context& loop, const std::filesystem::path& socket) {
-  std::error_code ignored;
-  const auto status = std::filesystem::symlink_status(socket, ignored);
-  if (!std::filesystem::exists(status)) return;
-  if (!std::filesystem::is_socket(status)) refuse(socket, "a file that is no socket is in the way");
-  Protocol::socket caller{loop};
-  error_code error;
-  caller.connect(Protocol::endpoint{socket.string()}, error);
-  if (!error || error == asio::error::try_again || error == asio::error::would_block) {
-    throw AlreadyServed(socket.string() + ": another daemon listens there");
-  }
-  if (error != asio::error::connection_refused) refuse(socket, error.message());
-  std::filesystem::remove(socket, ignored);
-}
-
-/// Never wider than owner and group, not even for a moment; and not narrower, whatever the umask.
-Protocol::acceptor listening_at(asio::io_context& loop, const std::filesystem::path& socket) {
-  try {
-    const Protocol::endpoint endpoint{socket.string()};  // throws where the path is too long
-    clear_the_way(loop, socket);
-    Protocol::acceptor acceptor{loop, Protocol{}};
-    (void)::fchmod(acceptor.native_handle(), kOwnerAndGroup);
-    acceptor.bind(endpoint);
-    if (::chmod(socket.c_str(), kOwnerAndGroup) != 0) refuse(socket, "its permissions cannot be set");
-    acceptor.listen();
-    return acceptor;
-  } catch (const boost::system::system_error& error) {
-    refuse(socket, error.code().message());
-  }
-}
 
 /// One client: a line, its reply, the next line.
 class Session : public std::enable_shared_from_this<Session> {
@@ -100,18 +59,12 @@ class Session : public std::enable_shared_from_this<Session> {
     const std::string line = received_.substr(0, size - 1);
     received_.erase(0, size);
     wait_for_reply();
-    options_.handle(line, is_gone(),
+    options_.handle(line, is_gone(socket_),
                     [self = weak_from_this(), number = number_, to = socket_.get_executor()](std::string reply) {
                       asio::post(to, [self, number, reply = std::move(reply)] {
                         if (const auto session = self.lock()) session->answer(number, reply);
                       });
                     });
-  }
-
-  /// Both ways: one that only has nothing more to say still listens.
-  [[nodiscard]] bool is_gone() {
-    pollfd state{socket_.native_handle(), 0, 0};
-    return ::poll(&state, 1, 0) > 0 && (state.revents & POLLHUP) != 0;
   }
 
   void wait_for_reply() {

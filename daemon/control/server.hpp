@@ -6,15 +6,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
-namespace deltamap::daemon::control {
+#include "daemon/control/already_served.hpp"
 
-/// Another daemon listens at this path: one line that names it.
-class AlreadyServed : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+namespace deltamap::daemon::control {
 
 class Server {
  public:

@@ -33,6 +33,7 @@ int run_tool(int argc, const char* const* argv) {
   add_calibrate_motion(calibrate);
   add_decode(app);
   add_replay(app);
+  add_view(app);
   try {
     app.parse(argc, argv);
     if (!std::cout.flush()) throw std::runtime_error("standard output: cannot be written");

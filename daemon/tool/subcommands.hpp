@@ -22,6 +22,7 @@ void add_calibrate_motion(CLI::App& calibrate);
 void add_import_carmen(CLI::App& import);
 
 void add_replay(CLI::App& app);
+void add_view(CLI::App& app);
 
 // under `deltamap map`
 void add_map_compare(CLI::App& map);

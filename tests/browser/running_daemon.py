@@ -21,9 +21,10 @@ def free_port():
 
 
 class RunningDaemon:
-    """Simulator and daemon, until the `with` block ends. `port` 0: without a page. `token`: asked of every viewer."""
+    """Simulator and daemon, until the `with` block ends. `port` 0: without a page. `token`: asked of every viewer. `settings`: more of them."""
 
-    def __init__(self, port=None, change_every_s=15, token=None):
+    def __init__(self, port=None, change_every_s=15, token=None, settings=None):
+        self.settings = settings or {}
         self.port = free_port() if port is None else port
         self.url = f"http://127.0.0.1:{self.port}/"
         self.folder = tempfile.TemporaryDirectory(prefix="deltamap-page-")
@@ -68,6 +69,8 @@ class RunningDaemon:
             places["dashboard.token_file"] = "token"
         for key, name in places.items():
             command += ["--set", f"{key}={self.place / name}"]
+        for key, value in self.settings.items():
+            command += ["--set", f"{key}={value}"]
         self.daemon = subprocess.Popen(command, stderr=self.log, stdout=self.log, cwd=ROOT)
         self._until(lambda: self.ctl("drive", "wander").returncode == 0)
         self._until(lambda: self.status()["localized"] > 5)

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "daemon/dashboard/wire.hpp"
 #include "daemon/live_stream.hpp"
 #include "tests/support/drawn_grid.hpp"
@@ -95,6 +97,27 @@ TEST_F(LiveBoardTest, SamplesComeOnceASecondWithTheRateOfScans) {
   EXPECT_EQ(board_.samples_from(8, 100).items.size(), 2u);
   EXPECT_EQ(board_.samples_from(0, 3).next(), 3u);
   EXPECT_TRUE(board_.samples_from(10, 100).items.empty());
+}
+
+TEST_F(LiveBoardTest, WhatTheStagesHaveUsedSinceTheSampleBeforeIsAShareOfAProcessor) {
+  double used_s = 10.0;
+  board_.set_figures([&used_s] {
+    LiveFigures figures;
+    figures.cpu_s[1] = used_s += 0.25;  // localization, in each second
+    figures.resident_bytes = 3.0 * 1024 * 1024;
+    figures.wheel_turn = -0.02;
+    return figures;
+  });
+  show_scans(0, 13);
+  const auto past = board_.samples_from(0, 100);
+  ASSERT_EQ(past.items.size(), 3u);
+  for (const LiveSample& sample : past.items) {
+    EXPECT_FLOAT_EQ(sample.values[LiveSample::kCpuLocalization], 25.0F);
+    EXPECT_FLOAT_EQ(sample.values[LiveSample::kMemory], 3.0F);
+    EXPECT_FLOAT_EQ(sample.values[LiveSample::kWheelTurn], -2.0F);
+    EXPECT_TRUE(std::isnan(sample.values[LiveSample::kCpuMap])) << "not known";
+    EXPECT_TRUE(std::isnan(sample.values[LiveSample::kWheelDistance]));
+  }
 }
 
 TEST_F(LiveBoardTest, ThePastIsAnHourAndNoMore) {

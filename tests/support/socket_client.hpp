@@ -44,6 +44,8 @@ class SocketClient {
     return line();
   }
 
+  /// Still listens.
+  void say_no_more() const { (void)::shutdown(socket_.descriptor(), SHUT_WR); }
   void vanish() { socket_.vanish(); }
 
  private:

@@ -87,6 +87,7 @@ agree warning "a damaged store" -- --set map.store="$place/store.sqlite"
 new_place
 echo >"$place/ctl.sock"
 agree warning "a file in place of the socket" -- --set control.socket="$place/ctl.sock"
+agree warning "a file in place of the poses' socket" -- --set poses.socket="$place/ctl.sock"
 new_place
 echo >"$place/file"
 agree error "a file in place of the store's folder" -- --set map.store="$place/file/store.sqlite"

@@ -7,6 +7,7 @@ import { dots_per_px, ink_of, once_a_frame } from "./canvas.js";
 const LEFT = 40, RIGHT = 6, TOP = 6, BOTTOM = 16; // px around the plot
 const GAP_S = 5;  // a line is not joined over a longer silence
 const SPANS = [["1 min", 60], ["10 min", 600], ["1 h", 3600]];
+const MOST_POINTS = 3000; // of a line; of more, every second, third, … is drawn
 const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 2] };
 
 const line = (column, label, ink, dash = "solid") => ({ column, label, ink, dash });
@@ -17,6 +18,10 @@ const CHARTS = [
   { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")], low: 0 },
   { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")], low: 0 },
   { title: "Latency", lines: [line("latency_ms", "ms", "--pink")], low: 0 },
+  { title: "Processor, % of one", low: 0, lines: [line("cpu_localization", "pose", "--blue"), line("cpu_delta", "Δ", "--red", "dashed"), line("cpu_map", "map", "--green"),
+    line("cpu_io", "ports", "--text", "dotted"), line("cpu_recorder", "disk", "--pink", "dashed"), line("cpu_page", "page", "--orange", "dotted")] },
+  { title: "Memory", lines: [line("memory_mib", "MiB", "--blue")], low: 0 },
+  { title: "Wheels go beyond their count, %", lines: [line("wheel_distance", "distance", "--blue"), line("wheel_turn", "turn", "--red", "dashed")] },
 ];
 
 /// A step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
@@ -42,7 +47,7 @@ const tick_text = (value, step) => value.toFixed(Math.max(0, Math.min(6, -Math.f
 const clock = (time) => new Date(1000 * time).toLocaleTimeString([], { hour12: false });
 
 class Chart {
-  constructor(host, kind, on_hover) {
+  constructor(host, kind, on_hover, on_pick) {
     this.kind = kind;
     const figure = document.createElement("figure");
     this.caption = document.createElement("figcaption");
@@ -61,6 +66,7 @@ class Chart {
     });
     this.caption.append(title, ...this.values);
     this.canvas.addEventListener("pointermove", (event) => on_hover(this.time_at(event.offsetX)));
+    this.canvas.addEventListener("click", (event) => on_pick(this.time_at(event.offsetX)));
     this.canvas.addEventListener("pointerleave", () => on_hover(null));
     this.canvas.addEventListener("blur", () => on_hover(null));
     this.canvas.addEventListener("keydown", (event) => {
@@ -72,6 +78,8 @@ class Chart {
     });
   }
 
+  set_shown(is_shown) { this.canvas.parentElement.hidden = !is_shown; }
+
   time_at(px) {
     const share = (px - LEFT) / Math.max(1, this.canvas.clientWidth - LEFT - RIGHT);
     return this.from + Math.min(1, Math.max(0, share)) * (this.to - this.from);
@@ -81,6 +89,7 @@ class Chart {
     let low = this.kind.low ?? Infinity, high = this.kind.high ?? -Infinity;
     for (const sample of samples) {
       for (const { column } of this.kind.lines) {
+        if (!Number.isFinite(sample[column])) continue;
         low = Math.min(low, sample[column]);
         high = Math.max(high, sample[column]);
       }
@@ -89,7 +98,7 @@ class Chart {
     return low === Infinity || high === -Infinity ? axis_for(0, 1) : axis_for(low, high);
   }
 
-  draw(samples, from, to, threshold, instant) {
+  draw(samples, from, to, threshold, instant, every) {
     [this.from, this.to] = [from, to];
     const dots = dots_per_px();
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
@@ -103,7 +112,7 @@ class Chart {
     const y_of = (value) => TOP + (axis.high - value) / (axis.high - axis.low) * (height - TOP - BOTTOM);
     this.draw_axes(context, axis, x_of, y_of, width, height);
     if (threshold != null) this.draw_threshold(context, y_of(threshold), width);
-    for (const kind of this.kind.lines) this.draw_line(context, samples, kind, x_of, y_of);
+    for (const kind of this.kind.lines) this.draw_line(context, samples, kind, x_of, y_of, every);
     if (instant) this.draw_instant(context, x_of(instant.time), height);
     this.tell(instant ?? samples.at(-1), threshold);
   }
@@ -141,7 +150,7 @@ class Chart {
     context.setLineDash([]);
   }
 
-  draw_line(context, samples, { column, ink, dash }, x_of, y_of) {
+  draw_line(context, samples, { column, ink, dash }, x_of, y_of, every) {
     context.strokeStyle = ink_of(ink);
     context.setLineDash(DASHES[dash]);
     context.lineWidth = 1.5;
@@ -149,7 +158,7 @@ class Chart {
     let last = -Infinity;
     for (const sample of samples) {
       const x = x_of(sample.time), y = y_of(sample[column]);
-      if (sample.time - last > GAP_S) context.moveTo(x, y); else context.lineTo(x, y);
+      if (sample.time - last > GAP_S * every || !Number.isFinite(y)) context.moveTo(x, y); else context.lineTo(x, y);
       last = sample.time;
     }
     context.stroke();
@@ -182,13 +191,27 @@ export class Charts {
     this.thresholds = {};
     this.span_s = SPANS[1][1];
     this.instant = null; // the sample under the pointer
-    this.charts = CHARTS.map((kind) => new Chart(host, kind, (at) => this.hover(at)));
-    this.add_spans(spans_host);
+    this.until = null;   // the time that a person looks at; null: now
+    this.on_pick = () => {};
+    this.charts = CHARTS.map((kind) => new Chart(host, kind, (at) => this.hover(at), (time) => this.on_pick(time)));
+    this.spans_host = spans_host;
+    this.add_spans(SPANS);
     new ResizeObserver(() => this.draw_soon()).observe(host);
   }
 
-  add_spans(host) {
-    for (const [label, span_s] of SPANS) {
+  /// Of a run that is over: the whole of it, too.
+  set_whole(is_whole) {
+    this.until = null;
+    const spans = is_whole ? [...SPANS, ["all", Infinity]] : SPANS;
+    if (this.spans_host.children.length === spans.length) return;
+    this.span_s = is_whole ? Infinity : SPANS[1][1];
+    this.spans_host.replaceChildren();
+    this.add_spans(spans);
+  }
+
+  add_spans(spans) {
+    const host = this.spans_host;
+    for (const [label, span_s] of spans) {
       const button = document.createElement("button");
       button.type = "button";
       button.textContent = label;
@@ -215,12 +238,18 @@ export class Charts {
   }
 
   draw() {
-    const to = this.samples.at(-1)?.time ?? Date.now() / 1000;
+    const last = this.samples.at(-1)?.time ?? Date.now() / 1000, first = this.samples[0]?.time ?? last;
+    const to = this.until === null ? last : Math.min(last, Math.max(this.until + this.span_s / 2, first + this.span_s));
     // A young run fills the axis: from its beginning, a minute at least.
-    const from = Math.max(to - this.span_s, Math.min(this.samples[0]?.time ?? to, to - SPANS[0][1]));
-    const shown = this.samples.filter((sample) => sample.time >= from);
+    const from = Math.max(to - this.span_s, Math.min(first, to - SPANS[0][1]));
+    const inside = this.samples.filter((sample) => sample.time >= from && sample.time <= to);
+    const every = Math.ceil(inside.length / MOST_POINTS), shown = inside.filter((_, i) => i % every === 0);
+    if (this.samples.length) {
+      for (const chart of this.charts) chart.set_shown(this.samples.some((sample) => chart.kind.lines.some(({ column }) => Number.isFinite(sample[column]))));
+    }
+    const instant = this.instant ?? (this.until === null ? null : inside.findLast((sample) => sample.time <= this.until) ?? inside[0]);
     for (const chart of this.charts) {
-      chart.draw(shown, from, to, this.thresholds[chart.kind.threshold] ?? null, this.instant);
+      chart.draw(shown, from, to, this.thresholds[chart.kind.threshold] ?? null, instant ?? null, every);
     }
     this.instant_host.textContent = this.instant ? `at ${clock(this.instant.time)}` : "";
   }

@@ -6,14 +6,14 @@ import { cells_of } from "./connection.js";
 const by_id = (id) => document.getElementById(id);
 const whole = (number) => number.toLocaleString("en");
 
-async function fetched(address) {
+export async function fetched(address) {
   const answer = await fetch(address, { signal: AbortSignal.timeout(10000) });
   if (!answer.ok) throw new Error((await answer.text()).trim());
   return answer;
 }
 
 /// The boxes of /api/revision/K/cells.
-function boxes_in(buffer) {
+export function boxes_in(buffer) {
   const view = new DataView(buffer), boxes = [];
   for (let at = 0; at < buffer.byteLength;) {
     const size = view.getUint32(at, true);
@@ -49,13 +49,15 @@ export class History {
 
   get is_open() { return this.number !== null; }
   get newest() { return this.model.status?.newest_revision ?? this.model.revision ?? 0; }
+  get oldest() { return this.model.run?.first_revision ?? 0; }
 
   allow_undo(is_allowed) { this.undo.hidden = !is_allowed; }
 
   /// A newer revision may have come.
   update() {
+    this.slider.min = this.oldest;
     this.slider.max = this.newest;
-    by_id("history").disabled = !this.model.status;
+    by_id("history").disabled = !this.model.status && !this.model.run?.has_history;
   }
 
   /// The map after Δ `number`, its cells marked. Only the newest wish counts: the slider is faster than answers.
@@ -69,7 +71,7 @@ export class History {
     by_id("history").setAttribute("aria-pressed", "true");
     this.tell(`M${number} of M${this.newest}: …`);
     try {
-      const wanted = [number, Math.max(0, number - 1)].map((k) => fetched(`/api/revision/${k}/cells`).then((answer) => answer.arrayBuffer()));
+      const wanted = [number, Math.max(this.oldest, number - 1)].map((k) => fetched(`/api/revision/${k}/cells`).then((answer) => answer.arrayBuffer()));
       const [after, before, changes] = await Promise.all([...wanted, fetched(`/api/revision/${number}/changes`).then((answer) => answer.json())]);
       if (asked !== this.asked) return;
       this.maps = [after, before].map((buffer) => this.view.tiles_of(boxes_in(buffer)));
@@ -92,7 +94,7 @@ export class History {
   put() {
     this.view.past = this.maps?.[this.model.is_before ? 1 : 0] ?? null;
     by_id("history-before").setAttribute("aria-pressed", String(this.model.is_before));
-    by_id("history-before").disabled = this.undo.disabled = !this.maps || this.number === 0;
+    by_id("history-before").disabled = this.undo.disabled = !this.maps || this.number === this.oldest;
     this.undo.textContent = `Undo M${this.number}`;
     this.view.draw_soon();
   }
@@ -101,9 +103,10 @@ export class History {
 
   close() {
     ++this.asked;
-    this.number = this.maps = this.model.delta = this.view.past = null;
+    this.number = this.maps = this.model.delta = null;
     by_id("history-bar").hidden = true;
     by_id("history").setAttribute("aria-pressed", "false");
+    this.view.past = this.view.judged;
     this.view.draw_soon();
   }
 

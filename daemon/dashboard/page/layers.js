@@ -43,7 +43,8 @@ function draw_path(context, view, model) {
   context.globalAlpha = 0.75;
   context.beginPath();
   let last = null;
-  const points = model.pose ? [...model.samples, model.pose] : model.samples;
+  const past = model.until == null ? model.samples : model.samples.filter(({ time }) => time <= model.until);
+  const points = model.pose ? [...past, model.pose] : past;
   for (const { x_m, y_m } of points) {
     const [px, py] = view.to_screen(x_m, y_m);
     const is_joined = last && Math.hypot(x_m - last.x_m, y_m - last.y_m) < JUMP_M;
@@ -143,6 +144,7 @@ const LEAST_RING_PX = 20;
 function draw_changes(context, view, model) {
   const shown = model.picked && has_place(model.picked) ? [model.picked] : [];
   for (let i = model.changes.length - 1; i >= 0 && shown.length < MOST_RINGS; --i) {
+    if (model.until != null && model.changes[i].time > model.until) continue;
     const [left, bottom, right, top] = model.changes[i].box_m;
     const x = (left + right) / 2, y = (bottom + top) / 2;
     const is_covered = shown.some(({ box_m: [l, b, r, t] }) => x > l - RING_M && x < r + RING_M && y > b - RING_M && y < t + RING_M);

@@ -7,13 +7,14 @@ import { Control } from "./control.js";
 import { History } from "./history.js";
 import { draw_delta, draw_scale_bar, draw_wish, fill_delta_legend, fill_legend, has_place, LAYERS } from "./layers.js";
 import { MapView } from "./map_view.js";
-import { add_changes, clear_changes, mark_picked, show_link, show_pose, show_status } from "./panels.js";
+import { add_changes, clear_changes, mark_picked, show_link, show_pose, show_run, show_status } from "./panels.js";
+import { Run } from "./run.js";
 
 const MOST_SAMPLES = 3600;
 const NARROW_PX = 1280; // the legend would cover the map
 
 const by_id = (id) => document.getElementById(id);
-const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null, wish: null, delta: null };
+const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null, wish: null, delta: null, run: null, until: null };
 const shown = new Set(LAYERS.map((layer) => layer.id));
 
 // --- dark and light: as the system, until a person says otherwise ---
@@ -25,7 +26,7 @@ function apply_theme() {
 apply_theme();
 
 const view = new MapView(by_id("map"), (context) => {
-  for (const layer of LAYERS) if (shown.has(layer.id) && !(view.past && layer.is_of_now)) layer.draw(context, view, model);
+  for (const layer of LAYERS) if (shown.has(layer.id) && !(history.is_open && view.past && layer.is_of_now)) layer.draw(context, view, model);
   draw_delta(context, view, model);
   draw_wish(context, view, model);
   draw_scale_bar(context, view);
@@ -60,6 +61,7 @@ view.on_follow = (follows) => {
 
 function pick(change, button) {
   model.picked = model.picked === change ? null : change;
+  if (run.is_open && model.picked) run.go(change.time);
   mark_picked(model.picked ? button : null);
   if (!model.picked || !change.accepted) history.close();
   else history.show(change.revision);
@@ -73,6 +75,11 @@ function pick(change, button) {
 
 const control = new Control(view, model);
 const history = new History(view, model, control.row);
+const run = new Run(view, model, (message) => connection.take(message), (time) => {
+  charts.until = time;
+  charts.draw_soon();
+});
+charts.on_pick = (time) => { if (run.is_open) run.go(time); };
 
 // --- what the daemon sends ---
 
@@ -83,13 +90,16 @@ function note(text) {
 
 const on = {
   link(link) {
-    show_link(link);
+    show_link(link, model.run);
     control.link(link);
-    if (link === "lost") note("No connection to the daemon. What is shown is old; trying again …");
+    if (link === "lost") note(model.run ? "The program that shows this run has ended." : "No connection to the daemon. What is shown is old; trying again …");
     if (link === "live") note("");
   },
   hello(hello) {
-    document.title = `deltamap ${hello.version.split(" ")[0]}`;
+    run.begin(hello.run);
+    show_link("live", hello.run);
+    charts.set_whole(Boolean(hello.run));
+    document.title = hello.run ? `${hello.run.name} – deltamap` : `deltamap ${hello.version.split(" ")[0]}`;
     charts.thresholds = hello.thresholds;
     charts.instant = null;
     control.allow(hello.control);
@@ -108,6 +118,7 @@ const on = {
     model.pose = pose;
     show_pose(pose);
     if (view.follows) view.show(pose.x_m, pose.y_m);
+    if (run.told) show_run(model.run, run.told, pose, view.frame);
     view.draw_soon();
   },
   scan(scan) {  // a pose comes with it
@@ -123,9 +134,14 @@ const on = {
     history.update();
     show_status(message, passed_s > 0 ? (now.localized - before.localized) / passed_s : null);
   },
+  run(told) {
+    run.show(told);
+    history.update();
+    show_run(model.run, told, model.pose, view.frame);
+  },
   samples(rows) {
     model.samples.push(...rows);
-    model.samples.splice(0, model.samples.length - MOST_SAMPLES);
+    if (!run.is_open) model.samples.splice(0, model.samples.length - MOST_SAMPLES);
     charts.samples = model.samples;
     charts.draw_soon();
   },
@@ -136,4 +152,5 @@ const on = {
   },
 };
 
-window.deltamap = { model, view, control, history, connection: new Connection(on) };  // to look at in the browser's console
+const connection = new Connection(on);
+window.deltamap = { model, view, charts, control, history, run, connection };  // to look at in the browser's console

@@ -21,6 +21,7 @@ export class MapView {
     this.frame = null;
     this.tiles = new Map();
     this.past = null; // tiles of an older revision, shown in their place
+    this.judged = null; // tiles that beams are held against, where that is not the newest map
     this.centre = { x: 0, y: 0 };
     this.scale = 20;
     this.is_fitted = true; // until a person moves the view
@@ -107,12 +108,12 @@ export class MapView {
   }
 
   repaint() {
-    for (const tile of [...this.tiles.values(), ...(this.past?.values() ?? [])]) this.paint(tile);
+    for (const tiles of new Set([this.tiles, this.past, this.judged])) for (const tile of tiles?.values() ?? []) this.paint(tile);
     this.draw_soon();
   }
 
   state_of(column, row) {
-    const tile = this.tiles.get(`${Math.floor(column / SIDE)},${Math.floor(row / SIDE)}`);
+    const tile = (this.judged ?? this.tiles).get(`${Math.floor(column / SIDE)},${Math.floor(row / SIDE)}`);
     return tile ? tile.states[(row - tile.row) * SIDE + column - tile.column] : UNKNOWN;
   }
 

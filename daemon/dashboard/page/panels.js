@@ -25,8 +25,11 @@ function badge(id, text, level) {
   host.dataset.level = level;
 }
 
-export function show_link(link) {
-  const words = { connecting: "connecting", live: "live", lost: "no connection" };
+const KINDS = { recording: "recording", folder: "finished run", map: "map" };
+
+/// `run`: of hello, or null.
+export function show_link(link, run) {
+  const words = { connecting: "connecting", live: run ? KINDS[run.kind] : "live", lost: "no connection" };
   badge("badge-link", words[link], { connecting: "wait", live: "good", lost: "bad" }[link]);
   document.body.dataset.link = link;
 }
@@ -34,6 +37,7 @@ export function show_link(link) {
 export function show_pose(pose) {
   badge("badge-state", pose.state, LEVELS[pose.state] ?? "none");
   badge("badge-verdict", `pose ${pose.verdict}`, LEVELS[pose.verdict] ?? "none");
+  if (!pose.gate) return badge("badge-gate", "–", "none");
   badge("badge-gate", pose.gate.open ? "gate open" : `gate shut: ${pose.gate.reason}`, pose.gate.open ? "good" : "warn");
 }
 
@@ -86,10 +90,37 @@ function problems_of(status) {
   return problems;
 }
 
+/// Rows of a run that is over, at the time that is shown. `pose` is null where it has no scans.
+function rows_of_run(run, told, pose, frame) {
+  const rows = [["Of", run.name]];
+  if (frame) rows.push(["Map", `M${told.revision}; ${whole(frame.width)} × ${whole(frame.height)} cells of ${+(100 * frame.resolution_m).toFixed(1)} cm`]);
+  if (told.from === null || !pose) return rows;
+  const deviation = Math.sqrt(Math.max(pose.covariance.xx_m2, pose.covariance.yy_m2));
+  return [...rows,
+    ["Began", new Date(1000 * told.from).toLocaleString([], { hour12: false })],
+    ["Length", `${duration(told.to - told.from)}, ${whole(told.scans)} scans`],
+    ["Shown", `scan ${whole(pose.scan)}, pose on M${pose.revision}`],
+    ["P(pose right)", share_bar(pose.pose_right)],
+    ["P(map wrong)", share_bar(pose.map_wrong)],
+    ["Pose", `${pose.x_m.toFixed(2)}, ${pose.y_m.toFixed(2)} m, ${(pose.heading_rad * 180 / Math.PI).toFixed(0)}°; σ ${(100 * deviation).toFixed(1)} cm`],
+    ["Speed", `${(Math.round(100 * pose.speed_m_per_s) / 100 || 0).toFixed(2)} m/s`],
+  ];
+}
+
+export function show_run(run, told, pose, frame) { show_rows(rows_of_run(run, told, pose, frame)); }
+
 export function show_status(message, rate) {
+  show_rows(rows_of(message, rate));
+  const problems = problems_of(message.status), alert = document.getElementById("problems");
+  alert.hidden = !problems.length;
+  if (alert.textContent !== problems.join("; ")) alert.textContent = problems.join("; ");
+}
+
+function show_rows(rows) {
   const host = document.getElementById("status");
-  const rows = rows_of(message, rate);
-  if (host.children.length !== 2 * rows.length) {
+  const names = rows.map(([name]) => name).join();
+  if (host.dataset.names !== names) {
+    host.dataset.names = names;
     host.replaceChildren(...rows.flatMap(([name]) => {
       const title = document.createElement("dt");
       title.textContent = name;
@@ -97,9 +128,6 @@ export function show_status(message, rate) {
     }));
   }
   rows.forEach(([, value], i) => host.children[2 * i + 1].replaceChildren(...(Array.isArray(value) ? value : [value])));
-  const problems = problems_of(message.status), alert = document.getElementById("problems");
-  alert.hidden = !problems.length;
-  if (alert.textContent !== problems.join("; ")) alert.textContent = problems.join("; ");
 }
 
 function words_of(change) {

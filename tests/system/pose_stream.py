@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A planner in another process, with nothing but Python's standard library: the poses of a running daemon, over its socket
+`poses.socket` alone (no page, no control socket). usage: pose_stream.py FOLDER-OF-PROGRAMS"""
+
+import json
+import math
+import os
+import pathlib
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+WORLD = ROOT / "config/scenarios/room.yaml"
+SCANS = 40
+PATIENCE_S = 30.0
+
+# The schema of a line (docs/api.md): every key, and what its value may be.
+NUMBER, TEXT, OBJECT = (int, float), str, dict
+POSE = {"type": TEXT, "time": NUMBER, "scan": int, "x_m": NUMBER, "y_m": NUMBER, "heading_rad": NUMBER, "covariance": OBJECT, "state": TEXT, "verdict": TEXT,
+        "pose_right": NUMBER, "map_wrong": NUMBER, "speed_m_per_s": NUMBER, "turn_rate_rad_per_s": NUMBER, "revision": int,
+        "other_hypothesis": (dict, type(None)), "gate": (dict, type(None)), "latency_ms": NUMBER}
+COVARIANCE = {"xx_m2", "xy_m2", "yy_m2", "xh_m_rad", "yh_m_rad", "hh_rad2"}
+
+
+def check(condition, what):
+    if not condition:
+        raise SystemExit(f"pose_stream: {what}")
+
+
+class Poses:
+    """The lines of `poses.socket`, as objects."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.socket.settimeout(PATIENCE_S)
+        self.socket.connect(str(path))
+        self.lines = self.socket.makefile("r", encoding="utf-8")
+
+    def next(self):
+        line = self.lines.readline()
+        return json.loads(line) if line else None
+
+    def close(self):
+        self.lines.close()
+        self.socket.close()
+
+
+def until(condition, what):
+    give_up_at = time.monotonic() + PATIENCE_S
+    while not condition():
+        check(time.monotonic() < give_up_at, what)
+        time.sleep(0.05)
+
+
+def check_pose(pose):
+    check(pose.keys() == POSE.keys(), f"keys that differ from the schema: {sorted(pose.keys() ^ POSE.keys())}")
+    for key, kind in POSE.items():
+        check(isinstance(pose[key], kind) and not isinstance(pose[key], bool), f"{key} is {pose[key]!r}")
+    check(pose["covariance"].keys() == COVARIANCE, "the covariance is not as in the schema")
+    check(pose["covariance"]["xx_m2"] > 0 and pose["covariance"]["hh_rad2"] > 0, "a deviation is 0")
+    check(pose["state"] in ("global", "tracking", "lost") and pose["verdict"] in ("right", "wrong", "undecided"), f"{pose['state']}, {pose['verdict']}")
+    check(isinstance(pose["gate"]["open"], bool), "the gate is neither open nor shut")
+
+
+def started(bin_folder, place, log):
+    settings = {"robot.port": place / "robot", "laser.port": place / "laser", "map.file": place / "m0.yaml", "poses.socket": place / "made/poses.sock",
+                "map.store": "", "control.socket": "", "recording.file": ""}
+    words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+    return subprocess.Popen([bin_folder / "deltamapd", "--config", "config/simulation.yaml", "--set", "dashboard.port=0", "--set", "dashboard.control=false",
+                             "--initial-pose", "1,2,0", *words], stdout=log, stderr=log)
+
+
+def run(bin_folder, place, log):
+    path = place / "made/poses.sock"
+    subprocess.run([bin_folder / "deltamap", "sim", "--world", WORLD, "--write-map", place / "m0.yaml"], check=True, stdout=log, stderr=log)
+    processes = [subprocess.Popen([bin_folder / "deltamap", "sim", "--world", WORLD, "--links", place, "--seed", "1", "--truth", place / "truth.jsonl"], stdout=log, stderr=log)]
+    try:
+        until(lambda: (place / "robot").exists() and (place / "laser").exists(), "no simulator")
+        processes.append(started(bin_folder, place, log))
+        until(path.exists, "no socket")
+        mode = stat.S_IMODE(path.stat().st_mode)
+        check(mode == 0o660, f"the socket's permissions are {mode:o}")
+        stalled, planner, leaves = Poses(path), Poses(path), Poses(path)
+        hello = planner.next()
+        check(hello["type"] == "hello" and hello["protocol"] == 1 and hello["version"], f"begins with {hello}")
+        check(leaves.next()["type"] == "hello", "the second client was not greeted")
+        leaves.close()
+        poses = [planner.next() for _ in range(SCANS)]
+        for pose in poses:
+            check_pose(pose)
+        scans = [pose["scan"] for pose in poses]
+        check(scans == list(range(scans[0], scans[0] + SCANS)), f"scans are missing: {scans}")
+        check(all(a["time"] < b["time"] for a, b in zip(poses, poses[1:])), "time steps back")
+        age_s = time.time() - poses[-1]["time"]
+        check(0 < age_s < 5, f"the newest pose is {age_s:.2f} s old")
+        last = poses[-1]
+        check(last["state"] == "tracking", f"the robot is not tracked: {last}")
+        check(math.hypot(last["x_m"] - 1, last["y_m"] - 2) < 0.5, f"the robot stands at 1, 2: {last}")
+        # A daemon that was killed leaves its socket: the next one takes it over.
+        processes[1].send_signal(signal.SIGKILL)
+        processes[1].wait()
+        while planner.next() is not None:
+            pass
+        check(path.exists(), "a killed daemon cannot have removed its socket")
+        processes[1] = started(bin_folder, place, log)
+        give_up_at = time.monotonic() + PATIENCE_S
+        while True:
+            check(time.monotonic() < give_up_at, "no poses after the restart")
+            try:
+                again = Poses(path)
+                break
+            except ConnectionRefusedError:
+                time.sleep(0.05)
+        check(again.next()["type"] == "hello" and again.next()["type"] == "pose", "no poses after the restart")
+        processes[1].terminate()
+        check(processes[1].wait(60) == 0, "the daemon did not end well")
+        while again.next() is not None:
+            pass
+        check(not path.exists(), "the socket outlives its daemon")
+        stalled.close()
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+
+
+def main():
+    bin_folder = pathlib.Path(sys.argv[1]).resolve()
+    os.chdir(ROOT)
+    with tempfile.TemporaryDirectory(prefix="deltamap-poses-") as folder:
+        place = pathlib.Path(folder)
+        with (place / "log").open("w") as log:
+            try:
+                run(bin_folder, place, log)
+            except BaseException:
+                print((place / "log").read_text()[-4000:], file=sys.stderr)
+                raise
+
+
+if __name__ == "__main__":
+    main()
