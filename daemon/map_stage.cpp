@@ -23,6 +23,11 @@ std::string words_of(const MapOrder& order, const MapRevision& made, std::size_t
   return kept == 0 ? text : text + ", " + std::to_string(kept) + " have changed since and stay";
 }
 
+StoreToKeep with_retention(StoreToKeep store, const mapping::Retention& retention) {
+  store.retention = retention;
+  return store;
+}
+
 }  // namespace
 
 MapStage::MapStage(const Settings& settings, const StartMap& start, const std::optional<std::filesystem::path>& out,
@@ -31,7 +36,8 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
       step_{settings, start},
       outputs_{{.out = out,
                 .store_file = settings.map.store,
-                .store = std::move(store),
+                .newest_file = settings.map.newest,
+                .store = with_retention(std::move(store), settings.map.retention),
                 .start = {start.map, start.revision},
                 .method = step_.method()},
                wiring_.telemetry.outputs,

@@ -14,6 +14,7 @@
 #include "daemon/localization_stage.hpp"
 #include "daemon/map_order.hpp"
 #include "daemon/map_stage.hpp"
+#include "daemon/newest_map.hpp"
 #include "daemon/page_commands.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/run_begin.hpp"
@@ -80,6 +81,7 @@ struct Pipeline::State {
 
   // The first that touch a file: where another daemon is at work, this one ends before it does harm.
   std::optional<FileLock> out_lock;      // of --out
+  std::optional<FileLock> newest_lock;   // of map.newest
   std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
   std::unique_ptr<DashboardDesk> page;   // what the stages show → browsers; may be null
   Recorder recorder;                     // bytes, decisions, lines → disk
@@ -121,6 +123,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{with_warnings(std::move(wanted))},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
+      newest_lock{newest_map_lock(settings.map)},
       control{begun_control_desk(
           settings,
           {.map = options.start.map->geometry(),

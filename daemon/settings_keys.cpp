@@ -195,6 +195,12 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   keys.push_back(not_for_results(text_key("map.file", settings.map.file, "M_0: map_server YAML with its PGM")));
   keys.push_back(
       not_for_results(text_key("map.store", settings.map.store, "SQLite file of all revisions; empty: not kept")));
+  keys.push_back(not_for_results(whole_key("map.retention.revisions", settings.map.retention.revisions, "", 0,
+                                           1'000'000'000, "the newest so many stay one by one; 0: no such rule")));
+  keys.push_back(not_for_results(number_key("map.retention.days", settings.map.retention.days, "days", 0.0, 36500.0,
+                                            "and those that are younger; 0: no such rule; without a rule all stay")));
+  keys.push_back(not_for_results(text_key("map.newest", settings.map.newest,
+                                          "YAML, with its PGM, of the newest revision for others; empty: none")));
   keys.push_back(pose_key("localization.initial_pose", settings.initial_pose,
                           "robot in the map at the first scan; null: where the store keeps it, or found by itself"));
   add_localization_keys(settings.localizer, keys);
