@@ -32,20 +32,17 @@ constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even 
 constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
 constexpr int kPageNiceness = 10;
+constexpr std::chrono::seconds kLookEvery{1};
+constexpr double kPatience = 10.0;  // with map and recorder, against the other stages
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
 }
 
 /// What the run begins from: enough for a replay to obey its journal.
-std::vector<std::string> first_notes(const Settings& settings, const Pipeline::Options& options) {
+std::vector<std::string> notes_of_start(const Settings& settings, const Pipeline::Options& options) {
   if (settings.recording.file.empty()) return {};
-  const std::uint64_t map = grid_hash(*options.start.map);
-  std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, options.memory})};
-  for (std::string& note : begin_notes({options.first_map, options.memory, options.start})) {
-    notes.push_back(std::move(note));
-  }
-  return notes;
+  return first_notes(settings_fingerprint(settings), {options.first_map, options.memory, options.start});
 }
 
 /// Null where it is an order.
@@ -112,7 +109,7 @@ struct Pipeline::State {
   void end_threads();
   void write_report(const RunReport& report) const;
 
-  Workload awareness_work;
+  Pulse awareness_pulse;
   double wall_began_s = 0.0;
   std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread,
       page_thread;
@@ -143,7 +140,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
       recorder{{.recording = settings.recording.file,
                 .bauds = {settings.robot.session.baud, settings.laser.session.baud},
                 .began = drivers::port::port_clock_now(),
-                .first_notes = first_notes(settings, options),
+                .first_notes = notes_of_start(settings, options),
                 .max_gigabytes = settings.recording.max_gigabytes,
                 .trajectory = in_folder(options.out, "trajectory.tum"),
                 .localization = in_folder(options.out, "localization.csv"),
@@ -223,8 +220,10 @@ Pipeline::State::State(const Settings& given, Options wanted)
 // --- delta thread ---
 
 void Pipeline::State::look_for_changes() {
-  while (const auto work = tracked_scans.receive()) {
-    const Workload::Item item{awareness_work};
+  while (!tracked_scans.is_drained()) {
+    awareness_pulse.beat();
+    const auto work = tracked_scans.receive_within(kLookEvery);
+    if (!work) continue;
     offer_waiting_sets();
     if (const auto* order = std::get_if<MapOrder>(&*work)) {
       hand_over(*order);
@@ -386,9 +385,14 @@ RunReport Pipeline::stop() {
 
 const Telemetry& Pipeline::telemetry() const { return state_->telemetry; }
 
-double Pipeline::longest_work_s() const {
-  return std::max({state_->io.silence_s(), state_->localization.workload().busy_s(), state_->awareness_work.busy_s(),
-                   state_->map.workload().busy_s() / 10.0});
+Pipeline::Silence Pipeline::longest_silence() const {
+  State& s = *state_;
+  return std::max(
+      {Silence{"io", s.io.silence_s()}, Silence{"localization", s.localization.pulse().silence_s()},
+       Silence{"delta", s.awareness_pulse.silence_s()}, Silence{"map", s.map.pulse().silence_s() / kPatience},
+       Silence{"recorder", s.recorder.pulse().silence_s() / kPatience},
+       Silence{"control", s.control ? s.control->silence_s() : 0.0}},
+      [](const Silence& one, const Silence& other) { return one.silence_s < other.silence_s; });
 }
 
 std::shared_ptr<const OccupancyGrid> Pipeline::newest_map() const { return state_->map.map(); }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "daemon/journal.hpp"
 #include "mapping/map_codec.hpp"
 
 namespace deltamap::daemon {
@@ -119,6 +120,12 @@ std::vector<std::string> begin_notes(const RunBegin& begin) {
     bytes.insert(bytes.end(), tiles.begin(), tiles.end());
   }
   return notes_in_parts(kHead, head.dump().append("\n").append(as_text(bytes)));
+}
+
+std::vector<std::string> first_notes(std::uint64_t settings, const RunBegin& begin) {
+  std::vector<std::string> notes{note_of(RunIdentity{settings, grid_hash(*begin.start.map), begin.memory})};
+  for (std::string& note : begin_notes(begin)) notes.push_back(std::move(note));
+  return notes;
 }
 
 BeginReader::BeginReader() : parts_{kHead} {}

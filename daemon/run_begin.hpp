@@ -24,6 +24,9 @@ struct RunBegin {
 /// Empty where the run began from M_0 alone. Each note fits a pcapng comment.
 [[nodiscard]] std::vector<std::string> begin_notes(const RunBegin& begin);
 
+/// The first notes of a recording: what the run is (settings_fingerprint(), its map, which is there), then the above.
+[[nodiscard]] std::vector<std::string> first_notes(std::uint64_t settings, const RunBegin& begin);
+
 /// Puts the notes of one recording together again.
 class BeginReader {
  public:
