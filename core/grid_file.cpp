@@ -20,6 +20,7 @@
 #include "core/grid_file_facts.hpp"
 #include "core/replace_file.hpp"
 #include "core/shortest_text.hpp"
+#include "core/text_of_file.hpp"
 #include "core/tiled.hpp"
 
 namespace deltamap {
@@ -28,7 +29,7 @@ namespace {
 constexpr double kFinest_m = 0.001;  // sides of a cell
 constexpr double kCoarsest_m = 100.0;
 constexpr int kTogether = Tiled<CellState>::kSide;  // pixels
-constexpr int kMaxSide = 32767;  // cells; 16-bit indices suffice everywhere
+constexpr int kMaxSide = 32767;                     // cells; 16-bit indices suffice everywhere
 
 struct MapKeys {
   std::string image;
@@ -281,6 +282,10 @@ class PgmWriter {
 
 }  // namespace
 
+std::filesystem::path picture_of(const std::filesystem::path& yaml_file) {
+  return yaml_file.parent_path() / parse_keys(yaml_file).image;
+}
+
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
   const Point2& origin = grid.geometry().origin;
   return "image: " + image + "\nresolution: " + shortest_text(grid.resolution_m()) + "\norigin: [" +
@@ -332,12 +337,46 @@ std::uint64_t shown_cells(const std::filesystem::path& yaml_file) {
   return tiles * kTogether * kTogether;
 }
 
+namespace {
+
+/// There is one, and it says something else.
+bool is_other_text(const std::filesystem::path& file, const std::string& text) {
+  try {
+    return text_of_file(file) != text;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+/// The old description would be wrong for the new picture: it goes before that comes, once both are on disk.
+void replace_both(PgmWriter& pgm, const std::filesystem::path& image, const std::string& text,
+                  const std::filesystem::path& yaml_file) {
+  const std::filesystem::path next_image = image.string() + ".next";
+  const std::filesystem::path next_yaml = yaml_file.string() + ".next";
+  std::error_code none;
+  try {
+    replace_file(next_image, [&] { return pgm.next_piece(); });
+    replace_file(next_yaml, text);
+    std::filesystem::remove(yaml_file, none);
+    move_into_place(next_image, image);
+    move_into_place(next_yaml, yaml_file);
+  } catch (const std::runtime_error&) {
+    std::filesystem::remove(next_image, none);
+    std::filesystem::remove(next_yaml, none);
+    throw;
+  }
+}
+
+}  // namespace
+
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file) {
   std::filesystem::path image = yaml_file;
   image.replace_extension(".pgm");
+  const std::string text = yaml_of(grid, image.filename().string());
   PgmWriter pgm{grid};
+  if (is_other_text(yaml_file, text)) return replace_both(pgm, image, text, yaml_file);
   replace_file(image, [&] { return pgm.next_piece(); });
-  replace_file(yaml_file, yaml_of(grid, image.filename().string()));
+  replace_file(yaml_file, text);
 }
 
 }  // namespace deltamap

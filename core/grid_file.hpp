@@ -19,8 +19,12 @@ namespace deltamap {
 [[nodiscard]] bool is_carmen_map(const std::filesystem::path& file, std::string_view first_bytes);
 
 /// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a
-/// temporary file that is synced and renamed. Throws std::runtime_error naming the file.
+/// temporary file that is synced and renamed: at any moment the two belong together, or, while size, place or
+/// resolution change, there is no NAME.yaml. Throws std::runtime_error naming the file.
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
+
+/// The picture that a description names. Throws as read_grid() does.
+[[nodiscard]] std::filesystem::path picture_of(const std::filesystem::path& yaml_file);
 
 /// The texts of these two files, for whoever does not write them.
 [[nodiscard]] std::string yaml_of(const OccupancyGrid& grid, const std::string& image);

@@ -14,6 +14,7 @@
 #include "daemon/first_map.hpp"
 #include "daemon/kept_drive.hpp"
 #include "daemon/localization_step.hpp"
+#include "daemon/newest_map.hpp"
 #include "daemon/output_place.hpp"
 #include "daemon/provenance.hpp"
 #include "daemon/start_banner.hpp"
@@ -193,6 +194,9 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   std::vector<Finding> findings{settings_finding(settings, config)};
   const auto first = check_map(settings, config, findings);
   findings.push_back(store_finding(settings, config, first));
+  if (const std::string& file = settings.map.newest; !file.empty()) {
+    findings.push_back(place_finding("newest", file, file, [&] { return judged_newest_place(settings.map); }));
+  }
   findings.push_back(port_finding("robot", settings.robot.port));
   findings.push_back(port_finding("laser", settings.laser.port));
   findings.push_back(drive_finding(settings));
@@ -200,7 +204,7 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   if (!settings.poses.socket.empty()) findings.push_back(control_finding("poses", settings.poses.socket));
   if (settings.dashboard.port != 0) findings.push_back(page_finding(settings.dashboard));
   if (const std::string& file = settings.recording.file; !file.empty()) {
-    findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));
+    findings.push_back(place_finding("recording", file, file, [&] { return judged_file_place(file); }));
   }
   if (!out.empty()) {
     findings.push_back(place_finding("out", out, fs::path(out) / "report.json",

@@ -66,6 +66,14 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
   }
 }
 
+double ControlDesk::silence_s() {
+  const std::int64_t now_ns = unix_ns(drivers::port::port_clock_now());
+  if (const std::int64_t asked_ns = asked_ns_; asked_ns != 0) return seconds(Duration{now_ns - asked_ns});
+  asked_ns_ = now_ns;
+  server_.post([this] { asked_ns_ = 0; });
+  return 0.0;
+}
+
 void ControlDesk::ask(std::string line, control::Server::Reply reply) {
   const Timestamp asked = drivers::port::port_clock_now();
   server_.post([this, asked, line = std::move(line), reply = std::move(reply)]() mutable {

@@ -3,6 +3,8 @@
 // sent to the localization thread, which takes it before its next scan; who drives is the io thread's.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -37,6 +39,8 @@ class ControlDesk {
   /// The control thread's work, until stop().
   void run() { server_.run(); }
   void stop() { server_.stop(); }
+  /// One thread that watches: how long it has not looked for requests, s. 0 at the first time.
+  [[nodiscard]] double silence_s();
   /// Any thread: a line that has not come by the socket. The reply is given in the control thread, or never where what
   /// was asked for is lost.
   void ask(std::string line, control::Server::Reply reply);
@@ -60,6 +64,7 @@ class ControlDesk {
   Timestamp began_;
   std::uint64_t next_ticket_ = 1;
   std::map<std::uint64_t, Waiting> waiting_;  // by ticket
+  std::atomic<std::int64_t> asked_ns_{0};     // Unix; 0: the control thread has answered whoever watches
   control::Server server_;                    // last: its handler uses the others
 };
 

@@ -50,7 +50,7 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       bauds_{options_.bauds.robot, options_.bauds.laser},
       last_stamp_{options_.began} {
   options_.file = or_start_error([&] { return file_behind(options_.file); });
-  (void)judged_recording_place(options_.file);
+  (void)judged_file_place(options_.file);
   lock_ = or_start_error([&] { return lock_of_file(options_.file); });
   is_previous_kept_ = !keep_previous(options_.file);
   attempt(options_.began, [this] { go_on(); });

@@ -56,6 +56,7 @@ void LocalizationStage::run() {
   batch.reserve(wiring_.sensors.capacity());
   last_scan_came_ = drivers::port::port_clock_now();
   while (!wiring_.sensors.is_drained()) {
+    pulse_.beat();
     auto message = wiring_.sensors.receive_within(kLookEvery);
     while (const auto params = wiring_.wander.try_receive()) {
       if (pilot_) pilot_->set_params(*params);
@@ -63,7 +64,6 @@ void LocalizationStage::run() {
     if (seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s) take_commands_without_scan();
     if (!message) continue;
     // After a stall the queue is drained: all odometry counts, of the scans only the newest.
-    const Workload::Item item{workload_};
     batch.clear();
     batch.push_back(std::move(*message));
     while (batch.size() < wiring_.sensors.capacity()) {

@@ -46,7 +46,7 @@ class LocalizationStage {
   /// The thread's work, until the sensor channel is closed and empty.
   void run();
 
-  [[nodiscard]] const Workload& workload() const { return workload_; }
+  [[nodiscard]] const Pulse& pulse() const { return pulse_; }
   // After run().
   [[nodiscard]] const LocalizationStep& step() const { return step_; }
   [[nodiscard]] const LatencyHistogram& latency() const { return latency_; }
@@ -83,7 +83,7 @@ class LocalizationStage {
   std::optional<navigation::Wander> pilot_;
   bool drives_without_pose_;
   LatencyHistogram latency_;
-  Workload workload_;
+  Pulse pulse_;
   bool mapping_enabled_;
   bool is_paused_ = false;
   std::uint32_t first_revision_;

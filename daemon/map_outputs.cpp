@@ -44,6 +44,10 @@ MapOutputs::MapOutputs(Options options, OutputBoard& board, const RetryingOutput
                        RetryingOutput{"history", history, board, warn}, now);
     }
   }
+  if (!options.newest_file.empty()) {
+    newest_.emplace(MapFile{options.newest_file, {"newest", options.newest_file, board, warn}, options.start.map});
+    newest_->retry(now);
+  }
   if (options.store_file.empty()) return;
   store_.emplace(std::move(options.store), options.method, RetryingOutput{"store", options.store_file, board, warn},
                  now);
@@ -55,11 +59,9 @@ void MapOutputs::save(const MapStep::Result& result, Timestamp now) {
     changes_->flush(now);
   }
   if (history_) history_->take(result, now);
-  if (map_ && result.revision) {
-    map_->waiting = result.revision->map;
-    map_->retry(now);
-  }
+  if (map_) map_->write(result, now);
   if (store_) store_->take(result, now);
+  if (newest_) newest_->write(result, now);
 }
 
 const RevisionKeeper* MapOutputs::memory() const { return store_ ? &*store_ : history_ ? &*history_ : nullptr; }
@@ -74,18 +76,28 @@ std::string MapOutputs::why_behind() const { return memory() == nullptr ? std::s
 void MapOutputs::retry(Timestamp now) {
   if (changes_) changes_->flush(now);
   if (map_) map_->retry(now);
+  if (newest_) newest_->retry(now);
   if (history_) history_->retry(now);
   if (store_) store_->retry(now);
 }
 
 void MapOutputs::close(Timestamp now) {
   if (changes_) changes_->close(now);
-  if (map_) {
-    map_->output.hurry();
-    map_->retry(now);
-  }
+  if (map_) map_->close(now);
+  if (newest_) newest_->close(now);
   if (history_) history_->close(now);
   if (store_) store_->close(now);
+}
+
+void MapOutputs::MapFile::write(const MapStep::Result& result, Timestamp now) {
+  if (!result.revision) return;
+  waiting = result.revision->map;
+  retry(now);
+}
+
+void MapOutputs::MapFile::close(Timestamp now) {
+  output.hurry();
+  retry(now);
 }
 
 void MapOutputs::MapFile::retry(Timestamp now) {

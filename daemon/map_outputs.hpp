@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the newest map goes besides the localizer: changes.jsonl, map.yaml and the history of --out, and the store of
-// the settings. Each may pause and goes on by itself. Map thread.
+// Where the newest map goes besides the localizer: changes.jsonl, map.yaml and the history of --out, and store and
+// map.newest of the settings. Each may pause and goes on by itself. Map thread.
 #pragma once
 
 #include <filesystem>
@@ -21,6 +21,7 @@ class MapOutputs {
   struct Options {
     std::optional<std::filesystem::path> out{};  ///< an existing folder; nothing: no files
     std::filesystem::path store_file{};          ///< of the settings; empty: none
+    std::filesystem::path newest_file{};         ///< YAML of the newest map, of the settings; empty: none
     StoreToKeep store{};
     StartMap start;
     std::string_view method;
@@ -44,13 +45,16 @@ class MapOutputs {
     std::filesystem::path yaml;
     RetryingOutput output;
     std::shared_ptr<const OccupancyGrid> waiting;  // null: what is on disk is the newest
+    void write(const MapStep::Result& result, Timestamp now);
     void retry(Timestamp now);
+    void close(Timestamp now);
   };
 
   [[nodiscard]] const RevisionKeeper* memory() const;
 
   std::optional<LiveLines> changes_;
-  std::optional<MapFile> map_;
+  std::optional<MapFile> map_;             // of --out
+  std::optional<MapFile> newest_;          // of the settings
   std::optional<RevisionKeeper> history_;  // of --out: begins with this run
   std::optional<RevisionKeeper> store_;    // of the settings
 };

@@ -2,6 +2,7 @@
 #include "daemon/map_stage.hpp"
 
 #include <chrono>
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,18 @@ std::string words_of(const MapOrder& order, const MapRevision& made, std::size_t
   return kept == 0 ? text : text + ", " + std::to_string(kept) + " have changed since and stay";
 }
 
+/// " scans=120 acceptance=0.973"
+std::string evidence_of(const ChangeNote& note) {
+  char acceptance[16];
+  (void)std::snprintf(acceptance, sizeof acceptance, "%.3f", note.acceptance);
+  return " scans=" + std::to_string(note.scans) + " acceptance=" + acceptance;
+}
+
+StoreToKeep with_retention(StoreToKeep store, const mapping::Retention& retention) {
+  store.retention = retention;
+  return store;
+}
+
 }  // namespace
 
 MapStage::MapStage(const Settings& settings, const StartMap& start, const std::optional<std::filesystem::path>& out,
@@ -31,7 +44,8 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
       step_{settings, start},
       outputs_{{.out = out,
                 .store_file = settings.map.store,
-                .store = std::move(store),
+                .newest_file = settings.map.newest,
+                .store = with_retention(std::move(store), settings.map.retention),
                 .start = {start.map, start.revision},
                 .method = step_.method()},
                wiring_.telemetry.outputs,
@@ -40,8 +54,8 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
 
 void MapStage::run(const std::deque<MapWork>& rest) {
   while (!wiring_.work.is_drained()) {
+    pulse_.beat();
     if (const auto work = wiring_.work.receive_within(kRetryPeriod)) take(*work);
-    const Workload::Item item{workload_};
     outputs_.retry(port_clock_now());
   }
   for (const MapWork& work : rest) take(work);
@@ -49,7 +63,6 @@ void MapStage::run(const std::deque<MapWork>& rest) {
 }
 
 void MapStage::take(const MapWork& work) {
-  const Workload::Item item{workload_};
   if (const auto* order = std::get_if<MapOrder>(&work)) return obey(*order);
   update(std::get<ScanSet>(work));
 }
@@ -58,7 +71,8 @@ void MapStage::update(const ScanSet& set) {
   const MapStep::Result result = step_.update(set);
   if (!result.revision) {
     wiring_.telemetry.refused.add(1);
-    wiring_.log("map unchanged: phase=" + std::to_string(set.phase) + " reason=" + result.note.reason);
+    wiring_.log("map unchanged: phase=" + std::to_string(set.phase) + evidence_of(result.note) +
+                " verdict=refused reason=" + result.note.reason);
     return hand_on(result);
   }
   if (!result.note.withdraws.empty()) {
@@ -66,7 +80,8 @@ void MapStage::update(const ScanSet& set) {
   }
   wiring_.log("map changed: revision=" + std::to_string(result.revision->number) +
               " phase=" + std::to_string(set.phase) + " added=" + std::to_string(result.note.added) +
-              " freed=" + std::to_string(result.note.freed));
+              " freed=" + std::to_string(result.note.freed) + evidence_of(result.note) +
+              " verdict=" + (result.note.withdraws.empty() ? "accepted" : "withdrawn"));
   hand_on(result);
 }
 

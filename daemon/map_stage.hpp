@@ -39,7 +39,7 @@ class MapStage {
   /// The thread's work, until the channel is closed and empty; then what the delta thread could not hand over.
   void run(const std::deque<MapWork>& rest);
 
-  [[nodiscard]] const Workload& workload() const { return workload_; }
+  [[nodiscard]] const Pulse& pulse() const { return pulse_; }
   // After run().
   [[nodiscard]] const ChangeTally& changes() const { return changes_; }
   [[nodiscard]] const std::shared_ptr<const OccupancyGrid>& map() const { return step_.map(); }
@@ -57,7 +57,7 @@ class MapStage {
   MapStep step_;
   MapOutputs outputs_;
   ChangeTally changes_;
-  Workload workload_;
+  Pulse pulse_;
 };
 
 }  // namespace deltamap::daemon

@@ -68,8 +68,8 @@ std::string judged_store_place(const fs::path& store) {
   return is_writable ? "" : cannot_be("written", file, errno);
 }
 
-std::string judged_recording_place(const fs::path& recording) {
-  const fs::path file = or_start_error([&] { return file_behind(recording); });
+std::string judged_file_place(const fs::path& name) {
+  const fs::path file = or_start_error([&] { return file_behind(name); });
   require_file_in_folder(file);
   std::string why = why_not_writable(folder_of(file), file);
   or_start_error([&] { require_lockable_file(file); });

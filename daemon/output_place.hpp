@@ -13,7 +13,8 @@ namespace deltamap::daemon {
 
 /// Of a store that is there, not whether it is sound (store_opening).
 [[nodiscard]] std::string judged_store_place(const std::filesystem::path& store);
-[[nodiscard]] std::string judged_recording_place(const std::filesystem::path& recording);
+/// Of a file that is begun anew or replaced: the recording, a map.
+[[nodiscard]] std::string judged_file_place(const std::filesystem::path& name);
 /// `out` is the folder of --out; `map` is M_0, which must not be overwritten.
 [[nodiscard]] std::string judged_out_place(const std::filesystem::path& out, const std::filesystem::path& map);
 

@@ -14,6 +14,7 @@
 #include "daemon/localization_stage.hpp"
 #include "daemon/map_order.hpp"
 #include "daemon/map_stage.hpp"
+#include "daemon/newest_map.hpp"
 #include "daemon/page_commands.hpp"
 #include "daemon/pose_stream.hpp"
 #include "daemon/recorder.hpp"
@@ -32,6 +33,8 @@ constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even 
 constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
 constexpr int kPageNiceness = 10;
+constexpr std::chrono::seconds kLookEvery{1};
+constexpr double kPatience = 10.0;  // with map and recorder, against the other stages
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
@@ -70,6 +73,7 @@ struct Pipeline::State {
 
   // The first that touch a file: where another daemon is at work, this one ends before it does harm.
   std::optional<FileLock> out_lock;      // of --out
+  std::optional<FileLock> newest_lock;   // of map.newest
   std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
   std::unique_ptr<DashboardDesk> page;   // what the stages show → browsers; may be null
   std::unique_ptr<PoseStream> poses;     // of each scan → programs on this machine; may be null
@@ -101,7 +105,7 @@ struct Pipeline::State {
   void end_threads();
   void write_report(const RunReport& report) const;
 
-  Workload awareness_work;
+  Pulse awareness_pulse;
   double wall_began_s = 0.0;
   std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread,
       page_thread, poses_thread;
@@ -112,6 +116,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{with_warnings(std::move(wanted))},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
+      newest_lock{newest_map_lock(settings.map)},
       control{begun_control_desk(
           settings,
           {.map = options.start.map->geometry(),
@@ -221,8 +226,10 @@ Pipeline::State::State(const Settings& given, Options wanted)
 // --- delta thread ---
 
 void Pipeline::State::look_for_changes() {
-  while (const auto work = tracked_scans.receive()) {
-    const Workload::Item item{awareness_work};
+  while (!tracked_scans.is_drained()) {
+    awareness_pulse.beat();
+    const auto work = tracked_scans.receive_within(kLookEvery);
+    if (!work) continue;
     offer_waiting_sets();
     if (const auto* order = std::get_if<MapOrder>(&*work)) {
       hand_over(*order);
@@ -388,9 +395,14 @@ RunReport Pipeline::stop() {
 
 const Telemetry& Pipeline::telemetry() const { return state_->telemetry; }
 
-double Pipeline::longest_work_s() const {
-  return std::max({state_->io.silence_s(), state_->localization.workload().busy_s(), state_->awareness_work.busy_s(),
-                   state_->map.workload().busy_s() / 10.0});
+Pipeline::Silence Pipeline::longest_silence() const {
+  State& s = *state_;
+  return std::max(
+      {Silence{"io", s.io.silence_s()}, Silence{"localization", s.localization.pulse().silence_s()},
+       Silence{"delta", s.awareness_pulse.silence_s()}, Silence{"map", s.map.pulse().silence_s() / kPatience},
+       Silence{"recorder", s.recorder.pulse().silence_s() / kPatience},
+       Silence{"control", s.control ? s.control->silence_s() : 0.0}},
+      [](const Silence& one, const Silence& other) { return one.silence_s < other.silence_s; });
 }
 
 std::shared_ptr<const OccupancyGrid> Pipeline::newest_map() const { return state_->map.map(); }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "daemon/io_stage.hpp"
 #include "daemon/live_settings.hpp"
@@ -51,8 +52,13 @@ class Pipeline {
   LiveSettings::Outcome reload();
 
   [[nodiscard]] const Telemetry& telemetry() const;
-  /// The longest time that a stage has been at work on one item: what the watchdog judges by.
-  [[nodiscard]] double longest_work_s() const;
+  struct Silence {
+    std::string_view stage;
+    double silence_s = 0.0;  ///< of map and recorder a tenth: a large map update, or a slow disk, may take its time
+  };
+  /// One thread that watches: the stage that has not looked for work for longest, what the watchdog judges by. Not the
+  /// page: without it the robot does its work.
+  [[nodiscard]] Silence longest_silence() const;
   [[nodiscard]] std::shared_ptr<const OccupancyGrid> newest_map() const;  ///< after stop()
 
  private:

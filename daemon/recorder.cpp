@@ -50,6 +50,7 @@ Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
 void Recorder::run() {
   auto last_flush = std::chrono::steady_clock::now();
   for (;;) {
+    pulse_.beat();
     const bool closed = closed_.load(std::memory_order_acquire);
     bool found = drain(from_io_);
     found = drain(from_localization_) || found;

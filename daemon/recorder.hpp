@@ -18,6 +18,7 @@
 #include "daemon/log_line.hpp"
 #include "daemon/memory_keeper.hpp"
 #include "daemon/outputs.hpp"
+#include "daemon/stage.hpp"
 #include "daemon/telemetry.hpp"
 #include "drivers/port/byte_record.hpp"
 
@@ -85,6 +86,7 @@ class Recorder {
 
   /// The recorder thread's work, until close().
   void run();
+  [[nodiscard]] const Pulse& pulse() const { return pulse_; }
   /// When all senders have ended: what they sent is still written.
   void close();
 
@@ -102,6 +104,7 @@ class Recorder {
   void flush();
 
   Hooks hooks_;
+  Pulse pulse_;
   std::optional<LiveRecording> recording_;
   std::optional<LiveLines> trajectory_;
   std::optional<LiveLines> localization_;

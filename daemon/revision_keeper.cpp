@@ -9,6 +9,9 @@
 namespace deltamap::daemon {
 namespace {
 
+constexpr Duration kLookForOld =
+    std::chrono::minutes(1);  // a look reads an index; what it finds is 64 revisions at most
+
 mapping::RevisionNote note_of(const MapStep::Result& result, std::string_view method) {
   const ChangeNote& note = result.note;
   const std::string cause = result.revision && note.reason.empty() ? std::string(method) : note.reason;
@@ -27,7 +30,7 @@ void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_v
 
 RevisionKeeper::RevisionKeeper(StoreToKeep store, std::string_view method, RetryingOutput output, Timestamp now)
     : to_{std::move(store)}, method_{method}, output_{std::move(output)} {
-  if (!to_.store && to_.why_not.empty()) retry(now);
+  if (!to_.store && to_.why_not.empty()) store_waiting(now);
   if (!to_.why_not.empty()) output_.fail(now, to_.why_not);
 }
 
@@ -40,7 +43,7 @@ void RevisionKeeper::take(const MapStep::Result& result, Timestamp now) {
   };
   if (goes_on && output_.attempt(now, append)) return;
   miss(result);
-  retry(now);
+  store_waiting(now);
 }
 
 bool RevisionKeeper::follows(const MapRevision& revision) const {
@@ -88,6 +91,25 @@ void RevisionKeeper::miss(const MapStep::Result& result) {
 }
 
 void RevisionKeeper::retry(Timestamp now) {
+  store_waiting(now);
+  thin_out(now);
+}
+
+/// Where the clock has jumped back, it looks again at once.
+void RevisionKeeper::thin_out(Timestamp now) {
+  if (to_.retention.keeps_all() || !why_behind().empty()) return;
+  if (looked_for_old_ && now >= *looked_for_old_ && now - *looked_for_old_ < kLookForOld) return;
+  bool found = false;
+  const auto look = [&] {
+    lock();
+    found = to_.store->thin_out(to_.retention, now);
+  };
+  if (!output_.attempt(now, look)) return;
+  looked_for_old_.reset();
+  if (!found) looked_for_old_ = now;
+}
+
+void RevisionKeeper::store_waiting(Timestamp now) {
   const bool is_locked = to_.lock || to_.to_lock.empty();
   if (to_.store && is_locked && !missed_revision_ && !missed_refusal_) return;
   (void)output_.attempt(now, [this] { store_missed(); });
@@ -95,7 +117,7 @@ void RevisionKeeper::retry(Timestamp now) {
 
 void RevisionKeeper::close(Timestamp now) {
   output_.hurry();
-  retry(now);
+  store_waiting(now);
 }
 
 void RevisionKeeper::store_missed() {

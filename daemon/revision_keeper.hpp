@@ -31,6 +31,7 @@ struct StoreToKeep {
   std::function<mapping::MapStore()> open{};
   std::string why_not{};             ///< where it is not open
   std::uint32_t numbers_before = 0;  ///< as keep() has it
+  mapping::Retention retention{};
 };
 
 class RevisionKeeper {
@@ -44,7 +45,8 @@ class RevisionKeeper {
   [[nodiscard]] mapping::MapStore::Undoing cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const;
   /// Why the store does not hold the newest revision; empty where it does.
   [[nodiscard]] std::string why_behind() const;
-  /// Now and then: what could not be stored is tried again.
+  /// Once a second, while nothing else is to be done: what could not be stored is tried again, and a little of what the
+  /// retention does not keep goes.
   void retry(Timestamp now);
   /// The last attempt.
   void close(Timestamp now);
@@ -64,12 +66,15 @@ class RevisionKeeper {
   /// Throws std::runtime_error naming the file.
   void store_missed();
   void store_whole(const Missed& missed);
+  void store_waiting(Timestamp now);
+  void thin_out(Timestamp now);
 
   StoreToKeep to_;
   std::string method_;
   RetryingOutput output_;
   std::optional<Missed> missed_revision_;
   std::optional<MapStep::Result> missed_refusal_;  // the newest
+  std::optional<Timestamp> looked_for_old_;        // when nothing was found that could go
 };
 
 }  // namespace deltamap::daemon

@@ -17,6 +17,7 @@
 
 #include "core/file_lock.hpp"
 #include "daemon/check_config.hpp"
+#include "daemon/console.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/first_map.hpp"
 #include "daemon/kept_pose.hpp"
@@ -38,8 +39,7 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr double kStuck_s = 10.0;      // a stage that is at work on one item for so long (a map update: 100 s) has hung
-constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches; those between are for debugging
+constexpr double kStuck_s = 10.0;  // a stage that is silent for so long (map and recorder: 100 s) has hung
 
 struct CommandLine {
   std::string config;
@@ -48,32 +48,6 @@ struct CommandLine {
   std::string initial_pose;
   bool check_only = false;
   bool print_only = false;
-};
-
-/// Log lines and the status line share the terminal: a log line wipes the status line first.
-class Console {
- public:
-  void log(spdlog::level::level_enum level, const std::string& line) {
-    const std::scoped_lock lock{mutex_};
-    if (on_terminal_) std::cerr << "\r\033[K" << std::flush;
-    spdlog::log(level, "{}", line);
-  }
-  void show(const std::string& status) {
-    const std::scoped_lock lock{mutex_};
-    if (on_terminal_) {
-      std::cerr << "\r\033[K" << status << std::flush;
-    } else {
-      spdlog::log(seconds_++ % kQuietLogPeriod_s == 0 ? spdlog::level::info : spdlog::level::debug, "{}", status);
-    }
-  }
-  void end() {
-    if (on_terminal_) std::cerr << '\n';
-  }
-
- private:
-  std::mutex mutex_;
-  bool on_terminal_ = ::isatty(STDERR_FILENO) != 0;
-  int seconds_ = 0;
 };
 
 void add_options(CLI::App& app, CommandLine& line) {
@@ -98,7 +72,7 @@ void add_options(CLI::App& app, CommandLine& line) {
 void tell_start(const Settings& settings, const CommandLine& line, const StartMap& start, Console& console) {
   const auto revision = settings.map.store.empty() ? std::nullopt : std::optional{start.revision};
   for (const std::string& text : start_banner(settings, line.config, start.map->geometry(), revision)) {
-    console.log(spdlog::level::info, text);
+    console.log(LogLevel::kInfo, text);
   }
 }
 
@@ -109,23 +83,23 @@ void remember_pose(const Settings& settings, Pipeline::Options& options, Console
   options.start.calibration = answer.calibration;
   options.memory ^= answer.fingerprint;
   if (settings.initial_pose) return;
-  if (!answer.why_not.empty()) console.log(spdlog::level::warn, "no pose to begin with: " + answer.why_not);
+  if (!answer.why_not.empty()) console.log(LogLevel::kWarn, "no pose to begin with: " + answer.why_not);
   if (!answer.pose) return;
   options.start.remembered = answer.pose->map_from_robot;
-  console.log(spdlog::level::info, begin_line(*answer.pose));
+  console.log(LogLevel::kInfo, begin_line(*answer.pose));
 }
 
 /// What the runs before have learned; of cells that were rewritten since, nothing.
 void remember_stability(const Settings& settings, const mapping::MapStore& store, Pipeline::Options& options,
                         Console& console) {
   auto answer = read_kept_stability(memory_places(settings.map.store).stability, options.first_map);
-  if (!answer.why_not.empty()) console.log(spdlog::level::warn, "stability is earned anew: " + answer.why_not);
+  if (!answer.why_not.empty()) console.log(LogLevel::kWarn, "stability is earned anew: " + answer.why_not);
   if (!answer.kept) return;
   std::vector<CellChange> changes;
   try {
     changes = changes_between(store.grid(answer.kept->revision), *options.start.map);
   } catch (const mapping::StoreError& error) {
-    console.log(spdlog::level::warn, std::string("stability is earned anew: ") + error.what());
+    console.log(LogLevel::kWarn, std::string("stability is earned anew: ") + error.what());
     return;
   }
   options.start.stability = without(answer.kept->record, settings.localizer.judgement.stability, changes);
@@ -152,7 +126,11 @@ void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
     const std::string status = status_line(pipeline.telemetry());
     console.show(status);
     service::tell_status(status);
-    if (pipeline.longest_work_s() < kStuck_s) service::feed_watchdog();
+    if (const Pipeline::Silence longest = pipeline.longest_silence(); longest.silence_s < kStuck_s) {
+      service::feed_watchdog();
+    } else {
+      console.log(LogLevel::kError, "watchdog is not fed: stage=" + std::string(longest.stage) + " does not move");
+    }
   }
 }
 
@@ -160,7 +138,7 @@ OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Conso
   if (settings.map.file.empty()) throw StartError(line.config + ": 'map.file' names no map");
   try {
     FirstMap map = read_first_map(settings.map.file, memory_limit());
-    for (const std::string& warning : map.warnings) console.log(spdlog::level::warn, warning);
+    for (const std::string& warning : map.warnings) console.log(LogLevel::kWarn, warning);
     return std::move(map.grid);
   } catch (const std::runtime_error& error) {
     throw StartError(error.what());
@@ -181,9 +159,9 @@ std::filesystem::path folder_to_write(const std::string& out, const std::filesys
 
 /// The store and what an earlier run has left beside it.
 void take_store(OpenedStore& opened, const Settings& settings, Pipeline::Options& options, Console& console) {
-  for (const std::string& warning : opened.warnings) console.log(spdlog::level::warn, warning);
+  for (const std::string& warning : opened.warnings) console.log(LogLevel::kWarn, warning);
   if (options.start.revision > 0) {
-    console.log(spdlog::level::info, "map store: goes on with revision=" + std::to_string(options.start.revision));
+    console.log(LogLevel::kInfo, "map store: goes on with revision=" + std::to_string(options.start.revision));
   }
   remember_pose(settings, options, console);
   if (opened.store.store) remember_stability(settings, *opened.store.store, options, console);
@@ -230,22 +208,6 @@ void require_plain_file(const std::filesystem::path& settings) {
   }
 }
 
-spdlog::level::level_enum spdlog_level_of(LogLevel level) {
-  switch (level) {
-    case LogLevel::kTrace:
-      return spdlog::level::trace;
-    case LogLevel::kDebug:
-      return spdlog::level::debug;
-    case LogLevel::kInfo:
-      return spdlog::level::info;
-    case LogLevel::kWarn:
-      return spdlog::level::warn;
-    case LogLevel::kError:
-      break;
-  }
-  return spdlog::level::err;
-}
-
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
   const bool hangup_reloads = !has_terminal();
@@ -268,22 +230,22 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   tell_start(settings, line, options.start, console);
   if (store) take_store(*store, settings, options, console);
   std::atomic<bool> failed{false};
-  options.log = [&console](const std::string& text) { console.log(spdlog::level::info, text); };
+  options.log = [&console](const std::string& text) { console.log(LogLevel::kInfo, text); };
   options.failed = [&console, &failed](const std::string& text) {
-    console.log(spdlog::level::err, text);
+    console.log(LogLevel::kError, text);
     failed = true;
     (void)kill(getpid(), SIGTERM);
   };
-  options.warn = [&console](const std::string& text) { console.log(spdlog::level::warn, text); };
-  options.set_log_level = [](LogLevel level) { spdlog::set_level(spdlog_level_of(level)); };
+  options.warn = [&console](const std::string& text) { console.log(LogLevel::kWarn, text); };
+  options.set_log_level = [](LogLevel level) { Console::set_level(level); };
   const std::unique_ptr<Pipeline> pipeline = begun(settings, std::move(options));
   service::tell_ready();
   watch(*pipeline, console, hangup_reloads);
   service::tell_stopping();
   console.end();
   const RunReport report = pipeline->stop();
-  console.log(spdlog::level::info, "stopped: scans=" + std::to_string(report.scans.decoded) + " phases=" +
-                                       std::to_string(report.phases) + " cpu_s=" + std::to_string(report.cpu_total_s));
+  console.log(LogLevel::kInfo, "stopped: scans=" + std::to_string(report.scans.decoded) + " phases=" +
+                                   std::to_string(report.phases) + " cpu_s=" + std::to_string(report.cpu_total_s));
   return failed ? 1 : 0;
 }
 

@@ -31,14 +31,10 @@ void step_back(int niceness) {
 double thread_cpu_s() { return cpu_s_of(CLOCK_THREAD_CPUTIME_ID); }
 double process_cpu_s() { return cpu_s_of(CLOCK_PROCESS_CPUTIME_ID); }
 
-Workload::Item::Item(Workload& workload) : workload_{workload} {
-  workload_.began_ns_.store(steady_ns(), std::memory_order_relaxed);
-}
-Workload::Item::~Item() { workload_.began_ns_.store(0, std::memory_order_relaxed); }
+void Pulse::beat() { beat_ns_.store(steady_ns(), std::memory_order_relaxed); }
 
-double Workload::busy_s() const {
-  const std::int64_t began = began_ns_.load(std::memory_order_relaxed);
-  return began == 0 ? 0.0 : 1e-9 * static_cast<double>(steady_ns() - began);
+double Pulse::silence_s() const {
+  return 1e-9 * static_cast<double>(steady_ns() - beat_ns_.load(std::memory_order_relaxed));
 }
 
 Stage::Stage(Options options, std::function<void()> body, std::function<void(const std::string&)> on_failure)

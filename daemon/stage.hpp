@@ -17,26 +17,17 @@ namespace deltamap::daemon {
 [[nodiscard]] double thread_cpu_s();
 [[nodiscard]] double process_cpu_s();
 
-/// Since when a stage has been at work on one item: a stage that never comes back starves the watchdog.
-class Workload {
+/// Shows that a stage moves: it beats whenever it looks for work, at least once a second. One that hangs, at work or
+/// while it waits, beats no more, and starves the watchdog.
+class Pulse {
  public:
-  /// While it lives, the stage is at work.
-  class Item {
-   public:
-    explicit Item(Workload& workload);
-    ~Item();
-    Item(const Item&) = delete;
-    Item& operator=(const Item&) = delete;
-
-   private:
-    Workload& workload_;
-  };
-
-  /// 0 while the stage waits.
-  [[nodiscard]] double busy_s() const;
+  Pulse() { beat(); }
+  void beat();
+  /// Any thread: since the last beat, s.
+  [[nodiscard]] double silence_s() const;
 
  private:
-  std::atomic<std::int64_t> began_ns_{0};  // steady clock; 0: waiting
+  std::atomic<std::int64_t> beat_ns_{0};  // steady clock
 };
 
 class Stage {

@@ -55,8 +55,8 @@ void require_store_folder(const Settings& settings, const std::string& config) {
 }
 
 void make_state_folders(const Settings& settings, const std::string& config) {
-  for (const std::string* file :
-       {&settings.map.store, &settings.recording.file, &settings.control.socket, &settings.poses.socket}) {
+  for (const std::string* file : {&settings.map.store, &settings.map.newest, &settings.recording.file,
+                                  &settings.control.socket, &settings.poses.socket}) {
     make_folder_of(*file);
   }
   require_store_folder(settings, config);

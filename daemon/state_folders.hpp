@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folders of what a run leaves: map.store, recording.file, control.socket, poses.socket. A fresh machine has
-// none of them.
+// The folders of what a run leaves: map.store, map.newest, recording.file, control.socket, poses.socket. A fresh
+// machine has none of them.
 #pragma once
 
 #include <filesystem>

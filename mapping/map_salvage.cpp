@@ -37,7 +37,8 @@ class Rows {
     try {
       Statement ids{database_, "SELECT id FROM revision ORDER BY id"};
       while (ids.step()) last = ids.number(0);
-    } catch (const StoreError&) {  // documented above
+    } catch (const StoreError& error) {
+      if (last == 0 && error.kind == StoreError::Kind::kOther) throw;  // not damaged: nothing of it can be read
     }
     return last + kBeyondDamage;
   }

@@ -3,11 +3,14 @@
 
 #include <array>
 #include <bit>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "mapping/database.hpp"
 #include "mapping/map_codec.hpp"
+#include "mapping/revision_names.hpp"
+#include "mapping/store_retention.hpp"
 #include "mapping/store_schema.hpp"
 #include "mapping/taken_back.hpp"
 
@@ -103,7 +106,7 @@ struct MapStore::State {
     Statement row{database, "SELECT min(number) FROM revision WHERE map = ? AND refused = 0 AND number >= ?"};
     row.bind(map).bind(std::int64_t{number});
     if (row.step() && !row.is_null(0) && row.number(0) != std::int64_t{number}) {
-      database.fail("revision " + std::to_string(number) + " was never stored: revision " +
+      database.fail("revision " + std::to_string(number) + " is not in the store: revision " +
                     std::to_string(row.number(0)) + " holds it and what came after it");
     }
     database.fail_as_unsound("damaged: revision " + std::to_string(number) + " cannot be restored");
@@ -249,6 +252,7 @@ std::vector<StoredRevision> MapStore::history() const {
                  "first_row, last_column, last_row, xx_m2, xy_m2, xh_m_rad, yy_m2, yh_m_rad, hh_rad2 FROM revision "
                  "WHERE map = ? ORDER BY id"};
   rows.bind(state_->map);
+  const std::map<std::uint32_t, std::string> names = names_in(state_->database, state_->map);
   std::vector<StoredRevision> all;
   const auto whole = [&](int column) { return static_cast<std::uint32_t>(rows.number(column)); };
   const auto cell = [&](int column) {
@@ -264,6 +268,9 @@ std::vector<StoredRevision> MapStore::history() const {
     revision.freed = whole(7);
     revision.unknown = whole(8);
     revision.box = {cell(9), cell(11)};
+    if (const auto name = names.find(revision.number); name != names.end() && !revision.refused) {
+      revision.name = name->second;
+    }
     all.push_back(std::move(revision));
   }
   return all;
@@ -311,7 +318,19 @@ std::uint32_t MapStore::roll_back(std::uint32_t number, Timestamp time) {
 
 std::vector<CellChange> MapStore::changes(std::uint32_t number) const {
   if (number > state_->newest) state_->fail_as_missing(number);
-  return number == 0 ? std::vector<CellChange>{} : state_->changes_of(number);
+  if (number == 0) return {};
+  std::vector<CellChange> changes = state_->changes_of(number);
+  std::erase_if(changes, [](const CellChange& change) { return change.before == change.after; });
+  return changes;
+}
+
+bool MapStore::thin_out(const Retention& retention, Timestamp now) {
+  State& s = *state_;
+  return mapping::thin_out(s.database, s.map, s.geometry, retention, now);
+}
+
+void MapStore::set_name(std::uint32_t number, const std::string& name) {
+  write_name(state_->database, state_->map, number, name, encoded_grid(grid(number)));
 }
 
 MapStore::Undoing MapStore::undoing(std::uint32_t number, const OccupancyGrid& newest_map) const {

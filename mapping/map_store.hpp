@@ -14,6 +14,7 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
+#include "mapping/retention.hpp"
 
 namespace deltamap::mapping {
 
@@ -35,6 +36,7 @@ struct StoredRevision {
   std::uint32_t freed = 0;     ///< cells that became free
   std::uint32_t unknown = 0;   ///< cells that became unknown
   CellBox box;                 ///< of the changed cells
+  std::string name{};          ///< given by a person; empty: none
 };
 
 class MapStore {
@@ -78,6 +80,14 @@ class MapStore {
   [[nodiscard]] Undoing undoing(std::uint32_t number, const OccupancyGrid& newest_map) const;
   /// Writes undoing() as the newest revision and returns its number. Throws as that does.
   std::uint32_t undo(std::uint32_t number, Timestamp time);
+
+  /// Turns the oldest steps that no rule keeps one by one into one step: at most 63, so that it takes a moment, and in
+  /// one transaction. False where there is nothing to do. `now` is Unix time; what it means where the clock has jumped:
+  /// store_retention.hpp.
+  bool thin_out(const Retention& retention, Timestamp now);
+  /// A named revision stays whatever the rules say; an empty name takes the name away. Throws as grid() does, and where
+  /// the name is longer than 80 bytes or a line. Another program may write to the store meanwhile.
+  void set_name(std::uint32_t number, const std::string& name);
 
  private:
   struct State;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `deltamap map history STORE …`: what the map store remembers: list it, take out a revision, compare two, go back to
-// one, take one back and keep what came later.
+// one, take one back and keep what came later, name one so that it stays.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -30,6 +30,7 @@ struct Options {
   std::uint32_t number = 0;
   std::uint32_t other = 0;
   std::string out;
+  std::string name;
   bool json = false;
   bool cells = false;
 };
@@ -76,24 +77,26 @@ void list(const Options& options) {
                 "cause");
   for (const StoredRevision& revision : store.history()) {
     if (options.json) {
-      const nlohmann::json line{{"number", revision.number},
-                                {"refused", revision.refused},
-                                {"time_ns", unix_ns(revision.time)},
-                                {"phase", revision.note.phase},
-                                {"acceptance", revision.note.acceptance},
-                                {"cause", revision.note.cause},
-                                {"covariance", covariance_as_json(revision.note.covariance)},
-                                {"occupied", revision.occupied},
-                                {"freed", revision.freed},
-                                {"unknown", revision.unknown},
-                                {"box", box_as_json(revision.box)}};
+      nlohmann::json line{{"number", revision.number},
+                          {"refused", revision.refused},
+                          {"time_ns", unix_ns(revision.time)},
+                          {"phase", revision.note.phase},
+                          {"acceptance", revision.note.acceptance},
+                          {"cause", revision.note.cause},
+                          {"covariance", covariance_as_json(revision.note.covariance)},
+                          {"occupied", revision.occupied},
+                          {"freed", revision.freed},
+                          {"unknown", revision.unknown},
+                          {"box", box_as_json(revision.box)}};
+      if (!revision.name.empty()) line["name"] = revision.name;
       std::cout << line.dump() << '\n';
       continue;
     }
     const std::string number = revision.refused ? "-" : std::to_string(revision.number);
-    std::printf("%6s  %-19s  %5u  %8u  %7u  %7.3f  %s%s\n", number.c_str(), utc(revision.time).c_str(),
+    const std::string name = revision.name.empty() ? "" : "  \"" + revision.name + "\"";
+    std::printf("%6s  %-19s  %5u  %8u  %7u  %7.3f  %s%s%s\n", number.c_str(), utc(revision.time).c_str(),
                 revision.note.phase, revision.occupied, revision.freed, revision.note.acceptance,
-                revision.refused ? "refused: " : "", revision.note.cause.c_str());
+                revision.refused ? "refused: " : "", revision.note.cause.c_str(), name.c_str());
   }
 }
 
@@ -161,11 +164,23 @@ void undo(const Options& options) {
   }
 }
 
+/// Without the store's lock: a daemon that writes there does not lose its place.
+void set_name(const Options& options) {
+  MapStore{options.store}.set_name(options.number, options.name);
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", options.number}, {"name", options.name}}.dump() << '\n';
+  } else if (options.name.empty()) {
+    std::printf("revision %u has no name\n", options.number);
+  } else {
+    std::printf("revision %u stays, as \"%s\"\n", options.number, options.name.c_str());
+  }
+}
+
 }  // namespace
 
 void add_map_history(CLI::App& map) {
   auto options = std::make_shared<Options>();
-  CLI::App* history = map.add_subcommand("history", "the revisions of a map: list, export, diff, rollback, undo");
+  CLI::App* history = map.add_subcommand("history", "the revisions of a map: list, export, diff, rollback, undo, name");
   history->require_subcommand(1);
   history->fallthrough();
   history->add_option("STORE", options->store, "map store (SQLite)")->required();
@@ -192,6 +207,11 @@ void add_map_history(CLI::App& map) {
   CLI::App* undoer = history->add_subcommand("undo", "take revision K back and keep what came later; nothing is lost");
   undoer->add_option("K", options->number)->required();
   undoer->fallthrough()->callback([options] { undo(*options); });
+
+  CLI::App* namer = history->add_subcommand("name", "revision K stays, whatever map.retention says, and is listed so");
+  namer->add_option("K", options->number)->required();
+  namer->add_option("NAME", options->name, "one line; \"\": takes the name away")->required();
+  namer->fallthrough()->callback([options] { set_name(*options); });
 }
 
 }  // namespace deltamap::daemon::tool

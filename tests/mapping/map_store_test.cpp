@@ -254,7 +254,7 @@ TEST_F(Store, StoresWholeWhatCouldNotBeStoredStepByStep) {
   EXPECT_EQ(store.grid(3), maps[3]);
   EXPECT_EQ(store.grid(9), maps[9]);
   EXPECT_EQ(complaint([&] { (void)store.grid(5); }),
-            file.string() + ": revision 5 was never stored: revision 9 holds it and what came after it");
+            file.string() + ": revision 5 is not in the store: revision 9 holds it and what came after it");
   EXPECT_EQ(store.undo(9, {}), 11u);
 }
 

@@ -84,6 +84,7 @@ holds "ctl status" deltamap ctl status >status.log
 holds "ctl drive cannot start it" fails deltamap ctl drive wander >/dev/null 2>&1
 holds "stops in order" kill "$(pidof deltamapd)"
 wait %1 || fail "$(cat daemon.log)"
+holds "the newest map is there for others" test -s /var/lib/deltamap/map.yaml -a -s /var/lib/deltamap/map.pgm
 rm -rf /run/deltamap
 
 # --- unit, manual, completion

@@ -30,7 +30,8 @@ def provenance():
     return "deltamap %s on %s, %d processors" % (version(), processor(), os.cpu_count())
 
 
-PLACES = {"robot.port", "laser.port", "map.file", "map.store", "control.socket", "poses.socket", "recording.file"}
+PLACES = {"robot.port", "laser.port", "map.file", "map.store", "map.newest", "control.socket", "poses.socket",
+          "recording.file"}
 
 
 def told(settings):

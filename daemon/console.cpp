@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/console.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <iostream>
+
+#include "daemon/system_journal.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches; those between are for debugging
+
+spdlog::level::level_enum spdlog_level_of(LogLevel level) {
+  switch (level) {
+    case LogLevel::kTrace:
+      return spdlog::level::trace;
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarn:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      break;
+  }
+  return spdlog::level::err;
+}
+
+}  // namespace
+
+Console::Console() : on_terminal_{::isatty(STDERR_FILENO) != 0}, in_journal_{system_journal::is_behind_stderr()} {}
+
+void Console::set_level(LogLevel level) { spdlog::set_level(spdlog_level_of(level)); }
+
+void Console::write(const LeveledLine& line) const {
+  const auto level = spdlog_level_of(line.level);
+  if (!spdlog::should_log(level)) return;
+  if (in_journal_ && system_journal::write(line.level, line.text)) return;
+  spdlog::log(level, "{}", line.text);
+}
+
+void Console::log(LogLevel level, const std::string& line) {
+  const std::scoped_lock lock{mutex_};
+  const auto now_due = throttle_.take({level, line}, LogThrottle::Clock::now());
+  if (!now_due) return;
+  if (on_terminal_) std::cerr << "\r\033[K" << std::flush;
+  write(*now_due);
+}
+
+void Console::show(const std::string& status) {
+  const std::scoped_lock lock{mutex_};
+  if (on_terminal_) std::cerr << "\r\033[K" << std::flush;
+  for (const LeveledLine& line : throttle_.due(LogThrottle::Clock::now())) write(line);
+  if (on_terminal_) {
+    std::cerr << status << std::flush;
+  } else {
+    write({seconds_++ % kQuietLogPeriod_s == 0 ? LogLevel::kInfo : LogLevel::kDebug, status});
+  }
+}
+
+void Console::end() {
+  const std::scoped_lock lock{mutex_};
+  if (on_terminal_) std::cerr << '\n';
+  for (const LeveledLine& line : throttle_.rest(LogThrottle::Clock::now())) write(line);
+}
+
+}  // namespace deltamap::daemon

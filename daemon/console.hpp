@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the daemon's log goes: to systemd's journal with fields, else to standard error; on a terminal the status line
+// stands below it. What repeats is held back (log_throttle).
+#pragma once
+
+#include <mutex>
+#include <string>
+
+#include "daemon/log_throttle.hpp"
+
+namespace deltamap::daemon {
+
+class Console {
+ public:
+  Console();
+
+  /// Any thread.
+  void log(LogLevel level, const std::string& line);
+  /// Once a second: the status.
+  void show(const std::string& status);
+  /// After the last show().
+  void end();
+  static void set_level(LogLevel level);
+
+ private:
+  void write(const LeveledLine& line) const;
+
+  std::mutex mutex_;
+  LogThrottle throttle_;
+  bool on_terminal_;
+  bool in_journal_;
+  int seconds_ = 0;
+};
+
+}  // namespace deltamap::daemon
