@@ -2,15 +2,13 @@
 #include "daemon/pipeline.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <deque>
 
 #include "core/channel.hpp"
 #include "core/file_lock.hpp"
 #include "core/replace_file.hpp"
 #include "daemon/control_desk.hpp"
 #include "daemon/dashboard_desk.hpp"
-#include "daemon/gate_watch.hpp"
+#include "daemon/delta_stage.hpp"
 #include "daemon/localization_stage.hpp"
 #include "daemon/map_order.hpp"
 #include "daemon/map_stage.hpp"
@@ -22,28 +20,18 @@
 #include "daemon/stage.hpp"
 #include "daemon/start_error.hpp"
 #include "drivers/port/port_clock.hpp"
-#include "mapping/store_scan.hpp"
 
 namespace deltamap::daemon {
 namespace {
-
-using Kind = Decision::Kind;
 
 constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even on one processor
 constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
 constexpr int kPageNiceness = 10;
-constexpr std::chrono::seconds kLookEvery{1};
 constexpr double kPatience = 10.0;  // with map and recorder, against the other stages
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
-}
-
-/// Null where it is an order.
-const ScanSet* set_in(const MapWork& work) {
-  const auto* set = std::get_if<ScanSet>(&work);
-  return set != nullptr && !set->withdraw_from ? set : nullptr;
 }
 
 Pipeline::Options with_warnings(Pipeline::Options options) {
@@ -80,34 +68,19 @@ struct Pipeline::State {
   Recorder recorder;                     // bytes, decisions, lines → disk
   IoStage io;                            // bytes → Odometry, Scan
   LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
-  void look_for_changes();         // TrackedScan → ScanSet, TemporaryThings
+  DeltaStage delta;                // TrackedScan → ScanSet, TemporaryThings
   MapStage map;                    // ScanSet, MapOrder → MapRevision
-
-  // --- what each thread owns ---
-
-  mapping::StoreScan store_scan;
-  GateWatch gate_watch;
-  std::uint32_t things_sent = 0;     // number of the newest snapshot that the localizer has been sent
-  std::uint32_t things_shown = 0;    // likewise, of the page
-  std::deque<MapWork> waiting_sets;  // the map thread was busy: offered again at the next scan; one set, and orders
 
   void tell(const CommandOutcome& outcome) {
     if (control) control->tell(outcome);
   }
   LiveSettings::Outcome reload();
   bool set_log_level(LogLevel level);
-  void look_for_changes(const TrackedScan& tracked);
-  void hand_over(MapWork work);
-  void offer_waiting_sets();
-  void offer_things();
-  void tell_of_gate(const mapping::Awareness& awareness);
-  void note(RecorderInput& input, const Decision& decision) { (void)input.send(note_of(decision)); }
   void end_threads();
   void write_report(const RunReport& report) const;
 
-  Pulse awareness_pulse;
   double wall_began_s = 0.0;
-  std::unique_ptr<Stage> io_thread, localization_thread, awareness_thread, map_thread, recorder_thread, control_thread,
+  std::unique_ptr<Stage> io_thread, localization_thread, delta_thread, map_thread, recorder_thread, control_thread,
       page_thread, poses_thread;
   bool ended = false;
 };
@@ -173,6 +146,14 @@ Pipeline::State::State(const Settings& given, Options wanted)
                           if (poses) poses->show(row, latency_s);
                         },
                     .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
+      delta{settings,
+            {.work = tracked_scans,
+             .sets = sets,
+             .things = things,
+             .recorder = recorder.from_awareness(),
+             .telemetry = telemetry,
+             .log = options.log,
+             .show = [this](const auto& newest) { return page && page->board().show(newest); }}},
       map{settings,
           options.start,
           options.out,
@@ -187,8 +168,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                [this](const MapRevision* revision, const ChangeNote& note) {
                  if (page) page->board().show(revision, note);
                },
-           .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
-      store_scan{settings.mapping.store_scan, settings.seed} {
+           .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}} {
   telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
   telemetry.newest_revision.set(options.start.revision);
   telemetry.estimate.revision.set(options.start.revision);
@@ -198,9 +178,9 @@ Pipeline::State::State(const Settings& given, Options wanted)
   recorder_thread = std::make_unique<Stage>(
       Stage::Options{"recorder", kRecorderNiceness}, [this] { recorder.run(); }, options.failed);
   map_thread = std::make_unique<Stage>(
-      Stage::Options{"map", kMapNiceness}, [this] { map.run(waiting_sets); }, options.failed);
-  awareness_thread = std::make_unique<Stage>(
-      Stage::Options{"delta", 0}, [this] { look_for_changes(); }, options.failed);
+      Stage::Options{"map", kMapNiceness}, [this] { map.run(delta.waiting()); }, options.failed);
+  delta_thread = std::make_unique<Stage>(
+      Stage::Options{"delta", 0}, [this] { delta.run(); }, options.failed);
   localization_thread = std::make_unique<Stage>(
       Stage::Options{"localization", 0}, [this] { localization.run(); }, options.failed);
   io_thread = std::make_unique<Stage>(
@@ -213,7 +193,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
     const auto without_page = [this](const std::string& why) { options.warn("no live page any more: " + why); };
     page_thread = std::make_unique<Stage>(
         Stage::Options{"page", kPageNiceness}, [this] { page->run(); }, without_page);
-    page->watch({io_thread.get(), localization_thread.get(), awareness_thread.get(), map_thread.get(),
+    page->watch({io_thread.get(), localization_thread.get(), delta_thread.get(), map_thread.get(),
                  recorder_thread.get(), page_thread.get()});
   }
   if (poses) {
@@ -221,74 +201,6 @@ Pipeline::State::State(const Settings& given, Options wanted)
     poses_thread = std::make_unique<Stage>(
         Stage::Options{"poses", 0}, [this] { poses->run(); }, without_poses);
   }
-}
-
-// --- delta thread ---
-
-void Pipeline::State::look_for_changes() {
-  while (!tracked_scans.is_drained()) {
-    awareness_pulse.beat();
-    const auto work = tracked_scans.receive_within(kLookEvery);
-    if (!work) continue;
-    offer_waiting_sets();
-    if (const auto* order = std::get_if<MapOrder>(&*work)) {
-      hand_over(*order);
-    } else {
-      look_for_changes(std::get<TrackedScan>(*work));
-    }
-  }
-}
-
-void Pipeline::State::look_for_changes(const TrackedScan& tracked) {
-  auto set = store_scan.observe(tracked);
-  offer_things();
-  const mapping::Awareness& awareness = store_scan.awareness();
-  telemetry.r_d.set(awareness.r_d);
-  telemetry.in_phase.set(awareness.in_phase);
-  telemetry.phase.set(awareness.phase);
-  telemetry.stored_scans.set(awareness.stored_scans);
-  tell_of_gate(awareness);
-  if (!set) return;
-  if (!set->withdraw_from) {
-    telemetry.phases_closed.add(1);
-    note(recorder.from_awareness(), {Kind::kPhaseClosed, tracked.scan.number, set->phase});
-  }
-  hand_over(std::move(*set));
-}
-
-void Pipeline::State::offer_waiting_sets() {
-  while (!waiting_sets.empty() && sets.try_send(std::move(waiting_sets.front()))) waiting_sets.pop_front();
-}
-
-void Pipeline::State::offer_things() {
-  const std::shared_ptr<const TemporaryThings>& newest = store_scan.temporary();
-  if (newest == nullptr) return;
-  if (page && newest->number != things_shown && page->board().show(newest)) things_shown = newest->number;
-  if (newest->number == things_sent) return;
-  const std::uint32_t number = newest->number;
-  telemetry.things_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
-  telemetry.things_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
-  if (things.try_send(std::shared_ptr<const TemporaryThings>{newest})) things_sent = number;
-}
-
-void Pipeline::State::tell_of_gate(const mapping::Awareness& awareness) {
-  telemetry.gate.set(awareness.gate, awareness.gate_times);
-  const std::string line = gate_watch.observe(awareness);
-  if (!line.empty()) options.log(line);
-}
-
-/// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an
-/// operator gives few.
-void Pipeline::State::hand_over(MapWork work) {
-  const ScanSet* set = set_in(work);
-  const bool set_waits = std::any_of(waiting_sets.begin(), waiting_sets.end(), set_in);
-  if (set_waits && set != nullptr) {
-    telemetry.sets_lost.add(1);
-    note(recorder.from_awareness(), {Kind::kSetLost, 0, set->phase});
-    return;
-  }
-  waiting_sets.push_back(std::move(work));
-  offer_waiting_sets();
 }
 
 // --- whoever reloads ---
@@ -340,7 +252,7 @@ void Pipeline::State::end_threads() {
     poses_thread->join();
   }
   tracked_scans.close();
-  awareness_thread->join();
+  delta_thread->join();
   sets.close();
   map_thread->join();
   recorder.close();
@@ -378,9 +290,9 @@ RunReport Pipeline::stop() {
   report.verdict_times = localization.verdict_times();
   report.localizer = localization.counts();
   report.recorded_s = localization.covered_s();
-  report.gate_times = s.store_scan.awareness().gate_times;
-  report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.awareness_thread->cpu_s(),
-                s.map_thread->cpu_s(), s.recorder_thread->cpu_s()};
+  report.gate_times = s.delta.awareness().gate_times;
+  report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.delta_thread->cpu_s(), s.map_thread->cpu_s(),
+                s.recorder_thread->cpu_s()};
   report.cpu_total_s = process_cpu_s();
   report.wall_s = seconds(drivers::port::port_clock_now().time_since_epoch()) - s.wall_began_s;
   report.peak_resident_bytes = peak_resident_bytes();
@@ -397,12 +309,11 @@ const Telemetry& Pipeline::telemetry() const { return state_->telemetry; }
 
 Pipeline::Silence Pipeline::longest_silence() const {
   State& s = *state_;
-  return std::max(
-      {Silence{"io", s.io.silence_s()}, Silence{"localization", s.localization.pulse().silence_s()},
-       Silence{"delta", s.awareness_pulse.silence_s()}, Silence{"map", s.map.pulse().silence_s() / kPatience},
-       Silence{"recorder", s.recorder.pulse().silence_s() / kPatience},
-       Silence{"control", s.control ? s.control->silence_s() : 0.0}},
-      [](const Silence& one, const Silence& other) { return one.silence_s < other.silence_s; });
+  return std::max({Silence{"io", s.io.silence_s()}, Silence{"localization", s.localization.pulse().silence_s()},
+                   Silence{"delta", s.delta.pulse().silence_s()}, Silence{"map", s.map.pulse().silence_s() / kPatience},
+                   Silence{"recorder", s.recorder.pulse().silence_s() / kPatience},
+                   Silence{"control", s.control ? s.control->silence_s() : 0.0}},
+                  [](const Silence& one, const Silence& other) { return one.silence_s < other.silence_s; });
 }
 
 std::shared_ptr<const OccupancyGrid> Pipeline::newest_map() const { return state_->map.map(); }

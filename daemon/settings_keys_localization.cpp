@@ -93,11 +93,7 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                                         "share of beams that hit what no map knows"),
                              "z_rand"));
   keys.push_back(number_key("localization.field.unknown_likelihood", field.unknown_likelihood, "", 0.02, 1.0,
-<<<<<<< HEAD
-                            "of a beam that ends in unknown space"));
-=======
                             "likelihood of a beam that ends in unknown space"));
->>>>>>> config-schema
   auto& refinement = localizer.refinement;
   keys.push_back(whole_key("localization.refinement.steps", refinement.steps, "", 0, 30,
                            "Gauss-Newton steps of the pose refinement at most; 0: no refinement"));
