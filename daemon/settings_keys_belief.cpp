@@ -72,9 +72,9 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
                            "pose hypotheses followed beside a believed pose"));
   keys.push_back(whole_key("localization.places.beams", places.beams, "", 1, 1000,
                            "beams of a scan that judge a pose hypothesis"));
-  keys.push_back(
-      number_key("localization.places.evidence_beams", places.evidence_beams, "", 0.1, 1000.0,
-                 "independent beams that as many as places.beams count as; fewer beams count less, and at most a quarter does"));
+  keys.push_back(number_key(
+      "localization.places.evidence_beams", places.evidence_beams, "", 0.1, 1000.0,
+      "independent beams that as many as places.beams count as; fewer beams count less, and at most a quarter does"));
   keys.push_back(number_key("localization.places.step_m", places.step_m, "m", 0.001, 100.0,
                             "distance driven until a scan is new evidence on a pose hypothesis"));
   keys.push_back(degrees_key("localization.places.step_deg", places.step_rad, 0.1, 360.0,
