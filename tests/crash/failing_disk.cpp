@@ -202,7 +202,8 @@ class Disk {
     const int writer = real_open(file.path.c_str(), O_RDWR | O_CLOEXEC);
     if (writer < 0) return;
     for (const auto& [at, content] : file.sectors) {
-      if (chance(0.5)) (void)!real_pwrite(writer, content.data(), std::min(kSector, file.size - at), at);
+      if (chance(0.5))
+        (void)!real_pwrite(writer, content.data(), static_cast<std::size_t>(std::min(kSector, file.size - at)), at);
     }
     struct stat state {};
     (void)::fstat(writer, &state);

@@ -135,7 +135,7 @@ TEST(Settings, ValuesThatContradictEachOtherAreRefused) {
 
 TEST(Settings, TheSocketOfPosesIsNotThatOfCommands) {
   EXPECT_EQ(error_of("control: {socket: s}\nposes: {socket: s}"),
-            "robot.yaml:2:17: 'poses.socket' must differ from 'control.socket'");
+            "robot.yaml:2:17: poses.socket: must differ from 'control.socket'");
   EXPECT_EQ(error_of("control: {socket: s}\nposes: {socket: p}"), "no error");
 }
 
