@@ -43,7 +43,7 @@ TEST_F(PoseStreamTest, TellsTheVeryPosesThatTheRunWritesScanByScan) {
   constexpr std::size_t kWanted = 50;
   std::map<int, json> told;
   std::string hello;
-  (void)run_live(std::chrono::microseconds(2000), [&](const Pipeline&) {
+  const RunReport report = run_live(std::chrono::microseconds(6000), [&](const Pipeline&) {
     test::SocketClient stalls{settings_.poses.socket};
     test::SocketClient client{settings_.poses.socket};
     hello = client.line();
@@ -52,7 +52,8 @@ TEST_F(PoseStreamTest, TellsTheVeryPosesThatTheRunWritesScanByScan) {
   EXPECT_EQ(json::parse(hello)["type"], "hello");
   EXPECT_EQ(json::parse(hello)["protocol"], 1);
   ASSERT_EQ(told.size(), kWanted);
-  EXPECT_EQ(told.rbegin()->first - told.begin()->first, static_cast<int>(kWanted) - 1) << "no scan is left out";
+  const auto left_out = static_cast<std::uint64_t>(told.rbegin()->first - told.begin()->first) + 1 - kWanted;
+  EXPECT_LE(left_out, report.scans.lost + report.scans.dropped) << "no scan that has a pose is left out";
   const auto logged = logged_x();
   for (const auto& [scan, pose] : told) {
     ASSERT_TRUE(logged.contains(scan)) << scan;
