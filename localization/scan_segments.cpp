@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "localization/surface_switch.hpp"
-
 namespace deltamap::localization {
 namespace {
 

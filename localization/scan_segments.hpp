@@ -12,6 +12,11 @@
 
 namespace deltamap::localization {
 
+/// Deviation of what was moved, about where it stood, m.
+inline constexpr double kMovedM = 0.5;
+/// P(stands where the map has it) of a thing that nothing is known of.
+inline constexpr double kUsuallyHolds = 0.9;
+
 struct ScanSegment {
   std::uint32_t first = 0;  ///< its first end
   std::uint32_t past = 0;   ///< one past its last

@@ -8,17 +8,15 @@
 #include <vector>
 
 #include "localization/offset_state.hpp"
+#include "localization/scan_segments.hpp"
 #include "localization/surface.hpp"
 
 namespace deltamap::localization {
 
 /// Driven between two keyframes: what is in view is looked for that often.
 inline constexpr double kKeyframeM = 0.2;
-/// Deviations of a surface that was moved, about where it stood.
-inline constexpr double kMovedM = 0.5;
+/// Deviation of the bearing of a surface that was moved, about where it stood; that of its offset is kMovedM.
 inline constexpr double kMovedRad = 0.1;
-/// P(holds) of a surface that nothing is known of.
-inline constexpr double kUsuallyHolds = 0.9;
 
 struct SurfaceSwitch {
   Surface surface;

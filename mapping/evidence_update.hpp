@@ -6,7 +6,7 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
-#include "mapping/map_update.hpp"
+#include "mapping/map_change.hpp"
 #include "mapping/placed_scans.hpp"
 
 namespace deltamap::mapping {

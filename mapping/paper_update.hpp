@@ -6,7 +6,7 @@
 
 #include "mapping/alignment/local_map.hpp"
 #include "mapping/alignment/scan_alignment.hpp"
-#include "mapping/map_update.hpp"
+#include "mapping/map_change.hpp"
 #include "mapping/merge/map_merge.hpp"
 
 namespace deltamap::mapping {
