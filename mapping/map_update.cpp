@@ -5,14 +5,14 @@
 
 namespace deltamap::mapping {
 
-MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params) {
+scan_set::MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params) {
   if (set.pose_in_doubt) {
-    MapUpdate update;
-    update.refusal = Refusal::kPoseInDoubt;
+    scan_set::MapUpdate update;
+    update.refusal = scan_set::Refusal::kPoseInDoubt;
     return update;
   }
-  return set.method == MappingMethod::kPaper ? paper_update(map, set, params.paper)
-                                             : evidence_update(map, set, params.evidence);
+  return set.method == MappingMethod::kPaper ? paper::paper_update(map, set, params.paper)
+                                             : redraw::evidence_update(map, set, params.evidence);
 }
 
 }  // namespace deltamap::mapping

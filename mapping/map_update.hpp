@@ -4,13 +4,14 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
-#include "mapping/map_change.hpp"
+#include "mapping/scan_set/map_change.hpp"
 
 namespace deltamap::mapping {
 
 struct MapUpdateParams;
 
 /// The method is the set's own.
-[[nodiscard]] MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params);
+[[nodiscard]] scan_set::MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set,
+                                             const MapUpdateParams& params);
 
 }  // namespace deltamap::mapping
