@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "daemon/kept_stability.hpp"
+#include "daemon/kept/kept_stability.hpp"
 #include "mapping/store/map_store.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 
