@@ -10,7 +10,7 @@
 #include "localization/hypotheses/rivals.hpp"
 #include "localization/motion/motion_model.hpp"
 #include "localization/motion/odometry_buffer.hpp"
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 #include "localization/particles/particle_filter.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/sensor/pose_refinement.hpp"
@@ -27,7 +27,7 @@ struct LocalizerParams {
   motion::OdometryBufferParams odometry;
   motion::MotionModelParams motion;
   sensor::LikelihoodFieldParams field;
-  particles::HypothesisParams hypothesis;
+  particles::ParticleClusterParams hypothesis;
   sensor::RefinementParams refinement;
   tracking::PoseTrackParams track;
   tracking::UpdateParams update;

@@ -46,7 +46,7 @@ struct Localizer::State {
     Pose2 joined_from_robot;
   };
   std::optional<GivenUp> given_up;   ///< where the robot was last believed to be, while a search has only begun
-  particles::Hypothesis best;        ///< of the particles, or the place that leads a search
+  particles::ParticleCluster best;   ///< of the particles, or the place that leads a search
   double w_avg = 1.0;                ///< of that; before any scan nothing speaks against the pose
   std::optional<double> newest_fit;  ///< explained_share() of the newest scan at the estimate
   double n_eff = 0.0;                ///< of the particles, or of a search's places

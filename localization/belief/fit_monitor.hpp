@@ -7,7 +7,7 @@
 
 #include "core/angle.hpp"
 #include "core/messages.hpp"
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 
 namespace deltamap::localization::belief {
 
@@ -50,14 +50,14 @@ class FitMonitor {
     bool beaten = false;  ///< another place explains the recent scans clearly better
   };
   /// The state after this scan. kGlobal after kLost: the whole map is to be searched.
-  LocalizerState observe(const Observation& scan, const particles::Hypothesis& best);
+  LocalizerState observe(const Observation& scan, const particles::ParticleCluster& best);
 
   [[nodiscard]] LocalizerState state() const { return state_; }
   /// Nothing speaks for the pose at present: time to look elsewhere, not yet to give it up.
   [[nodiscard]] bool suspicious() const;
 
  private:
-  [[nodiscard]] bool converged(const particles::Hypothesis& best) const;
+  [[nodiscard]] bool converged(const particles::ParticleCluster& best) const;
   [[nodiscard]] bool has_failed(bool beaten) const;
   void enter(LocalizerState state);
   void count(const Observation& scan);

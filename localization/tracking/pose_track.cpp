@@ -14,7 +14,7 @@ constexpr double kMargin = 1.5;      // of the particles' noise over what the wh
 constexpr double kLeastNoise = 0.2;  // as a share of what was set
 
 /// Squared deviations between a pose and the particles.
-double disagreement(const Pose2& pose, const particles::Hypothesis& particles) {
+double disagreement(const Pose2& pose, const particles::ParticleCluster& particles) {
   const Eigen::Vector3d off = difference(particles.map_from_robot, pose);
   const Eigen::Vector3d least{kLeastSpreadM * kLeastSpreadM, kLeastSpreadM * kLeastSpreadM,
                               kLeastSpreadRad * kLeastSpreadRad};
@@ -42,7 +42,8 @@ void PoseTrack::carry(const motion::ScanInstant& now) {
   wheels_.forget_stretch();
 }
 
-sensor::RefinedPose PoseTrack::before_scan(const motion::ScanInstant& now, const particles::Hypothesis& particles) {
+sensor::RefinedPose PoseTrack::before_scan(const motion::ScanInstant& now,
+                                           const particles::ParticleCluster& particles) {
   if (!last_) return {particles.map_from_robot, particles.covariance};
   sensor::RefinedPose expected = expected_at(now);
   if (disagreement(expected.map_from_robot, particles) <= params_.agreement * params_.agreement) return expected;

@@ -7,7 +7,7 @@
 
 #include "localization/motion/motion_model.hpp"
 #include "localization/motion/scan_instant.hpp"
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 #include "localization/tracking/wheel_trust.hpp"
 
@@ -29,7 +29,8 @@ class PoseTrack {
 
   /// What is known of the pose at a scan before the scan is read: the last estimate, carried by the wheels, or the
   /// particles' own where they disagree or nothing came before.
-  [[nodiscard]] sensor::RefinedPose before_scan(const motion::ScanInstant& now, const particles::Hypothesis& particles);
+  [[nodiscard]] sensor::RefinedPose before_scan(const motion::ScanInstant& now,
+                                                const particles::ParticleCluster& particles);
 
   /// The last estimate, carried by the wheels; none after forget().
   [[nodiscard]] std::optional<Pose2> carried_to(const motion::ScanInstant& now) const;

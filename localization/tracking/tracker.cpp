@@ -22,7 +22,7 @@ Tracker::Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGri
     : params_{params},
       filter_{params.particles, seed},
       track_{params.track, params.motion},
-      hypotheses_{params.hypothesis},
+      clusters_{params.hypothesis},
       slip_finder_{params.motion, params.refinement} {
   if (!params.follow_surfaces) return;
   surfaces_ = std::make_unique<SurfaceTrack>(params.track.wheels, params.motion, params.particles.evidence_beams,
@@ -54,7 +54,7 @@ PoseCovariance Tracker::unknown_mount(double heading_rad) const {
 
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {
   filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
-  best_ = hypotheses_.best(filter_.particles());
+  best_ = clusters_.best(filter_.particles());
   drawn_anew_ = false;
   track_.forget();
   if (surfaces_) surfaces_->cease();
@@ -164,7 +164,7 @@ Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& sin
   }
   Answer answer;
   answer.n_eff = filter_.n_eff();
-  best_ = hypotheses_.best(filter_.particles());
+  best_ = clusters_.best(filter_.particles());
   answer.believed = track_.before_scan(seen.now, best_);
   if (!sees) return answer;
   answer.w_avg = mean_over_members(misfits, seen.ends.size());
@@ -175,12 +175,12 @@ Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& sin
 
 /// Between updates: the particles stay, the answer follows the wheels and the scan.
 Tracker::Answer Tracker::follow(const Seen& seen, const motion::MotionSince& since) {
-  particles::Hypothesis moved = best_;
+  particles::ParticleCluster moved = best_;
   moved.map_from_robot = best_.map_from_robot * since.motion;
   Answer answer;
   answer.believed = track_.before_scan(seen.now, moved);
   if (seen.ends.size() == 0) return answer;
-  if (drawn_anew_) best_.weight = hypotheses_.best(filter_.particles()).weight;
+  if (drawn_anew_) best_.weight = clusters_.best(filter_.particles()).weight;
   drawn_anew_ = false;
   answer.w_avg = mean_over_some_members(seen, since.motion);
   answer.believed = slid(seen, answer.believed);
@@ -195,14 +195,14 @@ std::span<const Pose2> Tracker::slips(const Seen& seen) {
 
 double Tracker::mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const {
   double sum = 0.0;
-  for (const std::uint32_t i : hypotheses_.members()) sum += sensor::mean_likelihood(misfits[i], beams);
-  return sum / static_cast<double>(hypotheses_.members().size());
+  for (const std::uint32_t i : clusters_.members()) sum += sensor::mean_likelihood(misfits[i], beams);
+  return sum / static_cast<double>(clusters_.members().size());
 }
 
 /// Evenly chosen: enough to know the mean over all of them.
 double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) const {
   constexpr std::size_t kEnough = 50;
-  const std::span<const std::uint32_t> members = hypotheses_.members();
+  const std::span<const std::uint32_t> members = clusters_.members();
   const std::size_t count = std::min(kEnough, members.size());
   double sum = 0.0;
   for (std::size_t nth = 0; nth < count; ++nth) {
@@ -227,9 +227,9 @@ double Tracker::beam_share(const Seen& seen) const {
 
 void Tracker::draw_anew_if_needed() {
   const std::size_t before = filter_.particles().size();
-  const bool drawn = filter_.resample_if_needed(hypotheses_.cell_count());
+  const bool drawn = filter_.resample_if_needed(clusters_.cell_count());
   // Where all belonged to the best hypothesis, all that were drawn from them do.
-  drawn_anew_ = drawn && (hypotheses_.members().size() != before || filter_.particles().size() != before);
+  drawn_anew_ = drawn && (clusters_.members().size() != before || filter_.particles().size() != before);
 }
 
 }  // namespace deltamap::localization::tracking

@@ -12,7 +12,7 @@
 #include "core/angle.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "localization/motion/scan_instant.hpp"
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 #include "localization/particles/particle_filter.hpp"
 #include "localization/particles/start_pose.hpp"
 #include "localization/sensor/pose_refinement.hpp"
@@ -35,7 +35,7 @@ struct UpdateParams {
 struct TrackerParams {
   particles::ParticleFilterParams particles;
   motion::MotionModelParams motion;
-  particles::HypothesisParams hypothesis;
+  particles::ParticleClusterParams hypothesis;
   sensor::RefinementParams refinement;
   PoseTrackParams track;
   UpdateParams update;
@@ -85,7 +85,7 @@ class Tracker {
   [[nodiscard]] bool is_held() const;
 
   /// The heaviest hypothesis at the last update.
-  [[nodiscard]] const particles::Hypothesis& best() const { return best_; }
+  [[nodiscard]] const particles::ParticleCluster& best() const { return best_; }
   [[nodiscard]] std::size_t particle_count() const { return filter_.particles().size(); }
 
  private:
@@ -106,13 +106,13 @@ class Tracker {
   particles::ParticleFilter filter_;
   PoseTrack track_;
   std::unique_ptr<SurfaceTrack> surfaces_;  // none: they never lead
-  particles::HypothesisFinder hypotheses_;
-  particles::Hypothesis best_;
+  particles::ParticleClusterFinder clusters_;
+  particles::ParticleCluster best_;
   sensor::BeamErrors errors_;
   SlipFinder slip_finder_;
   std::optional<motion::ScanInstant> last_update_;
   bool has_driven_blind_ = false;  ///< the particles have moved since the last update, so that `best_` lies behind
-  bool drawn_anew_ = false;        ///< the particles, so that `hypotheses_` must look at them again
+  bool drawn_anew_ = false;        ///< the particles, so that `clusters_` must look at them again
 };
 
 }  // namespace deltamap::localization::tracking

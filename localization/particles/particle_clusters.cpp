@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -19,24 +19,24 @@ int floored(double value) {
 
 }  // namespace
 
-int HypothesisFinder::heading_cells() const {
+int ParticleClusterFinder::heading_cells() const {
   return std::max(4, static_cast<int>(std::lround(2.0 * std::numbers::pi / params_.heading_cell_rad)));
 }
 
-std::size_t HypothesisFinder::slot_of(int column, int row, int heading) const {
+std::size_t ParticleClusterFinder::slot_of(int column, int row, int heading) const {
   const auto mixed = static_cast<std::uint32_t>(column) * 0x9E3779B1u ^ static_cast<std::uint32_t>(row) * 0x85EBCA77u ^
                      static_cast<std::uint32_t>(heading) * 0xC2B2AE3Du;
   return (mixed ^ (mixed >> 15)) & (slots_.size() - 1);
 }
 
-std::uint32_t HypothesisFinder::find_or_none(int column, int row, int heading) const {
+std::uint32_t ParticleClusterFinder::find_or_none(int column, int row, int heading) const {
   for (std::size_t slot = slot_of(column, row, heading); slots_[slot] != 0; slot = (slot + 1) & (slots_.size() - 1)) {
     if (cells_[slots_[slot] - 1].holds(column, row, heading)) return slots_[slot] - 1;
   }
   return kNone;
 }
 
-void HypothesisFinder::sort_into_cells(const ParticleSet& particles) {
+void ParticleClusterFinder::sort_into_cells(const ParticleSet& particles) {
   cells_.clear();
   cell_of_particle_.resize(particles.size());
   slots_.assign(std::bit_ceil(2 * particles.size() + 1), 0);
@@ -67,12 +67,12 @@ void HypothesisFinder::sort_into_cells(const ParticleSet& particles) {
   }
 }
 
-std::uint32_t HypothesisFinder::speaker_of(std::uint32_t cell) const {
+std::uint32_t ParticleClusterFinder::speaker_of(std::uint32_t cell) const {
   while (cells_[cell].joined != cell) cell = cells_[cell].joined;
   return cell;
 }
 
-void HypothesisFinder::join_neighbours() {
+void ParticleClusterFinder::join_neighbours() {
   const int headings = heading_cells();
   for (std::uint32_t i = 0; i < cells_.size(); ++i) {
     for (int step = 0; step < 27; ++step) {
@@ -87,7 +87,7 @@ void HypothesisFinder::join_neighbours() {
   }
 }
 
-Hypothesis HypothesisFinder::best(const ParticleSet& particles) {
+ParticleCluster ParticleClusterFinder::best(const ParticleSet& particles) {
   sort_into_cells(particles);
   join_neighbours();
   for (std::uint32_t i = 0; i < cells_.size(); ++i) {
@@ -105,8 +105,8 @@ Hypothesis HypothesisFinder::best(const ParticleSet& particles) {
   return moments(particles, members_);
 }
 
-Hypothesis moments(const ParticleSet& particles, std::span<const std::uint32_t> members) {
-  Hypothesis of;
+ParticleCluster moments(const ParticleSet& particles, std::span<const std::uint32_t> members) {
+  ParticleCluster of;
   if (members.empty()) return of;
   const Pose2 first = particles.pose(members.front());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -14,24 +14,24 @@
 
 namespace deltamap::localization::particles {
 
-struct HypothesisParams {
+struct ParticleClusterParams {
   double cell_m = 0.5;                      ///< side of a cell, m; > 0
   double heading_cell_rad = radians(15.0);  ///< height of a cell, rad; > 0, at most π/2
 };
 
-struct Hypothesis {
+struct ParticleCluster {
   Pose2 map_from_robot;                                ///< weighted mean
   PoseCovariance covariance = PoseCovariance::Zero();  ///< weighted
   double weight = 0.0;                                 ///< share of all particles' weight
 };
 
 /// Finds the heaviest hypothesis; keeps its working memory from scan to scan.
-class HypothesisFinder {
+class ParticleClusterFinder {
  public:
-  explicit HypothesisFinder(const HypothesisParams& params) : params_{params} {}
+  explicit ParticleClusterFinder(const ParticleClusterParams& params) : params_{params} {}
 
   /// The particles must not be empty and their weights sum to 1.
-  [[nodiscard]] Hypothesis best(const ParticleSet& particles);
+  [[nodiscard]] ParticleCluster best(const ParticleSet& particles);
 
   /// Of the last answer: indices of the particles that belong to it, rising.
   [[nodiscard]] std::span<const std::uint32_t> members() const { return members_; }
@@ -55,7 +55,7 @@ class HypothesisFinder {
   [[nodiscard]] std::uint32_t speaker_of(std::uint32_t cell) const;
   [[nodiscard]] int heading_cells() const;
 
-  HypothesisParams params_;
+  ParticleClusterParams params_;
   std::vector<CellOfParticles> cells_;
   std::vector<std::uint32_t> cell_of_particle_;
   std::vector<std::uint32_t> slots_;  ///< hash table with open addressing: cell + 1, 0 = empty
@@ -63,6 +63,6 @@ class HypothesisFinder {
 };
 
 /// Weighted mean and covariance of some particles. `weight` is what theirs sum to.
-[[nodiscard]] Hypothesis moments(const ParticleSet& particles, std::span<const std::uint32_t> members);
+[[nodiscard]] ParticleCluster moments(const ParticleSet& particles, std::span<const std::uint32_t> members);
 
 }  // namespace deltamap::localization::particles
