@@ -15,7 +15,7 @@
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 #include "localization/sensor/temporary_beams.hpp"
-#include "localization/tracking/pose_track.hpp"
+#include "localization/tracking/pose_filter.hpp"
 #include "localization/tracking/tracker.hpp"
 
 namespace deltamap::localization {
@@ -29,7 +29,7 @@ struct LocalizerParams {
   sensor::LikelihoodFieldParams field;
   particles::ParticleClusterParams hypothesis;
   sensor::RefinementParams refinement;
-  tracking::PoseTrackParams track;
+  tracking::PoseFilterParams track;
   tracking::UpdateParams update;
   bool follow_surfaces = true;  ///< as of TrackerParams
   hypotheses::GlobalSearchParams global;

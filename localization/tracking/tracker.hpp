@@ -17,12 +17,12 @@
 #include "localization/particles/start_pose.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 #include "localization/surfaces/surface_sighting.hpp"
-#include "localization/tracking/pose_track.hpp"
+#include "localization/tracking/pose_filter.hpp"
 #include "localization/tracking/slip_finder.hpp"
 
 namespace deltamap::localization::tracking {
 
-class SurfaceTrack;
+class SurfaceTracker;
 
 /// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
 /// robot that stands still does not talk itself into certainty.
@@ -37,7 +37,7 @@ struct TrackerParams {
   motion::MotionModelParams motion;
   particles::ParticleClusterParams hypothesis;
   sensor::RefinementParams refinement;
-  PoseTrackParams track;
+  PoseFilterParams track;
   UpdateParams update;
   bool follow_surfaces = true;  ///< where straight surfaces explain the scans they lead, and the particles rest
 };
@@ -104,8 +104,8 @@ class Tracker {
 
   TrackerParams params_;
   particles::ParticleFilter filter_;
-  PoseTrack track_;
-  std::unique_ptr<SurfaceTrack> surfaces_;  // none: they never lead
+  PoseFilter pose_filter_;
+  std::unique_ptr<SurfaceTracker> surfaces_;  // none: they never lead
   particles::ParticleClusterFinder clusters_;
   particles::ParticleCluster best_;
   sensor::BeamErrors errors_;

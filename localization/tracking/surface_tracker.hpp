@@ -11,15 +11,15 @@
 #include "localization/motion/motion_model.hpp"
 #include "localization/motion/scan_instant.hpp"
 #include "localization/surfaces/offset_filter.hpp"
-#include "localization/tracking/wheel_trust.hpp"
+#include "localization/tracking/odometry_noise.hpp"
 
 namespace deltamap::localization::tracking {
 
-class SurfaceTrack {
+class SurfaceTracker {
  public:
   /// `evidence_beams`: as of ParticleFilterParams.
-  SurfaceTrack(const WheelTrustParams& wheels, const motion::MotionModelParams& motion, double evidence_beams,
-               std::shared_ptr<const OccupancyGrid> map);
+  SurfaceTracker(const OdometryNoiseParams& wheels, const motion::MotionModelParams& motion, double evidence_beams,
+                 std::shared_ptr<const OccupancyGrid> map);
 
   void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
 
@@ -71,7 +71,7 @@ class SurfaceTrack {
   void learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after);
 
   motion::MotionModelParams motion_;
-  WheelTrust wheels_;
+  OdometryNoiseEstimator odometry_noise_;
   double evidence_beams_;
   surfaces::OffsetFilter filter_;
   std::optional<Last> last_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How good the wheels are, learned while driving: wherever scans fix the pose, what the wheels said is held against
-// what the scans say. Between fixes, and along axes that no scan observes, the pose's error grows by what was learned
-// here.
+// Estimates the noise of the odometry while the robot drives. Over each stretch between two poses that scans fix well,
+// the motion that the wheels counted is compared with the motion between these poses. The variance learned in this way
+// is what a prediction by the wheels adds to the covariance of a pose.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ namespace deltamap::localization::tracking {
 
 /// The error of odometry as a random walk: its variance grows with the way and with the turn. What the wheels show
 /// scales it.
-struct WheelTrustParams {
+struct OdometryNoiseParams {
   double metre_per_root_metre = 0.05;             ///< deviation of the distance after one metre, m; > 0
   double turn_per_root_metre_rad = radians(1.7);  ///< deviation of the heading after one metre, rad; > 0
   double turn_per_root_turn_rad = radians(2.0);   ///< deviation of the heading after one radian of turn, rad; > 0
@@ -23,9 +23,9 @@ struct WheelTrustParams {
   double stretch_rad = radians(86.0);             ///< or turn, rad; > 0
 };
 
-class WheelTrust {
+class OdometryNoiseEstimator {
  public:
-  explicit WheelTrust(const WheelTrustParams& params) : params_{params} {}
+  explicit OdometryNoiseEstimator(const OdometryNoiseParams& params) : params_{params} {}
 
   /// The covariance that a motion of the wheels adds, in the map frame, for a robot that starts with this heading.
   [[nodiscard]] PoseCovariance added(const Pose2& motion, double heading_rad) const;
@@ -54,7 +54,7 @@ class WheelTrust {
   void begin_stretch(const sensor::RefinedPose& at);
   void compare(const sensor::RefinedPose& believed);
 
-  WheelTrustParams params_;
+  OdometryNoiseParams params_;
   Stretch stretch_;
   double distance_scale2_ = 1.0;
   double turn_scale2_ = 1.0;
@@ -62,6 +62,6 @@ class WheelTrust {
 
 /// A pose carried along a motion of the wheels.
 [[nodiscard]] sensor::RefinedPose carried(const sensor::RefinedPose& believed, const Pose2& motion,
-                                          const WheelTrust& wheels);
+                                          const OdometryNoiseEstimator& wheels);
 
 }  // namespace deltamap::localization::tracking

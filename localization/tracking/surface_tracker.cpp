@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/tracking/surface_track.hpp"
+#include "localization/tracking/surface_tracker.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -41,21 +41,21 @@ PoseCovariance unobserved_along(const PoseCovariance& spread) {
 
 }  // namespace
 
-SurfaceTrack::SurfaceTrack(const WheelTrustParams& wheels, const motion::MotionModelParams& motion,
-                           double evidence_beams, std::shared_ptr<const OccupancyGrid> map)
-    : motion_{motion}, wheels_{wheels}, evidence_beams_{evidence_beams}, filter_{std::move(map)} {}
+SurfaceTracker::SurfaceTracker(const OdometryNoiseParams& wheels, const motion::MotionModelParams& motion,
+                               double evidence_beams, std::shared_ptr<const OccupancyGrid> map)
+    : motion_{motion}, odometry_noise_{wheels}, evidence_beams_{evidence_beams}, filter_{std::move(map)} {}
 
-void SurfaceTrack::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
+void SurfaceTracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
   filter_.apply(std::move(map), changed);
 }
 
-bool SurfaceTrack::could_lead(const Seen& seen, const Pose2& map_from_robot) {
+bool SurfaceTracker::could_lead(const Seen& seen, const Pose2& map_from_robot) {
   straight_ += kNewest * (filter_.straight_share(seen.field, seen.faced, map_from_robot) - straight_);
   return straight_ >= kLeadsAbove;
 }
 
-void SurfaceTrack::learn_from(const sensor::RefinedPose& found, const motion::ScanInstant& now,
-                              const motion::BodyVelocity& velocity) {
+void SurfaceTracker::learn_from(const sensor::RefinedPose& found, const motion::ScanInstant& now,
+                                const motion::BodyVelocity& velocity) {
   const bool begins = !last_;
   if (!begins) {
     step_to(now, velocity);
@@ -68,9 +68,9 @@ void SurfaceTrack::learn_from(const sensor::RefinedPose& found, const motion::Sc
   since_ = SinceKeyframe{};
 }
 
-sensor::RefinedPose SurfaceTrack::lead_from(const sensor::RefinedPose& at, const Seen& seen) {
+sensor::RefinedPose SurfaceTracker::lead_from(const sensor::RefinedPose& at, const Seen& seen) {
   filter_.start(at);
-  wheels_.forget_stretch();
+  odometry_noise_.forget_stretch();
   leads_ = true;
   last_ = Last{seen.now, seen.velocity};
   since_.reset();
@@ -78,8 +78,8 @@ sensor::RefinedPose SurfaceTrack::lead_from(const sensor::RefinedPose& at, const
   return keyframe(seen);
 }
 
-PoseCovariance SurfaceTrack::noise(const Pose2& motion, double unknown_s) const {
-  PoseCovariance added = wheels_.added(motion, filter_.believed().map_from_robot.theta);
+PoseCovariance SurfaceTracker::noise(const Pose2& motion, double unknown_s) const {
+  PoseCovariance added = odometry_noise_.added(motion, filter_.believed().map_from_robot.theta);
   added += motion::unknown_motion_covariance(motion_, unknown_s);
   // Raised where corrections exceed what was expected, never lowered.
   added.topLeftCorner<2, 2>() *= std::max(1.0, surprise_m_);
@@ -87,7 +87,7 @@ PoseCovariance SurfaceTrack::noise(const Pose2& motion, double unknown_s) const 
   return added;
 }
 
-void SurfaceTrack::step_to(const motion::ScanInstant& now, const motion::BodyVelocity& velocity) {
+void SurfaceTracker::step_to(const motion::ScanInstant& now, const motion::BodyVelocity& velocity) {
   motion::WheelStep step{.motion = motion::counted_between(last_->instant, now)};
   if (now.odometry && last_->instant.odometry) {
     step.speed_change_m_per_s = velocity.speed_m_per_s - last_->velocity.speed_m_per_s;
@@ -104,27 +104,27 @@ void SurfaceTrack::step_to(const motion::ScanInstant& now, const motion::BodyVel
   since_->variance_rad2 += added(2, 2);
 }
 
-bool SurfaceTrack::is_one_place(const PoseCovariance& spread) {
+bool SurfaceTracker::is_one_place(const PoseCovariance& spread) {
   return spread(0, 0) + spread(1, 1) < kOnePlaceM * kOnePlaceM && spread(2, 2) < kOnePlaceRad * kOnePlaceRad;
 }
 
-bool SurfaceTrack::has_moved() const {
+bool SurfaceTracker::has_moved() const {
   return since_->by_wheels.position().norm() >= surfaces::kKeyframeM ||
          std::abs(since_->by_wheels.theta) >= kKeyframeRad;
 }
 
-bool SurfaceTrack::is_due(const Seen& seen) const {
+bool SurfaceTracker::is_due(const Seen& seen) const {
   if (!since_ || has_moved()) return true;
   if (since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad) return true;
   const double explained = sensor::explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
   return explained < since_->explained - kSuddenly;
 }
 
-void SurfaceTrack::carry(const motion::ScanInstant& now) {
+void SurfaceTracker::carry(const motion::ScanInstant& now) {
   if (last_) step_to(now, last_->velocity);
 }
 
-sensor::RefinedPose SurfaceTrack::observe(const Seen& seen) {
+sensor::RefinedPose SurfaceTracker::observe(const Seen& seen) {
   step_to(seen.now, seen.velocity);
   if (!is_one_place(filter_.believed().covariance)) {
     cease();
@@ -133,12 +133,12 @@ sensor::RefinedPose SurfaceTrack::observe(const Seen& seen) {
   return !seen.faced.empty() && is_due(seen) ? keyframe(seen) : filter_.believed();
 }
 
-sensor::RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
+sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
   const double share =
       std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, seen.faced.size())));
   const sensor::RefinedPose before = filter_.believed();
   const surfaces::OffsetFilter::Seen shown = filter_.observe(seen.field, seen.faced, share, motion_);
-  if (shown.slipped) wheels_.forget_stretch();
+  if (shown.slipped) odometry_noise_.forget_stretch();
   const sensor::RefinedPose after = filter_.believed();
   const bool runs_away =
       !shown.slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
@@ -149,7 +149,7 @@ sensor::RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
   }
   if (since_ && !shown.slipped) {
     learn_noise(before, after);
-    wheels_.learn(since_->corrected, after);
+    odometry_noise_.learn(since_->corrected, after);
   }
   since_ = SinceKeyframe{};
   since_->explained = sensor::explained_share(seen.field, seen.ends, after.map_from_robot);
@@ -161,9 +161,9 @@ sensor::RefinedPose SurfaceTrack::keyframe(const Seen& seen) {
   return after;
 }
 
-bool SurfaceTrack::is_held() const { return leads_ && std::min(holding_, holds_now_) >= kHeldAbove; }
+bool SurfaceTracker::is_held() const { return leads_ && std::min(holding_, holds_now_) >= kHeldAbove; }
 
-void SurfaceTrack::learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after) {
+void SurfaceTracker::learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after) {
   const Eigen::Vector3d correction = difference(before.map_from_robot, after.map_from_robot);
   const auto surprise = [&](Eigen::Index i) {
     const double gained = std::max(1e-6, before.covariance(i, i) - after.covariance(i, i));

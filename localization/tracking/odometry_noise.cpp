@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/tracking/wheel_trust.hpp"
+#include "localization/tracking/odometry_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,10 +29,10 @@ double variance_along(const PoseCovariance& covariance, const Eigen::Vector2d& d
 
 }  // namespace
 
-double WheelTrust::distance_scale() const { return std::sqrt(distance_scale2_); }
-double WheelTrust::turn_scale() const { return std::sqrt(turn_scale2_); }
+double OdometryNoiseEstimator::distance_scale() const { return std::sqrt(distance_scale2_); }
+double OdometryNoiseEstimator::turn_scale() const { return std::sqrt(turn_scale2_); }
 
-PoseCovariance WheelTrust::added(const Pose2& motion, double heading_rad) const {
+PoseCovariance OdometryNoiseEstimator::added(const Pose2& motion, double heading_rad) const {
   const double way_m = motion.position().norm();
   const double turn_rad = std::abs(motion.theta);
   const double along_m2 = distance_scale2_ * params_.metre_per_root_metre * params_.metre_per_root_metre * way_m;
@@ -43,7 +43,7 @@ PoseCovariance WheelTrust::added(const Pose2& motion, double heading_rad) const 
   return motion::covariance_along(direction_rad, along_m2, aside_m2, turn_rad2);
 }
 
-void WheelTrust::learn(const Pose2& motion, const sensor::RefinedPose& believed) {
+void OdometryNoiseEstimator::learn(const Pose2& motion, const sensor::RefinedPose& believed) {
   if (params_.learning_share <= 0.0) return;
   if (!stretch_.begun) {
     begin_stretch(believed);
@@ -62,13 +62,13 @@ void WheelTrust::learn(const Pose2& motion, const sensor::RefinedPose& believed)
   begin_stretch(believed);
 }
 
-void WheelTrust::begin_stretch(const sensor::RefinedPose& at) {
+void OdometryNoiseEstimator::begin_stretch(const sensor::RefinedPose& at) {
   stretch_ = {};
   stretch_.begun = true;
   stretch_.start = at;
 }
 
-void WheelTrust::compare(const sensor::RefinedPose& believed) {
+void OdometryNoiseEstimator::compare(const sensor::RefinedPose& believed) {
   const sensor::RefinedPose& start = stretch_.start;
   const Pose2 by_wheels = start.map_from_robot * stretch_.start_from_robot;
   const double turn_rad = turn_between(by_wheels.theta, believed.map_from_robot.theta);
@@ -84,7 +84,8 @@ void WheelTrust::compare(const sensor::RefinedPose& believed) {
                              params_.learning_share);
 }
 
-sensor::RefinedPose carried(const sensor::RefinedPose& believed, const Pose2& motion, const WheelTrust& wheels) {
+sensor::RefinedPose carried(const sensor::RefinedPose& believed, const Pose2& motion,
+                            const OdometryNoiseEstimator& wheels) {
   const Pose2 pose = believed.map_from_robot * motion;
   Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
   by_start(0, 2) = believed.map_from_robot.y - pose.y;

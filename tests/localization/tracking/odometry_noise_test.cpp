@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/tracking/wheel_trust.hpp"
+#include "localization/tracking/odometry_noise.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,8 @@ namespace {
 const PoseCovariance kSharpFix = Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal();
 
 /// Drives straight on with wheels that err by so much after a metre, while scans fix the pose.
-void drive(WheelTrust& wheels, double metre_per_root_metre, double turn_per_root_metre_rad, const PoseCovariance& fix) {
+void drive(OdometryNoiseEstimator& wheels, double metre_per_root_metre, double turn_per_root_metre_rad,
+           const PoseCovariance& fix) {
   constexpr double kStepM = 0.05;
   Random random{3};
   Pose2 truth;
@@ -24,34 +25,34 @@ void drive(WheelTrust& wheels, double metre_per_root_metre, double turn_per_root
   }
 }
 
-TEST(WheelTrust, LearnsHowGoodTheWheelsAre) {
+TEST(OdometryNoiseEstimator, LearnsHowGoodTheWheelsAre) {
   constexpr double kLatitude = 0.35;  // twenty stretches tell no more
-  const WheelTrustParams params;
+  const OdometryNoiseParams params;
   for (const double scale : {0.3, 1.0, 2.0}) {
-    WheelTrust wheels{params};
+    OdometryNoiseEstimator wheels{params};
     drive(wheels, scale * params.metre_per_root_metre, scale * params.turn_per_root_metre_rad, kSharpFix);
     EXPECT_NEAR(wheels.distance_scale() / scale, 1.0, kLatitude) << scale;
     EXPECT_NEAR(wheels.turn_scale() / scale, 1.0, kLatitude) << scale;
   }
 }
 
-TEST(WheelTrust, LearnsNothingFromFixesThatAreWorseThanTheWheels) {
-  WheelTrust wheels{{}};
+TEST(OdometryNoiseEstimator, LearnsNothingFromFixesThatAreWorseThanTheWheels) {
+  OdometryNoiseEstimator wheels{{}};
   drive(wheels, 0.0, 0.0, Eigen::Vector3d{1.0, 1.0, 1.0}.asDiagonal());
   EXPECT_EQ(wheels.distance_scale(), 1.0);
   EXPECT_EQ(wheels.turn_scale(), 1.0);
 }
 
-TEST(WheelTrust, AddsErrorWithTheWayAndNoneToARobotThatStands) {
-  const WheelTrust wheels{{.metre_per_root_metre = 0.05}};
+TEST(OdometryNoiseEstimator, AddsErrorWithTheWayAndNoneToARobotThatStands) {
+  const OdometryNoiseEstimator wheels{{.metre_per_root_metre = 0.05}};
   EXPECT_EQ(wheels.added({}, 0.7), PoseCovariance::Zero());
   const PoseCovariance north = wheels.added({1.0, 0.0, 0.0}, std::acos(0.0));
   EXPECT_NEAR(north(1, 1), 0.05 * 0.05, 1e-9);
   EXPECT_NEAR(wheels.added({4.0, 0.0, 0.0}, 0.0)(0, 0), 4.0 * 0.05 * 0.05, 1e-9);
 }
 
-TEST(WheelTrust, CarriesTheHeadingsErrorIntoThePlaces) {
-  const WheelTrust wheels{{}};
+TEST(OdometryNoiseEstimator, CarriesTheHeadingsErrorIntoThePlaces) {
+  const OdometryNoiseEstimator wheels{{}};
   const PoseCovariance start = Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal();
   const sensor::RefinedPose there = carried({{1.0, 1.0, 0.0}, start}, {2.0, 0.0, 0.0}, wheels);
   EXPECT_NEAR(there.map_from_robot.x, 3.0, 1e-12);

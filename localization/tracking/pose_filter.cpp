@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/tracking/pose_track.hpp"
+#include "localization/tracking/pose_filter.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -24,46 +24,46 @@ double disagreement(const Pose2& pose, const particles::ParticleCluster& particl
 
 }  // namespace
 
-void PoseTrack::forget() {
+void PoseFilter::forget() {
   last_.reset();
-  wheels_.forget_stretch();
+  odometry_noise_.forget_stretch();
 }
 
-sensor::RefinedPose PoseTrack::expected_at(const motion::ScanInstant& now) const {
+sensor::RefinedPose PoseFilter::expected_at(const motion::ScanInstant& now) const {
   const motion::MotionSince step = motion::step_between(last_->instant, now);
-  sensor::RefinedPose expected = carried(last_->believed, step.motion, wheels_);
+  sensor::RefinedPose expected = carried(last_->believed, step.motion, odometry_noise_);
   expected.covariance += motion::unknown_motion_covariance(motion_, step.unknown_s);
   return expected;
 }
 
-void PoseTrack::carry(const motion::ScanInstant& now) {
+void PoseFilter::carry(const motion::ScanInstant& now) {
   if (!last_) return;
   last_ = Last{now, expected_at(now)};
-  wheels_.forget_stretch();
+  odometry_noise_.forget_stretch();
 }
 
-sensor::RefinedPose PoseTrack::before_scan(const motion::ScanInstant& now,
-                                           const particles::ParticleCluster& particles) {
+sensor::RefinedPose PoseFilter::before_scan(const motion::ScanInstant& now,
+                                            const particles::ParticleCluster& particles) {
   if (!last_) return {particles.map_from_robot, particles.covariance};
   sensor::RefinedPose expected = expected_at(now);
   if (disagreement(expected.map_from_robot, particles) <= params_.agreement * params_.agreement) return expected;
-  wheels_.forget_stretch();
+  odometry_noise_.forget_stretch();
   return {particles.map_from_robot, particles.covariance};
 }
 
-std::optional<Pose2> PoseTrack::carried_to(const motion::ScanInstant& now) const {
+std::optional<Pose2> PoseFilter::carried_to(const motion::ScanInstant& now) const {
   if (!last_) return std::nullopt;
   return last_->believed.map_from_robot * motion::step_between(last_->instant, now).motion;
 }
 
-void PoseTrack::after_scan(const motion::ScanInstant& now, const sensor::RefinedPose& believed) {
-  if (last_) wheels_.learn(motion::step_between(last_->instant, now).motion, believed);
+void PoseFilter::after_scan(const motion::ScanInstant& now, const sensor::RefinedPose& believed) {
+  if (last_) odometry_noise_.learn(motion::step_between(last_->instant, now).motion, believed);
   last_ = Last{now, believed};
 }
 
-motion::MotionModelParams PoseTrack::particle_motion() const {
-  const double distance = std::clamp(kMargin * wheels_.distance_scale(), kLeastNoise, 1.0);
-  const double turn = std::clamp(kMargin * wheels_.turn_scale(), kLeastNoise, 1.0);
+motion::MotionModelParams PoseFilter::particle_motion() const {
+  const double distance = std::clamp(kMargin * odometry_noise_.distance_scale(), kLeastNoise, 1.0);
+  const double turn = std::clamp(kMargin * odometry_noise_.turn_scale(), kLeastNoise, 1.0);
   motion::MotionModelParams scaled = motion_;
   scaled.metre_per_metre *= distance;
   scaled.metre_per_turn_m *= distance;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The estimate from scan to scan: carried along by the wheels, with an error that grows as the wheels have earned,
-// until the next scan corrects it. The particles overrule it where they disagree.
+// A Kalman filter of the believed pose from scan to scan. Prediction: the motion that the wheels counted, with the
+// noise that OdometryNoiseEstimator has learned. Correction: the pose that the scan was refined to. Where the particles
+// disagree by more than their spread explains, their pose is taken in its place.
 #pragma once
 
 #include <optional>
@@ -9,20 +10,19 @@
 #include "localization/motion/scan_instant.hpp"
 #include "localization/particles/particle_clusters.hpp"
 #include "localization/sensor/pose_refinement.hpp"
-#include "localization/tracking/wheel_trust.hpp"
+#include "localization/tracking/odometry_noise.hpp"
 
 namespace deltamap::localization::tracking {
 
-struct PoseTrackParams {
-  double agreement =
-      3.0;  ///< deviations of the particles within which the track goes on; beyond it they are right; > 0
-  WheelTrustParams wheels;
+struct PoseFilterParams {
+  double agreement = 3.0;  ///< deviations of the particles within which the filter goes on; beyond, they are right; > 0
+  OdometryNoiseParams wheels;
 };
 
-class PoseTrack {
+class PoseFilter {
  public:
-  PoseTrack(const PoseTrackParams& params, const motion::MotionModelParams& motion)
-      : params_{params}, motion_{motion}, wheels_{params.wheels} {}
+  PoseFilter(const PoseFilterParams& params, const motion::MotionModelParams& motion)
+      : params_{params}, motion_{motion}, odometry_noise_{params.wheels} {}
 
   /// The pose was set, not driven to.
   void forget();
@@ -52,9 +52,9 @@ class PoseTrack {
   /// The last estimate, carried by the wheels, and as unsure as they are.
   [[nodiscard]] sensor::RefinedPose expected_at(const motion::ScanInstant& now) const;
 
-  PoseTrackParams params_;
+  PoseFilterParams params_;
   motion::MotionModelParams motion_;
-  WheelTrust wheels_;
+  OdometryNoiseEstimator odometry_noise_;
   std::optional<Last> last_;
 };
 
