@@ -128,7 +128,7 @@ void PlaceBank::slide_others(const sensor::LikelihoodField& field, const motion:
 }
 
 void PlaceBank::weigh(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
-                      std::span<const float> weights, double telling) {
+                      std::span<const float> weights, double evidence_weight) {
   const double kept = 1.0 - 1.0 / params_.memory_steps;
   const double of_a_beam = params_.evidence_of_a_beam();
   double of_believed = 0.0;
@@ -136,14 +136,14 @@ void PlaceBank::weigh(const sensor::LikelihoodField& field, const motion::BeamEn
     const double says = of_a_beam * weighted_log_likelihood(field, ends, weights, place.map_from_robot);
     place.log_evidence = kept * place.log_evidence + says;
     if (&place == &places_.front()) of_believed = says;
-    const double since_carried = kept * place.since_carried + telling * (says - of_believed);
+    const double since_carried = kept * place.since_carried + evidence_weight * (says - of_believed);
     place.since_carried = believing_ ? std::max(0.0, since_carried) : 0.0;
     if (place.since_carried == 0.0) {
       place.lost_since = 0.0;
     } else {
       const Comparison beside =
           compared(field, ends, weights, place.map_from_robot, places_.front().map_from_robot, of_a_beam);
-      place.lost_since = kept * place.lost_since + telling * beside.lost;
+      place.lost_since = kept * place.lost_since + evidence_weight * beside.lost;
     }
   }
 }

@@ -107,10 +107,10 @@ class PlaceBank {
   /// Likewise, but for the believed one.
   void slide_others(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count,
                     double unknown_s);
-  /// Once for each decorrelated scan. `telling`: how much of it counts as evidence since the robot may have been
-  /// carried, [0, 1].
+  /// Once for each decorrelated scan. `evidence_weight`: how much of it counts as evidence since the robot may have
+  /// been carried, [0, 1].
   void weigh(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::span<const float> weights,
-             double telling = 1.0);
+             double evidence_weight = 1.0);
   /// A new place, unless it is known. Takes the room of a worse one where the bank is full.
   void admit(const Place& place);
   /// Joins places that have come together, gives up hopeless ones, shares the belief.

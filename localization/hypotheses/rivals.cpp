@@ -20,14 +20,14 @@ Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const Gl
     : params_{params},
       coarse_{map, field, params.block_m},
       probes_{params.headings, seed},
-      watch_{bank,
-             {.images = params.images,
-              .images_a_scan = params.images_a_scan,
-              .probes = params.probes / 2,
-              .slid = params.refined_a_scan,
-              .nearby_m = params.nearby_m,
-              .nearby_rad = params.nearby_rad,
-              .prior = params.carried_prior}},
+      alias_monitor_{bank,
+                     {.images = params.images,
+                      .images_a_scan = params.images_a_scan,
+                      .probes = params.probes / 2,
+                      .slid = params.refined_a_scan,
+                      .nearby_m = params.nearby_m,
+                      .nearby_rad = params.nearby_rad,
+                      .prior = params.carried_prior}},
       search_{search, params.headings},
       bank_{bank},
       elsewhere_prior_{params.elsewhere_prior} {}
@@ -42,16 +42,16 @@ void Rivals::start_believing() {
 /// And all that was seen.
 void Rivals::forget_places() {
   bank_.clear();
-  watch_.clear();
+  alias_monitor_.clear();
   stack_.clear();
-  novelty_.clear();
-  usual_misfit_.forget();
+  decorrelation_.clear();
+  outlier_rate_.forget();
 }
 
 /// What spoke for other places spoke against a pose that has been mended since.
 void Rivals::forget_carrying() {
   bank_.forget_carrying();
-  watch_.clear();
+  alias_monitor_.clear();
 }
 
 bool Rivals::has_jumped(const Pose2& map_from_believed) const {
@@ -66,7 +66,7 @@ void Rivals::start_believing_in(const Pose2& found) {
   if (!is_near_believed(found)) {
     elsewhere_prior_ = params_.prior_after_search;
     stack_.clear();  // its scans are from before the robot was carried off
-    usual_misfit_.forget();
+    outlier_rate_.forget();
     bank_.set_priors([](const Pose2&) { return 0.0; });
   }
   bank_.believe_among(found);
@@ -150,7 +150,7 @@ const RivalReport& Rivals::observe(const sensor::LikelihoodField& field, const S
   const Pose2 motion = last_joined_ ? motion_between(*last_joined_, seen.joined_from_robot) : Pose2{};
   last_joined_ = seen.joined_from_robot;
   bank_.carry(motion);
-  watch_.carry(motion);
+  alias_monitor_.carry(motion);
   if (last_believed_) last_believed_ = *last_believed_ * motion;
   if (believing_ && seen.map_from_believed) {
     if (has_jumped(*seen.map_from_believed)) forget_carrying();
@@ -201,7 +201,7 @@ Rivals::Odds Rivals::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& i
 
 Comparison Rivals::brought_by(const sensor::LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
   if (!believing_ || bank_.places().empty()) return {};
-  const double of_a_beam = usual_misfit_.telling() * bank_.params().evidence_of_a_beam();
+  const double of_a_beam = outlier_rate_.evidence_weight() * bank_.params().evidence_of_a_beam();
   return stack_.compared_lately(field, pose, bank_.places().front().map_from_robot, joined, of_a_beam);
 }
 
@@ -232,25 +232,25 @@ void Rivals::weigh(const sensor::LikelihoodField& field, const Seen& seen) {
   const bool believes = believing_ && !bank_.places().empty();
   std::span<const float> weights;
   if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
-    weights = novelty_.weights(ends_, seen.joined_from_robot);
+    weights = decorrelation_.weights(ends_, seen.joined_from_robot);
     if (believes)
-      usual_misfit_.observe(1.0 - sensor::explained_share(field, ends_, bank_.places().front().map_from_robot));
-    bank_.weigh(field, ends_, weights, usual_misfit_.telling());
+      outlier_rate_.observe(1.0 - sensor::explained_share(field, ends_, bank_.places().front().map_from_robot));
+    bank_.weigh(field, ends_, weights, outlier_rate_.evidence_weight());
     since_step_m_ = 0.0;
     since_step_rad_ = 0.0;
   }
-  if (!believes) return watch_.clear();
-  watch_.observe({.field = field,
-                  .coarse = coarse_,
-                  .ends = ends_,
-                  .near_ends = near_ends_,
-                  .map_from_believed = bank_.places().front().map_from_robot,
-                  .joined_from_robot = seen.joined_from_robot,
-                  .stack = stack_,
-                  .telling = usual_misfit_.telling(),
-                  .weights = weights,
-                  .unknown_s = seen.unknown_s},
-                 bank_.rivals());
+  if (!believes) return alias_monitor_.clear();
+  alias_monitor_.observe({.field = field,
+                          .coarse = coarse_,
+                          .ends = ends_,
+                          .near_ends = near_ends_,
+                          .map_from_believed = bank_.places().front().map_from_robot,
+                          .joined_from_robot = seen.joined_from_robot,
+                          .stack = stack_,
+                          .evidence_weight = outlier_rate_.evidence_weight(),
+                          .weights = weights,
+                          .unknown_s = seen.unknown_s},
+                         bank_.rivals());
 }
 
 void Rivals::probe(const sensor::LikelihoodField& field, const Pose2& joined) {
@@ -294,7 +294,7 @@ void Rivals::admit_rival(const sensor::LikelihoodField& field, const Pose2& roug
 }
 
 void Rivals::write_report() {
-  report_ = report_on(bank_, watch_.places(),
+  report_ = report_on(bank_, alias_monitor_.places(),
                       {.nearby_m = params_.nearby_m,
                        .nearby_rad = params_.nearby_rad,
                        .carried_prior = params_.carried_prior,

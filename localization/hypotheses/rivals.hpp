@@ -8,14 +8,14 @@
 #include <optional>
 #include <span>
 
+#include "localization/hypotheses/alias_monitor.hpp"
+#include "localization/hypotheses/beam_decorrelation.hpp"
 #include "localization/hypotheses/global_search.hpp"
-#include "localization/hypotheses/image_watch.hpp"
+#include "localization/hypotheses/outlier_rate.hpp"
 #include "localization/hypotheses/place_bank.hpp"
 #include "localization/hypotheses/rival_probes.hpp"
 #include "localization/hypotheses/rival_report.hpp"
 #include "localization/hypotheses/scan_stack.hpp"
-#include "localization/hypotheses/surface_novelty.hpp"
-#include "localization/hypotheses/usual_misfit.hpp"
 #include "localization/sensor/coarse_field.hpp"
 
 namespace deltamap::localization::hypotheses {
@@ -115,14 +115,14 @@ class Rivals {
   RivalsParams params_;
   sensor::CoarseField coarse_;
   RivalProbes probes_;
-  ImageWatch watch_;
+  AliasMonitor alias_monitor_;
   GlobalSearch search_;
   PlaceBank bank_;
   ScanStack stack_;
   motion::BeamEnds ends_;       // thinned
   motion::BeamEnds near_ends_;  // of these, those that a coarse lattice of headings can place
-  SurfaceNovelty novelty_;
-  UsualMisfit usual_misfit_;
+  BeamDecorrelation decorrelation_;
+  OutlierRate outlier_rate_;
   std::optional<Pose2> last_joined_;
   bool believing_ = false;
   bool suspicious_ = false;

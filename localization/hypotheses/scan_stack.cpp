@@ -20,7 +20,7 @@ void ScanStack::add(const motion::BeamEnds& ends, const Pose2& joined_from_robot
   newest_ = (newest_ + 1) % kScans;
   count_ = std::min(count_ + 1, kScans);
   kept_[newest_].ends = ends;
-  const std::span<const float> weights = novelty_.weights(ends, joined_from_robot);
+  const std::span<const float> weights = decorrelation_.weights(ends, joined_from_robot);
   kept_[newest_].weights.assign(weights.begin(), weights.end());
   kept_[newest_].joined_from_robot = joined_from_robot;
   kept_[newest_].since_last_m = since_last_m;

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "localization/hypotheses/beam_decorrelation.hpp"
 #include "localization/hypotheses/place_bank.hpp"
-#include "localization/hypotheses/surface_novelty.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 
@@ -22,7 +22,7 @@ class ScanStack {
 
   void clear() {
     count_ = 0;
-    novelty_.clear();
+    decorrelation_.clear();
   }
   /// Forgets all but the scans of the last metres of driving.
   void keep_last(double driven_m);
@@ -53,7 +53,7 @@ class ScanStack {
   };
   [[nodiscard]] const Kept& newest_but(std::size_t back) const { return kept_[(newest_ + kScans - back) % kScans]; }
 
-  SurfaceNovelty novelty_;
+  BeamDecorrelation decorrelation_;
   std::array<Kept, kScans> kept_;
   std::size_t count_ = 0;
   std::size_t newest_ = 0;

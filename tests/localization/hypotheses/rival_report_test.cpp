@@ -29,8 +29,8 @@ TEST(RivalReport, SaysWhereTheRobotMayHaveBeenCarried) {
 }
 
 TEST(RivalReport, HearsOfWatchedImagesWithoutListingThem) {
-  const Place image{.map_from_robot = {15.0, 0.0, 0.0}, .since_carried = 7.0};
-  const RivalReport report = report_on(believing_bank(), bank_with(image), {});
+  const Place alias{.map_from_robot = {15.0, 0.0, 0.0}, .since_carried = 7.0};
+  const RivalReport report = report_on(believing_bank(), bank_with(alias), {});
   EXPECT_GT(report.carried_share, 0.5);
   EXPECT_EQ(report.listed, 0U);
   EXPECT_FALSE(report.beaten);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/usual_misfit.hpp"
+#include "localization/hypotheses/outlier_rate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +12,14 @@ constexpr double kFirstSteps = 3.0;     // for so many it counts at first that f
 
 }  // namespace
 
-void UsualMisfit::observe(double misfit) {
+void OutlierRate::observe(double outliers) {
   scans_ += 1.0;
-  share_ += (misfit - share_) / std::min(kMemorySteps, kFirstSteps + scans_);
+  share_ += (outliers - share_) / std::min(kMemorySteps, kFirstSteps + scans_);
 }
 
-double UsualMisfit::telling() const {
-  const double misfit = std::clamp(share_, kRare, 0.5);
-  return std::log((1.0 - misfit) / misfit) / std::log((1.0 - kRare) / kRare);
+double OutlierRate::evidence_weight() const {
+  const double outliers = std::clamp(share_, kRare, 0.5);
+  return std::log((1.0 - outliers) / outliers) / std::log((1.0 - kRare) / kRare);
 }
 
 }  // namespace deltamap::localization::hypotheses

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/image_watch.hpp"
+#include "localization/hypotheses/alias_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,28 +11,28 @@ namespace {
 
 constexpr std::size_t kKept = 8;
 constexpr int kRightAngles = 4;
-constexpr double kMetAfterM = 1.0;          // a place that has been followed for so long is an image
-constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that an image may fit worse by
+constexpr double kMetAfterM = 1.0;          // a place that has been followed for so long is an alias
+constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that an alias may fit worse by
 constexpr double kBeforeItIsSlid = 0.3;     // the same before it is slid to its best fit
 
 }  // namespace
 
-ImageWatch::ImageWatch(const PlaceBankParams& bank, const Effort& effort)
+AliasMonitor::AliasMonitor(const PlaceBankParams& bank, const Effort& effort)
     : effort_{effort},
       bank_{bank},
-      images_{static_cast<std::size_t>(std::max(0, effort.images))},
+      aliases_{static_cast<std::size_t>(std::max(0, effort.images))},
       lattice_{kRightAngles, kKept} {}
 
-void ImageWatch::carry(const Pose2& motion) {
+void AliasMonitor::carry(const Pose2& motion) {
   bank_.carry(motion);
-  images_.age(motion.position().norm());
+  aliases_.age(motion.position().norm());
 }
 
-void ImageWatch::observe(const Seen& seen, std::span<const Place> followed) {
+void AliasMonitor::observe(const Seen& seen, std::span<const Place> followed) {
   bank_.believe(seen.map_from_believed);
   own_fit_ = mean_log_likelihood(seen.field, seen.ends, seen.map_from_believed);
   bank_.slide_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
-  if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.telling);
+  if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.evidence_weight);
   note(followed, seen.map_from_believed);
   note(bank_.rivals(), seen.map_from_believed);
   look_again(seen);
@@ -40,24 +40,24 @@ void ImageWatch::observe(const Seen& seen, std::span<const Place> followed) {
   bank_.settle();
 }
 
-void ImageWatch::note(std::span<const Place> followed, const Pose2& map_from_believed) {
+void AliasMonitor::note(std::span<const Place> followed, const Pose2& map_from_believed) {
   for (const Place& place : followed) {
     if (place.followed_m < kMetAfterM) continue;
     if (is_within(place.map_from_robot, map_from_believed, effort_.nearby_m, effort_.nearby_rad)) continue;
-    images_.note(map_from_believed, place.map_from_robot, place.followed_m);
+    aliases_.note(map_from_believed, place.map_from_robot, place.followed_m);
   }
 }
 
-void ImageWatch::look_again(const Seen& seen) {
+void AliasMonitor::look_again(const Seen& seen) {
   for (int i = 0; i < effort_.images_a_scan; ++i) {
-    const std::optional<Pose2> there = images_.next(seen.map_from_believed);
+    const std::optional<Pose2> there = aliases_.next(seen.map_from_believed);
     if (!there || bank_.knows(*there)) continue;
     if (mean_log_likelihood(seen.field, seen.ends, *there) < own_fit_ - kBeforeItIsSlid) continue;
     admit(*there, seen);
   }
 }
 
-void ImageWatch::probe(const Seen& seen) {
+void AliasMonitor::probe(const Seen& seen) {
   const double heading_rad = seen.map_from_believed.theta;
   const auto c = static_cast<float>(std::cos(heading_rad));
   const auto s = static_cast<float>(std::sin(heading_rad));
@@ -76,7 +76,7 @@ void ImageWatch::probe(const Seen& seen) {
   }
 }
 
-void ImageWatch::admit(const Pose2& rough, const Seen& seen) {
+void AliasMonitor::admit(const Pose2& rough, const Seen& seen) {
   const Pose2 pose = settled(seen.field, seen.ends, rough);
   if (bank_.knows(pose) || is_within(pose, seen.map_from_believed, effort_.nearby_m, effort_.nearby_rad)) return;
   if (mean_log_likelihood(seen.field, seen.ends, pose) < own_fit_ - kFitsNearlyAsWell) return;
@@ -85,8 +85,8 @@ void ImageWatch::admit(const Pose2& rough, const Seen& seen) {
   bank_.admit({.map_from_robot = pose,
                .log_evidence = bank_.places().front().log_evidence + lately.ahead(),
                .log_prior = std::log(effort_.prior),
-               .since_carried = seen.telling * lately.ahead(),
-               .lost_since = seen.telling * lately.lost});
+               .since_carried = seen.evidence_weight * lately.ahead(),
+               .lost_since = seen.evidence_weight * lately.lost});
 }
 
 }  // namespace deltamap::localization::hypotheses

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Watches the places where the map looks as it does here, so that the write gate hears of it at once if the robot has
-// been carried to one: those that were met before, and those with the believed heading turned by right angles, for so
-// most images of a place lie in a building. None is believed for being watched: places that are looked at again and
-// again would sooner or later win by chance.
+// Follows the aliases of the believed pose, so that the write gate learns at once when the robot may have been carried
+// to one. It examines the aliases that were met before, and poses whose heading differs from the believed one by right
+// angles: most aliases in buildings do. It collects evidence only; no alias is believed because it is monitored, since
+// among poses that are examined again and again one would sooner or later win by chance.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,24 @@
 
 #include "localization/hypotheses/lattice_search.hpp"
 #include "localization/hypotheses/place_bank.hpp"
-#include "localization/hypotheses/place_images.hpp"
+#include "localization/hypotheses/pose_aliases.hpp"
 #include "localization/hypotheses/scan_stack.hpp"
 #include "localization/sensor/coarse_field.hpp"
 
 namespace deltamap::localization::hypotheses {
 
-class ImageWatch {
+class AliasMonitor {
  public:
   struct Effort {
     int images = 16;           ///< that are remembered; >= 0
     int images_a_scan = 2;     ///< of them looked at again in a scan; >= 0
     int probes = 400;          ///< poses turned by right angles that are looked at in a scan; >= 0
     int slid = 4;              ///< places that are slid to their best fit in a scan, beside those that come close; >= 0
-    double nearby_m = 1.5;     ///< no image of the believed pose but a slip, m; > 0
+    double nearby_m = 1.5;     ///< no alias of the believed pose but a slip, m; > 0
     double nearby_rad = 0.35;  ///< and turned less; > 0
     double prior = 0.003;      ///< odds of one against the believed pose, before any scan; 0..1
   };
-  ImageWatch(const PlaceBankParams& bank, const Effort& effort);
+  AliasMonitor(const PlaceBankParams& bank, const Effort& effort);
 
   /// Forgets what speaks for them, not where they are.
   void clear() { bank_.clear(); }
@@ -41,7 +41,7 @@ class ImageWatch {
     Pose2 map_from_believed;            ///< slid to where the scan fits, as its images will be
     Pose2 joined_from_robot;
     const ScanStack& stack;
-    double telling = 1.0;              ///< how much beams that miss say, [0, 1]
+    double evidence_weight = 1.0;      ///< how much beams that miss say, [0, 1]
     std::span<const float> weights{};  ///< of the beams, where the scan tells something new
     double unknown_s = 0.0;
   };
@@ -59,7 +59,7 @@ class ImageWatch {
 
   Effort effort_;
   PlaceBank bank_;
-  PlaceImages images_;
+  PoseAliases aliases_;
   LatticeSearch lattice_;
   motion::BeamEnds turned_;  // to the believed heading
   double own_fit_ = 0.0;     // mean ln p(z) of the scan at the believed pose

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/surface_novelty.hpp"
+#include "localization/hypotheses/beam_decorrelation.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -18,11 +18,11 @@ std::size_t wrapped(std::int32_t at) { return static_cast<std::size_t>(at & (kAc
 
 }  // namespace
 
-SurfaceNovelty::SurfaceNovelty() : patches_(static_cast<std::size_t>(kAcross) * kAcross) {}
+BeamDecorrelation::BeamDecorrelation() : patches_(static_cast<std::size_t>(kAcross) * kAcross) {}
 
-void SurfaceNovelty::clear() { std::fill(patches_.begin(), patches_.end(), Patch{}); }
+void BeamDecorrelation::clear() { std::fill(patches_.begin(), patches_.end(), Patch{}); }
 
-SurfaceNovelty::Patch& SurfaceNovelty::patch_at(double x_m, double y_m) {
+BeamDecorrelation::Patch& BeamDecorrelation::patch_at(double x_m, double y_m) {
   const auto column = rounded_down(x_m / kPatchM);
   const auto row = rounded_down(y_m / kPatchM);
   Patch& patch = patches_[wrapped(row) * kAcross + wrapped(column)];
@@ -34,7 +34,7 @@ SurfaceNovelty::Patch& SurfaceNovelty::patch_at(double x_m, double y_m) {
   return patch;
 }
 
-std::span<const float> SurfaceNovelty::weights(const motion::BeamEnds& ends, const Pose2& joined_from_robot) {
+std::span<const float> BeamDecorrelation::weights(const motion::BeamEnds& ends, const Pose2& joined_from_robot) {
   ++scan_;
   weights_.resize(ends.size());
   float sum = 0.0F;

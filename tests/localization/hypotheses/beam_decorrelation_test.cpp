@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/surface_novelty.hpp"
+#include "localization/hypotheses/beam_decorrelation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ motion::BeamEnds wall_ahead() {
 
 float sum_of(std::span<const float> weights) { return std::accumulate(weights.begin(), weights.end(), 0.0F); }
 
-TEST(SurfaceNovelty, CountsASurfaceLessAtEachLook) {
-  SurfaceNovelty novelty;
+TEST(BeamDecorrelation, CountsASurfaceLessAtEachLook) {
+  BeamDecorrelation novelty;
   const float first = sum_of(novelty.weights(wall_ahead(), {}));
   EXPECT_LE(first, 5.001F) << "of 20: one view may look like another";
   const float second = sum_of(novelty.weights(wall_ahead(), {}));
@@ -30,15 +30,15 @@ TEST(SurfaceNovelty, CountsASurfaceLessAtEachLook) {
   EXPECT_GT(second, 1.4F * third);
 }
 
-TEST(SurfaceNovelty, GivesOneThingLittleMoreThanAFewBeamsHoweverOftenItIsSeen) {
-  SurfaceNovelty novelty;
+TEST(BeamDecorrelation, GivesOneThingLittleMoreThanAFewBeamsHoweverOftenItIsSeen) {
+  BeamDecorrelation novelty;
   float all = 0.0F;
   for (int i = 0; i < 100; ++i) all += sum_of(novelty.weights(wall_ahead(), {0.01 * i, 0.0, 0.0}));
   EXPECT_LT(all, 60.0F) << "of 2000 beams";
 }
 
-TEST(SurfaceNovelty, KnowsASurfaceAgainFromElsewhere) {
-  SurfaceNovelty novelty;
+TEST(BeamDecorrelation, KnowsASurfaceAgainFromElsewhere) {
+  BeamDecorrelation novelty;
   (void)novelty.weights(wall_ahead(), {});
   motion::BeamEnds nearer = wall_ahead();
   for (float& x_m : nearer.x_m) x_m -= 1.0F;
@@ -46,8 +46,8 @@ TEST(SurfaceNovelty, KnowsASurfaceAgainFromElsewhere) {
   EXPECT_LT(sum_of(novelty.weights(nearer, {1.0, 0.0, 0.0})), 0.7F * first);
 }
 
-TEST(SurfaceNovelty, CountsAnotherSurfaceAndAForgottenOneInFull) {
-  SurfaceNovelty novelty;
+TEST(BeamDecorrelation, CountsAnotherSurfaceAndAForgottenOneInFull) {
+  BeamDecorrelation novelty;
   const float in_full = sum_of(novelty.weights(wall_ahead(), {}));
   EXPECT_EQ(sum_of(novelty.weights(wall_ahead(), {5.0, 0.0, 0.0})), in_full);
   EXPECT_LT(sum_of(novelty.weights(wall_ahead(), {})), in_full);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the map looks elsewhere as it does here. A hall of bays, or one that is its own image under a quarter turn,
-// offers the same few images of the believed pose wherever the robot drives: once met they are remembered and looked at
-// again and again, for it is one of them where a robot that has been carried is not missed.
+// The aliases of the believed pose: poses at which the map looks as it does here. A hall of equal bays, or one that a
+// quarter turn maps onto itself, has the same few aliases wherever the robot drives, each given by one rigid motion of
+// the map. Each that was met is remembered and examined again and again: a kidnapped robot that stands at an alias is
+// noticed nowhere else.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +13,16 @@
 
 namespace deltamap::localization::hypotheses {
 
-class PlaceImages {
+class PoseAliases {
  public:
   /// Remembers `most`; beyond, those that have been followed for the shortest way go. One that has not been met again
   /// while the robot drove `forgotten_after_m` is of somewhere else, or of a map that has changed.
-  explicit PlaceImages(std::size_t most, double forgotten_after_m = 1000.0)
+  explicit PoseAliases(std::size_t most, double forgotten_after_m = 1000.0)
       : most_{most}, forgotten_after_m_{forgotten_after_m} {
-    images_.reserve(most);
+    aliases_.reserve(most);
   }
 
-  [[nodiscard]] std::size_t size() const { return images_.size(); }
+  [[nodiscard]] std::size_t size() const { return aliases_.size(); }
 
   /// A place that has explained the scans beside the believed pose, for so long.
   void note(const Pose2& map_from_believed, const Pose2& map_from_place, double followed_m);
@@ -29,19 +30,19 @@ class PlaceImages {
   /// The robot has driven on.
   void age(double driven_m);
 
-  /// Where the robot is if it is at one of the images: one after the other; nothing while none is known.
+  /// The next alias of the believed pose, one after the other; nothing while none is known.
   [[nodiscard]] std::optional<Pose2> next(const Pose2& map_from_believed);
 
  private:
-  struct Image {
-    Pose2 map_from_map;  // applied to a pose it is the pose's image
+  struct Alias {
+    Pose2 map_from_map;  // applied to a pose it gives the pose's alias
     double followed_m = 0.0;
     double driven_since_m = 0.0;  // it was met last
   };
 
   std::size_t most_;
   double forgotten_after_m_;
-  std::vector<Image> images_;
+  std::vector<Alias> aliases_;
   std::size_t next_ = 0;
 };
 

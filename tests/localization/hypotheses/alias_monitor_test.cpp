@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/image_watch.hpp"
+#include "localization/hypotheses/alias_monitor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,20 +18,20 @@ class WatchedRound {
 
   void step() {
     truth_ = truth_ * kMotion;
-    watch_.carry(kMotion);
+    alias_monitor_.carry(kMotion);
     const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
     const motion::BeamEnds ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 60);
-    watch_.observe({.field = field_,
-                    .coarse = coarse_,
-                    .ends = ends,
-                    .near_ends = ends,
-                    .map_from_believed = truth_,
-                    .joined_from_robot = truth_,
-                    .stack = stack_},
-                   {});
+    alias_monitor_.observe({.field = field_,
+                            .coarse = coarse_,
+                            .ends = ends,
+                            .near_ends = ends,
+                            .map_from_believed = truth_,
+                            .joined_from_robot = truth_,
+                            .stack = stack_},
+                           {});
     stack_.add(ends, truth_);
   }
-  [[nodiscard]] std::span<const Place> images() const { return watch_.places().rivals(); }
+  [[nodiscard]] std::span<const Place> images() const { return alias_monitor_.places().rivals(); }
 
  private:
   const OccupancyGrid& world_;
@@ -40,15 +40,15 @@ class WatchedRound {
   sensor::LikelihoodField field_;
   sensor::CoarseField coarse_;
   ScanStack stack_;
-  ImageWatch watch_{{}, {.prior = 0.003}};
+  AliasMonitor alias_monitor_{{}, {.prior = 0.003}};
 };
 
-TEST(ImageWatch, HoldsImagesForAsUnlikelyAsThatSomebodyCarriesRobots) {
+TEST(AliasMonitor, HoldsImagesForAsUnlikelyAsThatSomebodyCarriesRobots) {
   const OccupancyGrid map = test::symmetric_hall();
   WatchedRound round{map, map};
   for (int i = 0; i < 60; ++i) round.step();
   ASSERT_FALSE(round.images().empty());
-  for (const Place& image : round.images()) EXPECT_DOUBLE_EQ(image.log_prior, std::log(0.003));
+  for (const Place& alias : round.images()) EXPECT_DOUBLE_EQ(alias.log_prior, std::log(0.003));
 }
 
 }  // namespace

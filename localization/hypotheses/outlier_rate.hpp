@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many beams the map does not explain at the believed pose anyway. Where that is one in five, some more say little
-// against the pose; where all fit, three do.
+// The usual share of outliers at the believed pose: beams that the map does not explain. Where one beam in five is an
+// outlier anyway, a few more say little against the pose; where all beams fit, three do.
 #pragma once
 
 namespace deltamap::localization::hypotheses {
 
-class UsualMisfit {
+class OutlierRate {
  public:
-  /// Share of a decorrelated scan's beams that the map does not explain at the believed pose.
-  void observe(double misfit);
+  /// Share of outliers of a decorrelated scan at the believed pose, [0, 1].
+  void observe(double outliers);
   void forget() { *this = {}; }
 
   /// What a beam that misses here and ends as expected elsewhere tells, of what it does where hardly any beam misses:
   /// the log odds of a beam that fits against one that does not. [0, 1]
-  [[nodiscard]] double telling() const;
+  [[nodiscard]] double evidence_weight() const;
 
  private:
   static constexpr double kRare = 0.05;  // a share up to which all beams count as fitting

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/place_images.hpp"
+#include "localization/hypotheses/pose_aliases.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +11,13 @@ namespace {
 /// Two bays farther on, turned round.
 Pose2 image_of(const Pose2& pose) { return Pose2{30.0, 12.0, radians(180.0)} * pose; }
 
-TEST(PlaceImages, KnowNoneBeforeAPlaceWasMet) {
-  PlaceImages images{4};
+TEST(PoseAliases, KnowNoneBeforeAPlaceWasMet) {
+  PoseAliases images{4};
   EXPECT_FALSE(images.next({1.0, 2.0, 0.3}));
 }
 
-TEST(PlaceImages, GoWithTheRobotWhereverItDrives) {
-  PlaceImages images{4};
+TEST(PoseAliases, GoWithTheRobotWhereverItDrives) {
+  PoseAliases images{4};
   images.note({3.0, 4.0, 0.2}, image_of({3.0, 4.0, 0.2}), 1.0);
   const Pose2 far_on{9.0, 1.0, -1.2};
   const std::optional<Pose2> there = images.next(far_on);
@@ -26,14 +26,14 @@ TEST(PlaceImages, GoWithTheRobotWhereverItDrives) {
   EXPECT_NEAR(turn_between(there->theta, image_of(far_on).theta), 0.0, 1e-9);
 }
 
-TEST(PlaceImages, AreOneWhereTheyAreMetAgainAnotherTime) {
-  PlaceImages images{4};
+TEST(PoseAliases, AreOneWhereTheyAreMetAgainAnotherTime) {
+  PoseAliases images{4};
   for (double x = 0.0; x < 5.0; x += 0.5) images.note({x, 1.0, 0.1}, image_of({x, 1.1, 0.1}), x);
   EXPECT_EQ(images.size(), 1U);
 }
 
-TEST(PlaceImages, AreLookedAtInTurn) {
-  PlaceImages images{4};
+TEST(PoseAliases, AreLookedAtInTurn) {
+  PoseAliases images{4};
   images.note({}, {5.0, 0.0, 0.0}, 1.0);
   images.note({}, {0.0, 5.0, 0.0}, 1.0);
   const Pose2 first = *images.next({});
@@ -42,8 +42,8 @@ TEST(PlaceImages, AreLookedAtInTurn) {
   EXPECT_LT(distance_between(*images.next({}), first), 1e-9);
 }
 
-TEST(PlaceImages, KeepThoseThatWereFollowedLongest) {
-  PlaceImages images{2};
+TEST(PoseAliases, KeepThoseThatWereFollowedLongest) {
+  PoseAliases images{2};
   images.note({}, {5.0, 0.0, 0.0}, 20.0);
   images.note({}, {0.0, 5.0, 0.0}, 2.0);
   images.note({}, {0.0, 9.0, 0.0}, 3.0);
@@ -53,8 +53,8 @@ TEST(PlaceImages, KeepThoseThatWereFollowedLongest) {
   EXPECT_DOUBLE_EQ(x_m, 5.0) << "the one of 20 m and the one of 3 m, neither that of 1 m";
 }
 
-TEST(PlaceImages, AreForgottenWhereTheyAreNotMetAgainOnALongWay) {
-  PlaceImages images{4, 100.0};
+TEST(PoseAliases, AreForgottenWhereTheyAreNotMetAgainOnALongWay) {
+  PoseAliases images{4, 100.0};
   images.note({}, {5.0, 0.0, 0.0}, 20.0);
   images.note({}, {0.0, 5.0, 0.0}, 2.0);
   images.age(60.0);
@@ -64,8 +64,8 @@ TEST(PlaceImages, AreForgottenWhereTheyAreNotMetAgainOnALongWay) {
   EXPECT_DOUBLE_EQ(images.next({})->y, 5.0) << "the one that was met again";
 }
 
-TEST(PlaceImages, RememberNoneWhereThereIsNoRoom) {
-  PlaceImages images{0};
+TEST(PoseAliases, RememberNoneWhereThereIsNoRoom) {
+  PoseAliases images{0};
   images.note({}, {5.0, 0.0, 0.0}, 20.0);
   EXPECT_FALSE(images.next({}));
 }

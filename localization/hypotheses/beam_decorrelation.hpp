@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of what a scan sees has not been seen before. A container that has come or gone misleads every scan of the
-// next metres alike: its surface is one fact, not one a scan. Beams on a patch of surface count the less, the more
-// beams have met it already. Patches lie in the joined odometry frame, so that they are the same for every place where
-// the robot might be.
+// Weights the beams of a scan by how independent they are of earlier scans. A container that was moved misleads every
+// scan of the next metres in the same way: its surface is one observation, not one a scan. So a beam on a patch of
+// surface counts the less, the more beams have met that patch before. Patches lie in the continuous odometry frame, so
+// that they are the same for all pose hypotheses.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 
 namespace deltamap::localization::hypotheses {
 
-class SurfaceNovelty {
+class BeamDecorrelation {
  public:
-  SurfaceNovelty();
+  BeamDecorrelation();
 
   /// Counts the beams and answers what each is worth, (0, 1]; valid until the next call.
   [[nodiscard]] std::span<const float> weights(const motion::BeamEnds& ends, const Pose2& joined_from_robot);
@@ -32,7 +32,7 @@ class SurfaceNovelty {
   };
   [[nodiscard]] Patch& patch_at(double x_m, double y_m);
 
-  std::vector<Patch> patches_;  // a torus: far places share an entry, the later one takes it
+  std::vector<Patch> patches_;  // a torus: patches far apart share an entry, the later one takes it
   std::uint32_t scan_ = 0;
   std::vector<float> weights_;
 };
