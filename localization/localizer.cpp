@@ -73,7 +73,7 @@ void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->t
 
 void Localizer::relocalize(const particles::InitialPose& pose) { state_->start_at(pose); }
 
-const hypotheses::RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
+const hypotheses::HypothesisReport& Localizer::rivals() const { return state_->rivals.report(); }
 
 std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 

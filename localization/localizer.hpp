@@ -11,7 +11,7 @@
 #include "core/messages.hpp"
 #include "core/temporary_things.hpp"
 #include "localization/belief/stability.hpp"
-#include "localization/hypotheses/rivals.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "localization/particles/start_pose.hpp"
@@ -44,7 +44,7 @@ class Localizer {
   void relocalize(const particles::InitialPose& pose);
 
   /// What else in the map the scans may mean, as of the last scan.
-  [[nodiscard]] const hypotheses::RivalReport& rivals() const;
+  [[nodiscard]] const hypotheses::HypothesisReport& rivals() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;

@@ -6,8 +6,8 @@
 #include "localization/belief/fit_monitor.hpp"
 #include "localization/belief/judgement.hpp"
 #include "localization/hypotheses/global_search.hpp"
-#include "localization/hypotheses/place_bank.hpp"
-#include "localization/hypotheses/rivals.hpp"
+#include "localization/hypotheses/hypothesis_bank.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/motion/motion_model.hpp"
 #include "localization/motion/odometry_buffer.hpp"
 #include "localization/particles/particle_clusters.hpp"
@@ -33,8 +33,8 @@ struct LocalizerParams {
   tracking::UpdateParams update;
   bool follow_surfaces = true;  ///< as of TrackerParams
   hypotheses::GlobalSearchParams global;
-  hypotheses::RivalsParams rivals;
-  hypotheses::PlaceBankParams places;
+  hypotheses::HypothesisTrackerParams rivals;
+  hypotheses::HypothesisBankParams places;
   belief::FitParams fit;
   belief::JudgementParams judgement;
   sensor::TemporaryBeamsParams temporary;

@@ -144,12 +144,13 @@ sensor::RefinedPose Localizer::State::believed(const motion::ScanInstant& now) {
 }
 
 sensor::RefinedPose Localizer::State::search(const motion::ScanInstant& now) {
-  const hypotheses::RivalReport& report = rivals.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
-  if (const std::optional<hypotheses::Place> place = rivals.best_place()) {
+  const hypotheses::HypothesisReport& report =
+      rivals.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
+  if (const std::optional<hypotheses::PoseHypothesis> place = rivals.best_hypothesis()) {
     best = {place->map_from_robot, place->covariance, place->share};
     if (ends.size() > 0) w_avg = sensor::mean_likelihood(field, ends, best.map_from_robot);
   }
-  n_eff = report.effective_places;
+  n_eff = report.effective_hypotheses;
   if (given_up) {
     const Pose2 motion = motion_between(given_up->joined_from_robot, joined_at(now));
     const bool only_begun = motion.position().norm() < kSearchBeginsM && std::abs(motion.theta) < kSearchBeginsRad;
@@ -166,14 +167,14 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);
   const bool lost = monitor.state() == LocalizerState::kLost;
-  const hypotheses::RivalReport& report =
+  const hypotheses::HypothesisReport& report =
       rivals.observe(field, {.ends = ends,
                              .joined_from_robot = joined_at(now),
                              .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
                              .held = proven_hold.share(),
                              .unknown_s = tracked.unknown_s});
-  if (report.listed == 0 || !has_won(report.rivals.front(), tracked.believed.map_from_robot)) return tracked.believed;
-  const Pose2 winner = report.rivals.front().map_from_robot;
+  if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
+  const Pose2 winner = report.others.front().map_from_robot;
   if (lost || distance_between(winner, tracked.believed.map_from_robot) < params.rivals.nearby_m) {
     ++counts.recoveries;
     return believe_in(winner, now);
@@ -218,7 +219,7 @@ Belief Localizer::State::belief() const {
   return belief;
 }
 
-bool Localizer::State::has_won(const hypotheses::RivalPlace& place, const Pose2& believed) const {
+bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& place, const Pose2& believed) const {
   if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
   if (ends.size() == 0 || tracker.is_held()) return false;
   const double fit = sensor::explained_share(field, ends, place.map_from_robot);
@@ -303,7 +304,7 @@ Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& b
           .state = monitor.state(),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(
-              monitor.state() == LocalizerState::kGlobal ? rivals.report().places : tracker.particle_count()),
+              monitor.state() == LocalizerState::kGlobal ? rivals.report().followed : tracker.particle_count()),
           .belief = belief(),
           .w_avg = w_avg,
           .revision = revision,

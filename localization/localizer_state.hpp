@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inside of the localizer: which pose is believed, by a state machine of global, tracking and lost. A scan is
-// followed by the particles (tracker.hpp) or searched for in the whole map (rivals.hpp), then judged (judgement.hpp,
-// fit_monitor.hpp); what wins is believed, what is judged wrong is given up.
+// followed by the particles (tracker.hpp) or searched for in the whole map (hypothesis_tracker.hpp), then judged
+// (judgement.hpp, fit_monitor.hpp); what wins is believed, what is judged wrong is given up.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct Localizer::State {
   tracking::Tracker tracker;
   belief::FitMonitor monitor;
   belief::Judgement judgement;
-  hypotheses::Rivals rivals;
+  hypotheses::HypothesisTracker rivals;
   particles::PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   motion::BeamEnds ends;
@@ -84,7 +84,7 @@ struct Localizer::State {
   /// The best pose that a slip may have led to and that explains at least this share of the ends; nothing without one.
   [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
-  [[nodiscard]] bool has_won(const hypotheses::RivalPlace& place, const Pose2& believed) const;
+  [[nodiscard]] bool has_won(const hypotheses::ReportedHypothesis& place, const Pose2& believed) const;
   /// What the localizer answers: where surfaces hold the pose, nothing but another place speaks against it.
   [[nodiscard]] Belief belief() const;
   /// No pose is believed, nor one being checked.

@@ -7,19 +7,19 @@
 namespace deltamap::localization::belief {
 namespace {
 
-PoseJudge::Shares shares_in(const hypotheses::RivalReport& report) {
+PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
   if (report.places == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
   if (report.own_known) {
-    const hypotheses::RivalPlace& rival = report.rivals.front();
-    const bool carried = report.carried_share > rival.share;
+    const hypotheses::ReportedHypothesis& rival = report.others.front();
+    const bool carried = report.kidnapped_share > rival.share;
     return {.believed = report.own_share,
-            .best_rival = std::max(rival.share, report.carried_share),  // one of them may be watched, not listed
-            .map_from_rival = carried ? report.map_from_carried : rival.map_from_robot,
+            .best_rival = std::max(rival.share, report.kidnapped_share),  // one of them may be watched, not listed
+            .map_from_rival = carried ? report.map_from_kidnapped : rival.map_from_robot,
             .beaten = report.beaten,
             .unique = report.unique};
   }
-  const hypotheses::RivalPlace& second = report.rivals[1];
-  return {.believed = report.rivals.front().share,
+  const hypotheses::ReportedHypothesis& second = report.others[1];
+  return {.believed = report.others.front().share,
           .best_rival = report.listed > 1 ? second.share : 0.0,
           .map_from_rival = second.map_from_robot,
           .searching = true};

@@ -10,7 +10,7 @@
 #include "localization/belief/pose_verdict.hpp"
 #include "localization/belief/stability.hpp"
 #include "localization/belief/view_tally.hpp"
-#include "localization/hypotheses/rival_report.hpp"
+#include "localization/hypotheses/hypothesis_report.hpp"
 
 namespace deltamap::localization::belief {
 
@@ -39,7 +39,7 @@ class Judgement {
     const sensor::RefinedPose& believed;
     LocalizerState state = LocalizerState::kGlobal;
     PoseJudge::Passed passed;  ///< since the last scan
-    const hypotheses::RivalReport& rivals;
+    const hypotheses::HypothesisReport& rivals;
     const TemporaryThings* things = nullptr;  ///< what is known to be different for now
   };
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).

@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::size_t kKept = 8;
 constexpr int kRightAngles = 4;
-constexpr double kMetAfterM = 1.0;          // a place that has been followed for so long is an alias
+constexpr double kMetAfterM = 1.0;          // a hypothesis that has been followed for so long is an alias
 constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that an alias may fit worse by
 constexpr double kBeforeItIsSlid = 0.3;     // the same before it is slid to its best fit
 
 }  // namespace
 
-AliasMonitor::AliasMonitor(const PlaceBankParams& bank, const Effort& effort)
+AliasMonitor::AliasMonitor(const HypothesisBankParams& bank, const Effort& effort)
     : effort_{effort},
       bank_{bank},
       aliases_{static_cast<std::size_t>(std::max(0, effort.images))},
@@ -28,23 +28,23 @@ void AliasMonitor::carry(const Pose2& motion) {
   aliases_.age(motion.position().norm());
 }
 
-void AliasMonitor::observe(const Seen& seen, std::span<const Place> followed) {
+void AliasMonitor::observe(const Seen& seen, std::span<const PoseHypothesis> followed) {
   bank_.believe(seen.map_from_believed);
   own_fit_ = mean_log_likelihood(seen.field, seen.ends, seen.map_from_believed);
   bank_.slide_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
   if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.evidence_weight);
   note(followed, seen.map_from_believed);
-  note(bank_.rivals(), seen.map_from_believed);
+  note(bank_.others(), seen.map_from_believed);
   look_again(seen);
   probe(seen);
   bank_.settle();
 }
 
-void AliasMonitor::note(std::span<const Place> followed, const Pose2& map_from_believed) {
-  for (const Place& place : followed) {
-    if (place.followed_m < kMetAfterM) continue;
-    if (is_within(place.map_from_robot, map_from_believed, effort_.nearby_m, effort_.nearby_rad)) continue;
-    aliases_.note(map_from_believed, place.map_from_robot, place.followed_m);
+void AliasMonitor::note(std::span<const PoseHypothesis> followed, const Pose2& map_from_believed) {
+  for (const PoseHypothesis& hypothesis : followed) {
+    if (hypothesis.followed_m < kMetAfterM) continue;
+    if (is_within(hypothesis.map_from_robot, map_from_believed, effort_.nearby_m, effort_.nearby_rad)) continue;
+    aliases_.note(map_from_believed, hypothesis.map_from_robot, hypothesis.followed_m);
   }
 }
 
@@ -83,7 +83,7 @@ void AliasMonitor::admit(const Pose2& rough, const Seen& seen) {
   const Comparison lately = seen.stack.compared_lately(seen.field, pose, seen.map_from_believed, seen.joined_from_robot,
                                                        bank_.params().evidence_of_a_beam());
   bank_.admit({.map_from_robot = pose,
-               .log_evidence = bank_.places().front().log_evidence + lately.ahead(),
+               .log_evidence = bank_.hypotheses().front().log_evidence + lately.ahead(),
                .log_prior = std::log(effort_.prior),
                .since_carried = seen.evidence_weight * lately.ahead(),
                .lost_since = seen.evidence_weight * lately.lost});

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <span>
 
+#include "localization/hypotheses/hypothesis_bank.hpp"
 #include "localization/hypotheses/lattice_search.hpp"
-#include "localization/hypotheses/place_bank.hpp"
 #include "localization/hypotheses/pose_aliases.hpp"
 #include "localization/hypotheses/scan_stack.hpp"
 #include "localization/sensor/coarse_field.hpp"
@@ -19,15 +19,15 @@ namespace deltamap::localization::hypotheses {
 class AliasMonitor {
  public:
   struct Effort {
-    int images = 16;           ///< that are remembered; >= 0
-    int images_a_scan = 2;     ///< of them looked at again in a scan; >= 0
-    int probes = 400;          ///< poses turned by right angles that are looked at in a scan; >= 0
-    int slid = 4;              ///< places that are slid to their best fit in a scan, beside those that come close; >= 0
+    int images = 16;        ///< that are remembered; >= 0
+    int images_a_scan = 2;  ///< of them looked at again in a scan; >= 0
+    int probes = 400;       ///< poses turned by right angles that are looked at in a scan; >= 0
+    int slid = 4;  ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
     double nearby_m = 1.5;     ///< no alias of the believed pose but a slip, m; > 0
     double nearby_rad = 0.35;  ///< and turned less; > 0
     double prior = 0.003;      ///< odds of one against the believed pose, before any scan; 0..1
   };
-  AliasMonitor(const PlaceBankParams& bank, const Effort& effort);
+  AliasMonitor(const HypothesisBankParams& bank, const Effort& effort);
 
   /// Forgets what speaks for them, not where they are.
   void clear() { bank_.clear(); }
@@ -45,20 +45,20 @@ class AliasMonitor {
     std::span<const float> weights{};  ///< of the beams, where the scan tells something new
     double unknown_s = 0.0;
   };
-  /// Every scan beside a believed pose, after carry(). `followed`: places that explain the scans as well.
-  void observe(const Seen& seen, std::span<const Place> followed);
+  /// Every scan beside a believed pose, after carry(). `followed`: hypotheses that explain the scans as well.
+  void observe(const Seen& seen, std::span<const PoseHypothesis> followed);
 
   /// The believed pose and its images.
-  [[nodiscard]] const PlaceBank& places() const { return bank_; }
+  [[nodiscard]] const HypothesisBank& hypotheses() const { return bank_; }
 
  private:
-  void note(std::span<const Place> followed, const Pose2& map_from_believed);
+  void note(std::span<const PoseHypothesis> followed, const Pose2& map_from_believed);
   void look_again(const Seen& seen);
   void probe(const Seen& seen);
   void admit(const Pose2& rough, const Seen& seen);
 
   Effort effort_;
-  PlaceBank bank_;
+  HypothesisBank bank_;
   PoseAliases aliases_;
   LatticeSearch lattice_;
   motion::BeamEnds turned_;  // to the believed heading

@@ -53,9 +53,9 @@ bool GlobalSearch::due_again(const Pose2& joined_from_robot) const {
 std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
                                           const Ends& ends, const Pose2& joined_from_robot, double pace) {
   const auto share_of = [pace](int count) { return static_cast<std::size_t>(std::max(1.0, pace * count)); };
-  places_.clear();
+  hypotheses_.clear();
   if (stage_ == Stage::kDone && due_again(joined_from_robot)) stage_ = Stage::kBegin;
-  if (ends.all.size() == 0 || stage_ == Stage::kDone) return places_;
+  if (ends.all.size() == 0 || stage_ == Stage::kDone) return hypotheses_;
   if (stage_ == Stage::kBegin) {
     ends_ = ends.near;
     joined_from_robot_ = joined_from_robot;
@@ -67,20 +67,20 @@ std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, con
     const std::size_t now = std::min(left_, share_of(params_.candidates_a_scan));
     (void)lattice_.look(coarse, ends_, now);
     left_ -= now;
-    if (left_ > 0) return places_;
+    if (left_ > 0) return hypotheses_;
     candidates_ = lattice_.best_apart(static_cast<std::size_t>(params_.places));
     next_ = 0;
     stage_ = Stage::kSliding;
-    return places_;
+    return hypotheses_;
   }
   // Carried along by the wheels since the scan that found them, and slid to where the newest scan fits.
   const Pose2 motion = motion_between(joined_from_robot_, joined_from_robot);
   const std::size_t until = std::min(candidates_.size(), next_ + share_of(params_.places_a_scan));
   for (; next_ < until; ++next_) {
-    places_.push_back(settled(field, ends.all, candidates_[next_].map_from_robot * motion));
+    hypotheses_.push_back(settled(field, ends.all, candidates_[next_].map_from_robot * motion));
   }
   if (next_ == candidates_.size()) stage_ = Stage::kDone;
-  return places_;
+  return hypotheses_;
 }
 
 }  // namespace deltamap::localization::hypotheses

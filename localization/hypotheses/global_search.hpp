@@ -53,7 +53,7 @@ class GlobalSearch {
   std::size_t left_ = 0;     // poses to look at
   std::vector<Candidate> candidates_;
   std::size_t next_ = 0;  // candidate to slide
-  std::vector<Pose2> places_;
+  std::vector<Pose2> hypotheses_;
 };
 
 }  // namespace deltamap::localization::hypotheses

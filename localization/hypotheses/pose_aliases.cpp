@@ -14,12 +14,12 @@ const double kSame_rad = radians(10.0);
 
 }  // namespace
 
-void PoseAliases::note(const Pose2& map_from_believed, const Pose2& map_from_place, double followed_m) {
-  const Alias seen{.map_from_map = map_from_place * inverse(map_from_believed), .followed_m = followed_m};
+void PoseAliases::note(const Pose2& map_from_believed, const Pose2& map_from_hypothesis, double followed_m) {
+  const Alias seen{.map_from_map = map_from_hypothesis * inverse(map_from_believed), .followed_m = followed_m};
   for (Alias& alias : aliases_) {
     const Pose2 expected = alias.map_from_map * map_from_believed;
-    if (distance_between(expected, map_from_place) > kSame_m ||
-        std::abs(turn_between(expected.theta, map_from_place.theta)) > kSame_rad) {
+    if (distance_between(expected, map_from_hypothesis) > kSame_m ||
+        std::abs(turn_between(expected.theta, map_from_hypothesis.theta)) > kSame_rad) {
       continue;
     }
     alias = {.map_from_map = seen.map_from_map, .followed_m = std::max(alias.followed_m, followed_m)};

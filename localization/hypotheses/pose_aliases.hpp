@@ -24,8 +24,8 @@ class PoseAliases {
 
   [[nodiscard]] std::size_t size() const { return aliases_.size(); }
 
-  /// A place that has explained the scans beside the believed pose, for so long.
-  void note(const Pose2& map_from_believed, const Pose2& map_from_place, double followed_m);
+  /// A hypothesis that has explained the scans beside the believed pose, for so long.
+  void note(const Pose2& map_from_believed, const Pose2& map_from_hypothesis, double followed_m);
 
   /// The robot has driven on.
   void age(double driven_m);

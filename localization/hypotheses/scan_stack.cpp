@@ -45,7 +45,7 @@ ScanStack::Sums ScanStack::log_likelihoods(const sensor::LikelihoodField& field,
   return sums;
 }
 
-Comparison ScanStack::compared_lately(const sensor::LikelihoodField& field, const Pose2& place, const Pose2& other,
+Comparison ScanStack::compared_lately(const sensor::LikelihoodField& field, const Pose2& hypothesis, const Pose2& other,
                                       const Pose2& joined_from_robot, double of_a_beam) const {
   constexpr std::size_t kLately = 6;
   Comparison sum;
@@ -54,7 +54,7 @@ Comparison ScanStack::compared_lately(const sensor::LikelihoodField& field, cons
     const Kept& kept = newest_but(back);
     const Pose2 now_from_then = motion_between(joined_from_robot, kept.joined_from_robot);
     const Comparison then =
-        compared(field, kept.ends, kept.weights, place * now_from_then, other * now_from_then, of_a_beam);
+        compared(field, kept.ends, kept.weights, hypothesis * now_from_then, other * now_from_then, of_a_beam);
     sum.gained += then.gained;
     sum.lost += then.lost;
     if (sum.ahead() > most.ahead()) most = sum;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scans of the last metres, joined by odometry: what a place that has only now come to mind must explain too.
-// Single scans look alike in many places.
+// Keeps the scans of the last metres, joined by odometry. A new pose hypothesis must explain all of them, for single
+// scans fit at many poses.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "localization/hypotheses/beam_decorrelation.hpp"
-#include "localization/hypotheses/place_bank.hpp"
+#include "localization/hypotheses/hypothesis_bank.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 
@@ -41,8 +41,8 @@ class ScanStack {
   /// What the newest scans say of a place beside another, since when they speak for it most; nothing where they never
   /// do. Older ones lie too far back for a robot that has just been carried, and among hundreds of places chance
   /// favours one.
-  [[nodiscard]] Comparison compared_lately(const sensor::LikelihoodField& field, const Pose2& place, const Pose2& other,
-                                           const Pose2& joined_from_robot, double of_a_beam) const;
+  [[nodiscard]] Comparison compared_lately(const sensor::LikelihoodField& field, const Pose2& hypothesis,
+                                           const Pose2& other, const Pose2& joined_from_robot, double of_a_beam) const;
 
  private:
   struct Kept {

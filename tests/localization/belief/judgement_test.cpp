@@ -7,7 +7,7 @@ namespace deltamap::localization::belief {
 namespace {
 
 /// What the belief says of a scan without beams, beside a believed place that has no rivals of its own.
-Belief belief_with(const hypotheses::RivalReport& rivals) {
+Belief belief_with(const hypotheses::HypothesisReport& rivals) {
   const OccupancyGrid map{GridGeometry{20, 20, 0.1, {0.0, 0.0}}, CellState::kFree};
   Judgement judgement{map, {}};
   judgement.start(0.9);
@@ -23,19 +23,19 @@ Belief belief_with(const hypotheses::RivalReport& rivals) {
 }
 
 TEST(Judgement, HearsOfAWatchedPlaceBesideWhichNoneIsFollowed) {
-  hypotheses::RivalReport report;
+  hypotheses::HypothesisReport report;
   report.own_known = true;
   report.own_share = 1.0;
   report.places = 1;
-  report.carried_share = 0.4;
-  report.map_from_carried = {15.0, 0.0, 0.0};
+  report.kidnapped_share = 0.4;
+  report.map_from_kidnapped = {15.0, 0.0, 0.0};
   const Belief belief = belief_with(report);
   EXPECT_DOUBLE_EQ(belief.rival_share, 0.4);
   EXPECT_DOUBLE_EQ(belief.map_from_rival.x, 15.0);
 }
 
 TEST(Judgement, HearsOfNoPlaceWhereNoneIsKnown) {
-  hypotheses::RivalReport report;
+  hypotheses::HypothesisReport report;
   report.own_known = true;
   report.own_share = 1.0;
   report.places = 1;

@@ -31,7 +31,7 @@ class WatchedRound {
                            {});
     stack_.add(ends, truth_);
   }
-  [[nodiscard]] std::span<const Place> images() const { return alias_monitor_.places().rivals(); }
+  [[nodiscard]] std::span<const PoseHypothesis> images() const { return alias_monitor_.hypotheses().others(); }
 
  private:
   const OccupancyGrid& world_;
@@ -43,12 +43,12 @@ class WatchedRound {
   AliasMonitor alias_monitor_{{}, {.prior = 0.003}};
 };
 
-TEST(AliasMonitor, HoldsImagesForAsUnlikelyAsThatSomebodyCarriesRobots) {
+TEST(AliasMonitor, HoldsAliasesForAsUnlikelyAsThatSomebodyCarriesRobots) {
   const OccupancyGrid map = test::symmetric_hall();
   WatchedRound round{map, map};
   for (int i = 0; i < 60; ++i) round.step();
   ASSERT_FALSE(round.images().empty());
-  for (const Place& alias : round.images()) EXPECT_DOUBLE_EQ(alias.log_prior, std::log(0.003));
+  for (const PoseHypothesis& alias : round.images()) EXPECT_DOUBLE_EQ(alias.log_prior, std::log(0.003));
 }
 
 }  // namespace

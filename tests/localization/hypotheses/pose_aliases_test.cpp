@@ -11,7 +11,7 @@ namespace {
 /// Two bays farther on, turned round.
 Pose2 image_of(const Pose2& pose) { return Pose2{30.0, 12.0, radians(180.0)} * pose; }
 
-TEST(PoseAliases, KnowNoneBeforeAPlaceWasMet) {
+TEST(PoseAliases, KnowNoneBeforeAHypothesisWasMet) {
   PoseAliases images{4};
   EXPECT_FALSE(images.next({1.0, 2.0, 0.3}));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/rival_probes.hpp"
+#include "localization/hypotheses/hypothesis_probes.hpp"
 
 #include <cmath>
 #include <limits>
@@ -13,21 +13,21 @@ constexpr std::size_t kKept = 8;
 
 }  // namespace
 
-RivalProbes::RivalProbes(int headings, std::uint64_t seed) : lattice_{headings, kKept}, random_{seed} {}
+HypothesisProbes::HypothesisProbes(int headings, std::uint64_t seed) : lattice_{headings, kKept}, random_{seed} {}
 
-void RivalProbes::look(const sensor::CoarseField& coarse, const motion::BeamEnds& ends, std::size_t count) {
+void HypothesisProbes::look(const sensor::CoarseField& coarse, const motion::BeamEnds& ends, std::size_t count) {
   (void)lattice_.look(coarse, ends, count);
 }
 
-std::optional<Pose2> RivalProbes::best_anywhere(double fit) {
+std::optional<Pose2> HypothesisProbes::best_anywhere(double fit) {
   for (const Candidate& candidate : lattice_.best_apart(1)) {
     if (may_reach(candidate, fit)) return candidate.map_from_robot;
   }
   return std::nullopt;
 }
 
-std::optional<Pose2> RivalProbes::best_nearby(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
-                                              const PlaceBank& bank, const Around& around, int count) {
+std::optional<Pose2> HypothesisProbes::best_nearby(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
+                                                   const HypothesisBank& bank, const Around& around, int count) {
   const Pose2& believed = around.map_from_believed;
   std::optional<Pose2> best;
   std::int32_t least = std::numeric_limits<std::int32_t>::max();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks for places beside a believed pose, a little at each scan: all over the map, and close by, where a slip ends.
+// Looks for new pose hypotheses while a pose is believed, a few poses at each scan: all over the map on the coarse
+// field, and around the believed pose, where a slip ends.
 #pragma once
 
 #include <cstddef>
@@ -7,16 +8,16 @@
 #include <optional>
 
 #include "core/random.hpp"
+#include "localization/hypotheses/hypothesis_bank.hpp"
 #include "localization/hypotheses/lattice_search.hpp"
-#include "localization/hypotheses/place_bank.hpp"
 #include "localization/sensor/coarse_field.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 
 namespace deltamap::localization::hypotheses {
 
-class RivalProbes {
+class HypothesisProbes {
  public:
-  RivalProbes(int headings, std::uint64_t seed);
+  HypothesisProbes(int headings, std::uint64_t seed);
 
   /// Judges the next `count` poses of the whole map by the ends of a scan.
   void look(const sensor::CoarseField& coarse, const motion::BeamEnds& ends, std::size_t count);
@@ -30,7 +31,7 @@ class RivalProbes {
   };
   /// The best of `count` poses about the believed one that the bank does not know.
   [[nodiscard]] std::optional<Pose2> best_nearby(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
-                                                 const PlaceBank& bank, const Around& around, int count);
+                                                 const HypothesisBank& bank, const Around& around, int count);
 
  private:
   LatticeSearch lattice_;

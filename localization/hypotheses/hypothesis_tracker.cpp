@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/hypotheses/rivals.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,14 @@ namespace deltamap::localization::hypotheses {
 namespace {
 
 constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that a newcomer may fit worse by
-constexpr double kOverlooked = -2.0;        // log odds of a place that earlier looks did not find
+constexpr double kOverlooked = -2.0;        // log odds of a hypothesis that earlier looks did not find
 constexpr double kFarthestBehind = 6.0;     // log evidence: the stack may hold scans from before a slip
 
 }  // namespace
 
-Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const GlobalSearchParams& search,
-               const OccupancyGrid& map, const sensor::LikelihoodField& field, std::uint64_t seed)
+HypothesisTracker::HypothesisTracker(const HypothesisTrackerParams& params, const HypothesisBankParams& bank,
+                                     const GlobalSearchParams& search, const OccupancyGrid& map,
+                                     const sensor::LikelihoodField& field, std::uint64_t seed)
     : params_{params},
       coarse_{map, field, params.block_m},
       probes_{params.headings, seed},
@@ -32,15 +33,15 @@ Rivals::Rivals(const RivalsParams& params, const PlaceBankParams& bank, const Gl
       bank_{bank},
       elsewhere_prior_{params.elsewhere_prior} {}
 
-void Rivals::start_believing() {
+void HypothesisTracker::start_believing() {
   believing_ = true;
   elsewhere_prior_ = params_.elsewhere_prior;
-  forget_places();
+  forget_hypotheses();
   report_ = {};
 }
 
 /// And all that was seen.
-void Rivals::forget_places() {
+void HypothesisTracker::forget_hypotheses() {
   bank_.clear();
   alias_monitor_.clear();
   stack_.clear();
@@ -48,18 +49,18 @@ void Rivals::forget_places() {
   outlier_rate_.forget();
 }
 
-/// What spoke for other places spoke against a pose that has been mended since.
-void Rivals::forget_carrying() {
+/// What spoke for other hypotheses spoke against a pose that has been mended since.
+void HypothesisTracker::forget_carrying() {
   bank_.forget_carrying();
   alias_monitor_.clear();
 }
 
-bool Rivals::has_jumped(const Pose2& map_from_believed) const {
+bool HypothesisTracker::has_jumped(const Pose2& map_from_believed) const {
   return last_believed_ &&
          !is_within(map_from_believed, *last_believed_, bank_.params().same_m, bank_.params().same_rad);
 }
 
-void Rivals::start_believing_in(const Pose2& found) {
+void HypothesisTracker::start_believing_in(const Pose2& found) {
   believing_ = true;
   forget_carrying();
   bank_.set_believed_prior(0.0);
@@ -73,7 +74,7 @@ void Rivals::start_believing_in(const Pose2& found) {
   write_report();
 }
 
-void Rivals::stop_believing() {
+void HypothesisTracker::stop_believing() {
   believing_ = false;
   bank_.stop_believing();
   bank_.set_priors([&](const Pose2& pose) { return log_prior_unbelieved(pose); });
@@ -82,35 +83,35 @@ void Rivals::stop_believing() {
   write_report();
 }
 
-void Rivals::suspect(bool suspicious) {
+void HypothesisTracker::suspect(bool suspicious) {
   if (suspicious && !suspicious_ && !search_.under_way()) search_.start();
   suspicious_ = suspicious;
   bank_.make_room(suspicious);
 }
 
-void Rivals::start_anywhere() {
-  forget_places();
+void HypothesisTracker::start_anywhere() {
+  forget_hypotheses();
   last_believed_.reset();
   stop_believing();
 }
 
-bool Rivals::is_near_believed(const Pose2& pose) const {
+bool HypothesisTracker::is_near_believed(const Pose2& pose) const {
   return last_believed_ && is_within(pose, *last_believed_, params_.nearby_m, params_.nearby_rad);
 }
 
-double Rivals::log_prior_unbelieved(const Pose2& pose) const {
+double HypothesisTracker::log_prior_unbelieved(const Pose2& pose) const {
   return !last_believed_ || is_near_believed(pose) ? 0.0 : std::log(params_.kidnapped_prior);
 }
 
-std::optional<Place> Rivals::best_place() const {
-  const Place* const best = bank_.reference();
+std::optional<PoseHypothesis> HypothesisTracker::best_hypothesis() const {
+  const PoseHypothesis* const best = bank_.reference();
   if (best == nullptr) return std::nullopt;
-  Place found = *best;
+  PoseHypothesis found = *best;
   found.share = share_around(bank_, best->map_from_robot, params_.nearby_rad);
   return found;
 }
 
-void Rivals::apply(const OccupancyGrid& map, const sensor::LikelihoodField& field, const CellBox& changed) {
+void HypothesisTracker::apply(const OccupancyGrid& map, const sensor::LikelihoodField& field, const CellBox& changed) {
   const bool whole = changed.width() == map.width() && changed.height() == map.height();
   if (whole) {
     coarse_ = sensor::CoarseField{map, field, params_.block_m};  // it may have grown
@@ -119,7 +120,7 @@ void Rivals::apply(const OccupancyGrid& map, const sensor::LikelihoodField& fiel
   }
 }
 
-void Rivals::thin(const Seen& seen) {
+void HypothesisTracker::thin(const Seen& seen) {
   const auto most = static_cast<std::size_t>(std::max(1, bank_.params().beams));
   const std::size_t count = std::min(most, seen.ends.size());
   ends_.x_m.resize(count);
@@ -133,7 +134,7 @@ void Rivals::thin(const Seen& seen) {
 }
 
 /// All where only few are near.
-void Rivals::keep_near_ends() {
+void HypothesisTracker::keep_near_ends() {
   constexpr float kNear_m = 10.0F;  // half a step of the lattice's headings turns an end by a block there
   constexpr std::size_t kEnough = 12;
   near_ends_.x_m.clear();
@@ -146,7 +147,7 @@ void Rivals::keep_near_ends() {
   if (near_ends_.size() < kEnough) near_ends_ = ends_;
 }
 
-const RivalReport& Rivals::observe(const sensor::LikelihoodField& field, const Seen& seen) {
+const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField& field, const Seen& seen) {
   const Pose2 motion = last_joined_ ? motion_between(*last_joined_, seen.joined_from_robot) : Pose2{};
   last_joined_ = seen.joined_from_robot;
   bank_.carry(motion);
@@ -179,7 +180,8 @@ const RivalReport& Rivals::observe(const sensor::LikelihoodField& field, const S
   return report_;
 }
 
-Rivals::Odds Rivals::odds_beside_believed(const ScanStack::Sums& its, const ScanStack::Sums& others) const {
+HypothesisTracker::Odds HypothesisTracker::odds_beside_believed(const ScanStack::Sums& its,
+                                                                const ScanStack::Sums& others) const {
   const double of_a_beam = bank_.params().evidence_of_a_beam();
   double lately = 0.0;
   double in_all = 0.0;
@@ -192,22 +194,24 @@ Rivals::Odds Rivals::odds_beside_believed(const ScanStack::Sums& its, const Scan
   return carried.ahead + carried.log_prior > overlooked.ahead + overlooked.log_prior ? carried : overlooked;
 }
 
-Rivals::Odds Rivals::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
-                                     const ScanStack::Sums& others) const {
+HypothesisTracker::Odds HypothesisTracker::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
+                                                           const ScanStack::Sums& others) const {
   const std::size_t scans = stack_.size();
   const double ahead = scans == 0 ? 0.0 : bank_.params().evidence_of_a_beam() * (its[scans - 1] - others[scans - 1]);
   return {ahead, log_prior_unbelieved(pose)};
 }
 
-Comparison Rivals::brought_by(const sensor::LikelihoodField& field, const Pose2& pose, const Pose2& joined) const {
-  if (!believing_ || bank_.places().empty()) return {};
+Comparison HypothesisTracker::brought_by(const sensor::LikelihoodField& field, const Pose2& pose,
+                                         const Pose2& joined) const {
+  if (!believing_ || bank_.hypotheses().empty()) return {};
   const double of_a_beam = outlier_rate_.evidence_weight() * bank_.params().evidence_of_a_beam();
-  return stack_.compared_lately(field, pose, bank_.places().front().map_from_robot, joined, of_a_beam);
+  return stack_.compared_lately(field, pose, bank_.hypotheses().front().map_from_robot, joined, of_a_beam);
 }
 
-void Rivals::admit_all(const sensor::LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined) {
+void HypothesisTracker::admit_all(const sensor::LikelihoodField& field, std::span<const Pose2> poses,
+                                  const Pose2& joined) {
   constexpr double kJustFoundM = 0.5;
-  const Place* const best = bank_.reference();
+  const PoseHypothesis* const best = bank_.reference();
   const bool proven = best != nullptr && best->followed_m > kJustFoundM;  // then no newcomer starts ahead of it
   const Pose2 held_against = best != nullptr ? best->map_from_robot : poses.front();
   const ScanStack::Sums others = stack_.log_likelihoods(field, held_against, joined);
@@ -227,14 +231,14 @@ void Rivals::admit_all(const sensor::LikelihoodField& field, std::span<const Pos
   }
 }
 
-/// The scan speaks for or against all places where it tells something new.
-void Rivals::weigh(const sensor::LikelihoodField& field, const Seen& seen) {
-  const bool believes = believing_ && !bank_.places().empty();
+/// The scan speaks for or against all hypotheses where it tells something new.
+void HypothesisTracker::weigh(const sensor::LikelihoodField& field, const Seen& seen) {
+  const bool believes = believing_ && !bank_.hypotheses().empty();
   std::span<const float> weights;
   if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
     weights = decorrelation_.weights(ends_, seen.joined_from_robot);
     if (believes)
-      outlier_rate_.observe(1.0 - sensor::explained_share(field, ends_, bank_.places().front().map_from_robot));
+      outlier_rate_.observe(1.0 - sensor::explained_share(field, ends_, bank_.hypotheses().front().map_from_robot));
     bank_.weigh(field, ends_, weights, outlier_rate_.evidence_weight());
     since_step_m_ = 0.0;
     since_step_rad_ = 0.0;
@@ -244,32 +248,32 @@ void Rivals::weigh(const sensor::LikelihoodField& field, const Seen& seen) {
                           .coarse = coarse_,
                           .ends = ends_,
                           .near_ends = near_ends_,
-                          .map_from_believed = bank_.places().front().map_from_robot,
+                          .map_from_believed = bank_.hypotheses().front().map_from_robot,
                           .joined_from_robot = seen.joined_from_robot,
                           .stack = stack_,
                           .evidence_weight = outlier_rate_.evidence_weight(),
                           .weights = weights,
                           .unknown_s = seen.unknown_s},
-                         bank_.rivals());
+                         bank_.others());
 }
 
-void Rivals::probe(const sensor::LikelihoodField& field, const Pose2& joined) {
-  if (bank_.places().empty()) return;
+void HypothesisTracker::probe(const sensor::LikelihoodField& field, const Pose2& joined) {
+  if (bank_.hypotheses().empty()) return;
   probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
   probe_nearby_next_ = !probe_nearby_next_;
-  const Pose2 believed = bank_.places().front().map_from_robot;
+  const Pose2 believed = bank_.hypotheses().front().map_from_robot;
   const double own_fit = mean_log_likelihood(field, ends_, believed);
   const std::optional<Pose2> found =
       probe_nearby_next_ ? probes_.best_nearby(field, ends_, bank_, {believed, params_.nearby_m, params_.nearby_rad},
                                                params_.probes_nearby)
                          : probes_.best_anywhere(own_fit - kFitsNearlyAsWell);
-  if (found) admit_rival(field, *found, joined, own_fit);
+  if (found) admit_beside_believed(field, *found, joined, own_fit);
 }
 
 /// Beside a believed pose only what fits the scan nearly as well is worth following.
-void Rivals::admit_rival(const sensor::LikelihoodField& field, const Pose2& rough, const Pose2& joined,
-                         double own_fit) {
-  const Place& own = bank_.places().front();
+void HypothesisTracker::admit_beside_believed(const sensor::LikelihoodField& field, const Pose2& rough,
+                                              const Pose2& joined, double own_fit) {
+  const PoseHypothesis& own = bank_.hypotheses().front();
   const Pose2 pose = settled(field, ends_, rough);
   if (bank_.knows(pose)) return;
   const double gain = mean_log_likelihood(field, ends_, pose) - own_fit;
@@ -293,8 +297,8 @@ void Rivals::admit_rival(const sensor::LikelihoodField& field, const Pose2& roug
                .lost_since = brought.lost});
 }
 
-void Rivals::write_report() {
-  report_ = report_on(bank_, alias_monitor_.places(),
+void HypothesisTracker::write_report() {
+  report_ = report_on(bank_, alias_monitor_.hypotheses(),
                       {.nearby_m = params_.nearby_m,
                        .nearby_rad = params_.nearby_rad,
                        .carried_prior = params_.carried_prior,
