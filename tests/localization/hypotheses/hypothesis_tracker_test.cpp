@@ -51,7 +51,7 @@ bool near(const Pose2& a, const Pose2& b) {
   return distance_between(a, b) < 0.2 && std::abs(turn_between(a.theta, b.theta)) < radians(5.0);
 }
 
-TEST(HypothesisTracker, LeaveNearlyAllBeliefToAPoseThatFits) {
+TEST(PoseHypotheses, LeaveNearlyAllBeliefToAPoseThatFits) {
   const OccupancyGrid map = test::drawn_flat();
   Round round{map, map, {1.6, 1.0, 0.0}, 1};
   round.others().start_believing();
@@ -79,9 +79,9 @@ double least_share_after_search() {
   return least;
 }
 
-TEST(HypothesisTracker, LeaveMostBeliefToAPoseThatWasFoundAndFits) { EXPECT_GT(least_share_after_search(), 0.8); }
+TEST(PoseHypotheses, LeaveMostBeliefToAPoseThatWasFoundAndFits) { EXPECT_GT(least_share_after_search(), 0.8); }
 
-TEST(HypothesisTracker, FindHypothesesThatFitAsWellAndNeverPreferThem) {
+TEST(PoseHypotheses, FindHypothesesThatFitAsWellAndNeverPreferThem) {
   const OccupancyGrid map = symmetric_hall();
   Round round{map, map, {6.0, 4.0, 0.0}, 2};
   round.others().start_believing();
@@ -118,7 +118,7 @@ double driven_until_won_m(const OccupancyGrid& map, double held) {
   return driven_m;
 }
 
-TEST(HypothesisTracker, HaveToOutdoWhatProvenTilesSayForThePose) {
+TEST(PoseHypotheses, HaveToOutdoWhatProvenTilesSayForThePose) {
   const OccupancyGrid map = test::drawn_flat();
   EXPECT_GT(driven_until_won_m(map, 1.0), driven_until_won_m(map, 0.0) + 0.2);
 }
@@ -145,7 +145,7 @@ int scans_until_met_again(int images) {
   return 100;
 }
 
-TEST(HypothesisTracker, AreHeardOfAtOnceWhereAHypothesisThatLooksAlikeWasMetBefore) {
+TEST(PoseHypotheses, AreHeardOfAtOnceWhereAHypothesisThatLooksAlikeWasMetBefore) {
   EXPECT_EQ(scans_until_met_again(0), 100);
   EXPECT_LE(scans_until_met_again(16), 10);
 }
@@ -168,7 +168,7 @@ HypothesisTrackerParams without_probes_nearby() {
   return params;
 }
 
-TEST(HypothesisTracker, BeginAnewToSpeakOfACarryingOnceASlipHasBeenMended) {
+TEST(PoseHypotheses, BeginAnewToSpeakOfACarryingOnceASlipHasBeenMended) {
   const OccupancyGrid map = symmetric_hall();
   Round round{map, map, {6.0, 4.0, 0.0}, 2, without_probes_nearby()};
   slipped_until_heard_of(round);
@@ -177,7 +177,7 @@ TEST(HypothesisTracker, BeginAnewToSpeakOfACarryingOnceASlipHasBeenMended) {
   EXPECT_LT(round.step(round.truth() * kMotion).kidnapped_share, 0.01);
 }
 
-TEST(HypothesisTracker, BeginAnewToSpeakOfACarryingWhereTheBelievedPoseIsCorrected) {
+TEST(PoseHypotheses, BeginAnewToSpeakOfACarryingWhereTheBelievedPoseIsCorrected) {
   const OccupancyGrid map = symmetric_hall();
   Round round{map, map, {6.0, 4.0, 0.0}, 2, without_probes_nearby()};
   slipped_until_heard_of(round);
@@ -211,7 +211,7 @@ void put_screen(OccupancyGrid& grid, const Point2& low, const Point2& high, int 
   test::fill_box(grid, one.cwiseMin(other), one.cwiseMax(other), CellState::kOccupied);
 }
 
-TEST(HypothesisTracker, HoldAgainstANewcomerWhatItLosesWhereTheBelievedPoseFits) {
+TEST(PoseHypotheses, HoldAgainstANewcomerWhatItLosesWhereTheBelievedPoseFits) {
   OccupancyGrid map = symmetric_hall();
   OccupancyGrid world = map;
   // Has come, where the next quarter has always had one.
@@ -239,7 +239,7 @@ double share_when_heard_of(Round& round, HypothesisReport& report) {
   return 1.0;
 }
 
-TEST(HypothesisTracker, TellThatTheRobotMayHaveBeenCarriedLongBeforeTheyWin) {
+TEST(PoseHypotheses, TellThatTheRobotMayHaveBeenCarriedLongBeforeTheyWin) {
   const OccupancyGrid map = test::drawn_flat();
   Round round{map, map, {1.6, 1.0, 0.0}, 1};
   HypothesisReport report;
@@ -247,7 +247,7 @@ TEST(HypothesisTracker, TellThatTheRobotMayHaveBeenCarriedLongBeforeTheyWin) {
   EXPECT_TRUE(near(report.map_from_kidnapped, round.truth()));
 }
 
-TEST(HypothesisTracker, WinOverAWrongPoseWithinMetresAndLeadTheSearchToTheTruth) {
+TEST(PoseHypotheses, WinOverAWrongPoseWithinMetresAndLeadTheSearchToTheTruth) {
   const OccupancyGrid map = test::drawn_flat();
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Round round{map, map, {1.6, 1.0, 0.0}, seed};
@@ -271,7 +271,7 @@ TEST(HypothesisTracker, WinOverAWrongPoseWithinMetresAndLeadTheSearchToTheTruth)
   }
 }
 
-TEST(HypothesisTracker, FindTheRobotAfterASlip) {
+TEST(PoseHypotheses, FindTheRobotAfterASlip) {
   const OccupancyGrid map = test::drawn_flat();
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Round round{map, map, {1.6, 1.0, 0.0}, seed};
@@ -289,7 +289,7 @@ TEST(HypothesisTracker, FindTheRobotAfterASlip) {
   }
 }
 
-TEST(HypothesisTracker, ShareTheBeliefAmongSymmetricHypothesesWithoutCollapsing) {
+TEST(PoseHypotheses, ShareTheBeliefAmongSymmetricHypothesesWithoutCollapsing) {
   const OccupancyGrid map = symmetric_hall();
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Round round{map, map, {6.0, 4.0, 0.0}, seed};
@@ -305,7 +305,7 @@ TEST(HypothesisTracker, ShareTheBeliefAmongSymmetricHypothesesWithoutCollapsing)
   }
 }
 
-TEST(HypothesisTracker, SettleOnTheOneHypothesisThatFitsWhereNothingIsBelieved) {
+TEST(PoseHypotheses, SettleOnTheOneHypothesisThatFitsWhereNothingIsBelieved) {
   const OccupancyGrid map = test::drawn_flat();
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Round round{map, map, {1.6, 1.0, 0.0}, seed};
@@ -319,7 +319,7 @@ TEST(HypothesisTracker, SettleOnTheOneHypothesisThatFitsWhereNothingIsBelieved) 
   }
 }
 
-TEST(HypothesisTracker, LearnNothingWhileTheRobotStands) {
+TEST(PoseHypotheses, LearnNothingWhileTheRobotStands) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
   HypothesisTracker others{{}, {}, {}, map, field, 1};
