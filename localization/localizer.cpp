@@ -57,12 +57,12 @@ void Localizer::apply(const MapRevision& revision) {
   const bool follows = revision.number == state.revision + 1 && revision.map->geometry() == state.map->geometry();
   if (follows && (revision.changes.empty() || !revision.field_patch.box.empty())) {
     state.field.apply(revision.field_patch);
-    state.rivals.apply(*revision.map, state.field, revision.field_patch.box);
+    state.hypotheses.apply(*revision.map, state.field, revision.field_patch.box);
     state.judgement.forget(revision.changes);
   } else {
     state.field = sensor::LikelihoodField{*revision.map, state.params.field};
     state.judgement.forget(*state.map, *revision.map);
-    state.rivals.apply(*revision.map, state.field, revision.map->box());
+    state.hypotheses.apply(*revision.map, state.field, revision.map->box());
   }
   state.tracker.apply(revision.map, follows ? bounding_box(revision.changes) : revision.map->box());
   state.map = revision.map;
@@ -73,7 +73,7 @@ void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->t
 
 void Localizer::relocalize(const particles::InitialPose& pose) { state_->start_at(pose); }
 
-const hypotheses::HypothesisReport& Localizer::rivals() const { return state_->rivals.report(); }
+const hypotheses::HypothesisReport& Localizer::hypotheses() const { return state_->hypotheses.report(); }
 
 std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 

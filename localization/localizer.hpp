@@ -44,7 +44,7 @@ class Localizer {
   void relocalize(const particles::InitialPose& pose);
 
   /// What else in the map the scans may mean, as of the last scan.
-  [[nodiscard]] const hypotheses::HypothesisReport& rivals() const;
+  [[nodiscard]] const hypotheses::HypothesisReport& hypotheses() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;

@@ -18,7 +18,7 @@ struct LocalizerCounts {
   std::uint64_t poses_confirmed = 0;    ///< remembered ones that the first scans fitted
   std::uint64_t poses_refuted = 0;      ///< and those that they did not fit: searched instead
   std::uint64_t searches = 0;           ///< of the whole map
-  std::uint64_t recoveries = 0;         ///< another place has won over the believed one
+  std::uint64_t recoveries = 0;         ///< another pose has won over the believed one
 };
 
 }  // namespace deltamap::localization

@@ -27,7 +27,7 @@ struct Localizer::State {
   tracking::Tracker tracker;
   belief::FitMonitor monitor;
   belief::Judgement judgement;
-  hypotheses::HypothesisTracker rivals;
+  hypotheses::HypothesisTracker hypotheses;
   particles::PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   motion::BeamEnds ends;
@@ -58,8 +58,8 @@ struct Localizer::State {
   /// The particles stay where they are, but must prove themselves.
   void check_pose();
   /// The particles start anew around a place that has won.
-  sensor::RefinedPose believe_in(const Pose2& place, const motion::ScanInstant& now);
-  /// The robot is not where it was believed to be; before another place is believed, the whole map is searched.
+  sensor::RefinedPose believe_in(const Pose2& hypothesis, const motion::ScanInstant& now);
+  /// The robot is not where it was believed to be; before another pose is believed, the whole map is searched.
   void doubt(const Pose2& map_from_believed, const motion::ScanInstant& now);
 
   /// A report of the wheels: where scans have ceased to come, the particles go along with it.
@@ -84,8 +84,8 @@ struct Localizer::State {
   /// The best pose that a slip may have led to and that explains at least this share of the ends; nothing without one.
   [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
-  [[nodiscard]] bool has_won(const hypotheses::ReportedHypothesis& place, const Pose2& believed) const;
-  /// What the localizer answers: where surfaces hold the pose, nothing but another place speaks against it.
+  [[nodiscard]] bool has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const;
+  /// What the localizer answers: where surfaces hold the pose, nothing but another pose speaks against it.
   [[nodiscard]] Belief belief() const;
   /// No pose is believed, nor one being checked.
   [[nodiscard]] bool searches() const;

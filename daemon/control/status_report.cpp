@@ -30,9 +30,9 @@ Json belief_json(const EstimateGauges& estimate) {
   json["stable"] = counts_json(estimate.stable.value());
   json["elsewhere"] = counts_json(estimate.elsewhere.value());
   json["rival"] = nullptr;
-  if (const double share = estimate.rival_share.value(); share > 0.0) {
+  if (const double share = estimate.other_share.value(); share > 0.0) {
     json["rival"] =
-        pose_json(estimate.rival_x_m.value(), estimate.rival_y_m.value(), estimate.rival_heading_rad.value());
+        pose_json(estimate.other_x_m.value(), estimate.other_y_m.value(), estimate.other_heading_rad.value());
     json["rival"]["share"] = share;
   }
   return json;

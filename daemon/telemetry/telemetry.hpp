@@ -44,7 +44,7 @@ struct EstimateGauges {
   Gauge<double> pose_right, map_wrong;
   Gauge<std::uint8_t> verdict;  ///< PoseVerdict
   BeamCountGauges stable, elsewhere;
-  Gauge<double> rival_share, rival_x_m, rival_y_m, rival_heading_rad;
+  Gauge<double> other_share, other_x_m, other_y_m, other_heading_rad;
   void set(const Estimate& estimate);
 };
 

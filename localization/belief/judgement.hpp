@@ -39,7 +39,7 @@ class Judgement {
     const sensor::RefinedPose& believed;
     LocalizerState state = LocalizerState::kGlobal;
     PoseJudge::Passed passed;  ///< since the last scan
-    const hypotheses::HypothesisReport& rivals;
+    const hypotheses::HypothesisReport& hypotheses;
     const TemporaryThings* things = nullptr;  ///< what is known to be different for now
   };
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).

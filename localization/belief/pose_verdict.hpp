@@ -49,8 +49,8 @@ class PoseJudge {
   /// How the belief is shared between the places in the map that may be it.
   struct Shares {
     double believed = 1.0;
-    double best_rival = 0.0;
-    Pose2 map_from_rival{};
+    double best_other = 0.0;
+    Pose2 map_from_other{};
     bool searching = false;  ///< no place is believed yet: `believed` is the best one's
     bool beaten = true;      ///< another place explains the recent scans clearly better
     bool unique = true;      ///< no other place explains them about as well

@@ -12,7 +12,7 @@ namespace {
 constexpr double kApproached = 1.5;
 
 /// Of the weight of other doubts. In aisles that look alike one is conceivable for a dozen seconds, and the pose right.
-constexpr double kDoubtOfRival = 0.5;
+constexpr double kDoubtOfOther = 0.5;
 
 /// σ along the longest axis of the ellipse.
 double widest_deviation_m(const PoseCovariance& covariance) {
@@ -43,7 +43,7 @@ std::string_view name_of(GateReason reason) {
       return "doubtful";
     case GateReason::kMisfit:
       return "misfit";
-    case GateReason::kRival:
+    case GateReason::kOtherHypothesis:
       return "rival";
     case GateReason::kSpread:
       return "spread";
@@ -79,7 +79,7 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   if (misfit_.is_sudden()) return GateReason::kMisfit;
-  if (estimate.belief.rival_share > params_.most_rival_share) return GateReason::kRival;
+  if (estimate.belief.other_share > params_.most_rival_share) return GateReason::kOtherHypothesis;
   if (widest_deviation_m(estimate.covariance) > params_.most_deviation_m) return GateReason::kSpread;
   return GateReason::kOpen;
 }
@@ -141,7 +141,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
     const double passed_s = std::max(0.0, seconds(time - *last_));
     times_[static_cast<std::size_t>(reason_)] += passed_s;
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
-    doubted_for_s_ += reason_ == GateReason::kRival ? kDoubtOfRival * passed_s : passed_s;
+    doubted_for_s_ += reason_ == GateReason::kOtherHypothesis ? kDoubtOfOther * passed_s : passed_s;
   }
   last_ = time;
   const double driven_m = driven_way_.since_last_m(tracked);

@@ -22,16 +22,16 @@ namespace deltamap::mapping::gate {
 
 enum class GateReason : std::uint8_t {
   kOpen,
-  kSearching,    ///< the localizer does not know where the robot is
-  kLost,         ///< it has lost its way
-  kWrong,        ///< it calls its own pose wrong
-  kJumped,       ///< the estimate has moved otherwise than odometry, farther than its covariance explains
-  kDisbelieved,  ///< P(pose right) is so low that it is rather wrong
-  kConfirming,   ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
-  kDoubtful,     ///< P(pose right) is low
-  kMisfit,       ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
-  kRival,        ///< another place holds too much of the belief: two modes
-  kSpread        ///< the best place is spread too wide
+  kSearching,        ///< the localizer does not know where the robot is
+  kLost,             ///< it has lost its way
+  kWrong,            ///< it calls its own pose wrong
+  kJumped,           ///< the estimate has moved otherwise than odometry, farther than its covariance explains
+  kDisbelieved,      ///< P(pose right) is so low that it is rather wrong
+  kConfirming,       ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
+  kDoubtful,         ///< P(pose right) is low
+  kMisfit,           ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
+  kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
+  kSpread            ///< the best place is spread too wide
 };
 inline constexpr std::size_t kGateReasons = 11;
 /// For status, report and log: "open", "searching", "lost", …
@@ -43,13 +43,13 @@ struct WriteGateParams {
   bool enabled = true;              ///< false: everything is written, as the paper does (mapping.gate.enabled)
   double least_pose_right = 0.83;   ///< P(pose right) below which it is shut; [0, 1]
   double disbelieved_below = 0.3;   ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
-  double most_rival_share = 0.05;   ///< of the belief, that another place may hold; [0, 1]
+  double most_rival_share = 0.05;   ///< of the belief, that another pose hypothesis may hold; [0, 1]
   double most_deviation_m = 0.3;    ///< σ of the position along its worst axis; > 0
   double confirm_s = 20.0;          ///< so long all must hold again after the pose was wrong; >= 0
   double confirm_m = 10.0;          ///< and so far it must have driven meanwhile; >= 0
   double most_doubt_s = 10.0;       ///< shut for so long without a proof, what is provisional is withdrawn; > 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
-  double hold_rival_share = 0.005;  ///< of the belief: while another place holds more, it waits on; [0, 1]
+  double hold_rival_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
   PoseJumpParams jump;
   MisfitParams misfit;
   ScanBreakParams scan_break;

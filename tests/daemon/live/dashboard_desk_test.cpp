@@ -68,7 +68,7 @@ class DashboardDeskTest : public testing::Test {
     tracked.rays[0].end = {1.25F, 0.5F};
     LocalizationRow row;
     row.map_from_robot = {0.5, 0.25, 0.125};
-    row.belief.rival_share = 0.25;
+    row.belief.other_share = 0.25;
     row.time = timestamp_from_ns(1'700'000'000'500'000'000);
     desk_->board().show(tracked, row, 0.001);
   }
