@@ -43,7 +43,7 @@ TrackedScan Localizer::observe(Scan scan) {
 
   tracked.estimate = state.estimate(scan.time, believed);
   if (now.odometry) {
-    tracked.odom_from_robot = now.odometry->joined_from_robot;
+    tracked.odom_from_robot = now.odometry->continuous_odom_from_robot;
     tracked.odometry_epoch = now.odometry->epoch;
   }
   tracked.speed_m_per_s = velocity.speed_m_per_s;

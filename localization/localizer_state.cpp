@@ -91,7 +91,7 @@ sensor::RefinedPose Localizer::State::believe_in(const Pose2& hypothesis, const 
 }
 
 void Localizer::State::doubt(const Pose2& map_from_believed, const motion::ScanInstant& now) {
-  given_up = GivenUp{map_from_believed, joined_at(now)};
+  given_up = GivenUp{map_from_believed, continuous_odom_at(now)};
   check.end();
   ++counts.searches;
   hypotheses.stop_believing();
@@ -145,14 +145,14 @@ sensor::RefinedPose Localizer::State::believed(const motion::ScanInstant& now) {
 
 sensor::RefinedPose Localizer::State::search(const motion::ScanInstant& now) {
   const hypotheses::HypothesisReport& report =
-      hypotheses.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
+      hypotheses.observe(field, {.ends = ends, .continuous_odom_from_robot = continuous_odom_at(now)});
   if (const std::optional<hypotheses::PoseHypothesis> hypothesis = hypotheses.best_hypothesis()) {
     best = {hypothesis->map_from_robot, hypothesis->covariance, hypothesis->share};
     if (ends.size() > 0) w_avg = sensor::mean_likelihood(field, ends, best.map_from_robot);
   }
   n_eff = report.effective_hypotheses;
   if (given_up) {
-    const Pose2 motion = motion_between(given_up->joined_from_robot, joined_at(now));
+    const Pose2 motion = motion_between(given_up->continuous_odom_from_robot, continuous_odom_at(now));
     const bool only_begun = motion.position().norm() < kSearchBeginsM && std::abs(motion.theta) < kSearchBeginsRad;
     if (only_begun) return {given_up->map_from_robot * motion, best.covariance};
     given_up.reset();
@@ -169,7 +169,7 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
   const bool lost = monitor.state() == LocalizerState::kLost;
   const hypotheses::HypothesisReport& report = hypotheses.observe(
       field, {.ends = ends,
-              .joined_from_robot = joined_at(now),
+              .continuous_odom_from_robot = continuous_odom_at(now),
               .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
               .held = proven_hold.share(),
               .unknown_s = tracked.unknown_s});
@@ -205,7 +205,7 @@ std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, d
 const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstant& now) {
   const bool knows = params.temporary.weighing && things && !things->standing.empty() && last_believed;
   if (!knows || ends.size() == 0) return ends;
-  const Pose2 expected = *last_believed * motion_between(last_joined, joined_at(now));
+  const Pose2 expected = *last_believed * motion_between(last_odom, continuous_odom_at(now));
   ends_beside_things = sensor::lasting_ends(ends, *things, expected, std::move(ends_beside_things));
   const double left = static_cast<double>(ends_beside_things.size());
   return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_things : ends;
@@ -230,7 +230,7 @@ bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis,
 void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays, const motion::ScanInstant& now,
                              const sensor::RefinedPose& believed) {
   belief::FitMonitor::Observation seen = passed_since_last_scan(now);
-  last_joined = joined_at(now);
+  last_odom = continuous_odom_at(now);
   last_scan = now.time;
   const bool is_tracking = monitor.state() == LocalizerState::kTracking && !check.under_way();
   last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
@@ -269,7 +269,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
 belief::FitMonitor::Observation Localizer::State::passed_since_last_scan(const motion::ScanInstant& now) const {
   if (!last_scan) return {};
   belief::FitMonitor::Observation seen{.passed_s = std::max(0.0, seconds(now.time - *last_scan))};
-  const Pose2 motion = motion_between(last_joined, joined_at(now));
+  const Pose2 motion = motion_between(last_odom, continuous_odom_at(now));
   seen.driven_m = motion.position().norm();
   seen.turned_rad = std::abs(motion.theta);
   return seen;
@@ -289,13 +289,13 @@ void Localizer::State::enter(LocalizerState after, LocalizerState before, const 
   if (before == LocalizerState::kLost && after == LocalizerState::kTracking) hypotheses.start_believing_in(believed);
   if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) {
     ++counts.searches;
-    given_up = GivenUp{believed, joined_at(now)};
+    given_up = GivenUp{believed, continuous_odom_at(now)};
   }
   if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) (void)believe_in(believed, now);
 }
 
-Pose2 Localizer::State::joined_at(const motion::ScanInstant& now) const {
-  return now.odometry ? now.odometry->joined_from_robot : last_joined;
+Pose2 Localizer::State::continuous_odom_at(const motion::ScanInstant& now) const {
+  return now.odometry ? now.odometry->continuous_odom_from_robot : last_odom;
 }
 
 Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& believed) const {

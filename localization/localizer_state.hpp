@@ -38,12 +38,12 @@ struct Localizer::State {
   std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
-  Pose2 last_joined;                     ///< odometry at the last scan
+  Pose2 last_odom;                       ///< odometry at the last scan
   std::optional<Timestamp> last_report;  ///< of the wheels
   double silence_s = 0.0;                ///< the longest between two of these since the last scan
   struct GivenUp {
     Pose2 map_from_robot;
-    Pose2 joined_from_robot;
+    Pose2 continuous_odom_from_robot;
   };
   std::optional<GivenUp> given_up;   ///< where the robot was last believed to be, while a search has only begun
   particles::ParticleCluster best;   ///< of the particles, or the place that leads a search
@@ -97,7 +97,7 @@ struct Localizer::State {
   void judge_start(double fit);
   /// The monitor has changed its mind.
   void enter(LocalizerState after, LocalizerState before, const Pose2& believed, const motion::ScanInstant& now);
-  [[nodiscard]] Pose2 joined_at(const motion::ScanInstant& now) const;
+  [[nodiscard]] Pose2 continuous_odom_at(const motion::ScanInstant& now) const;
 };
 
 }  // namespace deltamap::localization

@@ -60,7 +60,7 @@ TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
   count_time(scan.time);
   const auto odometry = odometry_.at(scan.time);
   if (!odometry || !last_odometry_) return {scan.time, last_map_from_robot_};
-  const Pose2 motion = motion_between(last_odometry_->joined_from_robot, odometry->joined_from_robot);
+  const Pose2 motion = motion_between(last_odometry_->continuous_odom_from_robot, odometry->continuous_odom_from_robot);
   return {scan.time, last_map_from_robot_ * motion};
 }
 

@@ -80,8 +80,8 @@ void AliasMonitor::admit(const Pose2& rough, const Seen& seen) {
   const Pose2 pose = settled(seen.field, seen.ends, rough);
   if (bank_.knows(pose) || is_within(pose, seen.map_from_believed, effort_.nearby_m, effort_.nearby_rad)) return;
   if (mean_log_likelihood(seen.field, seen.ends, pose) < own_fit_ - kFitsNearlyAsWell) return;
-  const Comparison lately = seen.stack.compared_lately(seen.field, pose, seen.map_from_believed, seen.joined_from_robot,
-                                                       bank_.params().evidence_of_a_beam());
+  const Comparison lately = seen.stack.compared_lately(
+      seen.field, pose, seen.map_from_believed, seen.continuous_odom_from_robot, bank_.params().evidence_of_a_beam());
   bank_.admit({.map_from_robot = pose,
                .log_evidence = bank_.hypotheses().front().log_evidence + lately.ahead(),
                .log_prior = std::log(effort_.prior),

@@ -39,7 +39,7 @@ class AliasMonitor {
     const motion::BeamEnds& ends;
     const motion::BeamEnds& near_ends;  ///< that a coarse lattice can place
     Pose2 map_from_believed;            ///< slid to where the scan fits, as its images will be
-    Pose2 joined_from_robot;
+    Pose2 continuous_odom_from_robot;
     const ScanStack& stack;
     double evidence_weight = 1.0;      ///< how much beams that miss say, [0, 1]
     std::span<const float> weights{};  ///< of the beams, where the scan tells something new

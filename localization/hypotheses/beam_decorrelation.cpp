@@ -34,12 +34,14 @@ BeamDecorrelation::Patch& BeamDecorrelation::patch_at(double x_m, double y_m) {
   return patch;
 }
 
-std::span<const float> BeamDecorrelation::weights(const motion::BeamEnds& ends, const Pose2& joined_from_robot) {
+std::span<const float> BeamDecorrelation::weights(const motion::BeamEnds& ends,
+                                                  const Pose2& continuous_odom_from_robot) {
   ++scan_;
   weights_.resize(ends.size());
   float sum = 0.0F;
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    const Point2 end = joined_from_robot * Point2{static_cast<double>(ends.x_m[i]), static_cast<double>(ends.y_m[i])};
+    const Point2 end =
+        continuous_odom_from_robot * Point2{static_cast<double>(ends.x_m[i]), static_cast<double>(ends.y_m[i])};
     Patch& patch = patch_at(end.x(), end.y());
     weights_[i] = 1.0F / (1.0F + static_cast<float>(patch.beams));
     if (patch.beams < std::numeric_limits<std::uint16_t>::max()) ++patch.beams;

@@ -19,7 +19,7 @@ class BeamDecorrelation {
   BeamDecorrelation();
 
   /// Counts the beams and answers what each is worth, (0, 1]; valid until the next call.
-  [[nodiscard]] std::span<const float> weights(const motion::BeamEnds& ends, const Pose2& joined_from_robot);
+  [[nodiscard]] std::span<const float> weights(const motion::BeamEnds& ends, const Pose2& continuous_odom_from_robot);
 
   void clear();
 

@@ -39,18 +39,19 @@ class GlobalSearch {
   /// One scan's share of the work. Answers places where this scan fits; valid until the next call.
   /// `pace`: how much of a full share, (0, 1].
   [[nodiscard]] std::span<const Pose2> look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
-                                            const Ends& ends, const Pose2& joined_from_robot, double pace = 1.0);
+                                            const Ends& ends, const Pose2& continuous_odom_from_robot,
+                                            double pace = 1.0);
 
  private:
   enum class Stage : std::uint8_t { kBegin, kLooking, kSliding, kDone };
-  [[nodiscard]] bool due_again(const Pose2& joined_from_robot) const;
+  [[nodiscard]] bool due_again(const Pose2& continuous_odom_from_robot) const;
 
   GlobalSearchParams params_;
   LatticeSearch lattice_;
   Stage stage_ = Stage::kBegin;
-  motion::BeamEnds ends_;    // of the scan that the whole map is held against
-  Pose2 joined_from_robot_;  // where it was taken
-  std::size_t left_ = 0;     // poses to look at
+  motion::BeamEnds ends_;             // of the scan that the whole map is held against
+  Pose2 continuous_odom_from_robot_;  // where it was taken
+  std::size_t left_ = 0;              // poses to look at
   std::vector<Candidate> candidates_;
   std::size_t next_ = 0;  // candidate to slide
   std::vector<Pose2> hypotheses_;

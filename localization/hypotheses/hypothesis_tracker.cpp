@@ -148,8 +148,8 @@ void HypothesisTracker::keep_near_ends() {
 }
 
 const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField& field, const Seen& seen) {
-  const Pose2 motion = last_joined_ ? motion_between(*last_joined_, seen.joined_from_robot) : Pose2{};
-  last_joined_ = seen.joined_from_robot;
+  const Pose2 motion = last_odom_ ? motion_between(*last_odom_, seen.continuous_odom_from_robot) : Pose2{};
+  last_odom_ = seen.continuous_odom_from_robot;
   bank_.carry(motion);
   alias_monitor_.carry(motion);
   if (last_believed_) last_believed_ = *last_believed_ * motion;
@@ -168,14 +168,15 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
   weigh(field, seen);
-  if (believing_) probe(field, seen.joined_from_robot);
+  if (believing_) probe(field, seen.continuous_odom_from_robot);
   if (!believing_ || suspicious_) {
-    const std::span<const Pose2> found = search_.look(coarse_, field, {ends_, near_ends_}, seen.joined_from_robot,
-                                                      believing_ ? params_.suspicious_pace : 1.0);
-    if (!found.empty()) admit_all(field, found, seen.joined_from_robot);
+    const std::span<const Pose2> found =
+        search_.look(coarse_, field, {ends_, near_ends_}, seen.continuous_odom_from_robot,
+                     believing_ ? params_.suspicious_pace : 1.0);
+    if (!found.empty()) admit_all(field, found, seen.continuous_odom_from_robot);
   }
   bank_.settle();
-  stack_.add(ends_, seen.joined_from_robot);
+  stack_.add(ends_, seen.continuous_odom_from_robot);
   write_report();
   return report_;
 }
@@ -202,27 +203,27 @@ HypothesisTracker::Odds HypothesisTracker::odds_unbelieved(const Pose2& pose, co
 }
 
 Comparison HypothesisTracker::brought_by(const sensor::LikelihoodField& field, const Pose2& pose,
-                                         const Pose2& joined) const {
+                                         const Pose2& odom) const {
   if (!believing_ || bank_.hypotheses().empty()) return {};
   const double of_a_beam = outlier_rate_.evidence_weight() * bank_.params().evidence_of_a_beam();
-  return stack_.compared_lately(field, pose, bank_.hypotheses().front().map_from_robot, joined, of_a_beam);
+  return stack_.compared_lately(field, pose, bank_.hypotheses().front().map_from_robot, odom, of_a_beam);
 }
 
 void HypothesisTracker::admit_all(const sensor::LikelihoodField& field, std::span<const Pose2> poses,
-                                  const Pose2& joined) {
+                                  const Pose2& odom) {
   constexpr double kJustFoundM = 0.5;
   const PoseHypothesis* const best = bank_.reference();
   const bool proven = best != nullptr && best->followed_m > kJustFoundM;  // then no newcomer starts ahead of it
   const Pose2 held_against = best != nullptr ? best->map_from_robot : poses.front();
-  const ScanStack::Sums others = stack_.log_likelihoods(field, held_against, joined);
+  const ScanStack::Sums others = stack_.log_likelihoods(field, held_against, odom);
   const double base = best != nullptr ? best->log_evidence : 0.0;
   for (const Pose2& pose : poses) {
     if (bank_.knows(pose)) continue;
-    const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
+    const ScanStack::Sums its = stack_.log_likelihoods(field, pose, odom);
     Odds odds = believing_ ? odds_beside_believed(its, others) : odds_unbelieved(pose, its, others);
     if (proven) odds.log_prior += kOverlooked;
     if (proven && !believing_) odds.ahead = std::min(0.0, odds.ahead);
-    const Comparison brought = odds.ahead > 0.0 ? brought_by(field, pose, joined) : Comparison{};
+    const Comparison brought = odds.ahead > 0.0 ? brought_by(field, pose, odom) : Comparison{};
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + odds.ahead,
                  .log_prior = odds.log_prior,
@@ -236,7 +237,7 @@ void HypothesisTracker::weigh(const sensor::LikelihoodField& field, const Seen& 
   const bool believes = believing_ && !bank_.hypotheses().empty();
   std::span<const float> weights;
   if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
-    weights = decorrelation_.weights(ends_, seen.joined_from_robot);
+    weights = decorrelation_.weights(ends_, seen.continuous_odom_from_robot);
     if (believes)
       outlier_rate_.observe(1.0 - sensor::explained_share(field, ends_, bank_.hypotheses().front().map_from_robot));
     bank_.weigh(field, ends_, weights, outlier_rate_.evidence_weight());
@@ -249,7 +250,7 @@ void HypothesisTracker::weigh(const sensor::LikelihoodField& field, const Seen& 
                           .ends = ends_,
                           .near_ends = near_ends_,
                           .map_from_believed = bank_.hypotheses().front().map_from_robot,
-                          .joined_from_robot = seen.joined_from_robot,
+                          .continuous_odom_from_robot = seen.continuous_odom_from_robot,
                           .stack = stack_,
                           .evidence_weight = outlier_rate_.evidence_weight(),
                           .weights = weights,
@@ -257,7 +258,7 @@ void HypothesisTracker::weigh(const sensor::LikelihoodField& field, const Seen& 
                          bank_.others());
 }
 
-void HypothesisTracker::probe(const sensor::LikelihoodField& field, const Pose2& joined) {
+void HypothesisTracker::probe(const sensor::LikelihoodField& field, const Pose2& odom) {
   if (bank_.hypotheses().empty()) return;
   probes_.look(coarse_, near_ends_, static_cast<std::size_t>(params_.probes));
   probe_nearby_next_ = !probe_nearby_next_;
@@ -267,12 +268,12 @@ void HypothesisTracker::probe(const sensor::LikelihoodField& field, const Pose2&
       probe_nearby_next_ ? probes_.best_nearby(field, ends_, bank_, {believed, params_.nearby_m, params_.nearby_rad},
                                                params_.probes_nearby)
                          : probes_.best_anywhere(own_fit - kFitsNearlyAsWell);
-  if (found) admit_beside_believed(field, *found, joined, own_fit);
+  if (found) admit_beside_believed(field, *found, odom, own_fit);
 }
 
 /// Beside a believed pose only what fits the scan nearly as well is worth following.
 void HypothesisTracker::admit_beside_believed(const sensor::LikelihoodField& field, const Pose2& rough,
-                                              const Pose2& joined, double own_fit) {
+                                              const Pose2& odom, double own_fit) {
   const PoseHypothesis& own = bank_.hypotheses().front();
   const Pose2 pose = settled(field, ends_, rough);
   if (bank_.knows(pose)) return;
@@ -286,9 +287,9 @@ void HypothesisTracker::admit_beside_believed(const sensor::LikelihoodField& fie
                         .log_evidence = own.log_evidence + ahead,
                         .log_prior = std::log(params_.nearby_prior)});
   }
-  const ScanStack::Sums its = stack_.log_likelihoods(field, pose, joined);
-  const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, joined);
-  const Comparison brought = brought_by(field, pose, joined);
+  const ScanStack::Sums its = stack_.log_likelihoods(field, pose, odom);
+  const ScanStack::Sums owns = stack_.log_likelihoods(field, own.map_from_robot, odom);
+  const Comparison brought = brought_by(field, pose, odom);
   const Odds odds = odds_beside_believed(its, owns);
   bank_.admit({.map_from_robot = pose,
                .log_evidence = own.log_evidence + odds.ahead,

@@ -66,7 +66,7 @@ class HypothesisTracker {
 
   struct Seen {
     const motion::BeamEnds& ends;              ///< robot frame; may be empty
-    Pose2 joined_from_robot;                   ///< by odometry (OdometryAt)
+    Pose2 continuous_odom_from_robot;          ///< by odometry (OdometryAt)
     std::optional<Pose2> map_from_believed{};  ///< where the robot is believed to be, if anywhere
     double held = 0.0;                         ///< how far proven tiles hold that pose, [0, 1]
     double unknown_s = 0.0;                    ///< seconds since the last scan that odometry does not cover
@@ -93,10 +93,10 @@ class HypothesisTracker {
   void thin(const Seen& seen);
   void weigh(const sensor::LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
-  void probe(const sensor::LikelihoodField& field, const Pose2& joined);
-  void admit_beside_believed(const sensor::LikelihoodField& field, const Pose2& rough, const Pose2& joined,
+  void probe(const sensor::LikelihoodField& field, const Pose2& odom);
+  void admit_beside_believed(const sensor::LikelihoodField& field, const Pose2& rough, const Pose2& odom,
                              double own_fit);
-  void admit_all(const sensor::LikelihoodField& field, std::span<const Pose2> poses, const Pose2& joined);
+  void admit_all(const sensor::LikelihoodField& field, std::span<const Pose2> poses, const Pose2& odom);
   /// Of a new hypothesis, against the best that is known.
   struct Odds {
     double ahead = 0.0;      ///< log evidence of the scans of the last metres
@@ -110,8 +110,7 @@ class HypothesisTracker {
                                      const ScanStack::Sums& others) const;
   /// What a new hypothesis brings with it, had the robot been carried there lately; nothing where
   /// no pose is believed.
-  [[nodiscard]] Comparison brought_by(const sensor::LikelihoodField& field, const Pose2& pose,
-                                      const Pose2& joined) const;
+  [[nodiscard]] Comparison brought_by(const sensor::LikelihoodField& field, const Pose2& pose, const Pose2& odom) const;
   [[nodiscard]] double log_prior_unbelieved(const Pose2& pose) const;
   void write_report();
 
@@ -126,7 +125,7 @@ class HypothesisTracker {
   motion::BeamEnds near_ends_;  // of these, those that a coarse lattice of headings can place
   BeamDecorrelation decorrelation_;
   OutlierRate outlier_rate_;
-  std::optional<Pose2> last_joined_;
+  std::optional<Pose2> last_odom_;
   bool believing_ = false;
   bool suspicious_ = false;
   double elsewhere_prior_;

@@ -26,7 +26,7 @@ class WatchedRound {
                             .ends = ends,
                             .near_ends = ends,
                             .map_from_believed = truth_,
-                            .joined_from_robot = truth_,
+                            .continuous_odom_from_robot = truth_,
                             .stack = stack_},
                            {});
     stack_.add(ends, truth_);

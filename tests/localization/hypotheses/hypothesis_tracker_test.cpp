@@ -33,7 +33,7 @@ class Round {
     joined_ = joined_ * motion;
     const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
     return rivals_.observe(field_, {.ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 0),
-                                    .joined_from_robot = joined_,
+                                    .continuous_odom_from_robot = joined_,
                                     .map_from_believed = believed,
                                     .held = held});
   }
@@ -330,7 +330,7 @@ TEST(PoseHypotheses, LearnNothingWhileTheRobotStands) {
     const Scan scan = test::cast_scan(map, truth, {}, {}, random);
     const HypothesisReport& report =
         others.observe(field, {.ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 0),
-                               .joined_from_robot = {},
+                               .continuous_odom_from_robot = {},
                                .map_from_believed = Pose2{7.5, 3.0, 1.5}});
     ASSERT_GT(report.own_share, 0.9) << "one view is no evidence, however often it is repeated";
   }
