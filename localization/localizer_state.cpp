@@ -171,7 +171,7 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
       field, {.ends = ends,
               .continuous_odom_from_robot = continuous_odom_at(now),
               .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
-              .held = proven_hold.share(),
+              .stable_support = stable_support.share(),
               .unknown_s = tracked.unknown_s});
   if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.others.front().map_from_robot;
@@ -248,9 +248,9 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .hypotheses = hypotheses.report(),
                                             .things = params.temporary.belief ? things.get() : nullptr});
   if (before == LocalizerState::kTracking) {
-    proven_hold.observe(judged.stable);
+    stable_support.observe(judged.stable);
   } else {
-    proven_hold.forget();
+    stable_support.forget();
   }
   if (blind) return;
   seen.verdict = judged.verdict;

@@ -158,7 +158,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
     bank_.believe(*seen.map_from_believed);
   }
   if (believing_) last_believed_ = seen.map_from_believed;
-  held_by_ = believing_ ? params_.held_by * seen.held : 0.0;
+  held_by_ = believing_ ? params_.held_by * seen.stable_support : 0.0;
   bank_.set_believed_prior(held_by_);
   thin(seen);
   if (ends_.size() == 0) return report_;

@@ -35,7 +35,7 @@ class Round {
     return rivals_.observe(field_, {.ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 0),
                                     .continuous_odom_from_robot = joined_,
                                     .map_from_believed = believed,
-                                    .held = held});
+                                    .stable_support = held});
   }
 
  private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/belief/proven_hold.hpp"
+#include "localization/belief/stable_support.hpp"
 
 #include <gtest/gtest.h>
 
 namespace deltamap::localization::belief {
 namespace {
 
-TEST(ProvenHold, GrowsWithScansThatFitAndFallsWithinASecondOfOthers) {
-  ProvenHold hold;
+TEST(StableSupport, GrowsWithScansThatFitAndFallsWithinASecondOfOthers) {
+  StableSupport hold;
   for (int i = 0; i < 50; ++i) hold.observe({.expected = 58, .fit = 55});
   EXPECT_GT(hold.share(), 0.95);
   for (int i = 0; i < 10; ++i) hold.observe({.expected = 58, .fit = 40, .beyond = 18});
@@ -16,14 +16,14 @@ TEST(ProvenHold, GrowsWithScansThatFitAndFallsWithinASecondOfOthers) {
   EXPECT_EQ(hold.share(), 0.0);
 }
 
-TEST(ProvenHold, StaysWhereAThingHasGoneThatHadProven) {
-  ProvenHold hold;
+TEST(StableSupport, StaysWhereAThingHasGoneThatHadProven) {
+  StableSupport hold;
   for (int i = 0; i < 50; ++i) hold.observe({.expected = 29, .fit = 24, .beyond = 5});
   EXPECT_GT(hold.share(), 0.95);
 }
 
-TEST(ProvenHold, LearnsNothingFromAFewBeams) {
-  ProvenHold hold;
+TEST(StableSupport, LearnsNothingFromAFewBeams) {
+  StableSupport hold;
   for (int i = 0; i < 50; ++i) hold.observe({.expected = 10, .fit = 10});
   EXPECT_EQ(hold.share(), 0.0);
 }
