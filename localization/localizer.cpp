@@ -69,7 +69,9 @@ void Localizer::apply(const MapRevision& revision) {
   state.revision = revision.number;
 }
 
-void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->things = std::move(things); }
+void Localizer::apply(std::shared_ptr<const TransientObstacles> transients) {
+  state_->transients = std::move(transients);
+}
 
 void Localizer::relocalize(const particles::InitialPose& pose) { state_->start_at(pose); }
 

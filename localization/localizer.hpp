@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "localization/belief/stability.hpp"
 #include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer_counts.hpp"
@@ -38,7 +38,7 @@ class Localizer {
   /// Takes M_k from the next scan on: copies the prepared patch where k follows the present number, else rebuilds.
   void apply(const MapRevision& revision);
   /// What is different from M_k for now, from the next scan on; null: nothing is known. Never localized on.
-  void apply(std::shared_ptr<const TemporaryThings> things);
+  void apply(std::shared_ptr<const TransientObstacles> transients);
 
   /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp).
   void relocalize(const particles::InitialPose& pose);

@@ -14,7 +14,7 @@
 #include "localization/particles/particle_filter.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/sensor/pose_refinement.hpp"
-#include "localization/sensor/temporary_beams.hpp"
+#include "localization/sensor/transient_beams.hpp"
 #include "localization/tracking/pose_filter.hpp"
 #include "localization/tracking/tracker.hpp"
 
@@ -37,7 +37,7 @@ struct LocalizerParams {
   hypotheses::HypothesisBankParams places;
   belief::FitParams fit;
   belief::JudgementParams judgement;
-  sensor::TemporaryBeamsParams temporary;
+  sensor::TransientBeamsParams temporary;
 };
 
 }  // namespace deltamap::localization

@@ -203,12 +203,12 @@ std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, d
 }
 
 const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstant& now) {
-  const bool knows = params.temporary.weighing && things && !things->standing.empty() && last_believed;
+  const bool knows = params.temporary.weighing && transients && !transients->standing.empty() && last_believed;
   if (!knows || ends.size() == 0) return ends;
   const Pose2 expected = *last_believed * motion_between(last_odom, continuous_odom_at(now));
-  ends_beside_things = sensor::lasting_ends(ends, *things, expected, std::move(ends_beside_things));
-  const double left = static_cast<double>(ends_beside_things.size());
-  return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_things : ends;
+  ends_beside_transients = sensor::lasting_ends(ends, *transients, expected, std::move(ends_beside_transients));
+  const double left = static_cast<double>(ends_beside_transients.size());
+  return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_transients : ends;
 }
 
 Belief Localizer::State::belief() const {
@@ -246,7 +246,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .state = before,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
                                             .hypotheses = hypotheses.report(),
-                                            .things = params.temporary.belief ? things.get() : nullptr});
+                                            .transients = params.temporary.belief ? transients.get() : nullptr});
   if (before == LocalizerState::kTracking) {
     stable_support.observe(judged.stable);
   } else {

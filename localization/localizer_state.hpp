@@ -31,10 +31,10 @@ struct Localizer::State {
   particles::PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   motion::BeamEnds ends;
-  std::vector<surfaces::FacedEnd> faced;          ///< the same scan's, where surfaces are followed
-  motion::BodyVelocity velocity;                  ///< at the scan
-  std::shared_ptr<const TemporaryThings> things;  ///< that stand or are gone for now; may be null
-  motion::BeamEnds ends_beside_things;
+  std::vector<surfaces::FacedEnd> faced;                 ///< the same scan's, where surfaces are followed
+  motion::BodyVelocity velocity;                         ///< at the scan
+  std::shared_ptr<const TransientObstacles> transients;  ///< that stand or are gone for now; may be null
+  motion::BeamEnds ends_beside_transients;
   std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;

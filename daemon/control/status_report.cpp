@@ -124,7 +124,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                    {"open", t.in_phase.value()},
                    {"stored_scans", t.stored_scans.value()},
                    {"r_d", t.r_d.value()}};
-  json["temporary"] = {{"standing_blocks", t.things_standing.value()}, {"gone_blocks", t.things_gone.value()}};
+  json["temporary"] = {{"standing_blocks", t.transients_standing.value()}, {"gone_blocks", t.transients_gone.value()}};
   json["gate"] = gate_json(t.gate);
   json["calibration"] = calibration_json(t.calibration);
   json["scans"] = t.scans.value();

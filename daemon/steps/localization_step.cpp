@@ -66,7 +66,9 @@ TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
 
 void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(revision); }
 
-void LocalizationStep::apply(std::shared_ptr<const TemporaryThings> things) { localizer_.apply(std::move(things)); }
+void LocalizationStep::apply(std::shared_ptr<const TransientObstacles> transients) {
+  localizer_.apply(std::move(transients));
+}
 
 bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
   const std::uint64_t refused = localizer_.counts().poses_refused;

@@ -89,7 +89,7 @@ struct Telemetry {
   Gauge<double> r_d;
   Gauge<bool> in_phase;
   Gauge<std::uint32_t> phase, stored_scans, phases_closed, sets_lost;
-  Gauge<std::uint32_t> things_standing, things_gone;  ///< blocks of the temporary layer
+  Gauge<std::uint32_t> transients_standing, transients_gone;  ///< blocks of the transient layer
   GateGauges gate;
   // map thread
   Gauge<std::uint32_t> newest_revision, refused;

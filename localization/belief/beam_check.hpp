@@ -11,7 +11,7 @@
 #include "core/angle.hpp"
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 
 namespace deltamap::localization::belief {
@@ -44,9 +44,10 @@ class BeamCheck {
  public:
   explicit BeamCheck(const BeamCheckParams& params) : params_{params} {}
 
-  /// The chosen beams in order of bearing; valid until the next call. `things` may be null.
+  /// The chosen beams in order of bearing; valid until the next call. `transients` may be null.
   std::span<const CheckedBeam> check(const OccupancyGrid& map, const Scan& scan, std::span<const RayInRobot> rays,
-                                     const sensor::RefinedPose& believed, const TemporaryThings* things = nullptr);
+                                     const sensor::RefinedPose& believed,
+                                     const TransientObstacles* transients = nullptr);
 
  private:
   BeamCheckParams params_;

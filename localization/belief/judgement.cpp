@@ -50,7 +50,8 @@ const Belief& Judgement::observe(const View& view) {
   if (!due(view.passed)) return belief_;
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
-  const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed, view.things);
+  const std::span<const CheckedBeam> beams =
+      check_.check(view.map, view.scan, view.rays, view.believed, view.transients);
   judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses));
   belief_ = judge_.belief();
   belief_.is_checked = true;

@@ -43,7 +43,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (before == nullptr || before->geometry() != map_->geometry()) {
     specks_.begin(*map_);
     layer_ = votes::VoteLayer{params_.votes, map_->geometry()};
-    temporary_ = TemporaryLayer{params_.temporary, layer_.lattice()};
+    transients_ = TransientLayer{params_.temporary, layer_.lattice()};
     waiting_.clear();
     clear_ = votes::ClearSpace{*map_, layer_.lattice()};
     watched_ = votes::WatchList{params_.watch, layer_.blocks()};
@@ -59,7 +59,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   specks_.follow(*map_, changes);
   clear_.update(*map_, changes);
   young_.follow(clear_, changes);
-  temporary_.follow(*map_);
+  transients_.follow(*map_);
 }
 
 void EvidencePhase::count_beams() {
@@ -261,7 +261,7 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   const std::vector<Cell> gone = specks_.missed(tracked, beams_, params_.beams);
   const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, watched_}, face);
   cast(votes);
-  temporary_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
+  transients_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   keyframes_.keep(tracked, votes.all);
   watched_.see(votes.ends);
   std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);

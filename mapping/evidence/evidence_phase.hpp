@@ -13,7 +13,7 @@
 #include "mapping/evidence/evidence_regions.hpp"
 #include "mapping/evidence/passing.hpp"
 #include "mapping/evidence/specks.hpp"
-#include "mapping/evidence/temporary_layer.hpp"
+#include "mapping/evidence/transient_layer.hpp"
 #include "mapping/scan_set/keyframe_pool.hpp"
 #include "mapping/votes/beam_evidence.hpp"
 #include "mapping/votes/beam_votes.hpp"
@@ -43,7 +43,7 @@ struct EvidencePhaseParams {
   votes::WatchParams watch;
   PassingParams passing;
   SpeckParams specks;
-  TemporaryParams temporary;
+  TransientLayerParams temporary;
 };
 
 class EvidencePhase {
@@ -58,7 +58,7 @@ class EvidencePhase {
   [[nodiscard]] std::uint32_t short_beams() const { return short_beams_; }
   [[nodiscard]] std::uint32_t through_beams() const { return through_beams_; }
   /// What every keyframe has told so far, long before it is proven.
-  [[nodiscard]] TemporaryLayer& temporary() { return temporary_; }
+  [[nodiscard]] TransientLayer& transients() { return transients_; }
 
  private:
   /// What was handed on of a region: its blocks, sorted, and when the first vote for them was cast.
@@ -88,7 +88,7 @@ class EvidencePhase {
   EvidencePhaseParams params_;
   std::shared_ptr<const OccupancyGrid> map_;
   votes::VoteLayer layer_;
-  TemporaryLayer temporary_;
+  TransientLayer transients_;
   scan_set::KeyframePool keyframes_;
   std::vector<votes::BeamVerdict> beams_;
   std::vector<ProvenBlock> waiting_;

@@ -232,11 +232,11 @@ TEST_F(DashboardDeskTest, AViewerSeesPoseScanMapAndWhatChangesInIt) {
   EXPECT_EQ(test::decoded_cells(bytes[1]).box, (CellBox{{1, 1}, {2, 2}}));
   EXPECT_EQ(told["changes"]["changes"][0]["revision"], 1);
 
-  auto things = std::make_shared<TemporaryThings>();
-  things->blocks = {.width = 9, .height = 9, .resolution_m = 0.25, .origin = {0.0, 0.0}};
-  things->standing = {4, 7};
+  auto transients = std::make_shared<TransientObstacles>();
+  transients->blocks = {.width = 9, .height = 9, .resolution_m = 0.25, .origin = {0.0, 0.0}};
+  transients->standing = {4, 7};
   told.clear();
-  EXPECT_TRUE(desk_->board().show(things));
+  EXPECT_TRUE(desk_->board().show(transients));
   ASSERT_TRUE(read_until([&] { return told.count("transient") > 0; }));
   EXPECT_EQ(told["transient"]["standing"], Json({4, 7}));
   EXPECT_EQ(told["transient"]["blocks_across"], 9);

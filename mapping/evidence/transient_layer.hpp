@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The temporary layer: what stands now where M_k has nothing, and what of M_k has been seen gone, long before either is
-// proven to last. Blocks enter with the first keyframes that say so, leave when they are seen otherwise, lapse when
-// nobody looks, and leave when M_k says the same. Bounded; never written anywhere.
+// The transient layer: blocks of cells in which something stands where M_k has nothing, or in which what M_k has was
+// seen gone, long before either is proven to last. A block enters with the first keyframes that say so. It leaves when
+// it is seen otherwise, when nobody looks for long, and when M_k says the same. Bounded in size; never written to disk.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,21 @@
 
 #include "core/block_lattice.hpp"
 #include "core/occupancy_grid.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 
 namespace deltamap::mapping::evidence {
 
-struct TemporaryParams {
+struct TransientLayerParams {
   std::uint32_t least_votes = 2;     ///< keyframes that must say so, none of them otherwise; 1..most_votes
   std::uint32_t most_votes = 4;      ///< keyframes that must say otherwise, at most, until a block leaves; 1..255
   double lapse_s = 60.0;             ///< without votes, after which a block leaves, s; > 0
   std::uint32_t most_blocks = 4096;  ///< on each side; beyond, those go that were voted on least recently; > 0
 };
 
-class TemporaryLayer {
+class TransientLayer {
  public:
-  TemporaryLayer() = default;
-  TemporaryLayer(const TemporaryParams& params, const BlockLattice& lattice);
+  TransientLayer() = default;
+  TransientLayer(const TransientLayerParams& params, const BlockLattice& lattice);
 
   /// What one keyframe says of blocks, by index: yes (ascending) and no (in any order) of "something is new here" and
   /// "something has gone here".
@@ -43,7 +43,7 @@ class TemporaryLayer {
   void clear();
 
   /// The newest snapshot; another one only where it differs. Null until there was anything to tell.
-  [[nodiscard]] const std::shared_ptr<const TemporaryThings>& newest() const { return newest_; }
+  [[nodiscard]] const std::shared_ptr<const TransientObstacles>& newest() const { return newest_; }
 
  private:
   struct Entry {
@@ -60,13 +60,13 @@ class TemporaryLayer {
   [[nodiscard]] bool has_occupied(const OccupancyGrid& map, std::uint32_t block, int margin_cells) const;
   void publish(Timestamp time);
 
-  TemporaryParams params_;
+  TransientLayerParams params_;
   BlockLattice lattice_;
   Entries standing_;
   Entries gone_;
   Entries spare_;                    // memory of the entries before the last keyframe
   std::vector<std::uint32_t> ages_;  // memory of keep_newest()
-  std::shared_ptr<const TemporaryThings> newest_;
+  std::shared_ptr<const TransientObstacles> newest_;
 };
 
 }  // namespace deltamap::mapping::evidence

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/evidence/temporary_layer.hpp"
+#include "mapping/evidence/transient_layer.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -33,12 +33,12 @@ std::vector<std::uint32_t> shown(const Entries& entries) {
 
 }  // namespace
 
-TemporaryLayer::TemporaryLayer(const TemporaryParams& params, const BlockLattice& lattice)
+TransientLayer::TransientLayer(const TransientLayerParams& params, const BlockLattice& lattice)
     : params_{params}, lattice_{lattice} {
   params_.most_votes = std::max(params_.most_votes, params_.least_votes);
 }
 
-void TemporaryLayer::observe(const Votes& votes, Timestamp time, std::uint32_t now_ms) {
+void TransientLayer::observe(const Votes& votes, Timestamp time, std::uint32_t now_ms) {
   vote_no(standing_, votes.not_added, now_ms);
   vote_yes(standing_, votes.added, now_ms);
   vote_no(gone_, votes.not_removed, now_ms);
@@ -47,7 +47,7 @@ void TemporaryLayer::observe(const Votes& votes, Timestamp time, std::uint32_t n
 }
 
 /// What has no votes left goes with the pass over all entries that follows.
-void TemporaryLayer::vote_no(Entries& entries, std::span<const std::uint32_t> blocks, std::uint32_t now_ms) {
+void TransientLayer::vote_no(Entries& entries, std::span<const std::uint32_t> blocks, std::uint32_t now_ms) {
   if (entries.empty()) return;
   for (const std::uint32_t block : blocks) {
     const auto entry = std::lower_bound(entries.begin(), entries.end(), block,
@@ -59,7 +59,7 @@ void TemporaryLayer::vote_no(Entries& entries, std::span<const std::uint32_t> bl
 }
 
 /// Entries and votes are both in order: one pass over them, into the memory of the pass before.
-void TemporaryLayer::vote_yes(Entries& entries, std::span<const std::uint32_t> blocks, std::uint32_t now_ms) {
+void TransientLayer::vote_yes(Entries& entries, std::span<const std::uint32_t> blocks, std::uint32_t now_ms) {
   spare_.clear();
   auto known = entries.begin();
   auto yes = blocks.begin();
@@ -80,7 +80,7 @@ void TemporaryLayer::vote_yes(Entries& entries, std::span<const std::uint32_t> b
   if (entries.size() > params_.most_blocks) keep_newest(entries, now_ms);
 }
 
-void TemporaryLayer::keep_newest(Entries& entries, std::uint32_t now_ms) {
+void TransientLayer::keep_newest(Entries& entries, std::uint32_t now_ms) {
   ages_.clear();
   for (const Entry& entry : entries) ages_.push_back(now_ms - entry.last_ms);
   const auto limit = ages_.begin() + static_cast<std::ptrdiff_t>(params_.most_blocks);
@@ -97,7 +97,7 @@ void TemporaryLayer::keep_newest(Entries& entries, std::uint32_t now_ms) {
   });
 }
 
-bool TemporaryLayer::has_occupied(const OccupancyGrid& map, std::uint32_t block, int margin_cells) const {
+bool TransientLayer::has_occupied(const OccupancyGrid& map, std::uint32_t block, int margin_cells) const {
   const CellBox cells = grown(lattice_.cells_of(lattice_.blocks().cell_of(block)), margin_cells);
   for (int row = cells.first.row; row < cells.last.row; ++row) {
     for (int column = cells.first.column; column < cells.last.column; ++column) {
@@ -107,32 +107,32 @@ bool TemporaryLayer::has_occupied(const OccupancyGrid& map, std::uint32_t block,
   return false;
 }
 
-void TemporaryLayer::follow(const OccupancyGrid& map) {
+void TransientLayer::follow(const OccupancyGrid& map) {
   std::erase_if(standing_, [&](const Entry& entry) { return has_occupied(map, entry.block, 1); });
   std::erase_if(gone_, [&](const Entry& entry) { return !has_occupied(map, entry.block, 0); });
 }
 
-void TemporaryLayer::hide(Timestamp time) {
+void TransientLayer::hide(Timestamp time) {
   if (newest_ == nullptr || newest_->empty()) return;
-  newest_ = std::make_shared<const TemporaryThings>(TemporaryThings{
+  newest_ = std::make_shared<const TransientObstacles>(TransientObstacles{
       .number = newest_->number + 1, .time = time, .blocks = lattice_.blocks(), .standing = {}, .gone = {}});
 }
 
-void TemporaryLayer::clear() {
+void TransientLayer::clear() {
   standing_.clear();
   gone_.clear();
 }
 
-void TemporaryLayer::publish(Timestamp time) {
+void TransientLayer::publish(Timestamp time) {
   const bool tells_the_same = newest_ == nullptr ? shows(standing_, {}) && shows(gone_, {})
                                                  : shows(standing_, newest_->standing) && shows(gone_, newest_->gone);
   if (tells_the_same) return;
-  newest_ =
-      std::make_shared<const TemporaryThings>(TemporaryThings{.number = newest_ == nullptr ? 1 : newest_->number + 1,
-                                                              .time = time,
-                                                              .blocks = lattice_.blocks(),
-                                                              .standing = shown(standing_),
-                                                              .gone = shown(gone_)});
+  newest_ = std::make_shared<const TransientObstacles>(
+      TransientObstacles{.number = newest_ == nullptr ? 1 : newest_->number + 1,
+                         .time = time,
+                         .blocks = lattice_.blocks(),
+                         .standing = shown(standing_),
+                         .gone = shown(gone_)});
 }
 
 }  // namespace deltamap::mapping::evidence

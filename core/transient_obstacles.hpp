@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is different now and not (yet) map: from Δ-awareness to localizer and pilot, ahead of any MapRevision. A
-// snapshot; travels as shared_ptr<const> and never changes.
+// Transient obstacles: what differs from the map now, and is not, or not yet, written to it. A snapshot that
+// Δ-awareness makes for localizer and pilot, long before any MapRevision; travels as shared_ptr<const> and never
+// changes.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 
 namespace deltamap {
 
-struct TemporaryThings {
+struct TransientObstacles {
   std::uint32_t number = 0;             ///< counts the snapshots of a run from 1
   Timestamp time;                       ///< of the scan that made it
   GridGeometry blocks;                  ///< squares of cells: they lie on the map like cells of a coarser grid

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beams that end at what is known to stand there only for now say nothing about where the robot is: they do not pull
-// the believed pose. Nothing is ever localized on such things, and other places are weighed with all beams.
+// Leaves out beams that end at transient obstacles: such beams say nothing about the pose and must not pull the
+// believed one. Other pose hypotheses are weighed with all beams.
 #pragma once
 
 #include <cstddef>
 
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "localization/motion/deskew.hpp"
 
 namespace deltamap::localization::sensor {
 
-struct TemporaryBeamsParams {
+struct TransientBeamsParams {
   bool weighing = true;  ///< leave such beams out where the believed pose is weighed and slid
   /// And where beams speak for or against it. Off: at a wrong pose all that is seen looks temporary, and who leaves it
   /// out notices later.
@@ -19,7 +19,7 @@ struct TemporaryBeamsParams {
 };
 
 /// `ends` without those that lie on what stands there for now, with the robot at the pose; into the memory of `others`.
-[[nodiscard]] motion::BeamEnds lasting_ends(const motion::BeamEnds& ends, const TemporaryThings& things,
+[[nodiscard]] motion::BeamEnds lasting_ends(const motion::BeamEnds& ends, const TransientObstacles& transients,
                                             const Pose2& map_from_robot, motion::BeamEnds others);
 
 }  // namespace deltamap::localization::sensor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The temporary layer by itself, and as the evidence method fills it in a drawn hall.
-#include "mapping/evidence/temporary_layer.hpp"
+// The transient layer by itself, and as the evidence method fills it in a drawn hall.
+#include "mapping/evidence/transient_layer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ const GridGeometry kBlocks{20, 20, 0.1, {0.0, 0.0}};
 /// Keyframes, half a second apart.
 class Layer {
  public:
-  explicit Layer(const TemporaryParams& params = {}) : layer{params, {kMap, kCellsPerBlock}} {}
+  explicit Layer(const TransientLayerParams& params = {}) : layer{params, {kMap, kCellsPerBlock}} {}
   void added(const votes::Blocks& yes, const votes::Blocks& no = {}) {
     layer.observe({yes, no, {}, {}}, {}, now_ms += 500);
   }
@@ -33,11 +33,11 @@ class Layer {
   [[nodiscard]] votes::Blocks standing() const { return layer.newest() ? layer.newest()->standing : votes::Blocks{}; }
   [[nodiscard]] votes::Blocks gone() const { return layer.newest() ? layer.newest()->gone : votes::Blocks{}; }
 
-  TemporaryLayer layer;
+  TransientLayer layer;
   std::uint32_t now_ms = 1000;
 };
 
-TEST(TemporaryLayer, TakesInABlockAtItsSecondKeyframe) {
+TEST(TransientLayer, TakesInABlockAtItsSecondKeyframe) {
   Layer layer;
   layer.added({7, 30});
   EXPECT_TRUE(layer.standing().empty());
@@ -47,7 +47,7 @@ TEST(TemporaryLayer, TakesInABlockAtItsSecondKeyframe) {
   EXPECT_EQ(layer.standing(), (votes::Blocks{7, 30}));
 }
 
-TEST(TemporaryLayer, LetsGoOfABlockThatIsSeenThroughInFourKeyframesHoweverLongItStood) {
+TEST(TransientLayer, LetsGoOfABlockThatIsSeenThroughInFourKeyframesHoweverLongItStood) {
   Layer layer;
   for (int i = 0; i < 500; ++i) layer.added({7});
   for (int i = 0; i < 3; ++i) layer.added({}, {9, 7});
@@ -56,14 +56,14 @@ TEST(TemporaryLayer, LetsGoOfABlockThatIsSeenThroughInFourKeyframesHoweverLongIt
   EXPECT_TRUE(layer.standing().empty());
 }
 
-TEST(TemporaryLayer, KeepsWhatIsSeenAgainInBetween) {
+TEST(TransientLayer, KeepsWhatIsSeenAgainInBetween) {
   Layer layer;
   for (int i = 0; i < 20; ++i)
     layer.added(i % 3 == 2 ? votes::Blocks{} : votes::Blocks{7}, i % 3 == 2 ? votes::Blocks{7} : votes::Blocks{});
   EXPECT_EQ(layer.standing(), votes::Blocks{7});
 }
 
-TEST(TemporaryLayer, ForgetsWhatNobodyLooksAt) {
+TEST(TransientLayer, ForgetsWhatNobodyLooksAt) {
   Layer layer{{.least_votes = 2, .most_votes = 4, .lapse_s = 10.0}};
   for (int i = 0; i < 4; ++i) layer.added({7});
   for (int i = 0; i < 20; ++i) layer.added({50});
@@ -72,7 +72,7 @@ TEST(TemporaryLayer, ForgetsWhatNobodyLooksAt) {
   EXPECT_EQ(layer.standing(), votes::Blocks{50});
 }
 
-TEST(TemporaryLayer, KnowsWhatHasGoneUntilItIsSeenAgain) {
+TEST(TransientLayer, KnowsWhatHasGoneUntilItIsSeenAgain) {
   Layer layer;
   for (int i = 0; i < 2; ++i) layer.removed({3, 4});
   EXPECT_EQ(layer.gone(), (votes::Blocks{3, 4}));
@@ -81,7 +81,7 @@ TEST(TemporaryLayer, KnowsWhatHasGoneUntilItIsSeenAgain) {
   EXPECT_EQ(layer.gone(), votes::Blocks{3});
 }
 
-TEST(TemporaryLayer, NeverHoldsMoreThanItsCapAndKeepsTheNewest) {
+TEST(TransientLayer, NeverHoldsMoreThanItsCapAndKeepsTheNewest) {
   Layer layer{{.least_votes = 1, .most_votes = 4, .lapse_s = 60.0, .most_blocks = 10}};
   for (std::uint32_t first = 0; first < 300; first += 4) {
     layer.added({first, first + 1, first + 2, first + 3});
@@ -92,7 +92,7 @@ TEST(TemporaryLayer, NeverHoldsMoreThanItsCapAndKeepsTheNewest) {
   EXPECT_EQ(layer.standing()[2], 292u);
 }
 
-TEST(TemporaryLayer, NamesEachSnapshotOnceAndMakesNoneWhereNothingChanges) {
+TEST(TransientLayer, NamesEachSnapshotOnceAndMakesNoneWhereNothingChanges) {
   Layer layer;
   layer.added({});
   EXPECT_EQ(layer.layer.newest(), nullptr);
@@ -106,7 +106,7 @@ TEST(TemporaryLayer, NamesEachSnapshotOnceAndMakesNoneWhereNothingChanges) {
   EXPECT_TRUE(layer.layer.newest()->empty());
 }
 
-TEST(TemporaryLayer, LeavesToTheMapWhatTheMapSays) {
+TEST(TransientLayer, LeavesToTheMapWhatTheMapSays) {
   Layer layer;
   const auto at = [](int column, int row) { return static_cast<std::uint32_t>(kBlocks.index_of({column, row})); };
   for (int i = 0; i < 2; ++i)
@@ -120,7 +120,7 @@ TEST(TemporaryLayer, LeavesToTheMapWhatTheMapSays) {
   EXPECT_EQ(layer.gone(), votes::Blocks{at(3, 15)});
 }
 
-TEST(TemporaryLayer, TellsNobodyWhileThePoseIsInDoubtAndKnowsNothingOnceItWasWrong) {
+TEST(TransientLayer, TellsNobodyWhileThePoseIsInDoubtAndKnowsNothingOnceItWasWrong) {
   Layer layer;
   for (int i = 0; i < 3; ++i) layer.added({7});
   layer.layer.hide({});
@@ -149,7 +149,7 @@ class Lookout {
     }
   }
   [[nodiscard]] bool stands_at(const Point2& place) const {
-    return store.temporary() != nullptr && store.temporary()->stands_at(place);
+    return store.transients() != nullptr && store.transients()->stands_at(place);
   }
 
   std::shared_ptr<const OccupancyGrid> map = std::make_shared<const OccupancyGrid>(test::drawn_hall(0.05));
@@ -167,7 +167,7 @@ OccupancyGrid hall_with_somebody() {
   return hall;
 }
 
-TEST(TemporaryThings, HoldSomebodyWhoStopsWithinASecondAndAreNotMap) {
+TEST(TransientObstacles, HoldSomebodyWhoStopsWithinASecondAndAreNotMap) {
   Lookout lookout{MappingMethod::kEvidence};
   lookout.look_at(*lookout.map, 20.0);
   EXPECT_FALSE(lookout.stands_at(kFace));
@@ -177,19 +177,19 @@ TEST(TemporaryThings, HoldSomebodyWhoStopsWithinASecondAndAreNotMap) {
   EXPECT_FALSE(lookout.writes);
 }
 
-TEST(TemporaryThings, LetSomebodyGoWithinThreeSeconds) {
+TEST(TransientObstacles, LetSomebodyGoWithinThreeSeconds) {
   Lookout lookout{MappingMethod::kEvidence};
   lookout.look_at(*lookout.map, 20.0);
   lookout.look_at(hall_with_somebody(), 20.0);
   ASSERT_TRUE(lookout.stands_at(kFace));
   lookout.look_at(*lookout.map, 3.0);
-  EXPECT_TRUE(lookout.store.temporary()->standing.empty());
+  EXPECT_TRUE(lookout.store.transients()->standing.empty());
 }
 
-TEST(TemporaryThings, AreUnknownToThePapersMethod) {
+TEST(TransientObstacles, AreUnknownToThePapersMethod) {
   Lookout lookout{MappingMethod::kPaper};
   lookout.look_at(hall_with_somebody(), 10.0);
-  EXPECT_EQ(lookout.store.temporary(), nullptr);
+  EXPECT_EQ(lookout.store.transients(), nullptr);
 }
 
 }  // namespace
