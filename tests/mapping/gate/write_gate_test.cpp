@@ -162,7 +162,7 @@ TEST(WriteGate, ShutsWhileScansHaveSuddenlyStoppedFitting) {
   WriteGate gate{{}};
   for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
   for (int i = 0; i < 8; ++i) gate.observe(seeing(robot.next(), 60, 5));
-  EXPECT_EQ(gate.reason(), GateReason::kMisfit);
+  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
   EXPECT_FALSE(gate.has_proven_wrong());
   for (int i = 0; i < 150; ++i) gate.observe(seeing(robot.next(), 60, 5));
   EXPECT_TRUE(gate.is_open()) << "a thing has come and stays";
@@ -173,10 +173,10 @@ TEST(WriteGate, WaitsForProofWhereTheWholeViewHasBecomeAnother) {
   WriteGate gate{{}};
   for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
   for (int i = 0; i < 10; ++i) gate.observe(seeing(robot.next(), 40, 40));
-  EXPECT_EQ(gate.reason(), GateReason::kMisfit);
+  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
   for (int i = 0; i < 190; ++i) gate.observe(seeing(robot.next(), 5, 5));
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
-  EXPECT_EQ(gate.confirms_after(), GateReason::kMisfit);
+  EXPECT_EQ(gate.confirms_after(), GateReason::kInlierDrop);
   for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 5, 5));
   EXPECT_TRUE(gate.is_open());
   EXPECT_FALSE(gate.trusted_since()) << "nothing was proven";
@@ -188,7 +188,7 @@ TEST(WriteGate, TakesNoThingThatComesAndAnotherThatGoesAMomentLaterForAnotherVie
   for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
   for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 0));
   for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 34));
-  EXPECT_EQ(gate.reason(), GateReason::kMisfit);
+  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
   for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
   EXPECT_TRUE(gate.is_open());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/gate/misfit.hpp"
+#include "mapping/gate/inlier_drop.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 namespace deltamap::mapping::gate {
 namespace {
 
-TEST(Misfit, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
+TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
   StraightDrive robot;
-  Misfit misfit{{}};
+  InlierDropDetector misfit{{}};
   misfit.remember();
   for (int i = 0; i < 50; ++i) {
     TrackedScan tracked = robot.next();
@@ -20,9 +20,9 @@ TEST(Misfit, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
   EXPECT_FALSE(misfit.is_worse_than_remembered(0.0));
 }
 
-TEST(Misfit, SeesAnotherViewAfterASilenceToo) {
+TEST(InlierDropDetector, SeesAnotherViewAfterASilenceToo) {
   StraightDrive robot;
-  Misfit misfit{{}};
+  InlierDropDetector misfit{{}};
   for (int i = 0; i < 200; ++i) {
     TrackedScan tracked = robot.next();
     tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 100};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/gate/misfit.hpp"
+#include "mapping/gate/inlier_drop.hpp"
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ double approached(double mean, double value, double passed_s, double over_s) {
 
 }  // namespace
 
-void Misfit::observe(const TrackedScan& tracked) {
+void InlierDropDetector::observe(const TrackedScan& tracked) {
   const Belief& belief = tracked.estimate.belief;
   const std::uint32_t expected = belief.stable.expected + belief.elsewhere.expected;
   if (expected < params_.least_expected) return;
@@ -37,18 +37,18 @@ void Misfit::observe(const TrackedScan& tracked) {
   }
 }
 
-bool Misfit::is_sudden() const {
+bool InlierDropDetector::is_sudden() const {
   if (usual_.short_of + usual_.beyond > kMostUsual) return false;
   return present_.short_of + present_.beyond - usual_.short_of - usual_.beyond > params_.most_drop;
 }
 
-bool Misfit::is_worse_than_remembered(double explained) const {
+bool InlierDropDetector::is_worse_than_remembered(double explained) const {
   if (!remembered_) return false;
   const double more = present_.short_of + present_.beyond - remembered_->short_of - remembered_->beyond;
   return more > params_.most_drop + explained;
 }
 
-bool Misfit::is_both_ways() const {
+bool InlierDropDetector::is_both_ways() const {
   if (usual_.short_of + usual_.beyond > kMostUsual) return false;
   const auto both_more_than = [&](const Shares& before) {
     return std::min(present_.short_of - before.short_of, present_.beyond - before.beyond);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells that an operator has set. What was seen before does not write them again, nor does what is seen for a while
-// after: who takes a change back does not want it back a second later. Evidence that comes later and lasts may.
+// Cells that an operator has set. Scans taken before the order never write them again, nor do scans taken for a while
+// after it: who takes a change back does not want it back a second later. Later evidence that lasts may write them.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace deltamap::mapping::gate {
 
-struct HeldCellsParams {
+struct OperatorCellsParams {
   double hold_s = 120.0;  ///< of scans after the operator's word; >= 0 (mapping.persistence_s)
   int margin_cells = 4;   ///< as far as a second look may draw a face beside where it stood; >= 0
 };
 
-class HeldCells {
+class OperatorCells {
  public:
-  explicit HeldCells(const HeldCellsParams& params) : params_{params} {}
+  explicit OperatorCells(const OperatorCellsParams& params) : params_{params} {}
 
   /// The operator has set these cells of a map before the scan of that time.
   void hold(const GridGeometry& map, std::span<const CellChange> cells, Timestamp time);
@@ -35,7 +35,7 @@ class HeldCells {
     Tiled<std::uint8_t> cells;  // 1: held
   };
 
-  HeldCellsParams params_;
+  OperatorCellsParams params_;
   std::deque<Held> held_;  // oldest first
 };
 

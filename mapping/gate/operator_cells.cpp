@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/gate/held_cells.hpp"
+#include "mapping/gate/operator_cells.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -11,7 +11,7 @@ constexpr std::size_t kMostHeld = 64;  // an operator's words; the oldest goes
 
 }  // namespace
 
-void HeldCells::hold(const GridGeometry& map, std::span<const CellChange> cells, Timestamp time) {
+void OperatorCells::hold(const GridGeometry& map, std::span<const CellChange> cells, Timestamp time) {
   Held held{time, {map.width, map.height, 0}};
   for (const CellChange& change : cells) {
     const Cell cell = change.cell;
@@ -26,7 +26,7 @@ void HeldCells::hold(const GridGeometry& map, std::span<const CellChange> cells,
 
 /// A later look at a region is as old as its oldest scan, and never gets younger. What is proven anew rests on younger
 /// scans alone: the votes before were void when the map changed.
-std::vector<CellChange> HeldCells::allowed(std::vector<CellChange> changes, const ScanSet& set) const {
+std::vector<CellChange> OperatorCells::allowed(std::vector<CellChange> changes, const ScanSet& set) const {
   for (const Held& held : held_) {
     const bool holds = set.began < held.time || seconds(set.ended - held.time) < params_.hold_s;
     if (holds) std::erase_if(changes, [&](const CellChange& change) { return held.cells[change.cell] != 0; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/gate/held_cells.hpp"
+#include "mapping/gate/operator_cells.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,9 +19,9 @@ ScanSet seen(double from_s, double to_s) {
 
 CellChange occupied(int column, int row) { return {{column, row}, CellState::kFree, CellState::kOccupied}; }
 
-class HeldCellsTest : public testing::Test {
+class OperatorCellsTest : public testing::Test {
  protected:
-  HeldCellsTest() {
+  OperatorCellsTest() {
     held.hold(kMap, std::vector{CellChange{{10, 10}, CellState::kOccupied, CellState::kFree}}, at(50.0));
   }
 
@@ -29,27 +29,27 @@ class HeldCellsTest : public testing::Test {
     return held.allowed(std::move(changes), set).size();
   }
 
-  HeldCells held{{.hold_s = 120.0, .margin_cells = 2}};
+  OperatorCells held{{.hold_s = 120.0, .margin_cells = 2}};
 };
 
-TEST_F(HeldCellsTest, WhatWasSeenBeforeNeverWritesThemAgain) {
+TEST_F(OperatorCellsTest, WhatWasSeenBeforeNeverWritesThemAgain) {
   EXPECT_EQ(allowed({occupied(10, 10)}, seen(40.0, 49.0)), 0u);
   EXPECT_EQ(allowed({occupied(10, 10)}, seen(49.9, 4000.0)), 0u) << "a later look at an old region";
 }
 
-TEST_F(HeldCellsTest, WhatIsSeenLaterWritesThemOnceItHasLasted) {
+TEST_F(OperatorCellsTest, WhatIsSeenLaterWritesThemOnceItHasLasted) {
   EXPECT_EQ(allowed({occupied(10, 10)}, seen(51.0, 53.0)), 0u);
   EXPECT_EQ(allowed({occupied(10, 10)}, seen(51.0, 169.9)), 0u);
   EXPECT_EQ(allowed({occupied(10, 10)}, seen(51.0, 170.0)), 1u);
 }
 
-TEST_F(HeldCellsTest, HoldsWhatLiesBesideAndNothingElse) {
+TEST_F(OperatorCellsTest, HoldsWhatLiesBesideAndNothingElse) {
   const std::vector<CellChange> changes{occupied(12, 8), occupied(13, 10), occupied(10, 13), occupied(90, 70)};
   const auto left = held.allowed(changes, seen(40.0, 49.0));
   EXPECT_EQ(left, (std::vector<CellChange>{changes[1], changes[2], changes[3]}));
 }
 
-TEST_F(HeldCellsTest, EveryWordOfTheOperatorCounts) {
+TEST_F(OperatorCellsTest, EveryWordOfTheOperatorCounts) {
   held.hold(kMap, std::vector{occupied(0, 0), occupied(99, 79)}, at(100.0));
   EXPECT_EQ(allowed({occupied(10, 10), occupied(1, 1), occupied(98, 78)}, seen(60.0, 180.0)), 1u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices that scans have suddenly stopped fitting: fewer beams end where the map expects them than over the last
-// seconds. Something has changed in view, or the robot is elsewhere; P(pose right) takes seconds to tell the two apart.
+// Detects that the share of inliers has suddenly fallen: fewer beams end where the map expects them than over the last
+// seconds. Either something has changed in view or the robot is elsewhere; P(pose right) needs seconds to tell which.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace deltamap::mapping::gate {
 
-struct MisfitParams {
+struct InlierDropParams {
   double usual_s = 10.0;              ///< over which the usual share of fitting beams is averaged, s; > 0
   double lately_s = 1.0;              ///< over which that of the last moment is, s; > 0
   double present_s = 0.35;            ///< over which the present one is, s; > 0
@@ -20,9 +20,9 @@ struct MisfitParams {
   std::uint32_t least_expected = 30;  ///< a scan in which the map expects fewer beams to end says nothing
 };
 
-class Misfit {
+class InlierDropDetector {
  public:
-  explicit Misfit(const MisfitParams& params) : params_{params} {}
+  explicit InlierDropDetector(const InlierDropParams& params) : params_{params} {}
 
   /// Every scan in order. Shares are averaged over time: what the last checked scan has told holds until the next one.
   void observe(const TrackedScan& tracked);
@@ -44,7 +44,7 @@ class Misfit {
     double short_of = 0.0;
     double beyond = 0.0;
   };
-  MisfitParams params_;
+  InlierDropParams params_;
   std::optional<Timestamp> last_;
   Shares usual_;
   Shares lately_;
