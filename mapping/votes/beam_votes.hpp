@@ -11,8 +11,8 @@
 #include "mapping/votes/beam_evidence.hpp"
 #include "mapping/votes/clear_space.hpp"
 #include "mapping/votes/face_step.hpp"
+#include "mapping/votes/redraw_queue.hpp"
 #include "mapping/votes/vote_layer.hpp"
-#include "mapping/votes/watch_list.hpp"
 
 namespace deltamap::mapping::votes {
 
@@ -30,7 +30,7 @@ struct Votes {
 struct VotedMap {
   const ClearSpace& clear;
   const VoteLayer& layer;
-  const WatchList& watched;
+  const RedrawQueue& watched;
 };
 
 class BeamVotes {

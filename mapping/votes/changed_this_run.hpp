@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which blocks show nothing but what this run has written: a fork-lift that stopped, goods put down. What was in the
-// run's first map has been believed for longer and is harder to overturn.
+// Which blocks show nothing but what this run itself has written: a fork-lift that stopped, goods put down. What the
+// run's first map shows has been believed for longer and is harder to overturn.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@
 
 namespace deltamap::mapping::votes {
 
-class YoungBlocks {
+class ChangedThisRun {
  public:
-  YoungBlocks() = default;
+  ChangedThisRun() = default;
   /// All that the map shows is old. `clear` is that of the map.
-  explicit YoungBlocks(const ClearSpace& clear);
+  explicit ChangedThisRun(const ClearSpace& clear);
 
   /// The changes have led to the map that `clear` is of now.
   void follow(const ClearSpace& clear, std::span<const CellChange> changes);
 
-  [[nodiscard]] bool is_young(Cell block) const { return ages_[block] == Age::kYoung; }
+  [[nodiscard]] bool is_changed_this_run(Cell block) const { return ages_[block] == Age::kChanged; }
 
  private:
-  enum class Age : std::uint8_t { kEmpty, kYoung, kOld };
+  enum class Age : std::uint8_t { kEmpty, kChanged, kFirst };
 
   Tiled<Age> ages_;  // of the blocks
 };

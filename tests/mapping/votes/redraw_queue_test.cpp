@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // When a region that has been written is looked at again.
-#include "mapping/votes/watch_list.hpp"
+#include "mapping/votes/redraw_queue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,18 +12,18 @@ class Watched : public testing::Test {
   /// How many keyframes with these ends there are until the next look; 0: none in a thousand.
   int keyframes_until_look(const std::vector<std::uint32_t>& ends) {
     for (int seen = 1; seen <= 1000; ++seen) {
-      list.see(ends);
-      if (list.due_look()) return seen;
+      queue.see(ends);
+      if (queue.due_look()) return seen;
     }
     return 0;
   }
 
   GridGeometry blocks{20, 10, 0.1, {0.0, 0.0}};
-  WatchList list{{.first_look = 8, .looks = 4}, blocks};
+  RedrawQueue queue{{.first_look = 8, .looks = 4}, blocks};
 };
 
 TEST_F(Watched, IsLookedAtAgainMuchLaterToo) {
-  list.watch({45, 46}, 0, 0);
+  queue.watch({45, 46}, 0, 0);
   const int first = keyframes_until_look({46});
   const int second = keyframes_until_look({46});
   const int third = keyframes_until_look({46});
@@ -35,58 +35,58 @@ TEST_F(Watched, IsLookedAtAgainMuchLaterToo) {
 }
 
 TEST_F(Watched, IsForgottenAfterItsLooks) {
-  list.watch({45}, 0, 0);
+  queue.watch({45}, 0, 0);
   for (int look = 0; look < 4; ++look) EXPECT_GT(keyframes_until_look({45}), 0);
   EXPECT_EQ(keyframes_until_look({45}), 0);
-  EXPECT_FALSE(list.is_watched(blocks.cell_of(45)));
+  EXPECT_FALSE(queue.is_watched(blocks.cell_of(45)));
 }
 
 TEST_F(Watched, IsSeenByEndsInItsOwnBlocksAlone) {
-  list.watch({45, 66}, 0, 0);
+  queue.watch({45, 66}, 0, 0);
   EXPECT_EQ(keyframes_until_look({44, 46, 65, 67}), 0);
   EXPECT_EQ(keyframes_until_look({67, 66, 3}), 8);  // in any order
 }
 
 TEST_F(Watched, IsEachRegionByItself) {
-  list.watch({45}, 0, 0);
-  list.watch({66}, 0, 0);
-  for (int seen = 0; seen < 7; ++seen) list.see({45});
-  list.see({66});
-  EXPECT_FALSE(list.due_look());
-  list.see({45});
-  const auto look = list.due_look();
+  queue.watch({45}, 0, 0);
+  queue.watch({66}, 0, 0);
+  for (int seen = 0; seen < 7; ++seen) queue.see({45});
+  queue.see({66});
+  EXPECT_FALSE(queue.due_look());
+  queue.see({45});
+  const auto look = queue.due_look();
   ASSERT_TRUE(look);
   EXPECT_EQ(look->blocks, (std::vector<std::uint32_t>{45}));
 }
 
 TEST_F(Watched, IsNotKeptWaitingByWhatHasBeenLookedAtBefore) {
-  list.watch({45}, 0, 0);
+  queue.watch({45}, 0, 0);
   EXPECT_EQ(keyframes_until_look({45}), 8);
-  list.watch({66}, 0, 0);
-  for (int seen = 0; seen < 24; ++seen) list.see({45, 66});
-  const auto look = list.due_look();
+  queue.watch({66}, 0, 0);
+  for (int seen = 0; seen < 24; ++seen) queue.see({45, 66});
+  const auto look = queue.due_look();
   ASSERT_TRUE(look);
   EXPECT_EQ(look->blocks, (std::vector<std::uint32_t>{66}));
 }
 
 TEST_F(Watched, BeginsAnewWhereSomethingWent) {
-  list.watch({45, 46}, 0, 1'000);
-  list.watch({66}, 0, 2'000);
-  list.begin_anew({46, 47}, 9'000);
-  for (int seen = 0; seen < 8; ++seen) list.see({45, 66});
-  const auto first = list.due_look();
-  const auto second = list.due_look();
+  queue.watch({45, 46}, 0, 1'000);
+  queue.watch({66}, 0, 2'000);
+  queue.begin_anew({46, 47}, 9'000);
+  for (int seen = 0; seen < 8; ++seen) queue.see({45, 66});
+  const auto first = queue.due_look();
+  const auto second = queue.due_look();
   ASSERT_TRUE(first && second);
   EXPECT_EQ(first->first_ms, 9'000u);
   EXPECT_EQ(second->first_ms, 2'000u);
 }
 
 TEST_F(Watched, IsForgottenWhereWhatCameHasGoneAgain) {
-  list.watch({45, 46}, 0, 0);
-  list.watch({46}, 0, 0);
-  list.forget({46});
-  EXPECT_FALSE(list.is_watched(blocks.cell_of(46)));
-  EXPECT_TRUE(list.is_watched(blocks.cell_of(45)));
+  queue.watch({45, 46}, 0, 0);
+  queue.watch({46}, 0, 0);
+  queue.forget({46});
+  EXPECT_FALSE(queue.is_watched(blocks.cell_of(46)));
+  EXPECT_TRUE(queue.is_watched(blocks.cell_of(45)));
   EXPECT_EQ(keyframes_until_look({46}), 0);
   EXPECT_EQ(keyframes_until_look({45}), 8);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/votes/watch_list.hpp"
+#include "mapping/votes/redraw_queue.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -11,12 +11,12 @@ constexpr std::uint32_t kMostBetween = 40;  // keyframes: a surface may be met f
 
 }  // namespace
 
-void WatchList::forget(std::vector<Region>::iterator region) {
+void RedrawQueue::forget(std::vector<Region>::iterator region) {
   for (const std::uint32_t index : region->look.blocks) --watchers_.to_write(geometry_.cell_of(index));
   regions_.erase(region);
 }
 
-void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms) {
+void RedrawQueue::watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms) {
   if (blocks.empty() || params_.looks == 0 || params_.most_watched == 0) return;
   Region region{{{}, first_ms}, 0, params_.first_look, params_.looks};
   std::vector<std::uint32_t>& wide = region.look.blocks;
@@ -36,7 +36,7 @@ void WatchList::watch(const std::vector<std::uint32_t>& blocks, int margin_block
   regions_.push_back(std::move(region));
 }
 
-void WatchList::begin_anew(const std::vector<std::uint32_t>& blocks, std::uint32_t now_ms) {
+void RedrawQueue::begin_anew(const std::vector<std::uint32_t>& blocks, std::uint32_t now_ms) {
   for (Region& region : regions_) {
     const std::vector<std::uint32_t>& own = region.look.blocks;
     const bool overlaps = std::any_of(blocks.begin(), blocks.end(), [&](std::uint32_t index) {
@@ -46,7 +46,7 @@ void WatchList::begin_anew(const std::vector<std::uint32_t>& blocks, std::uint32
   }
 }
 
-void WatchList::forget(const std::vector<std::uint32_t>& blocks) {
+void RedrawQueue::forget(const std::vector<std::uint32_t>& blocks) {
   for (auto region = regions_.begin(); region != regions_.end();) {
     std::erase_if(region->look.blocks, [&](std::uint32_t index) {
       const bool is_forgotten = std::binary_search(blocks.begin(), blocks.end(), index);
@@ -57,7 +57,7 @@ void WatchList::forget(const std::vector<std::uint32_t>& blocks) {
   }
 }
 
-void WatchList::see(std::vector<std::uint32_t> ends) {
+void RedrawQueue::see(std::vector<std::uint32_t> ends) {
   std::sort(ends.begin(), ends.end());
   for (Region& region : regions_) {
     const std::vector<std::uint32_t>& blocks = region.look.blocks;
@@ -69,7 +69,7 @@ void WatchList::see(std::vector<std::uint32_t> ends) {
   }
 }
 
-std::optional<Look> WatchList::due_look() {
+std::optional<Look> RedrawQueue::due_look() {
   auto due = regions_.end();
   for (auto region = regions_.begin(); region != regions_.end(); ++region) {
     if (region->seen < region->next_look) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Regions that have been handed on, to be looked at again: one was written from a few keyframes and gets sharper from
-// more; another was freed, and something may come back to it.
+// The queue of regions that were written and are to be drawn again from later keyframes. One that was written from a
+// few keyframes gets sharper from more; where one was freed, something may come back. Each region is due after some
+// keyframes whose beams end in it, then after three times as many, up to a limit.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace deltamap::mapping::votes {
 
-struct WatchParams {
+struct RedrawQueueParams {
   std::uint32_t first_look = 8;      ///< keyframes with beams that end in a region until the next look, …
   std::uint32_t looks = 30;          ///< … so often, after three times as many keyframes each, up to a limit
   std::uint32_t most_watched = 250;  ///< regions; the oldest goes; at most 255
@@ -24,10 +25,10 @@ struct Look {
   std::uint32_t first_ms = 0;
 };
 
-class WatchList {
+class RedrawQueue {
  public:
-  WatchList() = default;
-  WatchList(const WatchParams& params, const GridGeometry& blocks)
+  RedrawQueue() = default;
+  RedrawQueue(const RedrawQueueParams& params, const GridGeometry& blocks)
       : params_{params}, geometry_{blocks}, watchers_{blocks.width, blocks.height, 0} {}
 
   /// Watches the blocks and those within `margin_blocks` of them.
@@ -56,7 +57,7 @@ class WatchList {
   };
   void forget(std::vector<Region>::iterator region);
 
-  WatchParams params_;
+  RedrawQueueParams params_;
   GridGeometry geometry_;
   Tiled<std::uint8_t> watchers_;  // regions that each block belongs to
   std::vector<Region> regions_;   // oldest first

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/redraw/hidden_floor.hpp"
+#include "mapping/redraw/enclosed_free_space.hpp"
 
 #include <algorithm>
 #include <array>
@@ -132,8 +132,8 @@ class Floor {
 
 }  // namespace
 
-std::vector<Cell> hidden_floor(const OccupancyGrid& map, std::span<const Cell> starts,
-                               std::span<const Point2> robot_was, double most_m2) {
+std::vector<Cell> enclosed_free_space(const OccupancyGrid& map, std::span<const Cell> starts,
+                                      std::span<const Point2> robot_was, double most_m2) {
   Floor floor{map, robot_was, most_m2};
   std::vector<Cell> hidden;
   for (const Cell& start : starts) {
