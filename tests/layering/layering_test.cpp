@@ -12,11 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/source_tree.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = DELTAMAP_SOURCE_DIR;
+const fs::path kRoot = test::source_path("");
 
 // A wing may include itself and these. `simulation` may use of the drivers only the device codecs.
 const std::map<std::string, std::set<std::string>> kArrows = {

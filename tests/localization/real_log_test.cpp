@@ -14,6 +14,7 @@
 #include "localization/localizer_params.hpp"
 #include "tests/support/carmen_feed.hpp"
 #include "tests/support/recorded_map.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::localization {
@@ -41,11 +42,6 @@ struct ReferencePose {
   Timestamp time;
   Pose2 map_from_laser;
 };
-
-std::filesystem::path data_folder() {
-  const char* folder = std::getenv("DELTAMAP_DATA");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  return folder != nullptr ? folder : DELTAMAP_SOURCE_DIR "/../shared/data";
-}
 
 std::filesystem::path unpacked(const std::filesystem::path& packed, const std::filesystem::path& folder) {
   std::filesystem::path to = folder / packed.stem();

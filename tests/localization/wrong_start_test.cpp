@@ -9,6 +9,7 @@
 #include "localization/localizer_params.hpp"
 #include "simulation/start_map.hpp"
 #include "simulation/virtual_drive.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kWrongM = 0.5;
 
 struct Room {
-  simulation::Scenario scenario = simulation::read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/room.yaml");
+  simulation::Scenario scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
   std::shared_ptr<const OccupancyGrid> map = std::make_shared<const OccupancyGrid>(
       simulation::start_map(scenario.world, scenario.robot.map_from_start.position(), 0.05));
 };
