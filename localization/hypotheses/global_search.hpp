@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where could the robot be, when nobody says? Looks through the whole map with one scan, so many poses a scan, then
-// slides the best ones to where they fit, so many a scan: no single scan is held up. Later scans decide (place_bank).
+// slides the best ones to where they fit, so many a scan: no single scan is held up. Later scans decide (hypothesis_bank).
 #pragma once
 
 #include <cstdint>
