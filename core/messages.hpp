@@ -80,7 +80,7 @@ struct BeamCounts {
 };
 
 enum class PoseVerdict : std::uint8_t {
-  kUndecided,  ///< too little in view that has proven stable, or another place fits as well
+  kUndecided,  ///< too little in view that has proven stable, or another pose hypothesis fits as well
   kRight,
   kWrong
 };

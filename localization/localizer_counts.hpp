@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What has befallen a localizer since its start: for telemetry and the operator.
+// Counts of what a localizer has met since its start (gaps, epochs, searches, recoveries), for telemetry and operator.
 #pragma once
 
 #include <cstdint>

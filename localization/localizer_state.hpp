@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of the localizer: which pose is believed, by a state machine of global, tracking and lost. A scan is
-// followed by the particles (tracker.hpp) or searched for in the whole map (hypothesis_tracker.hpp), then judged
-// (judgement.hpp, fit_monitor.hpp); what wins is believed, what is judged wrong is given up.
+// The inside of the localizer: which pose is believed, by a state machine of global, tracking and lost. Each scan is
+// tracked (tracker.hpp) or searched for in the whole map (hypothesis_tracker.hpp) and then judged (judgement.hpp,
+// fit_monitor.hpp). A hypothesis that wins is believed; a pose that is judged wrong is given up.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the beams of one scan say at the estimated pose, each held against what the map expects there: it ends at a
-// surface of the map, before it, or beyond what the map has as an obstacle. A beam that would fit at a pose within the
-// covariance does not speak against this one; one that some such pose would not have sent through says nothing.
+// Classifies the beams of one scan at the estimated pose by what the map expects there: a beam ends at a surface of the
+// map (fit), before it (short) or beyond what the map has as an obstacle. The pose's covariance is taken into account:
+// a beam that fits at some pose within it does not count against this one.
 #pragma once
 
 #include <cstdint>

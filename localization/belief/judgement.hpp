@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds each view against the map and answers twice: is the pose right, is the map wrong here? Checks the beams at the
-// estimated pose, lets the tiles of the map earn their stability while the pose is well known, and keeps the belief.
+// Answers two questions at each scan: is the pose right, and is the map wrong here? Checks the beams at the estimated
+// pose, lets the tiles of the map earn their stability while the pose is well known, and keeps the belief.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where could the robot be, when nobody says? Looks through the whole map with one scan, so many poses a scan, then
-// slides the best ones to where they fit, so many a scan: no single scan is held up. Later scans decide (hypothesis_bank).
+// Global localization: searches the whole map with one scan. A lattice of poses is judged on the coarse field, so many
+// poses at each scan, then the best candidates are refined, so many at each scan: no single scan takes long. Which
+// candidate is true is decided by later scans (hypothesis_bank.hpp).
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct GlobalSearchParams {
   double again_after_rad = radians(30.0);  ///< or turned, rad; > 0
 };
 
-/// Slides a pose of the coarse lattice to where the scan fits.
+/// Refines a pose of the coarse lattice to where the scan fits.
 [[nodiscard]] Pose2 settled(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, const Pose2& pose);
 
 class GlobalSearch {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which particles belong together: those in the same or neighbouring cells of position and heading form a hypothesis.
-// The heaviest one is what the robot believes.
+// Clusters of particles: those in the same or in neighbouring cells of position and heading belong together. The
+// heaviest cluster is the filter's estimate.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pose to start from: given by a person, or remembered from the last run and to be checked against the first scans.
-// And what is made of one that cannot be: inside a wall, or outside the map.
+// The pose to start from: given by a person and believed, or remembered from the last run and checked against the first
+// scans. A pose inside an obstacle or outside the map is moved or refused.
 #pragma once
 
 #include <cstdint>

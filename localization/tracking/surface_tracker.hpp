@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The believed pose from scan to scan while it is one Gaussian: carried by the wheels, corrected at keyframes by the
-// surfaces in view (offset_filter.hpp). It leads where straight surfaces explain the scans, and the particles rest
-// meanwhile; where they cease to, the particles go on from where it stands.
+// Tracks the believed pose by surfaces, as one Gaussian: predicted by the calibrated wheels, corrected at keyframes by
+// the surfaces in view (offset_filter.hpp). It leads where straight surfaces explain the scans, and the particles rest
+// meanwhile; where they cease to, the particles go on from its pose.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows one believed place from scan to scan: the particles are moved, weighed and drawn anew at an update, carried
-// along by the wheels in between, and the scan slides the answer to where it fits best. Knows nothing of other places
-// and never asks whether the pose is right (hypothesis_tracker.hpp, judgement.hpp).
+// Tracks one believed pose from scan to scan: particles are moved, weighed and resampled at an update, the pose filter
+// predicts in between, and each scan refines the pose. It knows no other hypotheses and does not ask whether the pose
+// is right (hypothesis_tracker.hpp, judgement.hpp).
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// May M_k be written? Only while the localizer's belief has one mode and P(pose right) holds. Looks at every tracked
-// scan; says open or shut and why, notices when the pose proves to have been wrong, and counts the time shut by reason:
-// a gate that stays shut is a failure too.
+// Decides whether M_k may be written: only while the localizer's belief has one mode and P(pose right) is high. Looks
+// at every tracked scan; tells whether it is open and why not, detects when the pose proves to have been wrong, and
+// counts the time shut by reason, for a gate that stays shut is a failure too.
 #pragma once
 
 #include <array>

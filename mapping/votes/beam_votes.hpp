@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a keyframe's beams vote, block by block: new where they end off the map, gone where they went through what it
-// has, and against both where they found it as it is. One vote a block and question.
+// The votes of a keyframe's beams on blocks of cells: "something is new here" where they end off the map, "something is
+// gone here" where they went through what it has, and against both where they found it as it is. One vote for each
+// block and question.
 #pragma once
 
 #include <cstdint>
