@@ -55,7 +55,7 @@ struct Pipeline::State {
                                           // journaled; of an order its sender is told
   Channel<MapWork> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
-  Channel<std::shared_ptr<const TemporaryThings>> things{8};  // delta → localization: offered again at the next scan
+  Channel<std::shared_ptr<const TransientObstacles>> transients{8};  // delta → localization: offered again next scan
   Channel<control::Command> commands{16};       // control → localization: the newest command, and its sender is told
   Channel<navigation::WanderParams> wander{4};  // whoever reloads → localization: refused, and who asked is told
 
@@ -67,8 +67,8 @@ struct Pipeline::State {
   std::unique_ptr<PoseStream> poses;              // of each scan → programs on this machine; may be null
   Recorder recorder;                              // bytes, decisions, lines → disk
   IoStage io;                                     // bytes → Odometry, Scan
-  LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
-  DeltaStage delta;                // TrackedScan → ScanSet, TemporaryThings
+  LocalizationStage localization;  // Odometry, Scan, MapRevision, transients, Command → TrackedScan, DriveCommand
+  DeltaStage delta;                // TrackedScan → ScanSet, TransientObstacles
   MapStage map;                    // ScanSet, MapOrder → MapRevision
 
   void tell(const control::CommandOutcome& outcome) {
@@ -133,7 +133,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                    options.first_map,
                    {.sensors = sensors,
                     .revisions = revisions,
-                    .things = things,
+                    .transients = transients,
                     .commands = commands,
                     .wander = wander,
                     .tracked_scans = tracked_scans,
@@ -149,7 +149,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
       delta{settings,
             {.work = tracked_scans,
              .sets = sets,
-             .things = things,
+             .transients = transients,
              .recorder = recorder.from_awareness(),
              .telemetry = telemetry,
              .log = options.log,

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "mapping/evidence/evidence_phase.hpp"
 #include "mapping/gate/gated_sets.hpp"
 #include "mapping/paper/delta_phase.hpp"
@@ -55,7 +55,7 @@ class StoreScan {
   [[nodiscard]] const Awareness& awareness() const;
   /// What is different now and not map (evidence alone): the newest snapshot, another one only where something has
   /// changed. Null until there was something; empty while the pose is in doubt.
-  [[nodiscard]] const std::shared_ptr<const TemporaryThings>& temporary() const;
+  [[nodiscard]] const std::shared_ptr<const TransientObstacles>& transients() const;
 
  private:
   struct State;

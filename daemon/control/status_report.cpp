@@ -30,9 +30,9 @@ Json belief_json(const EstimateGauges& estimate) {
   json["stable"] = counts_json(estimate.stable.value());
   json["elsewhere"] = counts_json(estimate.elsewhere.value());
   json["rival"] = nullptr;
-  if (const double share = estimate.rival_share.value(); share > 0.0) {
+  if (const double share = estimate.other_share.value(); share > 0.0) {
     json["rival"] =
-        pose_json(estimate.rival_x_m.value(), estimate.rival_y_m.value(), estimate.rival_heading_rad.value());
+        pose_json(estimate.other_x_m.value(), estimate.other_y_m.value(), estimate.other_heading_rad.value());
     json["rival"]["share"] = share;
   }
   return json;
@@ -124,7 +124,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                    {"open", t.in_phase.value()},
                    {"stored_scans", t.stored_scans.value()},
                    {"r_d", t.r_d.value()}};
-  json["temporary"] = {{"standing_blocks", t.things_standing.value()}, {"gone_blocks", t.things_gone.value()}};
+  json["temporary"] = {{"standing_blocks", t.transients_standing.value()}, {"gone_blocks", t.transients_gone.value()}};
   json["gate"] = gate_json(t.gate);
   json["calibration"] = calibration_json(t.calibration);
   json["scans"] = t.scans.value();

@@ -125,17 +125,17 @@ std::string scan_json(const LiveScan& scan) {
   return text_of(json);
 }
 
-std::string transient_message(const TemporaryThings* things) {
+std::string transient_message(const TransientObstacles* transients) {
   Json json;
   json["type"] = "transient";
   json["standing"] = Json::array();
   json["gone"] = Json::array();
-  if (things != nullptr) {
-    json["block_m"] = things->blocks.resolution_m;
-    json["origin_m"] = {things->blocks.origin.x(), things->blocks.origin.y()};
-    json["blocks_across"] = things->blocks.width;
-    json["standing"] = blocks_json(things->standing);
-    json["gone"] = blocks_json(things->gone);
+  if (transients != nullptr) {
+    json["block_m"] = transients->blocks.resolution_m;
+    json["origin_m"] = {transients->blocks.origin.x(), transients->blocks.origin.y()};
+    json["blocks_across"] = transients->blocks.width;
+    json["standing"] = blocks_json(transients->standing);
+    json["gone"] = blocks_json(transients->gone);
   }
   return text_of(json);
 }

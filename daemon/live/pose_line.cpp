@@ -16,11 +16,11 @@ Json covariance_json(const PoseCovariance& c) {
 }
 
 Json hypothesis_json(const Belief& belief) {
-  if (belief.rival_share <= 0.0) return nullptr;
-  return {{"x_m", belief.map_from_rival.x},
-          {"y_m", belief.map_from_rival.y},
-          {"heading_rad", belief.map_from_rival.theta},
-          {"share", belief.rival_share}};
+  if (belief.other_share <= 0.0) return nullptr;
+  return {{"x_m", belief.map_from_other.x},
+          {"y_m", belief.map_from_other.y},
+          {"heading_rad", belief.map_from_other.theta},
+          {"share", belief.other_share}};
 }
 
 Json gate_json(const std::optional<mapping::gate::GateReason>& gate) {

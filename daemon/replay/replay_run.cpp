@@ -14,7 +14,7 @@
 #include "daemon/records/recording_decoder.hpp"
 #include "daemon/replay/replay_start.hpp"
 #include "daemon/replay/revision_queue.hpp"
-#include "daemon/replay/things_queue.hpp"
+#include "daemon/replay/transients_queue.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "daemon/steps/map_step.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"
@@ -55,7 +55,7 @@ class Replay {
         store_scan_{job.settings.mapping.store_scan, job.settings.seed},
         map_{job.settings, begun.start},
         revisions_{obeys_ ? &journal_ : nullptr, job.map_delay_s, begun.start.revision},
-        things_{obeys_ ? &journal_ : nullptr},
+        transients_{obeys_ ? &journal_ : nullptr},
         store_{out / "map_store.sqlite", *begun.start.map},
         trajectory_{out / "trajectory.tum"},
         localization_log_{out / "localization.csv"},
@@ -88,7 +88,7 @@ class Replay {
   mapping::StoreScan store_scan_;
   MapStep map_;
   RevisionQueue revisions_;
-  ThingsQueue things_;
+  TransientsQueue transients_;
   mapping::store::MapStore store_;
   LineFile trajectory_;
   LineFile localization_log_;
@@ -154,7 +154,7 @@ void Replay::take(Scan&& scan) {
   {
     const CpuTimer timer{report_.cpu.localization_s};
     while (const auto revision = revisions_.next_before(scan)) localization_.apply(*revision);
-    if (auto things = things_.next_before(scan.number)) localization_.apply(std::move(things));
+    if (auto transients = transients_.next_before(scan.number)) localization_.apply(std::move(transients));
     obey_commands_before(scan);
     tracked = localization_.observe(std::move(scan));
     cost_s = timer.elapsed_s();
@@ -181,7 +181,7 @@ void Replay::obey_commands_before(const Scan& scan) {
     if (command.kind == Decision::Kind::kRelocalized && !is_of_before) localization_.relocalize(command.map_from_robot);
     if (command.kind == Decision::Kind::kMapSet) keep_result(map_.obey(*command.set));
     if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
-    if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
+    if (is_paused_) localization_.apply(std::shared_ptr<const TransientObstacles>{});
     if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
   }
   has_begun_ = true;
@@ -196,7 +196,7 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
   {
     const CpuTimer timer{report_.cpu.awareness_s};
     set = store_scan_.observe(tracked);
-    things_.push(store_scan_.temporary());
+    transients_.push(store_scan_.transients());
   }
   if (!set) return;
   if (set->withdraw_from) return update_map(*set);

@@ -39,7 +39,7 @@ void DeltaStage::run() {
 
 void DeltaStage::look_for_changes(const TrackedScan& tracked) {
   auto set = store_scan_.observe(tracked);
-  offer_things();
+  offer_transients();
   const mapping::Awareness& awareness = store_scan_.awareness();
   wiring_.telemetry.r_d.set(awareness.r_d);
   wiring_.telemetry.in_phase.set(awareness.in_phase);
@@ -58,15 +58,15 @@ void DeltaStage::offer_waiting() {
   while (!waiting_.empty() && wiring_.sets.try_send(std::move(waiting_.front()))) waiting_.pop_front();
 }
 
-void DeltaStage::offer_things() {
-  const std::shared_ptr<const TemporaryThings>& newest = store_scan_.temporary();
+void DeltaStage::offer_transients() {
+  const std::shared_ptr<const TransientObstacles>& newest = store_scan_.transients();
   if (newest == nullptr) return;
-  if (newest->number != things_shown_ && wiring_.show(newest)) things_shown_ = newest->number;
-  if (newest->number == things_sent_) return;
+  if (newest->number != transients_shown_ && wiring_.show(newest)) transients_shown_ = newest->number;
+  if (newest->number == transients_sent_) return;
   const std::uint32_t number = newest->number;
-  wiring_.telemetry.things_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
-  wiring_.telemetry.things_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
-  if (wiring_.things.try_send(std::shared_ptr<const TemporaryThings>{newest})) things_sent_ = number;
+  wiring_.telemetry.transients_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
+  wiring_.telemetry.transients_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
+  if (wiring_.transients.try_send(std::shared_ptr<const TransientObstacles>{newest})) transients_sent_ = number;
 }
 
 void DeltaStage::tell_of_gate() {

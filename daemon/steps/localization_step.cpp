@@ -60,13 +60,15 @@ TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
   count_time(scan.time);
   const auto odometry = odometry_.at(scan.time);
   if (!odometry || !last_odometry_) return {scan.time, last_map_from_robot_};
-  const Pose2 motion = motion_between(last_odometry_->joined_from_robot, odometry->joined_from_robot);
+  const Pose2 motion = motion_between(last_odometry_->continuous_odom_from_robot, odometry->continuous_odom_from_robot);
   return {scan.time, last_map_from_robot_ * motion};
 }
 
 void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(revision); }
 
-void LocalizationStep::apply(std::shared_ptr<const TemporaryThings> things) { localizer_.apply(std::move(things)); }
+void LocalizationStep::apply(std::shared_ptr<const TransientObstacles> transients) {
+  localizer_.apply(std::move(transients));
+}
 
 bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
   const std::uint64_t refused = localizer_.counts().poses_refused;

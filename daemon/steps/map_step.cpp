@@ -44,8 +44,8 @@ MapStep::MapStep(const Settings& settings, StartMap start)
       update_{settings.mapping.update},
       localizer_{settings.localizer},
       newest_{std::move(start)},
-      held_{{.hold_s = settings.mapping.store_scan.evidence.passing.persistence_s,
-             .margin_cells = settings.mapping.update.evidence.added_reach_cells}} {}
+      operator_cells_{{.hold_s = settings.mapping.store_scan.evidence.passing.persistence_s,
+                       .margin_cells = settings.mapping.update.evidence.added_reach_cells}} {}
 
 MapRevision MapStep::publish(Timestamp time, std::vector<CellChange> changes) {
   newest_.map = std::make_shared<const OccupancyGrid>(patched(*newest_.map, changes));
@@ -68,7 +68,7 @@ MapStep::Result MapStep::update(const ScanSet& set) {
   settle(set.settled);
   mapping::scan_set::MapUpdate update = mapping::map_update(*newest_.map, set, update_);
   if (update.accepted()) {
-    update.changes = held_.allowed(std::move(update.changes), set);
+    update.changes = operator_cells_.allowed(std::move(update.changes), set);
     if (update.changes.empty()) update.refusal = mapping::scan_set::Refusal::kSetByOperator;
   }
   Result result{.revision = std::nullopt, .note = note_of(set, update.changes, newest_.map->geometry())};
@@ -93,7 +93,7 @@ MapStep::Result MapStep::obey(const SetCells& wanted) {
     result.note.reason += ": another map";
     return result;
   }
-  held_.hold(geometry, wanted.changes, wanted.order.scan_time);
+  operator_cells_.hold(geometry, wanted.changes, wanted.order.scan_time);
   std::vector<CellChange> changes;
   for (const auto& [cell, before, after] : wanted.changes) {
     const CellState now = (*newest_.map)[cell];

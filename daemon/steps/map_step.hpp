@@ -15,7 +15,7 @@
 #include "daemon/records/map_order.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/localization_step.hpp"
-#include "mapping/gate/held_cells.hpp"
+#include "mapping/gate/operator_cells.hpp"
 
 namespace deltamap::daemon {
 
@@ -54,8 +54,8 @@ class MapStep {
   mapping::MapUpdateParams update_;
   localization::LocalizerParams localizer_;
   StartMap newest_;
-  std::deque<Provisional> provisional_;  // oldest first
-  mapping::gate::HeldCells held_;        // that an operator has set
+  std::deque<Provisional> provisional_;          // oldest first
+  mapping::gate::OperatorCells operator_cells_;  // that an operator has set
 };
 
 }  // namespace deltamap::daemon

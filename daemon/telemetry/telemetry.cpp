@@ -69,10 +69,10 @@ void EstimateGauges::set(const Estimate& estimate) {
   verdict.set(static_cast<std::uint8_t>(belief.verdict));
   stable.set(belief.stable);
   elsewhere.set(belief.elsewhere);
-  rival_share.set(belief.rival_share);
-  rival_x_m.set(belief.map_from_rival.x);
-  rival_y_m.set(belief.map_from_rival.y);
-  rival_heading_rad.set(belief.map_from_rival.theta);
+  other_share.set(belief.other_share);
+  other_x_m.set(belief.map_from_other.x);
+  other_y_m.set(belief.map_from_other.y);
+  other_heading_rad.set(belief.map_from_other.theta);
 }
 
 void CalibrationGauges::set(const std::optional<localization::motion::DriveCalibration>& calibration) {

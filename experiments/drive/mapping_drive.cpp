@@ -39,8 +39,8 @@ Mapped MappingDrive::next() {
   last_pose_ = tracked.estimate.map_from_robot;
   const auto set = settings_.mapping.enabled ? store_scan_->observe(tracked) : std::nullopt;
   mapped.awareness = store_scan_->awareness();
-  if (things_ != store_scan_->temporary()) localizer_->apply(things_ = store_scan_->temporary());
-  mapped.things = things_;
+  if (transients_ != store_scan_->transients()) localizer_->apply(transients_ = store_scan_->transients());
+  mapped.transients = transients_;
   const double aware_s = daemon::thread_cpu_s();
   mapped.costs.awareness_s = aware_s - localized_s;
   if (!set) return mapped;

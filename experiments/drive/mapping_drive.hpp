@@ -27,10 +27,10 @@ struct Mapped {
   Pose2 map_from_robot;  ///< the truth
   Estimate estimate;
   mapping::Awareness awareness;
-  std::shared_ptr<const TemporaryThings> things;  ///< the temporary layer after this scan; may be null
-  TrackedScan tracked;                            ///< what all of that was made from
-  std::optional<daemon::MapStep::Result> update;  ///< what became of the Δ-phase that this scan closed
-  std::vector<simulation::Change> changes;        ///< since the last scan
+  std::shared_ptr<const TransientObstacles> transients;  ///< the transient layer after this scan; may be null
+  TrackedScan tracked;                                   ///< what all of that was made from
+  std::optional<daemon::MapStep::Result> update;         ///< what became of the Δ-phase that this scan closed
+  std::vector<simulation::Change> changes;               ///< since the last scan
   std::vector<simulation::MoverEvent> events;
   int slips = 0;             ///< since the last scan
   simulation::Bodies about;  ///< who moves or stands about, and doors, now
@@ -61,7 +61,7 @@ class MappingDrive {
   std::optional<localization::Localizer> localizer_;
   std::optional<mapping::StoreScan> store_scan_;
   std::optional<daemon::MapStep> map_;
-  std::shared_ptr<const TemporaryThings> things_;
+  std::shared_ptr<const TransientObstacles> transients_;
   std::optional<Timestamp> first_;
   Pose2 last_pose_;
 };

@@ -73,7 +73,7 @@ VerdictScans verdict_scans(const VerdictPlace& place, const localization::belief
                scan.map_from_robot.y, scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
                static_cast<double>(scan.estimate.state), belief.pose_right, belief.map_wrong,
                static_cast<double>(belief.verdict), differs ? 1.0 : 0.0, static_cast<double>(belief.stable.expected),
-               static_cast<double>(belief.stable.fit), belief.rival_share});
+               static_cast<double>(belief.stable.fit), belief.other_share});
   }
   VerdictScans answer{std::move(scans), place.oracle->ambiguity(views, pair.drive().surfaces(), run.max_range_m)};
   const std::size_t needed = place.oracle->views_needed(views, pair.drive().surfaces(), run.max_range_m, answer.path);

@@ -85,8 +85,8 @@ class MappingWatch {
   OccupancyGrid surfaces_;       // all that stands now, passing things too
   OccupancyGrid ever_surfaces_;  // all that has ever stood in M_0 and the world, without what passes
   ChangeFollowing by_map_;
-  ChangeFollowing by_layer_;  // M_k and the temporary layer over it
-  std::shared_ptr<const TemporaryThings> things_;
+  ChangeFollowing by_layer_;  // M_k and the transient layer over it
+  std::shared_ptr<const TransientObstacles> transients_;
   OverrideMap override_;
   ScanTable course_;
   ErrorCourse errors_;

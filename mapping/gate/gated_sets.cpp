@@ -12,7 +12,7 @@ constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late
 
 void GatedSets::observe(const TrackedScan& tracked) {
   now_ = tracked.scan.time;
-  rival_share_ = tracked.estimate.belief.rival_share;
+  rival_share_ = tracked.estimate.belief.other_share;
   gate_.observe(tracked);
   if (params_.enabled && gate_.has_proven_wrong()) withdraw(tracked);
 }
@@ -37,7 +37,7 @@ void GatedSets::withdraw(const TrackedScan& tracked) {
 bool GatedSets::waits_to_vote(const Estimate& estimate) const {
   const GateReason why = gate_.reason();
   return !lets_vote() && !gate_.is_distrusted() && estimate.belief.pose_right >= kSure &&
-         (why == GateReason::kMisfit || why == GateReason::kConfirming || why == GateReason::kRival);
+         (why == GateReason::kInlierDrop || why == GateReason::kConfirming || why == GateReason::kOtherHypothesis);
 }
 
 void GatedSets::take(std::optional<ScanSet> set, const TrackedScan& tracked) {

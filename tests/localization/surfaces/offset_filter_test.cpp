@@ -10,7 +10,7 @@
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "localization/tracking/surface_track.hpp"
+#include "localization/tracking/surface_tracker.hpp"
 #include "tests/support/container_hall.hpp"
 
 namespace deltamap::localization::surfaces {
@@ -283,13 +283,13 @@ double worst_among_shifted_m(bool follow_surfaces) {
   return drive.worst_m();
 }
 
-TEST(SurfaceTrack, IsNotLedAstrayByContainersThatWereShifted) {
+TEST(SurfaceTracker, IsNotLedAstrayByContainersThatWereShifted) {
   const double by_surfaces_m = worst_among_shifted_m(true);
   EXPECT_LT(by_surfaces_m, 0.06);
   EXPECT_LT(by_surfaces_m, 0.5 * worst_among_shifted_m(false));
 }
 
-TEST(SurfaceTrack, HoldsThePoseInAHallThatIsAsItWas) {
+TEST(SurfaceTracker, HoldsThePoseInAHallThatIsAsItWas) {
   Drive drive{test::containers_in_order(), true};
   drive.go(3.0, 0.0);
   drive.forget_worst();
@@ -298,7 +298,7 @@ TEST(SurfaceTrack, HoldsThePoseInAHallThatIsAsItWas) {
   EXPECT_EQ(drive.estimate().belief.verdict, PoseVerdict::kRight);
 }
 
-TEST(SurfaceTrack, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongTheAisle) {
+TEST(SurfaceTracker, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongTheAisle) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   const double deviation_m = std::sqrt(drive.estimate().covariance(0, 0));
@@ -308,7 +308,7 @@ TEST(SurfaceTrack, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongThe
   EXPECT_LT(std::sqrt(drive.estimate().covariance(0, 0)), deviation_m + 0.03);
 }
 
-TEST(SurfaceTrack, FindsThePoseAgainAfterASlip) {
+TEST(SurfaceTracker, FindsThePoseAgainAfterASlip) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   drive.slip({-0.1, 0.0, radians(5.0)});
@@ -316,7 +316,7 @@ TEST(SurfaceTrack, FindsThePoseAgainAfterASlip) {
   EXPECT_LT(drive.error_m(), 0.05);
 }
 
-TEST(SurfaceTrack, FindsThePoseAtOnceAfterALargeSlip) {
+TEST(SurfaceTracker, FindsThePoseAtOnceAfterALargeSlip) {
   for (const Pose2& slip : {Pose2{-0.3, 0.0, 0.0}, Pose2{0.0, 0.0, 0.15}, Pose2{0.2, 0.0, -0.12}}) {
     Drive drive{test::containers_in_order(), true};
     drive.go(5.0, 0.0);
@@ -326,7 +326,7 @@ TEST(SurfaceTrack, FindsThePoseAtOnceAfterALargeSlip) {
   }
 }
 
-TEST(SurfaceTrack, FindsASlipThatLooksLikeAMovedWallOnceOtherSurfacesTell) {
+TEST(SurfaceTracker, FindsASlipThatLooksLikeAMovedWallOnceOtherSurfacesTell) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   drive.slip({0.3, 0.0, 0.0});  // along the aisle: only the wall at its end is not where it was
@@ -336,7 +336,7 @@ TEST(SurfaceTrack, FindsASlipThatLooksLikeAMovedWallOnceOtherSurfacesTell) {
   EXPECT_LT(drive.error_m(), 0.05);
 }
 
-TEST(SurfaceTrack, TakesASlipForNoChangeOfTheHall) {
+TEST(SurfaceTracker, TakesASlipForNoChangeOfTheHall) {
   // Of four containers one has been shifted before: where it stands is known when the wheels slip.
   Drive drive{test::containers_in_order(), true};
   drive.go(3.0, 0.0);
@@ -349,15 +349,15 @@ TEST(SurfaceTrack, TakesASlipForNoChangeOfTheHall) {
   EXPECT_LT(drive.error_m(), 0.06);
 }
 
-TEST(SurfaceTrack, LeavesAPoseThatIsNotSureToTheParticles) {
+TEST(SurfaceTracker, LeavesAPoseThatIsNotSureToTheParticles) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   drive.be_blind(20.0, {1.2, 0.0, 0.1});
   drive.go(2.0, 0.0);
   EXPECT_LT(drive.error_m(), 0.06);
-  EXPECT_FALSE(tracking::SurfaceTrack::is_one_place(Eigen::Vector3d{0.04, 0.0, 0.0}.asDiagonal().toDenseMatrix()));
-  EXPECT_FALSE(tracking::SurfaceTrack::is_one_place(Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal().toDenseMatrix()));
-  EXPECT_TRUE(tracking::SurfaceTrack::is_one_place(Eigen::Vector3d{1e-3, 1e-3, 1e-4}.asDiagonal().toDenseMatrix()));
+  EXPECT_FALSE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{0.04, 0.0, 0.0}.asDiagonal().toDenseMatrix()));
+  EXPECT_FALSE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{1e-3, 1e-3, 1e-4}.asDiagonal().toDenseMatrix()));
 }
 
 /// A robot by a fixed round through the aisles, whose scans are the filter's alone.
