@@ -89,7 +89,7 @@ class Replay {
   MapStep map_;
   RevisionQueue revisions_;
   ThingsQueue things_;
-  mapping::MapStore store_;
+  mapping::store::MapStore store_;
   LineFile trajectory_;
   LineFile localization_log_;
   LineFile changes_;

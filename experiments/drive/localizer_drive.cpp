@@ -9,7 +9,7 @@ namespace deltamap::experiments {
 
 LocalizerDrive::LocalizerDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
                                const localization::LocalizerParams& localizer, std::shared_ptr<const OccupancyGrid> map,
-                               std::optional<localization::InitialPose> initial_pose)
+                               std::optional<localization::particles::InitialPose> initial_pose)
     : drive_{scenario, drive}, localizer_{localizer, std::move(map), initial_pose, drive.seed} {}
 
 Followed LocalizerDrive::next() {

@@ -24,7 +24,7 @@ class LocalizerDrive {
  public:
   LocalizerDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
                  const localization::LocalizerParams& localizer, std::shared_ptr<const OccupancyGrid> map,
-                 std::optional<localization::InitialPose> initial_pose);
+                 std::optional<localization::particles::InitialPose> initial_pose);
 
   [[nodiscard]] Followed next();
   /// The last scan as the localizer handed it on.

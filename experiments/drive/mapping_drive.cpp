@@ -12,7 +12,7 @@ MappingDrive::MappingDrive(const simulation::Scenario& scenario, const simulatio
                            bool knows_start)
     : settings_{settings}, drive_{scenario, drive}, last_pose_{drive_.map_from_robot()} {
   settings_.seed = drive.seed;
-  const auto start = knows_start ? std::optional{localization::InitialPose{last_pose_}} : std::nullopt;
+  const auto start = knows_start ? std::optional{localization::particles::InitialPose{last_pose_}} : std::nullopt;
   localizer_.emplace(settings_.localizer, first_map, start, settings_.seed);
   store_scan_.emplace(settings_.mapping.store_scan, settings_.seed);
   map_.emplace(settings_, daemon::StartMap{.map = std::move(first_map)});
@@ -51,9 +51,9 @@ Mapped MappingDrive::next() {
 }
 
 void MappingDrive::restart() {
-  const localization::StabilityRecord stability = localizer_->stability();
-  const localization::InitialPose kept{last_pose_, settings_.memory.position_deviation_m,
-                                       settings_.memory.heading_deviation_rad, true};
+  const localization::belief::StabilityRecord stability = localizer_->stability();
+  const localization::particles::InitialPose kept{last_pose_, settings_.memory.position_deviation_m,
+                                                  settings_.memory.heading_deviation_rad, true};
   const std::uint64_t seed = settings_.seed + ++starts_;
   localizer_.emplace(settings_.localizer, map_->map(), kept, seed);
   (void)localizer_->restore(stability);

@@ -105,7 +105,7 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
   drive.seed = seed;
   drive.route.round = lap();
   LocalizerDrive pair{scenario, drive, localizer, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+                      localization::particles::InitialPose{scenario.robot.map_from_start}};
   const simulation::RayCaster as_mapped{scenario.world};
   Indicators indicators{seed};
   Outcome outcome;

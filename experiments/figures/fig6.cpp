@@ -9,7 +9,7 @@
 #include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/localizer_variants.hpp"
 #include "experiments/registry.hpp"
-#include "mapping/awareness/delta_phase.hpp"
+#include "mapping/paper/delta_phase.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -46,7 +46,7 @@ const std::array<Path, 6>& paths() {
 ScanTable empty_table() { return ScanTable{{"t_s", "n_eff_share", "turn_rate_rad_per_s", "tracking"}}; }
 
 std::vector<std::pair<std::string, double>> numbers_of(const ScanTable& scans) {
-  const double gate = mapping::awareness::DeltaPhaseParams{}.least_n_eff_share;
+  const double gate = mapping::paper::DeltaPhaseParams{}.least_n_eff_share;
   const std::vector<double> shares = scans.column("n_eff_share");
   const std::vector<double> rates = scans.column("turn_rate_rad_per_s");
   std::vector<double> turning;
@@ -75,7 +75,7 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   localization::LocalizerParams params = variant.params;
   params.follow_surfaces = false;  // N_eff is the particles'; where surfaces lead they rest
   LocalizerDrive pair{scenario, drive, params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+                      localization::particles::InitialPose{scenario.robot.map_from_start}};
   if (path.changes) (void)pair.drive().change_many(kChangedShare, busy_forklift(1.0));
   if (path.turn_rad_per_s) pair.drive().hold({.turn_rate_rad_per_s = *path.turn_rad_per_s});
   const double settle_s = std::min(kSettle_s, 0.5 * 60.0 * minutes);

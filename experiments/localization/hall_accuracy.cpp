@@ -101,7 +101,7 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& set
   drive.seed = seed;
   drive.max_range_m = range_m;
   LocalizerDrive pair{scenario, drive, setting.params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+                      localization::particles::InitialPose{scenario.robot.map_from_start}};
   Outcome outcome;
   outcome.scans = empty_table();
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {

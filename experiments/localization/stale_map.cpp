@@ -45,7 +45,7 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   drive.max_range_m = range_m;
   drive.forklift = scenario.forklift;
   LocalizerDrive pair{scenario, drive, variant.params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+                      localization::particles::InitialPose{scenario.robot.map_from_start}};
   Outcome outcome;
   outcome.scans = empty_table();
   std::size_t changes = 0;

@@ -84,10 +84,10 @@ TEST_P(RealLogs, AreFollowedWithinTheFiguresThatWePromise) {
   const Pose2 laser_from_robot{-real.laser_ahead_m, 0.0, 0.0};
   LocalizerParams params;
   params.particles.min = 500;
-  std::optional<InitialPose> initial;
+  std::optional<particles::InitialPose> initial;
   if (real.initial_pose_given) {
     params.particles.max = 500;
-    initial = InitialPose{reference.front().map_from_laser * laser_from_robot};
+    initial = particles::InitialPose{reference.front().map_from_laser * laser_from_robot};
   }
   Localizer localizer{params, std::make_shared<const OccupancyGrid>(*map), initial, real.seed};
   test::CarmenFeed feed{unpacked(log, folder.path()), real.laser_ahead_m};

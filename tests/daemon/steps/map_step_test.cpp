@@ -101,7 +101,7 @@ TEST_F(Withdrawal, IsNotDoneTwice) {
 
 TEST_F(Withdrawal, StandsInTheMapStore) {
   const test::TemporaryFolder folder;
-  mapping::MapStore store{folder.path() / "store.sqlite", hall};
+  mapping::store::MapStore store{folder.path() / "store.sqlite", hall};
   keep(store, change(with_box), step.method());
   ASSERT_EQ(store.newest(), step.revision());
   keep(store, step.update(order(Timestamp::min(), time_s + 1.0)), step.method());
