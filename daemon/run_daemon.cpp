@@ -20,21 +20,21 @@
 #include "daemon/console.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/first_map.hpp"
-#include "daemon/kept_pose.hpp"
-#include "daemon/kept_stability.hpp"
-#include "daemon/output_place.hpp"
-#include "daemon/outputs.hpp"
+#include "daemon/kept/kept_pose.hpp"
+#include "daemon/kept/kept_stability.hpp"
+#include "daemon/maps/store_opening.hpp"
+#include "daemon/outputs/output_place.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/outputs/state_folders.hpp"
 #include "daemon/pipeline.hpp"
-#include "daemon/service.hpp"
-#include "daemon/settings.hpp"
-#include "daemon/settings_documents.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/settings/settings_documents.hpp"
+#include "daemon/settings/start_error.hpp"
 #include "daemon/start_banner.hpp"
-#include "daemon/start_error.hpp"
-#include "daemon/state_folders.hpp"
-#include "daemon/stop_signals.hpp"
-#include "daemon/store_opening.hpp"
-#include "daemon/version.hpp"
-#include "mapping/store_error.hpp"
+#include "daemon/system/service.hpp"
+#include "daemon/system/stop_signals.hpp"
+#include "daemon/telemetry/version.hpp"
+#include "mapping/store/store_error.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -90,7 +90,7 @@ void remember_pose(const Settings& settings, Pipeline::Options& options, Console
 }
 
 /// What the runs before have learned; of cells that were rewritten since, nothing.
-void remember_stability(const Settings& settings, const mapping::MapStore& store, Pipeline::Options& options,
+void remember_stability(const Settings& settings, const mapping::store::MapStore& store, Pipeline::Options& options,
                         Console& console) {
   auto answer = read_kept_stability(memory_places(settings.map.store).stability, options.first_map);
   if (!answer.why_not.empty()) console.log(LogLevel::kWarn, "stability is earned anew: " + answer.why_not);
@@ -98,7 +98,7 @@ void remember_stability(const Settings& settings, const mapping::MapStore& store
   std::vector<CellChange> changes;
   try {
     changes = changes_between(store.grid(answer.kept->revision), *options.start.map);
-  } catch (const mapping::StoreError& error) {
+  } catch (const mapping::store::StoreError& error) {
     console.log(LogLevel::kWarn, std::string("stability is earned anew: ") + error.what());
     return;
   }
@@ -172,7 +172,7 @@ void take_store(OpenedStore& opened, const Settings& settings, Pipeline::Options
 std::unique_ptr<Pipeline> begun(const Settings& settings, Pipeline::Options options) {
   try {
     return std::make_unique<Pipeline>(settings, std::move(options));
-  } catch (const control::AlreadyServed&) {
+  } catch (const sockets::AlreadyServed&) {
     throw;
   } catch (const FileInUse&) {
     throw;
