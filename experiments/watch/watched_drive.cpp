@@ -31,6 +31,7 @@ constexpr std::array kMapNumbers{"changes_seen_10s",
                                  "refused",
                                  "cells_written",
                                  "cells_written_astray",
+                                 "cells_withdrawn",
                                  "walls_kept",
                                  "wall_drift_m",
                                  "ghost_cells_at_end"};
