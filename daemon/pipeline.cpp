@@ -273,15 +273,8 @@ RunReport Pipeline::stop() {
   s.end_threads();
   RunReport report;
   const Telemetry& t = s.telemetry;
-  report.scans = {.decoded = t.scans.value(),
-                  .localized = t.localized.value(),
-                  .dropped = t.dropped.value(),
-                  .lost = t.scans_lost.value(),
-                  .odometry = t.odometry.value(),
-                  .odometry_lost = t.odometry_lost.value(),
-                  .tracked_lost = t.tracked_lost.value(),
-                  .sets_lost = t.sets_lost.value(),
-                  .recording_lost = s.recorder.refused()};
+  report.scans = counts_of(t);
+  report.scans.recording_lost = s.recorder.refused();
   report.phases = t.phases_closed.value();
   report.changes = s.map.changes();
   const LocalizationStep& localization = s.localization.step();

@@ -18,7 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double unix_seconds(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
 double milliseconds(double seconds) { return seconds * 1e3; }
 
 Json as_json(const std::optional<drivers::port::LogCut>& cut) {
@@ -48,9 +47,7 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   json["scans"] = scans.decoded;
   json["localized"] = scans.localized;
   json["odometry"] = scans.odometry;
-  json["drops"] = {{"scans_overtaken", scans.dropped},     {"scans_lost", scans.lost},
-                   {"odometry_lost", scans.odometry_lost}, {"tracked_lost", scans.tracked_lost},
-                   {"sets_lost", scans.sets_lost},         {"recording_lost", scans.recording_lost}};
+  for (const auto& [name, count] : drops_of(scans)) json["drops"][name] = count;
   json["delta_phases"] = report.phases;
   Json revisions = Json::array();
   for (const ChangeTally::Revision& revision : report.changes.revisions()) {

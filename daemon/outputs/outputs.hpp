@@ -29,18 +29,6 @@ struct TrajectoryPoint {
 /// One line of trajectory.tum: "t x y 0 0 0 qz qw" and a line end.
 [[nodiscard]] std::string tum_line(const TrajectoryPoint& point);
 
-struct ScanCounts {
-  std::uint64_t decoded = 0;
-  std::uint64_t localized = 0;
-  std::uint64_t dropped = 0;  ///< overtaken by a newer scan
-  std::uint64_t lost = 0;     ///< sensor channel full
-  std::uint64_t odometry = 0;
-  std::uint64_t odometry_lost = 0;
-  std::uint64_t tracked_lost = 0;    ///< localized, but not seen by Δ-awareness
-  std::uint64_t sets_lost = 0;       ///< Δ-phases that found the map thread busy
-  std::uint64_t recording_lost = 0;  ///< chunks of bytes that the recorder could not take
-};
-
 struct StageCpu {
   double decoding_s = 0.0;  ///< live: the whole io thread
   double localization_s = 0.0;
