@@ -277,12 +277,7 @@ RunReport Pipeline::stop() {
   report.scans.recording_lost = s.recorder.refused();
   report.phases = t.phases_closed.value();
   report.changes = s.map.changes();
-  const LocalizationStep& localization = s.localization.step();
-  report.time_lost_s = localization.time_lost_s();
-  report.time_global_s = localization.time_global_s();
-  report.verdict_times = localization.verdict_times();
-  report.localizer = localization.counts();
-  report.recorded_s = localization.covered_s();
+  add_to(report, s.localization.step());
   report.gate_times = s.delta.awareness().gate_times;
   report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.delta_thread->cpu_s(), s.map_thread->cpu_s(),
                 s.recorder_thread->cpu_s()};

@@ -47,7 +47,6 @@ static_assert(std::size(kSampleColumns) == LiveSample::kColumns);
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-
 Json blocks_json(const std::vector<std::uint32_t>& blocks) {
   const auto shown = static_cast<std::ptrdiff_t>(std::min(blocks.size(), kMostBlocks));
   return std::vector<std::uint32_t>(blocks.begin(), blocks.begin() + shown);

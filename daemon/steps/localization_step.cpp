@@ -90,6 +90,14 @@ std::map<std::string, std::uint64_t> LocalizationStep::counts() const {
           {"recoveries", c.recoveries}};
 }
 
+void add_to(RunReport& report, const LocalizationStep& step) {
+  report.time_lost_s = step.time_lost_s();
+  report.time_global_s = step.time_global_s();
+  report.verdict_times = step.verdict_times();
+  report.localizer = step.counts();
+  report.recorded_s = step.covered_s();
+}
+
 double LocalizationStep::covered_s() const { return first_scan_ ? seconds(*last_scan_ - *first_scan_) : 0.0; }
 
 void LocalizationStep::count_time(Timestamp time) {

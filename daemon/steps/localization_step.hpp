@@ -79,4 +79,7 @@ class LocalizationStep {
   VerdictTimes verdict_times_;
 };
 
+/// What the report of a run says of its localizer.
+void add_to(RunReport& report, const LocalizationStep& step);
+
 }  // namespace deltamap::daemon

@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated robot, the localizer that follows it and the mapper that follows the world, in step as in a replay: a
-// revision reaches the localizer before the next scan. And what of all that is true.
+// A simulated robot, the localizer that follows it and the mapper that follows the world, as in a replay: a revision
+// reaches the localizer before the next scan. And what of all that is true.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "daemon/replay/sequential_run.hpp"
 #include "daemon/settings/settings.hpp"
-#include "daemon/steps/map_step.hpp"
-#include "localization/localizer.hpp"
-#include "mapping/store_scan.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::experiments {
-
-/// CPU time that one scan took, s.
-struct StageCosts {
-  double localizer_s = 0.0;
-  double awareness_s = 0.0;
-  double update_s = 0.0;  ///< of the map, and of the localizer's copy
-};
 
 /// One scan of a drive.
 struct Mapped {
@@ -35,8 +26,8 @@ struct Mapped {
   int slips = 0;             ///< since the last scan
   simulation::Bodies about;  ///< who moves or stands about, and doors, now
   Timestamp time;
-  double passed_s = 0.0;  ///< since the drive began
-  StageCosts costs;
+  double passed_s = 0.0;   ///< since the drive began
+  daemon::StageCpu costs;  ///< CPU time that this scan took
 };
 
 class MappingDrive {
@@ -51,17 +42,13 @@ class MappingDrive {
   void restart();
 
   [[nodiscard]] simulation::VirtualDrive& drive() { return drive_; }
-  [[nodiscard]] const OccupancyGrid& map() const { return *map_->map(); }
-  [[nodiscard]] const localization::Localizer& localizer() const { return *localizer_; }
+  [[nodiscard]] const OccupancyGrid& map() const { return *run_->map().map(); }
+  [[nodiscard]] const daemon::LocalizationStep& localization() const { return run_->localization(); }
 
  private:
   daemon::Settings settings_;
-  std::uint64_t starts_ = 0;
   simulation::VirtualDrive drive_;
-  std::optional<localization::Localizer> localizer_;
-  std::optional<mapping::StoreScan> store_scan_;
-  std::optional<daemon::MapStep> map_;
-  std::shared_ptr<const TemporaryThings> things_;
+  std::optional<daemon::SequentialRun> run_;
   std::optional<Timestamp> first_;
   Pose2 last_pose_;
 };

@@ -60,8 +60,8 @@ class CostBook {
  private:
   [[nodiscard]] static ScanCost cost_of(const Mapped& scan) {
     const auto milliseconds = [](double seconds) { return static_cast<float>(1e3 * seconds); };
-    return {milliseconds(scan.costs.localizer_s), milliseconds(scan.costs.awareness_s),
-            milliseconds(scan.costs.update_s), scan.awareness.in_phase || scan.update.has_value()};
+    return {milliseconds(scan.costs.localization_s), milliseconds(scan.costs.awareness_s),
+            milliseconds(scan.costs.map_update_s), scan.awareness.in_phase || scan.update.has_value()};
   }
   std::vector<ScanCost> costs_;
   std::vector<float> memory_;

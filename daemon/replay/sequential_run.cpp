@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/replay/sequential_run.hpp"
+
+#include <utility>
+
+#include "daemon/telemetry/cpu_timer.hpp"
+
+namespace deltamap::daemon {
+
+SequentialRun::SequentialRun(const Settings& settings, const StartMap& start, const Journal* journal,
+                             double map_delay_s)
+    : localization_{settings, start},
+      store_scan_{settings.mapping.store_scan, settings.seed},
+      map_{settings, start},
+      revisions_{journal, map_delay_s, start.revision},
+      things_{journal} {}
+
+void SequentialRun::observe(const Odometry& odometry) {
+  const CpuTimer timer{cpu_.localization_s};
+  localization_.observe(odometry);
+}
+
+void SequentialRun::take_what_is_due(const Scan& scan) {
+  const CpuTimer timer{cpu_.localization_s};
+  while (const auto revision = revisions_.next_before(scan)) localization_.apply(*revision);
+  if (auto things = things_.next_before(scan.number)) localization_.apply(std::move(things));
+}
+
+TrackedScan SequentialRun::observe(Scan scan) {
+  const CpuTimer timer{cpu_.localization_s};
+  return localization_.observe(std::move(scan));
+}
+
+std::optional<ScanSet> SequentialRun::look_for_changes(const TrackedScan& tracked) {
+  const CpuTimer timer{cpu_.awareness_s};
+  std::optional<ScanSet> set = store_scan_.observe(tracked);
+  things_.push(store_scan_.temporary());
+  return set;
+}
+
+MapStep::Result SequentialRun::update_map(const ScanSet& set) {
+  const CpuTimer timer{cpu_.map_update_s};
+  return handed_on(map_.update(set));
+}
+
+MapStep::Result SequentialRun::obey(const SetCells& wanted) {
+  const CpuTimer timer{cpu_.map_update_s};
+  return handed_on(map_.obey(wanted));
+}
+
+MapStep::Result SequentialRun::handed_on(MapStep::Result result) {
+  if (result.revision) revisions_.push(*result.revision);
+  return result;
+}
+
+}  // namespace deltamap::daemon
