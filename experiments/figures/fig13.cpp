@@ -137,17 +137,7 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon
   return outcome;
 }
 
-class Figure13 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig13"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figure 13 of the paper: a room of 10 by 4 m, four boxes of an obstacle taken away and put back";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figure13::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const auto scenario =
       std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "room.yaml"));
   const int seeds = options.repeats.value_or(options.quick ? 1 : 10);
@@ -203,7 +193,7 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
   add("refused Δ-phases a run", "refused", kMean, "", std::nullopt);
 }
 
-Report Figure13::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   TextTable table{"Runs",
                   {"method", "seed", "boxes gone: F1", "stale F1", "boxes back: F1", "cells that differ", "wrong m²",
@@ -231,6 +221,11 @@ Report Figure13::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig13_experiment() { return std::make_unique<Figure13>(); }
+Experiment fig13_experiment() {
+  return {.name = "fig13",
+          .what = "Figure 13 of the paper: a room of 10 by 4 m, four boxes of an obstacle taken away and put back",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

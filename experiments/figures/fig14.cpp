@@ -158,18 +158,7 @@ Outcome measured_drive(const simulation::Scenario& scenario, const daemon::Setti
   return outcome;
 }
 
-class Figure14 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig14"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figure 14 of the paper: CPU and memory over time, inside and outside Δ-phases";
-  }
-  [[nodiscard]] bool measures_time() const override { return true; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figure14::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const auto scenario =
       std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
   const int seeds = options.repeats.value_or(1);
@@ -239,7 +228,7 @@ Chart chart_of(const std::vector<Outcome>& outcomes, const std::string& title, c
   return chart;
 }
 
-Report Figure14::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string method : {"evidence", "paper"}) {
     if (!std::isnan(mean_number(outcomes, method, "scans"))) add_figures(report, outcomes, method);
@@ -254,6 +243,12 @@ Report Figure14::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig14_experiment() { return std::make_unique<Figure14>(); }
+Experiment fig14_experiment() {
+  return {.name = "fig14",
+          .what = "Figure 14 of the paper: CPU and memory over time, inside and outside Δ-phases",
+          .runs = runs_of,
+          .report = report_of,
+          .times = Experiment::Times::kMachine};
+}
 
 }  // namespace deltamap::experiments

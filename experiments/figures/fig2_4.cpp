@@ -133,17 +133,7 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
   return outcome;
 }
 
-class Figures2To4 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig2-4"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figures 2 to 4 of the paper: w_avg, w_fast, w_slow and r_d on a lap with and without a change";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figures2To4::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const auto scenario =
       std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
   const localization::LocalizerParams localizer = localizer_variants(options.localizer).front().params;
@@ -250,7 +240,7 @@ Chart averages(const Outcome& outcome, const std::string& title) {
   return chart;
 }
 
-Report Figures2To4::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   report.figures = figures_of(outcomes);
   Chart figure2{"Figure 2: w_avg without and with a change", "time, s", "w_avg", {}};
@@ -268,6 +258,11 @@ Report Figures2To4::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig2_4_experiment() { return std::make_unique<Figures2To4>(); }
+Experiment fig2_4_experiment() {
+  return {.name = "fig2-4",
+          .what = "Figures 2 to 4 of the paper: w_avg, w_fast, w_slow and r_d on a lap with and without a change",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

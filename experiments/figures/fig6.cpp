@@ -93,17 +93,7 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   return outcome;
 }
 
-class Figure6 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig6"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figure 6 of the paper: N_eff straight past changes, turning and on a winding path, and what it rejects";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figure6::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const auto scenario =
       std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
   const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
@@ -149,7 +139,7 @@ void add_figures(Report& report, const std::string& variant, const Path& path, c
   }
 }
 
-Report Figure6::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   const std::string first_seed = outcomes.front().label("seed");
   for (const std::string variant : {"500x60", "delivered"}) {
@@ -175,6 +165,12 @@ Report Figure6::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig6_experiment() { return std::make_unique<Figure6>(); }
+Experiment fig6_experiment() {
+  return {
+      .name = "fig6",
+      .what = "Figure 6 of the paper: N_eff straight past changes, turning and on a winding path, and what it rejects",
+      .runs = runs_of,
+      .report = report_of};
+}
 
 }  // namespace deltamap::experiments

@@ -116,17 +116,7 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& set
   return outcome;
 }
 
-class HallAccuracy : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "hall"; }
-  [[nodiscard]] std::string what() const override {
-    return "The localizer alone in the paper's hall, nothing changes, with a laser of 80 m and of 8 m";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> HallAccuracy::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const auto scenario =
       std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
   const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
@@ -181,7 +171,7 @@ Series errors_over_time(const Outcome& outcome, const std::string& name) {
   return series;
 }
 
-Report HallAccuracy::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string setting : {"500x60", "delivered"}) {
     for (const std::string range : {"80", "8"}) {
@@ -204,6 +194,11 @@ Report HallAccuracy::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> hall_experiment() { return std::make_unique<HallAccuracy>(); }
+Experiment hall_experiment() {
+  return {.name = "hall",
+          .what = "The localizer alone in the paper's hall, nothing changes, with a laser of 80 m and of 8 m",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

@@ -66,17 +66,7 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   return outcome;
 }
 
-class StaleMap : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "stale-map"; }
-  [[nodiscard]] std::string what() const override {
-    return "The paper's hall, a container pushed aside by at most 0.8 m every minute, the map never updated";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> StaleMap::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const auto scenario =
       std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall_shifts.yaml"));
   const int seeds = options.repeats.value_or(options.quick ? 1 : 3);
@@ -151,7 +141,7 @@ void add_figures(Report& report, const std::string& variant, const std::string& 
   report.figures.push_back({where + "changes of a drive", pooled.mean("changes"), ""});
 }
 
-Report StaleMap::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string variant : {"500x60", "delivered"}) {
     for (const std::string range : {"80", "8"}) {
@@ -176,6 +166,11 @@ Report StaleMap::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> stale_map_experiment() { return std::make_unique<StaleMap>(); }
+Experiment stale_map_experiment() {
+  return {.name = "stale-map",
+          .what = "The paper's hall, a container pushed aside by at most 0.8 m every minute, the map never updated",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

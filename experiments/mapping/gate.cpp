@@ -15,18 +15,7 @@ namespace {
 constexpr std::array kPlaces{"hall", "depot", "changed"};
 constexpr std::array kGates{"gated", "open"};
 
-class Gate : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "gate"; }
-  [[nodiscard]] std::string what() const override {
-    return "A robot that maps while a fork-lift works is carried by one bay or anywhere, or slips: what is written "
-           "while its pose is wrong";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Gate::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
   std::vector<Run> runs;
   for (const std::string place : kPlaces) {
@@ -109,7 +98,7 @@ Chart course_of(const Kind& kind, const std::string& title) {
   return chart;
 }
 
-Report Gate::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   TextTable table{
       "By place and event, all seeds",
@@ -159,6 +148,13 @@ Report Gate::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> gate_experiment() { return std::make_unique<Gate>(); }
+Experiment gate_experiment() {
+  return {.name = "gate",
+          .what =
+              "A robot that maps while a fork-lift works is carried by one bay or anywhere, or slips: what is written "
+              "while its pose is wrong",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments
