@@ -27,6 +27,9 @@ struct Options {
   std::optional<int> repeats{};               ///< seeds or runs a cell, in place of the experiment's, > 0
   localization::LocalizerParams localizer{};  ///< as the daemon would have it
   daemon::MappingSettings mapping{};          ///< the same
+
+  /// Of one cell: as many as are asked for; else `whole`, one where it is to be quick.
+  [[nodiscard]] std::vector<std::uint64_t> seeds(int whole) const;
 };
 
 struct Picture {

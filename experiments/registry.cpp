@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace deltamap::experiments {
@@ -14,6 +15,12 @@ std::vector<Experiment> experiments() {
                               gate_experiment(),   shifted_hall_experiment(), unseen_experiment()};
   for (Experiment& one : changing_world_experiments()) all.push_back(std::move(one));
   return all;
+}
+
+std::vector<std::uint64_t> Options::seeds(int whole) const {
+  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(repeats.value_or(quick ? 1 : whole)));
+  std::iota(seeds.begin(), seeds.end(), seed);
+  return seeds;
 }
 
 const std::string& Outcome::label(std::string_view name) const {

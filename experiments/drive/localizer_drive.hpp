@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "experiments/experiment.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "simulation/virtual_drive.hpp"
@@ -38,6 +39,9 @@ class LocalizerDrive {
   std::optional<Timestamp> first_;
   TrackedScan tracked_;
 };
+
+/// Throws std::runtime_error where it cannot be read.
+[[nodiscard]] std::shared_ptr<const simulation::Scenario> scenario_of(const Options& options, const std::string& file);
 
 /// M_0 of a scenario as the experiments use it, 0.05 m a cell.
 [[nodiscard]] std::shared_ptr<const OccupancyGrid> first_map(const simulation::Scenario& scenario);

@@ -138,14 +138,11 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "room.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 10);
+  const auto scenario = scenario_of(options, "room.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 6.0 : kWhole_min);
   std::vector<Run> runs;
   for (const std::string method : {"evidence", "paper"}) {
-    for (int i = 0; i < seeds; ++i) {
-      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+    for (const std::uint64_t seed : options.seeds(10)) {
       runs.push_back({method + "-seed" + std::to_string(seed), [=, settings = settings_of(options, method)] {
                         return take_out_and_put_back(*scenario, settings, method, seed, minutes);
                       }});

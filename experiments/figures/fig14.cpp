@@ -159,13 +159,10 @@ Outcome measured_drive(const simulation::Scenario& scenario, const daemon::Setti
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
-  const int seeds = options.repeats.value_or(1);
+  const auto scenario = scenario_of(options, "hall.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 10.0 : 120.0);
   std::vector<Run> runs;
-  for (int i = 0; i < seeds; ++i) {
-    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+  for (const std::uint64_t seed : options.seeds(1)) {
     for (const std::string method : {"evidence", "paper"}) {
       runs.push_back({method + "-seed" + std::to_string(seed), [=, settings = settings_of(options, method)] {
                         return measured_drive(*scenario, settings, method, seed, minutes);

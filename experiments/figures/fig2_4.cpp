@@ -134,14 +134,11 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
+  const auto scenario = scenario_of(options, "hall.yaml");
   const localization::LocalizerParams localizer = localizer_variants(options.localizer).front().params;
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
   const double minutes = options.minutes.value_or(kLap_min);
   std::vector<Run> runs;
-  for (int i = 0; i < seeds; ++i) {
-    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+  for (const std::uint64_t seed : options.seeds(5)) {
     for (const bool changes : {false, true}) {
       runs.push_back({std::string{changes ? "changed" : "still"} + "-seed" + std::to_string(seed),
                       [=] { return two_laps(*scenario, localizer, seed, changes, minutes); }});

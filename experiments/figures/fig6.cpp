@@ -94,14 +94,11 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
+  const auto scenario = scenario_of(options, "hall.yaml");
   std::vector<Run> runs;
   for (const LocalizerVariant& variant : localizer_variants(options.localizer)) {
     for (const Path& path : paths()) {
-      for (int i = 0; i < seeds; ++i) {
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+      for (const std::uint64_t seed : options.seeds(5)) {
         const double minutes = options.minutes.value_or(options.quick ? 0.5 * path.minutes : path.minutes);
         runs.push_back({variant.name + "-" + path.name + "-seed" + std::to_string(seed),
                         [=, &path] { return follow(*scenario, variant, path, seed, minutes); }});

@@ -117,15 +117,12 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& set
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
+  const auto scenario = scenario_of(options, "hall.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 2.0 : 10.0);
   std::vector<Run> runs;
   for (const LocalizerVariant& setting : localizer_variants(options.localizer)) {
     for (const double range_m : {80.0, 8.0}) {
-      for (int i = 0; i < seeds; ++i) {
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+      for (const std::uint64_t seed : options.seeds(5)) {
         runs.push_back({setting.name + "-" + text_of(range_m) + "m-seed" + std::to_string(seed),
                         [=] { return follow(*scenario, setting, range_m, seed, minutes); }});
       }

@@ -46,11 +46,9 @@ std::vector<Kind> kinds() {
 
 std::vector<Run> runs_of(const Options& options) {
   std::vector<Run> runs;
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 3);
   const double minutes = options.minutes.value_or(options.quick ? 5.0 : 60.0);
   for (const Kind& kind : kinds()) {
-    for (int i = 0; i < seeds; ++i) {
-      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+    for (const std::uint64_t seed : options.seeds(3)) {
       runs.push_back(
           {kind.name + "-seed" + std::to_string(seed), [=] {
              auto [scenario, drive] = simulation::drawn::shifted_hall(kind.hall, seed);

@@ -67,15 +67,12 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall_shifts.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 3);
+  const auto scenario = scenario_of(options, "hall_shifts.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 5.0 : 60.0);
   std::vector<Run> runs;
   for (const LocalizerVariant& variant : localizer_variants(options.localizer)) {
     for (const double range_m : {80.0, 8.0}) {
-      for (int i = 0; i < seeds; ++i) {
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+      for (const std::uint64_t seed : options.seeds(3)) {
         runs.push_back({variant.name + "-" + text_of(range_m) + "m-seed" + std::to_string(seed),
                         [=] { return follow(*scenario, variant, range_m, seed, minutes); }});
       }

@@ -75,9 +75,7 @@ std::vector<Run> runs_of(const Plan& plan, const Options& options) {
   std::vector<Run> runs;
   for (const Drive& kind : plan.drives) {
     const simulation::Scenario scenario = simulation::read_scenario(options.scenarios / kind.scenario);
-    const int seeds = options.repeats.value_or(options.quick ? 1 : kind.seeds);
-    for (int i = 0; i < seeds; ++i) {
-      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+    for (const std::uint64_t seed : options.seeds(kind.seeds)) {
       for (const std::string& method : kind.methods) {
         MappingRun run{scenario, {}, settings_of(options, method)};
         run.drive.seed = seed;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/mapping/gate_run.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/mapping_run.hpp"
@@ -16,15 +17,12 @@ constexpr std::array kPlaces{"hall", "depot", "changed"};
 constexpr std::array kGates{"gated", "open"};
 
 std::vector<Run> runs_of(const Options& options) {
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
   std::vector<Run> runs;
   for (const std::string place : kPlaces) {
-    const auto scenario =
-        std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / (place + ".yaml")));
+    const auto scenario = scenario_of(options, place + ".yaml");
     for (const PoseEvent event : kPoseEvents) {
       for (const std::string gate : kGates) {
-        for (int i = 0; i < seeds; ++i) {
-          const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+        for (const std::uint64_t seed : options.seeds(5)) {
           const std::string what{name_of(event)};
           GateRun run{*scenario, settings_of(options, "evidence"), event, seed};
           run.settings.mapping.store_scan.gate.enabled = gate == "gated";
