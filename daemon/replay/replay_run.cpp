@@ -164,8 +164,8 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
     return;
   }
   const std::optional<ScanSet> set = run_.look_for_changes(tracked);
+  if (const auto withdrawn = run_.withdraw()) keep_result(*withdrawn);
   if (!set) return;
-  if (set->withdraw_from) return keep_result(run_.update_map(*set));
   ++report_.phases;
   const auto closing = journal_.closing_scan(set->phase);
   const bool is_unknown = !closing && is_cut_;

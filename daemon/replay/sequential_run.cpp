@@ -43,6 +43,12 @@ MapStep::Result SequentialRun::update_map(const ScanSet& set) {
   return handed_on(map_.update(set));
 }
 
+std::optional<MapStep::Result> SequentialRun::withdraw() {
+  if (!store_scan_.withdrawal()) return std::nullopt;
+  const CpuTimer timer{cpu_.map_update_s};
+  return handed_on(map_.withdraw(*store_scan_.withdrawal()));
+}
+
 MapStep::Result SequentialRun::obey(const SetCells& wanted) {
   const CpuTimer timer{cpu_.map_update_s};
   return handed_on(map_.obey(wanted));

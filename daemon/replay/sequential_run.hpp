@@ -34,6 +34,8 @@ class SequentialRun {
   /// What is to be handed to update_map().
   [[nodiscard]] std::optional<ScanSet> look_for_changes(const TrackedScan& tracked);
   [[nodiscard]] MapStep::Result update_map(const ScanSet& set);
+  /// Nothing where the last scan orders nothing back.
+  [[nodiscard]] std::optional<MapStep::Result> withdraw();
   [[nodiscard]] MapStep::Result obey(const SetCells& wanted);
 
   [[nodiscard]] LocalizationStep& localization() { return localization_; }

@@ -43,8 +43,10 @@ Mapped MappingDrive::next() {
   mapped.tracked = run_->observe(std::move(step.scan));
   mapped.estimate = mapped.tracked.estimate;
   last_pose_ = mapped.estimate.map_from_robot;
-  const auto set = settings_.mapping.enabled ? run_->look_for_changes(mapped.tracked) : std::nullopt;
-  if (set) mapped.update = run_->update_map(*set);
+  if (settings_.mapping.enabled) {
+    const auto set = run_->look_for_changes(mapped.tracked);
+    mapped.update = set ? run_->update_map(*set) : run_->withdraw();
+  }
   mapped.awareness = run_->store_scan().awareness();
   mapped.things = run_->store_scan().temporary();
   mapped.costs = between(before, run_->cpu());
