@@ -17,13 +17,12 @@ daemon::StageCpu between(const daemon::StageCpu& before, const daemon::StageCpu&
 }  // namespace
 
 MappingDrive::MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
-                           const daemon::Settings& settings, std::shared_ptr<const OccupancyGrid> first_map,
-                           bool knows_start)
+                           const daemon::Settings& settings, const daemon::StartMap& start, bool knows_start)
     : settings_{settings}, drive_{scenario, drive}, last_pose_{drive_.map_from_robot()} {
   settings_.seed = drive.seed;
   settings_.initial_pose.reset();
   if (knows_start) settings_.initial_pose = last_pose_;
-  run_.emplace(settings_, daemon::StartMap{.map = std::move(first_map)}, nullptr, kMapDelay_s);
+  run_.emplace(settings_, start, nullptr, kMapDelay_s);
 }
 
 Mapped MappingDrive::next() {
@@ -59,6 +58,19 @@ void MappingDrive::restart() {
   settings_.initial_pose.reset();
   ++settings_.seed;
   run_.emplace(settings_, kept, nullptr, kMapDelay_s);
+}
+
+daemon::Settings localizer_alone(const localization::LocalizerParams& params) {
+  daemon::Settings settings;
+  settings.localizer = params;
+  settings.mapping.enabled = false;
+  return settings;
+}
+
+PoseError error_of(const Mapped& scan) {
+  const Pose2& estimate = scan.estimate.map_from_robot;
+  return {estimate.position() - scan.map_from_robot.position(),
+          turn_between(scan.map_from_robot.theta, estimate.theta)};
 }
 
 }  // namespace deltamap::experiments

@@ -32,10 +32,9 @@ struct Mapped {
 
 class MappingDrive {
  public:
-  /// Localizer and mapping of the settings.
+  /// Localizer and mapping of the settings; the robot begins where it is, whether it knows so or not.
   MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
-               const daemon::Settings& settings, std::shared_ptr<const OccupancyGrid> first_map,
-               bool knows_start = true);
+               const daemon::Settings& settings, const daemon::StartMap& start, bool knows_start = true);
 
   [[nodiscard]] Mapped next();
   /// The daemon ends and begins again where it stands: pose, stability and map are kept, all else is forgotten.
@@ -52,5 +51,15 @@ class MappingDrive {
   std::optional<Timestamp> first_;
   Pose2 last_pose_;
 };
+
+/// Of a drive whose map stays as it is.
+[[nodiscard]] daemon::Settings localizer_alone(const localization::LocalizerParams& params);
+
+/// How far the estimate is from the truth.
+struct PoseError {
+  Point2 position{0.0, 0.0};  ///< estimate - truth, m, map frame
+  double heading_rad = 0.0;
+};
+[[nodiscard]] PoseError error_of(const Mapped& scan);
 
 }  // namespace deltamap::experiments

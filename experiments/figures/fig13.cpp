@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/drive/room_changes.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/report/svg_map.hpp"
@@ -98,7 +99,7 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon
   params.max_range_m = kMaxRange_m;
   params.route.round = round_of_the_room();
   params.route.comfort_m = kComfort_m;
-  MappingDrive drive{scenario, params, settings, first};
+  MappingDrive drive{scenario, params, settings, {first}};
   MappingWatch watch{scenario, first, {.range_m = kMaxRange_m}};
   RoomChanges changes{schedule(minutes), scenario, Random{kBoxes + seed}};
   std::optional<Emptied> emptied;

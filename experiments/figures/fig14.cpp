@@ -8,7 +8,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/mapping_run.hpp"
@@ -142,7 +142,7 @@ Outcome measured_drive(const simulation::Scenario& scenario, const daemon::Setti
   (void)malloc_trim(0);  // what earlier runs have left
   const double before_mb = resident_mb();
   {
-    MappingDrive drive{scenario, params, settings, first_map(scenario)};
+    MappingDrive drive{scenario, params, settings, {first_map(scenario)}};
     for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
       const Mapped scan = drive.next();
       passed_s = scan.passed_s;

@@ -5,9 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/lived_in.hpp"
-#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/drive/view_difference.hpp"
 #include "experiments/registry.hpp"
 #include "mapping/store_scan.hpp"
@@ -104,8 +105,7 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
   simulation::VirtualDriveParams drive;
   drive.seed = seed;
   drive.route.round = lap();
-  LocalizerDrive pair{scenario, drive, localizer, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(localizer), {first_map(scenario)}};
   const simulation::RayCaster as_mapped{scenario.world};
   Indicators indicators{seed};
   Outcome outcome;
@@ -116,17 +116,16 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
       is_second = true;
       if (changes) (void)pair.drive().change_many(kChangedShare, busy_forklift(1.0));
     }
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
-    indicators.observe(pair.tracked());
+    indicators.observe(scan.tracked);
     if (!is_second) continue;
     const Pose2 map_from_laser = scan.map_from_robot * scenario.laser.optics.robot_from_laser;
     const mapping::Awareness& paper = indicators.paper();
     outcome.scans.add({passed_s - 60.0 * minutes, scan.estimate.w_avg, paper.w_fast, paper.w_slow, paper.r_d,
                        paper.in_phase ? 1.0 : 0.0, indicators.stored(),
                        differing_share(pair.drive().surfaces(), as_mapped, map_from_laser, kNear_m),
-                       indicators.speaking_beams(), pair.tracked().turn_rate_rad_per_s,
-                       error_of(scan).position.norm()});
+                       indicators.speaking_beams(), scan.tracked.turn_rate_rad_per_s, error_of(scan).position.norm()});
   }
   outcome.labels = {{"world", changes ? "changed" : "still"}, {"seed", std::to_string(seed)}};
   outcome.numbers = numbers_of(outcome.scans);

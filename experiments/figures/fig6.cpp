@@ -5,9 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/lived_in.hpp"
-#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
 #include "mapping/awareness/delta_phase.hpp"
 
@@ -74,18 +75,17 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   drive.route.round = path.round;
   localization::LocalizerParams params = variant.params;
   params.follow_surfaces = false;  // N_eff is the particles'; where surfaces lead they rest
-  LocalizerDrive pair{scenario, drive, params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(params), {first_map(scenario)}};
   if (path.changes) (void)pair.drive().change_many(kChangedShare, busy_forklift(1.0));
   if (path.turn_rad_per_s) pair.drive().hold({.turn_rate_rad_per_s = *path.turn_rad_per_s});
   const double settle_s = std::min(kSettle_s, 0.5 * 60.0 * minutes);
   Outcome outcome;
   outcome.scans = empty_table();
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     if (passed_s < settle_s) continue;
-    outcome.scans.add({passed_s, scan.estimate.n_eff / scan.estimate.particles, pair.tracked().turn_rate_rad_per_s,
+    outcome.scans.add({passed_s, scan.estimate.n_eff / scan.estimate.particles, scan.tracked.turn_rate_rad_per_s,
                        scan.estimate.state == LocalizerState::kTracking ? 1.0 : 0.0});
   }
   outcome.labels = {{"localizer", variant.name}, {"path", path.name}, {"seed", std::to_string(seed)}};

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/localization/weakest_axis.hpp"
 #include "experiments/registry.hpp"
 
@@ -19,7 +20,7 @@ constexpr double kInside1 = 3.841;
 constexpr double kInside2 = 5.991;
 constexpr double kInside3 = 7.815;
 
-std::vector<double> row_of(const Followed& scan, const WeakestAxis& axis) {
+std::vector<double> row_of(const Mapped& scan, const WeakestAxis& axis) {
   const PoseError error = error_of(scan);
   const PoseCovariance& covariance = scan.estimate.covariance;
   const Eigen::Matrix2d position_covariance = covariance.topLeftCorner<2, 2>();
@@ -100,12 +101,11 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& set
   simulation::VirtualDriveParams drive;
   drive.seed = seed;
   drive.max_range_m = range_m;
-  LocalizerDrive pair{scenario, drive, setting.params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(setting.params), {first_map(scenario)}};
   Outcome outcome;
   outcome.scans = empty_table();
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     const Pose2 map_from_laser = scan.map_from_robot * scenario.laser.optics.robot_from_laser;
     outcome.scans.add(

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/angle.hpp"
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/watched_drive.hpp"
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
 
 namespace deltamap::experiments {
@@ -44,13 +45,12 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   drive.seed = seed;
   drive.max_range_m = range_m;
   drive.forklift = scenario.forklift;
-  LocalizerDrive pair{scenario, drive, variant.params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(variant.params), {first_map(scenario)}};
   Outcome outcome;
   outcome.scans = empty_table();
   std::size_t changes = 0;
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     changes += scan.changes.size();
     const PoseError error = error_of(scan);

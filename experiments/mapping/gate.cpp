@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/mapping/gate_run.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/mapping_run.hpp"

@@ -16,7 +16,7 @@
 #include "core/scratch_folder.hpp"
 #include "daemon/maps/store_opening.hpp"
 #include "daemon/pipeline.hpp"
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/virtual_ports.hpp"
 
 namespace deltamap::experiments {

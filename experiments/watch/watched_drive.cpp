@@ -93,7 +93,7 @@ std::vector<std::pair<std::string, double>> wheel_numbers(const WatchedRun& run,
 }  // namespace
 
 Outcome watched_drive(const WatchedRun& run) {
-  MappingDrive drive{run.scenario, run.drive, run.settings, run.first_map, run.knows_start};
+  MappingDrive drive{run.scenario, run.drive, run.settings, {run.first_map}, run.knows_start};
   std::optional<MappingWatch> watch;
   if (run.settings.mapping.enabled) {
     watch.emplace(run.scenario, run.first_map,
