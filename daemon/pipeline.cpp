@@ -285,9 +285,7 @@ RunReport Pipeline::stop() {
   report.wall_s = seconds(drivers::port::port_clock_now().time_since_epoch()) - s.wall_began_s;
   report.peak_resident_bytes = peak_resident_bytes();
   report.latency_of = "last byte of a scan to its pose";
-  report.latency_p50_s = s.localization.latency().quantile_s(0.5);
-  report.latency_p99_s = s.localization.latency().quantile_s(0.99);
-  report.latency_max_s = s.localization.latency().max_s();
+  report.latency = s.localization.latency();
   report.wire = s.io.counts();
   if (s.options.out) s.write_report(report);
   return report;

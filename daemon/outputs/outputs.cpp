@@ -79,9 +79,9 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   json["wall_s"] = report.wall_s;
   json["peak_resident_bytes"] = report.peak_resident_bytes;
   json["latency_ms"] = {{"of", report.latency_of},
-                        {"p50", milliseconds(report.latency_p50_s)},
-                        {"p99", milliseconds(report.latency_p99_s)},
-                        {"max", milliseconds(report.latency_max_s)}};
+                        {"p50", milliseconds(report.latency.quantile_s(0.5))},
+                        {"p99", milliseconds(report.latency.quantile_s(0.99))},
+                        {"max", milliseconds(report.latency.max_s())}};
   if (!report.journal.empty()) {
     json["journal"] = {
         {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};

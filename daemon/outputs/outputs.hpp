@@ -13,6 +13,8 @@
 #include "core/file_lock.hpp"
 #include "core/messages.hpp"
 #include "daemon/outputs/change_note.hpp"
+#include "daemon/telemetry/latency_histogram.hpp"
+#include "daemon/telemetry/scan_counts.hpp"
 #include "drivers/port/log_cut.hpp"
 #include "mapping/write_gate.hpp"
 
@@ -60,9 +62,7 @@ struct RunReport {
   double wall_s = 0.0;
   std::uint64_t peak_resident_bytes = 0;
   std::string latency_of;  ///< "last byte to pose" or "step", the time that localizing took
-  double latency_p50_s = 0.0;
-  double latency_p99_s = 0.0;
-  double latency_max_s = 0.0;
+  LatencyHistogram latency;
   std::string journal;  ///< replay: "obeyed", "none" or why it was not obeyed
   std::uint32_t journal_differences = 0;
   std::uint32_t commands = 0;                 ///< replay: of an operator, obeyed

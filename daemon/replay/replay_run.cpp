@@ -15,7 +15,6 @@
 #include "daemon/replay/replay_start.hpp"
 #include "daemon/replay/sequential_run.hpp"
 #include "daemon/telemetry/cpu_timer.hpp"
-#include "daemon/telemetry/latency_histogram.hpp"
 #include "drivers/port/replay_port.hpp"
 
 namespace deltamap::daemon {
@@ -66,7 +65,6 @@ class Replay {
   LineFile trajectory_;
   LineFile localization_log_;
   LineFile changes_;
-  LatencyHistogram step_times_;
   double decoding_cpu_s_ = 0.0;
   double recording_cpu_s_ = 0.0;
   RunReport report_;
@@ -128,7 +126,7 @@ void Replay::take(Scan&& scan) {
   obey_commands_before(scan);
   const TrackedScan tracked = run_.observe(std::move(scan));
   const double cost_s = run_.cpu().localization_s - before_s;
-  step_times_.add(cost_s);
+  report_.latency.add(cost_s);
   ++report_.scans.localized;
   const LocalizationRow& row = run_.localization().row();
   {
@@ -198,9 +196,6 @@ RunReport Replay::finish(const std::filesystem::path& out) {
   report_.cpu.decoding_s = decoding_cpu_s_;
   report_.cpu.recording_s = recording_cpu_s_;
   report_.latency_of = "localizing one scan, CPU time";
-  report_.latency_p50_s = step_times_.quantile_s(0.5);
-  report_.latency_p99_s = step_times_.quantile_s(0.99);
-  report_.latency_max_s = step_times_.max_s();
   return report_;
 }
 
