@@ -18,6 +18,7 @@
 #include "daemon/stages/localization_stage.hpp"
 #include "daemon/stages/map_stage.hpp"
 #include "daemon/steps/run_begin.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "drivers/port/port_clock.hpp"
 

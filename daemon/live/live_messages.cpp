@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live/live_messages.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "daemon/dashboard/wire.hpp"
 #include "daemon/live/pose_line.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/version.hpp"
 
 namespace deltamap::daemon {
@@ -171,14 +169,6 @@ std::string history_json(const LiveBoard& board) {
   json["forgotten"] = changes.first;
   json["changes"] = list_of(changes.items);
   return text_of(json);
-}
-
-std::uint64_t resident_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t all = 0;
-  std::uint64_t resident = 0;
-  if (!(statm >> all >> resident)) return 0;
-  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace deltamap::daemon

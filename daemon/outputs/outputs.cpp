@@ -6,7 +6,6 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -90,16 +89,6 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   }
   json["wire"] = report.wire;
   return json.dump(2) + "\n";
-}
-
-std::uint64_t peak_resident_bytes() {
-  // Not getrusage: its maximum is inherited from whoever started this program.
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    std::uint64_t kilobytes = 0;
-    if (std::sscanf(line.c_str(), "VmHWM: %" SCNu64, &kilobytes) == 1) return kilobytes * 1024;
-  }
-  return 0;
 }
 
 void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out) {

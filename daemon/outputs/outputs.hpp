@@ -74,9 +74,6 @@ struct RunReport {
 /// `settings` are those of the run: they stand in the report, with version and commit.
 [[nodiscard]] std::string json_text(const RunReport& report, const Settings& settings);
 
-/// Highest resident set of this process so far.
-[[nodiscard]] std::uint64_t peak_resident_bytes();
-
 /// Throws std::runtime_error where `out` is the folder of the map that the run begins with: it would be overwritten.
 void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out);
 

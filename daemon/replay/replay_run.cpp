@@ -14,7 +14,9 @@
 #include "daemon/records/recording_decoder.hpp"
 #include "daemon/replay/replay_start.hpp"
 #include "daemon/replay/sequential_run.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/cpu_timer.hpp"
+#include "daemon/telemetry/stage.hpp"
 #include "drivers/port/replay_port.hpp"
 
 namespace deltamap::daemon {

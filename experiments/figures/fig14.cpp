@@ -2,12 +2,11 @@
 // `fig14`: the paper's Figure 14 (§5): CPU and memory over time, inside and outside Δ-phases, on a drive of two hours
 // in which a container changes every minute.
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
+#include "daemon/system/used_memory.hpp"
 #include "experiments/drive/first_map.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
@@ -19,13 +18,7 @@ namespace {
 constexpr double kPart_s = 60.0;  // of the drive, a row each
 
 /// Of this process, now.
-double resident_mb() {
-  std::ifstream statm("/proc/self/statm");
-  double all_pages = 0.0;
-  double resident_pages = 0.0;
-  statm >> all_pages >> resident_pages;
-  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
-}
+double resident_mb() { return static_cast<double>(daemon::resident_bytes()) / (1024.0 * 1024.0); }
 
 /// What a scan took, and where.
 struct ScanCost {
