@@ -10,11 +10,11 @@
 
 #include "core/messages.hpp"
 #include "core/temporary_things.hpp"
-#include "localization/drive_calibration.hpp"
+#include "localization/belief/stability.hpp"
+#include "localization/hypotheses/rivals.hpp"
 #include "localization/localizer_counts.hpp"
-#include "localization/rivals.hpp"
-#include "localization/stability.hpp"
-#include "localization/start_pose.hpp"
+#include "localization/motion/drive_calibration.hpp"
+#include "localization/particles/start_pose.hpp"
 
 namespace deltamap::localization {
 
@@ -25,7 +25,7 @@ class Localizer {
   /// Without an initial pose the whole map is searched (global localization).
   /// Throws std::runtime_error where the map has no free cell.
   Localizer(const LocalizerParams& params, std::shared_ptr<const OccupancyGrid> map,
-            std::optional<InitialPose> initial_pose, std::uint64_t seed);
+            std::optional<particles::InitialPose> initial_pose, std::uint64_t seed);
   ~Localizer();
   Localizer(Localizer&&) noexcept;
   Localizer& operator=(Localizer&&) noexcept;
@@ -45,23 +45,23 @@ class Localizer {
   void apply(std::shared_ptr<const TemporaryThings> things);
 
   /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp).
-  void relocalize(const InitialPose& pose);
+  void relocalize(const particles::InitialPose& pose);
 
   /// What else in the map the scans may mean, as of the last scan.
-  [[nodiscard]] const RivalReport& rivals() const;
+  [[nodiscard]] const hypotheses::RivalReport& rivals() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;
 
   /// Errors of wheels and mount, as far as driving among surfaces has told; nothing where surfaces are not followed.
-  [[nodiscard]] std::optional<DriveCalibration> calibration() const;
+  [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;
 
   /// What of the map has proven to stay, to be kept across restarts.
-  [[nodiscard]] StabilityRecord stability() const;
+  [[nodiscard]] belief::StabilityRecord stability() const;
   /// Takes what an earlier run has learned; false, and nothing taken, where it belongs to a map of another geometry.
-  [[nodiscard]] bool restore(const StabilityRecord& record);
+  [[nodiscard]] bool restore(const belief::StabilityRecord& record);
   /// Before the first scan: what an earlier run has learned of wheels and mount.
-  void restore(const DriveCalibration& learned);
+  void restore(const motion::DriveCalibration& learned);
 
  private:
   struct State;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/store_scan.hpp"
 
-#include "mapping/waiting_scans.hpp"
+#include "mapping/scan_set/waiting_scans.hpp"
 
 namespace deltamap::mapping {
 namespace {
@@ -44,11 +44,11 @@ struct StoreScan::State {
   }
 
   MappingMethod method;
-  awareness::DivergenceRatio ratio;
-  awareness::DeltaPhase paper;
-  awareness::EvidencePhase evidence;
-  GatedSets gate;
-  WaitingScans waiting;
+  paper::DivergenceRatio ratio;
+  paper::DeltaPhase paper;
+  evidence::EvidencePhase evidence;
+  gate::GatedSets gate;
+  scan_set::WaitingScans waiting;
   Awareness awareness;
 };
 

@@ -55,13 +55,13 @@ void add_estimate(Json& json, const Telemetry& t) {
 }
 
 Json gate_json(const GateGauges& gate) {
-  const auto now = static_cast<mapping::GateReason>(gate.reason.value());
-  const mapping::GateTimes times = gate.times();
+  const auto now = static_cast<mapping::gate::GateReason>(gate.reason.value());
+  const mapping::gate::GateTimes times = gate.times();
   Json json;
-  json["open"] = now == mapping::GateReason::kOpen;
-  json["reason"] = now == mapping::GateReason::kOpen ? Json(nullptr) : Json(mapping::name_of(now));
-  json["observed_s"] = mapping::observed_s(times);
-  json["shut_s"] = mapping::shut_by_reason(times);
+  json["open"] = now == mapping::gate::GateReason::kOpen;
+  json["reason"] = now == mapping::gate::GateReason::kOpen ? Json(nullptr) : Json(name_of(now));
+  json["observed_s"] = mapping::gate::observed_s(times);
+  json["shut_s"] = mapping::gate::shut_by_reason(times);
   return json;
 }
 

@@ -25,14 +25,14 @@ std::optional<double> number_in(const Json& json, const char* key) {
 }
 
 /// Nothing where none was written, or something else.
-std::optional<localization::DriveCalibration> calibration_in(const Json& json) {
+std::optional<localization::motion::DriveCalibration> calibration_in(const Json& json) {
   const auto found = json.find("calibration");
   if (found == json.end() || !found->is_array()) return std::nullopt;
   std::vector<double> numbers;
   for (const Json& number : *found) {
     if (number.is_number()) numbers.push_back(number.get<double>());
   }
-  return localization::calibration_of(numbers);
+  return localization::motion::calibration_of(numbers);
 }
 
 /// Nothing where it is not what json_text() writes.
@@ -79,7 +79,7 @@ std::string json_text(const KeptPose& pose) {
   const PoseCovariance& c = pose.covariance;
   json["covariance"] = {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
   json["sure"] = pose.is_sure;
-  if (pose.calibration) json["calibration"] = localization::numbers_of(*pose.calibration);
+  if (pose.calibration) json["calibration"] = localization::motion::numbers_of(*pose.calibration);
   return json.dump() + "\n";
 }
 

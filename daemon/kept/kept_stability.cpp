@@ -80,10 +80,10 @@ KeptStabilityAnswer read_kept_stability(const std::filesystem::path& file, std::
   return answer;
 }
 
-localization::StabilityRecord without(const localization::StabilityRecord& record,
-                                      const localization::StabilityParams& params,
-                                      std::span<const CellChange> changes) {
-  localization::Stability stability{record.geometry, params};
+localization::belief::StabilityRecord without(const localization::belief::StabilityRecord& record,
+                                              const localization::belief::StabilityParams& params,
+                                              std::span<const CellChange> changes) {
+  localization::belief::Stability stability{record.geometry, params};
   if (!stability.restore(record)) return record;  // a record of other tiles: the localizer will refuse it too
   stability.forget(changes);
   return stability.record();

@@ -92,7 +92,7 @@ std::string map_message(const GridGeometry& geometry, std::uint32_t revision) {
 }
 
 std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
-  return pose_line({scan.row, scan.latency_s, static_cast<mapping::GateReason>(telemetry.gate.reason.value())});
+  return pose_line({scan.row, scan.latency_s, static_cast<mapping::gate::GateReason>(telemetry.gate.reason.value())});
 }
 
 std::string scan_message(const LiveScan& scan) {

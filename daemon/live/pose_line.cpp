@@ -23,10 +23,10 @@ Json hypothesis_json(const Belief& belief) {
           {"share", belief.rival_share}};
 }
 
-Json gate_json(const std::optional<mapping::GateReason>& gate) {
+Json gate_json(const std::optional<mapping::gate::GateReason>& gate) {
   if (!gate) return nullptr;
-  const bool is_open = *gate == mapping::GateReason::kOpen;
-  return {{"open", is_open}, {"reason", is_open ? Json(nullptr) : Json(mapping::name_of(*gate))}};
+  const bool is_open = *gate == mapping::gate::GateReason::kOpen;
+  return {{"open", is_open}, {"reason", is_open ? Json(nullptr) : Json(name_of(*gate))}};
 }
 
 }  // namespace

@@ -6,15 +6,15 @@
 #include <string>
 
 #include "daemon/outputs/localization_log.hpp"
-#include "mapping/write_gate.hpp"
+#include "mapping/gate/write_gate.hpp"
 
 namespace deltamap::daemon {
 
 /// What is told of a localized scan.
 struct PoseNews {
   LocalizationRow row;
-  double latency_s = 0.0;                   ///< from the scan's last byte to its pose
-  std::optional<mapping::GateReason> gate;  ///< nothing: nobody works on the map
+  double latency_s = 0.0;                         ///< from the scan's last byte to its pose
+  std::optional<mapping::gate::GateReason> gate;  ///< nothing: nobody works on the map
 };
 
 /// "pose": the pose, what is believed of it, and the write gate. Without line end.

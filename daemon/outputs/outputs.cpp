@@ -65,9 +65,9 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
                           {"undecided_s", report.verdict_times.undecided_s},
                           {"wrong_s", report.verdict_times.wrong_s}};
-  json["write_gate"] = {{"observed_s", mapping::observed_s(report.gate_times)},
-                        {"shut_s", mapping::shut_s(report.gate_times)},
-                        {"shut_by_reason_s", mapping::shut_by_reason(report.gate_times)}};
+  json["write_gate"] = {{"observed_s", mapping::gate::observed_s(report.gate_times)},
+                        {"shut_s", mapping::gate::shut_s(report.gate_times)},
+                        {"shut_by_reason_s", mapping::gate::shut_by_reason(report.gate_times)}};
   json["localizer"] = report.localizer;
   json["recorded_s"] = report.recorded_s;
   const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));

@@ -16,7 +16,7 @@
 #include "daemon/telemetry/latency_histogram.hpp"
 #include "daemon/telemetry/scan_counts.hpp"
 #include "drivers/port/log_cut.hpp"
-#include "mapping/write_gate.hpp"
+#include "mapping/gate/write_gate.hpp"
 
 namespace deltamap::daemon {
 
@@ -54,7 +54,7 @@ struct RunReport {
   double time_lost_s = 0.0;
   double time_global_s = 0.0;
   VerdictTimes verdict_times;
-  mapping::GateTimes gate_times{};                 ///< how long the write gate was open, and shut by reason
+  mapping::gate::GateTimes gate_times{};           ///< how long the write gate was open, and shut by reason
   std::map<std::string, std::uint64_t> localizer;  ///< what befell it, by name
   double recorded_s = 0.0;                         ///< from the first scan to the last
   StageCpu cpu;

@@ -63,7 +63,7 @@ class Replay {
   bool is_paused_ = false;
   std::uint32_t first_revision_;
   SequentialRun run_;
-  mapping::MapStore store_;
+  mapping::store::MapStore store_;
   LineFile trajectory_;
   LineFile localization_log_;
   LineFile changes_;

@@ -31,7 +31,7 @@ std::string evidence_of(const ChangeNote& note) {
   return " scans=" + std::to_string(note.scans) + " acceptance=" + acceptance;
 }
 
-StoreToKeep with_retention(StoreToKeep store, const mapping::Retention& retention) {
+StoreToKeep with_retention(StoreToKeep store, const mapping::store::Retention& retention) {
   store.retention = retention;
   return store;
 }
@@ -91,7 +91,7 @@ void MapStage::tell_and_hand_on(const MapStep::Result& result) {
 
 void MapStage::obey(const MapOrder& order) {
   const GridGeometry& geometry = step_.map()->geometry();
-  mapping::MapStore::Undoing wanted;
+  mapping::store::MapStore::Undoing wanted;
   try {
     wanted = outputs_.cells_of(order, *step_.map());
   } catch (const std::exception& error) {

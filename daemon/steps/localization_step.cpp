@@ -8,11 +8,11 @@
 namespace deltamap::daemon {
 namespace {
 
-std::optional<localization::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
-  if (settings.initial_pose) return localization::InitialPose{*settings.initial_pose};
+std::optional<localization::particles::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
+  if (settings.initial_pose) return localization::particles::InitialPose{*settings.initial_pose};
   if (!start.remembered) return std::nullopt;
-  return localization::InitialPose{*start.remembered, settings.memory.position_deviation_m,
-                                   settings.memory.heading_deviation_rad, true};
+  return localization::particles::InitialPose{*start.remembered, settings.memory.position_deviation_m,
+                                              settings.memory.heading_deviation_rad, true};
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ void LocalizationStep::apply(std::shared_ptr<const TemporaryThings> things) { lo
 
 bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
   const std::uint64_t refused = localizer_.counts().poses_refused;
-  localizer_.relocalize(localization::InitialPose{map_from_robot});
+  localizer_.relocalize(localization::particles::InitialPose{map_from_robot});
   return localizer_.counts().poses_refused == refused;
 }
 

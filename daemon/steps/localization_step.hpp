@@ -12,7 +12,7 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
-#include "mapping/awareness/divergence_ratio.hpp"
+#include "mapping/paper/divergence_ratio.hpp"
 
 namespace deltamap::daemon {
 
@@ -22,8 +22,8 @@ struct StartMap {
   std::uint32_t revision = 0;
   /// map_from_robot at the end of the run before; the settings' pose goes before it.
   std::optional<Pose2> remembered{};
-  std::optional<localization::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
-  std::optional<localization::DriveCalibration> calibration{};  ///< and of wheels and mount
+  std::optional<localization::belief::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
+  std::optional<localization::motion::DriveCalibration> calibration{};  ///< and of wheels and mount
 };
 
 /// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.
@@ -49,8 +49,10 @@ class LocalizationStep {
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
   /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
-  [[nodiscard]] std::optional<localization::DriveCalibration> calibration() const { return localizer_.calibration(); }
-  [[nodiscard]] localization::StabilityRecord stability() const { return localizer_.stability(); }
+  [[nodiscard]] std::optional<localization::motion::DriveCalibration> calibration() const {
+    return localizer_.calibration();
+  }
+  [[nodiscard]] localization::belief::StabilityRecord stability() const { return localizer_.stability(); }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }
   [[nodiscard]] const VerdictTimes& verdict_times() const { return verdict_times_; }
@@ -64,7 +66,7 @@ class LocalizationStep {
   void note(const TrackedScan& tracked);
 
   localization::Localizer localizer_;
-  mapping::awareness::DivergenceRatio ratio_;
+  mapping::paper::DivergenceRatio ratio_;
   LocalizationRow row_;
   Pose2 last_map_from_robot_;
   std::optional<Pose2> last_odom_from_robot_;

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include "mapping/taken_back.hpp"
+#include "mapping/map_update.hpp"
+#include "mapping/store/taken_back.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -64,15 +65,15 @@ void MapStep::settle(const std::optional<Timestamp>& before) {
 
 MapStep::Result MapStep::update(const ScanSet& set) {
   settle(set.settled);
-  mapping::MapUpdate update = mapping::map_update(*newest_.map, set, update_);
+  mapping::scan_set::MapUpdate update = mapping::map_update(*newest_.map, set, update_);
   if (update.accepted()) {
     update.changes = held_.allowed(std::move(update.changes), set);
-    if (update.changes.empty()) update.refusal = mapping::Refusal::kSetByOperator;
+    if (update.changes.empty()) update.refusal = mapping::scan_set::Refusal::kSetByOperator;
   }
   Result result{.revision = std::nullopt, .note = note_of(set, update.changes, newest_.map->geometry())};
   result.note.acceptance = update.acceptance;
   if (!update.accepted()) {
-    result.note.reason = mapping::name_of(update.refusal);
+    result.note.reason = name_of(update.refusal);
     return result;
   }
   result.revision = publish(set.ended, std::move(update.changes));
@@ -111,7 +112,7 @@ MapStep::Result MapStep::withdraw(const WithdrawOrder& order) {
   OccupancyGrid map = *newest_.map;
   std::vector<std::uint32_t> withdrawn;
   while (!provisional_.empty() && provisional_.back().time >= order.from) {
-    const std::vector<CellChange> back = mapping::taken_back(map, provisional_.back().changes);
+    const std::vector<CellChange> back = mapping::store::taken_back(map, provisional_.back().changes);
     map = patched(std::move(map), back);
     withdrawn.push_back(provisional_.back().number);
     provisional_.pop_back();

@@ -15,7 +15,7 @@
 #include "daemon/records/map_order.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/localization_step.hpp"
-#include "mapping/held_cells.hpp"
+#include "mapping/gate/held_cells.hpp"
 
 namespace deltamap::daemon {
 
@@ -55,7 +55,7 @@ class MapStep {
   localization::LocalizerParams localizer_;
   StartMap newest_;
   std::deque<Provisional> provisional_;  // oldest first
-  mapping::HeldCells held_;              // that an operator has set
+  mapping::gate::HeldCells held_;        // that an operator has set
 };
 
 }  // namespace deltamap::daemon

@@ -75,7 +75,7 @@ void EstimateGauges::set(const Estimate& estimate) {
   rival_heading_rad.set(belief.map_from_rival.theta);
 }
 
-void CalibrationGauges::set(const std::optional<localization::DriveCalibration>& calibration) {
+void CalibrationGauges::set(const std::optional<localization::motion::DriveCalibration>& calibration) {
   known.set(calibration.has_value());
   if (!calibration) return;
   const auto found = numbers_of(calibration->wheels, calibration->mount_error);
@@ -86,13 +86,13 @@ void CalibrationGauges::set(const std::optional<localization::DriveCalibration>&
   }
 }
 
-void GateGauges::set(mapping::GateReason now, const mapping::GateTimes& times) {
+void GateGauges::set(mapping::gate::GateReason now, const mapping::gate::GateTimes& times) {
   reason.set(static_cast<std::uint8_t>(now));
   for (std::size_t i = 0; i < times.size(); ++i) times_s[i].set(times[i]);
 }
 
-mapping::GateTimes GateGauges::times() const {
-  mapping::GateTimes times{};
+mapping::gate::GateTimes GateGauges::times() const {
+  mapping::gate::GateTimes times{};
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = times_s[i].value();
   return times;
 }

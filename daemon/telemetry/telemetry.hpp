@@ -12,8 +12,8 @@
 #include "core/messages.hpp"
 #include "daemon/telemetry/output_board.hpp"
 #include "daemon/telemetry/scan_counts.hpp"
-#include "localization/drive_calibration.hpp"
-#include "mapping/write_gate.hpp"
+#include "localization/motion/drive_calibration.hpp"
+#include "mapping/gate/write_gate.hpp"
 
 namespace deltamap::daemon {
 
@@ -54,14 +54,14 @@ struct CalibrationGauges {
   Gauge<bool> known;
   std::array<Gauge<double>, 7> values,
       deviations;  ///< distance, turn, drift (rad/m), lag (s), mount x, y (m), yaw (rad)
-  void set(const std::optional<localization::DriveCalibration>& calibration);
+  void set(const std::optional<localization::motion::DriveCalibration>& calibration);
 };
 
 struct GateGauges {
   Gauge<std::uint8_t> reason;  ///< mapping::GateReason
-  std::array<Gauge<double>, mapping::kGateReasons> times_s;
-  void set(mapping::GateReason now, const mapping::GateTimes& times);
-  [[nodiscard]] mapping::GateTimes times() const;
+  std::array<Gauge<double>, mapping::gate::kGateReasons> times_s;
+  void set(mapping::gate::GateReason now, const mapping::gate::GateTimes& times);
+  [[nodiscard]] mapping::gate::GateTimes times() const;
 };
 
 struct Telemetry {

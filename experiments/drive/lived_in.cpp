@@ -26,13 +26,13 @@ LivedIn::LivedIn(const simulation::Scenario& scenario, std::vector<simulation::P
                  const LivedInParams& params)
     : scenario_{scenario}, people_{std::move(people)}, localizer_{localizer}, map_{std::move(map)}, params_{params} {}
 
-const localization::StabilityRecord& LivedIn::stability() {
+const localization::belief::StabilityRecord& LivedIn::stability() {
   std::call_once(driven_, [this] { drive(); });
   return stability_;
 }
 
 std::size_t LivedIn::proven_tiles() {
-  localization::Stability learned{map_->geometry(), localizer_.judgement.stability};
+  localization::belief::Stability learned{map_->geometry(), localizer_.judgement.stability};
   return learned.restore(stability()) ? learned.proven_tiles() : 0;
 }
 

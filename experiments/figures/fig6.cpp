@@ -10,7 +10,7 @@
 #include "experiments/drive/localizer_variants.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
-#include "mapping/awareness/delta_phase.hpp"
+#include "mapping/paper/delta_phase.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -47,7 +47,7 @@ const std::array<Path, 6>& paths() {
 ScanTable empty_table() { return ScanTable{{"t_s", "n_eff_share", "turn_rate_rad_per_s", "tracking"}}; }
 
 std::vector<std::pair<std::string, double>> numbers_of(const ScanTable& scans) {
-  const double gate = mapping::awareness::DeltaPhaseParams{}.least_n_eff_share;
+  const double gate = mapping::paper::DeltaPhaseParams{}.least_n_eff_share;
   const std::vector<double> shares = scans.column("n_eff_share");
   const std::vector<double> rates = scans.column("turn_rate_rad_per_s");
   std::vector<double> turning;

@@ -74,8 +74,8 @@ class Kind {
 /// Why it was shut, the longest first left to the reader: every reason that was.
 std::vector<std::vector<std::string>> reasons_of(const Kind& kind, const std::string& where, const std::string& when) {
   std::vector<std::vector<std::string>> rows;
-  for (std::size_t i = 1; i < mapping::kGateReasons; ++i) {
-    const std::string reason{mapping::name_of(static_cast<mapping::GateReason>(i))};
+  for (std::size_t i = 1; i < mapping::gate::kGateReasons; ++i) {
+    const std::string reason{name_of(static_cast<mapping::gate::GateReason>(i))};
     const double share = kind.mean("shut_" + when + "_" + reason);
     if (share > 0.0)
       rows.push_back({where, when == "before" ? "all is well" : "after the event", reason, text_of(share)});

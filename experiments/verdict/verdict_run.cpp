@@ -31,7 +31,7 @@ Pose2 beginning_of(const VerdictPlace& place, const VerdictRun& run) {
 
 }  // namespace
 
-VerdictScans verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
+VerdictScans verdict_scans(const VerdictPlace& place, const localization::belief::StabilityRecord& lived_in,
                            const VerdictRun& run) {
   const Pose2 begin = beginning_of(place, run);
   simulation::VirtualDriveParams drive{.seed = run.seed, .map_from_start = begin, .max_range_m = run.max_range_m};

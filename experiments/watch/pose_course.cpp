@@ -12,7 +12,7 @@
 namespace deltamap::experiments {
 namespace {
 
-using mapping::GateReason;
+using mapping::gate::GateReason;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOff_m = 0.5;
@@ -26,9 +26,9 @@ constexpr double kAfterSlip_s = 60.0;  // in which the covariance is judged apar
 constexpr double kInside95 = 7.815;    // 95 % quantile of χ², 3 degrees of freedom
 
 std::string why_shut(GateReason reason, GateReason confirms_after) {
-  std::string why{mapping::name_of(reason)};
+  std::string why{name_of(reason)};
   const bool tells_more = reason == GateReason::kConfirming && confirms_after != GateReason::kOpen;
-  if (tells_more && confirms_after != reason) why += " after " + std::string{mapping::name_of(confirms_after)};
+  if (tells_more && confirms_after != reason) why += " after " + std::string{name_of(confirms_after)};
   return why;
 }
 
@@ -43,10 +43,10 @@ double share_of(double part, double all) { return all > 0.0 ? part / all : kNoth
 
 std::vector<std::string> all_whys_shut() {
   std::vector<std::string> whys;
-  for (std::size_t i = 1; i < mapping::kGateReasons; ++i) {
+  for (std::size_t i = 1; i < mapping::gate::kGateReasons; ++i) {
     const auto reason = static_cast<GateReason>(i);
     whys.push_back(why_shut(reason, GateReason::kOpen));
-    const bool begins = mapping::proves_wrong(reason) || reason == GateReason::kMisfit;
+    const bool begins = mapping::gate::proves_wrong(reason) || reason == GateReason::kMisfit;
     if (begins) whys.push_back(why_shut(GateReason::kConfirming, reason));
   }
   return whys;

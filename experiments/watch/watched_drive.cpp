@@ -83,7 +83,7 @@ std::vector<std::pair<std::string, double>> wheel_numbers(const WatchedRun& run,
   const simulation::RobotParams& body = run.scenario.robot.body;
   const double driven_of_counted = 1.0 + 0.5 * (body.left_wheel_error + body.right_wheel_error);
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  localization::WheelErrors found{kUnknown, kUnknown, kUnknown, kUnknown};
+  localization::motion::WheelErrors found{kUnknown, kUnknown, kUnknown, kUnknown};
   if (const auto calibration = localizer.calibration()) found = calibration->wheels;
   return {{"wheel_distance_error", std::abs(1.0 + found.distance - driven_of_counted)},
           {"wheel_turn_error", std::abs(1.0 + found.turn - driven_of_counted / (1.0 + body.track_error))},

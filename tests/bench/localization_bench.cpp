@@ -14,7 +14,7 @@
 #include "core/grid_file.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "localization/weighing.hpp"
+#include "localization/sensor/weighing.hpp"
 #include "tests/support/carmen_feed.hpp"
 
 namespace {
@@ -47,14 +47,14 @@ void write_pose(std::ostream& out, const Estimate& estimate) {
 }
 
 void run(const Options& options, const localization::LocalizerParams& params) {
-  std::optional<localization::InitialPose> initial;
+  std::optional<localization::particles::InitialPose> initial;
   if (options.initial_pose.size() == 3) {
-    initial =
-        localization::InitialPose{{options.initial_pose[0], options.initial_pose[1], radians(options.initial_pose[2])}};
+    initial = localization::particles::InitialPose{
+        {options.initial_pose[0], options.initial_pose[1], radians(options.initial_pose[2])}};
   }
   localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), initial,
                                     options.seed};
-  const localization::LikelihoodField field{read_grid(options.map), params.field};
+  const localization::sensor::LikelihoodField field{read_grid(options.map), params.field};
   std::ofstream out{options.out};
   out.setf(std::ios::fixed);
   out.precision(6);
@@ -75,8 +75,8 @@ void run(const Options& options, const localization::LocalizerParams& params) {
             << estimate.n_eff << ' ' << estimate.particles << ' ' << estimate.w_avg << ' '
             << std::sqrt(estimate.covariance(0, 0)) << ' ' << std::sqrt(estimate.covariance(1, 1)) << ' '
             << std::sqrt(estimate.covariance(2, 2)) << ' '
-            << localization::explained_share(field, localization::scoring_ends(tracked.scan, tracked.rays, 0),
-                                             estimate.map_from_robot)
+            << localization::sensor::explained_share(
+                   field, localization::motion::scoring_ends(tracked.scan, tracked.rays, 0), estimate.map_from_robot)
             << ' ' << estimate.covariance(0, 1) << '\n';
   }
   const localization::LocalizerCounts& counts = localizer.counts();

@@ -22,7 +22,7 @@ PoseNews news() {
   news.row.belief.verdict = PoseVerdict::kRight;
   news.row.revision = 3;
   news.latency_s = 0.002;
-  news.gate = mapping::GateReason::kOpen;
+  news.gate = mapping::gate::GateReason::kOpen;
   return news;
 }
 
@@ -48,10 +48,10 @@ TEST(PoseLine, TellsPoseCovarianceVerdictTimeAndGate) {
 
 TEST(PoseLine, AShutGateTellsWhyAndNoMappingNoGate) {
   PoseNews shut = news();
-  shut.gate = mapping::GateReason::kLost;
+  shut.gate = mapping::gate::GateReason::kLost;
   const json gate = json::parse(pose_line(shut))["gate"];
   EXPECT_EQ(gate["open"], false);
-  EXPECT_EQ(gate["reason"], mapping::name_of(mapping::GateReason::kLost));
+  EXPECT_EQ(gate["reason"], name_of(mapping::gate::GateReason::kLost));
   shut.gate.reset();
   EXPECT_EQ(json::parse(pose_line(shut))["gate"], nullptr);
 }

@@ -9,7 +9,7 @@
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/revision_queue.hpp"
 #include "daemon/replay/things_queue.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/padded.hpp"
 #include "tests/support/scripted_drive.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -80,7 +80,7 @@ TEST_F(ReplayTest, WritesEveryFileOfTheContract) {
        {"trajectory.tum", "map.yaml", "map.pgm", "changes.jsonl", "report.json", "map_store.sqlite"}) {
     EXPECT_TRUE(fs::exists(folder_.path() / "out" / name)) << name;
   }
-  EXPECT_EQ(mapping::MapStore{folder_.path() / "out/map_store.sqlite"}.grid(0), test::small_room(false));
+  EXPECT_EQ(mapping::store::MapStore{folder_.path() / "out/map_store.sqlite"}.grid(0), test::small_room(false));
 }
 
 TEST_F(ReplayTest, FindsTheSameChangesHoweverMuchUnknownSpaceLiesAroundTheMap) {

@@ -98,7 +98,7 @@ TEST_F(Withdrawal, IsNotDoneTwice) {
 
 TEST_F(Withdrawal, StandsInTheMapStore) {
   const test::TemporaryFolder folder;
-  mapping::MapStore store{folder.path() / "store.sqlite", hall};
+  mapping::store::MapStore store{folder.path() / "store.sqlite", hall};
   keep(store, change(with_box), step.method());
   ASSERT_EQ(store.newest(), step.revision());
   keep(store, withdraw(Timestamp::min(), 1.0), step.method());

@@ -7,6 +7,7 @@
 
 #include "tests/support/live_decoding.hpp"
 #include "tests/support/pipeline_fixture.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/tool_run.hpp"
 #include "tests/support/web_client.hpp"
 #include "tool/view/moment_file.hpp"
@@ -271,7 +272,7 @@ TEST_F(ViewTest, BadInputIsOneLineAndExitCodeOne) {
   EXPECT_EQ(refused({recording}),
             "deltamap: " + recording + ": a recording needs --map and --config, as `deltamap replay` does\n");
   const std::vector<std::string> how{"--map", folder_.path() / "room.yaml", "--config",
-                                     DELTAMAP_SOURCE_DIR "/config/simulation.yaml"};
+                                     test::source_path("config/simulation.yaml")};
   const std::string text = folder_.write("text.pcapng", "no recording\n").string();
   EXPECT_TRUE(refused({text, how[0], how[1], how[2], how[3]}).starts_with("deltamap: " + text + ": "));
   EXPECT_EQ(test::run_deltamap({"view"}).exit_code, 2);
