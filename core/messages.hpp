@@ -150,8 +150,13 @@ struct ScanSet {
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the set ended
   bool pose_in_doubt = false;        ///< the pose did not hold over the whole set: nothing of it may be written
   std::optional<Timestamp> settled;  ///< what was written up to then is provisional no longer
-  /// An order in place of a set: what was written from then on, and is still provisional, is taken back.
-  std::optional<Timestamp> withdraw_from;
+};
+
+/// The pose has proven wrong: what was written by it, and is still provisional, is taken back.
+struct WithdrawOrder {
+  Timestamp time;                                      ///< of the scan that proved it
+  Timestamp from;                                      ///< what was written from then on
+  PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose at that scan
 };
 
 /// M_k: the map after a Δ.

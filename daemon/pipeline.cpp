@@ -18,6 +18,7 @@
 #include "daemon/stages/localization_stage.hpp"
 #include "daemon/stages/map_stage.hpp"
 #include "daemon/steps/run_begin.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "drivers/port/port_clock.hpp"
 
@@ -273,23 +274,11 @@ RunReport Pipeline::stop() {
   s.end_threads();
   RunReport report;
   const Telemetry& t = s.telemetry;
-  report.scans = {.decoded = t.scans.value(),
-                  .localized = t.localized.value(),
-                  .dropped = t.dropped.value(),
-                  .lost = t.scans_lost.value(),
-                  .odometry = t.odometry.value(),
-                  .odometry_lost = t.odometry_lost.value(),
-                  .tracked_lost = t.tracked_lost.value(),
-                  .sets_lost = t.sets_lost.value(),
-                  .recording_lost = s.recorder.refused()};
+  report.scans = counts_of(t);
+  report.scans.recording_lost = s.recorder.refused();
   report.phases = t.phases_closed.value();
   report.changes = s.map.changes();
-  const LocalizationStep& localization = s.localization.step();
-  report.time_lost_s = localization.time_lost_s();
-  report.time_global_s = localization.time_global_s();
-  report.verdict_times = localization.verdict_times();
-  report.localizer = localization.counts();
-  report.recorded_s = localization.covered_s();
+  add_to(report, s.localization.step());
   report.gate_times = s.delta.awareness().gate_times;
   report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.delta_thread->cpu_s(), s.map_thread->cpu_s(),
                 s.recorder_thread->cpu_s()};
@@ -297,9 +286,7 @@ RunReport Pipeline::stop() {
   report.wall_s = seconds(drivers::port::port_clock_now().time_since_epoch()) - s.wall_began_s;
   report.peak_resident_bytes = peak_resident_bytes();
   report.latency_of = "last byte of a scan to its pose";
-  report.latency_p50_s = s.localization.latency().quantile_s(0.5);
-  report.latency_p99_s = s.localization.latency().quantile_s(0.99);
-  report.latency_max_s = s.localization.latency().max_s();
+  report.latency = s.localization.latency();
   report.wire = s.io.counts();
   if (s.options.out) s.write_report(report);
   return report;

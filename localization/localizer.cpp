@@ -23,6 +23,11 @@ Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
 void Localizer::observe(const Odometry& odometry) { state_->take(odometry); }
 
+std::optional<Pose2> Localizer::odom_from_robot(Timestamp time) const {
+  const auto odometry = state_->odometry.at(time);
+  return odometry ? std::optional{odometry->continuous_odom_from_robot} : std::nullopt;
+}
+
 TrackedScan Localizer::observe(Scan scan) {
   State& state = *state_;
   TrackedScan tracked;

@@ -35,6 +35,10 @@ class Localizer {
   /// One answer for every scan, whether the robot moved or not, lost or not.
   [[nodiscard]] TrackedScan observe(Scan scan);
 
+  /// Where the wheels say that the robot was, in one frame over all epochs (TrackedScan::odom_from_robot); nothing
+  /// before the first report.
+  [[nodiscard]] std::optional<Pose2> odom_from_robot(Timestamp time) const;
+
   /// Takes M_k from the next scan on: copies the prepared patch where k follows the present number, else rebuilds.
   void apply(const MapRevision& revision);
   /// What is different from M_k for now, from the next scan on; null: nothing is known. Never localized on.

@@ -58,6 +58,8 @@ StoreScan::~StoreScan() = default;
 StoreScan::StoreScan(StoreScan&&) noexcept = default;
 StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
 
+const std::optional<WithdrawOrder>& StoreScan::withdrawal() const { return state_->gate.withdrawal(); }
+
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
 const std::shared_ptr<const TransientObstacles>& StoreScan::transients() const {

@@ -48,9 +48,10 @@ class StoreScan {
   StoreScan(StoreScan&&) noexcept;
   StoreScan& operator=(StoreScan&&) noexcept;
 
-  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update(), or an order to take back
-  /// what was written (ScanSet::withdraw_from).
+  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update().
   [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
+  /// In place of a set: the last scan has proven the pose wrong.
+  [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const;
 
   [[nodiscard]] const Awareness& awareness() const;
   /// What is different now and not map (evidence alone): the newest snapshot, another one only where something has

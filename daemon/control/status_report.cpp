@@ -54,12 +54,6 @@ void add_estimate(Json& json, const Telemetry& t) {
   json["revision"] = estimate.revision.value();
 }
 
-Json drops_json(const Telemetry& t) {
-  return {{"scans_overtaken", t.dropped.value()},     {"scans_lost", t.scans_lost.value()},
-          {"odometry_lost", t.odometry_lost.value()}, {"tracked_lost", t.tracked_lost.value()},
-          {"sets_lost", t.sets_lost.value()},         {"recording_lost", t.recording_lost.value()}};
-}
-
 Json gate_json(const GateGauges& gate) {
   const auto now = static_cast<mapping::gate::GateReason>(gate.reason.value());
   const mapping::gate::GateTimes times = gate.times();
@@ -105,7 +99,7 @@ Json outputs_json(const Telemetry& t) {
     Json& told = json[output.name];
     told = {{"file", output.file}, {"written", output.written}, {"lost", output.lost}};
     if (output.written) continue;
-    told["since"] = static_cast<double>(unix_ns(output.since)) * 1e-9;
+    told["since"] = unix_seconds(output.since);
     told["why"] = output.why;
   }
   return json;
@@ -130,7 +124,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["scans"] = t.scans.value();
   json["localized"] = t.localized.value();
   json["odometry"] = t.odometry.value();
-  json["drops"] = drops_json(t);
+  for (const auto& [name, count] : drops_of(counts_of(t))) json["drops"][name] = count;
   json["ports"] = {{"robot", t.robot_up.value() ? "up" : "down"}, {"laser", t.laser_up.value() ? "up" : "down"}};
   json["drive"] = !t.drives.value()   ? "off"
                   : t.by_hand.value() ? "by hand"

@@ -41,7 +41,4 @@ struct RunName {
 /// /api/history: M_0 … M_k of this run.
 [[nodiscard]] std::string history_json(const LiveBoard& board);
 
-/// Memory of this process that is resident now; 0 where the system does not tell.
-[[nodiscard]] std::uint64_t resident_bytes();
-
 }  // namespace deltamap::daemon

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "daemon/live/live_messages.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/version.hpp"
 

@@ -35,7 +35,7 @@ std::string pose_line(const PoseNews& news) {
   const LocalizationRow& row = news.row;
   Json json;
   json["type"] = "pose";
-  json["time"] = static_cast<double>(unix_ns(row.time)) * 1e-9;
+  json["time"] = unix_seconds(row.time);
   json["scan"] = row.number;
   json["x_m"] = row.map_from_robot.x;
   json["y_m"] = row.map_from_robot.y;

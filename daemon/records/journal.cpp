@@ -5,6 +5,8 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "daemon/settings/fingerprint.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -54,12 +56,8 @@ std::optional<Decision> command_of_note(const std::string& note) {
 }  // namespace
 
 std::string note_of(const RunIdentity& run) {
-  char text[104];
-  (void)std::snprintf(text, sizeof text, "run settings %016" PRIx64 " map %016" PRIx64, run.settings, run.map);
-  if (run.memory == 0) return text;
-  char memory[32];
-  (void)std::snprintf(memory, sizeof memory, " memory %016" PRIx64, run.memory);
-  return std::string(text) + memory;
+  const std::string note = "run settings " + hex_of(run.settings) + " map " + hex_of(run.map);
+  return run.memory == 0 ? note : note + " memory " + hex_of(run.memory);
 }
 
 std::optional<RunIdentity> run_of_note(std::string_view note) {

@@ -12,11 +12,7 @@ using Kind = Decision::Kind;
 
 constexpr std::chrono::seconds kLookEvery{1};
 
-/// Null where it is an order.
-const ScanSet* set_in(const MapWork& work) {
-  const auto* set = std::get_if<ScanSet>(&work);
-  return set != nullptr && !set->withdraw_from ? set : nullptr;
-}
+bool is_set(const MapWork& work) { return std::holds_alternative<ScanSet>(work); }
 
 }  // namespace
 
@@ -46,11 +42,10 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
   wiring_.telemetry.phase.set(awareness.phase);
   wiring_.telemetry.stored_scans.set(awareness.stored_scans);
   tell_of_gate();
+  if (const auto& order = store_scan_.withdrawal()) hand_over(*order);
   if (!set) return;
-  if (!set->withdraw_from) {
-    wiring_.telemetry.phases_closed.add(1);
-    note({Kind::kPhaseClosed, tracked.scan.number, set->phase});
-  }
+  wiring_.telemetry.phases_closed.add(1);
+  note({Kind::kPhaseClosed, tracked.scan.number, set->phase});
   hand_over(std::move(*set));
 }
 
@@ -79,9 +74,8 @@ void DeltaStage::tell_of_gate() {
 /// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an
 /// operator gives few.
 void DeltaStage::hand_over(MapWork work) {
-  const ScanSet* set = set_in(work);
-  const bool set_waits = std::any_of(waiting_.begin(), waiting_.end(), set_in);
-  if (set_waits && set != nullptr) {
+  const auto* set = std::get_if<ScanSet>(&work);
+  if (set != nullptr && std::any_of(waiting_.begin(), waiting_.end(), is_set)) {
     wiring_.telemetry.sets_lost.add(1);
     note({Kind::kSetLost, 0, set->phase});
     return;

@@ -27,8 +27,9 @@ class MapStep {
     std::optional<MapRevision> revision;
     ChangeNote note;
   };
-  /// A set, or an order to withdraw.
   [[nodiscard]] Result update(const ScanSet& set);
+  /// What was written since, and no set has settled, is taken back in one revision.
+  [[nodiscard]] Result withdraw(const WithdrawOrder& order);
   /// An operator's cells take the states that the order gives them, whatever they are. Older evidence does not write
   /// them again. No revision where they are so already, or the map has another size.
   [[nodiscard]] Result obey(const SetCells& wanted);
@@ -46,7 +47,6 @@ class MapStep {
     std::vector<CellChange> changes;
   };
 
-  [[nodiscard]] Result withdraw(const ScanSet& order);
   void settle(const std::optional<Timestamp>& before);
   [[nodiscard]] MapRevision publish(Timestamp time, std::vector<CellChange> changes);
 

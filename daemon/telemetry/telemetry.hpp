@@ -11,6 +11,7 @@
 
 #include "core/messages.hpp"
 #include "daemon/telemetry/output_board.hpp"
+#include "daemon/telemetry/scan_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "mapping/gate/write_gate.hpp"
 
@@ -94,6 +95,8 @@ struct Telemetry {
   // map thread
   Gauge<std::uint32_t> newest_revision, refused;
 };
+
+[[nodiscard]] ScanCounts counts_of(const Telemetry& telemetry);
 
 /// One line for a person: devices, state, verdict and pose, N_eff, w_avg, revision, Δ-phase, drops, latency.
 [[nodiscard]] std::string status_line(const Telemetry& telemetry);

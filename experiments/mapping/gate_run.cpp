@@ -5,8 +5,8 @@
 #include <cmath>
 #include <deque>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/lived_in.hpp"
-#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/watch/error_course.hpp"
 
@@ -106,7 +106,7 @@ Outcome outcome_of(const GateRun& run) {
   simulation::VirtualDriveParams params;
   params.seed = run.seed;
   params.forklift = busy_forklift(run.change_every_s);
-  MappingDrive drive{run.scenario, params, run.settings, first};
+  MappingDrive drive{run.scenario, params, run.settings, {first}};
   Random random{run.seed + 104729};
   Count count{run};
   Outcome outcome;

@@ -77,7 +77,7 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   const double error_m = distance_between(scan.map_from_robot, scan.estimate.map_from_robot);
   errors_.add(scan.time, error_m);
   errors_since_row_m_.push_back(error_m);
-  if (scan.update) judge_writing(scan);
+  if (scan.update) judge_writing(scan, map);
   override_.observe(scan.tracked);
   if (now_s_ >= next_look_s_) look(scan);
   if (now_s_ >= next_judgement_s_) {
@@ -144,13 +144,18 @@ void MappingWatch::count_ghosts(const OccupancyGrid& map) {
   ghosts_of_override_.add(ghosts_in(override_.map()), minutes);
 }
 
-void MappingWatch::judge_writing(const Mapped& scan) {
+void MappingWatch::judge_writing(const Mapped& scan, const OccupancyGrid& map) {
   if (!scan.update->revision) {
     written_.note_refused();
     return;
   }
+  const std::vector<CellChange>& changes = scan.update->revision->changes;
+  if (!scan.update->note.withdraws.empty()) {
+    written_.observe_withdrawal(changes);
+    return;
+  }
   const double error_m = std::max(errors_.at_m(scan.time), errors_.at_m(scan.update->note.time));
-  written_.observe(scan.update->revision->changes, truth_, error_m > params_.wrong_pose_m);
+  written_.observe({changes, map, error_m > params_.wrong_pose_m}, truth_, surfaces_);
 }
 
 MappingWatch::Scores MappingWatch::scores_of(const OccupancyGrid& map) const {

@@ -72,7 +72,8 @@ class MappingWatch {
   };
   [[nodiscard]] Ghosts ghosts_in(const OccupancyGrid& map) const;
   void count_ghosts(const OccupancyGrid& map);
-  void judge_writing(const Mapped& scan);
+  /// `map`: after the update.
+  void judge_writing(const Mapped& scan, const OccupancyGrid& map);
   void add_course_row(const OccupancyGrid& map);
   void refresh_surfaces();
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -19,14 +20,37 @@ sensor::RefinedPose at_rest(double x, double y, double theta) {
   return {{x, y, theta}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
 }
 
+void measure(OffsetState& state, const SparseRow& row, double innovation, double variance) {
+  const RowMeasurement measured{row, innovation, variance};
+  state.update({&measured, 1});
+}
+
 // Of the first surface that is followed.
 constexpr Eigen::Index kOffset = OffsetState::kFixed;
+
+TEST(OffsetState, TakesMeasurementsTogetherAsOneAfterTheOther) {
+  OffsetState one_by_one;
+  one_by_one.start(at_rest(1.0, 2.0, 0.3));
+  one_by_one.append(0.1, 0.5, 0.1);
+  OffsetState together = one_by_one;
+  const RowMeasurement first{{{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01};
+  const RowMeasurement second{{{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.02, 1e-4};
+  const std::array both{first, second};
+  together.update(both);
+  one_by_one.update({&first, 1});
+  RowMeasurement then = second;  // what it still adds after the first one
+  then.innovation += one_by_one.mean()[2] - 0.3 + one_by_one.mean()[kOffset + 1];
+  one_by_one.update({&then, 1});
+  EXPECT_TRUE(together.mean().isApprox(one_by_one.mean(), 1e-12));
+  EXPECT_TRUE(together.covariance().isApprox(one_by_one.covariance(), 1e-12));
+  EXPECT_EQ(together.covariance(), together.covariance().transpose());
+}
 
 TEST(OffsetState, TakesAFactorAsTheProductOfGaussians) {
   OffsetState state;
   state.start(at_rest(1.0, 2.0, 0.3));
   state.append(0.1, 0.5, 0.1);
-  state.update({{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);  // ties pose and offset
+  measure(state, {{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);  // ties pose and offset
   const Eigen::MatrixXd information = state.covariance().inverse();
   const Eigen::VectorXd weighed = information * state.mean();
   Eigen::Matrix2d precision;
@@ -46,8 +70,8 @@ TEST(OffsetState, KeepsThePoseWhenASurfaceIsForgotten) {
   state.start(at_rest(1.0, 2.0, 0.3));
   state.append(0.1, 0.5, 0.1);
   state.append(0.2, 0.5, 0.1);
-  state.update({{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);
-  state.update({{{{1, 1.0}, {kOffset + 2, -1.0}}}, 2}, -0.05, 0.01);
+  measure(state, {{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);
+  measure(state, {{{{1, 1.0}, {kOffset + 2, -1.0}}}, 2}, -0.05, 0.01);
   const sensor::RefinedPose before = state.pose();
   const double second_m = state.mean()[kOffset + 2];
   state.remove(0);
@@ -60,7 +84,7 @@ TEST(OffsetState, KeepsThePoseWhenASurfaceIsForgotten) {
 TEST(OffsetState, LetsTheMountWorkLooseAndNoFartherThanALaserCan) {
   OffsetState state;
   state.start(at_rest(0.0, 0.0, 0.0));
-  state.update({{{{OffsetState::kMount, 1.0}}}, 1}, 1.0, 1e-6);
+  measure(state, {{{{OffsetState::kMount, 1.0}}}, 1}, 1.0, 1e-6);
   const double sure_m = state.calibration().mount_deviations.x;
   for (int i = 0; i < 1000; ++i) state.carry({.motion = {0.2, 0.0, 0.0}}, PoseCovariance::Zero());
   EXPECT_LE(state.calibration().mount_error.x, 0.1);
@@ -148,8 +172,8 @@ double holds_after(double offset_m, double pose_deviation_m) {
   pose.covariance(1, 1) = pose_deviation_m * pose_deviation_m;
   state.start(pose);
   state.append(0.0, sensor::kMovedM, kMovedRad);
-  state.update({{{{1, 1.0}, {kOffset, -1.0}}}, 2}, -offset_m, 1e-4);
-  state.update({{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.0, 1e-5);
+  measure(state, {{{{1, 1.0}, {kOffset, -1.0}}}, 2}, -offset_m, 1e-4);
+  measure(state, {{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.0, 1e-5);
   std::vector<SurfaceSwitch> switches{{.surface = face(0.0)}};
   settle(switches, state);
   EXPECT_TRUE(state.is_sound());
@@ -176,8 +200,8 @@ TEST(SurfaceSwitch, TakesTwoHalvesOfOneFaceForOneWitness) {
       state.append(0.0, sensor::kMovedM, kMovedRad);
       switches.push_back({.surface = face(i)});
       const Eigen::Index at = OffsetState::offset_of(static_cast<std::size_t>(i));
-      state.update({{{{1, 1.0}, {at, -1.0}}}, 2}, -0.1, 1e-4);
-      state.update({{{{2, -1.0}, {at + 1, -1.0}}}, 2}, 0.0, 1e-5);
+      measure(state, {{{{1, 1.0}, {at, -1.0}}}, 2}, -0.1, 1e-4);
+      measure(state, {{{{2, -1.0}, {at + 1, -1.0}}}, 2}, 0.0, 1e-5);
     }
     settle(switches, state);
     return switches.front().holds;
