@@ -107,7 +107,7 @@ void Localizer::State::take(const Odometry& report) {
   const Timestamp behind = report.time - duration_from_seconds(kScansLagS);
   if (seconds(behind - *last_scan) < kScansCeaseS) return;
   const motion::ScanInstant now{behind, odometry.at(behind)};
-  if (now.odometry && !has_jumped(now)) tracker.carry(now);
+  if (now.odometry && !has_jumped(now)) tracker.predict(now);
 }
 
 bool Localizer::State::has_jumped(const motion::ScanInstant& now) const {
@@ -213,7 +213,7 @@ const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstan
 
 Belief Localizer::State::belief() const {
   Belief belief = judgement.belief();
-  if (searches() || !tracker.is_held()) return belief;
+  if (searches() || !tracker.is_fixed_by_surfaces()) return belief;
   belief.verdict = PoseVerdict::kRight;
   belief.pose_right = std::max(belief.pose_right, 1.0 - belief.other_share);
   return belief;
@@ -222,7 +222,7 @@ Belief Localizer::State::belief() const {
 bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const {
   if (hypothesis.share_around < params.rivals.winning_share || hypothesis.followed_m < params.rivals.wins_after_m)
     return false;
-  if (ends.size() == 0 || tracker.is_held()) return false;
+  if (ends.size() == 0 || tracker.is_fixed_by_surfaces()) return false;
   const double fit = sensor::explained_share(field, ends, hypothesis.map_from_robot);
   return fit >= params.fit.found_above || fit >= sensor::explained_share(field, ends, believed) + kClearlyBetter;
 }
@@ -256,7 +256,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.verdict = judged.verdict;
   seen.trust = judgement.trust();
   seen.beaten = hypotheses.report().beaten;
-  if (tracker.is_held()) {
+  if (tracker.is_fixed_by_surfaces()) {
     seen.verdict = PoseVerdict::kRight;
     seen.trust = std::max(seen.trust, kTrustInASearch);
     seen.beaten = false;

@@ -11,10 +11,10 @@ PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
   if (report.own_known) {
     const hypotheses::ReportedHypothesis& other = report.others.front();
-    const bool carried = report.kidnapped_share > other.share;
+    const bool kidnapped = report.kidnapped_share > other.share;
     return {.believed = report.own_share,
             .best_other = std::max(other.share, report.kidnapped_share),  // one of them may be watched, not listed
-            .map_from_other = carried ? report.map_from_kidnapped : other.map_from_robot,
+            .map_from_other = kidnapped ? report.map_from_kidnapped : other.map_from_robot,
             .beaten = report.beaten,
             .unique = report.unique};
   }

@@ -23,8 +23,8 @@ AliasMonitor::AliasMonitor(const HypothesisBankParams& bank, const Effort& effor
       aliases_{static_cast<std::size_t>(std::max(0, effort.images))},
       lattice_{kRightAngles, kKept} {}
 
-void AliasMonitor::carry(const Pose2& motion) {
-  bank_.carry(motion);
+void AliasMonitor::predict(const Pose2& motion) {
+  bank_.predict(motion);
   aliases_.age(motion.position().norm());
 }
 
@@ -85,7 +85,7 @@ void AliasMonitor::admit(const Pose2& rough, const Seen& seen) {
   bank_.admit({.map_from_robot = pose,
                .log_evidence = bank_.hypotheses().front().log_evidence + lately.ahead(),
                .log_prior = std::log(effort_.prior),
-               .since_carried = seen.evidence_weight * lately.ahead(),
+               .since_kidnapping = seen.evidence_weight * lately.ahead(),
                .lost_since = seen.evidence_weight * lately.lost});
 }
 

@@ -31,7 +31,7 @@ class AliasMonitor {
 
   /// Forgets what speaks for them, not where they are.
   void clear() { bank_.clear(); }
-  void carry(const Pose2& motion);
+  void predict(const Pose2& motion);
 
   struct Seen {
     const sensor::LikelihoodField& field;
@@ -45,7 +45,7 @@ class AliasMonitor {
     std::span<const float> weights{};  ///< of the beams, where the scan tells something new
     double unknown_s = 0.0;
   };
-  /// Every scan beside a believed pose, after carry(). `followed`: hypotheses that explain the scans as well.
+  /// Every scan beside a believed pose, after predict(). `followed`: hypotheses that explain the scans as well.
   void observe(const Seen& seen, std::span<const PoseHypothesis> followed);
 
   /// The believed pose and its images.

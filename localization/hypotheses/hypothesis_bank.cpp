@@ -80,11 +80,11 @@ void HypothesisBank::believe_among(const Pose2& map_from_robot) {
   believing_ = true;
 }
 
-void HypothesisBank::forget_carrying() {
-  for (PoseHypothesis& hypothesis : hypotheses_) hypothesis.since_carried = hypothesis.lost_since = 0.0;
+void HypothesisBank::forget_kidnapping() {
+  for (PoseHypothesis& hypothesis : hypotheses_) hypothesis.since_kidnapping = hypothesis.lost_since = 0.0;
 }
 
-void HypothesisBank::carry(const Pose2& motion) {
+void HypothesisBank::predict(const Pose2& motion) {
   const double driven_m = motion.position().norm();
   for (PoseHypothesis& hypothesis : hypotheses_) {
     hypothesis.map_from_robot = hypothesis.map_from_robot * motion;
@@ -138,9 +138,9 @@ void HypothesisBank::weigh(const sensor::LikelihoodField& field, const motion::B
     const double says = of_a_beam * weighted_log_likelihood(field, ends, weights, hypothesis.map_from_robot);
     hypothesis.log_evidence = kept * hypothesis.log_evidence + says;
     if (&hypothesis == &hypotheses_.front()) of_believed = says;
-    const double since_carried = kept * hypothesis.since_carried + evidence_weight * (says - of_believed);
-    hypothesis.since_carried = believing_ ? std::max(0.0, since_carried) : 0.0;
-    if (hypothesis.since_carried == 0.0) {
+    const double since_kidnapping = kept * hypothesis.since_kidnapping + evidence_weight * (says - of_believed);
+    hypothesis.since_kidnapping = believing_ ? std::max(0.0, since_kidnapping) : 0.0;
+    if (hypothesis.since_kidnapping == 0.0) {
       hypothesis.lost_since = 0.0;
     } else {
       const Comparison beside =
@@ -198,12 +198,12 @@ void HypothesisBank::settle() {
     } else if (!(believing_ && twin == 0) && odds_of(hypotheses_[twin]) < odds_of(hypotheses_[i])) {
       const double followed_m = std::max(hypotheses_[twin].followed_m, hypotheses_[i].followed_m);
       const PoseHypothesis& longer =
-          hypotheses_[twin].since_carried > hypotheses_[i].since_carried ? hypotheses_[twin] : hypotheses_[i];
-      const double since_carried = longer.since_carried;
+          hypotheses_[twin].since_kidnapping > hypotheses_[i].since_kidnapping ? hypotheses_[twin] : hypotheses_[i];
+      const double since_kidnapping = longer.since_kidnapping;
       const double lost_since = longer.lost_since;
       hypotheses_[twin] = hypotheses_[i];
       hypotheses_[twin].followed_m = followed_m;
-      hypotheses_[twin].since_carried = since_carried;
+      hypotheses_[twin].since_kidnapping = since_kidnapping;
       hypotheses_[twin].lost_since = lost_since;
     }
   }

@@ -40,8 +40,8 @@ struct PoseHypothesis {
   double log_prior = 0.0;
   double share = 0.0;
   double followed_m = 0.0;
-  double since_carried = 0.0;  ///< log evidence against the believed one, since when it speaks for it most; >= 0
-  double lost_since = 0.0;     ///< of that what beams that fit the believed one better have taken away; >= 0
+  double since_kidnapping = 0.0;  ///< log evidence against the believed one, since when it speaks for it most; >= 0
+  double lost_since = 0.0;        ///< of that what beams that fit the believed one better have taken away; >= 0
 };
 
 /// What a scan says of a hypothesis beside another.
@@ -98,11 +98,11 @@ class HypothesisBank {
   }
   /// What speaks for other poses since the robot may have been carried there spoke against a pose that is believed no
   /// longer.
-  void forget_carrying();
+  void forget_kidnapping();
   /// The believed one becomes a hypothesis like all others, with the evidence that it has.
   void stop_believing() { believing_ = false; }
 
-  void carry(const Pose2& motion);
+  void predict(const Pose2& motion);
   /// Slides `count` hypotheses, a round after the other, those that come close to the best one and the believed one
   /// always.
   void slide(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count, double unknown_s);

@@ -14,7 +14,7 @@ constexpr double kLostAgain = 2.0;  // what was lost counts so often more
 /// For a hypothesis where the robot may have been carried. There nearly all beams end as expected; where many do not
 /// that fit the believed pose it is chance that has found it.
 double says(const PoseHypothesis& hypothesis) {
-  return std::max(0.0, hypothesis.since_carried - kLostAgain * hypothesis.lost_since);
+  return std::max(0.0, hypothesis.since_kidnapping - kLostAgain * hypothesis.lost_since);
 }
 
 /// Among the best others, where it belongs there.
@@ -60,16 +60,16 @@ HypothesisReport report_on(const HypothesisBank& bank, const HypothesisBank& wat
     report.beaten = true;
     report.beaten_for_m = std::max(report.beaten_for_m, hypothesis.followed_m);
   }
-  const PoseHypothesis* carried = nullptr;
+  const PoseHypothesis* kidnapped = nullptr;
   for (const HypothesisBank* hypotheses : {&bank, &watched}) {
     for (const PoseHypothesis& hypothesis : hypotheses->others()) {
       if (is_within(hypothesis.map_from_robot, own.map_from_robot, rules.nearby_m, rules.nearby_rad)) continue;
-      if (carried == nullptr || says(hypothesis) > says(*carried)) carried = &hypothesis;
+      if (kidnapped == nullptr || says(hypothesis) > says(*kidnapped)) kidnapped = &hypothesis;
     }
   }
-  if (carried == nullptr || says(*carried) <= 0.0) return report;
-  report.kidnapped_share = rules.carried_prior / (rules.carried_prior + std::exp(-says(*carried)));
-  report.map_from_kidnapped = carried->map_from_robot;
+  if (kidnapped == nullptr || says(*kidnapped) <= 0.0) return report;
+  report.kidnapped_share = rules.carried_prior / (rules.carried_prior + std::exp(-says(*kidnapped)));
+  report.map_from_kidnapped = kidnapped->map_from_robot;
   return report;
 }
 

@@ -50,8 +50,8 @@ void HypothesisTracker::forget_hypotheses() {
 }
 
 /// What spoke for other hypotheses spoke against a pose that has been mended since.
-void HypothesisTracker::forget_carrying() {
-  bank_.forget_carrying();
+void HypothesisTracker::forget_kidnapping() {
+  bank_.forget_kidnapping();
   alias_monitor_.clear();
 }
 
@@ -62,7 +62,7 @@ bool HypothesisTracker::has_jumped(const Pose2& map_from_believed) const {
 
 void HypothesisTracker::start_believing_in(const Pose2& found) {
   believing_ = true;
-  forget_carrying();
+  forget_kidnapping();
   bank_.set_believed_prior(0.0);
   if (!is_near_believed(found)) {
     elsewhere_prior_ = params_.prior_after_search;
@@ -150,11 +150,11 @@ void HypothesisTracker::keep_near_ends() {
 const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField& field, const Seen& seen) {
   const Pose2 motion = last_odom_ ? motion_between(*last_odom_, seen.continuous_odom_from_robot) : Pose2{};
   last_odom_ = seen.continuous_odom_from_robot;
-  bank_.carry(motion);
-  alias_monitor_.carry(motion);
+  bank_.predict(motion);
+  alias_monitor_.predict(motion);
   if (last_believed_) last_believed_ = *last_believed_ * motion;
   if (believing_ && seen.map_from_believed) {
-    if (has_jumped(*seen.map_from_believed)) forget_carrying();
+    if (has_jumped(*seen.map_from_believed)) forget_kidnapping();
     bank_.believe(*seen.map_from_believed);
   }
   if (believing_) last_believed_ = seen.map_from_believed;
@@ -190,9 +190,9 @@ HypothesisTracker::Odds HypothesisTracker::odds_beside_believed(const ScanStack:
     in_all = of_a_beam * (its[k] - others[k]);
     lately = std::max(lately, in_all);
   }
-  const Odds carried{std::min(lately, params_.most_ahead), std::log(params_.elsewhere_prior)};
+  const Odds kidnapped{std::min(lately, params_.most_ahead), std::log(params_.elsewhere_prior)};
   const Odds overlooked{std::min(in_all, params_.most_ahead), std::log(elsewhere_prior_)};
-  return carried.ahead + carried.log_prior > overlooked.ahead + overlooked.log_prior ? carried : overlooked;
+  return kidnapped.ahead + kidnapped.log_prior > overlooked.ahead + overlooked.log_prior ? kidnapped : overlooked;
 }
 
 HypothesisTracker::Odds HypothesisTracker::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
@@ -227,7 +227,7 @@ void HypothesisTracker::admit_all(const sensor::LikelihoodField& field, std::spa
     bank_.admit({.map_from_robot = pose,
                  .log_evidence = base + odds.ahead,
                  .log_prior = odds.log_prior,
-                 .since_carried = brought.ahead(),
+                 .since_kidnapping = brought.ahead(),
                  .lost_since = brought.lost});
   }
 }
@@ -294,7 +294,7 @@ void HypothesisTracker::admit_beside_believed(const sensor::LikelihoodField& fie
   bank_.admit({.map_from_robot = pose,
                .log_evidence = own.log_evidence + odds.ahead,
                .log_prior = odds.log_prior,
-               .since_carried = brought.ahead(),
+               .since_kidnapping = brought.ahead(),
                .lost_since = brought.lost});
 }
 

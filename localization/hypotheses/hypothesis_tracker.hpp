@@ -77,7 +77,7 @@ class HypothesisTracker {
   /// The best hypothesis of all while nothing is believed, with the share of all close to it; nothing before a scan has
   /// found one.
   [[nodiscard]] std::optional<PoseHypothesis> best_hypothesis() const;
-  /// Is the pose about where the robot was last believed to be, carried along by odometry?
+  /// Is the pose about where the robot was last believed to be, predicted by odometry?
   [[nodiscard]] bool is_near_believed(const Pose2& pose) const;
   /// True while a search of the whole map is under way.
   [[nodiscard]] bool searching() const { return search_.under_way(); }
@@ -87,7 +87,7 @@ class HypothesisTracker {
 
  private:
   void forget_hypotheses();
-  void forget_carrying();
+  void forget_kidnapping();
   /// Otherwise than odometry says, by more than joins two hypotheses.
   [[nodiscard]] bool has_jumped(const Pose2& map_from_believed) const;
   void thin(const Seen& seen);
@@ -129,7 +129,7 @@ class HypothesisTracker {
   bool believing_ = false;
   bool suspicious_ = false;
   double elsewhere_prior_;
-  std::optional<Pose2> last_believed_;  // carried along by odometry
+  std::optional<Pose2> last_believed_;  // predicted by odometry
   bool probe_nearby_next_ = false;
   double since_step_m_ = 0.0;
   double since_step_rad_ = 0.0;

@@ -34,7 +34,7 @@ class OffsetFilter {
   void take(const sensor::RefinedPose& found);
 
   [[nodiscard]] Pose2 corrected(const motion::WheelStep& step) const { return state_.corrected(step); }
-  void carry(const motion::WheelStep& step, const PoseCovariance& added);
+  void predict(const motion::WheelStep& step, const PoseCovariance& added);
 
   /// What a keyframe showed.
   struct Seen {

@@ -90,7 +90,7 @@ motion::DriveCalibration OffsetState::calibration() const {
 
 Pose2 OffsetState::corrected(const motion::WheelStep& step) const { return motion::corrected(step, wheels_in(mean_)); }
 
-void OffsetState::carry(const motion::WheelStep& step, const PoseCovariance& added) {
+void OffsetState::predict(const motion::WheelStep& step, const PoseCovariance& added) {
   const Pose2 motion = corrected(step);
   const double length_m = step.motion.position().norm();
   const Pose2 turned{0.0, 0.0, mean_[2]};

@@ -53,7 +53,7 @@ class OffsetState {
   /// The robot's motion, by the wheels and what is known of their errors.
   [[nodiscard]] Pose2 corrected(const motion::WheelStep& step) const;
   /// `added`: covariance of the step's own noise, map frame.
-  void carry(const motion::WheelStep& step, const PoseCovariance& added);
+  void predict(const motion::WheelStep& step, const PoseCovariance& added);
 
   /// The wheels have slipped: the pose is another one, and less sure. Surfaces stay where they are.
   void jump(const Pose2& to, const PoseCovariance& slip);

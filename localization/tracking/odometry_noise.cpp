@@ -84,8 +84,8 @@ void OdometryNoiseEstimator::compare(const sensor::RefinedPose& believed) {
                              params_.learning_share);
 }
 
-sensor::RefinedPose carried(const sensor::RefinedPose& believed, const Pose2& motion,
-                            const OdometryNoiseEstimator& wheels) {
+sensor::RefinedPose predicted(const sensor::RefinedPose& believed, const Pose2& motion,
+                              const OdometryNoiseEstimator& wheels) {
   const Pose2 pose = believed.map_from_robot * motion;
   Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
   by_start(0, 2) = believed.map_from_robot.y - pose.y;

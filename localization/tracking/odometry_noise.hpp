@@ -60,8 +60,8 @@ class OdometryNoiseEstimator {
   double turn_scale2_ = 1.0;
 };
 
-/// A pose carried along a motion of the wheels.
-[[nodiscard]] sensor::RefinedPose carried(const sensor::RefinedPose& believed, const Pose2& motion,
-                                          const OdometryNoiseEstimator& wheels);
+/// The prediction of a pose along a motion of the wheels.
+[[nodiscard]] sensor::RefinedPose predicted(const sensor::RefinedPose& believed, const Pose2& motion,
+                                            const OdometryNoiseEstimator& wheels);
 
 }  // namespace deltamap::localization::tracking

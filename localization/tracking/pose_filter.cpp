@@ -31,12 +31,12 @@ void PoseFilter::forget() {
 
 sensor::RefinedPose PoseFilter::expected_at(const motion::ScanInstant& now) const {
   const motion::MotionSince step = motion::step_between(last_->instant, now);
-  sensor::RefinedPose expected = carried(last_->believed, step.motion, odometry_noise_);
+  sensor::RefinedPose expected = predicted(last_->believed, step.motion, odometry_noise_);
   expected.covariance += motion::unknown_motion_covariance(motion_, step.unknown_s);
   return expected;
 }
 
-void PoseFilter::carry(const motion::ScanInstant& now) {
+void PoseFilter::predict(const motion::ScanInstant& now) {
   if (!last_) return;
   last_ = Last{now, expected_at(now)};
   odometry_noise_.forget_stretch();
@@ -51,7 +51,7 @@ sensor::RefinedPose PoseFilter::before_scan(const motion::ScanInstant& now,
   return {particles.map_from_robot, particles.covariance};
 }
 
-std::optional<Pose2> PoseFilter::carried_to(const motion::ScanInstant& now) const {
+std::optional<Pose2> PoseFilter::predicted_at(const motion::ScanInstant& now) const {
   if (!last_) return std::nullopt;
   return last_->believed.map_from_robot * motion::step_between(last_->instant, now).motion;
 }

@@ -27,16 +27,16 @@ class PoseFilter {
   /// The pose was set, not driven to.
   void forget();
 
-  /// What is known of the pose at a scan before the scan is read: the last estimate, carried by the wheels, or the
+  /// What is known of the pose at a scan before the scan is read: the last estimate, predicted by the wheels, or the
   /// particles' own where they disagree or nothing came before.
   [[nodiscard]] sensor::RefinedPose before_scan(const motion::ScanInstant& now,
                                                 const particles::ParticleCluster& particles);
 
-  /// The last estimate, carried by the wheels; none after forget().
-  [[nodiscard]] std::optional<Pose2> carried_to(const motion::ScanInstant& now) const;
+  /// The last estimate, predicted by the wheels; none after forget().
+  [[nodiscard]] std::optional<Pose2> predicted_at(const motion::ScanInstant& now) const;
 
-  /// Goes along with the wheels where no scan tells how good they are.
-  void carry(const motion::ScanInstant& now);
+  /// Predicts by the wheels where no scan corrects.
+  void predict(const motion::ScanInstant& now);
 
   /// What the scan made of it.
   void after_scan(const motion::ScanInstant& now, const sensor::RefinedPose& believed);
@@ -49,7 +49,7 @@ class PoseFilter {
     motion::ScanInstant instant;
     sensor::RefinedPose believed;
   };
-  /// The last estimate, carried by the wheels, and as unsure as they are.
+  /// The last estimate, predicted by the wheels, and as unsure as they are.
   [[nodiscard]] sensor::RefinedPose expected_at(const motion::ScanInstant& now) const;
 
   PoseFilterParams params_;

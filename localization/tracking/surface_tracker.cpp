@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeadsAbove = 0.82;  // share of ends on straight surfaces: what a hall of walls and containers shows
 constexpr double kCeasesBelow = 0.3;
-constexpr double kHeldAbove = 0.3;  // of the surfaces that fix the pose
+constexpr double kFixedAbove = 0.3;  // of the surfaces that fix the pose
 // What one Gaussian can hold, that surfaces are told apart from.
 constexpr double kOnePlaceM = 0.15;
 const double kOnePlaceRad = radians(4.0);
@@ -95,7 +95,7 @@ void SurfaceTracker::step_to(const motion::ScanInstant& now, const motion::BodyV
   }
   const Pose2 corrected = filter_.corrected(step);
   const PoseCovariance added = noise(corrected, motion::step_between(last_->instant, now).unknown_s);
-  filter_.carry(step, added);
+  filter_.predict(step, added);
   last_ = Last{now, velocity};
   if (!since_) return;
   since_->by_wheels = since_->by_wheels * step.motion;
@@ -120,7 +120,7 @@ bool SurfaceTracker::is_due(const Seen& seen) const {
   return explained < since_->explained - kSuddenly;
 }
 
-void SurfaceTracker::carry(const motion::ScanInstant& now) {
+void SurfaceTracker::predict(const motion::ScanInstant& now) {
   if (last_) step_to(now, last_->velocity);
 }
 
@@ -161,7 +161,7 @@ sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
   return after;
 }
 
-bool SurfaceTracker::is_held() const { return leads_ && std::min(holding_, holds_now_) >= kHeldAbove; }
+bool SurfaceTracker::is_fixed_by_surfaces() const { return leads_ && std::min(holding_, holds_now_) >= kFixedAbove; }
 
 void SurfaceTracker::learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after) {
   const Eigen::Vector3d correction = difference(before.map_from_robot, after.map_from_robot);

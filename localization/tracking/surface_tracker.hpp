@@ -49,14 +49,14 @@ class SurfaceTracker {
 
   /// The pose at one more scan. It may have ceased to lead.
   sensor::RefinedPose observe(const Seen& seen);
-  /// No scan has come for long: along with the wheels.
-  void carry(const motion::ScanInstant& now);
+  /// No scan has come for long: predicts by the wheels.
+  void predict(const motion::ScanInstant& now);
 
   /// Before the first scan: what an earlier run has learned.
   void restore(const motion::DriveCalibration& learned) { filter_.restore(learned); }
   [[nodiscard]] motion::DriveCalibration calibration() const { return filter_.calibration(); }
-  /// It leads, and surfaces that stand where the map has them fix the pose.
-  [[nodiscard]] bool is_held() const;
+  /// It leads, and the pose is fixed by surfaces that stand where the map has them.
+  [[nodiscard]] bool is_fixed_by_surfaces() const;
 
  private:
   struct Last {

@@ -35,7 +35,7 @@ void Tracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& cha
   if (surfaces_) surfaces_->apply(std::move(map), changed);
 }
 
-bool Tracker::is_held() const { return surfaces_ && surfaces_->is_held(); }
+bool Tracker::is_fixed_by_surfaces() const { return surfaces_ && surfaces_->is_fixed_by_surfaces(); }
 
 std::optional<motion::DriveCalibration> Tracker::calibration() const {
   return surfaces_ ? std::optional{surfaces_->calibration()} : std::nullopt;
@@ -126,9 +126,9 @@ void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
       surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, by_surfaces);
 }
 
-void Tracker::carry(const motion::ScanInstant& now) {
+void Tracker::predict(const motion::ScanInstant& now) {
   if (!last_update_) return;
-  if (surfaces_) surfaces_->carry(now);
+  if (surfaces_) surfaces_->predict(now);
   if (surfaces_ && surfaces_->leads()) {
     last_update_ = now;
     return;
@@ -140,7 +140,7 @@ void Tracker::carry(const motion::ScanInstant& now) {
   filter_.move(since.motion, since.unknown_s, motion);
   last_update_ = now;
   has_driven_blind_ = true;
-  pose_filter_.carry(now);
+  pose_filter_.predict(now);
 }
 
 bool Tracker::update_due(const motion::MotionSince& since) const {
@@ -188,7 +188,7 @@ Tracker::Answer Tracker::follow(const Seen& seen, const motion::MotionSince& sin
 }
 
 std::span<const Pose2> Tracker::slips(const Seen& seen) {
-  const std::optional<Pose2> by_wheels = pose_filter_.carried_to(seen.now);
+  const std::optional<Pose2> by_wheels = pose_filter_.predicted_at(seen.now);
   if (!by_wheels) return {};
   return slip_finder_.slips(seen.field, seen.ends, *by_wheels, beam_share(seen));
 }

@@ -71,8 +71,8 @@ class Tracker {
     double unknown_s = 0.0;       ///< since the last update, not covered by odometry
   };
   Answer observe(const Seen& seen);
-  /// No scan has come for long: the particles and the track go along with the wheels up to this instant.
-  void carry(const motion::ScanInstant& now);
+  /// No scan has come for long: particles and pose filter are predicted by the wheels up to this instant.
+  void predict(const motion::ScanInstant& now);
 
   /// Nothing where surfaces are not followed. A scan's mount is to be corrected by it before the scan is seen.
   [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;
@@ -82,7 +82,7 @@ class Tracker {
   /// surfaces lead, who count it in.
   [[nodiscard]] PoseCovariance unknown_mount(double heading_rad) const;
   /// Surfaces that stand where the map has them fix the pose; never while the particles lead.
-  [[nodiscard]] bool is_held() const;
+  [[nodiscard]] bool is_fixed_by_surfaces() const;
 
   /// The heaviest hypothesis at the last update.
   [[nodiscard]] const particles::ParticleCluster& best() const { return best_; }

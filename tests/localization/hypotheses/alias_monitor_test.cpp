@@ -18,7 +18,7 @@ class WatchedRound {
 
   void step() {
     truth_ = truth_ * kMotion;
-    alias_monitor_.carry(kMotion);
+    alias_monitor_.predict(kMotion);
     const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
     const motion::BeamEnds ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 60);
     alias_monitor_.observe({.field = field_,

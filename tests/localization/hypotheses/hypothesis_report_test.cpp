@@ -22,14 +22,14 @@ HypothesisBank believing_bank() {
 }
 
 TEST(HypothesisReport, SaysWhereTheRobotMayHaveBeenCarried) {
-  const PoseHypothesis other{.map_from_robot = {15.0, 0.0, 0.0}, .since_carried = 7.0};
+  const PoseHypothesis other{.map_from_robot = {15.0, 0.0, 0.0}, .since_kidnapping = 7.0};
   const HypothesisReport report = report_on(bank_with(other), believing_bank(), {});
   EXPECT_GT(report.kidnapped_share, 0.5);
   EXPECT_DOUBLE_EQ(report.map_from_kidnapped.x, 15.0);
 }
 
 TEST(HypothesisReport, HearsOfWatchedAliasesWithoutListingThem) {
-  const PoseHypothesis alias{.map_from_robot = {15.0, 0.0, 0.0}, .since_carried = 7.0};
+  const PoseHypothesis alias{.map_from_robot = {15.0, 0.0, 0.0}, .since_kidnapping = 7.0};
   const HypothesisReport report = report_on(believing_bank(), bank_with(alias), {});
   EXPECT_GT(report.kidnapped_share, 0.5);
   EXPECT_EQ(report.listed, 0U);
@@ -38,12 +38,12 @@ TEST(HypothesisReport, HearsOfWatchedAliasesWithoutListingThem) {
 }
 
 TEST(HypothesisReport, TakesNoHypothesisForTheTruthThatLosesWhereTheBelievedOneFits) {
-  const PoseHypothesis chance{.map_from_robot = {15.0, 0.0, 0.0}, .since_carried = 7.0, .lost_since = 4.0};
+  const PoseHypothesis chance{.map_from_robot = {15.0, 0.0, 0.0}, .since_kidnapping = 7.0, .lost_since = 4.0};
   EXPECT_LT(report_on(bank_with(chance), believing_bank(), {}).kidnapped_share, 0.01);
 }
 
 TEST(HypothesisReport, TakesASlipForNoCarrying) {
-  const PoseHypothesis slip{.map_from_robot = {0.5, 0.0, 0.0}, .since_carried = 7.0};
+  const PoseHypothesis slip{.map_from_robot = {0.5, 0.0, 0.0}, .since_kidnapping = 7.0};
   EXPECT_EQ(report_on(bank_with(slip), believing_bank(), {}).kidnapped_share, 0.0);
 }
 

@@ -86,7 +86,7 @@ TEST(OffsetState, LetsTheMountWorkLooseAndNoFartherThanALaserCan) {
   state.start(at_rest(0.0, 0.0, 0.0));
   measure(state, {{{{OffsetState::kMount, 1.0}}}, 1}, 1.0, 1e-6);
   const double sure_m = state.calibration().mount_deviations.x;
-  for (int i = 0; i < 1000; ++i) state.carry({.motion = {0.2, 0.0, 0.0}}, PoseCovariance::Zero());
+  for (int i = 0; i < 1000; ++i) state.predict({.motion = {0.2, 0.0, 0.0}}, PoseCovariance::Zero());
   EXPECT_LE(state.calibration().mount_error.x, 0.1);
   EXPECT_GT(state.calibration().mount_deviations.x, sure_m + 0.001);
 }
@@ -103,7 +103,7 @@ OffsetState after_metres(double metres) {
   for (int i = 0; i < std::lround(metres / 0.2); ++i) {
     const Pose2 counted{0.2, 0.0, 0.2 * std::sin(0.1 * i)};
     truth = truth * Pose2{0.202, 0.0, 0.98 * counted.theta};
-    state.carry({.motion = counted}, noise);
+    state.predict({.motion = counted}, noise);
     Pose2 found = truth * Pose2{random.normal(0.02), random.normal(0.02), random.normal(0.003)};
     found.theta += radians(0.4) - state.calibration().mount_error.theta;
     (void)state.update({found, scatter});  // one in thousands is too far off
@@ -384,7 +384,7 @@ class Round {
  private:
   void step(const Pose2& counted) {
     truth_ = truth_ * Pose2{counted.x * 1.01, 0.0, counted.theta * 0.98};
-    filter_.carry({.motion = counted}, Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix());
+    filter_.predict({.motion = counted}, Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix());
     const test::CastScanner scanner{.max_range_m = 8.0, .robot_from_laser = mount_error_};
     Scan scan = test::cast_scan(world_, truth_, timestamp_from_ns(++scans_), scanner, random_);
     scan.robot_from_laser = filter_.calibration().mount_error;  // told: the identity

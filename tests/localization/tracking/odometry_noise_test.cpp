@@ -54,7 +54,7 @@ TEST(OdometryNoiseEstimator, AddsErrorWithTheWayAndNoneToARobotThatStands) {
 TEST(OdometryNoiseEstimator, CarriesTheHeadingsErrorIntoThePlaces) {
   const OdometryNoiseEstimator wheels{{}};
   const PoseCovariance start = Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal();
-  const sensor::RefinedPose there = carried({{1.0, 1.0, 0.0}, start}, {2.0, 0.0, 0.0}, wheels);
+  const sensor::RefinedPose there = predicted({{1.0, 1.0, 0.0}, start}, {2.0, 0.0, 0.0}, wheels);
   EXPECT_NEAR(there.map_from_robot.x, 3.0, 1e-12);
   EXPECT_GE(there.covariance(1, 1), 4.0 * 0.01);  // two metres at a tenth of a radian
   EXPECT_GT(there.covariance(1, 2), 0.0);
