@@ -33,7 +33,7 @@ using Level = Finding::Level;
 Finding settings_finding(const Settings& settings, const std::string& config) {
   return {Level::kOk, "settings",
           config + ": " + std::to_string(changed_settings(settings).size()) + " not as delivered, fingerprint " +
-              fingerprint_text(settings)};
+              hex_of(settings_fingerprint(settings))};
 }
 
 std::string cells_text(const OccupancyGrid& grid) {

@@ -23,6 +23,11 @@ Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
 void Localizer::observe(const Odometry& odometry) { state_->take(odometry); }
 
+std::optional<Pose2> Localizer::odom_from_robot(Timestamp time) const {
+  const auto odometry = state_->odometry.at(time);
+  return odometry ? std::optional{odometry->continuous_odom_from_robot} : std::nullopt;
+}
+
 TrackedScan Localizer::observe(Scan scan) {
   State& state = *state_;
   TrackedScan tracked;
@@ -43,7 +48,7 @@ TrackedScan Localizer::observe(Scan scan) {
 
   tracked.estimate = state.estimate(scan.time, believed);
   if (now.odometry) {
-    tracked.odom_from_robot = now.odometry->joined_from_robot;
+    tracked.odom_from_robot = now.odometry->continuous_odom_from_robot;
     tracked.odometry_epoch = now.odometry->epoch;
   }
   tracked.speed_m_per_s = velocity.speed_m_per_s;
@@ -57,23 +62,25 @@ void Localizer::apply(const MapRevision& revision) {
   const bool follows = revision.number == state.revision + 1 && revision.map->geometry() == state.map->geometry();
   if (follows && (revision.changes.empty() || !revision.field_patch.box.empty())) {
     state.field.apply(revision.field_patch);
-    state.rivals.apply(*revision.map, state.field, revision.field_patch.box);
+    state.hypotheses.apply(*revision.map, state.field, revision.field_patch.box);
     state.judgement.forget(revision.changes);
   } else {
     state.field = sensor::LikelihoodField{*revision.map, state.params.field};
     state.judgement.forget(*state.map, *revision.map);
-    state.rivals.apply(*revision.map, state.field, revision.map->box());
+    state.hypotheses.apply(*revision.map, state.field, revision.map->box());
   }
   state.tracker.apply(revision.map, follows ? bounding_box(revision.changes) : revision.map->box());
   state.map = revision.map;
   state.revision = revision.number;
 }
 
-void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->things = std::move(things); }
+void Localizer::apply(std::shared_ptr<const TransientObstacles> transients) {
+  state_->transients = std::move(transients);
+}
 
 void Localizer::relocalize(const particles::InitialPose& pose) { state_->start_at(pose); }
 
-const hypotheses::RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
+const hypotheses::HypothesisReport& Localizer::hypotheses() const { return state_->hypotheses.report(); }
 
 std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 

@@ -9,9 +9,9 @@
 #include <span>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "localization/belief/stability.hpp"
-#include "localization/hypotheses/rivals.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "localization/particles/start_pose.hpp"
@@ -35,16 +35,20 @@ class Localizer {
   /// One answer for every scan, whether the robot moved or not, lost or not.
   [[nodiscard]] TrackedScan observe(Scan scan);
 
+  /// Where the wheels say that the robot was, in one frame over all epochs (TrackedScan::odom_from_robot); nothing
+  /// before the first report.
+  [[nodiscard]] std::optional<Pose2> odom_from_robot(Timestamp time) const;
+
   /// Takes M_k from the next scan on: copies the prepared patch where k follows the present number, else rebuilds.
   void apply(const MapRevision& revision);
   /// What is different from M_k for now, from the next scan on; null: nothing is known. Never localized on.
-  void apply(std::shared_ptr<const TemporaryThings> things);
+  void apply(std::shared_ptr<const TransientObstacles> transients);
 
   /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp).
   void relocalize(const particles::InitialPose& pose);
 
   /// What else in the map the scans may mean, as of the last scan.
-  [[nodiscard]] const hypotheses::RivalReport& rivals() const;
+  [[nodiscard]] const hypotheses::HypothesisReport& hypotheses() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;

@@ -6,16 +6,16 @@
 #include "localization/belief/fit_monitor.hpp"
 #include "localization/belief/judgement.hpp"
 #include "localization/hypotheses/global_search.hpp"
-#include "localization/hypotheses/place_bank.hpp"
-#include "localization/hypotheses/rivals.hpp"
+#include "localization/hypotheses/hypothesis_bank.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/motion/motion_model.hpp"
 #include "localization/motion/odometry_buffer.hpp"
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 #include "localization/particles/particle_filter.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/sensor/pose_refinement.hpp"
-#include "localization/sensor/temporary_beams.hpp"
-#include "localization/tracking/pose_track.hpp"
+#include "localization/sensor/transient_beams.hpp"
+#include "localization/tracking/pose_filter.hpp"
 #include "localization/tracking/tracker.hpp"
 
 namespace deltamap::localization {
@@ -27,17 +27,17 @@ struct LocalizerParams {
   motion::OdometryBufferParams odometry;
   motion::MotionModelParams motion;
   sensor::LikelihoodFieldParams field;
-  particles::HypothesisParams hypothesis;
+  particles::ParticleClusterParams hypothesis;
   sensor::RefinementParams refinement;
-  tracking::PoseTrackParams track;
+  tracking::PoseFilterParams track;
   tracking::UpdateParams update;
   bool follow_surfaces = true;  ///< as of TrackerParams
   hypotheses::GlobalSearchParams global;
-  hypotheses::RivalsParams rivals;
-  hypotheses::PlaceBankParams places;
+  hypotheses::HypothesisTrackerParams rivals;
+  hypotheses::HypothesisBankParams places;
   belief::FitParams fit;
   belief::JudgementParams judgement;
-  sensor::TemporaryBeamsParams temporary;
+  sensor::TransientBeamsParams temporary;
 };
 
 }  // namespace deltamap::localization

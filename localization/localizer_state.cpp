@@ -10,7 +10,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr std::uint64_t kSeedOfRivals = 0x52697661;
+constexpr std::uint64_t kSeedOfHypotheses = 0x52697661;
 constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a person gave,
 constexpr double kTrustInASearch = 0.5;  // at one that a search has found,
 constexpr double kTrustInNothing = 0.1;  // and before there is any
@@ -45,7 +45,7 @@ Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const Occu
       tracker{tracker_params(given), map, seed},
       monitor{given.fit},
       judgement{*map, given.judgement},
-      rivals{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfRivals} {}
+      hypotheses{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfHypotheses} {}
 
 void Localizer::State::start_at(const particles::InitialPose& given) {
   const particles::Start start = particles::usable_start(*map, given);
@@ -54,7 +54,7 @@ void Localizer::State::start_at(const particles::InitialPose& given) {
   if (start.kind == particles::StartKind::kAnywhere) return start_anywhere();
   (void)tracker.start_around(start.pose);
   start_tracking();
-  rivals.start_believing();
+  hypotheses.start_believing();
   if (start.kind == particles::StartKind::kCheck) check_pose();
 }
 
@@ -75,26 +75,26 @@ void Localizer::State::start_anywhere() {
   given_up.reset();
   ++counts.searches;
   check.end();
-  rivals.start_anywhere();
+  hypotheses.start_anywhere();
   judgement.start(kTrustInNothing);
   best = particles::anywhere_in(*map);
   monitor.start(LocalizerState::kGlobal);
 }
 
-sensor::RefinedPose Localizer::State::believe_in(const Pose2& place, const motion::ScanInstant& now) {
-  const particles::InitialPose around{place, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0};
+sensor::RefinedPose Localizer::State::believe_in(const Pose2& hypothesis, const motion::ScanInstant& now) {
+  const particles::InitialPose around{hypothesis, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0};
   sensor::RefinedPose believed = tracker.start_around(around, now);
   start_tracking();
-  if (!rivals.is_near_believed(place)) judgement.start(kTrustInASearch, true);
-  rivals.start_believing_in(place);
+  if (!hypotheses.is_near_believed(hypothesis)) judgement.start(kTrustInASearch, true);
+  hypotheses.start_believing_in(hypothesis);
   return believed;
 }
 
 void Localizer::State::doubt(const Pose2& map_from_believed, const motion::ScanInstant& now) {
-  given_up = GivenUp{map_from_believed, joined_at(now)};
+  given_up = GivenUp{map_from_believed, continuous_odom_at(now)};
   check.end();
   ++counts.searches;
-  rivals.stop_believing();
+  hypotheses.stop_believing();
   judgement.start(kTrustInNothing);
   monitor.start(LocalizerState::kGlobal);
 }
@@ -107,7 +107,7 @@ void Localizer::State::take(const Odometry& report) {
   const Timestamp behind = report.time - duration_from_seconds(kScansLagS);
   if (seconds(behind - *last_scan) < kScansCeaseS) return;
   const motion::ScanInstant now{behind, odometry.at(behind)};
-  if (now.odometry && !has_jumped(now)) tracker.carry(now);
+  if (now.odometry && !has_jumped(now)) tracker.predict(now);
 }
 
 bool Localizer::State::has_jumped(const motion::ScanInstant& now) const {
@@ -144,14 +144,15 @@ sensor::RefinedPose Localizer::State::believed(const motion::ScanInstant& now) {
 }
 
 sensor::RefinedPose Localizer::State::search(const motion::ScanInstant& now) {
-  const hypotheses::RivalReport& report = rivals.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
-  if (const std::optional<hypotheses::Place> place = rivals.best_place()) {
-    best = {place->map_from_robot, place->covariance, place->share};
+  const hypotheses::HypothesisReport& report =
+      hypotheses.observe(field, {.ends = ends, .continuous_odom_from_robot = continuous_odom_at(now)});
+  if (const std::optional<hypotheses::PoseHypothesis> hypothesis = hypotheses.best_hypothesis()) {
+    best = {hypothesis->map_from_robot, hypothesis->covariance, hypothesis->share};
     if (ends.size() > 0) w_avg = sensor::mean_likelihood(field, ends, best.map_from_robot);
   }
-  n_eff = report.effective_places;
+  n_eff = report.effective_hypotheses;
   if (given_up) {
-    const Pose2 motion = motion_between(given_up->joined_from_robot, joined_at(now));
+    const Pose2 motion = motion_between(given_up->continuous_odom_from_robot, continuous_odom_at(now));
     const bool only_begun = motion.position().norm() < kSearchBeginsM && std::abs(motion.theta) < kSearchBeginsRad;
     if (only_begun) return {given_up->map_from_robot * motion, best.covariance};
     given_up.reset();
@@ -166,14 +167,14 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);
   const bool lost = monitor.state() == LocalizerState::kLost;
-  const hypotheses::RivalReport& report =
-      rivals.observe(field, {.ends = ends,
-                             .joined_from_robot = joined_at(now),
-                             .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
-                             .held = proven_hold.share(),
-                             .unknown_s = tracked.unknown_s});
-  if (report.listed == 0 || !has_won(report.rivals.front(), tracked.believed.map_from_robot)) return tracked.believed;
-  const Pose2 winner = report.rivals.front().map_from_robot;
+  const hypotheses::HypothesisReport& report = hypotheses.observe(
+      field, {.ends = ends,
+              .continuous_odom_from_robot = continuous_odom_at(now),
+              .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
+              .stable_support = stable_support.share(),
+              .unknown_s = tracked.unknown_s});
+  if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
+  const Pose2 winner = report.others.front().map_from_robot;
   if (lost || distance_between(winner, tracked.believed.map_from_robot) < params.rivals.nearby_m) {
     ++counts.recoveries;
     return believe_in(winner, now);
@@ -202,33 +203,34 @@ std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, d
 }
 
 const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstant& now) {
-  const bool knows = params.temporary.weighing && things && !things->standing.empty() && last_believed;
+  const bool knows = params.temporary.weighing && transients && !transients->standing.empty() && last_believed;
   if (!knows || ends.size() == 0) return ends;
-  const Pose2 expected = *last_believed * motion_between(last_joined, joined_at(now));
-  ends_beside_things = sensor::lasting_ends(ends, *things, expected, std::move(ends_beside_things));
-  const double left = static_cast<double>(ends_beside_things.size());
-  return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_things : ends;
+  const Pose2 expected = *last_believed * motion_between(last_odom, continuous_odom_at(now));
+  ends_beside_transients = sensor::lasting_ends(ends, *transients, expected, std::move(ends_beside_transients));
+  const double left = static_cast<double>(ends_beside_transients.size());
+  return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_transients : ends;
 }
 
 Belief Localizer::State::belief() const {
   Belief belief = judgement.belief();
-  if (searches() || !tracker.is_held()) return belief;
+  if (searches() || !tracker.is_fixed_by_surfaces()) return belief;
   belief.verdict = PoseVerdict::kRight;
-  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.rival_share);
+  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.other_share);
   return belief;
 }
 
-bool Localizer::State::has_won(const hypotheses::RivalPlace& place, const Pose2& believed) const {
-  if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
-  if (ends.size() == 0 || tracker.is_held()) return false;
-  const double fit = sensor::explained_share(field, ends, place.map_from_robot);
+bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const {
+  if (hypothesis.share_around < params.rivals.winning_share || hypothesis.followed_m < params.rivals.wins_after_m)
+    return false;
+  if (ends.size() == 0 || tracker.is_fixed_by_surfaces()) return false;
+  const double fit = sensor::explained_share(field, ends, hypothesis.map_from_robot);
   return fit >= params.fit.found_above || fit >= sensor::explained_share(field, ends, believed) + kClearlyBetter;
 }
 
 void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays, const motion::ScanInstant& now,
                              const sensor::RefinedPose& believed) {
   belief::FitMonitor::Observation seen = passed_since_last_scan(now);
-  last_joined = joined_at(now);
+  last_odom = continuous_odom_at(now);
   last_scan = now.time;
   const bool is_tracking = monitor.state() == LocalizerState::kTracking && !check.under_way();
   last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
@@ -243,31 +245,31 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .believed = believed,
                                             .state = before,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
-                                            .rivals = rivals.report(),
-                                            .things = params.temporary.belief ? things.get() : nullptr});
+                                            .hypotheses = hypotheses.report(),
+                                            .transients = params.temporary.belief ? transients.get() : nullptr});
   if (before == LocalizerState::kTracking) {
-    proven_hold.observe(judged.stable);
+    stable_support.observe(judged.stable);
   } else {
-    proven_hold.forget();
+    stable_support.forget();
   }
   if (blind) return;
   seen.verdict = judged.verdict;
   seen.trust = judgement.trust();
-  seen.beaten = rivals.report().beaten;
-  if (tracker.is_held()) {
+  seen.beaten = hypotheses.report().beaten;
+  if (tracker.is_fixed_by_surfaces()) {
     seen.verdict = PoseVerdict::kRight;
     seen.trust = std::max(seen.trust, kTrustInASearch);
     seen.beaten = false;
   }
   const LocalizerState after = monitor.observe(seen, best);
-  rivals.suspect(monitor.suspicious());
+  hypotheses.suspect(monitor.suspicious());
   if (before != after) enter(after, before, believed.map_from_robot, now);
 }
 
 belief::FitMonitor::Observation Localizer::State::passed_since_last_scan(const motion::ScanInstant& now) const {
   if (!last_scan) return {};
   belief::FitMonitor::Observation seen{.passed_s = std::max(0.0, seconds(now.time - *last_scan))};
-  const Pose2 motion = motion_between(last_joined, joined_at(now));
+  const Pose2 motion = motion_between(last_odom, continuous_odom_at(now));
   seen.driven_m = motion.position().norm();
   seen.turned_rad = std::abs(motion.theta);
   return seen;
@@ -283,17 +285,17 @@ void Localizer::State::judge_start(double fit) {
 
 void Localizer::State::enter(LocalizerState after, LocalizerState before, const Pose2& believed,
                              const motion::ScanInstant& now) {
-  if (after == LocalizerState::kLost) rivals.stop_believing();
-  if (before == LocalizerState::kLost && after == LocalizerState::kTracking) rivals.start_believing_in(believed);
+  if (after == LocalizerState::kLost) hypotheses.stop_believing();
+  if (before == LocalizerState::kLost && after == LocalizerState::kTracking) hypotheses.start_believing_in(believed);
   if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) {
     ++counts.searches;
-    given_up = GivenUp{believed, joined_at(now)};
+    given_up = GivenUp{believed, continuous_odom_at(now)};
   }
   if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) (void)believe_in(believed, now);
 }
 
-Pose2 Localizer::State::joined_at(const motion::ScanInstant& now) const {
-  return now.odometry ? now.odometry->joined_from_robot : last_joined;
+Pose2 Localizer::State::continuous_odom_at(const motion::ScanInstant& now) const {
+  return now.odometry ? now.odometry->continuous_odom_from_robot : last_odom;
 }
 
 Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& believed) const {
@@ -303,7 +305,7 @@ Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& b
           .state = monitor.state(),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(
-              monitor.state() == LocalizerState::kGlobal ? rivals.report().places : tracker.particle_count()),
+              monitor.state() == LocalizerState::kGlobal ? hypotheses.report().followed : tracker.particle_count()),
           .belief = belief(),
           .w_avg = w_avg,
           .revision = revision,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of the localizer: which pose is believed, by a state machine of global, tracking and lost. A scan is
-// followed by the particles (tracker.hpp) or searched for in the whole map (rivals.hpp), then judged (judgement.hpp,
-// fit_monitor.hpp); what wins is believed, what is judged wrong is given up.
+// The inside of the localizer: which pose is believed, by a state machine of global, tracking and lost. Each scan is
+// tracked (tracker.hpp) or searched for in the whole map (hypothesis_tracker.hpp) and then judged (judgement.hpp,
+// fit_monitor.hpp). A hypothesis that wins is believed; a pose that is judged wrong is given up.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "localization/belief/proven_hold.hpp"
+#include "localization/belief/stable_support.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 
@@ -27,30 +27,30 @@ struct Localizer::State {
   tracking::Tracker tracker;
   belief::FitMonitor monitor;
   belief::Judgement judgement;
-  hypotheses::Rivals rivals;
+  hypotheses::HypothesisTracker hypotheses;
   particles::PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   motion::BeamEnds ends;
-  std::vector<surfaces::FacedEnd> faced;          ///< the same scan's, where surfaces are followed
-  motion::BodyVelocity velocity;                  ///< at the scan
-  std::shared_ptr<const TemporaryThings> things;  ///< that stand or are gone for now; may be null
-  motion::BeamEnds ends_beside_things;
+  std::vector<surfaces::FacedEnd> faced;                 ///< the same scan's, where surfaces are followed
+  motion::BodyVelocity velocity;                         ///< at the scan
+  std::shared_ptr<const TransientObstacles> transients;  ///< that stand or are gone for now; may be null
+  motion::BeamEnds ends_beside_transients;
   std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
-  Pose2 last_joined;                     ///< odometry at the last scan
+  Pose2 last_odom;                       ///< odometry at the last scan
   std::optional<Timestamp> last_report;  ///< of the wheels
   double silence_s = 0.0;                ///< the longest between two of these since the last scan
   struct GivenUp {
     Pose2 map_from_robot;
-    Pose2 joined_from_robot;
+    Pose2 continuous_odom_from_robot;
   };
   std::optional<GivenUp> given_up;   ///< where the robot was last believed to be, while a search has only begun
-  particles::Hypothesis best;        ///< of the particles, or the place that leads a search
+  particles::ParticleCluster best;   ///< of the particles, or the place that leads a search
   double w_avg = 1.0;                ///< of that; before any scan nothing speaks against the pose
   std::optional<double> newest_fit;  ///< explained_share() of the newest scan at the estimate
   double n_eff = 0.0;                ///< of the particles, or of a search's places
-  belief::ProvenHold proven_hold;
+  belief::StableSupport stable_support;
 
   // How a pose comes to be believed, and ceases to be.
   void start_at(const particles::InitialPose& given);
@@ -58,8 +58,8 @@ struct Localizer::State {
   /// The particles stay where they are, but must prove themselves.
   void check_pose();
   /// The particles start anew around a place that has won.
-  sensor::RefinedPose believe_in(const Pose2& place, const motion::ScanInstant& now);
-  /// The robot is not where it was believed to be; before another place is believed, the whole map is searched.
+  sensor::RefinedPose believe_in(const Pose2& hypothesis, const motion::ScanInstant& now);
+  /// The robot is not where it was believed to be; before another pose is believed, the whole map is searched.
   void doubt(const Pose2& map_from_believed, const motion::ScanInstant& now);
 
   /// A report of the wheels: where scans have ceased to come, the particles go along with it.
@@ -84,8 +84,8 @@ struct Localizer::State {
   /// The best pose that a slip may have led to and that explains at least this share of the ends; nothing without one.
   [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
-  [[nodiscard]] bool has_won(const hypotheses::RivalPlace& place, const Pose2& believed) const;
-  /// What the localizer answers: where surfaces hold the pose, nothing but another place speaks against it.
+  [[nodiscard]] bool has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const;
+  /// What the localizer answers: where surfaces hold the pose, nothing but another pose speaks against it.
   [[nodiscard]] Belief belief() const;
   /// No pose is believed, nor one being checked.
   [[nodiscard]] bool searches() const;
@@ -97,7 +97,7 @@ struct Localizer::State {
   void judge_start(double fit);
   /// The monitor has changed its mind.
   void enter(LocalizerState after, LocalizerState before, const Pose2& believed, const motion::ScanInstant& now);
-  [[nodiscard]] Pose2 joined_at(const motion::ScanInstant& now) const;
+  [[nodiscard]] Pose2 continuous_odom_at(const motion::ScanInstant& now) const;
 };
 
 }  // namespace deltamap::localization

@@ -26,11 +26,11 @@ struct StoreScan::State {
     gate.observe(tracked);
     if (gate.gate().has_proven_wrong()) {
       waiting.clear();
-      evidence.temporary().clear();
+      evidence.transients().clear();
     }
     if (!gate.lets_vote()) {
       if (gate.waits_to_vote(tracked.estimate)) waiting.keep(tracked);
-      evidence.temporary().hide(tracked.scan.time);
+      evidence.transients().hide(tracked.scan.time);
     } else if (waiting.empty()) {
       gate.take(evidence.observe(tracked), tracked);
     } else {
@@ -58,10 +58,12 @@ StoreScan::~StoreScan() = default;
 StoreScan::StoreScan(StoreScan&&) noexcept = default;
 StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
 
+const std::optional<WithdrawOrder>& StoreScan::withdrawal() const { return state_->gate.withdrawal(); }
+
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
-const std::shared_ptr<const TemporaryThings>& StoreScan::temporary() const {
-  return state_->evidence.temporary().newest();
+const std::shared_ptr<const TransientObstacles>& StoreScan::transients() const {
+  return state_->evidence.transients().newest();
 }
 
 std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "mapping/evidence/evidence_phase.hpp"
 #include "mapping/gate/gated_sets.hpp"
 #include "mapping/paper/delta_phase.hpp"
@@ -48,14 +48,15 @@ class StoreScan {
   StoreScan(StoreScan&&) noexcept;
   StoreScan& operator=(StoreScan&&) noexcept;
 
-  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update(), or an order to take back
-  /// what was written (ScanSet::withdraw_from).
+  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update().
   [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
+  /// In place of a set: the last scan has proven the pose wrong.
+  [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const;
 
   [[nodiscard]] const Awareness& awareness() const;
   /// What is different now and not map (evidence alone): the newest snapshot, another one only where something has
   /// changed. Null until there was something; empty while the pose is in doubt.
-  [[nodiscard]] const std::shared_ptr<const TemporaryThings>& temporary() const;
+  [[nodiscard]] const std::shared_ptr<const TransientObstacles>& transients() const;
 
  private:
   struct State;

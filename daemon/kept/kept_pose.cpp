@@ -4,11 +4,10 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
+#include "daemon/kept/kept_text.hpp"
 #include "daemon/settings/fingerprint.hpp"
 
 namespace deltamap::daemon {
@@ -17,12 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uintmax_t kLargestFile = 4096;
-
-std::string hex_of(std::uint64_t hash) {
-  char text[24];
-  (void)std::snprintf(text, sizeof text, "%016" PRIx64, hash);
-  return text;
-}
 
 std::optional<double> number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -98,20 +91,17 @@ KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t f
     answer.why_not = file.string() + ": " + why;
     return answer;
   };
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error || size > kLargestFile) return refused("holds no pose");
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  const Json json = Json::parse(text.str(), nullptr, false);
+  const std::string text = kept_text(file, kLargestFile);
+  const Json json = Json::parse(text, nullptr, false);
   const auto pose = pose_in(json, first_map);
   if (!pose) return refused("holds no pose");
   answer.calibration = pose->calibration;
-  if (answer.calibration) answer.fingerprint = fingerprint_of(text.str());
+  if (answer.calibration) answer.fingerprint = fingerprint_of(text);
   const auto map = json.find("map");
   if (map == json.end() || *map != hex_of(first_map)) return refused("the pose belongs to another map");
   if (!pose->is_sure) return refused("the robot did not know where it was");
   answer.pose = pose;
-  answer.fingerprint = fingerprint_of(text.str());
+  answer.fingerprint = fingerprint_of(text);
   return answer;
 }
 

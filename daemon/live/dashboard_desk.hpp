@@ -55,7 +55,7 @@ class DashboardDesk {
   Timestamp began_;
   LiveNews news_;
   LiveScan scan_;  // newest
-  std::shared_ptr<const TemporaryThings> things_;
+  std::shared_ptr<const TransientObstacles> transients_;
   Timestamp scan_sent_, status_sent_;
   dashboard::Server server_;  // last: its functions use the others
 };

@@ -118,10 +118,10 @@ void LiveBoard::set_figures(std::function<LiveFigures()> figures) {
   figures_ = std::move(figures);
 }
 
-bool LiveBoard::show(const std::shared_ptr<const TemporaryThings>& things) {
+bool LiveBoard::show(const std::shared_ptr<const TransientObstacles>& transients) {
   const std::unique_lock lock{mutex_, std::try_to_lock};
   if (!lock.owns_lock()) return false;
-  things_ = things;
+  transients_ = transients;
   return true;
 }
 
@@ -146,9 +146,9 @@ bool LiveBoard::fetch(LiveScan& scan) const {
   return true;
 }
 
-std::shared_ptr<const TemporaryThings> LiveBoard::things() const {
+std::shared_ptr<const TransientObstacles> LiveBoard::transients() const {
   const std::scoped_lock lock{mutex_};
-  return things_;
+  return transients_;
 }
 
 LiveBoard::Past<LiveSample> LiveBoard::samples_from(std::uint64_t number, std::size_t most) const {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "daemon/live/live_figures.hpp"
 #include "daemon/outputs/change_note.hpp"
 #include "daemon/outputs/localization_log.hpp"
@@ -86,7 +86,7 @@ class LiveBoard {
   /// Localization thread. Shows nothing where the page is just looking: the next scan comes soon.
   void show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s);
   /// Delta thread. False: not taken, to be offered again at the next scan. Null: nothing is known.
-  [[nodiscard]] bool show(const std::shared_ptr<const TemporaryThings>& things);
+  [[nodiscard]] bool show(const std::shared_ptr<const TransientObstacles>& transients);
   /// Map thread. `revision` may be null: refused.
   void show(const MapRevision* revision, const ChangeNote& note);
 
@@ -114,7 +114,7 @@ class LiveBoard {
   [[nodiscard]] Map map(std::uint64_t from = 0) const;
   /// Copies the newest scan over an older one; false where there is no newer one.
   bool fetch(LiveScan& scan) const;
-  [[nodiscard]] std::shared_ptr<const TemporaryThings> things() const;
+  [[nodiscard]] std::shared_ptr<const TransientObstacles> transients() const;
   /// At most `most` items, the oldest first.
   [[nodiscard]] Past<LiveSample> samples_from(std::uint64_t number, std::size_t most) const;
   [[nodiscard]] Past<ChangeNote> changes_from(std::uint64_t number, std::size_t most) const;
@@ -147,7 +147,7 @@ class LiveBoard {
   Timestamp last_sample_;
   std::function<LiveFigures()> figures_ = [] { return LiveFigures{}; };
   LiveFigures figures_at_sample_;
-  std::shared_ptr<const TemporaryThings> things_;
+  std::shared_ptr<const TransientObstacles> transients_;
   std::shared_ptr<const OccupancyGrid> map_;
   std::uint32_t revision_;
   Ring<CellBox> boxes_{kBoxesKept};

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "daemon/live/live_messages.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/version.hpp"
 
@@ -89,8 +89,8 @@ void add_map(Text& text, const Telemetry& t) {
     text.row("gate_seconds_total", label("reason", name_of(static_cast<mapping::gate::GateReason>(i))), times[i]);
   }
   text.head("temporary_blocks", "Blocks that differ from the map for now, by kind.", "gauge");
-  text.row("temporary_blocks", label("kind", "standing"), t.things_standing.value());
-  text.row("temporary_blocks", label("kind", "gone"), t.things_gone.value());
+  text.row("temporary_blocks", label("kind", "standing"), t.transients_standing.value());
+  text.row("temporary_blocks", label("kind", "gone"), t.transients_gone.value());
 }
 
 void add_machine(Text& text, const Telemetry& t, double since_start_s) {

@@ -44,7 +44,7 @@ void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& long
                             "time without votes after which a block starts anew"));
 }
 
-void add_temporary(mapping::evidence::TemporaryParams& temporary, Keys& keys) {
+void add_temporary(mapping::evidence::TransientLayerParams& temporary, Keys& keys) {
   const std::string at = "mapping.temporary.";
   keys.push_back(whole_key(at + "least_votes", temporary.least_votes, "", 1, 255,
                            "keyframes that put a block into the temporary layer (method evidence)"));

@@ -12,7 +12,6 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
-#include "localization/motion/odometry_buffer.hpp"
 #include "mapping/paper/divergence_ratio.hpp"
 
 namespace deltamap::daemon {
@@ -35,13 +34,13 @@ class LocalizationStep {
   /// Throws std::runtime_error where the map has no free cell.
   LocalizationStep(const Settings& settings, const StartMap& start);
 
-  void observe(const Odometry& odometry);
+  void observe(const Odometry& odometry) { localizer_.observe(odometry); }
   [[nodiscard]] TrackedScan observe(Scan scan);
   /// A scan that a newer one has overtaken: where odometry alone says that it was taken.
   [[nodiscard]] TrajectoryPoint pass_over(const Scan& scan);
   void apply(const MapRevision& revision);
   /// What is different from the map for now; null: nothing is known any more.
-  void apply(std::shared_ptr<const TemporaryThings> things);
+  void apply(std::shared_ptr<const TransientObstacles> transients);
   /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°). False where nobody can stand there: the
   /// whole map is searched then.
   bool relocalize(const Pose2& map_from_robot);
@@ -67,11 +66,10 @@ class LocalizationStep {
   void note(const TrackedScan& tracked);
 
   localization::Localizer localizer_;
-  localization::motion::OdometryBuffer odometry_;  // for the scans that the localizer does not see
   mapping::paper::DivergenceRatio ratio_;
   LocalizationRow row_;
   Pose2 last_map_from_robot_;
-  std::optional<localization::motion::OdometryAt> last_odometry_;
+  std::optional<Pose2> last_odom_from_robot_;
   LocalizerState last_state_ = LocalizerState::kGlobal;
   PoseVerdict last_verdict_ = PoseVerdict::kUndecided;
   std::optional<Timestamp> first_scan_;
@@ -80,5 +78,8 @@ class LocalizationStep {
   double time_global_s_ = 0.0;
   VerdictTimes verdict_times_;
 };
+
+/// What the report of a run says of its localizer.
+void add_to(RunReport& report, const LocalizationStep& step);
 
 }  // namespace deltamap::daemon

@@ -42,11 +42,10 @@ void LivedIn::drive() {
   drive.max_range_m = params_.max_range_m;
   drive.people = people_;
   drive.forklift = busy_forklift(params_.change_every_s);
-  LocalizerDrive pair{scenario_, drive, localizer_, map_,
-                      localization::particles::InitialPose{scenario_.robot.map_from_start}};
-  while (pair.next().passed_s < 60.0 * params_.minutes) {
+  MappingDrive robot{scenario_, drive, localizer_alone(localizer_), {map_}};
+  while (robot.next().passed_s < 60.0 * params_.minutes) {
   }
-  stability_ = pair.localizer().stability();
+  stability_ = robot.localization().stability();
 }
 
 }  // namespace deltamap::experiments

@@ -5,7 +5,7 @@
 
 #include <mutex>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 
 namespace deltamap::experiments {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <deque>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/lived_in.hpp"
-#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/watch/error_course.hpp"
 
@@ -106,7 +106,7 @@ Outcome outcome_of(const GateRun& run) {
   simulation::VirtualDriveParams params;
   params.seed = run.seed;
   params.forklift = busy_forklift(run.change_every_s);
-  MappingDrive drive{run.scenario, params, run.settings, first};
+  MappingDrive drive{run.scenario, params, run.settings, {first}};
   Random random{run.seed + 104729};
   Count count{run};
   Outcome outcome;
@@ -139,7 +139,7 @@ Outcome outcome_of(const GateRun& run) {
                                : 0.0;
     outcome.scans.add(
         {passed_s, error_m, static_cast<double>(estimate.state), static_cast<double>(estimate.belief.verdict),
-         estimate.belief.pose_right, estimate.belief.rival_share,
+         estimate.belief.pose_right, estimate.belief.other_share,
          std::sqrt(estimate.covariance.topLeftCorner<2, 2>().trace()), static_cast<double>(scan.awareness.gate),
          written, withdrew ? static_cast<double>(scan.update->revision->changes.size()) : 0.0, scan.map_from_robot.x,
          scan.map_from_robot.y, 1.0 * beams.expected, 1.0 * beams.fit, 1.0 * beams.short_of, 1.0 * beams.beyond});

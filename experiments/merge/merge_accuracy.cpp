@@ -88,17 +88,6 @@ Outcome merge_often(const std::string& name, bool with_prior, std::uint64_t layo
   return outcome;
 }
 
-class MergeAccuracy : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "merge"; }
-  [[nodiscard]] std::string what() const override {
-    return "Maps merged with a prior (sigma 0.15 m, 2 deg) and without, two parts that share two thirds";
-  }
-  [[nodiscard]] bool measures_time() const override { return true; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
 std::vector<std::string> places_for(const Options& options) {
   std::vector<std::string> places;
   for (const MergeLayout& layout : merge_layouts()) places.push_back(layout.name);
@@ -112,7 +101,7 @@ std::vector<std::string> places_for(const Options& options) {
   return places;
 }
 
-std::vector<Run> MergeAccuracy::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const std::vector<std::string> places = places_for(options);
   const int all = options.quick ? 300 : 10000;
   const int of_a_place =
@@ -166,7 +155,7 @@ std::vector<std::string> places_in(const std::vector<Outcome>& outcomes) {
   return places;
 }
 
-Report MergeAccuracy::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   add_figures(report, outcomes, "with", 3.0);
   add_figures(report, outcomes, "without", 25.0);
@@ -201,6 +190,12 @@ Report MergeAccuracy::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> merge_experiment() { return std::make_unique<MergeAccuracy>(); }
+Experiment merge_experiment() {
+  return {.name = "merge",
+          .what = "Maps merged with a prior (sigma 0.15 m, 2 deg) and without, two parts that share two thirds",
+          .runs = runs_of,
+          .report = report_of,
+          .times = Experiment::Times::kMachine};
+}
 
 }  // namespace deltamap::experiments

@@ -46,7 +46,7 @@ std::vector<std::string> all_whys_shut() {
   for (std::size_t i = 1; i < mapping::gate::kGateReasons; ++i) {
     const auto reason = static_cast<GateReason>(i);
     whys.push_back(why_shut(reason, GateReason::kOpen));
-    const bool begins = mapping::gate::proves_wrong(reason) || reason == GateReason::kMisfit;
+    const bool begins = mapping::gate::proves_wrong(reason) || reason == GateReason::kInlierDrop;
     if (begins) whys.push_back(why_shut(GateReason::kConfirming, reason));
   }
   return whys;
@@ -105,9 +105,9 @@ void PoseCourse::note_happenings(const Mapped& scan, const Befallen& befallen) {
   if (scan.slips > 0) slip_s_ = now_s_;
   slips_ += scan.slips;
   ++scans_;
-  costs_.localizer_s += scan.costs.localizer_s;
+  costs_.localization_s += scan.costs.localization_s;
   costs_.awareness_s += scan.costs.awareness_s;
-  costs_.update_s += scan.costs.update_s;
+  costs_.map_update_s += scan.costs.map_update_s;
 }
 
 void PoseCourse::search(const Mapped& scan, double error_m) {
@@ -209,8 +209,8 @@ PoseCourse::Numbers PoseCourse::numbers() const {
                   {"empty_view_s", empty_view_s_},
                   {"slips", static_cast<double>(slips_)},
                   {"gaps", static_cast<double>(gaps_)},
-                  {"localizer_cpu_ms", ms_a_scan(costs_.localizer_s)},
-                  {"mapping_cpu_ms", ms_a_scan(costs_.awareness_s + costs_.update_s)}};
+                  {"localizer_cpu_ms", ms_a_scan(costs_.localization_s)},
+                  {"mapping_cpu_ms", ms_a_scan(costs_.awareness_s + costs_.map_update_s)}};
   for (const std::string& why : all_whys_shut()) {
     const auto found = shut_while_right_s_.find(why);
     numbers.emplace_back(shut_number(why), found == shut_while_right_s_.end() ? 0.0 : found->second);

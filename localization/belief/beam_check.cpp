@@ -130,17 +130,17 @@ class BeamJudge {
 
 std::span<const CheckedBeam> BeamCheck::check(const OccupancyGrid& map, const Scan& scan,
                                               std::span<const RayInRobot> rays, const sensor::RefinedPose& believed,
-                                              const TemporaryThings* things) {
+                                              const TransientObstacles* transients) {
   const BeamJudge judge{map, believed, scan.max_range_m, params_};
   const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(1, params_.beams)));
   beams_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = i * rays.size() / count;
     beams_.push_back(scan.beams[at].kind == BeamKind::kRange ? judge.judged(rays[at]) : CheckedBeam{});
-    if (things == nullptr) continue;
+    if (transients == nullptr) continue;
     CheckedBeam& beam = beams_.back();
-    beam.is_known = (beam.what == BeamFit::kShort && things->stands_at(judge.end_of(rays[at]))) ||
-                    (beam.what == BeamFit::kBeyond && things->is_gone_at(map.geometry().centre_of(beam.expected)));
+    beam.is_known = (beam.what == BeamFit::kShort && transients->stands_at(judge.end_of(rays[at]))) ||
+                    (beam.what == BeamFit::kBeyond && transients->is_gone_at(map.geometry().centre_of(beam.expected)));
   }
   return beams_;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the beams of one scan say at the estimated pose, each held against what the map expects there: it ends at a
-// surface of the map, before it, or beyond what the map has as an obstacle. A beam that would fit at a pose within the
-// covariance does not speak against this one; one that some such pose would not have sent through says nothing.
+// Classifies the beams of one scan at the estimated pose by what the map expects there: a beam ends at a surface of the
+// map (fit), before it (short) or beyond what the map has as an obstacle. The pose's covariance is taken into account:
+// a beam that fits at some pose within it does not count against this one.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 #include "core/angle.hpp"
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 
 namespace deltamap::localization::belief {
@@ -44,9 +44,10 @@ class BeamCheck {
  public:
   explicit BeamCheck(const BeamCheckParams& params) : params_{params} {}
 
-  /// The chosen beams in order of bearing; valid until the next call. `things` may be null.
+  /// The chosen beams in order of bearing; valid until the next call. `transients` may be null.
   std::span<const CheckedBeam> check(const OccupancyGrid& map, const Scan& scan, std::span<const RayInRobot> rays,
-                                     const sensor::RefinedPose& believed, const TemporaryThings* things = nullptr);
+                                     const sensor::RefinedPose& believed,
+                                     const TransientObstacles* transients = nullptr);
 
  private:
   BeamCheckParams params_;

@@ -20,7 +20,7 @@ void FitMonitor::enter(LocalizerState state) {
   turned_in_state_rad_ = 0.0;
 }
 
-bool FitMonitor::converged(const particles::Hypothesis& best) const {
+bool FitMonitor::converged(const particles::ParticleCluster& best) const {
   const bool seen_enough =
       driven_in_state_m_ >= params_.converged_after_m || turned_in_state_rad_ >= params_.converged_after_rad;
   return seen_enough && best.weight >= params_.converged_share &&
@@ -39,7 +39,7 @@ void FitMonitor::count(const Observation& scan) {
   distrusted_s_ = grown_while(scan.trust <= params_.distrust, distrusted_s_);
 }
 
-LocalizerState FitMonitor::observe(const Observation& scan, const particles::Hypothesis& best) {
+LocalizerState FitMonitor::observe(const Observation& scan, const particles::ParticleCluster& best) {
   in_state_s_ += scan.passed_s;
   driven_in_state_m_ += scan.driven_m;
   turned_in_state_rad_ += std::abs(scan.turned_rad);

@@ -7,21 +7,21 @@
 namespace deltamap::localization::belief {
 namespace {
 
-PoseJudge::Shares shares_in(const hypotheses::RivalReport& report) {
-  if (report.places == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
+PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
+  if (report.followed == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
   if (report.own_known) {
-    const hypotheses::RivalPlace& rival = report.rivals.front();
-    const bool carried = report.carried_share > rival.share;
+    const hypotheses::ReportedHypothesis& other = report.others.front();
+    const bool kidnapped = report.kidnapped_share > other.share;
     return {.believed = report.own_share,
-            .best_rival = std::max(rival.share, report.carried_share),  // one of them may be watched, not listed
-            .map_from_rival = carried ? report.map_from_carried : rival.map_from_robot,
+            .best_other = std::max(other.share, report.kidnapped_share),  // one of them may be watched, not listed
+            .map_from_other = kidnapped ? report.map_from_kidnapped : other.map_from_robot,
             .beaten = report.beaten,
             .unique = report.unique};
   }
-  const hypotheses::RivalPlace& second = report.rivals[1];
-  return {.believed = report.rivals.front().share,
-          .best_rival = report.listed > 1 ? second.share : 0.0,
-          .map_from_rival = second.map_from_robot,
+  const hypotheses::ReportedHypothesis& second = report.others[1];
+  return {.believed = report.others.front().share,
+          .best_other = report.listed > 1 ? second.share : 0.0,
+          .map_from_other = second.map_from_robot,
           .searching = true};
 }
 
@@ -50,8 +50,9 @@ const Belief& Judgement::observe(const View& view) {
   if (!due(view.passed)) return belief_;
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
-  const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed, view.things);
-  judge_.observe(tallied(beams, stability_), passed, shares_in(view.rivals));
+  const std::span<const CheckedBeam> beams =
+      check_.check(view.map, view.scan, view.rays, view.believed, view.transients);
+  judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses));
   belief_ = judge_.belief();
   belief_.is_checked = true;
   earn(beams, view);

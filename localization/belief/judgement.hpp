@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds each view against the map and answers twice: is the pose right, is the map wrong here? Checks the beams at the
-// estimated pose, lets the tiles of the map earn their stability while the pose is well known, and keeps the belief.
+// Answers two questions at each scan: is the pose right, and is the map wrong here? Checks the beams at the estimated
+// pose, lets the tiles of the map earn their stability while the pose is well known, and keeps the belief.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 #include "localization/belief/pose_verdict.hpp"
 #include "localization/belief/stability.hpp"
 #include "localization/belief/view_tally.hpp"
-#include "localization/hypotheses/rival_report.hpp"
+#include "localization/hypotheses/hypothesis_report.hpp"
 
 namespace deltamap::localization::belief {
 
@@ -39,8 +39,8 @@ class Judgement {
     const sensor::RefinedPose& believed;
     LocalizerState state = LocalizerState::kGlobal;
     PoseJudge::Passed passed;  ///< since the last scan
-    const hypotheses::RivalReport& rivals;
-    const TemporaryThings* things = nullptr;  ///< what is known to be different for now
+    const hypotheses::HypothesisReport& hypotheses;
+    const TransientObstacles* transients = nullptr;  ///< what is known to be different for now
   };
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
   const Belief& observe(const View& view);

@@ -92,8 +92,8 @@ double PoseJudge::novelty(const Passed& passed, std::optional<double> hold) {
 void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Shares& shares) {
   belief_.stable = view.stable;
   belief_.elsewhere = view.elsewhere;
-  belief_.rival_share = shares.best_rival;
-  belief_.map_from_rival = shares.map_from_rival;
+  belief_.other_share = shares.best_other;
+  belief_.map_from_other = shares.map_from_other;
 
   const std::optional<Weakest> weakest = weakest_direction(view, params_);
   const bool proven = is_proof(view, params_);

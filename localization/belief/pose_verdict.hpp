@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Am I lost, or is the map out of date? Adds up over the drive what the views say. Beams on proven tiles speak of the
-// pose: it must be held in both directions, for along a wall every pose fits. All beams together speak of the map,
-// given that the pose is right. Other places that explain the scans as well take belief away. Views count by how new
-// they are: standing still, or people who walk by, make it no more certain.
+// P(pose right) and P(map wrong), accumulated over the views of a drive. Beams on proven tiles are evidence about the
+// pose: it must be supported in both directions, for along a wall every pose fits. All beams together are evidence
+// about the map, given that the pose is right. Other pose hypotheses that explain the scans as well take belief away. A
+// view counts by how new it is: standing still, or people who walk by, add no certainty.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ struct PoseVerdictParams {
   double right_above = 0.9;          ///< P(pose right) from which the verdict is right; 0.5..1
   double wrong_below = 0.1;          ///< P(pose right) below which the verdict is wrong; 0..0.5
   double unproven_limit = 0.85;      ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
-  double unique_for_views = 4.0;     ///< so long no other place may explain the scans before it is right; >= 0
+  double unique_for_views = 4.0;     ///< so long no other hypothesis may explain the scans before it is right; >= 0
   double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles held the pose; > 0
   double changed_above = 0.1;        ///< share of beams off the map from which it is rather wrong than right; 0..1
 };
@@ -49,11 +49,11 @@ class PoseJudge {
   /// How the belief is shared between the places in the map that may be it.
   struct Shares {
     double believed = 1.0;
-    double best_rival = 0.0;
-    Pose2 map_from_rival{};
+    double best_other = 0.0;
+    Pose2 map_from_other{};
     bool searching = false;  ///< no place is believed yet: `believed` is the best one's
-    bool beaten = true;      ///< another place explains the recent scans clearly better
-    bool unique = true;      ///< no other place explains them about as well
+    bool beaten = true;      ///< another hypothesis explains the recent scans clearly better
+    bool unique = true;      ///< no other hypothesis explains them about as well
   };
   void observe(const ViewTally& view, const Passed& passed, const Shares& shares);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of the map has proven to stay: earned over time and viewpoints, never assumed of the first map. A tile of some
-// cells rises by a confirmation from a new place after a while, falls where a beam goes through it, and begins again
-// where a revision rewrites it. Beams on proven tiles speak of the pose, all others of the map.
+// Which tiles of the map have proven to stay. A tile rises by a confirmation from a new position after a while, falls
+// where a beam goes through it, and begins again where a revision rewrites it; nothing is assumed of the first map.
+// Beams on proven tiles are evidence about the pose, all others about the map.
 #pragma once
 
 #include <cstdint>

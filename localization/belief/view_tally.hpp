@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checked beams of one scan in numbers: by what they hit (proven to stay, or not) and by which direction they hold
-// the pose in. A corridor's walls hold it across and say nothing along; so a pose must be held both ways to be
+// Counts the checked beams of one scan: on proven tiles or elsewhere, and by the direction in which they constrain the
+// pose. A corridor's walls constrain it across and say nothing along; a pose must be supported both ways to be
 // believed.
 #pragma once
 

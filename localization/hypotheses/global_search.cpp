@@ -45,20 +45,20 @@ GlobalSearch::GlobalSearch(const GlobalSearchParams& params, int headings)
 
 void GlobalSearch::start() { stage_ = Stage::kBegin; }
 
-bool GlobalSearch::due_again(const Pose2& joined_from_robot) const {
-  const Pose2 since = motion_between(joined_from_robot_, joined_from_robot);
+bool GlobalSearch::due_again(const Pose2& continuous_odom_from_robot) const {
+  const Pose2 since = motion_between(continuous_odom_from_robot_, continuous_odom_from_robot);
   return since.position().norm() >= params_.again_after_m || std::abs(since.theta) >= params_.again_after_rad;
 }
 
 std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
-                                          const Ends& ends, const Pose2& joined_from_robot, double pace) {
+                                          const Ends& ends, const Pose2& continuous_odom_from_robot, double pace) {
   const auto share_of = [pace](int count) { return static_cast<std::size_t>(std::max(1.0, pace * count)); };
-  places_.clear();
-  if (stage_ == Stage::kDone && due_again(joined_from_robot)) stage_ = Stage::kBegin;
-  if (ends.all.size() == 0 || stage_ == Stage::kDone) return places_;
+  hypotheses_.clear();
+  if (stage_ == Stage::kDone && due_again(continuous_odom_from_robot)) stage_ = Stage::kBegin;
+  if (ends.all.size() == 0 || stage_ == Stage::kDone) return hypotheses_;
   if (stage_ == Stage::kBegin) {
     ends_ = ends.near;
-    joined_from_robot_ = joined_from_robot;
+    continuous_odom_from_robot_ = continuous_odom_from_robot;
     left_ = lattice_.poses(coarse);
     lattice_.clear();
     stage_ = Stage::kLooking;
@@ -67,20 +67,20 @@ std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, con
     const std::size_t now = std::min(left_, share_of(params_.candidates_a_scan));
     (void)lattice_.look(coarse, ends_, now);
     left_ -= now;
-    if (left_ > 0) return places_;
+    if (left_ > 0) return hypotheses_;
     candidates_ = lattice_.best_apart(static_cast<std::size_t>(params_.places));
     next_ = 0;
     stage_ = Stage::kSliding;
-    return places_;
+    return hypotheses_;
   }
   // Carried along by the wheels since the scan that found them, and slid to where the newest scan fits.
-  const Pose2 motion = motion_between(joined_from_robot_, joined_from_robot);
+  const Pose2 motion = motion_between(continuous_odom_from_robot_, continuous_odom_from_robot);
   const std::size_t until = std::min(candidates_.size(), next_ + share_of(params_.places_a_scan));
   for (; next_ < until; ++next_) {
-    places_.push_back(settled(field, ends.all, candidates_[next_].map_from_robot * motion));
+    hypotheses_.push_back(settled(field, ends.all, candidates_[next_].map_from_robot * motion));
   }
   if (next_ == candidates_.size()) stage_ = Stage::kDone;
-  return places_;
+  return hypotheses_;
 }
 
 }  // namespace deltamap::localization::hypotheses

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where could the robot be, when nobody says? Looks through the whole map with one scan, so many poses a scan, then
-// slides the best ones to where they fit, so many a scan: no single scan is held up. Later scans decide (place_bank).
+// Global localization: searches the whole map with one scan. A lattice of poses is judged on the coarse field, so many
+// poses at each scan, then the best candidates are refined, so many at each scan: no single scan takes long. Which
+// candidate is true is decided by later scans (hypothesis_bank.hpp).
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct GlobalSearchParams {
   double again_after_rad = radians(30.0);  ///< or turned, rad; > 0
 };
 
-/// Slides a pose of the coarse lattice to where the scan fits.
+/// Refines a pose of the coarse lattice to where the scan fits.
 [[nodiscard]] Pose2 settled(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, const Pose2& pose);
 
 class GlobalSearch {
@@ -39,21 +40,22 @@ class GlobalSearch {
   /// One scan's share of the work. Answers places where this scan fits; valid until the next call.
   /// `pace`: how much of a full share, (0, 1].
   [[nodiscard]] std::span<const Pose2> look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
-                                            const Ends& ends, const Pose2& joined_from_robot, double pace = 1.0);
+                                            const Ends& ends, const Pose2& continuous_odom_from_robot,
+                                            double pace = 1.0);
 
  private:
   enum class Stage : std::uint8_t { kBegin, kLooking, kSliding, kDone };
-  [[nodiscard]] bool due_again(const Pose2& joined_from_robot) const;
+  [[nodiscard]] bool due_again(const Pose2& continuous_odom_from_robot) const;
 
   GlobalSearchParams params_;
   LatticeSearch lattice_;
   Stage stage_ = Stage::kBegin;
-  motion::BeamEnds ends_;    // of the scan that the whole map is held against
-  Pose2 joined_from_robot_;  // where it was taken
-  std::size_t left_ = 0;     // poses to look at
+  motion::BeamEnds ends_;             // of the scan that the whole map is held against
+  Pose2 continuous_odom_from_robot_;  // where it was taken
+  std::size_t left_ = 0;              // poses to look at
   std::vector<Candidate> candidates_;
   std::size_t next_ = 0;  // candidate to slide
-  std::vector<Pose2> places_;
+  std::vector<Pose2> hypotheses_;
 };
 
 }  // namespace deltamap::localization::hypotheses

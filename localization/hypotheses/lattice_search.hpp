@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks through the free space of the whole map for poses where a scan fits, a slice at a time: one pose in the middle
-// of each free block and for each heading, judged on the coarse field. Remembers where it stopped.
+// Judges a lattice of poses in the free space of the map, some at each scan: one pose in the middle of each free block
+// and for each heading, by the coarse field. Remembers where it stopped.
 #pragma once
 
 #include <cstddef>

@@ -8,21 +8,21 @@
 
 namespace deltamap::localization::hypotheses {
 
-void ScanStack::add(const motion::BeamEnds& ends, const Pose2& joined_from_robot) {
+void ScanStack::add(const motion::BeamEnds& ends, const Pose2& continuous_odom_from_robot) {
   const double apart_rad = radians(30.0);
   if (ends.size() == 0) return;
   double since_last_m = 0.0;
   if (count_ > 0) {
-    const Pose2 since = motion_between(kept_[newest_].joined_from_robot, joined_from_robot);
+    const Pose2 since = motion_between(kept_[newest_].continuous_odom_from_robot, continuous_odom_from_robot);
     since_last_m = since.position().norm();
     if (since_last_m < kApartM && std::abs(since.theta) < apart_rad) return;
   }
   newest_ = (newest_ + 1) % kScans;
   count_ = std::min(count_ + 1, kScans);
   kept_[newest_].ends = ends;
-  const std::span<const float> weights = novelty_.weights(ends, joined_from_robot);
+  const std::span<const float> weights = decorrelation_.weights(ends, continuous_odom_from_robot);
   kept_[newest_].weights.assign(weights.begin(), weights.end());
-  kept_[newest_].joined_from_robot = joined_from_robot;
+  kept_[newest_].continuous_odom_from_robot = continuous_odom_from_robot;
   kept_[newest_].since_last_m = since_last_m;
 }
 
@@ -33,28 +33,28 @@ void ScanStack::keep_last(double driven_m) {
 }
 
 ScanStack::Sums ScanStack::log_likelihoods(const sensor::LikelihoodField& field, const Pose2& map_from_robot,
-                                           const Pose2& joined_from_robot) const {
+                                           const Pose2& continuous_odom_from_robot) const {
   Sums sums{};
   double sum = 0.0;
   for (std::size_t back = 0; back < count_; ++back) {
     const Kept& kept = newest_but(back);
-    const Pose2 now_from_then = motion_between(joined_from_robot, kept.joined_from_robot);
+    const Pose2 now_from_then = motion_between(continuous_odom_from_robot, kept.continuous_odom_from_robot);
     sum += weighted_log_likelihood(field, kept.ends, kept.weights, map_from_robot * now_from_then);
     sums[back] = sum;
   }
   return sums;
 }
 
-Comparison ScanStack::compared_lately(const sensor::LikelihoodField& field, const Pose2& place, const Pose2& other,
-                                      const Pose2& joined_from_robot, double of_a_beam) const {
+Comparison ScanStack::compared_lately(const sensor::LikelihoodField& field, const Pose2& hypothesis, const Pose2& other,
+                                      const Pose2& continuous_odom_from_robot, double of_a_beam) const {
   constexpr std::size_t kLately = 6;
   Comparison sum;
   Comparison most;
   for (std::size_t back = 0; back < std::min(count_, kLately); ++back) {
     const Kept& kept = newest_but(back);
-    const Pose2 now_from_then = motion_between(joined_from_robot, kept.joined_from_robot);
+    const Pose2 now_from_then = motion_between(continuous_odom_from_robot, kept.continuous_odom_from_robot);
     const Comparison then =
-        compared(field, kept.ends, kept.weights, place * now_from_then, other * now_from_then, of_a_beam);
+        compared(field, kept.ends, kept.weights, hypothesis * now_from_then, other * now_from_then, of_a_beam);
     sum.gained += then.gained;
     sum.lost += then.lost;
     if (sum.ahead() > most.ahead()) most = sum;

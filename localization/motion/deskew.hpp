@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes the robot's motion during a sweep out of a scan: each beam becomes a ray in the robot's frame at Scan::time.
-// From these, the ends that score a pose.
+// The ends of the beams with a range are what scores a pose.
 #pragma once
 
 #include <cstddef>

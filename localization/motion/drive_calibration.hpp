@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What driving among surfaces has told of the robot itself: systematic errors of its wheels and of the laser's mount.
+// Systematic errors that are estimated while driving: of the wheels (Kelly 2004) and of the laser's mount.
 #pragma once
 
 #include <array>

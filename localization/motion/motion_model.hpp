@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the wheels can be trusted: the odometry motion model of Thrun, Burgard and Fox, "Probabilistic Robotics",
-// 2005, Table 5.6. A motion is a turn, a straight line and a turn; each gets noise in proportion to the others.
+// The odometry motion model of Thrun, Burgard and Fox, "Probabilistic Robotics", 2005, Table 5.6: a motion is a turn, a
+// straight line and a turn, and each gets noise in proportion to the others.
 #pragma once
 
 #include <vector>

@@ -45,7 +45,7 @@ void OdometryBuffer::add(const Odometry& odometry) {
   const auto join_to = [&](const Report& last) {
     const bool same_frame = fresh.epoch == last.epoch;
     const Pose2 counted = same_frame ? motion_between(last.odom_from_robot, fresh.odom_from_robot) : Pose2{};
-    fresh.joined_from_robot = last.joined_from_robot * corrected({.motion = counted}, errors_);
+    fresh.continuous_odom_from_robot = last.continuous_odom_from_robot * corrected({.motion = counted}, errors_);
   };
   if (count_ > 0 && seconds(newest().time - fresh.time) > kClockFellBackS) begin_anew();
   if (count_ > 0) {
@@ -92,7 +92,8 @@ std::size_t OdometryBuffer::first_not_before(Timestamp time) const {
 
 std::optional<OdometryAt> OdometryBuffer::at(Timestamp time) const {
   std::optional<OdometryAt> told = told_at(time);
-  if (told) told->joined_from_robot = told->joined_from_robot * motion_at(velocity_at(time), errors_.lag_s);
+  if (told)
+    told->continuous_odom_from_robot = told->continuous_odom_from_robot * motion_at(velocity_at(time), errors_.lag_s);
   return told;
 }
 
@@ -102,25 +103,25 @@ std::optional<OdometryAt> OdometryBuffer::told_at(Timestamp time) const {
   if (next == count_) return extrapolated(newest(), seconds(time - newest().time));
   const Report& after = report(next);
   if (next == 0 || after.time == time) {
-    return OdometryAt{after.odom_from_robot, after.epoch, after.joined_from_robot, seconds(after.time - time)};
+    return OdometryAt{after.odom_from_robot, after.epoch, after.continuous_odom_from_robot, seconds(after.time - time)};
   }
   const Report& before = report(next - 1);
   const double since_s = seconds(time - before.time);
   const double gap_s = seconds(after.time - before.time);
   if (before.epoch != after.epoch) {
     const Report& nearer = since_s <= 0.5 * gap_s ? before : after;
-    return OdometryAt{nearer.odom_from_robot, nearer.epoch, nearer.joined_from_robot,
+    return OdometryAt{nearer.odom_from_robot, nearer.epoch, nearer.continuous_odom_from_robot,
                       std::min(since_s, gap_s - since_s)};
   }
   const double share = since_s / gap_s;
   return OdometryAt{interpolated(before.odom_from_robot, after.odom_from_robot, share), before.epoch,
-                    interpolated(before.joined_from_robot, after.joined_from_robot, share), 0.0};
+                    interpolated(before.continuous_odom_from_robot, after.continuous_odom_from_robot, share), 0.0};
 }
 
 OdometryAt OdometryBuffer::extrapolated(const Report& last, double ahead_s) const {
   const double reach_s = std::min(ahead_s, params_.extrapolation_s);
   const Pose2 motion = motion_at(newest_velocity(), reach_s);
-  return {last.odom_from_robot * motion, last.epoch, last.joined_from_robot * motion, ahead_s - reach_s};
+  return {last.odom_from_robot * motion, last.epoch, last.continuous_odom_from_robot * motion, ahead_s - reach_s};
 }
 
 BodyVelocity OdometryBuffer::newest_velocity() const {
@@ -144,7 +145,8 @@ BodyVelocity OdometryBuffer::velocity_at(Timestamp time) const {
     const double silent_s = seconds(time - newest().time);
     return silent_s > params_.extrapolation_s ? BodyVelocity{} : newest_velocity();
   }
-  const Pose2 motion = motion_between(told_at(from)->joined_from_robot, told_at(to)->joined_from_robot);
+  const Pose2 motion =
+      motion_between(told_at(from)->continuous_odom_from_robot, told_at(to)->continuous_odom_from_robot);
   return clamped(velocity_of(motion, base_s));
 }
 

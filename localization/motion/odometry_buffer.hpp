@@ -30,8 +30,8 @@ struct BodyVelocity {
 struct OdometryAt {
   Pose2 odom_from_robot;  ///< in the frame of `epoch`
   std::uint32_t epoch = 0;
-  Pose2 joined_from_robot;   ///< in one frame over all epochs, without what is known of the wheels' systematic errors;
-                             ///< the jump between two epochs counts as standing still
+  Pose2 continuous_odom_from_robot;  ///< in one frame over all epochs, without what is known of the wheels' systematic
+                                     ///< errors; the jump between two epochs counts as standing still
   double uncovered_s = 0.0;  ///< seconds between the instant and the nearest report that could speak for it
 };
 
@@ -62,7 +62,7 @@ class OdometryBuffer {
   struct Report {
     Timestamp time;
     Pose2 odom_from_robot;
-    Pose2 joined_from_robot;
+    Pose2 continuous_odom_from_robot;
     std::uint32_t epoch = 0;
     BodyVelocity reported;
   };

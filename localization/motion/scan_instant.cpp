@@ -18,7 +18,7 @@ MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double
     since.unknown_s = since.passed_s;
     return since;
   }
-  since.motion = motion_between(last.odometry->joined_from_robot, now.odometry->joined_from_robot);
+  since.motion = motion_between(last.odometry->continuous_odom_from_robot, now.odometry->continuous_odom_from_robot);
   since.unknown_s = std::min(now.odometry->uncovered_s, since.passed_s);
   if (now.odometry->epoch != last.odometry->epoch) {
     const double silent_s = since.passed_s > 2.0 * usual_s ? since.passed_s : 0.0;
@@ -32,7 +32,7 @@ Pose2 counted_between(const ScanInstant& before, const ScanInstant& now) {
   const OdometryAt& from = *before.odometry;
   const OdometryAt& to = *now.odometry;
   return from.epoch == to.epoch ? motion_between(from.odom_from_robot, to.odom_from_robot)
-                                : motion_between(from.joined_from_robot, to.joined_from_robot);
+                                : motion_between(from.continuous_odom_from_robot, to.continuous_odom_from_robot);
 }
 
 MotionSince step_between(const ScanInstant& before, const ScanInstant& now) {
@@ -40,7 +40,7 @@ MotionSince step_between(const ScanInstant& before, const ScanInstant& now) {
   step.passed_s = std::max(0.0, seconds(now.time - before.time));
   step.unknown_s = step.passed_s;
   if (!now.odometry || !before.odometry) return step;
-  step.motion = motion_between(before.odometry->joined_from_robot, now.odometry->joined_from_robot);
+  step.motion = motion_between(before.odometry->continuous_odom_from_robot, now.odometry->continuous_odom_from_robot);
   const bool jumped = now.odometry->epoch != before.odometry->epoch;
   if (!jumped) step.unknown_s = std::min(now.odometry->uncovered_s, step.passed_s);
   return step;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a scan was taken and where the wheels say the robot was; and what has moved between two such instants.
+// The time of a scan with the odometry at that time, and the motion between two such instants.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The particle filter of Thrun, Burgard and Fox, "Probabilistic Robotics", 2005, Table 8.2: moves its guesses as the
-// wheels did, weighs them by a scan, and draws them anew when too few carry the weight.
+// The particle filter of Thrun, Burgard and Fox, "Probabilistic Robotics", 2005, Table 8.2: moves the particles by the
+// motion model, weighs them by a scan, and resamples when too few of them carry the weight.
 #pragma once
 
 #include <cstdint>

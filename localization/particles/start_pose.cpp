@@ -50,7 +50,7 @@ Start usable_start(const OccupancyGrid& map, const InitialPose& given) {
   return moved;
 }
 
-Hypothesis anywhere_in(const OccupancyGrid& map) {
+ParticleCluster anywhere_in(const OccupancyGrid& map) {
   const CellBox known = known_box(map);
   const Point2 half = 0.5 * map.resolution_m() * Point2{known.width(), known.height()};
   const Point2 middle = map.geometry().origin + map.resolution_m() * Point2{known.first.column, known.first.row} + half;

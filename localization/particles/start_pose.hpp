@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pose to start from: given by a person, or remembered from the last run and to be checked against the first scans.
-// And what is made of one that cannot be: inside a wall, or outside the map.
+// The pose to start from: given by a person and believed, or remembered from the last run and checked against the first
+// scans. A pose inside an obstacle or outside the map is moved or refused.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 
 #include "core/occupancy_grid.hpp"
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 
 namespace deltamap::localization::particles {
 
@@ -35,7 +35,7 @@ struct Start {
 [[nodiscard]] Start usable_start(const OccupancyGrid& map, const InitialPose& given);
 
 /// What is known before the first scan: the middle of what the map shows, give or take all of it; weight 0.
-[[nodiscard]] Hypothesis anywhere_in(const OccupancyGrid& map);
+[[nodiscard]] ParticleCluster anywhere_in(const OccupancyGrid& map);
 
 /// The map itself. Throws std::runtime_error where there is none or no cell of it is free.
 [[nodiscard]] std::shared_ptr<const OccupancyGrid> with_free_space(std::shared_ptr<const OccupancyGrid> map);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The likelihood field seen from afar: of each block of cells the best value, small enough to stay in the cache. A pose
-// somewhere in a block fits here at least about as well as in the field itself, so that a coarse lattice of poses finds
-// the places worth a closer look (after Olson, "Real-time correlative scan matching", 2009).
+// The likelihood field at low resolution: the best value of each block of cells, small enough for the cache. A pose
+// somewhere in a block scores here at least about as well as in the field itself, so that a coarse lattice finds every
+// pose that is worth a closer look (after Olson, "Real-time correlative scan matching", 2009).
 #pragma once
 
 #include <algorithm>

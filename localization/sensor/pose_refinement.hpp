@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slides the best hypothesis to where the scan fits the map best: Gauss-Newton on the distances of the likelihood
-// field, each beam weighted by how probably it hit what the map knows. Held back by what the particles already know.
+// Refines a pose to where a scan fits the map best: Gauss-Newton on the distances of the likelihood field, each beam
+// weighted by the probability that it hit what the map has, with the prior pose and its covariance as a constraint.
 #pragma once
 
 #include "core/angle.hpp"

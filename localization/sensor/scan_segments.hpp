@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ends of a scan in runs that lie on one thing. A container that was moved misleads every beam that meets it alike:
-// against a pose it is one witness, not one a beam. What a segment can say is therefore bounded by the odds that its
-// thing stands elsewhere than the map has it: a mixture of "holds" and "was moved", taken by segment.
+// Cuts the ends of a scan into segments that lie on one object. A container that was moved misleads every beam that
+// meets it in the same way, so that its beams are one observation against a pose, not thirty. What a segment can say is
+// bounded by the odds that its object stands elsewhere than the map has it: a mixture of "holds" and "was moved", by
+// segment.
 #pragma once
 
 #include <cstdint>

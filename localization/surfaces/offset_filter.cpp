@@ -89,8 +89,8 @@ void OffsetFilter::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox
   renumber();
 }
 
-void OffsetFilter::carry(const motion::WheelStep& step, const PoseCovariance& added) {
-  state_.carry(step, added);
+void OffsetFilter::predict(const motion::WheelStep& step, const PoseCovariance& added) {
+  state_.predict(step, added);
   const double driven_m = step.motion.position().norm();
   since_doubt_m_ += driven_m;
   for (SurfaceSwitch& followed : switches_) followed.unseen_m += driven_m;
@@ -188,14 +188,17 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
   const double heading = state_.mean()[2];
   Fixed here = state_.mean().head<OffsetState::kFixed>();
   here.head<OffsetState::kPose>() << at.x, at.y, heading + turn_between(heading, at.theta);
+  std::vector<RowMeasurement> rows;
+  rows.reserve(2 * sightings.size());
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     if (!fits[i]) continue;
     const SurfaceMeasurement seen = measurement_of(sightings[i], at, OffsetState::offset_of(surface_of(sightings[i])));
-    state_.update(seen.distance, -seen.distance_m - expected(seen.distance, state_.mean(), here),
-                  seen.distance_variance);
+    rows.push_back(
+        {seen.distance, -seen.distance_m - expected(seen.distance, state_.mean(), here), seen.distance_variance});
     if (!seen.has_turn) continue;
-    state_.update(seen.turn, -seen.turn_rad - expected(seen.turn, state_.mean(), here), seen.turn_variance);
+    rows.push_back({seen.turn, -seen.turn_rad - expected(seen.turn, state_.mean(), here), seen.turn_variance});
   }
+  state_.update(rows);
 }
 
 /// Where any one surface that seems to have moved would stand where the map has it.

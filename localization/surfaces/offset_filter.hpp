@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where is the robot, and which surfaces of the map still hold? At each keyframe the surfaces in view correct the pose.
-// One that was moved is a landmark with an unknown offset: it goes on saying how the robot moves, only not where it is.
+// A Kalman filter over the pose and the offsets of surfaces: where is the robot, and which surfaces of the map still
+// hold? At each keyframe the surfaces in view correct the pose. One that was moved is a landmark with an unknown
+// offset: it still observes the robot's motion, but no longer its pose.
 #pragma once
 
 #include <memory>
@@ -33,7 +34,7 @@ class OffsetFilter {
   void take(const sensor::RefinedPose& found);
 
   [[nodiscard]] Pose2 corrected(const motion::WheelStep& step) const { return state_.corrected(step); }
-  void carry(const motion::WheelStep& step, const PoseCovariance& added);
+  void predict(const motion::WheelStep& step, const PoseCovariance& added);
 
   /// What a keyframe showed.
   struct Seen {

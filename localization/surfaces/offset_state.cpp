@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/surfaces/offset_state.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -89,7 +90,7 @@ motion::DriveCalibration OffsetState::calibration() const {
 
 Pose2 OffsetState::corrected(const motion::WheelStep& step) const { return motion::corrected(step, wheels_in(mean_)); }
 
-void OffsetState::carry(const motion::WheelStep& step, const PoseCovariance& added) {
+void OffsetState::predict(const motion::WheelStep& step, const PoseCovariance& added) {
   const Pose2 motion = corrected(step);
   const double length_m = step.motion.position().norm();
   const Pose2 turned{0.0, 0.0, mean_[2]};
@@ -160,13 +161,37 @@ Eigen::Matrix<double, 3, 6> OffsetState::scan_by_pose_and_mount() const {
   return by;
 }
 
-void OffsetState::update(const SparseRow& row, double innovation, double variance) {
-  column_ = Eigen::VectorXd::Zero(mean_.size());
-  for (const SparseRow::Entry& entry : row.used()) column_ += entry.value * covariance_.col(entry.index);
-  double expected = variance;
-  for (const SparseRow::Entry& entry : row.used()) expected += entry.value * column_[entry.index];
-  mean_ += column_ * (innovation / expected);
-  covariance_.noalias() -= column_ * (column_.transpose() / expected);
+// With H the rows, R their variances and H P Hᵀ + R = L Lᵀ: P − W Wᵀ, where W = P Hᵀ L⁻ᵀ. One half of the matrix is
+// computed and mirrored.
+void OffsetState::update(std::span<const RowMeasurement> measurements) {
+  const auto count = static_cast<Eigen::Index>(measurements.size());
+  if (count == 0) return;
+  Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(mean_.size(), count);
+  Eigen::MatrixXd expected{count, count};
+  Eigen::VectorXd innovation{count};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const RowMeasurement& measured = measurements[static_cast<std::size_t>(i)];
+    for (const SparseRow::Entry& entry : measured.row.used()) gain.col(i) += entry.value * covariance_.col(entry.index);
+    expected.row(i).setZero();
+    for (const SparseRow::Entry& entry : measured.row.used())
+      expected.row(i).head(i + 1) += entry.value * gain.row(entry.index).head(i + 1);
+    expected(i, i) += measured.variance;
+    innovation[i] = measured.innovation;
+  }
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> root{expected};
+  root.matrixL().solveInPlace(innovation);
+  root.matrixU().solveInPlace<Eigen::OnTheRight>(gain);
+  mean_ += gain * innovation;
+  covariance_.selfadjointView<Eigen::Lower>().rankUpdate(gain, -1.0);
+  mirror_lower_half();
+}
+
+void OffsetState::mirror_lower_half() {
+  const Eigen::Index size = covariance_.rows();
+  double* const entries = covariance_.data();
+  for (Eigen::Index column = 0; column < size; ++column) {
+    for (Eigen::Index row = column + 1; row < size; ++row) entries[column + row * size] = entries[row + column * size];
+  }
 }
 
 }  // namespace deltamap::localization::surfaces

@@ -25,6 +25,13 @@ struct SparseRow {
   [[nodiscard]] std::span<const Entry> used() const { return {entries.data(), count}; }
 };
 
+/// row · state was found to be greater than expected by `innovation`.
+struct RowMeasurement {
+  SparseRow row;
+  double innovation;
+  double variance;
+};
+
 class OffsetState {
  public:
   static constexpr Eigen::Index kPose = 3;
@@ -46,7 +53,7 @@ class OffsetState {
   /// The robot's motion, by the wheels and what is known of their errors.
   [[nodiscard]] Pose2 corrected(const motion::WheelStep& step) const;
   /// `added`: covariance of the step's own noise, map frame.
-  void carry(const motion::WheelStep& step, const PoseCovariance& added);
+  void predict(const motion::WheelStep& step, const PoseCovariance& added);
 
   /// The wheels have slipped: the pose is another one, and less sure. Surfaces stay where they are.
   void jump(const Pose2& to, const PoseCovariance& slip);
@@ -58,8 +65,8 @@ class OffsetState {
 
   /// A measurement of the pose, with the mount as it is known. False where that is too far off: nothing has changed.
   bool update(const sensor::RefinedPose& seen);
-  /// A measurement: row · state was found to be greater than expected by `innovation`.
-  void update(const SparseRow& row, double innovation, double variance);
+  /// Independent measurements, all taken at the same state.
+  void update(std::span<const RowMeasurement> measurements);
   /// As a factor: precision and precision · mean, over kCount entries from `first` on.
   template <int kCount>
   void multiply(Eigen::Index first, const Eigen::Matrix<double, kCount, kCount>& precision,
@@ -70,7 +77,9 @@ class OffsetState {
     const Square gain = precision * (Square::Identity() + inner * precision).inverse();
     const Eigen::Matrix<double, kCount, 1> here = mean_.segment<kCount>(first);
     mean_ += left * ((Square::Identity() - gain * inner) * pull - gain * here);
-    covariance_.noalias() -= left * gain * left.transpose();
+    const Eigen::Matrix<double, Eigen::Dynamic, kCount> weighed = left * gain;
+    covariance_.triangularView<Eigen::Lower>() -= weighed * left.transpose();
+    mirror_lower_half();
   }
 
   [[nodiscard]] const Eigen::VectorXd& mean() const { return mean_; }
@@ -86,9 +95,10 @@ class OffsetState {
   [[nodiscard]] bool is_sound() const { return mean_.allFinite() && covariance_.diagonal().minCoeff() >= 0.0; }
 
  private:
+  void mirror_lower_half();
+
   Eigen::VectorXd mean_;
   Eigen::MatrixXd covariance_;
-  Eigen::VectorXd column_;
 };
 
 }  // namespace deltamap::localization::surfaces

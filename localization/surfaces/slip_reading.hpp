@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a pose explains the surfaces in view, had the wheels slipped to it: each of them holds, stands where it was
-// last seen to, or was moved only now. One face is one witness.
+// The likelihood of a pose that a slip of the wheels may have led to, by the surfaces in view: each of them holds,
+// stands where it was last seen, or was moved only now. Pieces of one face count as one observation.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which surfaces of the map a scan shows: each beam's end belongs to the surface that it lies nearest to, where that
-// one is believed to be. Thirty beams on one wall are one witness.
+// Data association: each beam's end belongs to the surface of the map that it lies nearest to, where that surface is
+// believed to stand. The beams on one surface together are one observation.
 #pragma once
 
 #include <algorithm>

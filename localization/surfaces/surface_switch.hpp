@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a surface stand where the map has it, or was it moved? A switch beside the Gaussian: its effect on a surface's
-// offset is passed on by expectation propagation (Minka 2001) and may be taken back for as long as the surface is
-// followed. Pieces of one straight face that stand off alike are one witness.
+// Does a surface stand where the map has it, or was it moved? A binary switch beside the Gaussian. Its effect on the
+// surface's offset is passed on by expectation propagation (Minka 2001) and can be revised for as long as the surface
+// is followed. Pieces of one straight face that are off alike share one switch's evidence.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a robot may stand whose wheels have just slipped. From one scan to the next the pose that the wheels tell
-// ceases to fit; somewhere near the scan fits as it did before. Random draws seldom come closer than some centimetres
-// and degrees to that place, and another that fits by half is found sooner: here the scan itself leads there.
+// Proposes poses after a slip of the wheels. From one scan to the next the predicted pose ceases to fit, while
+// somewhere near it the scan fits as before. Random particles seldom come within centimetres of that pose, so it is
+// searched for directly: refinements of the scan from poses around the predicted one.
 #pragma once
 
 #include <span>

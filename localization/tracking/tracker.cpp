@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "localization/sensor/weighing.hpp"
-#include "localization/tracking/surface_track.hpp"
+#include "localization/tracking/surface_tracker.hpp"
 
 namespace deltamap::localization::tracking {
 namespace {
@@ -21,12 +21,12 @@ constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are s
 Tracker::Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed)
     : params_{params},
       filter_{params.particles, seed},
-      track_{params.track, params.motion},
-      hypotheses_{params.hypothesis},
+      pose_filter_{params.track, params.motion},
+      clusters_{params.hypothesis},
       slip_finder_{params.motion, params.refinement} {
   if (!params.follow_surfaces) return;
-  surfaces_ = std::make_unique<SurfaceTrack>(params.track.wheels, params.motion, params.particles.evidence_beams,
-                                             std::move(map));
+  surfaces_ = std::make_unique<SurfaceTracker>(params.track.wheels, params.motion, params.particles.evidence_beams,
+                                               std::move(map));
 }
 
 Tracker::~Tracker() = default;
@@ -35,7 +35,7 @@ void Tracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& cha
   if (surfaces_) surfaces_->apply(std::move(map), changed);
 }
 
-bool Tracker::is_held() const { return surfaces_ && surfaces_->is_held(); }
+bool Tracker::is_fixed_by_surfaces() const { return surfaces_ && surfaces_->is_fixed_by_surfaces(); }
 
 std::optional<motion::DriveCalibration> Tracker::calibration() const {
   return surfaces_ ? std::optional{surfaces_->calibration()} : std::nullopt;
@@ -54,9 +54,9 @@ PoseCovariance Tracker::unknown_mount(double heading_rad) const {
 
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {
   filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
-  best_ = hypotheses_.best(filter_.particles());
+  best_ = clusters_.best(filter_.particles());
   drawn_anew_ = false;
-  track_.forget();
+  pose_filter_.forget();
   if (surfaces_) surfaces_->cease();
   slip_finder_.forget();
   last_update_.reset();
@@ -81,7 +81,7 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
   Answer answer = are_led ? led_by_surfaces(seen) : update_due(since) ? update(seen, since) : follow(seen, since);
   answer.unknown_s = since.unknown_s;
   if (surfaces_ && surfaces_->leads()) return answer;
-  track_.after_scan(seen.now, answer.believed);
+  pose_filter_.after_scan(seen.now, answer.believed);
   if (surfaces_ && seen.ends.size() > 0) {
     surfaces_->learn_from(answer.believed, seen.now, seen.velocity);
     let_surfaces_lead(seen, answer);
@@ -111,7 +111,7 @@ void Tracker::go_on_from(const sensor::RefinedPose& believed, const motion::Scan
   const PoseCovariance& spread = believed.covariance;
   const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
   const double deviation_rad = std::sqrt(std::max(0.0, spread(2, 2)));
-  const double slipped = SurfaceTrack::is_one_place(spread) ? 1.0 : 0.0;
+  const double slipped = SurfaceTracker::is_one_place(spread) ? 1.0 : 0.0;
   (void)start_around({believed.map_from_robot, std::max(slipped * params_.motion.slip_m, deviation_m),
                       std::max(slipped * params_.motion.slip_rad, deviation_rad)},
                      now);
@@ -119,28 +119,28 @@ void Tracker::go_on_from(const sensor::RefinedPose& believed, const motion::Scan
 
 void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
   const PoseCovariance& spread = best_.covariance;
-  const bool one_place = best_.weight > kOnePlaceShare && SurfaceTrack::is_one_place(spread);
-  const SurfaceTrack::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field, seen.ends};
+  const bool one_place = best_.weight > kOnePlaceShare && SurfaceTracker::is_one_place(spread);
+  const SurfaceTracker::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field, seen.ends};
   if (!one_place || !surfaces_->could_lead(by_surfaces, answer.believed.map_from_robot)) return;
   answer.believed =
       surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, by_surfaces);
 }
 
-void Tracker::carry(const motion::ScanInstant& now) {
+void Tracker::predict(const motion::ScanInstant& now) {
   if (!last_update_) return;
-  if (surfaces_) surfaces_->carry(now);
+  if (surfaces_) surfaces_->predict(now);
   if (surfaces_ && surfaces_->leads()) {
     last_update_ = now;
     return;
   }
   const motion::MotionSince since = motion::motion_since(*last_update_, now, params_.update.time_s);
   if (!update_due(since)) return;
-  motion::MotionModelParams motion = track_.particle_motion();
+  motion::MotionModelParams motion = pose_filter_.particle_motion();
   motion.slip_probability = 0.0;  // only a scan can tell of a slip
   filter_.move(since.motion, since.unknown_s, motion);
   last_update_ = now;
   has_driven_blind_ = true;
-  track_.carry(now);
+  pose_filter_.predict(now);
 }
 
 bool Tracker::update_due(const motion::MotionSince& since) const {
@@ -151,7 +151,7 @@ bool Tracker::update_due(const motion::MotionSince& since) const {
 /// Moves and weighs the particles; they may be drawn anew afterwards.
 Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
-  if (last_update_) filter_.move(since.motion, since.unknown_s, track_.particle_motion());
+  if (last_update_) filter_.move(since.motion, since.unknown_s, pose_filter_.particle_motion());
   last_update_ = seen.now;
   has_driven_blind_ = false;
   const std::span<const Pose2> slips_that_fit = sees ? slips(seen) : std::span<const Pose2>{};
@@ -164,8 +164,8 @@ Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& sin
   }
   Answer answer;
   answer.n_eff = filter_.n_eff();
-  best_ = hypotheses_.best(filter_.particles());
-  answer.believed = track_.before_scan(seen.now, best_);
+  best_ = clusters_.best(filter_.particles());
+  answer.believed = pose_filter_.before_scan(seen.now, best_);
   if (!sees) return answer;
   answer.w_avg = mean_over_members(misfits, seen.ends.size());
   answer.believed = slid(seen, answer.believed);
@@ -175,12 +175,12 @@ Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& sin
 
 /// Between updates: the particles stay, the answer follows the wheels and the scan.
 Tracker::Answer Tracker::follow(const Seen& seen, const motion::MotionSince& since) {
-  particles::Hypothesis moved = best_;
+  particles::ParticleCluster moved = best_;
   moved.map_from_robot = best_.map_from_robot * since.motion;
   Answer answer;
-  answer.believed = track_.before_scan(seen.now, moved);
+  answer.believed = pose_filter_.before_scan(seen.now, moved);
   if (seen.ends.size() == 0) return answer;
-  if (drawn_anew_) best_.weight = hypotheses_.best(filter_.particles()).weight;
+  if (drawn_anew_) best_.weight = clusters_.best(filter_.particles()).weight;
   drawn_anew_ = false;
   answer.w_avg = mean_over_some_members(seen, since.motion);
   answer.believed = slid(seen, answer.believed);
@@ -188,21 +188,21 @@ Tracker::Answer Tracker::follow(const Seen& seen, const motion::MotionSince& sin
 }
 
 std::span<const Pose2> Tracker::slips(const Seen& seen) {
-  const std::optional<Pose2> by_wheels = track_.carried_to(seen.now);
+  const std::optional<Pose2> by_wheels = pose_filter_.predicted_at(seen.now);
   if (!by_wheels) return {};
   return slip_finder_.slips(seen.field, seen.ends, *by_wheels, beam_share(seen));
 }
 
 double Tracker::mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const {
   double sum = 0.0;
-  for (const std::uint32_t i : hypotheses_.members()) sum += sensor::mean_likelihood(misfits[i], beams);
-  return sum / static_cast<double>(hypotheses_.members().size());
+  for (const std::uint32_t i : clusters_.members()) sum += sensor::mean_likelihood(misfits[i], beams);
+  return sum / static_cast<double>(clusters_.members().size());
 }
 
 /// Evenly chosen: enough to know the mean over all of them.
 double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) const {
   constexpr std::size_t kEnough = 50;
-  const std::span<const std::uint32_t> members = hypotheses_.members();
+  const std::span<const std::uint32_t> members = clusters_.members();
   const std::size_t count = std::min(kEnough, members.size());
   double sum = 0.0;
   for (std::size_t nth = 0; nth < count; ++nth) {
@@ -227,9 +227,9 @@ double Tracker::beam_share(const Seen& seen) const {
 
 void Tracker::draw_anew_if_needed() {
   const std::size_t before = filter_.particles().size();
-  const bool drawn = filter_.resample_if_needed(hypotheses_.cell_count());
+  const bool drawn = filter_.resample_if_needed(clusters_.cell_count());
   // Where all belonged to the best hypothesis, all that were drawn from them do.
-  drawn_anew_ = drawn && (hypotheses_.members().size() != before || filter_.particles().size() != before);
+  drawn_anew_ = drawn && (clusters_.members().size() != before || filter_.particles().size() != before);
 }
 
 }  // namespace deltamap::localization::tracking

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows one believed place from scan to scan: the particles are moved, weighed and drawn anew at an update, carried
-// along by the wheels in between, and the scan slides the answer to where it fits best. Knows nothing of other places
-// and never asks whether the pose is right (rivals.hpp, judgement.hpp).
+// Tracks one believed pose from scan to scan: particles are moved, weighed and resampled at an update, the pose filter
+// predicts in between, and each scan refines the pose. It knows no other hypotheses and does not ask whether the pose
+// is right (hypothesis_tracker.hpp, judgement.hpp).
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 #include "core/angle.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "localization/motion/scan_instant.hpp"
-#include "localization/particles/hypotheses.hpp"
+#include "localization/particles/particle_clusters.hpp"
 #include "localization/particles/particle_filter.hpp"
 #include "localization/particles/start_pose.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 #include "localization/surfaces/surface_sighting.hpp"
-#include "localization/tracking/pose_track.hpp"
+#include "localization/tracking/pose_filter.hpp"
 #include "localization/tracking/slip_finder.hpp"
 
 namespace deltamap::localization::tracking {
 
-class SurfaceTrack;
+class SurfaceTracker;
 
 /// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
 /// robot that stands still does not talk itself into certainty.
@@ -35,9 +35,9 @@ struct UpdateParams {
 struct TrackerParams {
   particles::ParticleFilterParams particles;
   motion::MotionModelParams motion;
-  particles::HypothesisParams hypothesis;
+  particles::ParticleClusterParams hypothesis;
   sensor::RefinementParams refinement;
-  PoseTrackParams track;
+  PoseFilterParams track;
   UpdateParams update;
   bool follow_surfaces = true;  ///< where straight surfaces explain the scans they lead, and the particles rest
 };
@@ -71,8 +71,8 @@ class Tracker {
     double unknown_s = 0.0;       ///< since the last update, not covered by odometry
   };
   Answer observe(const Seen& seen);
-  /// No scan has come for long: the particles and the track go along with the wheels up to this instant.
-  void carry(const motion::ScanInstant& now);
+  /// No scan has come for long: particles and pose filter are predicted by the wheels up to this instant.
+  void predict(const motion::ScanInstant& now);
 
   /// Nothing where surfaces are not followed. A scan's mount is to be corrected by it before the scan is seen.
   [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;
@@ -82,10 +82,10 @@ class Tracker {
   /// surfaces lead, who count it in.
   [[nodiscard]] PoseCovariance unknown_mount(double heading_rad) const;
   /// Surfaces that stand where the map has them fix the pose; never while the particles lead.
-  [[nodiscard]] bool is_held() const;
+  [[nodiscard]] bool is_fixed_by_surfaces() const;
 
   /// The heaviest hypothesis at the last update.
-  [[nodiscard]] const particles::Hypothesis& best() const { return best_; }
+  [[nodiscard]] const particles::ParticleCluster& best() const { return best_; }
   [[nodiscard]] std::size_t particle_count() const { return filter_.particles().size(); }
 
  private:
@@ -104,15 +104,15 @@ class Tracker {
 
   TrackerParams params_;
   particles::ParticleFilter filter_;
-  PoseTrack track_;
-  std::unique_ptr<SurfaceTrack> surfaces_;  // none: they never lead
-  particles::HypothesisFinder hypotheses_;
-  particles::Hypothesis best_;
+  PoseFilter pose_filter_;
+  std::unique_ptr<SurfaceTracker> surfaces_;  // none: they never lead
+  particles::ParticleClusterFinder clusters_;
+  particles::ParticleCluster best_;
   sensor::BeamErrors errors_;
   SlipFinder slip_finder_;
   std::optional<motion::ScanInstant> last_update_;
   bool has_driven_blind_ = false;  ///< the particles have moved since the last update, so that `best_` lies behind
-  bool drawn_anew_ = false;        ///< the particles, so that `hypotheses_` must look at them again
+  bool drawn_anew_ = false;        ///< the particles, so that `clusters_` must look at them again
 };
 
 }  // namespace deltamap::localization::tracking

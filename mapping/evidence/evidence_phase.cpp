@@ -22,7 +22,7 @@ std::vector<std::uint32_t> merged(std::vector<std::uint32_t> all, const std::vec
 }  // namespace
 
 EvidencePhase::EvidencePhase(const EvidencePhaseParams& params)
-    : params_{params}, keyframes_{params.keyframes}, specks_{params.specks} {}
+    : params_{params}, keyframes_{params.keyframes}, small_objects_{params.small_objects} {}
 
 double EvidencePhase::least_share(votes::Question question) const {
   return question == votes::Question::kAdded ? params_.least_added_share : params_.least_removed_share;
@@ -30,8 +30,9 @@ double EvidencePhase::least_share(votes::Question question) const {
 
 bool EvidencePhase::is_proven(votes::Question question, Cell block) const {
   const votes::Ballot ballot = layer_.ballot(question, block, now_ms_);
-  const bool is_young = question == votes::Question::kRemoved && young_.is_young(block);
-  const double least_span_s = is_young ? params_.young_persistence_s : params_.face_persistence_s;
+  const bool is_changed_this_run =
+      question == votes::Question::kRemoved && changed_this_run_.is_changed_this_run(block);
+  const double least_span_s = is_changed_this_run ? params_.young_persistence_s : params_.face_persistence_s;
   return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= least_span_s &&
          ballot.share() >= least_share(question);
 }
@@ -41,25 +42,25 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (map == map_) return;
   const std::shared_ptr<const OccupancyGrid> before = std::exchange(map_, std::move(map));
   if (before == nullptr || before->geometry() != map_->geometry()) {
-    specks_.begin(*map_);
+    small_objects_.begin(*map_);
     layer_ = votes::VoteLayer{params_.votes, map_->geometry()};
-    temporary_ = TemporaryLayer{params_.temporary, layer_.lattice()};
+    transients_ = TransientLayer{params_.temporary, layer_.lattice()};
     waiting_.clear();
     clear_ = votes::ClearSpace{*map_, layer_.lattice()};
-    watched_ = votes::WatchList{params_.watch, layer_.blocks()};
+    redraw_queue_ = votes::RedrawQueue{params_.watch, layer_.blocks()};
     joined_ = Tiled<std::uint8_t>{layer_.blocks().width, layer_.blocks().height, 0};
     passing_ = Passing{params_.passing};
-    young_ = votes::YoungBlocks{clear_};
+    changed_this_run_ = votes::ChangedThisRun{clear_};
     return;
   }
   const std::vector<CellChange> changes = changes_between(*before, *map_);
   for (const CellChange& change : changes) {
     layer_.reset(grown({change.cell, {change.cell.column + 1, change.cell.row + 1}}, 1, map_->geometry()));
   }
-  specks_.follow(*map_, changes);
+  small_objects_.follow(*map_, changes);
   clear_.update(*map_, changes);
-  young_.follow(clear_, changes);
-  temporary_.follow(*map_);
+  changed_this_run_.follow(clear_, changes);
+  transients_.follow(*map_);
 }
 
 void EvidencePhase::count_beams() {
@@ -151,7 +152,8 @@ bool EvidencePhase::is_large_enough(const std::vector<ProvenBlock>& region) cons
   return std::all_of(region.begin(), region.end(), [&](const ProvenBlock& proven) {
     std::vector<CellVerdict> gone;
     add_verdicts(proven.question, proven.block, gone);
-    return std::all_of(gone.begin(), gone.end(), [&](const CellVerdict& v) { return specks_.is_of_speck(v.cell); });
+    return std::all_of(gone.begin(), gone.end(),
+                       [&](const CellVerdict& v) { return small_objects_.is_of_small_object(v.cell); });
   });
 }
 
@@ -163,18 +165,19 @@ bool EvidencePhase::is_settled(const std::vector<ProvenBlock>& region) const {
 }
 
 /// Something that this run itself has written is gone.
-bool EvidencePhase::is_young(const std::vector<ProvenBlock>& region) const {
+bool EvidencePhase::is_changed_this_run(const std::vector<ProvenBlock>& region) const {
   return region.front().question == votes::Question::kRemoved &&
-         std::all_of(region.begin(), region.end(), [&](const ProvenBlock& one) { return young_.is_young(one.block); });
+         std::all_of(region.begin(), region.end(),
+                     [&](const ProvenBlock& one) { return changed_this_run_.is_changed_this_run(one.block); });
 }
 
 /// Beams from afar pass but a part of somebody who stood there, or of what is left of a wall: it goes as a whole.
 void EvidencePhase::add_remains(std::vector<CellVerdict>& gone, votes::Blocks& blocks) const {
   std::vector<Cell> cells;
   for (const CellVerdict& verdict : gone) {
-    if (specks_.is_of_speck(verdict.cell)) cells.push_back(verdict.cell);
+    if (small_objects_.is_of_small_object(verdict.cell)) cells.push_back(verdict.cell);
   }
-  for (const Cell& cell : specks_.whole(cells)) {
+  for (const Cell& cell : small_objects_.whole(cells)) {
     if (std::find(cells.begin(), cells.end(), cell) != cells.end()) continue;
     gone.push_back({cell, CellState::kFree});
     blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(layer_.block_of(cell))));
@@ -202,13 +205,13 @@ EvidencePhase::Handed EvidencePhase::hand_on(const std::vector<ProvenBlock>& reg
 /// Keyframes from before a thing went would draw it again: what was freed counts from now on. Who has come and gone
 /// within this run passes: his place is not looked at again.
 void EvidencePhase::keep_in_view(const std::vector<ProvenBlock>& region, const Handed& handed) {
-  if (is_young(region)) {
-    watched_.forget(handed.blocks);
+  if (is_changed_this_run(region)) {
+    redraw_queue_.forget(handed.blocks);
   } else if (region.front().question == votes::Question::kRemoved) {
-    watched_.begin_anew(handed.blocks, now_ms_);
-    watched_.watch(handed.blocks, 0, now_ms_);
+    redraw_queue_.begin_anew(handed.blocks, now_ms_);
+    redraw_queue_.watch(handed.blocks, 0, now_ms_);
   } else {
-    watched_.watch(handed.blocks, params_.reach_blocks, handed.first_ms);
+    redraw_queue_.watch(handed.blocks, params_.reach_blocks, handed.first_ms);
   }
 }
 
@@ -220,7 +223,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
   std::uint32_t first_ms = now_ms_;
   for (const std::vector<ProvenBlock>& region : connected_regions(waiting_, params_.reach_blocks)) {
     if (!is_settled(region) || !is_large_enough(region)) continue;
-    if (!is_young(region) && passing_.is_passing(region, {*map_, layer_, now_ms_})) continue;
+    if (!is_changed_this_run(region) && passing_.is_passing(region, {*map_, layer_, now_ms_})) continue;
     const Handed handed = hand_on(region, set.verdicts);
     keep_in_view(region, handed);
     first_ms = std::min(first_ms, handed.first_ms);
@@ -233,7 +236,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
 /// What was written from a few keyframes is drawn again, more sharply, once many more have seen it. It only gains: a
 /// glance from afar must not wipe out what was drawn from nearby.
 std::optional<ScanSet> EvidencePhase::another_look(Timestamp time) {
-  const std::optional<votes::Look> look = watched_.due_look();
+  const std::optional<votes::Look> look = redraw_queue_.due_look();
   if (!look) return std::nullopt;
   ScanSet set;
   set.ended = time;
@@ -258,12 +261,12 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   beams_ = votes::beam_evidence(*map_, clear_, tracked, params_.beams, std::move(beams_));
   count_beams();
   const votes::FaceParams face{.slant = params_.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
-  const std::vector<Cell> gone = specks_.missed(tracked, beams_, params_.beams);
-  const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, watched_}, face);
+  const std::vector<Cell> gone = small_objects_.missed(tracked, beams_, params_.beams);
+  const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, face);
   cast(votes);
-  temporary_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
+  transients_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   keyframes_.keep(tracked, votes.all);
-  watched_.see(votes.ends);
+  redraw_queue_.see(votes.ends);
   std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);
   return set ? std::move(set) : another_look(tracked.scan.time);
 }

@@ -12,15 +12,15 @@
 #include "core/tiled.hpp"
 #include "mapping/evidence/evidence_regions.hpp"
 #include "mapping/evidence/passing.hpp"
-#include "mapping/evidence/specks.hpp"
-#include "mapping/evidence/temporary_layer.hpp"
+#include "mapping/evidence/small_objects.hpp"
+#include "mapping/evidence/transient_layer.hpp"
 #include "mapping/scan_set/keyframe_pool.hpp"
 #include "mapping/votes/beam_evidence.hpp"
 #include "mapping/votes/beam_votes.hpp"
+#include "mapping/votes/changed_this_run.hpp"
 #include "mapping/votes/clear_space.hpp"
+#include "mapping/votes/redraw_queue.hpp"
 #include "mapping/votes/vote_layer.hpp"
-#include "mapping/votes/watch_list.hpp"
-#include "mapping/votes/young_blocks.hpp"
 
 namespace deltamap::mapping::evidence {
 
@@ -30,7 +30,7 @@ struct EvidencePhaseParams {
   double least_added_share = 0.8;    ///< of the votes on a block that say "added"; (0.5, 1]
   double least_removed_share = 0.8;  ///< of the votes on a block that say "removed"; (0.5, 1]
   int reach_blocks = 2;              ///< proven blocks at most so far apart are one region; >= 1
-  std::uint32_t least_blocks = 3;    ///< a smaller region is a speck and waits; >= 1
+  std::uint32_t least_blocks = 3;    ///< a smaller region is too small and waits; >= 1
   double face_slant = 3.0;     ///< as in EvidenceUpdateParams: what lies between two ends on a face is voted on too
   double settle_s = 0.2;       ///< a region is handed on when it has not grown for so long, …
   double most_wait_s = 0.6;    ///< … or has waited so long
@@ -40,10 +40,10 @@ struct EvidencePhaseParams {
   votes::BeamEvidenceParams beams;
   votes::VoteLayerParams votes;
   scan_set::KeyframeParams keyframes;
-  votes::WatchParams watch;
+  votes::RedrawQueueParams watch;
   PassingParams passing;
-  SpeckParams specks;
-  TemporaryParams temporary;
+  SmallObjectParams small_objects;
+  TransientLayerParams temporary;
 };
 
 class EvidencePhase {
@@ -58,7 +58,7 @@ class EvidencePhase {
   [[nodiscard]] std::uint32_t short_beams() const { return short_beams_; }
   [[nodiscard]] std::uint32_t through_beams() const { return through_beams_; }
   /// What every keyframe has told so far, long before it is proven.
-  [[nodiscard]] TemporaryLayer& temporary() { return temporary_; }
+  [[nodiscard]] TransientLayer& transients() { return transients_; }
 
  private:
   /// What was handed on of a region: its blocks, sorted, and when the first vote for them was cast.
@@ -75,7 +75,7 @@ class EvidencePhase {
   [[nodiscard]] double least_share(votes::Question question) const;
   [[nodiscard]] std::optional<ScanSet> settled_regions(Timestamp time);
   [[nodiscard]] bool is_settled(const std::vector<ProvenBlock>& region) const;
-  [[nodiscard]] bool is_young(const std::vector<ProvenBlock>& region) const;
+  [[nodiscard]] bool is_changed_this_run(const std::vector<ProvenBlock>& region) const;
   Handed hand_on(const std::vector<ProvenBlock>& region, std::vector<CellVerdict>& verdicts);
   void add_remains(std::vector<CellVerdict>& gone, votes::Blocks& blocks) const;
   void keep_in_view(const std::vector<ProvenBlock>& region, const Handed& handed);
@@ -88,17 +88,17 @@ class EvidencePhase {
   EvidencePhaseParams params_;
   std::shared_ptr<const OccupancyGrid> map_;
   votes::VoteLayer layer_;
-  TemporaryLayer temporary_;
+  TransientLayer transients_;
   scan_set::KeyframePool keyframes_;
   std::vector<votes::BeamVerdict> beams_;
   std::vector<ProvenBlock> waiting_;
   votes::ClearSpace clear_;
   votes::BeamVotes votes_;
   Tiled<std::uint8_t> joined_;  // a flag a block: belongs to the region that is being handed on
-  votes::WatchList watched_;
+  votes::RedrawQueue redraw_queue_;
   Passing passing_;
-  Specks specks_;
-  votes::YoungBlocks young_;
+  SmallObjects small_objects_;
+  votes::ChangedThisRun changed_this_run_;
   std::optional<Timestamp> start_;
   std::uint32_t now_ms_ = 0;
   std::uint32_t phase_ = 0;

@@ -12,7 +12,8 @@ constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late
 
 void GatedSets::observe(const TrackedScan& tracked) {
   now_ = tracked.scan.time;
-  rival_share_ = tracked.estimate.belief.rival_share;
+  withdrawal_.reset();
+  rival_share_ = tracked.estimate.belief.other_share;
   gate_.observe(tracked);
   if (params_.enabled && gate_.has_proven_wrong()) withdraw(tracked);
 }
@@ -26,18 +27,14 @@ void GatedSets::withdraw(const TrackedScan& tracked) {
   const Timestamp from = gate_.settled().value_or(Timestamp::min());
   if (!last_handed_on_ || *last_handed_on_ < from) return;
   last_handed_on_.reset();
-  ScanSet order;
-  order.began = order.ended = tracked.scan.time;
-  order.covariance = tracked.estimate.covariance;
-  order.withdraw_from = from;
-  due_.push_front(std::move(order));
+  withdrawal_ = {.time = tracked.scan.time, .from = from, .covariance = tracked.estimate.covariance};
 }
 
 /// Not where the pose itself may be off or is spread wide: such scans would draw beside what is there.
 bool GatedSets::waits_to_vote(const Estimate& estimate) const {
   const GateReason why = gate_.reason();
   return !lets_vote() && !gate_.is_distrusted() && estimate.belief.pose_right >= kSure &&
-         (why == GateReason::kMisfit || why == GateReason::kConfirming || why == GateReason::kRival);
+         (why == GateReason::kInlierDrop || why == GateReason::kConfirming || why == GateReason::kOtherHypothesis);
 }
 
 void GatedSets::take(std::optional<ScanSet> set, const TrackedScan& tracked) {
@@ -58,6 +55,7 @@ bool GatedSets::is_due(const ScanSet& set) const {
 
 std::optional<ScanSet> GatedSets::next() {
   std::optional<ScanSet> set;
+  if (withdrawal_) return set;
   if (!due_.empty()) {
     set = std::move(due_.front());
     due_.pop_front();

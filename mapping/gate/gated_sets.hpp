@@ -24,8 +24,10 @@ class GatedSets {
   [[nodiscard]] bool waits_to_vote(const Estimate& estimate) const;
   /// The set that ended with this scan, if one did.
   void take(std::optional<ScanSet> set, const TrackedScan& tracked);
-  /// What is to be handed on now: a set, a marked set, or an order; at most one a scan.
+  /// What is to be handed on now: a set or a marked set, at most one a scan, and none with an order.
   [[nodiscard]] std::optional<ScanSet> next();
+  /// What the newest scan has proven wrong is ordered back.
+  [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const { return withdrawal_; }
 
   [[nodiscard]] const WriteGate& gate() const { return gate_; }
 
@@ -36,7 +38,8 @@ class GatedSets {
   WriteGateParams params_;
   WriteGate gate_;
   std::deque<ScanSet> waiting_;              // sets in order of their end
-  std::deque<ScanSet> due_;                  // orders and marked sets
+  std::deque<ScanSet> due_;                  // marked sets
+  std::optional<WithdrawOrder> withdrawal_;  // of the newest scan
   std::optional<Timestamp> last_handed_on_;  // end of the newest set that may have been written
   Timestamp now_;
   double rival_share_ = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices that the localizer has changed its mind: over the last seconds the estimate has moved otherwise than odometry
-// by more than its covariance explains. One of the two places was wrong, or the wheels have slipped far.
+// Detects that the estimate has jumped: over the last seconds it has moved otherwise than odometry by more than both
+// covariances explain. One of the two poses was wrong, or the wheels have slipped far.
 #pragma once
 
 #include <deque>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices that a scan does not follow from the one before: moved on as odometry says, and as the estimate says, part of
-// the view is suddenly nearer and part of it farther away. So it is for a robot that is carried; a thing that comes
-// makes its part nearer alone, one that goes farther alone. Where the wheels have slipped, or their reports come late,
-// the estimate has moved as the scans have. The map is not asked, so that one that is out of date does not matter.
-// After a way without scans that is so long that odometry may be off by as much as would show, nobody knows: a break
-// too.
+// Detects that a scan does not follow from the one before. The earlier scan is moved on as odometry says, and as the
+// estimate says; where part of the view is then suddenly nearer and part farther away, the robot was carried. An object
+// that comes makes its part nearer alone, one that goes makes it farther alone. Where the wheels have slipped, or their
+// reports come late, the estimate has moved as the scans have. The map is not asked, so that one out of date does not
+// matter. After a way without scans so long that odometry's error would show as much, the scan counts as a break too.
 #pragma once
 
 #include <cstdint>

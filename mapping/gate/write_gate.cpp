@@ -12,7 +12,7 @@ namespace {
 constexpr double kApproached = 1.5;
 
 /// Of the weight of other doubts. In aisles that look alike one is conceivable for a dozen seconds, and the pose right.
-constexpr double kDoubtOfRival = 0.5;
+constexpr double kDoubtOfOther = 0.5;
 
 /// σ along the longest axis of the ellipse.
 double widest_deviation_m(const PoseCovariance& covariance) {
@@ -41,9 +41,9 @@ std::string_view name_of(GateReason reason) {
       return "confirming";
     case GateReason::kDoubtful:
       return "doubtful";
-    case GateReason::kMisfit:
+    case GateReason::kInlierDrop:
       return "misfit";
-    case GateReason::kRival:
+    case GateReason::kOtherHypothesis:
       return "rival";
     case GateReason::kSpread:
       return "spread";
@@ -71,15 +71,15 @@ std::map<std::string, double> shut_by_reason(const GateTimes& times) {
 GateReason WriteGate::judged(const TrackedScan& tracked) {
   const Estimate& estimate = tracked.estimate;
   const bool jumped = jump_.observe(tracked);
-  misfit_.observe(tracked);
+  inlier_drop_.observe(tracked);
   if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
   if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
   if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
   if (jumped) return GateReason::kJumped;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
-  if (misfit_.is_sudden()) return GateReason::kMisfit;
-  if (estimate.belief.rival_share > params_.most_rival_share) return GateReason::kRival;
+  if (inlier_drop_.is_sudden()) return GateReason::kInlierDrop;
+  if (estimate.belief.other_share > params_.most_rival_share) return GateReason::kOtherHypothesis;
   if (widest_deviation_m(estimate.covariance) > params_.most_deviation_m) return GateReason::kSpread;
   return GateReason::kOpen;
 }
@@ -92,7 +92,7 @@ void WriteGate::note_break(const TrackedScan& tracked) {
   const SeenBreak seen = scan_break_.observe(tracked);
   const bool is_small = !seen.is_large && !is_confirming_ && seen.share > params_.wary_break;
   if (was_tracking_ && (seen.is_large || is_small)) {
-    if (!broken_) misfit_.remember();
+    if (!broken_) inlier_drop_.remember();
     if (seen.is_large) {
       broken_ = Broken{time, 0.0, true};
     } else if (!broken_) {
@@ -103,7 +103,7 @@ void WriteGate::note_break(const TrackedScan& tracked) {
   }
   if (!broken_ || is_confirming_) return;
   const double over_s = broken_->shuts ? std::max(params_.wary_s, params_.break_settles_s) : params_.wary_s;
-  if (misfit_.is_worse_than_remembered(broken_->explained)) {
+  if (inlier_drop_.is_worse_than_remembered(broken_->explained)) {
     is_confirming_ = true;
     confirms_after_ = GateReason::kConfirming;
   } else if (seconds(time - broken_->time) > over_s) {
@@ -113,7 +113,7 @@ void WriteGate::note_break(const TrackedScan& tracked) {
 
 void WriteGate::forget_break() {
   broken_.reset();
-  misfit_.forget();
+  inlier_drop_.forget();
 }
 
 bool WriteGate::breaks_now(Timestamp time) const {
@@ -121,7 +121,8 @@ bool WriteGate::breaks_now(Timestamp time) const {
 }
 
 bool WriteGate::fits_as_before_break(Timestamp time) const {
-  return !broken_ || seconds(time - broken_->time) > params_.most_unlike_s || !misfit_.is_worse_than_remembered(0.0);
+  return !broken_ || seconds(time - broken_->time) > params_.most_unlike_s ||
+         !inlier_drop_.is_worse_than_remembered(0.0);
 }
 
 /// Has the pose held for long and far enough?
@@ -141,7 +142,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
     const double passed_s = std::max(0.0, seconds(time - *last_));
     times_[static_cast<std::size_t>(reason_)] += passed_s;
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
-    doubted_for_s_ += reason_ == GateReason::kRival ? kDoubtOfRival * passed_s : passed_s;
+    doubted_for_s_ += reason_ == GateReason::kOtherHypothesis ? kDoubtOfOther * passed_s : passed_s;
   }
   last_ = time;
   const double driven_m = driven_way_.since_last_m(tracked);
@@ -153,9 +154,9 @@ void WriteGate::observe(const TrackedScan& tracked) {
   has_proven_wrong_ = was_tracking_ && !is_distrusted_ && (is_proof || doubts_long);
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
-  if (was_tracking_ && !is_confirming_ && (is_proof || misfit_.is_both_ways())) {
+  if (was_tracking_ && !is_confirming_ && (is_proof || inlier_drop_.is_both_ways())) {
     is_confirming_ = true;
-    confirms_after_ = GateReason::kMisfit;
+    confirms_after_ = GateReason::kInlierDrop;
     // What has only made it wary is a thing that stays: as much as without it need not fit again.
     if (broken_ && !broken_->shuts) forget_break();
   }

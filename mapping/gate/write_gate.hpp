@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// May M_k be written? Only while the localizer's belief has one mode and P(pose right) holds. Looks at every tracked
-// scan; says open or shut and why, notices when the pose proves to have been wrong, and counts the time shut by reason:
-// a gate that stays shut is a failure too.
+// Decides whether M_k may be written: only while the localizer's belief has one mode and P(pose right) is high. Looks
+// at every tracked scan; tells whether it is open and why not, detects when the pose proves to have been wrong, and
+// counts the time shut by reason, for a gate that stays shut is a failure too.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 #include "core/messages.hpp"
 #include "mapping/gate/driven_way.hpp"
-#include "mapping/gate/misfit.hpp"
+#include "mapping/gate/inlier_drop.hpp"
 #include "mapping/gate/pose_jump.hpp"
 #include "mapping/gate/provisional_window.hpp"
 #include "mapping/gate/scan_break.hpp"
@@ -22,16 +22,16 @@ namespace deltamap::mapping::gate {
 
 enum class GateReason : std::uint8_t {
   kOpen,
-  kSearching,    ///< the localizer does not know where the robot is
-  kLost,         ///< it has lost its way
-  kWrong,        ///< it calls its own pose wrong
-  kJumped,       ///< the estimate has moved otherwise than odometry, farther than its covariance explains
-  kDisbelieved,  ///< P(pose right) is so low that it is rather wrong
-  kConfirming,   ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
-  kDoubtful,     ///< P(pose right) is low
-  kMisfit,       ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
-  kRival,        ///< another place holds too much of the belief: two modes
-  kSpread        ///< the best place is spread too wide
+  kSearching,        ///< the localizer does not know where the robot is
+  kLost,             ///< it has lost its way
+  kWrong,            ///< it calls its own pose wrong
+  kJumped,           ///< the estimate has moved otherwise than odometry, farther than its covariance explains
+  kDisbelieved,      ///< P(pose right) is so low that it is rather wrong
+  kConfirming,       ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
+  kDoubtful,         ///< P(pose right) is low
+  kInlierDrop,       ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
+  kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
+  kSpread            ///< the best place is spread too wide
 };
 inline constexpr std::size_t kGateReasons = 11;
 /// For status, report and log: "open", "searching", "lost", …
@@ -43,15 +43,15 @@ struct WriteGateParams {
   bool enabled = true;              ///< false: everything is written, as the paper does (mapping.gate.enabled)
   double least_pose_right = 0.83;   ///< P(pose right) below which it is shut; [0, 1]
   double disbelieved_below = 0.3;   ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
-  double most_rival_share = 0.05;   ///< of the belief, that another place may hold; [0, 1]
+  double most_rival_share = 0.05;   ///< of the belief, that another pose hypothesis may hold; [0, 1]
   double most_deviation_m = 0.3;    ///< σ of the position along its worst axis; > 0
   double confirm_s = 20.0;          ///< so long all must hold again after the pose was wrong; >= 0
   double confirm_m = 10.0;          ///< and so far it must have driven meanwhile; >= 0
   double most_doubt_s = 10.0;       ///< shut for so long without a proof, what is provisional is withdrawn; > 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
-  double hold_rival_share = 0.005;  ///< of the belief: while another place holds more, it waits on; [0, 1]
+  double hold_rival_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
   PoseJumpParams jump;
-  MisfitParams misfit;
+  InlierDropParams misfit;
   ScanBreakParams scan_break;
   double break_settles_s = 1.0;  ///< after a large break it waits so long to see whether the map still fits; >= 0
   double wary_break = 0.08;      ///< of the beams: what breaks off less makes it not even wary; [0, 1]
@@ -72,7 +72,7 @@ class WriteGate {
   explicit WriteGate(const WriteGateParams& params)
       : params_{params},
         jump_{params.jump},
-        misfit_{params.misfit},
+        inlier_drop_{params.misfit},
         scan_break_{params.scan_break},
         provisional_{params.provisional} {}
 
@@ -81,8 +81,8 @@ class WriteGate {
 
   [[nodiscard]] bool is_open() const { return reason_ == GateReason::kOpen; }
   [[nodiscard]] GateReason reason() const { return reason_; }
-  /// What the pose is being confirmed after: the proof that it was wrong, kMisfit after another view, kConfirming after
-  /// scans that broke off; kOpen where it is not.
+  /// What the pose is being confirmed after: the proof that it was wrong, kInlierDrop after another view, kConfirming
+  /// after scans that broke off; kOpen where it is not.
   [[nodiscard]] GateReason confirms_after() const { return is_confirming_ ? confirms_after_ : GateReason::kOpen; }
   /// Did this scan prove the pose wrong that was believed before it, or is it in doubt for too long?
   [[nodiscard]] bool has_proven_wrong() const { return has_proven_wrong_; }
@@ -111,7 +111,7 @@ class WriteGate {
 
   WriteGateParams params_;
   PoseJump jump_;
-  Misfit misfit_;
+  InlierDropDetector inlier_drop_;
   ScanBreak scan_break_;
   std::optional<Broken> broken_;  // the last break of the scans, until it has been explained
   ProvisionalWindow provisional_;

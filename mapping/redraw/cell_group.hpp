@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much is joined to an occupied cell: a speck, or a surface?
+// How much is joined to an occupied cell: a small object, or a surface?
 #pragma once
 
 #include "core/occupancy_grid.hpp"

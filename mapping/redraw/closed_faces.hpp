@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// New surfaces without gaps: between the ends of neighbouring beams on one straight face there is none, unless beams
-// have gone through it, nor is there a cell left out of a line of cells.
+// Closes gaps in new surfaces: cells between the ends of neighbouring beams on one straight face become occupied,
+// unless beams have gone through them, and so does a single cell left out of a line.
 #pragma once
 
 #include <functional>

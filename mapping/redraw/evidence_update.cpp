@@ -8,7 +8,7 @@
 
 #include "mapping/redraw/cell_group.hpp"
 #include "mapping/redraw/closed_faces.hpp"
-#include "mapping/redraw/hidden_floor.hpp"
+#include "mapping/redraw/enclosed_free_space.hpp"
 #include "mapping/redraw/map_draft.hpp"
 #include "mapping/redraw/ray_counts.hpp"
 #include "mapping/registration/acceptance.hpp"
@@ -22,7 +22,7 @@ constexpr int kDrawnAheadReach = 3;       // cells
 constexpr double kDrawnAheadShare = 0.1;  // of the beams, and of the hits behind
 constexpr int kRemnantReach = 2;          // cells from what has been freed
 constexpr int kRemnantCells = 6;          // larger groups are none
-constexpr int kSurfaceCells = 17;         // smaller groups are specks
+constexpr int kSurfaceCells = 17;         // smaller groups are small objects
 
 /// The cells around the verdicts, and what they may become.
 class DoubtMask {
@@ -97,7 +97,7 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
   const bool is_free =
       count.clear_passes >= params.free_passes && count.hits <= params.free_hit_share * static_cast<double>(decisive);
   if (before == CellState::kOccupied) {
-    // A verdict on a speck comes from beams beside it as well.
+    // A verdict on a small object comes from beams beside it as well.
     const bool is_gone = mask.is_gone(cell) && count.hits == 0 && group_size(map, cell, kSurfaceCells) < kSurfaceCells;
     const bool goes =
         (mask.may_be_removed(cell) && is_free) || is_gone || (mask.may_be_added(cell) && is_drawn_ahead(counts, cell));
@@ -126,8 +126,8 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
 
 /// What surfaces have closed off from the robot is not known any longer: floor beside new ones, and floor that beams
 /// saw before they stood there.
-[[nodiscard]] MapDraft without_hidden_floor(MapDraft draft, const std::vector<PlacedScan>& scans,
-                                            double most_hidden_m2) {
+[[nodiscard]] MapDraft without_enclosed_free_space(MapDraft draft, const std::vector<PlacedScan>& scans,
+                                                   double most_hidden_m2) {
   std::vector<Cell> starts;
   for (const auto& [cell, was, is] : draft.changes()) {
     if (is == CellState::kFree && was == CellState::kUnknown) starts.push_back(cell);
@@ -138,18 +138,18 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
   std::vector<Point2> robot_was;
   robot_was.reserve(scans.size());
   for (const PlacedScan& scan : scans) robot_was.push_back(scan.map_from_robot.position());
-  for (const Cell& cell : hidden_floor(draft.map(), starts, robot_was, most_hidden_m2)) {
+  for (const Cell& cell : enclosed_free_space(draft.map(), starts, robot_was, most_hidden_m2)) {
     draft.set(cell, CellState::kUnknown);
   }
   return draft;
 }
 
-[[nodiscard]] MapDraft without_specks(MapDraft draft, int least_cells) {
-  std::vector<CellChange> specks = draft.changes();
-  std::erase_if(specks, [&](const CellChange& change) {
+[[nodiscard]] MapDraft without_small_groups(MapDraft draft, int least_cells) {
+  std::vector<CellChange> groups = draft.changes();
+  std::erase_if(groups, [&](const CellChange& change) {
     return change.after != CellState::kOccupied || group_size(draft.map(), change.cell, least_cells) >= least_cells;
   });
-  for (const CellChange& speck : specks) draft.set(speck.cell, speck.before);
+  for (const CellChange& group : groups) draft.set(group.cell, group.before);
   return draft;
 }
 
@@ -205,7 +205,7 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
   const CellBox in_doubt = grown(mask.box(), kDrawnAheadReach, map.geometry());
   RayCounts counts{map.geometry(), box_seen(map.geometry(), placement.scans, params.longest_m, in_doubt)};
   counts.look_at(in_doubt);
-  // Only what is in doubt can be seen through, and specks, which beams pass by.
+  // Only what is in doubt can be seen through, and small objects, which beams pass by.
   counts.stop_at(map, [&](Cell cell) {
     return !mask.may_be_removed(cell) && group_size(map, cell, kLeastOpaqueCells) == kLeastOpaqueCells;
   });
@@ -216,9 +216,9 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
   draft = with_closed_faces(std::move(draft), counts, placement.scans, mask.box(),
                             [&](Cell cell) { return mask.may_be_added(cell); },
                             {params.longest_m, params.face_slant, params.free_passes});
-  draft = without_specks(std::move(draft), params.least_speck_cells);
+  draft = without_small_groups(std::move(draft), params.least_speck_cells);
   draft = without_remnants(std::move(draft), counts, mask, params.free_passes);
-  draft = without_hidden_floor(std::move(draft), placement.scans, params.most_hidden_m2);
+  draft = without_enclosed_free_space(std::move(draft), placement.scans, params.most_hidden_m2);
   update.changes = draft.changes();
   update.acceptance = acceptance(counts, draft.map(), params.occupied_hit_share).value();
   if (update.changes.empty()) update.refusal = scan_set::Refusal::kNothingChanged;

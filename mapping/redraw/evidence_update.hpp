@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns an S(k) of the evidence method into changes: its scans are brought onto what is not in doubt, cast once more
-// around the verdicts, and cells there that the beams clearly contradict are written; unknown floor that beams have
-// seen becomes free, floor that new surfaces hide unknown.
+// The map update of the evidence method. The scans of S(k) are placed on what is not in doubt, their rays are cast once
+// more around the verdicts, and cells there that the beams clearly contradict are written. Unknown cells that beams
+// have seen become free; free space that new surfaces enclose becomes unknown.
 #pragma once
 
 #include "core/messages.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keyframes from while the write gate was shut though nothing had proven the pose wrong: somebody may just have taken a
-// container away in front of the robot. They vote late, once the gate is open again, or never.
+// Keyframes taken while the write gate was shut though nothing had proven the pose wrong; somebody may just have taken
+// a container away in front of the robot. They vote once the gate is open again, or never.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each beam of a scan says about the map, the pose's uncertainty taken into account: it ends where the map has a
-// surface (consistent), before the map says (short), or beyond something that the map has (through). A beam speaks
-// against a surface only where it would for every pose within the uncertainty.
+// Classifies the beams of a scan against the map, with the pose's uncertainty taken into account: a beam ends where the
+// map has a surface (consistent), before it (short), or beyond something that the map has (through). It counts against
+// a surface only where it would do so at every pose within the uncertainty.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a keyframe's beams vote, block by block: new where they end off the map, gone where they went through what it
-// has, and against both where they found it as it is. One vote a block and question.
+// The votes of a keyframe's beams on blocks of cells: "something is new here" where they end off the map, "something is
+// gone here" where they went through what it has, and against both where they found it as it is. One vote for each
+// block and question.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,8 @@
 #include "mapping/votes/beam_evidence.hpp"
 #include "mapping/votes/clear_space.hpp"
 #include "mapping/votes/face_step.hpp"
+#include "mapping/votes/redraw_queue.hpp"
 #include "mapping/votes/vote_layer.hpp"
-#include "mapping/votes/watch_list.hpp"
 
 namespace deltamap::mapping::votes {
 
@@ -30,7 +31,7 @@ struct Votes {
 struct VotedMap {
   const ClearSpace& clear;
   const VoteLayer& layer;
-  const WatchList& watched;
+  const RedrawQueue& watched;
 };
 
 class BeamVotes {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which places of the map are written back and forth: a door, a pane that only some beams see, a place where somebody
-// keeps stopping. What toggles is no change of the map.
+// Remembers which blocks of the map are written back and forth: a door, a pane that only some beams see, a place where
+// somebody keeps stopping. What toggles is no change of the map.
 #pragma once
 
 #include <cstddef>

@@ -42,7 +42,7 @@ double cpu_seconds() {
 
 void write_pose(std::ostream& out, const Estimate& estimate) {
   const Pose2& pose = estimate.map_from_robot;
-  out << static_cast<double>(unix_ns(estimate.time)) * 1e-9 << ' ' << pose.x << ' ' << pose.y << " 0 0 0 "
+  out << unix_seconds(estimate.time) << ' ' << pose.x << ' ' << pose.y << " 0 0 0 "
       << std::sin(0.5 * pose.theta) << ' ' << std::cos(0.5 * pose.theta) << '\n';
 }
 
@@ -71,7 +71,7 @@ void run(const Options& options, const localization::LocalizerParams& params) {
     cpu_s.push_back(cpu_seconds() - start_s);
     const Estimate& estimate = tracked.estimate;
     write_pose(out, estimate);
-    figures << static_cast<double>(unix_ns(estimate.time)) * 1e-9 << ' ' << static_cast<int>(estimate.state) << ' '
+    figures << unix_seconds(estimate.time) << ' ' << static_cast<int>(estimate.state) << ' '
             << estimate.n_eff << ' ' << estimate.particles << ' ' << estimate.w_avg << ' '
             << std::sqrt(estimate.covariance(0, 0)) << ' ' << std::sqrt(estimate.covariance(1, 1)) << ' '
             << std::sqrt(estimate.covariance(2, 2)) << ' '

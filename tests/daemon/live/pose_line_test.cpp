@@ -58,8 +58,8 @@ TEST(PoseLine, AShutGateTellsWhyAndNoMappingNoGate) {
 
 TEST(PoseLine, TheOtherHypothesisIsToldWithItsShare) {
   PoseNews doubtful = news();
-  doubtful.row.belief.rival_share = 0.25;
-  doubtful.row.belief.map_from_rival = {4.0, 5.0, 1.0};
+  doubtful.row.belief.other_share = 0.25;
+  doubtful.row.belief.map_from_other = {4.0, 5.0, 1.0};
   EXPECT_EQ(json::parse(pose_line(doubtful))["other_hypothesis"],
             (json{{"x_m", 4.0}, {"y_m", 5.0}, {"heading_rad", 1.0}, {"share", 0.25}}));
 }

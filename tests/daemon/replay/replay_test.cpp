@@ -8,7 +8,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/revision_queue.hpp"
-#include "daemon/replay/things_queue.hpp"
+#include "daemon/replay/transients_queue.hpp"
 #include "mapping/store/map_store.hpp"
 #include "tests/support/padded.hpp"
 #include "tests/support/scripted_drive.hpp"
@@ -197,23 +197,23 @@ TEST(RevisionQueue, AJournalDecidesBeforeWhichScanARevisionIsTaken) {
   EXPECT_FALSE(queue.next_before(scan));
 }
 
-std::shared_ptr<const TemporaryThings> snapshot(std::uint32_t number) {
-  return std::make_shared<const TemporaryThings>(
-      TemporaryThings{.number = number, .time = {}, .blocks = {}, .standing = {}, .gone = {}});
+std::shared_ptr<const TransientObstacles> snapshot(std::uint32_t number) {
+  return std::make_shared<const TransientObstacles>(
+      TransientObstacles{.number = number, .time = {}, .blocks = {}, .standing = {}, .gone = {}});
 }
 
-TEST(ThingsQueue, WithoutAJournalTheNewestSnapshotIsTakenBeforeTheNextScan) {
-  ThingsQueue queue{nullptr};
+TEST(TransientsQueue, WithoutAJournalTheNewestSnapshotIsTakenBeforeTheNextScan) {
+  TransientsQueue queue{nullptr};
   EXPECT_EQ(queue.next_before(1), nullptr);
   for (const std::uint32_t number : {1u, 2u, 2u}) queue.push(snapshot(number));
   EXPECT_EQ(queue.next_before(2)->number, 2u);
   EXPECT_EQ(queue.next_before(3), nullptr);
 }
 
-TEST(ThingsQueue, AJournalDecidesBeforeWhichScanASnapshotIsTaken) {
+TEST(TransientsQueue, AJournalDecidesBeforeWhichScanASnapshotIsTaken) {
   Journal journal;
   journal.read("temporary 2 before scan 7");
-  ThingsQueue queue{&journal};
+  TransientsQueue queue{&journal};
   for (const std::uint32_t number : {1u, 2u, 3u}) queue.push(snapshot(number));
   EXPECT_EQ(queue.next_before(6), nullptr);
   EXPECT_EQ(queue.next_before(7)->number, 2u);

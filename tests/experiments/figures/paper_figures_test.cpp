@@ -21,10 +21,10 @@ Report small_report(const std::string& name, double minutes, std::uint64_t seed)
   options.minutes = minutes;
   options.repeats = 1;
   for (const auto& known : experiments()) {
-    if (known->name() != name) continue;
+    if (known.name != name) continue;
     std::vector<Outcome> outcomes;
-    for (const Run& run : known->runs(options)) outcomes.push_back(run.work());
-    return known->report(outcomes);
+    for (const Run& run : known.runs(options)) outcomes.push_back(run.work());
+    return known.report(outcomes);
   }
   ADD_FAILURE() << "no experiment " << name;
   return {};

@@ -6,8 +6,8 @@
 namespace deltamap::localization::belief {
 namespace {
 
-particles::Hypothesis certain() {
-  particles::Hypothesis best;
+particles::ParticleCluster certain() {
+  particles::ParticleCluster best;
   best.weight = 1.0;
   best.covariance = Eigen::Vector3d{1e-4, 1e-4, 1e-4}.asDiagonal();
   return best;
@@ -67,7 +67,7 @@ TEST(FitMonitor, EndsAGlobalSearchOnlyAfterSeeingEnough) {
 TEST(FitMonitor, DoesNotEndAGlobalSearchWithTwoPlacesLeft) {
   FitMonitor monitor{{}};
   monitor.start(LocalizerState::kGlobal);
-  particles::Hypothesis torn = certain();
+  particles::ParticleCluster torn = certain();
   torn.weight = 0.6;
   LocalizerState state{};
   for (int i = 0; i < 100; ++i) state = monitor.observe({0.2, 0.1, 0.0, 0.9}, torn);

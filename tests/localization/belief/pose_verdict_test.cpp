@@ -77,8 +77,8 @@ TEST(PoseVerdict, IsUndecidedWhereAnotherPlaceFitsAsWell) {
   PoseJudge judge = sure();
   const Belief& belief = after(judge, 10.0, view_of(1.0, 1.0), 0.5, {0.5, 0.5, {30.0, 30.0, 0.0}});
   EXPECT_EQ(belief.verdict, PoseVerdict::kUndecided);
-  EXPECT_EQ(belief.rival_share, 0.5);
-  EXPECT_EQ(belief.map_from_rival, (Pose2{30.0, 30.0, 0.0}));
+  EXPECT_EQ(belief.other_share, 0.5);
+  EXPECT_EQ(belief.map_from_other, (Pose2{30.0, 30.0, 0.0}));
 }
 
 TEST(PoseVerdict, IsWrongWhereAnotherPlaceHasWon) {
@@ -103,7 +103,7 @@ TEST(PoseVerdict, IsNotShakenByPeopleWhoStandInTheWay) {
 
 TEST(PoseVerdict, TrustsAPoseAgainAsSoonAsTheOtherPlaceIsRefuted) {
   PoseJudge judge = sure();
-  EXPECT_LT(after(judge, 2.0, view_of(1.0, 1.0), 0.5, {.believed = 0.1, .best_rival = 0.9}).pose_right, 0.2);
+  EXPECT_LT(after(judge, 2.0, view_of(1.0, 1.0), 0.5, {.believed = 0.1, .best_other = 0.9}).pose_right, 0.2);
   EXPECT_GT(after(judge, 0.2, view_of(1.0, 1.0)).pose_right, 0.95);
 }
 

@@ -133,7 +133,7 @@ TEST(LatticeSearch, KnowsWhereAScanMayFitAsWellAsAtTheTruth) {
   EXPECT_FALSE(may_reach(found.back(), fit));
 }
 
-TEST(GlobalSearch, FindsTheRobotFromManyPlacesInItsFirstLook) {
+TEST(GlobalSearch, FindsTheRobotFromManyHypothesesInItsFirstLook) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
   const sensor::CoarseField coarse{map, field, kBlock_m};
@@ -148,7 +148,8 @@ TEST(GlobalSearch, FindsTheRobotFromManyPlacesInItsFirstLook) {
     GlobalSearch search{{}, kHeadings};
     bool seen = false;
     for (int scan = 0; scan < 20 && search.under_way(); ++scan) {
-      for (const Pose2& place : search.look(coarse, field, {ends, ends}, {})) seen = seen || near(place, truth);
+      for (const Pose2& hypothesis : search.look(coarse, field, {ends, ends}, {}))
+        seen = seen || near(hypothesis, truth);
     }
     found += seen ? 1 : 0;
     ++tried;
@@ -168,8 +169,8 @@ TEST(GlobalSearch, CarriesWhatItFoundAlongWithTheWheels) {
   int scans = 0;
   for (; scans < 40 && search.under_way(); ++scans) {
     const motion::BeamEnds seen = seen_from(truth, 1);
-    for (const Pose2& place : search.look(coarse, field, {seen, seen}, joined)) {
-      found = found || near(place, truth);
+    for (const Pose2& hypothesis : search.look(coarse, field, {seen, seen}, joined)) {
+      found = found || near(hypothesis, truth);
     }
     const Pose2 motion{0.03, 0.0, 0.02};
     truth = truth * motion;

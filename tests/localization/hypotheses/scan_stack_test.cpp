@@ -24,14 +24,14 @@ ScanStack driven_to_the_truth(const OccupancyGrid& world) {
   return stack;
 }
 
-TEST(ScanStack, SaysNothingForAPlaceThatTheScansNeverSpeakFor) {
+TEST(ScanStack, SaysNothingForAHypothesisThatTheScansNeverSpeakFor) {
   const OccupancyGrid map = test::drawn_flat();
   const Comparison said = driven_to_the_truth(map).compared_lately({map, {}}, kWrong, kTruth, kTruth, kOfABeam);
   EXPECT_EQ(said.gained, 0.0);
   EXPECT_EQ(said.lost, 0.0);
 }
 
-TEST(ScanStack, SaysWhatAPlaceGainsAndLosesSinceWhenTheScansSpeakForItMost) {
+TEST(ScanStack, SaysWhatAHypothesisGainsAndLosesSinceWhenTheScansSpeakForItMost) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
   const ScanStack stack = driven_to_the_truth(map);

@@ -71,7 +71,7 @@ TEST(OdometryBuffer, NeverIntegratesAcrossEpochs) {
   const auto after = buffer.at(at_s(0.3));
   EXPECT_EQ(before->epoch, 0u);
   EXPECT_EQ(after->epoch, 1u);
-  const Pose2 motion = motion_between(before->joined_from_robot, after->joined_from_robot);
+  const Pose2 motion = motion_between(before->continuous_odom_from_robot, after->continuous_odom_from_robot);
   EXPECT_NEAR(motion.x, 0.2, kSame);
   EXPECT_NEAR(motion.y, 0.0, kSame);
   EXPECT_NEAR(after->odom_from_robot.x, 50.0 + 0.1 * std::cos(1.0), kSame);
@@ -84,12 +84,12 @@ TEST(OdometryBuffer, TakesOutWhatIsKnownOfTheWheelsFromTheNextReportOn) {
   buffer.add(report(0.0, {1.0, 0.0, 0.0}));
   buffer.add(report(0.1, {1.1, 0.0, 0.0}));
   buffer.calibrate({.distance = 0.02, .turn = -0.05});
-  const Pose2 before = buffer.at(at_s(0.1))->joined_from_robot;
+  const Pose2 before = buffer.at(at_s(0.1))->continuous_odom_from_robot;
   EXPECT_NEAR(before.x, 1.1, kSame) << "what was told before stays";
   buffer.add(report(0.2, {1.2, 0.0, 0.2}));
   const OdometryAt after = *buffer.at(at_s(0.2));
   EXPECT_NEAR(after.odom_from_robot.x, 1.2, kSame) << "as counted";
-  const Pose2 motion = motion_between(before, after.joined_from_robot);
+  const Pose2 motion = motion_between(before, after.continuous_odom_from_robot);
   EXPECT_NEAR(motion.position().norm(), 0.102, kSame);
   EXPECT_NEAR(motion.theta, 0.19, kSame);
 }
@@ -97,9 +97,9 @@ TEST(OdometryBuffer, TakesOutWhatIsKnownOfTheWheelsFromTheNextReportOn) {
 TEST(OdometryBuffer, AddsWhatWasDrivenSinceReportsThatAreStampedLate) {
   OdometryBuffer buffer{{}};
   for (int i = 0; i < 20; ++i) buffer.add(report(0.1 * i, {0.05 * i, 0.0, 0.0}));
-  const double told_m = buffer.at(at_s(1.5))->joined_from_robot.x;
+  const double told_m = buffer.at(at_s(1.5))->continuous_odom_from_robot.x;
   buffer.calibrate({.lag_s = 0.08});
-  EXPECT_NEAR(buffer.at(at_s(1.5))->joined_from_robot.x - told_m, 0.5 * 0.08, 1e-6);
+  EXPECT_NEAR(buffer.at(at_s(1.5))->continuous_odom_from_robot.x - told_m, 0.5 * 0.08, 1e-6);
 }
 
 TEST(OdometryBuffer, LeavesOutReportsThatComeOutOfOrder) {
@@ -117,7 +117,7 @@ TEST(OdometryBuffer, StartsAgainWhereTheClockFellBack) {
   buffer.add(report(10.0, {5.0, 0.0, 0.0}));
   buffer.add(report(10.1, {5.1, 0.0, 0.0}));
   EXPECT_NEAR(buffer.at(at_s(10.1))->odom_from_robot.x, 5.1, kSame);
-  EXPECT_NEAR(buffer.at(at_s(10.1))->joined_from_robot.x, 5.1, kSame) << "the wheels have counted on";
+  EXPECT_NEAR(buffer.at(at_s(10.1))->continuous_odom_from_robot.x, 5.1, kSame) << "the wheels have counted on";
 }
 
 TEST(OdometryBuffer, KnowsNothingFromAScanThatFellBackUntilTheNextReportWhichGoesOn) {
@@ -126,7 +126,7 @@ TEST(OdometryBuffer, KnowsNothingFromAScanThatFellBackUntilTheNextReportWhichGoe
   buffer.clock_fell_back(at_s(100.05));
   EXPECT_FALSE(buffer.at(at_s(99.5)));
   buffer.add(report(99.6, {1.3, 0.0, 0.0}));
-  EXPECT_NEAR(buffer.at(at_s(99.6))->joined_from_robot.x, 1.3, kSame);
+  EXPECT_NEAR(buffer.at(at_s(99.6))->continuous_odom_from_robot.x, 1.3, kSame);
 }
 
 TEST(OdometryBuffer, LeavesOutWhatIsNoNumber) {

@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <memory>
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "localization/tracking/surface_track.hpp"
+#include "localization/tracking/surface_tracker.hpp"
 #include "tests/support/container_hall.hpp"
 
 namespace deltamap::localization::surfaces {
@@ -19,14 +20,37 @@ sensor::RefinedPose at_rest(double x, double y, double theta) {
   return {{x, y, theta}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
 }
 
+void measure(OffsetState& state, const SparseRow& row, double innovation, double variance) {
+  const RowMeasurement measured{row, innovation, variance};
+  state.update({&measured, 1});
+}
+
 // Of the first surface that is followed.
 constexpr Eigen::Index kOffset = OffsetState::kFixed;
+
+TEST(OffsetState, TakesMeasurementsTogetherAsOneAfterTheOther) {
+  OffsetState one_by_one;
+  one_by_one.start(at_rest(1.0, 2.0, 0.3));
+  one_by_one.append(0.1, 0.5, 0.1);
+  OffsetState together = one_by_one;
+  const RowMeasurement first{{{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01};
+  const RowMeasurement second{{{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.02, 1e-4};
+  const std::array both{first, second};
+  together.update(both);
+  one_by_one.update({&first, 1});
+  RowMeasurement then = second;  // what it still adds after the first one
+  then.innovation += one_by_one.mean()[2] - 0.3 + one_by_one.mean()[kOffset + 1];
+  one_by_one.update({&then, 1});
+  EXPECT_TRUE(together.mean().isApprox(one_by_one.mean(), 1e-12));
+  EXPECT_TRUE(together.covariance().isApprox(one_by_one.covariance(), 1e-12));
+  EXPECT_EQ(together.covariance(), together.covariance().transpose());
+}
 
 TEST(OffsetState, TakesAFactorAsTheProductOfGaussians) {
   OffsetState state;
   state.start(at_rest(1.0, 2.0, 0.3));
   state.append(0.1, 0.5, 0.1);
-  state.update({{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);  // ties pose and offset
+  measure(state, {{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);  // ties pose and offset
   const Eigen::MatrixXd information = state.covariance().inverse();
   const Eigen::VectorXd weighed = information * state.mean();
   Eigen::Matrix2d precision;
@@ -46,8 +70,8 @@ TEST(OffsetState, KeepsThePoseWhenASurfaceIsForgotten) {
   state.start(at_rest(1.0, 2.0, 0.3));
   state.append(0.1, 0.5, 0.1);
   state.append(0.2, 0.5, 0.1);
-  state.update({{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);
-  state.update({{{{1, 1.0}, {kOffset + 2, -1.0}}}, 2}, -0.05, 0.01);
+  measure(state, {{{{0, 1.0}, {kOffset, -1.0}}}, 2}, 0.05, 0.01);
+  measure(state, {{{{1, 1.0}, {kOffset + 2, -1.0}}}, 2}, -0.05, 0.01);
   const sensor::RefinedPose before = state.pose();
   const double second_m = state.mean()[kOffset + 2];
   state.remove(0);
@@ -60,9 +84,9 @@ TEST(OffsetState, KeepsThePoseWhenASurfaceIsForgotten) {
 TEST(OffsetState, LetsTheMountWorkLooseAndNoFartherThanALaserCan) {
   OffsetState state;
   state.start(at_rest(0.0, 0.0, 0.0));
-  state.update({{{{OffsetState::kMount, 1.0}}}, 1}, 1.0, 1e-6);
+  measure(state, {{{{OffsetState::kMount, 1.0}}}, 1}, 1.0, 1e-6);
   const double sure_m = state.calibration().mount_deviations.x;
-  for (int i = 0; i < 1000; ++i) state.carry({.motion = {0.2, 0.0, 0.0}}, PoseCovariance::Zero());
+  for (int i = 0; i < 1000; ++i) state.predict({.motion = {0.2, 0.0, 0.0}}, PoseCovariance::Zero());
   EXPECT_LE(state.calibration().mount_error.x, 0.1);
   EXPECT_GT(state.calibration().mount_deviations.x, sure_m + 0.001);
 }
@@ -79,7 +103,7 @@ OffsetState after_metres(double metres) {
   for (int i = 0; i < std::lround(metres / 0.2); ++i) {
     const Pose2 counted{0.2, 0.0, 0.2 * std::sin(0.1 * i)};
     truth = truth * Pose2{0.202, 0.0, 0.98 * counted.theta};
-    state.carry({.motion = counted}, noise);
+    state.predict({.motion = counted}, noise);
     Pose2 found = truth * Pose2{random.normal(0.02), random.normal(0.02), random.normal(0.003)};
     found.theta += radians(0.4) - state.calibration().mount_error.theta;
     (void)state.update({found, scatter});  // one in thousands is too far off
@@ -148,8 +172,8 @@ double holds_after(double offset_m, double pose_deviation_m) {
   pose.covariance(1, 1) = pose_deviation_m * pose_deviation_m;
   state.start(pose);
   state.append(0.0, sensor::kMovedM, kMovedRad);
-  state.update({{{{1, 1.0}, {kOffset, -1.0}}}, 2}, -offset_m, 1e-4);
-  state.update({{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.0, 1e-5);
+  measure(state, {{{{1, 1.0}, {kOffset, -1.0}}}, 2}, -offset_m, 1e-4);
+  measure(state, {{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.0, 1e-5);
   std::vector<SurfaceSwitch> switches{{.surface = face(0.0)}};
   settle(switches, state);
   EXPECT_TRUE(state.is_sound());
@@ -176,8 +200,8 @@ TEST(SurfaceSwitch, TakesTwoHalvesOfOneFaceForOneWitness) {
       state.append(0.0, sensor::kMovedM, kMovedRad);
       switches.push_back({.surface = face(i)});
       const Eigen::Index at = OffsetState::offset_of(static_cast<std::size_t>(i));
-      state.update({{{{1, 1.0}, {at, -1.0}}}, 2}, -0.1, 1e-4);
-      state.update({{{{2, -1.0}, {at + 1, -1.0}}}, 2}, 0.0, 1e-5);
+      measure(state, {{{{1, 1.0}, {at, -1.0}}}, 2}, -0.1, 1e-4);
+      measure(state, {{{{2, -1.0}, {at + 1, -1.0}}}, 2}, 0.0, 1e-5);
     }
     settle(switches, state);
     return switches.front().holds;
@@ -259,13 +283,13 @@ double worst_among_shifted_m(bool follow_surfaces) {
   return drive.worst_m();
 }
 
-TEST(SurfaceTrack, IsNotLedAstrayByContainersThatWereShifted) {
+TEST(SurfaceTracker, IsNotLedAstrayByContainersThatWereShifted) {
   const double by_surfaces_m = worst_among_shifted_m(true);
   EXPECT_LT(by_surfaces_m, 0.06);
   EXPECT_LT(by_surfaces_m, 0.5 * worst_among_shifted_m(false));
 }
 
-TEST(SurfaceTrack, HoldsThePoseInAHallThatIsAsItWas) {
+TEST(SurfaceTracker, HoldsThePoseInAHallThatIsAsItWas) {
   Drive drive{test::containers_in_order(), true};
   drive.go(3.0, 0.0);
   drive.forget_worst();
@@ -274,7 +298,7 @@ TEST(SurfaceTrack, HoldsThePoseInAHallThatIsAsItWas) {
   EXPECT_EQ(drive.estimate().belief.verdict, PoseVerdict::kRight);
 }
 
-TEST(SurfaceTrack, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongTheAisle) {
+TEST(SurfaceTracker, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongTheAisle) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   const double deviation_m = std::sqrt(drive.estimate().covariance(0, 0));
@@ -284,7 +308,7 @@ TEST(SurfaceTrack, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongThe
   EXPECT_LT(std::sqrt(drive.estimate().covariance(0, 0)), deviation_m + 0.03);
 }
 
-TEST(SurfaceTrack, FindsThePoseAgainAfterASlip) {
+TEST(SurfaceTracker, FindsThePoseAgainAfterASlip) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   drive.slip({-0.1, 0.0, radians(5.0)});
@@ -292,7 +316,7 @@ TEST(SurfaceTrack, FindsThePoseAgainAfterASlip) {
   EXPECT_LT(drive.error_m(), 0.05);
 }
 
-TEST(SurfaceTrack, FindsThePoseAtOnceAfterALargeSlip) {
+TEST(SurfaceTracker, FindsThePoseAtOnceAfterALargeSlip) {
   for (const Pose2& slip : {Pose2{-0.3, 0.0, 0.0}, Pose2{0.0, 0.0, 0.15}, Pose2{0.2, 0.0, -0.12}}) {
     Drive drive{test::containers_in_order(), true};
     drive.go(5.0, 0.0);
@@ -302,7 +326,7 @@ TEST(SurfaceTrack, FindsThePoseAtOnceAfterALargeSlip) {
   }
 }
 
-TEST(SurfaceTrack, FindsASlipThatLooksLikeAMovedWallOnceOtherSurfacesTell) {
+TEST(SurfaceTracker, FindsASlipThatLooksLikeAMovedWallOnceOtherSurfacesTell) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   drive.slip({0.3, 0.0, 0.0});  // along the aisle: only the wall at its end is not where it was
@@ -312,7 +336,7 @@ TEST(SurfaceTrack, FindsASlipThatLooksLikeAMovedWallOnceOtherSurfacesTell) {
   EXPECT_LT(drive.error_m(), 0.05);
 }
 
-TEST(SurfaceTrack, TakesASlipForNoChangeOfTheHall) {
+TEST(SurfaceTracker, TakesASlipForNoChangeOfTheHall) {
   // Of four containers one has been shifted before: where it stands is known when the wheels slip.
   Drive drive{test::containers_in_order(), true};
   drive.go(3.0, 0.0);
@@ -325,15 +349,15 @@ TEST(SurfaceTrack, TakesASlipForNoChangeOfTheHall) {
   EXPECT_LT(drive.error_m(), 0.06);
 }
 
-TEST(SurfaceTrack, LeavesAPoseThatIsNotSureToTheParticles) {
+TEST(SurfaceTracker, LeavesAPoseThatIsNotSureToTheParticles) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   drive.be_blind(20.0, {1.2, 0.0, 0.1});
   drive.go(2.0, 0.0);
   EXPECT_LT(drive.error_m(), 0.06);
-  EXPECT_FALSE(tracking::SurfaceTrack::is_one_place(Eigen::Vector3d{0.04, 0.0, 0.0}.asDiagonal().toDenseMatrix()));
-  EXPECT_FALSE(tracking::SurfaceTrack::is_one_place(Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal().toDenseMatrix()));
-  EXPECT_TRUE(tracking::SurfaceTrack::is_one_place(Eigen::Vector3d{1e-3, 1e-3, 1e-4}.asDiagonal().toDenseMatrix()));
+  EXPECT_FALSE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{0.04, 0.0, 0.0}.asDiagonal().toDenseMatrix()));
+  EXPECT_FALSE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{1e-3, 1e-3, 1e-4}.asDiagonal().toDenseMatrix()));
 }
 
 /// A robot by a fixed round through the aisles, whose scans are the filter's alone.
@@ -360,7 +384,7 @@ class Round {
  private:
   void step(const Pose2& counted) {
     truth_ = truth_ * Pose2{counted.x * 1.01, 0.0, counted.theta * 0.98};
-    filter_.carry({.motion = counted}, Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix());
+    filter_.predict({.motion = counted}, Eigen::Vector3d{1e-6, 1e-6, 1e-7}.asDiagonal().toDenseMatrix());
     const test::CastScanner scanner{.max_range_m = 8.0, .robot_from_laser = mount_error_};
     Scan scan = test::cast_scan(world_, truth_, timestamp_from_ns(++scans_), scanner, random_);
     scan.robot_from_laser = filter_.calibration().mount_error;  // told: the identity

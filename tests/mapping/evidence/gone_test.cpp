@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What beams show to be gone together that none of them shows alone: specks between them, and the face that they pass.
+// What beams show to be gone together that none of them shows alone: small objects between them, and the face that they
+// pass.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/evidence/specks.hpp"
+#include "mapping/evidence/small_objects.hpp"
 #include "mapping/votes/beam_votes.hpp"
 #include "tests/support/drawn_hall.hpp"
 #include "tests/support/seen_scan.hpp"
@@ -39,66 +40,66 @@ class Gone : public testing::Test {
   }
   /// First the one map, then the other.
   void known(const OccupancyGrid& first, const OccupancyGrid& then) {
-    specks.begin(first);
-    specks.follow(then, changes_between(first, then));
+    objects.begin(first);
+    objects.follow(then, changes_between(first, then));
   }
-  std::size_t missed() { return specks.missed(tracked, beams, {}).size(); }
+  std::size_t missed() { return objects.missed(tracked, beams, {}).size(); }
 
   Random random{1};
-  Specks specks{SpeckParams{}};
+  SmallObjects objects{SmallObjectParams{}};
   votes::ClearSpace clear;
   TrackedScan tracked;
   std::vector<votes::BeamVerdict> beams;
-  const OccupancyGrid speck = room_with({4.0, 5.0}, {4.1, 5.1});  // four cells, 2 m ahead
+  const OccupancyGrid object = room_with({4.0, 5.0}, {4.1, 5.1});  // four cells, 2 m ahead
   const OccupancyGrid surface = room_with({4.0, 4.0}, {4.1, 6.0});
 };
 
-TEST_F(Gone, IsASpeckThatBeamsWouldHaveMet) {
-  known(room(), speck);
-  look(room(), speck);
+TEST_F(Gone, IsASmallObjectThatBeamsWouldHaveMet) {
+  known(room(), object);
+  look(room(), object);
   EXPECT_EQ(missed(), 4U);
 }
 
-TEST_F(Gone, IsNoSpeckThatBeamsMeet) {
-  known(room(), speck);
-  look(speck, speck);
+TEST_F(Gone, IsNoSmallObjectThatBeamsMeet) {
+  known(room(), object);
+  look(object, object);
   EXPECT_EQ(missed(), 0U);
 }
 
-TEST_F(Gone, IsNoSpeckBesideWhichABeamEnds) {
-  known(room(), speck);
-  look(room_with({4.0, 5.1}, {4.1, 5.2}), speck);  // the pose may be so far off
+TEST_F(Gone, IsNoSmallObjectBesideWhichABeamEnds) {
+  known(room(), object);
+  look(room_with({4.0, 5.1}, {4.1, 5.2}), object);  // the pose may be so far off
   EXPECT_EQ(missed(), 0U);
 }
 
-TEST_F(Gone, IsNoSpeckThatFitsBetweenTwoBeams) {
+TEST_F(Gone, IsNoSmallObjectThatFitsBetweenTwoBeams) {
   known(room(), room_with({8.5, 5.0}, {8.55, 5.05}));
   look(room(), room_with({8.5, 5.0}, {8.55, 5.05}));
   EXPECT_EQ(missed(), 0U);
 }
 
-TEST_F(Gone, IsASpeckFarAwayThatSeveralBeamsHaveGoneThrough) {
+TEST_F(Gone, IsASmallObjectFarAwayThatSeveralBeamsHaveGoneThrough) {
   const OccupancyGrid far = room_with({8.5, 5.0}, {8.55, 5.05});
   known(room(), far);
   look(room(), far, {2.0, 5.025, 0.0});
-  for (int i = 1; i < SpeckParams{}.thin_looks; ++i) EXPECT_EQ(missed(), 0U);
+  for (int i = 1; i < SmallObjectParams{}.thin_looks; ++i) EXPECT_EQ(missed(), 0U);
   EXPECT_EQ(missed(), 1U);
   EXPECT_EQ(missed(), 0U);  // and again from the first
 }
 
-TEST_F(Gone, IsNoSpeckFarAwayThatABeamHasMetInBetween) {
+TEST_F(Gone, IsNoSmallObjectFarAwayThatABeamHasMetInBetween) {
   const OccupancyGrid far = room_with({8.5, 5.0}, {8.55, 5.05});
   const Pose2 ahead{2.0, 5.025, 0.0};
   known(room(), far);
   look(room(), far, ahead);
-  for (int i = 1; i < SpeckParams{}.thin_looks; ++i) EXPECT_EQ(missed(), 0U);
+  for (int i = 1; i < SmallObjectParams{}.thin_looks; ++i) EXPECT_EQ(missed(), 0U);
   look(far, far, ahead);
   EXPECT_EQ(missed(), 0U);
   look(room(), far, ahead);
   EXPECT_EQ(missed(), 0U);
 }
 
-TEST_F(Gone, IsNoSpeckAtTheEdgeOfTheView) {
+TEST_F(Gone, IsNoSmallObjectAtTheEdgeOfTheView) {
   const OccupancyGrid beside = room_with({2.0, 7.0}, {2.1, 7.1});
   known(room(), beside);
   look(room(), beside);
@@ -106,8 +107,8 @@ TEST_F(Gone, IsNoSpeckAtTheEdgeOfTheView) {
 }
 
 TEST_F(Gone, IsNothingThinThatTheFirstMapHadAlready) {
-  known(speck, speck);
-  look(room(), speck);
+  known(object, object);
+  look(room(), object);
   EXPECT_EQ(missed(), 0U);
 }
 
@@ -119,25 +120,25 @@ TEST_F(Gone, IsNoSurfaceByItsSpecks) {
 
 TEST_F(Gone, IsWhatIsLeftOfASurfaceFromTheChangeOnThatLeavesIt) {
   known(room(), surface);
-  specks.follow(speck, changes_between(surface, speck));
-  look(room(), speck);
+  objects.follow(object, changes_between(surface, object));
+  look(room(), object);
   EXPECT_EQ(missed(), 4U);
 }
 
-TEST_F(Gone, IsNoSpeckThatHasGrownIntoASurface) {
-  known(room(), speck);
-  specks.follow(surface, changes_between(speck, surface));
+TEST_F(Gone, IsNoSmallObjectThatHasGrownIntoASurface) {
+  known(room(), object);
+  objects.follow(surface, changes_between(object, surface));
   look(room(), surface);
   EXPECT_EQ(missed(), 0U);
-  EXPECT_FALSE(specks.is_of_speck(surface.geometry().cell_at({4.02, 5.02})));
+  EXPECT_FALSE(objects.is_of_small_object(surface.geometry().cell_at({4.02, 5.02})));
 }
 
-TEST_F(Gone, IsASpeckAsAWhole) {
-  known(room(), speck);
-  const Cell corner = speck.geometry().cell_at({4.02, 5.02});
-  const std::vector<Cell> wall{speck.geometry().cell_at({9.82, 5.0})};
-  EXPECT_EQ(specks.whole(std::vector<Cell>{corner}).size(), 4U);
-  EXPECT_TRUE(specks.whole(wall).empty());
+TEST_F(Gone, IsASmallObjectAsAWhole) {
+  known(room(), object);
+  const Cell corner = object.geometry().cell_at({4.02, 5.02});
+  const std::vector<Cell> wall{object.geometry().cell_at({9.82, 5.0})};
+  EXPECT_EQ(objects.whole(std::vector<Cell>{corner}).size(), 4U);
+  EXPECT_TRUE(objects.whole(wall).empty());
 }
 
 /// By hand: is the group of this cell small, and none of it in a small group of the first map?
@@ -166,7 +167,7 @@ bool is_small_and_new(const OccupancyGrid& first, const OccupancyGrid& map, Cell
          });
 }
 
-TEST_F(Gone, FollowsSpecksThroughAnyChanges) {
+TEST_F(Gone, FollowsSmallObjectsThroughAnyChanges) {
   OccupancyGrid first{{60, 40, 0.05, {0.0, 0.0}}, CellState::kFree};
   Random chance{7};
   const auto scatter = [&](OccupancyGrid& map, int strokes) {
@@ -181,16 +182,16 @@ TEST_F(Gone, FollowsSpecksThroughAnyChanges) {
     }
   };
   scatter(first, 25);
-  specks.begin(first);
+  objects.begin(first);
   OccupancyGrid map = first;
   for (int change = 0; change < 30; ++change) {
     const OccupancyGrid before = map;
     scatter(map, 6);
-    specks.follow(map, changes_between(before, map));
+    objects.follow(map, changes_between(before, map));
     for (int row = 0; row < 40; ++row) {
       for (int column = 0; column < 60; ++column) {
         const Cell cell{column, row};
-        ASSERT_EQ(specks.is_of_speck(cell), is_small_and_new(first, map, cell, 16))
+        ASSERT_EQ(objects.is_of_small_object(cell), is_small_and_new(first, map, cell, 16))
             << "change " << change << ", cell " << column << ", " << row;
       }
     }
@@ -201,7 +202,7 @@ TEST_F(Gone, IsTheWholeFaceBetweenTheBeamsThatPassIt) {
   const OccupancyGrid face = room_with({8.0, 4.0}, {8.1, 6.0});
   look(room(), face, {0.5, 5.0, 0.0});
   votes::VoteLayer layer{{}, face.geometry()};
-  const votes::WatchList watched{{}, layer.blocks()};
+  const votes::RedrawQueue watched{{}, layer.blocks()};
   votes::BeamVotes votes;
   const votes::FaceParams params{.slant = 3.0, .bearing_step_rad = tracked.scan.bearing_step_rad};
   const votes::Blocks gone =
@@ -223,7 +224,7 @@ TEST_F(Gone, IsNothingBetweenBeamsThatPassTwoDifferentThings) {
   test::fill(world, {6.5, 4.9}, {6.6, 5.1}, CellState::kOccupied);
   look(world, map);
   votes::VoteLayer layer{{}, map.geometry()};
-  const votes::WatchList watched{{}, layer.blocks()};
+  const votes::RedrawQueue watched{{}, layer.blocks()};
   votes::BeamVotes votes;
   const votes::FaceParams params{.slant = 3.0, .bearing_step_rad = tracked.scan.bearing_step_rad};
   for (const std::uint32_t block : votes.of(beams, {}, {clear, layer, watched}, params).yes[1]) {

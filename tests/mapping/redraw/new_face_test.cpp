@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/redraw/cell_group.hpp"
-#include "mapping/redraw/hidden_floor.hpp"
+#include "mapping/redraw/enclosed_free_space.hpp"
 #include "mapping/redraw/ray_counts.hpp"
 #include "mapping/votes/face_step.hpp"
 #include "mapping/votes/flip_memory.hpp"
@@ -34,20 +34,20 @@ const OccupancyGrid& closed_box() {
 TEST(HiddenFloor, IsTheInsideOfWhatIsClosed) {
   const std::vector<Cell> starts{{4, 3}, {2, 3}};
   const std::vector<Point2> robot{{0.5, 0.5}};
-  const std::vector<Cell> hidden = hidden_floor(closed_box(), starts, robot, 40.0);
+  const std::vector<Cell> hidden = enclosed_free_space(closed_box(), starts, robot, 40.0);
   EXPECT_EQ(hidden.size(), 9U);
   for (const Cell& cell : hidden) EXPECT_TRUE(cell.column > 3 && cell.column < 7 && cell.row > 1 && cell.row < 5);
 }
 
 TEST(HiddenFloor, IsNotWhereTheRobotWas) {
   const std::vector<Cell> starts{{4, 3}};
-  EXPECT_TRUE(hidden_floor(closed_box(), starts, std::vector<Point2>{{5.5, 3.5}}, 40.0).empty());
+  EXPECT_TRUE(enclosed_free_space(closed_box(), starts, std::vector<Point2>{{5.5, 3.5}}, 40.0).empty());
 }
 
 TEST(HiddenFloor, IsNotMoreThanWasAllowed) {
   const std::vector<Cell> starts{{4, 3}};
   const std::vector<Point2> robot{{0.5, 0.5}};
-  EXPECT_TRUE(hidden_floor(closed_box(), starts, robot, 4.0).empty());
+  EXPECT_TRUE(enclosed_free_space(closed_box(), starts, robot, 4.0).empty());
 }
 
 TEST(HiddenFloor, DoesNotLeakThroughACrack) {
@@ -55,7 +55,7 @@ TEST(HiddenFloor, DoesNotLeakThroughACrack) {
   cracked.set({3, 3}, CellState::kFree);
   const std::vector<Cell> starts{{4, 3}};
   const std::vector<Point2> robot{{0.5, 0.5}};
-  EXPECT_EQ(hidden_floor(cracked, starts, robot, 40.0).size(), 10U);  // the crack itself too
+  EXPECT_EQ(enclosed_free_space(cracked, starts, robot, 40.0).size(), 10U);  // the crack itself too
 }
 
 /// A box of 40 × 40 cells of 5 cm in a field of 80 × 80, its corners left out for so many cells each way.
@@ -70,10 +70,10 @@ OccupancyGrid box_without_corners(int left_out) {
 TEST(HiddenFloor, DoesNotLeakThroughCornersThatNoBeamHasMet) {
   const std::vector<Cell> starts{{40, 21}};
   const std::vector<Point2> robot{{0.5, 0.5}};
-  const std::vector<Cell> hidden = hidden_floor(box_without_corners(3), starts, robot, 40.0);
+  const std::vector<Cell> hidden = enclosed_free_space(box_without_corners(3), starts, robot, 40.0);
   EXPECT_GE(hidden.size(), 39U * 39U - 4U);  // into the corners, but for their last cells
   EXPECT_LE(hidden.size(), 41U * 41U);
-  EXPECT_TRUE(hidden_floor(box_without_corners(8), starts, robot, 40.0).empty()) << "0.5 m are a way in";
+  EXPECT_TRUE(enclosed_free_space(box_without_corners(8), starts, robot, 40.0).empty()) << "0.5 m are a way in";
 }
 
 TEST(HiddenFloor, IsOpenThroughAWideGap) {
@@ -81,12 +81,12 @@ TEST(HiddenFloor, IsOpenThroughAWideGap) {
   for (int row = 2; row <= 4; ++row) open.set({3, row}, CellState::kFree);
   const std::vector<Cell> starts{{5, 3}};
   const std::vector<Point2> robot{{0.5, 0.5}};
-  EXPECT_TRUE(hidden_floor(open, starts, robot, 40.0).empty());
+  EXPECT_TRUE(enclosed_free_space(open, starts, robot, 40.0).empty());
 }
 
 TEST(HiddenFloor, OutsideTheMapAndOnSurfacesThereIsNone) {
   const std::vector<Cell> starts{{-1, 3}, {100, 100}, {3, 3}};
-  EXPECT_TRUE(hidden_floor(closed_box(), starts, std::vector<Point2>{{0.5, 0.5}}, 40.0).empty());
+  EXPECT_TRUE(enclosed_free_space(closed_box(), starts, std::vector<Point2>{{0.5, 0.5}}, 40.0).empty());
 }
 
 std::vector<std::size_t> face_steps(const std::vector<Point2>& ends) {

@@ -137,7 +137,7 @@ TEST_F(ViewTest, AMomentHoldsThePoseOfItsTime) {
   serve_folder();
   const RunFolder read = read_run_folder(run());
   const daemon::LocalizationRow& wanted = read.rows.at(100);
-  const double time_s = static_cast<double>(unix_ns(wanted.time)) * 1e-9;
+  const double time_s = unix_seconds(wanted.time);
   char address[64];
   (void)std::snprintf(address, sizeof address, "/api/moment?time=%.4f", time_s + 0.01);
   const auto messages = messages_in(got(address).body);
