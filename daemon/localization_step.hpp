@@ -51,6 +51,8 @@ class LocalizationStep {
   /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
   [[nodiscard]] std::optional<localization::DriveCalibration> calibration() const { return localizer_.calibration(); }
+  /// What the newest pose rests on; null where not on particles (localizer.hpp).
+  [[nodiscard]] const localization::ParticleSet* particles() const { return localizer_.particles(); }
   [[nodiscard]] localization::StabilityRecord stability() const { return localizer_.stability(); }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }

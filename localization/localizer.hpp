@@ -19,6 +19,7 @@
 namespace deltamap::localization {
 
 struct LocalizerParams;
+struct ParticleSet;
 
 class Localizer {
  public:
@@ -46,6 +47,9 @@ class Localizer {
   /// What else in the map the scans may mean, as of the last scan.
   [[nodiscard]] const RivalReport& rivals() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
+  /// What the pose rests on, valid until the next message; null where it does not rest on particles: while straight
+  /// surfaces lead, and while the whole map is searched.
+  [[nodiscard]] const ParticleSet* particles() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;
 

@@ -28,6 +28,8 @@ class GatedSets {
   [[nodiscard]] std::optional<ScanSet> next();
 
   [[nodiscard]] const WriteGate& gate() const { return gate_; }
+  /// Finished sets that are not handed on yet, in order of their end.
+  [[nodiscard]] const std::deque<ScanSet>& waiting() const { return waiting_; }
 
  private:
   void withdraw(const TrackedScan& tracked);

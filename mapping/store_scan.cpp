@@ -60,6 +60,16 @@ StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
 
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
+StoredScans StoreScan::stored() const {
+  const State& s = *state_;
+  if (s.method == MappingMethod::kPaper) return {.collected = s.paper.kept_scans(), .waiting = {}};
+  StoredScans stored{.collected = s.evidence.scans_of_waiting(), .waiting = {}};
+  for (const ScanSet& set : s.gate.waiting()) {
+    stored.waiting.insert(stored.waiting.end(), set.scans.begin(), set.scans.end());
+  }
+  return stored;
+}
+
 const std::shared_ptr<const TemporaryThings>& StoreScan::temporary() const {
   return state_->evidence.temporary().newest();
 }
