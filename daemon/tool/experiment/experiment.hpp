@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "daemon/settings.hpp"
+#include "daemon/tool/experiment/certainty.hpp"
 #include "daemon/tool/experiment/scan_table.hpp"
 #include "localization/localizer_params.hpp"
 
@@ -65,6 +66,7 @@ struct Figure {
   std::string unit{};  ///< empty: a share or a count
   std::optional<Target> target{};
   std::string peers{};  ///< what others reach
+  std::optional<Certainty> certainty{};  ///< of a figure that is made of runs
 };
 
 struct Series {
