@@ -28,7 +28,7 @@ if(GIT)
   endif()
 endif()
 file(CONFIGURE OUTPUT ${TARGET} @ONLY CONTENT [[
-#include "daemon/version.hpp"
+#include "daemon/telemetry/version.hpp"
 
 namespace deltamap::daemon {
 

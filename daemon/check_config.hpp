@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/settings.hpp"
-#include "daemon/settings_reading.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/settings/settings_reading.hpp"
 
 namespace deltamap::daemon {
 

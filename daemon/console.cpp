@@ -6,7 +6,7 @@
 
 #include <iostream>
 
-#include "daemon/system_journal.hpp"
+#include "daemon/system/system_journal.hpp"
 
 namespace deltamap::daemon {
 namespace {

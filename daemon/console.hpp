@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "daemon/log_throttle.hpp"
+#include "daemon/telemetry/log_throttle.hpp"
 
 namespace deltamap::daemon {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
-#include "daemon/memory_limit.hpp"
+#include "daemon/system/memory_limit.hpp"
 
 namespace deltamap::daemon {
 

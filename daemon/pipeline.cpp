@@ -6,19 +6,19 @@
 #include "core/channel.hpp"
 #include "core/file_lock.hpp"
 #include "core/replace_file.hpp"
-#include "daemon/control_desk.hpp"
-#include "daemon/dashboard_desk.hpp"
-#include "daemon/delta_stage.hpp"
-#include "daemon/localization_stage.hpp"
-#include "daemon/map_order.hpp"
-#include "daemon/map_stage.hpp"
-#include "daemon/newest_map.hpp"
-#include "daemon/page_commands.hpp"
-#include "daemon/pose_stream.hpp"
-#include "daemon/recorder.hpp"
-#include "daemon/run_begin.hpp"
-#include "daemon/stage.hpp"
-#include "daemon/start_error.hpp"
+#include "daemon/control/control_desk.hpp"
+#include "daemon/live/dashboard_desk.hpp"
+#include "daemon/live/page_commands.hpp"
+#include "daemon/live/pose_stream.hpp"
+#include "daemon/maps/newest_map.hpp"
+#include "daemon/records/map_order.hpp"
+#include "daemon/records/recorder.hpp"
+#include "daemon/settings/start_error.hpp"
+#include "daemon/stages/delta_stage.hpp"
+#include "daemon/stages/localization_stage.hpp"
+#include "daemon/stages/map_stage.hpp"
+#include "daemon/steps/run_begin.hpp"
+#include "daemon/telemetry/stage.hpp"
 #include "drivers/port/port_clock.hpp"
 
 namespace deltamap::daemon {
@@ -56,22 +56,22 @@ struct Pipeline::State {
   Channel<MapWork> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
   Channel<std::shared_ptr<const TemporaryThings>> things{8};  // delta → localization: offered again at the next scan
-  Channel<Command> commands{16};                // control → localization: the newest command, and its sender is told
+  Channel<control::Command> commands{16};       // control → localization: the newest command, and its sender is told
   Channel<navigation::WanderParams> wander{4};  // whoever reloads → localization: refused, and who asked is told
 
   // The first that touch a file: where another daemon is at work, this one ends before it does harm.
-  std::optional<FileLock> out_lock;      // of --out
-  std::optional<FileLock> newest_lock;   // of map.newest
-  std::unique_ptr<ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
-  std::unique_ptr<DashboardDesk> page;   // what the stages show → browsers; may be null
-  std::unique_ptr<PoseStream> poses;     // of each scan → programs on this machine; may be null
-  Recorder recorder;                     // bytes, decisions, lines → disk
-  IoStage io;                            // bytes → Odometry, Scan
+  std::optional<FileLock> out_lock;               // of --out
+  std::optional<FileLock> newest_lock;            // of map.newest
+  std::unique_ptr<control::ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
+  std::unique_ptr<DashboardDesk> page;            // what the stages show → browsers; may be null
+  std::unique_ptr<PoseStream> poses;              // of each scan → programs on this machine; may be null
+  Recorder recorder;                              // bytes, decisions, lines → disk
+  IoStage io;                                     // bytes → Odometry, Scan
   LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
   DeltaStage delta;                // TrackedScan → ScanSet, TemporaryThings
   MapStage map;                    // ScanSet, MapOrder → MapRevision
 
-  void tell(const CommandOutcome& outcome) {
+  void tell(const control::CommandOutcome& outcome) {
     if (control) control->tell(outcome);
   }
   LiveSettings::Outcome reload();
@@ -90,7 +90,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
       options{with_warnings(std::move(wanted))},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       newest_lock{newest_map_lock(settings.map)},
-      control{begun_control_desk(
+      control{control::begun_control_desk(
           settings,
           {.map = options.start.map->geometry(),
            .commands = commands,
@@ -118,7 +118,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                 .memory = memory_places(settings.map.store)},
                telemetry,
                {.log = options.log,
-                .saved = [this](const CommandOutcome& outcome) { tell(outcome); },
+                .saved = [this](const control::CommandOutcome& outcome) { tell(outcome); },
                 .warn = options.warn}},
       io{settings,
          {.open = options.open,
@@ -127,7 +127,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
           .recorder = recorder.from_io(),
           .telemetry = telemetry,
           .log = options.log,
-          .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
+          .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}},
       localization{settings,
                    options.start,
                    options.first_map,
@@ -146,7 +146,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                           if (page) page->board().show(tracked, row, latency_s, particles);
                           if (poses) poses->show(row, latency_s);
                         },
-                    .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}},
+                    .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}},
       delta{settings,
             {.work = tracked_scans,
              .sets = sets,
@@ -171,7 +171,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                [this](const MapRevision* revision, const ChangeNote& note) {
                  if (page) page->board().show(revision, note);
                },
-           .answer = [this](const CommandOutcome& outcome) { tell(outcome); }}} {
+           .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}} {
   telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
   telemetry.newest_revision.set(options.start.revision);
   telemetry.estimate.revision.set(options.start.revision);

@@ -8,14 +8,14 @@
 #include <optional>
 #include <string_view>
 
-#include "daemon/io_stage.hpp"
-#include "daemon/live_settings.hpp"
-#include "daemon/localization_step.hpp"
-#include "daemon/log_level.hpp"
-#include "daemon/outputs.hpp"
-#include "daemon/revision_keeper.hpp"
-#include "daemon/settings.hpp"
-#include "daemon/telemetry.hpp"
+#include "daemon/maps/revision_keeper.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/settings/live_settings.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/stages/io_stage.hpp"
+#include "daemon/steps/localization_step.hpp"
+#include "daemon/telemetry/log_level.hpp"
+#include "daemon/telemetry/telemetry.hpp"
 
 namespace deltamap::daemon {
 
@@ -35,7 +35,7 @@ class Pipeline {
     std::function<void(LogLevel)> set_log_level{};   ///< control thread; empty: the log has no levels
     std::function<void(const std::string&)> failed;  ///< any thread: a stage has ended by an exception
   };
-  /// Begins at once. Throws FileInUse where another program writes its files, control::AlreadyServed where another
+  /// Begins at once. Throws FileInUse where another program writes its files, sockets::AlreadyServed where another
   /// daemon listens at the control socket, std::runtime_error where settings or map are no good. A full disk is no
   /// reason: saving then pauses.
   Pipeline(const Settings& settings, Options options);

@@ -20,20 +20,20 @@
 #include "daemon/console.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/first_map.hpp"
-#include "daemon/kept_pose.hpp"
-#include "daemon/kept_stability.hpp"
-#include "daemon/output_place.hpp"
-#include "daemon/outputs.hpp"
+#include "daemon/kept/kept_pose.hpp"
+#include "daemon/kept/kept_stability.hpp"
+#include "daemon/maps/store_opening.hpp"
+#include "daemon/outputs/output_place.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/outputs/state_folders.hpp"
 #include "daemon/pipeline.hpp"
-#include "daemon/service.hpp"
-#include "daemon/settings.hpp"
-#include "daemon/settings_documents.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/settings/settings_documents.hpp"
+#include "daemon/settings/start_error.hpp"
 #include "daemon/start_banner.hpp"
-#include "daemon/start_error.hpp"
-#include "daemon/state_folders.hpp"
-#include "daemon/stop_signals.hpp"
-#include "daemon/store_opening.hpp"
-#include "daemon/version.hpp"
+#include "daemon/system/service.hpp"
+#include "daemon/system/stop_signals.hpp"
+#include "daemon/telemetry/version.hpp"
 #include "mapping/store_error.hpp"
 
 namespace deltamap::daemon {
@@ -172,7 +172,7 @@ void take_store(OpenedStore& opened, const Settings& settings, Pipeline::Options
 std::unique_ptr<Pipeline> begun(const Settings& settings, Pipeline::Options options) {
   try {
     return std::make_unique<Pipeline>(settings, std::move(options));
-  } catch (const control::AlreadyServed&) {
+  } catch (const sockets::AlreadyServed&) {
     throw;
   } catch (const FileInUse&) {
     throw;

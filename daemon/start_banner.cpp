@@ -2,7 +2,7 @@
 #include "daemon/start_banner.hpp"
 
 #include "core/shortest_text.hpp"
-#include "daemon/provenance.hpp"
+#include "daemon/settings/provenance.hpp"
 
 namespace deltamap::daemon {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
-#include "daemon/settings.hpp"
+#include "daemon/settings/settings.hpp"
 
 namespace deltamap::daemon {
 

@@ -79,9 +79,7 @@ std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 
 std::optional<DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }
 
-const ParticleSet* Localizer::particles() const {
-  return state_->searches() ? nullptr : state_->tracker.particles();
-}
+const ParticleSet* Localizer::particles() const { return state_->searches() ? nullptr : state_->tracker.particles(); }
 
 const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 

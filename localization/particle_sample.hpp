@@ -10,8 +10,8 @@
 
 namespace deltamap::localization {
 
-/// At most `most` poses, each standing for the same share of the weight (systematic sampling without a random start); all
-/// of them where there are no more than that. Fewer where one particle holds several shares: it is answered once.
+/// At most `most` poses, each standing for the same share of the weight (systematic sampling without a random start);
+/// all of them where there are no more than that. Fewer where one particle holds several shares: it is answered once.
 [[nodiscard]] std::vector<Pose2> sampled_poses(const ParticleSet& particles, std::size_t most);
 
 }  // namespace deltamap::localization

@@ -40,7 +40,8 @@ Robot::Robot(const RobotParams& params, const Pose2& map_from_start, Random rand
   state_.map_from_robot = map_from_start;
 }
 
-void Robot::move(const DriveTarget& target, double dt_s, const RayCaster& world, std::span<const Circle> people) {
+void Robot::move(const devices::DriveTarget& target, double dt_s, const RayCaster& world,
+                 std::span<const Circle> people) {
   double speed = approached(state_.speed_m_per_s, target.speed_m_per_s, target.acceleration_m_per_s2,
                             target.deceleration_m_per_s2, dt_s);
   const double turn_rate = approached(state_.turn_rate_rad_per_s, target.turn_rate_rad_per_s,

@@ -8,7 +8,7 @@
 
 #include "core/pose2.hpp"
 #include "core/random.hpp"
-#include "simulation/drive_target.hpp"
+#include "simulation/devices/drive_target.hpp"
 #include "simulation/ray_caster.hpp"
 
 namespace deltamap::simulation {
@@ -48,7 +48,7 @@ class Robot {
   Robot(const RobotParams& params, const Pose2& map_from_start, Random random);
 
   /// Moves for dt_s seconds, a few milliseconds at a time.
-  void move(const DriveTarget& target, double dt_s, const RayCaster& world, std::span<const Circle> people);
+  void move(const devices::DriveTarget& target, double dt_s, const RayCaster& world, std::span<const Circle> people);
 
   /// Someone carries it there; its wheels notice nothing.
   void carry_to(const Pose2& map_from_robot) { state_.map_from_robot = map_from_robot; }

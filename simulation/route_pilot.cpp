@@ -137,7 +137,7 @@ void RoutePilot::see(const World& world, const Point2& from) {
   forget_way();
 }
 
-DriveTarget RoutePilot::target(const RobotState& robot, const Bodies& bodies, double dt_s) {
+devices::DriveTarget RoutePilot::target(const RobotState& robot, const Bodies& bodies, double dt_s) {
   const Pose2& at = robot.map_from_robot;
   if (backing_left_s_ > 0.0) {
     backing_left_s_ -= dt_s;
@@ -162,7 +162,7 @@ DriveTarget RoutePilot::target(const RobotState& robot, const Bodies& bodies, do
     plan(at.position());
   }
   if (way_.empty()) return {.turn_rate_rad_per_s = 0.5 * params_.turn_rate_rad_per_s};
-  DriveTarget wanted = towards(carrot(at.position()), at);
+  devices::DriveTarget wanted = towards(carrot(at.position()), at);
   if (held_up) wanted.speed_m_per_s = 0.0;
   return wanted;
 }
@@ -206,10 +206,10 @@ Point2 RoutePilot::carrot(const Point2& from) {
   return way_[chosen];
 }
 
-DriveTarget RoutePilot::towards(const Point2& place, const Pose2& map_from_robot) const {
+devices::DriveTarget RoutePilot::towards(const Point2& place, const Pose2& map_from_robot) const {
   const Point2 way = place - map_from_robot.position();
   const double off_rad = turn_between(map_from_robot.theta, std::atan2(way.y(), way.x()));
-  DriveTarget wanted;
+  devices::DriveTarget wanted;
   wanted.turn_rate_rad_per_s =
       std::clamp(kTurnGain_per_s * off_rad, -params_.turn_rate_rad_per_s, params_.turn_rate_rad_per_s);
   wanted.speed_m_per_s = params_.speed_m_per_s * std::max(0.0, 1.0 - std::abs(off_rad) / kTurnOnSpot_rad);

@@ -33,14 +33,14 @@ class RoutePilot {
   void see(const World& world, const Point2& from);
 
   /// What to drive for the next dt_s seconds.
-  [[nodiscard]] DriveTarget target(const RobotState& robot, const Bodies& bodies, double dt_s);
+  [[nodiscard]] devices::DriveTarget target(const RobotState& robot, const Bodies& bodies, double dt_s);
 
   [[nodiscard]] bool reaches(const Point2& place) const { return floor_.contains(place); }
   /// A place on the floor with room around it, and any heading.
   [[nodiscard]] Pose2 place_anywhere(Random& random) const;
 
  private:
-  [[nodiscard]] DriveTarget towards(const Point2& place, const Pose2& map_from_robot) const;
+  [[nodiscard]] devices::DriveTarget towards(const Point2& place, const Pose2& map_from_robot) const;
   [[nodiscard]] bool someone_ahead(const Pose2& map_from_robot, std::span<const Circle> people) const;
   [[nodiscard]] bool leaf_ahead(const Pose2& map_from_robot, std::span<const Segment> leaves) const;
   [[nodiscard]] bool is_open(const Point2& from, const Point2& to, const ReachableFloor& floor) const;

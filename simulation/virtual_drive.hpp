@@ -75,7 +75,7 @@ class VirtualDrive {
   void spin(const Pose2& robot_from_moved) { body_.spin_wheels(robot_from_moved); }
   void change(const Change& change);
   /// From now on it drives this, wherever that leads, and not where its pilot would.
-  void hold(const DriveTarget& target) {
+  void hold(const devices::DriveTarget& target) {
     held_ = target;
     next_thought_ = now_;
   }
@@ -132,8 +132,8 @@ class VirtualDrive {
   std::optional<Slips> slips_;
   Random gap_chance_;
   Random sight_chance_;
-  DriveTarget target_;
-  std::optional<DriveTarget> held_;
+  devices::DriveTarget target_;
+  std::optional<devices::DriveTarget> held_;
   DriveStep step_;
   std::deque<Odometry> under_way_;  // SIPs whose stamps are still to come
   std::uint32_t scans_ = 0;

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "core/pose2.hpp"
-#include "daemon/log_level.hpp"
+#include "daemon/telemetry/log_level.hpp"
 
 namespace deltamap::daemon::control {
 

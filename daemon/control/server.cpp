@@ -14,9 +14,9 @@
 #include <chrono>
 #include <set>
 
-#include "daemon/accept_loop.hpp"
-#include "daemon/control/listening_socket.hpp"
 #include "daemon/control/request.hpp"
+#include "daemon/sockets/accept_loop.hpp"
+#include "daemon/sockets/listening_socket.hpp"
 
 namespace deltamap::daemon::control {
 namespace {
@@ -59,7 +59,7 @@ class Session : public std::enable_shared_from_this<Session> {
     const std::string line = received_.substr(0, size - 1);
     received_.erase(0, size);
     wait_for_reply();
-    options_.handle(line, is_gone(socket_),
+    options_.handle(line, sockets::is_gone(socket_),
                     [self = weak_from_this(), number = number_, to = socket_.get_executor()](std::string reply) {
                       asio::post(to, [self, number, reply = std::move(reply)] {
                         if (const auto session = self.lock()) session->answer(number, reply);
@@ -107,9 +107,9 @@ class Session : public std::enable_shared_from_this<Session> {
 
 struct Server::State {
   explicit State(Options given)
-      : options{std::move(given)}, clients{listening_at(loop, options.socket), [this](Protocol::socket socket) {
-                                             welcome(std::move(socket));
-                                           }} {}
+      : options{std::move(given)},
+        clients{sockets::listening_at(loop, options.socket),
+                [this](Protocol::socket socket) { welcome(std::move(socket)); }} {}
 
   void welcome(Protocol::socket socket) {
     const bool is_full = sessions.size() >= kMostClients;
@@ -133,7 +133,7 @@ struct Server::State {
 
   asio::io_context loop{1};
   Options options;
-  AcceptLoop<Protocol> clients;
+  sockets::AcceptLoop<Protocol> clients;
   std::set<std::shared_ptr<Session>> sessions;
 };
 

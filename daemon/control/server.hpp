@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "daemon/control/already_served.hpp"
+#include "daemon/sockets/already_served.hpp"
 
 namespace deltamap::daemon::control {
 

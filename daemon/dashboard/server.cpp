@@ -11,11 +11,11 @@
 #include <boost/asio/steady_timer.hpp>
 #include <vector>
 
-#include "daemon/accept_loop.hpp"
 #include "daemon/dashboard/driver.hpp"
 #include "daemon/dashboard/http_connection.hpp"
 #include "daemon/dashboard/listening_socket.hpp"
 #include "daemon/dashboard/viewer.hpp"
+#include "daemon/sockets/accept_loop.hpp"
 
 namespace deltamap::daemon::dashboard {
 namespace {
@@ -115,7 +115,7 @@ struct Server::State {
   std::set<Viewer*> viewers;  // among the connections
   std::size_t drivers = 0;    // likewise
   asio::io_context loop{1};
-  AcceptLoop<tcp> clients;
+  sockets::AcceptLoop<tcp> clients;
   asio::steady_timer period_timer;
   Clock::time_point next_period;
 };

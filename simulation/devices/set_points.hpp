@@ -7,7 +7,7 @@
 
 #include "core/pose2.hpp"
 #include "drivers/pioneer/command.hpp"
-#include "simulation/drive_target.hpp"
+#include "simulation/devices/drive_target.hpp"
 
 namespace deltamap::simulation::devices {
 

@@ -14,10 +14,10 @@
 
 #include "core/grid_file.hpp"
 #include "core/grid_patch.hpp"
-#include "daemon/map_outputs.hpp"
-#include "daemon/memory_keeper.hpp"
-#include "daemon/newest_map.hpp"
-#include "daemon/store_opening.hpp"
+#include "daemon/kept/memory_keeper.hpp"
+#include "daemon/maps/map_outputs.hpp"
+#include "daemon/maps/newest_map.hpp"
+#include "daemon/maps/store_opening.hpp"
 #include "mapping/map_store.hpp"
 
 namespace deltamap::daemon {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may drive: what `ctl drive` is answered, and when the simulated robot moves.
-#include "daemon/kept_drive.hpp"
+#include "daemon/kept/kept_drive.hpp"
 #include "tests/support/control_fixture.hpp"
 
 namespace deltamap::daemon {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/store_opening.hpp"
+#include "daemon/maps/store_opening.hpp"
 #include "mapping/map_store.hpp"
 #include "tests/support/control_fixture.hpp"
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "daemon/start_error.hpp"
+#include "daemon/settings/start_error.hpp"
 #include "tests/support/not_root.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "daemon/kept_stability.hpp"
+#include "daemon/kept/kept_stability.hpp"
 #include "mapping/map_store.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 

@@ -36,10 +36,30 @@ class Mutation {
 
  private:
   void change(std::string& bytes) {
-    static constexpr std::array<std::string_view, 24> kWords{
-        "\r\n", "\n", "\r\n\r\n", " ", "\t", "\0\0", ":", "0", "-1", "4096", "4097", "18446744073709551616", "1e999", "%00",
-        "..", "//", "chunked", "Content-Length: 5\r\n", "Host: 127.0.0.1\r\n", "Transfer-Encoding: chunked\r\n", "{", "\"",
-        "\\ud800", "[[[[[[[["};
+    static constexpr std::array<std::string_view, 24> kWords{"\r\n",
+                                                             "\n",
+                                                             "\r\n\r\n",
+                                                             " ",
+                                                             "\t",
+                                                             "\0\0",
+                                                             ":",
+                                                             "0",
+                                                             "-1",
+                                                             "4096",
+                                                             "4097",
+                                                             "18446744073709551616",
+                                                             "1e999",
+                                                             "%00",
+                                                             "..",
+                                                             "//",
+                                                             "chunked",
+                                                             "Content-Length: 5\r\n",
+                                                             "Host: 127.0.0.1\r\n",
+                                                             "Transfer-Encoding: chunked\r\n",
+                                                             "{",
+                                                             "\"",
+                                                             "\\ud800",
+                                                             "[[[[[[[["};
     const std::size_t at = below(bytes.size() + 1);
     switch (below(8)) {
       case 0:

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sends damaged HTTP and WebSocket input to the live page's server, over real sockets, built with the sanitizers:
 //   page_fuzz [--seconds S] [--seed N] [--case N] [--state FILE]
-// A case is made from seed and number alone. Beside the sanitizers, three things must hold: whoever has no token is never
-// let in, whatever comes back is HTTP, and the next good request is answered. Prints one JSON line; exit code 1 where one
-// does not hold. FILE holds the number of the newest case, for whoever looks after a crash; --case plays it alone.
+// A case is made from seed and number alone. Beside the sanitizers, three things must hold: whoever has no token is
+// never let in, whatever comes back is HTTP, and the next good request is answered. Prints one JSON line; exit code 1
+// where one does not hold. FILE holds the number of the newest case, for whoever looks after a crash; --case plays it
+// alone.
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/resource.h>
@@ -23,7 +24,7 @@
 
 #include "daemon/control/request.hpp"
 #include "daemon/dashboard/server.hpp"
-#include "daemon/hand_drive.hpp"
+#include "daemon/live/hand_drive.hpp"
 #include "tests/fuzz/mutation.hpp"
 
 namespace deltamap::fuzz {
@@ -137,19 +138,22 @@ class Client {
 };
 
 std::string upgrade(const std::string& path, const std::string& token) {
-  return "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:8484\r\nOrigin: http://127.0.0.1:8484\r\nConnection: Upgrade\r\n" +
+  return "GET " + path +
+         " HTTP/1.1\r\nHost: 127.0.0.1:8484\r\nOrigin: http://127.0.0.1:8484\r\nConnection: Upgrade\r\n" +
          "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" + token +
          "\r\n";
 }
 
 std::string request(Mutation& mutation, const std::string& token) {
-  static const std::array<std::string, 9> paths{"/",      "/page/main.js",         "/api/status", "/api/map.png",
-                                                "/metrics", "/api/revision/3/cells", "/?token=x",   "/live",
-                                                "/api/history?a=%20b"};
-  static const std::array<std::string, 6> bodies{R"({"command":"pause"})", R"({"command":"undo","revision":3})",
+  static const std::array<std::string, 9> paths{
+      "/",         "/page/main.js", "/api/status",        "/api/map.png", "/metrics", "/api/revision/3/cells",
+      "/?token=x", "/live",         "/api/history?a=%20b"};
+  static const std::array<std::string, 6> bodies{R"({"command":"pause"})",
+                                                 R"({"command":"undo","revision":3})",
                                                  R"({"command":"relocalize","x_m":1.5,"y_m":-2,"heading_rad":0.1})",
                                                  R"({"command":"drive","mode":"wander"})",
-                                                 R"({"command":"log-level","level":"debug"})", R"({"command":"status"})"};
+                                                 R"({"command":"log-level","level":"debug"})",
+                                                 R"({"command":"status"})"};
   if (mutation.happens(4)) return upgrade(mutation.happens(2) ? "/live" : "/drive", token);
   if (mutation.happens(2)) {
     const std::string& body = mutation.one_of(bodies);
@@ -175,9 +179,9 @@ std::string frame(Mutation& mutation, const std::string& payload) {
 }
 
 std::string frames(Mutation& mutation) {
-  static const std::array<std::string, 5> payloads{
-      R"({"beat":1,"speed_m_per_s":0.2,"turn_rate_rad_per_s":-0.5})", R"({"beat":2,"speed_m_per_s":1e308})", "{}", "",
-      std::string("\x03\xE8gone")};
+  static const std::array<std::string, 5> payloads{R"({"beat":1,"speed_m_per_s":0.2,"turn_rate_rad_per_s":-0.5})",
+                                                   R"({"beat":2,"speed_m_per_s":1e308})", "{}", "",
+                                                   std::string("\x03\xE8gone")};
   std::string bytes;
   for (std::size_t i = 0; i <= mutation.below(4); ++i) {
     std::string payload = mutation.one_of(payloads);

@@ -27,14 +27,16 @@ const std::map<std::string, std::set<std::string>> kArrows = {
     {"navigation", {"core"}},
     {"simulation", {"core", "drivers/pioneer", "drivers/lms200"}},
     {"daemon", {"core", "drivers", "localization", "mapping", "navigation"}},
-    {"daemon/tool", {"core", "drivers", "localization", "mapping", "navigation", "daemon", "simulation"}},
+    {"experiments", {"core", "drivers", "localization", "mapping", "navigation", "daemon", "simulation"}},
+    {"tool", {"core", "drivers", "localization", "mapping", "navigation", "daemon", "simulation", "experiments"}},
 };
 
 // The parts of a wing that know no port, no thread and no other device.
 const std::map<std::string, std::set<std::string>> kForbiddenInside = {
-    {"drivers/pioneer", {"drivers/port", "drivers/lms200"}},
-    {"drivers/lms200", {"drivers/port", "drivers/pioneer"}},
-    {"drivers/port", {"drivers/pioneer", "drivers/lms200"}},
+    {"drivers/pioneer", {"drivers/port", "drivers/lms200", "drivers/carmen"}},
+    {"drivers/lms200", {"drivers/port", "drivers/pioneer", "drivers/carmen"}},
+    {"drivers/port", {"drivers/pioneer", "drivers/lms200", "drivers/carmen"}},
+    {"daemon", {"drivers/carmen"}},
     {"mapping/awareness", {"mapping/alignment", "mapping/merge"}},
     {"mapping/alignment", {"mapping/awareness", "mapping/merge"}},
     {"mapping/merge", {"mapping/awareness"}},
@@ -42,9 +44,8 @@ const std::map<std::string, std::set<std::string>> kForbiddenInside = {
 
 bool lies_under(const std::string& path, const std::string& folder) { return path.rfind(folder + "/", 0) == 0; }
 
-std::string wing_of(const std::string& path) {
-  return lies_under(path, "daemon/tool") ? "daemon/tool" : path.substr(0, path.find('/'));
-}
+std::string wing_of(const std::string& path) { return path.substr(0, path.find('/')); }
+std::string room_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
 
 bool is_allowed(const std::string& from, const std::string& to) {
   for (const auto& [folder, forbidden] : kForbiddenInside) {
@@ -56,9 +57,7 @@ bool is_allowed(const std::string& from, const std::string& to) {
   const std::string wing = wing_of(from);
   if (wing_of(to) == wing) return true;
   const auto& arrows = kArrows.at(wing);
-  return std::any_of(arrows.begin(), arrows.end(), [&](const auto& target) {
-    return lies_under(to, target) && (wing == "daemon/tool" || !lies_under(to, "daemon/tool"));
-  });
+  return std::any_of(arrows.begin(), arrows.end(), [&](const auto& target) { return lies_under(to, target); });
 }
 
 std::vector<fs::path> sources_of(const std::string& folder) {
@@ -70,39 +69,92 @@ std::vector<fs::path> sources_of(const std::string& folder) {
   return files;
 }
 
-const std::vector<std::string> kWings = {"core",       "drivers",    "localization", "mapping",
-                                         "navigation", "simulation", "daemon"};
+const std::vector<std::string> kWings = {"core",       "drivers", "localization", "mapping", "navigation",
+                                         "simulation", "daemon",  "experiments",  "tool"};
 
-TEST(Layering, EveryIncludePointsAlongTheArrows) {
+struct Include {
+  std::string from;
+  std::string to;
+  std::string place;  // file and line
+};
+
+std::vector<Include> includes_of(const std::string& wing) {
   const std::regex ours{R"re(^\s*#\s*include\s+"([^"]+)")re"};
-  int includes = 0;
-  for (const auto& wing : kWings) {
-    for (const auto& file : sources_of(wing)) {
-      const std::string from = fs::relative(file, kRoot).string();
-      std::ifstream in(file);
-      int number = 0;
-      for (std::string line; std::getline(in, line);) {
-        ++number;
-        std::smatch match;
-        if (!std::regex_search(line, match, ours)) continue;
-        const std::string to = match[1];
-        ++includes;
-        EXPECT_TRUE(fs::exists(kRoot / to)) << from << ":" << number << ": include from the root: " << to;
-        EXPECT_TRUE(is_allowed(from, to)) << from << ":" << number << ": must not include " << to;
-      }
+  std::vector<Include> includes;
+  for (const auto& file : sources_of(wing)) {
+    const std::string from = fs::relative(file, kRoot).string();
+    std::ifstream in(file);
+    int number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      std::smatch match;
+      if (std::regex_search(line, match, ours))
+        includes.push_back({from, match[1], from + ":" + std::to_string(number)});
     }
   }
-  EXPECT_GT(includes, 10) << "the test must have read something";
+  return includes;
+}
+
+// The rooms (folders) that each room of a wing includes.
+using Rooms = std::map<std::string, std::set<std::string>>;
+
+Rooms rooms_of(const std::string& wing) {
+  Rooms rooms;
+  for (const auto& [from, to, place] : includes_of(wing)) {
+    if (wing_of(to) == wing && room_of(to) != room_of(from)) rooms[room_of(from)].insert(room_of(to));
+  }
+  return rooms;
+}
+
+// Takes away, again and again, what includes no other room that is left: what stays is or leads into a circle.
+Rooms circles_of(Rooms rooms) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (auto room = rooms.begin(); room != rooms.end();) {
+      std::erase_if(room->second, [&](const std::string& other) { return !rooms.contains(other); });
+      changed = changed || room->second.empty();
+      room = room->second.empty() ? rooms.erase(room) : std::next(room);
+    }
+  }
+  return rooms;
+}
+
+TEST(Layering, EveryIncludePointsAlongTheArrows) {
+  std::size_t includes = 0;
+  for (const auto& wing : kWings) {
+    for (const auto& [from, to, place] : includes_of(wing)) {
+      ++includes;
+      EXPECT_TRUE(fs::exists(kRoot / to)) << place << ": include from the root: " << to;
+      EXPECT_TRUE(is_allowed(from, to)) << place << ": must not include " << to;
+    }
+  }
+  EXPECT_GT(includes, 10u) << "the test must have read something";
+}
+
+TEST(Layering, TheRoomsOfAWingIncludeEachOtherInNoCircle) {
+  for (const auto& wing : kWings) {
+    for (const auto& [room, others] : circles_of(rooms_of(wing))) {
+      for (const auto& other : others) ADD_FAILURE() << room << " includes " << other << ", which leads back";
+    }
+  }
+}
+
+TEST(Layering, FindsACircleOfThreeRooms) {
+  const Rooms circle = circles_of({{"a", {"b"}}, {"b", {"c", "d"}}, {"c", {"a"}}, {"d", {"e"}}});
+  EXPECT_EQ(circle, (Rooms{{"a", {"b"}}, {"b", {"c"}}, {"c", {"a"}}}));
 }
 
 TEST(Layering, RefusesArrowsThatAreNotDrawn) {
   EXPECT_FALSE(is_allowed("localization/localizer.cpp", "mapping/map_update.hpp"));
   EXPECT_FALSE(is_allowed("core/channel.hpp", "drivers/session.hpp"));
   EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "simulation/world.hpp"));
-  EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "daemon/tool/run_tool.hpp"));
+  EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "tool/run_tool.hpp"));
+  EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "drivers/carmen/carmen_log.hpp"));
+  EXPECT_FALSE(is_allowed("experiments/registry.cpp", "tool/run_tool.hpp"));
   EXPECT_FALSE(is_allowed("drivers/pioneer/session.cpp", "drivers/port/serial_port.hpp"));
   EXPECT_FALSE(is_allowed("simulation/devices/virtual_pioneer.cpp", "drivers/port/serial_port.hpp"));
-  EXPECT_TRUE(is_allowed("daemon/tool/sim.cpp", "simulation/world.hpp"));
+  EXPECT_TRUE(is_allowed("tool/sim.cpp", "simulation/world.hpp"));
+  EXPECT_TRUE(is_allowed("tool/experiment.cpp", "experiments/registry.hpp"));
   EXPECT_TRUE(is_allowed("simulation/devices/virtual_pioneer.cpp", "drivers/pioneer/packet.hpp"));
 }
 

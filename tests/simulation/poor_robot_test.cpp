@@ -12,7 +12,7 @@
 namespace deltamap::simulation {
 namespace {
 
-const DriveTarget kStraight{.speed_m_per_s = 0.5};
+const devices::DriveTarget kStraight{.speed_m_per_s = 0.5};
 
 Scenario exact_hall() {
   Scenario scenario = read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/hall.yaml");

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/messages.hpp"
-#include "daemon/tool/carmen_log.hpp"
+#include "drivers/carmen/carmen_log.hpp"
 #include "localization/localizer.hpp"
 
 namespace deltamap::test {
@@ -23,7 +23,7 @@ class CarmenFeed {
   /// The next scan with the reports that lead to it already given to the localizer; nothing at the end.
   std::optional<Scan> next(localization::Localizer& localizer) {
     while (const auto record = log_.next()) {
-      const auto* logged = std::get_if<daemon::tool::CarmenScan>(&*record);
+      const auto* logged = std::get_if<drivers::carmen::CarmenScan>(&*record);
       if (logged == nullptr || !logged->poses) continue;
       lead_to(logged->time, logged->poses->odom_from_robot, localizer);
       return scan_of(*logged);
@@ -56,7 +56,7 @@ class CarmenFeed {
     localizer.observe(*last_);
   }
 
-  Scan scan_of(const daemon::tool::CarmenScan& logged) {
+  Scan scan_of(const drivers::carmen::CarmenScan& logged) {
     Scan scan;
     scan.time = logged.time;
     scan.received = logged.time + duration_from_seconds(kScanDurationS);
@@ -78,7 +78,7 @@ class CarmenFeed {
     return scan;
   }
 
-  daemon::tool::CarmenLog log_;
+  drivers::carmen::CarmenLog log_;
   double laser_ahead_m_;
   double no_return_m_;
   std::optional<Odometry> last_;

@@ -10,10 +10,10 @@
 #include <thread>
 
 #include "daemon/control/request.hpp"
-#include "daemon/tool/run_tool.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 #include "tests/support/simulated_ports.hpp"
 #include "tests/support/socket_client.hpp"
+#include "tool/run_tool.hpp"
 
 namespace deltamap::test {
 
@@ -44,7 +44,7 @@ class ControlDeskTest : public PipelineFixture {
   }
   [[nodiscard]] int exit_code(std::vector<const char*> arguments) const {
     arguments.insert(arguments.begin(), {"deltamap", "ctl", "--socket", settings_.control.socket.c_str()});
-    return daemon::tool::run_tool(static_cast<int>(arguments.size()), arguments.data());
+    return tool::run_tool(static_cast<int>(arguments.size()), arguments.data());
   }
 };
 

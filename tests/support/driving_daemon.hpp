@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/kept_drive.hpp"
+#include "daemon/kept/kept_drive.hpp"
 #include "drivers/lms200/session.hpp"
 #include "drivers/pioneer/session.hpp"
 #include "drivers/port/reconnect.hpp"

@@ -11,12 +11,12 @@
 
 #include "core/grid_file.hpp"
 #include "daemon/pipeline.hpp"
-#include "daemon/replay_run.hpp"
-#include "daemon/tool/import_carmen.hpp"
+#include "daemon/replay/replay_run.hpp"
 #include "tests/support/scripted_drive.hpp"
 #include "tests/support/scripted_port.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/text_file.hpp"
+#include "tool/import_carmen.hpp"
 
 namespace deltamap::test {
 
@@ -39,7 +39,7 @@ class PipelineFixture : public testing::Test {
 
   PipelineFixture() {
     write_drive(folder_.path() / "drive.log", kDrive_s);
-    (void)daemon::tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
+    (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
     write_grid(small_room(false), folder_.path() / "room.yaml");
     settings_.initial_pose = pose_on_drive(0.0);
     settings_.localizer.particles.min = 200;

@@ -4,8 +4,8 @@ import html
 
 from project import ROOT
 
-LOOK = ["daemon/dashboard/page/theme.css", "daemon/tool/experiment/page/report.css"]
-BEHAVIOUR = "daemon/tool/experiment/page/report.js"
+LOOK = ["daemon/dashboard/page/theme.css", "experiments/report/page/report.css"]
+BEHAVIOUR = "experiments/report/page/report.js"
 
 
 def cell(text, kind="td", style=""):

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/time.hpp"
-#include "daemon/retrying_output.hpp"
-#include "daemon/telemetry.hpp"
+#include "daemon/outputs/retrying_output.hpp"
+#include "daemon/telemetry/telemetry.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tool/run_tool.hpp"
+#include "tool/run_tool.hpp"
 
 namespace deltamap::test {
 
@@ -24,7 +24,7 @@ struct ToolRun {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   ToolRun run;
-  run.exit_code = daemon::tool::run_tool(static_cast<int>(arguments.size()), arguments.data());
+  run.exit_code = tool::run_tool(static_cast<int>(arguments.size()), arguments.data());
   run.output = testing::internal::GetCapturedStdout();
   run.errors = testing::internal::GetCapturedStderr();
   return run;

@@ -178,7 +178,7 @@ TEST_F(ServerTest, ALiveDaemonIsNotReplaced) {
   try {
     const Server second{{socket(), [](const std::string&, bool, const Server::Reply&) {}, ""}};
     FAIL() << "must refuse";
-  } catch (const AlreadyServed& error) {
+  } catch (const sockets::AlreadyServed& error) {
     EXPECT_EQ(error.what(), socket().string() + ": another daemon listens there");
   }
   EXPECT_EQ(exchange(socket(), "mine"), "re: mine");

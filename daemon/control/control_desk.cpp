@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/control_desk.hpp"
+
+#include "daemon/control/status_report.hpp"
+#include "drivers/port/port_clock.hpp"
+
+namespace deltamap::daemon::control {
+
+using control::done_line;
+using control::error_line;
+using control::Request;
+
+namespace {
+
+constexpr double kPatience_s = 1.0;  // longer than the localization thread takes to notice that no scan comes
+
+}  // namespace
+
+ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
+    : settings_{settings},
+      wiring_{std::move(wiring)},
+      began_{drivers::port::port_clock_now()},
+      server_{{.socket = settings.control.socket,
+               .handle = [this](const std::string& line, bool sender_is_gone,
+                                control::Server::Reply reply) { answer(line, sender_is_gone, std::move(reply)); },
+               .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it"),
+               .patience_s = kPatience_s}} {}
+
+void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply) {
+  const control::RequestAnswer answer = control::request_of_line(line);
+  if (!answer.request) return reply(error_line(answer.refused));
+  const Request& request = *answer.request;
+  if (request.kind != Request::Kind::kStatus) wiring_.log("ctl: " + control::words_of(request));
+  if (sender_is_gone && request.kind == Request::Kind::kDriveWander) {
+    return wiring_.log("ctl: drive wander: not done, who asked for it waits no longer");
+  }
+  switch (request.kind) {
+    case Request::Kind::kStatus:
+      return reply(status_json_line(wiring_.telemetry, settings_, seconds(drivers::port::port_clock_now() - began_)));
+    case Request::Kind::kDriveOff:
+      return drive(false, request, std::move(reply));
+    case Request::Kind::kDriveWander:
+      return drive(true, request, std::move(reply));
+    case Request::Kind::kPause:
+      return command(Command::Kind::kPause, request, std::move(reply));
+    case Request::Kind::kResume:
+      return command(Command::Kind::kResume, request, std::move(reply));
+    case Request::Kind::kSave:
+      return command(Command::Kind::kSave, request, std::move(reply));
+    case Request::Kind::kUndo:
+      return command(Command::Kind::kUndo, request, std::move(reply));
+    case Request::Kind::kRollBack:
+      return command(Command::Kind::kRollBack, request, std::move(reply));
+    case Request::Kind::kReload:
+      return reply(reloaded());
+    case Request::Kind::kRecordStart:
+      return record(true, request, std::move(reply));
+    case Request::Kind::kRecordStop:
+      return record(false, request, std::move(reply));
+    case Request::Kind::kLogLevel:
+      return reply(with_log_level(request.log_level));
+    case Request::Kind::kRelocalize:
+      if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position())))
+        return reply(error_line("that pose lies outside the map"));
+      return command(Command::Kind::kRelocalize, request, std::move(reply));
+  }
+}
+
+double ControlDesk::silence_s() {
+  const std::int64_t now_ns = unix_ns(drivers::port::port_clock_now());
+  if (const std::int64_t asked_ns = asked_ns_; asked_ns != 0) return seconds(Duration{now_ns - asked_ns});
+  asked_ns_ = now_ns;
+  server_.post([this] { asked_ns_ = 0; });
+  return 0.0;
+}
+
+void ControlDesk::ask(std::string line, control::Server::Reply reply) {
+  const Timestamp asked = drivers::port::port_clock_now();
+  server_.post([this, asked, line = std::move(line), reply = std::move(reply)]() mutable {
+    const bool is_old = seconds(drivers::port::port_clock_now() - asked) > kPatience_s;
+    answer(line, is_old, std::move(reply));
+  });
+}
+
+void ControlDesk::drive(bool may_drive, const Request& request, control::Server::Reply reply) {
+  if (may_drive && settings_.navigation.mode != navigation::DriveMode::kWander) {
+    return reply(error_line("'navigation.mode' is not wander: this daemon never drives"));
+  }
+  const std::uint64_t ticket = next_ticket_++;
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+  wiring_.let_drive(may_drive, ticket);
+}
+
+void ControlDesk::record(bool goes_on, const Request& request, control::Server::Reply reply) {
+  const std::uint64_t ticket = next_ticket_++;
+  if (!wiring_.record(goes_on, ticket)) return reply(error_line("the disk is too slow: try again"));
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+}
+
+std::string ControlDesk::reloaded() const {
+  const LiveSettings::Outcome outcome = wiring_.reload();
+  std::string text;
+  for (const std::string& line : outcome.lines) text += (text.empty() ? "" : "\n") + line;
+  return outcome.done ? done_line(text) : error_line(text);
+}
+
+std::string ControlDesk::with_log_level(LogLevel level) const {
+  if (!wiring_.set_log_level(level)) return error_line("the log of this run has no levels");
+  return done_line("the log shows " + std::string(name_of(level)) + " and above until the next start");
+}
+
+void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
+  const std::uint64_t ticket = next_ticket_++;
+  if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, request.revision, ticket})) {
+    return reply(error_line("too many commands wait already"));
+  }
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+}
+
+void ControlDesk::tell(const CommandOutcome& outcome) {
+  server_.post([this, outcome] {
+    const auto found = waiting_.find(outcome.ticket);
+    if (found == waiting_.end()) return;
+    wiring_.log("ctl: " + control::words_of(found->second.request) + ": " + outcome.message);
+    found->second.reply(outcome.done ? done_line(outcome.message) : error_line(outcome.message));
+    waiting_.erase(found);
+  });
+}
+
+std::unique_ptr<ControlDesk> begun_control_desk(const Settings& settings, ControlDesk::Wiring wiring,
+                                                const std::function<void(const std::string&)>& warn) {
+  if (settings.control.socket.empty()) return nullptr;
+  try {
+    return std::make_unique<ControlDesk>(settings, std::move(wiring));
+  } catch (const sockets::AlreadyServed&) {
+    throw;
+  } catch (const std::exception& error) {
+    warn(std::string("no `deltamap ctl` in this run: ") + error.what());
+    return nullptr;
+  }
+}
+
+}  // namespace deltamap::daemon::control

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/status_report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "core/angle.hpp"
+#include "daemon/telemetry/log_level.hpp"
+#include "drivers/pioneer/drive_permission.hpp"
+#include "navigation/drive_mode.hpp"
+#include "navigation/safety.hpp"
+
+namespace deltamap::daemon::control {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json pose_json(double x_m, double y_m, double heading_rad) {
+  return {{"x_m", x_m}, {"y_m", y_m}, {"heading_deg", degrees(heading_rad)}};
+}
+
+Json counts_json(const BeamCounts& beams) {
+  return {{"expected", beams.expected}, {"fit", beams.fit}, {"short_of", beams.short_of}, {"beyond", beams.beyond}};
+}
+
+Json belief_json(const EstimateGauges& estimate) {
+  Json json;
+  json["verdict"] = name_of(static_cast<PoseVerdict>(estimate.verdict.value()));
+  json["pose_right"] = estimate.pose_right.value();
+  json["map_wrong"] = estimate.map_wrong.value();
+  json["stable"] = counts_json(estimate.stable.value());
+  json["elsewhere"] = counts_json(estimate.elsewhere.value());
+  json["rival"] = nullptr;
+  if (const double share = estimate.rival_share.value(); share > 0.0) {
+    json["rival"] =
+        pose_json(estimate.rival_x_m.value(), estimate.rival_y_m.value(), estimate.rival_heading_rad.value());
+    json["rival"]["share"] = share;
+  }
+  return json;
+}
+
+void add_estimate(Json& json, const Telemetry& t) {
+  const EstimateGauges& estimate = t.estimate;
+  const auto covariance = [&](std::size_t i) { return estimate.covariance[i].value(); };
+  const bool is_known = t.localized.value() > 0;
+  json["state"] = is_known ? Json(name_of(static_cast<LocalizerState>(estimate.state.value()))) : Json("no scan yet");
+  json["pose"] = pose_json(estimate.x_m.value(), estimate.y_m.value(), estimate.heading_rad.value());
+  json["covariance"] = {{"xx_m2", covariance(0)}, {"xy_m2", covariance(1)},    {"xh_m_rad", covariance(2)},
+                        {"yy_m2", covariance(3)}, {"yh_m_rad", covariance(4)}, {"hh_rad2", covariance(5)}};
+  json["belief"] = belief_json(estimate);
+  json["particles"] = estimate.particles.value();
+  json["n_eff"] = estimate.n_eff.value();
+  json["w_avg"] = estimate.w_avg.value();
+  json["fit"] = !is_known || t.fit.value() < 0.0 ? Json(nullptr) : Json(t.fit.value());
+  json["revision"] = estimate.revision.value();
+}
+
+Json drops_json(const Telemetry& t) {
+  return {{"scans_overtaken", t.dropped.value()},     {"scans_lost", t.scans_lost.value()},
+          {"odometry_lost", t.odometry_lost.value()}, {"tracked_lost", t.tracked_lost.value()},
+          {"sets_lost", t.sets_lost.value()},         {"recording_lost", t.recording_lost.value()}};
+}
+
+Json gate_json(const GateGauges& gate) {
+  const auto now = static_cast<mapping::GateReason>(gate.reason.value());
+  const mapping::GateTimes times = gate.times();
+  Json json;
+  json["open"] = now == mapping::GateReason::kOpen;
+  json["reason"] = now == mapping::GateReason::kOpen ? Json(nullptr) : Json(mapping::name_of(now));
+  json["observed_s"] = mapping::observed_s(times);
+  json["shut_s"] = mapping::shut_by_reason(times);
+  return json;
+}
+
+Json calibration_json(const std::array<Gauge<double>, 7>& values) {
+  const auto value = [&](std::size_t i) { return values[i].value(); };
+  return {{"distance_percent", 100.0 * value(0)},
+          {"turn_percent", 100.0 * value(1)},
+          {"drift_deg_per_m", degrees(value(2))},
+          {"lag_ms", 1e3 * value(3)},
+          {"mount", {{"x_mm", 1e3 * value(4)}, {"y_mm", 1e3 * value(5)}, {"yaw_deg", degrees(value(6))}}}};
+}
+
+/// What driving has told of wheels and mount; deviations are those of the delivered robot until it has.
+Json calibration_json(const CalibrationGauges& calibration) {
+  if (!calibration.known.value()) return nullptr;
+  Json json = calibration_json(calibration.values);
+  json["deviations"] = calibration_json(calibration.deviations);
+  return json;
+}
+
+const char* mapping_word(const Telemetry& t, const Settings& settings) {
+  if (!settings.mapping.enabled) return "off";
+  return t.paused.value() ? "paused" : "on";
+}
+
+Json recording_json(const Telemetry& t, const Settings& settings) {
+  if (settings.recording.file.empty()) return nullptr;
+  return {{"file", settings.recording.file}, {"bytes", t.recorded_bytes.value()}, {"goes_on", t.records.value()}};
+}
+
+/// By name: is it being written, and since when and why not.
+Json outputs_json(const Telemetry& t) {
+  Json json = Json::object();
+  for (const OutputStatus& output : t.outputs.all()) {
+    Json& told = json[output.name];
+    told = {{"file", output.file}, {"written", output.written}, {"lost", output.lost}};
+    if (output.written) continue;
+    told["since"] = static_cast<double>(unix_ns(output.since)) * 1e-9;
+    told["why"] = output.why;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string status_json_line(const Telemetry& t, const Settings& settings, double since_start_s) {
+  Json json;
+  json["ok"] = true;
+  add_estimate(json, t);
+  json["mapping"] = mapping_word(t, settings);
+  json["newest_revision"] = t.newest_revision.value();
+  json["refused"] = t.refused.value();
+  json["phase"] = {{"number", t.phase.value()},
+                   {"open", t.in_phase.value()},
+                   {"stored_scans", t.stored_scans.value()},
+                   {"r_d", t.r_d.value()}};
+  json["temporary"] = {{"standing_blocks", t.things_standing.value()}, {"gone_blocks", t.things_gone.value()}};
+  json["gate"] = gate_json(t.gate);
+  json["calibration"] = calibration_json(t.calibration);
+  json["scans"] = t.scans.value();
+  json["localized"] = t.localized.value();
+  json["odometry"] = t.odometry.value();
+  json["drops"] = drops_json(t);
+  json["ports"] = {{"robot", t.robot_up.value() ? "up" : "down"}, {"laser", t.laser_up.value() ? "up" : "down"}};
+  json["drive"] = !t.drives.value()   ? "off"
+                  : t.by_hand.value() ? "by hand"
+                                      : navigation::name_of(settings.navigation.mode);
+  json["drive_switch"] = drivers::pioneer::name_of(static_cast<drivers::pioneer::DriveSwitch>(t.drive_switch.value()));
+  json["stopped_by"] = navigation::name_of(static_cast<navigation::StopReason>(t.stop_reason.value()));
+  json["battery_v"] = t.battery_v.value();
+  json["latency_ms"] = t.latency_s.value() * 1e3;
+  json["since_start_s"] = since_start_s;
+  json["log_level"] = name_of(static_cast<LogLevel>(t.log_level.value()));
+  json["line"] = status_line(t);
+  json["recording"] = recording_json(t, settings);
+  json["outputs"] = outputs_json(t);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace deltamap::daemon::control

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/live/live_figures.hpp"
+
+#include "daemon/live/live_messages.hpp"
+
+namespace deltamap::daemon {
+
+LiveFigures figures_of(const WatchedStages& stages, const Telemetry& telemetry) {
+  LiveFigures figures;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    if (stages[i] != nullptr) figures.cpu_s[i] = stages[i]->cpu_now_s().value_or(LiveFigures::kUnknown);
+  }
+  if (const std::uint64_t bytes = resident_bytes(); bytes > 0) figures.resident_bytes = static_cast<double>(bytes);
+  if (telemetry.calibration.known.value()) {
+    figures.wheel_distance = telemetry.calibration.values[0].value();
+    figures.wheel_turn = telemetry.calibration.values[1].value();
+  }
+  return figures;
+}
+
+}  // namespace deltamap::daemon

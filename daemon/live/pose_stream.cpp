@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/live/pose_stream.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/telemetry/version.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr int kProtocol = 1;
+
+std::string greeting() {
+  const nlohmann::ordered_json hello{{"type", "hello"}, {"protocol", kProtocol}, {"version", version_text()}};
+  return hello.dump();
+}
+
+}  // namespace
+
+PoseStream::PoseStream(const Settings& settings, const Telemetry& telemetry)
+    : mapping_enabled_{settings.mapping.enabled},
+      telemetry_{telemetry},
+      lines_{{.socket = settings.poses.socket,
+              .greeting = greeting(),
+              .refusal = R"({"type":"refused","why":"too many clients"})",
+              .next = [this]() -> std::optional<std::string> {
+                const auto news = news_.try_receive();
+                return news ? std::optional{pose_line(*news)} : std::nullopt;
+              }}} {}
+
+void PoseStream::show(const LocalizationRow& row, double latency_s) {
+  if (!lines_.has_clients()) return;
+  (void)news_.try_send({row, latency_s, gate()});
+  lines_.wake();
+}
+
+std::optional<mapping::GateReason> PoseStream::gate() const {
+  if (!mapping_enabled_ || telemetry_.paused.value()) return std::nullopt;
+  return static_cast<mapping::GateReason>(telemetry_.gate.reason.value());
+}
+
+std::unique_ptr<PoseStream> begun_pose_stream(const Settings& settings, const Telemetry& telemetry,
+                                              const std::function<void(const std::string&)>& warn) {
+  if (settings.poses.socket.empty()) return nullptr;
+  try {
+    return std::make_unique<PoseStream>(settings, telemetry);
+  } catch (const sockets::AlreadyServed&) {
+    throw;
+  } catch (const std::exception& error) {
+    warn(std::string("no stream of poses in this run: ") + error.what());
+    return nullptr;
+  }
+}
+
+}  // namespace deltamap::daemon

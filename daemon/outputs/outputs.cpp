@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/outputs/outputs.hpp"
+
+#include <unistd.h>
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/replace_file.hpp"
+#include "daemon/settings/provenance.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double unix_seconds(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
+double milliseconds(double seconds) { return seconds * 1e3; }
+
+Json as_json(const std::optional<drivers::port::LogCut>& cut) {
+  if (!cut) return {{"cut", false}};
+  Json json{{"cut", true}, {"byte", cut->byte}, {"unread_bytes", cut->unread_bytes}, {"last_record_time", nullptr}};
+  if (cut->last_record) json["last_record_time"] = unix_seconds(*cut->last_record);
+  json["warning"] = cut->text;
+  return json;
+}
+
+}  // namespace
+
+std::string tum_line(const TrajectoryPoint& point) {
+  const Pose2& pose = point.map_from_robot;
+  const std::int64_t ns = unix_ns(point.time);
+  char line[192];
+  const int length =
+      std::snprintf(line, sizeof line, "%" PRId64 ".%09" PRId64 " %.6f %.6f 0 0 0 %.9f %.9f\n", ns / 1'000'000'000,
+                    ns % 1'000'000'000, pose.x, pose.y, std::sin(pose.theta / 2.0), std::cos(pose.theta / 2.0));
+  return {line, static_cast<std::size_t>(length)};
+}
+
+std::string json_text(const RunReport& report, const Settings& settings) {
+  Json json;
+  add_provenance(json, settings);
+  const ScanCounts& scans = report.scans;
+  json["scans"] = scans.decoded;
+  json["localized"] = scans.localized;
+  json["odometry"] = scans.odometry;
+  json["drops"] = {{"scans_overtaken", scans.dropped},     {"scans_lost", scans.lost},
+                   {"odometry_lost", scans.odometry_lost}, {"tracked_lost", scans.tracked_lost},
+                   {"sets_lost", scans.sets_lost},         {"recording_lost", scans.recording_lost}};
+  json["delta_phases"] = report.phases;
+  Json revisions = Json::array();
+  for (const ChangeTally::Revision& revision : report.changes.revisions()) {
+    revisions.push_back({{"number", revision.number},
+                         {"time", unix_seconds(revision.time)},
+                         {"phase", revision.phase},
+                         {"added", revision.added},
+                         {"freed", revision.freed},
+                         {"forgotten", revision.forgotten}});
+  }
+  json["revisions"] = revisions;
+  json["revisions_total"] = report.changes.accepted();
+  json["refusals"] = report.changes.refusals().empty() ? Json::object() : Json(report.changes.refusals());
+  json["time_lost_s"] = report.time_lost_s;
+  json["time_global_s"] = report.time_global_s;
+  json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
+                          {"undecided_s", report.verdict_times.undecided_s},
+                          {"wrong_s", report.verdict_times.wrong_s}};
+  json["write_gate"] = {{"observed_s", mapping::observed_s(report.gate_times)},
+                        {"shut_s", mapping::shut_s(report.gate_times)},
+                        {"shut_by_reason_s", mapping::shut_by_reason(report.gate_times)}};
+  json["localizer"] = report.localizer;
+  json["recorded_s"] = report.recorded_s;
+  const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));
+  json["cpu"] = {{"total_s", report.cpu_total_s},         {"per_scan_ms", milliseconds(per_scan)},
+                 {"decoding_s", report.cpu.decoding_s},   {"localization_s", report.cpu.localization_s},
+                 {"awareness_s", report.cpu.awareness_s}, {"map_update_s", report.cpu.map_update_s},
+                 {"recording_s", report.cpu.recording_s}};
+  json["wall_s"] = report.wall_s;
+  json["peak_resident_bytes"] = report.peak_resident_bytes;
+  json["latency_ms"] = {{"of", report.latency_of},
+                        {"p50", milliseconds(report.latency_p50_s)},
+                        {"p99", milliseconds(report.latency_p99_s)},
+                        {"max", milliseconds(report.latency_max_s)}};
+  if (!report.journal.empty()) {
+    json["journal"] = {
+        {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
+    json["began"] = report.began;
+    json["recording"] = as_json(report.cut);
+  }
+  json["wire"] = report.wire;
+  return json.dump(2) + "\n";
+}
+
+std::uint64_t peak_resident_bytes() {
+  // Not getrusage: its maximum is inherited from whoever started this program.
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    std::uint64_t kilobytes = 0;
+    if (std::sscanf(line.c_str(), "VmHWM: %" SCNu64, &kilobytes) == 1) return kilobytes * 1024;
+  }
+  return 0;
+}
+
+void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out) {
+  for (const char* name : {"map.yaml", "map.pgm"}) {
+    std::error_code ignored;
+    const auto mine = std::filesystem::path(map).replace_extension(std::filesystem::path(name).extension());
+    if (!std::filesystem::equivalent(mine, out / name, ignored)) continue;
+    throw std::runtime_error(mine.string() + ": --out would overwrite it; give another folder");
+  }
+}
+
+StagingFolder::StagingFolder(std::filesystem::path target)
+    : target_{std::filesystem::absolute(target).lexically_normal()} {
+  if (!target_.has_filename()) target_ = target_.parent_path();
+  std::error_code error;
+  if (std::filesystem::exists(target_) && !std::filesystem::is_directory(target_)) {
+    throw std::runtime_error(target_.string() + ": is no folder");
+  }
+  if (std::filesystem::exists(target_)) lock_ = lock_of_folder(target_);
+  staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
+  std::filesystem::create_directories(staging_, error);
+  if (error) throw std::runtime_error(staging_.string() + ": cannot create: " + error.message());
+}
+
+StagingFolder::~StagingFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(staging_, ignored);
+}
+
+void StagingFolder::commit() {
+  std::filesystem::create_directories(target_);
+  if (!lock_) lock_ = lock_of_folder(target_);
+  for (const auto& entry : std::filesystem::directory_iterator(staging_)) {
+    move_into_place(entry.path(), target_ / entry.path().filename());
+  }
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files of --out (CONTRACT: programs): trajectory.tum, localization.csv, changes.jsonl, map, report.json. A replay
+// writes them aside and moves them in place when all is done, so that a failure leaves nothing half-written; the daemon
+// writes them while it runs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/file_lock.hpp"
+#include "core/messages.hpp"
+#include "daemon/outputs/change_note.hpp"
+#include "drivers/port/log_cut.hpp"
+#include "mapping/write_gate.hpp"
+
+namespace deltamap::daemon {
+
+struct Settings;
+
+/// The robot's pose in the map at the time of a scan's first beam.
+struct TrajectoryPoint {
+  Timestamp time;
+  Pose2 map_from_robot;
+};
+
+/// One line of trajectory.tum: "t x y 0 0 0 qz qw" and a line end.
+[[nodiscard]] std::string tum_line(const TrajectoryPoint& point);
+
+struct ScanCounts {
+  std::uint64_t decoded = 0;
+  std::uint64_t localized = 0;
+  std::uint64_t dropped = 0;  ///< overtaken by a newer scan
+  std::uint64_t lost = 0;     ///< sensor channel full
+  std::uint64_t odometry = 0;
+  std::uint64_t odometry_lost = 0;
+  std::uint64_t tracked_lost = 0;    ///< localized, but not seen by Δ-awareness
+  std::uint64_t sets_lost = 0;       ///< Δ-phases that found the map thread busy
+  std::uint64_t recording_lost = 0;  ///< chunks of bytes that the recorder could not take
+};
+
+struct StageCpu {
+  double decoding_s = 0.0;  ///< live: the whole io thread
+  double localization_s = 0.0;
+  double awareness_s = 0.0;
+  double map_update_s = 0.0;
+  double recording_s = 0.0;  ///< recording and output files
+};
+
+/// How long the localizer held its pose for what (Belief::verdict).
+struct VerdictTimes {
+  double right_s = 0.0;
+  double undecided_s = 0.0;
+  double wrong_s = 0.0;
+};
+
+/// Everything that report.json says.
+struct RunReport {
+  ScanCounts scans;
+  std::uint32_t phases = 0;
+  ChangeTally changes;
+  double time_lost_s = 0.0;
+  double time_global_s = 0.0;
+  VerdictTimes verdict_times;
+  mapping::GateTimes gate_times{};                 ///< how long the write gate was open, and shut by reason
+  std::map<std::string, std::uint64_t> localizer;  ///< what befell it, by name
+  double recorded_s = 0.0;                         ///< from the first scan to the last
+  StageCpu cpu;
+  double cpu_total_s = 0.0;
+  double wall_s = 0.0;
+  std::uint64_t peak_resident_bytes = 0;
+  std::string latency_of;  ///< "last byte to pose" or "step", the time that localizing took
+  double latency_p50_s = 0.0;
+  double latency_p99_s = 0.0;
+  double latency_max_s = 0.0;
+  std::string journal;  ///< replay: "obeyed", "none" or why it was not obeyed
+  std::uint32_t journal_differences = 0;
+  std::uint32_t commands = 0;                 ///< replay: of an operator, obeyed
+  std::string began;                          ///< replay: what of the recorded run's beginning is used, or why not
+  std::optional<drivers::port::LogCut> cut;   ///< replay: where the recording ends before its file does
+  std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
+};
+
+/// `settings` are those of the run: they stand in the report, with version and commit.
+[[nodiscard]] std::string json_text(const RunReport& report, const Settings& settings);
+
+/// Highest resident set of this process so far.
+[[nodiscard]] std::uint64_t peak_resident_bytes();
+
+/// Throws std::runtime_error where `out` is the folder of the map that the run begins with: it would be overwritten.
+void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out);
+
+/// A folder that comes into being whole: files are written to path() and moved into place by commit(). What was not
+/// committed disappears.
+class StagingFolder {
+ public:
+  /// Throws std::runtime_error naming the folder, FileInUse where a daemon writes there.
+  explicit StagingFolder(std::filesystem::path target);
+  ~StagingFolder();
+  StagingFolder(const StagingFolder&) = delete;
+  StagingFolder& operator=(const StagingFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return staging_; }
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path staging_;
+  std::optional<FileLock> lock_;
+};
+
+}  // namespace deltamap::daemon

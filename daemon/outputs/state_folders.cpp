@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/outputs/state_folders.hpp"
+
+#include <pwd.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+namespace deltamap::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
+
+std::string user_name() {
+  std::array<char, 4096> names{};
+  passwd entry{};
+  passwd* found = nullptr;
+  (void)::getpwuid_r(::geteuid(), &entry, names.data(), names.size(), &found);
+  return found != nullptr ? found->pw_name : "USER";
+}
+
+void make_folder_of(const fs::path& file) {
+  std::error_code told_by_whoever_opens_the_file;
+  if (!file.empty()) fs::create_directories(folder_of(file), told_by_whoever_opens_the_file);
+}
+
+}  // namespace
+
+std::string why_no_folder_for(const fs::path& file) {
+  fs::path folder = folder_of(file);
+  std::error_code error;
+  fs::file_status status = fs::status(folder, error);
+  // Up to what can be seen: what lies below is not there yet, or hidden by a folder that may not be entered.
+  while (!fs::exists(status) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+    status = fs::status(folder, error);
+  }
+  if (fs::exists(status) && !fs::is_directory(status)) return folder.string() + " is no folder";
+  if (::access(folder.c_str(), W_OK | X_OK) == 0) return "";
+  return folder.string() + " cannot be written to (" + std::generic_category().message(errno) + ")";
+}
+
+void require_store_folder(const Settings& settings, const std::string& config) {
+  std::error_code ignored;
+  if (settings.map.store.empty() || fs::exists(settings.map.store, ignored)) return;
+  const std::string why = why_no_folder_for(settings.map.store);
+  if (why.empty()) return;
+  throw SettingsError(config + ": 'map.store': " + why + ": give this user the folder (sudo install -d -o " +
+                      user_name() + " " + folder_of(settings.map.store).string() +
+                      ") or another file (--set map.store=FILE)");
+}
+
+void make_state_folders(const Settings& settings, const std::string& config) {
+  for (const std::string* file : {&settings.map.store, &settings.map.newest, &settings.recording.file,
+                                  &settings.control.socket, &settings.poses.socket}) {
+    make_folder_of(*file);
+  }
+  require_store_folder(settings, config);
+}
+
+}  // namespace deltamap::daemon

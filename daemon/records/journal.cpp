@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/records/journal.hpp"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+
+namespace deltamap::daemon {
+namespace {
+
+using Kind = Decision::Kind;
+
+template <typename... Fields>
+bool matches(const std::string& note, const char* format, Fields*... fields) {
+  int read = -1;
+  const int found = std::sscanf(note.c_str(), format, fields..., &read);
+  return found == static_cast<int>(sizeof...(fields)) && read == static_cast<int>(note.size());
+}
+
+/// Every bit of the pose survives.
+std::string words_of_relocalization(const Pose2& pose) {
+  char text[96];
+  (void)std::snprintf(text, sizeof text, "relocalized to %.17g %.17g %.17g", pose.x, pose.y, pose.theta);
+  return text;
+}
+
+/// "… before scan 12 at 1700000000000000000": Unix time of the scan's first beam, ns.
+std::string note_of_command(const std::string& words, const Decision& command) {
+  const std::string note = words + " before scan " + std::to_string(command.scan);
+  return command.scan_time ? note + " at " + std::to_string(unix_ns(*command.scan_time)) : note;
+}
+
+std::optional<Decision> command_of_note(const std::string& note) {
+  const std::size_t at = note.rfind(" at ");
+  std::int64_t time_ns = 0;
+  const bool has_time = at != std::string::npos && matches(note.substr(at), " at %" SCNd64 "%n", &time_ns);
+  const std::string text = has_time ? note.substr(0, at) : note;
+  Decision command;
+  Pose2& pose = command.map_from_robot;
+  if (matches(text, "mapping paused before scan %" SCNu32 "%n", &command.scan)) {
+    command.kind = Kind::kPaused;
+  } else if (matches(text, "mapping resumed before scan %" SCNu32 "%n", &command.scan)) {
+    command.kind = Kind::kResumed;
+  } else if (matches(text, "relocalized to %lf %lf %lf before scan %" SCNu32 "%n", &pose.x, &pose.y, &pose.theta,
+                     &command.scan)) {
+    command.kind = Kind::kRelocalized;
+  } else {
+    return std::nullopt;
+  }
+  if (has_time) command.scan_time = timestamp_from_ns(time_ns);
+  return command;
+}
+
+}  // namespace
+
+std::string note_of(const RunIdentity& run) {
+  char text[104];
+  (void)std::snprintf(text, sizeof text, "run settings %016" PRIx64 " map %016" PRIx64, run.settings, run.map);
+  if (run.memory == 0) return text;
+  char memory[32];
+  (void)std::snprintf(memory, sizeof memory, " memory %016" PRIx64, run.memory);
+  return std::string(text) + memory;
+}
+
+std::optional<RunIdentity> run_of_note(std::string_view note) {
+  const std::string text{note};
+  RunIdentity run;
+  if (matches(text, "run settings %16" SCNx64 " map %16" SCNx64 "%n", &run.settings, &run.map)) return run;
+  if (matches(text, "run settings %16" SCNx64 " map %16" SCNx64 " memory %16" SCNx64 "%n", &run.settings, &run.map,
+              &run.memory))
+    return run;
+  return std::nullopt;
+}
+
+std::string note_of(const Decision& decision) {
+  const std::string scan = std::to_string(decision.scan);
+  const std::string number = std::to_string(decision.number);
+  switch (decision.kind) {
+    case Kind::kRevision:
+      return "revision " + number + " before scan " + scan;
+    case Kind::kThings:
+      return "temporary " + number + " before scan " + scan;
+    case Kind::kScanDropped:
+      return "scan " + scan + " dropped";
+    case Kind::kScanLost:
+      return "scan " + scan + " lost";
+    case Kind::kOdometryLost:
+      return "odometry " + number + " lost";
+    case Kind::kTrackedLost:
+      return "tracked scan " + scan + " lost";
+    case Kind::kSetLost:
+      return "set of phase " + number + " lost";
+    case Kind::kPhaseClosed:
+      return "phase " + number + " closed at scan " + scan;
+    case Kind::kPaused:
+      return note_of_command("mapping paused", decision);
+    case Kind::kResumed:
+      return note_of_command("mapping resumed", decision);
+    case Kind::kRelocalized:
+      return note_of_command(words_of_relocalization(decision.map_from_robot), decision);
+    case Kind::kMapSet:
+      break;
+  }
+  return {};
+}
+
+std::optional<Decision> decision_of_note(std::string_view note) {
+  const std::string text{note};
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  if (matches(text, "revision %" SCNu32 " before scan %" SCNu32 "%n", &a, &b)) return Decision{Kind::kRevision, b, a};
+  if (matches(text, "temporary %" SCNu32 " before scan %" SCNu32 "%n", &a, &b)) return Decision{Kind::kThings, b, a};
+  if (matches(text, "scan %" SCNu32 " dropped%n", &a)) return Decision{Kind::kScanDropped, a, 0};
+  if (matches(text, "scan %" SCNu32 " lost%n", &a)) return Decision{Kind::kScanLost, a, 0};
+  if (matches(text, "odometry %" SCNu32 " lost%n", &a)) return Decision{Kind::kOdometryLost, 0, a};
+  if (matches(text, "tracked scan %" SCNu32 " lost%n", &a)) return Decision{Kind::kTrackedLost, a, 0};
+  if (matches(text, "set of phase %" SCNu32 " lost%n", &a)) return Decision{Kind::kSetLost, 0, a};
+  if (matches(text, "phase %" SCNu32 " closed at scan %" SCNu32 "%n", &a, &b))
+    return Decision{Kind::kPhaseClosed, b, a};
+  return command_of_note(text);
+}
+
+void Journal::read(std::string_view note) {
+  if (const auto run = run_of_note(note)) {
+    *this = Journal{};
+    run_ = run;
+    return;
+  }
+  has_gap_ = has_gap_ || note == kGapNote;
+  if (auto set = set_cells_.read(note)) {
+    Decision command{.kind = Kind::kMapSet, .scan = set->order.scan};
+    command.scan_time = set->order.scan_time;
+    command.set = std::move(set);
+    return add_command(std::move(command));
+  }
+  const auto decision = decision_of_note(note);
+  if (!decision) return;
+  switch (decision->kind) {
+    case Kind::kRevision:
+      revisions_[decision->scan] = decision->number;
+      break;
+    case Kind::kThings:
+      things_[decision->scan] = decision->number;
+      break;
+    case Kind::kScanDropped:
+      dropped_.insert(decision->scan);
+      break;
+    case Kind::kScanLost:
+      lost_.insert(decision->scan);
+      break;
+    case Kind::kOdometryLost:
+      lost_odometry_.insert(decision->number);
+      break;
+    case Kind::kTrackedLost:
+      lost_tracked_.insert(decision->scan);
+      break;
+    case Kind::kSetLost:
+      lost_sets_.insert(decision->number);
+      break;
+    case Kind::kPhaseClosed:
+      closed_[decision->number] = decision->scan;
+      break;
+    case Kind::kPaused:
+    case Kind::kResumed:
+    case Kind::kRelocalized:
+      // What was in force is said again behind a gap.
+      if (std::find(commands_.begin(), commands_.end(), *decision) == commands_.end()) add_command(*decision);
+      break;
+    case Kind::kMapSet:
+      break;
+  }
+}
+
+/// What the map thread has done is noted behind what the localization thread has noted in the meantime.
+void Journal::add_command(Decision command) {
+  const auto place = std::upper_bound(commands_.begin(), commands_.end(), command.scan,
+                                      [](std::uint32_t scan, const Decision& other) { return scan < other.scan; });
+  commands_.insert(place, std::move(command));
+}
+
+std::strong_ordering Journal::place_of(const Decision& command, const Scan& scan) const {
+  const bool scans_count_as_live = run_ && !has_gap_;
+  if (command.scan_time && !scans_count_as_live) return *command.scan_time <=> scan.time;
+  return command.scan <=> scan.number;
+}
+
+std::optional<std::uint32_t> Journal::revision_before(std::uint32_t scan) const {
+  const auto found = revisions_.find(scan);
+  return found == revisions_.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::optional<std::uint32_t> Journal::things_before(std::uint32_t scan) const {
+  const auto found = things_.find(scan);
+  return found == things_.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::optional<std::uint32_t> Journal::closing_scan(std::uint32_t phase) const {
+  const auto found = closed_.find(phase);
+  return found == closed_.end() ? std::nullopt : std::optional{found->second};
+}
+
+}  // namespace deltamap::daemon

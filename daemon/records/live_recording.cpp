@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/records/live_recording.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "daemon/outputs/output_place.hpp"
+#include "daemon/records/journal.hpp"
+#include "daemon/settings/start_error.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using drivers::port::ByteRecord;
+using drivers::port::PortId;
+
+constexpr const char* kFull = "it has reached recording.max_gigabytes";
+
+/// A service that has crashed is started again at once: the recording of the crash must outlive that. Answers why it
+/// cannot be kept now.
+std::error_code keep_previous(const std::filesystem::path& recording) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(recording, error)) return {};
+  std::filesystem::path previous = recording;
+  previous.replace_extension(".previous" + recording.extension().string());
+  std::filesystem::rename(recording, previous, error);
+  const int reason = error.value();
+  if (!error || reason == EROFS || reason == ENOSPC || reason == EDQUOT) return error;
+  throw StartError(recording.string() + ": cannot be kept as " + previous.string() + ": " + error.message());
+}
+
+ByteRecord note_at(Timestamp stamp, std::string_view note, PortId port = PortId::kRobot) {
+  ByteRecord record;
+  record.port = port;
+  record.stamp = stamp;
+  record.note = note;
+  return record;
+}
+
+}  // namespace
+
+LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const RetryingOutput::Warn& warn)
+    : options_{std::move(options)},
+      telemetry_{telemetry},
+      output_{"recording", options_.file, telemetry.outputs, warn},
+      log_{warn},
+      bauds_{options_.bauds.robot, options_.bauds.laser},
+      last_stamp_{options_.began} {
+  options_.file = or_start_error([&] { return file_behind(options_.file); });
+  (void)judged_file_place(options_.file);
+  lock_ = or_start_error([&] { return lock_of_file(options_.file); });
+  is_previous_kept_ = !keep_previous(options_.file);
+  attempt(options_.began, [this] { go_on(); });
+}
+
+void LiveRecording::begin() {
+  if (!lock_) lock_ = lock_of_file(options_.file);  // there could be none before
+  if (!is_previous_kept_) {
+    if (const auto error = keep_previous(options_.file)) throw std::system_error(error, options_.file.string());
+    is_previous_kept_ = true;
+  }
+  try {
+    writer_.emplace(options_.file, drivers::port::FirstBauds{bauds_[0], bauds_[1]});
+    for (const std::string& note : options_.first_notes) writer_->write(note_at(last_stamp_, note));
+    writer_->flush();
+  } catch (const std::exception&) {
+    writer_.reset();  // the next attempt begins the file anew: without its first notes it says nothing of its run
+    throw;
+  }
+  options_.first_notes.clear();
+}
+
+void LiveRecording::go_on() {
+  if (!writer_) begin();
+  if (!has_gap_) return;
+  writer_->write(note_at(last_stamp_, kGapNote));
+  for (const PortId port : {PortId::kRobot, PortId::kLaser}) {
+    writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds_[static_cast<std::size_t>(port)]), port));
+  }
+  if (!pause_note_.empty()) writer_->write(note_at(last_stamp_, pause_note_));
+  writer_->flush();
+  has_gap_ = false;
+}
+
+void LiveRecording::attempt(Timestamp now, const std::function<void()>& write) {
+  // What was to be written is gone where it failed, and so may be what waited for the disk.
+  if (!output_.attempt(now, write)) has_gap_ = true;
+  telemetry_.records.set(output_.works());
+  if (writer_) telemetry_.recorded_bytes.set(writer_->size_bytes());
+}
+
+void LiveRecording::remember(const ByteRecord& record) {
+  if (record.note.empty()) return;
+  const auto baud = drivers::port::baud_of_note(record.note);
+  if (baud) bauds_[static_cast<std::size_t>(record.port)] = *baud;
+  const auto decision = decision_of_note(record.note);
+  const bool is_pause =
+      decision && (decision->kind == Decision::Kind::kPaused || decision->kind == Decision::Kind::kResumed);
+  if (is_pause) pause_note_ = record.note;
+}
+
+void LiveRecording::write(const ByteRecord& record, Timestamp now) {
+  if (ended_) return;
+  last_stamp_ = record.stamp;
+  if (stopped_) return remember(record);
+  attempt(now, [&] {
+    go_on();
+    writer_->write(record);
+  });
+  remember(record);
+  if (!output_.works()) return output_.count_lost();
+  if (static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
+  log_(std::string("the recording ends: ") + kFull);
+  ended_ = true;
+  output_.end(now, kFull);
+  writer_.reset();
+  telemetry_.records.set(false);
+}
+
+std::string LiveRecording::stop(Timestamp now) {
+  if (ended_) throw std::runtime_error(std::string("the recording has ended: ") + kFull);
+  if (stopped_) throw std::runtime_error("the recording is stopped already");
+  flush(now);
+  const std::string behind = output_.works() ? "" : "; its end is missing: " + output_.why();
+  stopped_ = true;
+  output_.end(now, "stopped by an operator");
+  telemetry_.records.set(false);
+  const double megabytes = writer_ ? 1e-6 * static_cast<double>(writer_->size_bytes()) : 0.0;
+  char text[32];
+  (void)std::snprintf(text, sizeof text, "%.1f MB", megabytes);
+  return "the recording stops: " + options_.file.string() + ", " + text + behind;
+}
+
+std::string LiveRecording::start(Timestamp now) {
+  if (ended_) throw std::runtime_error(std::string("the recording has ended: ") + kFull);
+  if (!stopped_) throw std::runtime_error("it records already: " + options_.file.string());
+  stopped_ = false;
+  has_gap_ = true;
+  output_.begin_again();
+  flush(now);
+  const std::string where =
+      options_.file.string() +
+      ", behind a gap: a replay begins at the start of the run and does not repeat it bit for bit";
+  return output_.works() ? "the recording goes on in " + where
+                         : "the recording goes on as soon as it can (" + output_.why() + ") in " + where;
+}
+
+void LiveRecording::flush(Timestamp now) {
+  if (ended_ || stopped_) return;
+  attempt(now, [this] {
+    go_on();
+    writer_->flush();
+  });
+}
+
+void LiveRecording::close(Timestamp now) {
+  if (ended_) return;
+  if (stopped_) {
+    stopped_ = false;
+    has_gap_ = false;
+    output_.begin_again();
+  }
+  output_.hurry();
+  attempt(now, [this] {
+    go_on();
+    writer_->close();
+  });
+}
+
+}  // namespace deltamap::daemon

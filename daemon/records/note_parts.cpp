@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/records/note_parts.hpp"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdint>
+#include <cstdio>
+
+#include "daemon/settings/fingerprint.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr std::size_t kPartChars = 60'000;  // a pcapng option holds 65535
+constexpr std::size_t kSealChars = 16;
+constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/// RFC 4648, section 4.
+std::string base64_of(std::string_view bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t held = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      group = group << 8 | (j < held ? static_cast<unsigned char>(bytes[i + j]) : 0u);
+    }
+    for (std::size_t j = 0; j < 4; ++j) text += j <= held ? kAlphabet[group >> (18 - 6 * j) & 63] : '=';
+  }
+  return text;
+}
+
+/// Nothing where the text is no base64.
+std::optional<std::string> bytes_of_base64(std::string_view text) {
+  std::string bytes;
+  std::uint32_t group = 0;
+  int bits = 0;
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  for (const char c : text) {
+    const std::size_t value = kAlphabet.find(c);
+    if (value == std::string_view::npos) return std::nullopt;
+    group = (group << 6 | static_cast<std::uint32_t>(value)) & 0xFFFFFFu;
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes += static_cast<char>(group >> bits & 0xFF);
+  }
+  return bytes;
+}
+
+/// 16 hexadecimal digits: the checksum of all that follows.
+std::string sealed(std::string_view content) {
+  char checksum[24];
+  (void)std::snprintf(checksum, sizeof checksum, "%016" PRIx64, fingerprint_of(content));
+  return std::string(checksum).append(content);
+}
+
+/// What was sealed; nothing where it is damaged.
+std::optional<std::string> unsealed(const std::string& bytes) {
+  if (bytes.size() < kSealChars) return std::nullopt;
+  std::string content = bytes.substr(kSealChars);
+  return sealed(content) == bytes ? std::optional{std::move(content)} : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> notes_in_parts(std::string_view head, std::string_view content) {
+  const std::string text = base64_of(sealed(content));
+  const std::size_t parts = (text.size() + kPartChars - 1) / kPartChars;
+  std::vector<std::string> notes;
+  for (std::size_t part = 0; part < parts; ++part) {
+    notes.push_back(std::string(head) + " " + std::to_string(part + 1) + "/" + std::to_string(parts) + " " +
+                    text.substr(part * kPartChars, kPartChars));
+  }
+  return notes;
+}
+
+bool PartsReader::read(std::string_view note) {
+  unsigned part = 0;
+  unsigned parts = 0;
+  int end = 0;
+  if (note.substr(0, head_.size()) != head_) return false;
+  const std::string numbers{note.substr(head_.size(), 40)};
+  if (std::sscanf(numbers.c_str(), " %u/%u %n", &part, &parts, &end) != 2 || end == 0 || parts == 0) return false;
+  if (part == 1) *this = PartsReader{head_};
+  parts_ = parts;
+  if (part != read_ + 1) return true;  // one is missing: never complete
+  ++read_;
+  text_ += note.substr(head_.size() + static_cast<std::size_t>(end));
+  if (read_ != parts_) return true;
+  if (const auto bytes = bytes_of_base64(text_)) content_ = unsealed(*bytes);
+  text_ = {};
+  return true;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/records/recorder.hpp"
+
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "drivers/port/port_clock.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr std::chrono::seconds kFlushPeriod{1};
+constexpr const char* kOnlyFromTheStart =
+    "a recording begins with the run, for a replay needs what the devices said and the map was then; set it and "
+    "restart";
+
+Recorder::Hooks with_warnings(Recorder::Hooks hooks) {
+  if (!hooks.warn) hooks.warn = hooks.log;
+  return hooks;
+}
+
+}  // namespace
+
+using drivers::port::ByteRecord;
+
+Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
+    : hooks_{with_warnings(std::move(hooks))},
+      memory_{options.memory, telemetry.outputs, hooks_.warn},
+      now_{options.began},
+      last_stamp_{options.began} {
+  if (!options.recording.empty()) {
+    recording_.emplace(LiveRecording::Options{.file = options.recording,
+                                              .bauds = options.bauds,
+                                              .first_notes = options.first_notes,
+                                              .began = options.began,
+                                              .max_gigabytes = options.max_gigabytes},
+                       telemetry, hooks_.warn);
+  }
+  const auto begin = [&](std::optional<LiveLines>& lines, const char* name, const std::filesystem::path& file) {
+    if (file.empty()) return;
+    lines.emplace(file, RetryingOutput{name, file, telemetry.outputs, hooks_.warn});
+    lines->flush(now_);
+  };
+  begin(trajectory_, "trajectory", options.trajectory);
+  begin(localization_, "localization", options.localization);
+  if (localization_) localization_->write(csv_header(), now_);
+}
+
+void Recorder::run() {
+  auto last_flush = std::chrono::steady_clock::now();
+  for (;;) {
+    pulse_.beat();
+    const bool closed = closed_.load(std::memory_order_acquire);
+    bool found = drain(from_io_);
+    found = drain(from_localization_) || found;
+    found = drain(from_awareness_) || found;
+    found = drain(from_map_) || found;
+    found = drain(from_control_) || found;
+    if (closed && !found) break;
+    if (const auto now = std::chrono::steady_clock::now(); now - last_flush >= kFlushPeriod) {
+      flush();
+      last_flush = now;
+    }
+    if (!found) (void)bell_.try_acquire_for(kFlushPeriod);
+  }
+  flush();
+  if (trajectory_) trajectory_->close(now_);
+  if (localization_) localization_->close(now_);
+  memory_.close(now_);
+  if (recording_) recording_->close(now_);
+}
+
+void Recorder::close() {
+  closed_.store(true, std::memory_order_release);
+  bell_.release();
+}
+
+bool Recorder::drain(RecorderInput& input) {
+  bool found = false;
+  while (auto item = input.take()) {
+    write(std::move(*item));
+    (void)bell_.try_acquire();
+    found = true;
+  }
+  return found;
+}
+
+void Recorder::write(RecorderItem&& item) {
+  if (auto* bytes = std::get_if<ByteRecord>(&item)) {
+    last_stamp_ = bytes->stamp;
+    record(*bytes);
+  } else if (auto* note = std::get_if<JournalNote>(&item)) {
+    // Where a note stands among the bytes means nothing: it names its scan.
+    ByteRecord noted;
+    noted.stamp = last_stamp_;
+    noted.note = std::move(*note);
+    record(noted);
+  } else if (const auto* point = std::get_if<TrajectoryPoint>(&item)) {
+    if (trajectory_) trajectory_->write(tum_line(*point), now_);
+  } else if (const auto* row = std::get_if<std::unique_ptr<const LocalizationRow>>(&item)) {
+    if (localization_) localization_->write(csv_line(**row), now_);
+  } else if (const auto* pose = std::get_if<std::unique_ptr<const KeptPose>>(&item)) {
+    memory_.keep(**pose, now_);
+  } else if (const auto* stability = std::get_if<std::unique_ptr<const KeptStability>>(&item)) {
+    memory_.keep(**stability, now_);
+  } else if (const auto* order = std::get_if<std::unique_ptr<const SaveOrder>>(&item)) {
+    save(**order);
+  } else if (const auto* wanted = std::get_if<RecordOrder>(&item)) {
+    obey(*wanted);
+  } else {
+    const auto& line = std::get<LogLine>(item);
+    (line.is_warning ? hooks_.warn : hooks_.log)(line.text);
+  }
+}
+
+void Recorder::save(const SaveOrder& order) {
+  const control::CommandOutcome outcome = memory_.save(order);
+  if (hooks_.saved) hooks_.saved(outcome);
+}
+
+void Recorder::obey(const RecordOrder& order) {
+  control::CommandOutcome outcome{order.ticket, true, ""};
+  try {
+    if (!recording_) throw std::runtime_error("'recording.file' is not set: " + std::string(kOnlyFromTheStart));
+    outcome.message = order.goes_on ? recording_->start(now_) : recording_->stop(now_);
+  } catch (const std::runtime_error& error) {
+    outcome = {order.ticket, false, error.what()};
+  }
+  if (hooks_.saved) hooks_.saved(outcome);
+}
+
+void Recorder::record(const ByteRecord& record) {
+  if (recording_) recording_->write(record, now_);
+}
+
+void Recorder::flush() {
+  now_ = drivers::port::port_clock_now();
+  if (trajectory_) trajectory_->flush(now_);
+  if (localization_) localization_->flush(now_);
+  memory_.retry(now_);
+  if (!recording_) return;
+  if (const std::uint64_t all = refused(); all != std::exchange(refused_before_, all)) recording_->note_loss();
+  recording_->flush(now_);
+}
+
+}  // namespace deltamap::daemon

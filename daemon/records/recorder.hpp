@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes what must reach the disk (or the log) from the threads that cannot wait for it: chunks of bytes and journal
+// notes for the recording, lines for trajectory.tum and localization.csv, the pose that outlives the run. Where the
+// disk is too slow, a channel fills and refuses, and that is counted. Where it is full, saving pauses.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <semaphore>
+#include <variant>
+#include <vector>
+
+#include "core/channel.hpp"
+#include "daemon/kept/memory_keeper.hpp"
+#include "daemon/outputs/line_file.hpp"
+#include "daemon/outputs/localization_log.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/records/journal.hpp"
+#include "daemon/records/live_recording.hpp"
+#include "daemon/telemetry/log_line.hpp"
+#include "daemon/telemetry/stage.hpp"
+#include "daemon/telemetry/telemetry.hpp"
+#include "drivers/port/byte_record.hpp"
+
+namespace deltamap::daemon {
+
+using JournalNote = std::string;
+
+/// `ctl record start`, `stop`.
+struct RecordOrder {
+  bool goes_on = false;
+  std::uint64_t ticket = 0;
+};
+
+using RecorderItem =
+    std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint, std::unique_ptr<const LocalizationRow>,
+                 std::unique_ptr<const KeptPose>, std::unique_ptr<const KeptStability>,
+                 std::unique_ptr<const SaveOrder>, RecordOrder, LogLine>;
+
+/// One sender's way to the recorder.
+class RecorderInput {
+ public:
+  RecorderInput(std::size_t capacity, std::counting_semaphore<>& bell) : channel_{capacity}, bell_{bell} {}
+
+  /// Never waits; false where it was refused.
+  bool send(RecorderItem&& item) {
+    const bool sent = channel_.try_send(std::move(item));
+    bell_.release();
+    return sent;
+  }
+  /// Receiver only.
+  [[nodiscard]] std::optional<RecorderItem> take() { return channel_.try_receive(); }
+  [[nodiscard]] std::uint64_t refused() const { return channel_.refused(); }
+
+ private:
+  Channel<RecorderItem> channel_;
+  std::counting_semaphore<>& bell_;
+};
+
+class Recorder {
+ public:
+  struct Options {
+    std::filesystem::path recording;  ///< empty: none; an older file is kept as NAME.previous.pcapng
+    drivers::port::FirstBauds bauds;
+    Timestamp began;                       ///< now
+    std::vector<std::string> first_notes;  ///< what the run begins from
+    double max_gigabytes = 0.0;
+    std::filesystem::path trajectory{};    ///< empty: none
+    std::filesystem::path localization{};  ///< localization.csv; empty: none
+    MemoryPlaces memory{};                 ///< empty: nothing is kept
+  };
+  struct Hooks {
+    std::function<void(const std::string&)> log;                  ///< a short line
+    std::function<void(const control::CommandOutcome&)> saved{};  ///< an operator's order is done; may be empty
+    std::function<void(const std::string&)> warn{};               ///< a short line of what is degraded; empty: log
+  };
+  /// Throws FileInUse and StartError as LiveRecording does. A full disk is no reason.
+  Recorder(const Options& options, Telemetry& telemetry, Hooks hooks);
+
+  // One a thread that sends.
+  RecorderInput& from_io() { return from_io_; }
+  RecorderInput& from_localization() { return from_localization_; }
+  RecorderInput& from_awareness() { return from_awareness_; }
+  RecorderInput& from_map() { return from_map_; }
+  RecorderInput& from_control() { return from_control_; }
+
+  /// The recorder thread's work, until close().
+  void run();
+  [[nodiscard]] const Pulse& pulse() const { return pulse_; }
+  /// When all senders have ended: what they sent is still written.
+  void close();
+
+  [[nodiscard]] std::uint64_t refused() const {
+    return from_io_.refused() + from_localization_.refused() + from_awareness_.refused() + from_map_.refused();
+  }
+
+ private:
+  bool drain(RecorderInput& input);
+  void write(RecorderItem&& item);
+  void record(const drivers::port::ByteRecord& record);
+  void save(const SaveOrder& order);
+  void obey(const RecordOrder& order);
+  /// Once a second: everything to the disk, and another attempt where one has failed.
+  void flush();
+
+  Hooks hooks_;
+  Pulse pulse_;
+  std::optional<LiveRecording> recording_;
+  std::optional<LiveLines> trajectory_;
+  std::optional<LiveLines> localization_;
+  MemoryKeeper memory_;
+  Timestamp now_;  // of the newest look at the clock
+  Timestamp last_stamp_;
+  std::uint64_t refused_before_ = 0;
+  std::atomic<bool> closed_{false};
+  std::counting_semaphore<> bell_{0};
+  RecorderInput from_io_{4096, bell_};            // full: bytes are missing from the recording
+  RecorderInput from_localization_{2048, bell_};  // full: lines and decisions are missing
+  RecorderInput from_awareness_{256, bell_};      // full: decisions are missing
+  RecorderInput from_map_{256, bell_};            // full: an operator's cells are missing
+  RecorderInput from_control_{16, bell_};         // full: whoever asked is told
+};
+
+}  // namespace deltamap::daemon

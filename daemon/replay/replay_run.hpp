@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole pipeline on recorded bytes: the same stage functions as in pipeline.cpp, one after another in one thread,
+// in virtual time. The same bytes, settings and seed give the same files, bit for bit on one machine.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+
+#include "core/messages.hpp"
+#include "daemon/outputs/change_note.hpp"
+#include "daemon/outputs/localization_log.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/settings/settings.hpp"
+
+namespace deltamap::daemon {
+
+/// What others may look at while a replay goes on; empty: nobody looks. Called in the replay's thread.
+struct ReplayWatch {
+  /// Every scan that was localized, what is known of it, and the CPU seconds that it cost.
+  std::function<void(const TrackedScan&, const LocalizationRow&, double)> scan{};
+  std::function<void(const MapRevision*, const ChangeNote&)> change{};  ///< the revision may be null: refused
+};
+
+struct ReplayJob {
+  std::filesystem::path recording;
+  std::filesystem::path map;  ///< M_0; the settings' ports, map and store are not looked at
+  Settings settings;
+  std::filesystem::path out;
+  double from_s = 0.0;  ///< after the first record: before it only the sessions listen
+  double to_s = std::numeric_limits<double>::infinity();
+  double map_delay_s = 1.0;  ///< recorded time from the end of a Δ-phase until its revision is taken, without a journal
+  ReplayWatch watch{};
+};
+
+/// Called now and then with the share that is done, 0 to 1; answers whether to go on.
+using ReplayProgress = std::function<bool(double)>;
+
+/// Writes the files of --out and answers what report.json says. Throws std::runtime_error with one line that names file
+/// and place; nothing has been written then.
+[[nodiscard]] RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress);
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a replay starts on: the given map, or, where the recorded run began from that map, what it began from; and
+// whether its journal can be obeyed.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/records/journal.hpp"
+#include "daemon/replay/replay_run.hpp"
+#include "daemon/steps/run_begin.hpp"
+#include "drivers/port/log_cut.hpp"
+
+namespace deltamap::daemon {
+
+/// What the notes of a recording say.
+struct RecordedRun {
+  Journal journal;
+  BeginReader begin;
+  std::optional<drivers::port::LogCut> cut;
+};
+/// Reads the recording once for its notes alone, so that what is wrong with it shows before anything is done. Throws
+/// std::runtime_error as ByteLogReader does.
+[[nodiscard]] RecordedRun recorded_run(const ReplayJob& job);
+
+struct ReplayStart {
+  StartMap start;
+  std::string began;    ///< what of the recorded run's beginning is used, or why not
+  std::string journal;  ///< "obeyed", "none" or why it is not obeyed
+};
+[[nodiscard]] ReplayStart replay_start(const RecordedRun& recorded, const ReplayJob& job,
+                                       std::shared_ptr<const OccupancyGrid> given);
+
+}  // namespace deltamap::daemon

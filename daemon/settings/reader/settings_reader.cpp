@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/settings/reader/settings_reader.hpp"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "daemon/settings/reader/nearest_key.hpp"
+#include "daemon/settings/reader/yaml_text.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr std::string_view kBelongsToNothing = "belongs to nothing";  // our own, beside the YAML reader's
+
+/// The YAML reader's words, and what they mean to whoever wrote the file.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kMeanings{{
+    {kBelongsToNothing, "this belongs to no key: look at the indentation of this line and of those above"},
+    {"illegal map value", "a ':' is out of place: look at the indentation, or put the value into quotes"},
+    {"end of map not found", "the indentation does not fit the lines above"},
+    {"end of sequence not found", "the indentation does not fit the lines above"},
+    {"end of map flow not found", "a '{' is not closed"},
+    {"end of sequence flow not found", "a '[' is not closed"},
+    {"unknown escape character", "a backslash in double quotes: write it twice, or use single quotes"},
+    {"bad file", "brackets are nested too deeply"},
+    {"unknown token", "a character that begins no value: put the value into quotes"},
+}};
+
+std::string meaning_of(const std::string& message) {
+  const auto* known =
+      std::find_if(kMeanings.begin(), kMeanings.end(), [&](const auto& one) { return message.starts_with(one.first); });
+  return "not YAML: " + (known == kMeanings.end() ? message : std::string(known->second));
+}
+
+constexpr std::size_t kLongestQuote = 40;  // of what was found, in a mistake
+constexpr std::size_t kLongestName = 100;
+
+std::string shortened(const std::string& text, std::size_t longest) {
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
+std::string quoted(const std::string& text) { return "'" + shortened(text, kLongestQuote) + "'"; }
+
+/// Walks YAML trees of one file or override and hands every leaf to its key.
+class Walk {
+ public:
+  Walk(const std::vector<SettingKey>& keys, SettingPlace source, SettingsProblems& problems, ReadKeys& read)
+      : keys_{keys}, sections_{sections_of(keys)}, source_{std::move(source)}, problems_{problems}, read_{read} {}
+
+  /// What is read next begins at this line of the file, counted from 0.
+  void go_to_line(std::size_t line) { first_line_ = static_cast<int>(line); }
+
+  /// `key` is the node that names `node`.
+  void read(const std::string& path, const YAML::Node& node, const YAML::Node& key) {
+    if (has_enough()) return;
+    const auto known = std::find_if(keys_.begin(), keys_.end(), [&](const SettingKey& k) { return k.name == path; });
+    if (known != keys_.end()) return assign(*known, node, key);
+    if (!path.empty() && !is_section(path)) return add_unknown(path, key, node.IsMap());
+    if (node.IsNull()) return;  // an empty section
+    if (!node.IsMap()) return add(path, node, key, must_hold_keys(path, node));
+    for (const auto& entry : node) read_entry(path, entry.first, entry.second);
+  }
+
+  /// The line of a section whose lines below are read on their own; what it opens, else nothing.
+  [[nodiscard]] std::optional<std::string> enter(const std::string& path, const YAML::Node& line) {
+    const auto entry = line.begin();
+    if (!line.IsMap() || line.size() != 1 || !entry->second.IsNull() || !entry->first.IsScalar()) return std::nullopt;
+    std::string child = below(path, entry->first.Scalar());
+    if (!is_section(child)) return std::nullopt;
+    if (!is_new(child, entry->first)) return "";
+    return child;
+  }
+
+  /// More mistakes than are told: what follows stands behind them.
+  [[nodiscard]] bool has_enough() {
+    if (told_ <= SettingsProblems::kMostTold) return false;
+    read_.is_whole = false;
+    return true;
+  }
+
+  void add_text_problem(int line, int column, std::string what) {
+    SettingPlace place = source_;
+    if (place.source == 0) {
+      place.line = line + first_line_;
+      place.column = column;
+    }
+    problems_.add(std::move(place), std::move(what));
+    read_.is_whole = false;
+  }
+
+ private:
+  static std::string below(const std::string& path, const std::string& name) {
+    return path.empty() ? name : path + "." + name;
+  }
+  [[nodiscard]] bool is_section(const std::string& path) const {
+    return std::find(sections_.begin(), sections_.end(), path) != sections_.end();
+  }
+
+  void read_entry(const std::string& path, const YAML::Node& key, const YAML::Node& node) {
+    if (!key.IsScalar()) return add(path, key, key, "a key must be a word");
+    const std::string child = below(path, key.Scalar());
+    if (is_new(child, key)) read(child, node, key);
+  }
+
+  /// Told where it is not. Nested and dotted names count alike.
+  bool is_new(const std::string& path, const YAML::Node& key) {
+    const int line = place_of(key, key).line;
+    const auto [first, is_new] = lines_.emplace(path, line);
+    if (!is_new) add(path, key, key, "given twice, first in line " + std::to_string(first->second));
+    return is_new;
+  }
+
+  static std::string must_hold_keys(const std::string& path, const YAML::Node& node) {
+    std::string line = path.empty() ? "the file must hold keys" : "must hold keys";
+    if (!node.IsScalar()) return line + ", not a list";
+    const std::string& found = node.Scalar();
+    return line + ", not " + quoted(found) + hint_of(found);
+  }
+
+  /// What somebody meant who wrote a line without "key: value".
+  static std::string hint_of(const std::string& words) {
+    if (words.find('=') < words.find(':')) return ": 'key=value' is for --set, the file has 'key: value'";
+    return words.find(':') == std::string::npos ? "" : ": a blank belongs behind the colon";
+  }
+
+  void assign(const SettingKey& key, const YAML::Node& node, const YAML::Node& named) {
+    if (node.IsMap()) return add(key.name, node, named, "takes one value, not keys");
+    SettingValue value;
+    if (node.IsScalar()) value = {SettingValue::Kind::kScalar, {node.Scalar()}, node.Tag() == "!"};
+    if (node.IsSequence()) {
+      value.kind = SettingValue::Kind::kList;
+      for (const auto& item : node) {
+        if (!item.IsScalar()) return add(key.name, node, named, "takes no nested lists");
+        value.items.push_back(item.Scalar());
+      }
+    }
+    read_.places[key.name] = place_of(node, named);
+    if (const auto needed = key.assign(value)) {
+      const std::string found = node.IsScalar() ? quoted(node.Scalar()) : node.IsNull() ? "nothing" : "a list";
+      add(key.name, node, named, "needs " + *needed + ", not " + found);
+    }
+  }
+
+  void add_unknown(const std::string& path, const YAML::Node& key, bool has_keys_below) {
+    const UnknownKey unknown = unknown_key(keys_, path, has_keys_below);
+    for (const std::string& meant : unknown.meant) doubt(meant);
+    tell(place_of(key, key), path, unknown.rule + hint_of(path));
+  }
+
+  void add(const std::string& path, const YAML::Node& node, const YAML::Node& key, const std::string& what) {
+    doubt(path);
+    tell(place_of(node, key), path, what);
+  }
+
+  void tell(SettingPlace place, const std::string& path, const std::string& what) {
+    ++told_;
+    problems_.add(std::move(place), (path.empty() ? "" : shortened(path, kLongestName) + ": ") + what);
+  }
+
+  /// The key, or all keys of the section: what they are meant to be is not known.
+  void doubt(const std::string& path) {
+    for (const SettingKey& key : keys_) {
+      if (key.name == path || path.empty() || key.name.starts_with(path + ".")) read_.doubtful.insert(key.name);
+    }
+  }
+
+  /// What has no place of its own (an empty value) stands where its key does.
+  [[nodiscard]] SettingPlace place_of(const YAML::Node& node, const YAML::Node& key) const {
+    const YAML::Mark mark = node.IsNull() ? key.Mark() : node.Mark();
+    SettingPlace place = source_;
+    if (place.source != 0) return place;
+    place.line = mark.is_null() ? first_line_ + 1 : first_line_ + mark.line + 1;
+    place.column = mark.is_null() ? 1 : mark.column + 1;
+    return place;
+  }
+
+  const std::vector<SettingKey>& keys_;
+  std::vector<std::string> sections_;
+  SettingPlace source_;
+  SettingsProblems& problems_;
+  ReadKeys& read_;
+  std::map<std::string, int> lines_;  // of every key and section that was given
+  int first_line_ = 0;
+  std::size_t told_ = 0;
+};
+
+/// Notes where a document begins, and forgets what is in it.
+class BeginOfDocument : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {}
+  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                       YAML::EmitterStyle::value /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapEnd() override {}
+
+  [[nodiscard]] YAML::Mark mark() const { return mark_; }
+
+ private:
+  YAML::Mark mark_;
+};
+
+/// YAML::Load reads up to where a text leaves its first tree, and says nothing of the rest. Throws YAML::Exception.
+/// Not YAML::LoadAll: where a sign is out of place it never ends.
+YAML::Node only_tree_of(const std::string& yaml) {
+  std::istringstream text(yaml);
+  YAML::Parser parser(text);
+  BeginOfDocument begin;
+  if (parser.HandleNextDocument(begin) && parser.HandleNextDocument(begin)) {
+    throw YAML::ParserException(begin.mark(), kBelongsToNothing.data());
+  }
+  return YAML::Load(yaml);
+}
+
+/// Reads as much as there is to be read: where lines cannot be read together, each part of them alone.
+class PartReader {
+ public:
+  PartReader(const std::vector<YamlLine>& lines, Walk& walk) : lines_{lines}, walk_{walk} {}
+
+  /// The lines from `first` up to `last`, which stand below the section `path`.
+  void read(const std::string& path, std::size_t first, std::size_t last) {
+    if (walk_.has_enough()) return;
+    const auto error = read_together(path, first, last);
+    if (!error) return;
+    const auto parts = parts_of(lines_, first, last);
+    const bool is_uneven = parts.size() > 1 && lines_[parts[0].first].indentation != lines_[parts[1].first].indentation;
+    if (parts.size() > 1) {
+      for (const LineRange& part : parts) read(path, part.first, part.last);
+    }
+    if (is_uneven || parts.empty() || (parts.size() == 1 && !read_below(path, parts.front()))) {
+      walk_.go_to_line(first);
+      walk_.add_text_problem(error->mark.line + 1, error->mark.column + 1, meaning_of(error->msg));
+    }
+  }
+
+ private:
+  std::optional<YAML::Exception> read_together(const std::string& path, std::size_t first, std::size_t last) {
+    try {
+      const YAML::Node tree = only_tree_of(text_of(lines_, first, last));
+      walk_.go_to_line(first);
+      walk_.read(path, tree, tree);
+      return std::nullopt;
+    } catch (const YAML::Exception& error) {
+      return error;
+    }
+  }
+
+  /// A section line, and then what stands below it. False: it is none.
+  bool read_below(const std::string& path, const LineRange& part) {
+    const std::size_t below = part.first + 1;
+    if (below >= part.last || parts_of(lines_, below, part.last).empty()) return false;
+    try {
+      walk_.go_to_line(part.first);
+      const auto section = walk_.enter(path, YAML::Load(text_of(lines_, part.first, below)));
+      if (section && !section->empty()) read(*section, below, part.last);
+      return section.has_value();
+    } catch (const YAML::Exception&) {
+      return false;
+    }
+  }
+
+  const std::vector<YamlLine>& lines_;
+  Walk& walk_;
+};
+
+}  // namespace
+
+void SettingsReader::read_file(const std::string& yaml, const std::string& name) {
+  file_ = name;
+  Walk walk{keys_, {.name = name}, problems_, read_};
+  const YamlText text = yaml_text(yaml);
+  for (const TextProblem& one : text.problems) walk.add_text_problem(one.line, one.column, one.what);
+  PartReader{text.lines, walk}.read("", 0, text.lines.size());
+}
+
+void SettingsReader::read_override(const std::string& text) {
+  const SettingPlace place{.name = "--set " + text, .source = ++overrides_};
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) return problems_.add(place, "give key=value");
+  const std::string value = text.substr(equals + 1);
+  Walk walk{keys_, place, problems_, read_};
+  // On a command line "key=" means empty text, not "nothing".
+  const YamlText checked = yaml_text(value.empty() ? "\"\"" : value);
+  for (const TextProblem& one : checked.problems) walk.add_text_problem(1, 1, one.what);
+  if (!checked.problems.empty()) return;
+  try {
+    const YAML::Node tree = only_tree_of(text_of(checked.lines, 0, checked.lines.size()));
+    walk.read(text.substr(0, equals), tree, tree);
+  } catch (const YAML::Exception& error) {
+    walk.add_text_problem(1, 1, meaning_of(error.msg));
+  }
+}
+
+void SettingsReader::add_contradiction(const std::string& key, const std::string& rule,
+                                       const std::vector<std::string>& others) {
+  std::vector<std::string> concerned{key};
+  concerned.insert(concerned.end(), others.begin(), others.end());
+  const auto is_doubtful = [&](const std::string& one) { return read_.doubtful.contains(one); };
+  if (!read_.is_whole || std::any_of(concerned.begin(), concerned.end(), is_doubtful)) return;
+  const auto given = std::find_if(concerned.begin(), concerned.end(),
+                                  [&](const std::string& one) { return read_.places.contains(one); });
+  SettingPlace place{.name = file_};
+  if (given != concerned.end()) place = read_.places.at(*given);
+  problems_.add(std::move(place), key + ": " + rule);
+}
+
+}  // namespace deltamap::daemon

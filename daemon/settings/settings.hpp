@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the operator may choose. Read strictly from one YAML file and --set overrides: an unknown key, a value of the
+// wrong type or outside its range stops the start, with a line for each mistake. Behind this door everything is in
+// metres, radians and seconds.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/pose2.hpp"
+#include "daemon/settings/reader/setting_key.hpp"
+#include "daemon/settings/settings_error.hpp"
+#include "drivers/lms200/session.hpp"
+#include "drivers/pioneer/session.hpp"
+#include "localization/localizer_params.hpp"
+#include "mapping/map_update_params.hpp"
+#include "mapping/retention.hpp"
+#include "mapping/store_scan.hpp"
+#include "navigation/drive_mode.hpp"
+#include "navigation/safety.hpp"
+#include "navigation/wander.hpp"
+
+namespace deltamap::daemon {
+
+struct RobotSettings {
+  std::string port = "/dev/ttyUSB0";
+  drivers::pioneer::PioneerParams session;  ///< enable_motors is not a key: it follows from navigation.mode
+};
+
+struct LaserSettings {
+  std::string port = "/dev/ttyUSB1";
+  drivers::lms200::Lms200Params session;
+};
+
+struct MapSettings {
+  std::string file;              ///< M_0
+  std::string store;             ///< revisions; empty: not kept
+  mapping::Retention retention;  ///< of the store
+  std::string newest;            ///< YAML of the newest revision, for other programs; empty: none
+};
+
+struct MappingSettings {
+  bool enabled = true;
+  mapping::StoreScanParams store_scan;
+  mapping::MapUpdateParams update;
+};
+
+struct NavigationSettings {
+  navigation::DriveMode mode = navigation::DriveMode::kOff;
+  bool drive_without_pose = false;  ///< while the localizer searches, is lost or calls its pose wrong
+  navigation::SafetyParams safety;
+  navigation::WanderParams wander;
+};
+
+struct RecordingSettings {
+  std::string file;            ///< pcapng; empty: not recorded
+  double max_gigabytes = 8.0;  ///< the recording ends there, the daemon goes on
+};
+
+/// What outlives the run, beside map.store; a replay does not look at it.
+struct MemorySettings {
+  double pose_period_s = 5.0;         ///< between two writings of the pose; > 0
+  double stability_period_s = 60.0;   ///< between two writings of what has proven stable; > 0
+  double position_deviation_m = 0.5;  ///< how far the robot may have been pushed while it was off; > 0
+  double heading_deviation_rad = radians(20.0);
+};
+
+struct ControlSettings {
+  std::string socket;  ///< for `deltamap ctl`; empty: none
+};
+
+/// Pose and verdict of every scan, for programs on this machine.
+struct PosesSettings {
+  std::string socket;  ///< empty: none
+};
+
+/// The live page, for browsers.
+struct DashboardSettings {
+  std::string address = "127.0.0.1";  ///< beyond loopback only with a token
+  std::uint16_t port = 0;             ///< 0: no page
+  std::string token_file;             ///< its first line is asked of every viewer; empty: nothing is asked
+  bool control = false;               ///< the page may command, not only show; what moves the robot needs a token
+};
+
+struct Settings {
+  std::uint64_t seed = 1;
+  RobotSettings robot;
+  LaserSettings laser;
+  MapSettings map;
+  std::optional<Pose2> initial_pose;  ///< map_from_robot at the first scan; nothing: global localization
+  localization::LocalizerParams localizer;
+  MemorySettings memory;
+  MappingSettings mapping;
+  NavigationSettings navigation;
+  ControlSettings control;
+  PosesSettings poses;
+  DashboardSettings dashboard;
+  RecordingSettings recording;
+};
+
+/// Every key, in the order of config/default.yaml. The keys refer to `settings`, which must outlive them.
+[[nodiscard]] std::vector<SettingKey> keys_of(Settings& settings);
+
+/// Values that are each in range and cannot be together.
+struct Contradiction {
+  std::string key;                  ///< the one that is told
+  std::string what;                 ///< the rule that is broken: "must not exceed 'laser.max_range_m'"
+  std::vector<std::string> others;  ///< the other keys that the rule concerns
+};
+[[nodiscard]] std::vector<Contradiction> contradictions_in(const Settings& settings);
+
+/// `overrides` are "key=value" as given to --set, in order, after the file. Throws SettingsError with all
+/// mistakes of both.
+[[nodiscard]] Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// The same from text; `name` stands for the file in errors.
+[[nodiscard]] Settings parse_settings(const std::string& yaml, const std::string& name,
+                                      const std::vector<std::string>& overrides = {});
+
+/// Key and value, as YAML, of everything that is not as delivered, in the order of config/default.yaml.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings);
+
+/// Names everything that decides what comes out of the same bytes: ports, files and recording are left out.
+[[nodiscard]] std::uint64_t settings_fingerprint(const Settings& settings);
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of keys: what config/default.yaml lists, in its order.
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "daemon/dashboard/access.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/settings/settings_keys.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+
+SettingKey not_for_results(SettingKey key) {
+  key.affects_result = false;
+  return key;
+}
+
+/// A number that the driver keeps as one of several words.
+SettingKey baud_key(std::string name, unsigned& field, std::vector<std::pair<std::string, unsigned>> bauds,
+                    std::string meaning) {
+  return not_for_results(choice_key(std::move(name), field, std::move(bauds), std::move(meaning)));
+}
+
+void add_robot(RobotSettings& robot, Keys& keys) {
+  using std::pair;
+  keys.push_back(not_for_results(text_key("robot.port", robot.port, "serial device of the robot's controller")));
+  auto& session = robot.session;
+  keys.push_back(word_key(
+      "robot.model", {"p3dx", "p3dx-sh"}, [&session] { return session.model == "p3dx" ? 0u : 1u; },
+      [&session](std::size_t index) { session.model = index == 0 ? "p3dx" : "p3dx-sh"; },
+      "model that fixes the units of its odometry until the controller names itself"));
+  keys.push_back(baud_key("robot.baud", session.baud,
+                          {{"9600", 9600}, {"19200", 19200}, {"38400", 38400}, {"57600", 57600}, {"115200", 115200}},
+                          "baud rate that is tried first; all others follow"));
+  keys.push_back(baud_key("robot.fast_baud", session.fast_baud,
+                          {{"0", 0}, {"19200", 19200}, {"38400", 38400}, {"57600", 57600}, {"115200", 115200}},
+                          "baud rate switched to once connected, where the robot allows it; 0: stay"));
+  keys.push_back(not_for_results(flag_key("robot.sonar", session.sonar, "whether the sonar is kept on")));
+  keys.push_back(not_for_results(number_key("robot.max_speed_m_per_s", session.limits.max_speed_m_per_s, "m/s", 0.01,
+                                            2.2, "no speed above it is ever sent to the robot")));
+  keys.push_back(not_for_results(degrees_key("robot.max_turn_rate_deg_per_s", session.limits.max_turn_rate_rad_per_s,
+                                             1.0, 500.0, "no turn rate above it is ever sent to the robot")));
+  auto& limits = session.limits;
+  keys.push_back(not_for_results(number_key("robot.acceleration_m_per_s2", limits.acceleration_m_per_s2, "m/s^2", 0.05,
+                                            2.0, "acceleration that the controller is set to")));
+  keys.push_back(
+      not_for_results(number_key("robot.deceleration_m_per_s2", limits.deceleration_m_per_s2, "m/s^2", 0.1, 2.0,
+                                 "deceleration that the controller is set to, for stops of its own too")));
+  keys.push_back(not_for_results(degrees_key("robot.turn_acceleration_deg_per_s2", limits.turn_acceleration_rad_per_s2,
+                                             10.0, 300.0, "acceleration of a turn that the controller is set to")));
+  keys.push_back(not_for_results(
+      degrees_key("robot.turn_deceleration_deg_per_s2", limits.turn_deceleration_rad_per_s2, 10.0, 300.0,
+                  "deceleration of a turn that the controller is set to, for stops of its own too")));
+  keys.push_back(not_for_results(number_key("robot.pulse_interval_s", session.pulse_interval_s, "s", 0.05, 1.5,
+                                            "longest time between two commands to the robot")));
+  keys.push_back(not_for_results(number_key("robot.sip_timeout_s", session.sip_timeout_s, "s", 0.2, 60.0,
+                                            "silence after which the robot counts as gone")));
+}
+
+void add_laser(LaserSettings& laser, Keys& keys) {
+  using drivers::lms200::ScanVariant;
+  using drivers::lms200::Units;
+  auto& session = laser.session;
+  keys.push_back(not_for_results(text_key("laser.port", laser.port, "serial device of the laser")));
+  keys.push_back(baud_key("laser.baud", session.baud,
+                          {{"9600", 9600}, {"19200", 19200}, {"38400", 38400}, {"500000", 500000}},
+                          "baud rate that the laser is brought to"));
+  const std::vector<std::string> variants{"180/1", "180/0.5", "100/1", "100/0.5", "100/0.25"};
+  const auto index_of_variant = [&session, variants] {
+    std::size_t index = 0;
+    while (index + 1 < variants.size() && drivers::lms200::name_of(session.variant) != variants[index]) ++index;
+    return index;
+  };
+  keys.push_back(word_key(
+      "laser.variant", variants, index_of_variant,
+      [&session, variants](std::size_t index) {
+        session.variant = drivers::lms200::variant_named(variants[index]).value_or(ScanVariant{});
+      },
+      "field of view / angular step, degrees"));
+  keys.push_back(choice_key("laser.units", session.units, {{"cm", Units::kCentimetre}, {"mm", Units::kMillimetre}},
+                            "step of a range; the laser is set to it, in its EEPROM"));
+  keys.push_back(number_key("laser.max_range_m", session.max_range_m, "m", 0.0, 90.0,
+                            "a longer range counts as no return; 0: as far as the laser's mode goes"));
+  keys.push_back(number_key("laser.mount.x_m", session.robot_from_laser.x, "m", -5.0, 5.0,
+                            "how far the laser is mounted ahead of the middle of the wheel axle"));
+  keys.push_back(number_key("laser.mount.y_m", session.robot_from_laser.y, "m", -5.0, 5.0,
+                            "how far the laser is mounted left of the middle of the wheel axle"));
+  keys.push_back(degrees_key("laser.mount.yaw_deg", session.robot_from_laser.theta, -180.0, 180.0,
+                             "how far the laser is mounted turned counter-clockwise"));
+  keys.push_back(not_for_results(number_key("laser.power_on_wait_s", session.power_on_wait_s, "s", 0.0, 600.0,
+                                            "how long a silent laser may still be starting up")));
+  keys.push_back(not_for_results(number_key("laser.scan_timeout_s", session.scan_timeout_s, "s", 0.2, 60.0,
+                                            "silence after which the laser counts as gone")));
+}
+
+/// `patrol` has its name already, and nothing behind it.
+SettingKey drive_mode_key(navigation::DriveMode& mode) {
+  using navigation::DriveMode;
+  SettingKey key = choice_key("navigation.mode", mode, {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}},
+                              "who drives; off: the motors are never enabled");
+  key.assign = [assign = key.assign](const SettingValue& value) -> std::optional<std::string> {
+    const bool is_patrol = value.kind == SettingValue::Kind::kScalar && value.items.front() == "patrol";
+    return is_patrol ? "off or wander (patrol does not exist yet)" : assign(value);
+  };
+  return key;
+}
+
+void add_navigation(NavigationSettings& settings, Keys& keys) {
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(drive_mode_key(settings.mode));
+  add(flag_key("navigation.drive_without_pose", settings.drive_without_pose,
+               "drive also while the pose is unknown, lost or called wrong; a robot that must find itself needs it"));
+  const auto first_live = static_cast<std::ptrdiff_t>(keys.size());
+  auto& safety = settings.safety;
+  add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
+                 "radius of the circle that the hull sweeps around the middle of the axle"));
+  add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0,
+                 "distance kept between the hull and everything"));
+  add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s^2", 0.05, 5.0,
+                 "deceleration counted on at most; the controller's own where that is less"));
+  add(number_key("navigation.safety.reaction_s", safety.reaction_s, "s", 0.0, 2.0,
+                 "time from a decision to the wheels"));
+  add(number_key("navigation.safety.command_life_s", safety.command_life_s, "s", 0.05, 2.0,
+                 "age from which a drive command is void"));
+  add(number_key("navigation.safety.odometry_life_s", safety.odometry_life_s, "s", 0.1, 5.0,
+                 "silence of the robot after which it must stand"));
+  add(number_key("navigation.safety.low_battery_s", safety.low_battery_s, "s", 0.0, 600.0,
+                 "time of low voltage that ends driving: longer than the sag of a motor that starts"));
+  add(number_key("navigation.safety.plausible_s", safety.plausible_s, "s", 0.0, 60.0,
+                 "time of scans that are not flagged as implausible before the robot goes on"));
+  add(number_key("navigation.safety.max_speed_m_per_s", safety.max_speed_m_per_s, "m/s", 0.01, 2.2,
+                 "speed at most, whatever the pilot wants"));
+  add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,
+                  "turn rate at most, whatever the pilot wants"));
+  add(number_key("navigation.safety.hidden_width_m", safety.obstacles.hidden_width_m, "m", 0.01, 2.0,
+                 "width of an obstacle that a gap of beams without answer may hide"));
+  auto& wander = settings.wander;
+  add(number_key("navigation.wander.speed_m_per_s", wander.speed_m_per_s, "m/s", 0.01, 2.2,
+                 "speed where the way is clear"));
+  add(degrees_key("navigation.wander.turn_rate_deg_per_s", wander.turn_rate_rad_per_s, 1.0, 500.0,
+                  "turn rate on the spot"));
+  add(number_key("navigation.wander.side_clearance_m", wander.side_clearance_m, "m", 0.0, 5.0,
+                 "distance kept to both sides while driving"));
+  add(number_key("navigation.wander.turn_away_m", wander.turn_away_m, "m", 0.05, 10.0,
+                 "free path at which the robot stops and turns"));
+  add(number_key("navigation.wander.slow_down_m", wander.slow_down_m, "m", 0.05, 20.0,
+                 "free path below which the robot goes slower"));
+  add(number_key("navigation.wander.go_on_m", wander.go_on_m, "m", 0.05, 20.0, "free path that ends a turn"));
+  add(number_key("navigation.wander.shortest_leg_s", wander.shortest_leg_s, "s", 0.1, 3600.0,
+                 "shortest time before the robot takes another direction"));
+  add(number_key("navigation.wander.longest_leg_s", wander.longest_leg_s, "s", 0.1, 3600.0,
+                 "longest time before the robot takes another direction"));
+  std::for_each(keys.begin() + first_live, keys.end(), [](SettingKey& key) { key.is_live = true; });
+}
+
+void add_memory(MemorySettings& memory, Keys& keys) {
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(number_key("localization.memory.pose_period_s", memory.pose_period_s, "s", 0.1, 3600.0,
+                 "time between two writings of the pose beside map.store"));
+  add(number_key("localization.memory.stability_period_s", memory.stability_period_s, "s", 1.0, 86400.0,
+                 "time between two writings of what has proven to stay"));
+  add(number_key("localization.memory.position_deviation_m", memory.position_deviation_m, "m", 0.01, 10.0,
+                 "standard deviation of a kept position: the robot may have been pushed while it was off"));
+  add(degrees_key("localization.memory.heading_deviation_deg", memory.heading_deviation_rad, 0.1, 180.0,
+                  "standard deviation of a kept heading: the robot may have been turned while it was off"));
+}
+
+void add_dashboard(DashboardSettings& dashboard, Keys& keys) {
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(text_key(
+      "dashboard.address", dashboard.address,
+      "IPv4 or IPv6 address that the live page listens on; one beyond this machine needs dashboard.token_file"));
+  add(whole_key("dashboard.port", dashboard.port, "", 0, 65535, "TCP port of the live page; 0: no page"));
+  add(text_key("dashboard.token_file", dashboard.token_file,
+               "file whose first line every viewer is asked for; empty: nothing is asked"));
+  add(flag_key("dashboard.control", dashboard.control,
+               "whether the page may command as `deltamap ctl` does; what moves the robot needs a token as well"));
+}
+
+std::optional<Contradiction> contradiction_in(const DashboardSettings& dashboard) {
+  const auto is_loopback = dashboard::is_loopback(dashboard.address);
+  if (!is_loopback) {
+    return Contradiction{"dashboard.address", "needs an IPv4 or IPv6 address, not '" + dashboard.address + "'", {}};
+  }
+  if (*is_loopback || dashboard.port == 0 || !dashboard.token_file.empty()) return std::nullopt;
+  return Contradiction{"dashboard.address",
+                       "leads beyond this machine: that needs 'dashboard.token_file'",
+                       {"dashboard.port", "dashboard.token_file"}};
+}
+
+}  // namespace
+
+std::vector<SettingKey> keys_of(Settings& settings) {
+  Keys keys;
+  keys.push_back(whole_key("seed", settings.seed, "", 0, kNoLimit,
+                           "seed of all randomness: the same bytes and seed give the same results"));
+  add_robot(settings.robot, keys);
+  add_laser(settings.laser, keys);
+  keys.push_back(not_for_results(
+      with_symbol(text_key("map.file", settings.map.file, "first map: map_server YAML with its PGM"), "M_0")));
+  keys.push_back(not_for_results(with_symbol(
+      text_key("map.store", settings.map.store, "SQLite file of all map revisions; empty: they are not kept"), "M_k")));
+  keys.push_back(
+      not_for_results(whole_key("map.retention.revisions", settings.map.retention.revisions, "", 0, 1'000'000'000,
+                                "how many of the newest revisions stay one by one; 0: no such rule")));
+  keys.push_back(not_for_results(number_key("map.retention.days", settings.map.retention.days, "days", 0.0, 36500.0,
+                                            "age up to which revisions stay one by one; 0: no such rule")));
+  keys.push_back(not_for_results(
+      text_key("map.newest", settings.map.newest,
+               "YAML, with its PGM, of the newest revision for other programs, replaced in one step; empty: none")));
+  keys.push_back(
+      pose_key("localization.initial_pose", settings.initial_pose,
+               "robot in the map at the first scan; null: where the run before left it, else found by itself"));
+  add_localization_keys(settings.localizer, keys);
+  add_belief_keys(settings.localizer, keys);
+  add_memory(settings.memory, keys);
+  add_mapping_keys(settings.mapping, keys);
+  add_navigation(settings.navigation, keys);
+  keys.push_back(not_for_results(text_key("control.socket", settings.control.socket,
+                                          "socket on which `deltamap ctl` finds the daemon; empty: none")));
+  keys.push_back(not_for_results(
+      text_key("poses.socket", settings.poses.socket,
+               "Unix socket that tells other programs the pose of every scan, a line of JSON each; empty: none")));
+  add_dashboard(settings.dashboard, keys);
+  keys.push_back(not_for_results(
+      text_key("recording.file", settings.recording.file, "pcapng recording of both ports; empty: none")));
+  keys.push_back(not_for_results(number_key("recording.max_gigabytes", settings.recording.max_gigabytes, "GB", 0.001,
+                                            10000.0, "size at which the recording ends; the daemon goes on")));
+  return keys;
+}
+
+std::vector<Contradiction> contradictions_in(const Settings& settings) {
+  std::vector<Contradiction> found;
+  const auto expect_not = [&](bool is_wrong, const std::string& key, const std::string& rule,
+                              const std::vector<std::string>& others) {
+    if (!is_wrong) return;
+    std::string line = "must " + rule;
+    for (const std::string& other : others) line += (&other == &others.front() ? " '" : " and '") + other + "'";
+    found.push_back({key, std::move(line), others});
+  };
+  const auto& localizer = settings.localizer;
+  expect_not(localizer.particles.min > localizer.particles.max, "localization.particles.min", "not exceed",
+             {"localization.particles.max"});
+  expect_not(localizer.fit.lost_below > localizer.fit.found_above, "localization.fit.lost_below", "not exceed",
+             {"localization.fit.found_above"});
+  expect_not(localizer.field.unknown_likelihood < localizer.field.random_share, "localization.field.unknown_likelihood",
+             "not lie below", {"localization.field.random_share"});
+  const auto& wander = settings.navigation.wander;
+  expect_not(wander.shortest_leg_s > wander.longest_leg_s, "navigation.wander.shortest_leg_s", "not exceed",
+             {"navigation.wander.longest_leg_s"});
+  expect_not(wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m), "navigation.wander.turn_away_m",
+             "lie below", {"navigation.wander.slow_down_m", "navigation.wander.go_on_m"});
+  if (auto contradiction = contradiction_in(settings.dashboard)) found.push_back(*std::move(contradiction));
+  if (settings.dashboard.control && settings.dashboard.port != 0 && settings.control.socket.empty()) {
+    found.push_back({"dashboard.control",
+                     "needs 'control.socket': one desk takes all commands",
+                     {"control.socket", "dashboard.port"}});
+  }
+  expect_not(!settings.poses.socket.empty() && settings.poses.socket == settings.control.socket, "poses.socket",
+             "differ from", {"control.socket"});
+  return found;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the table of keys that lie in files of their own.
+#pragma once
+
+#include <vector>
+
+#include "daemon/settings/settings.hpp"
+
+namespace deltamap::daemon {
+
+using Keys = std::vector<SettingKey>;
+
+void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys);
+void add_belief_keys(localization::LocalizerParams& localizer, Keys& keys);
+void add_mapping_keys(MappingSettings& settings, Keys& keys);
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings as far as they could be read, beside all mistakes: for --check-config, which looks at the rest all the same.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "daemon/settings/settings.hpp"
+
+namespace deltamap::daemon {
+
+struct SettingsReading {
+  Settings settings;                  ///< a key with a mistake is as delivered
+  std::vector<std::string> problems;  ///< as of SettingsError; empty: the settings are good
+  std::set<std::string> given;        ///< keys that were read, with a value that they take or not
+  std::set<std::string> doubtful;     ///< keys of which it is not known what they were meant to be
+  bool is_whole = true;               ///< false: parts of the file could not be read, other keys may stand in them
+
+  /// Whether the value of `key` is what was meant.
+  [[nodiscard]] bool knows(const std::string& key) const {
+    return !doubtful.contains(key) && (is_whole || given.contains(key));
+  }
+};
+
+/// Throws SettingsError only where the file itself cannot be read.
+[[nodiscard]] SettingsReading look_at_settings(const std::filesystem::path& file,
+                                               const std::vector<std::string>& overrides);
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/settings/settings_sections.hpp"
+
+#include <algorithm>
+
+namespace deltamap::daemon {
+
+const std::vector<SettingSection>& setting_sections() {
+  static const std::vector<SettingSection> kSections{
+      {"robot", "the robot's controller: port, line and the limits it is set to"},
+      {"laser", "the laser: port, line, field of view and where it is mounted"},
+      {"laser.mount", "pose of the laser in the robot's frame"},
+      {"map", "the first map, and where its revisions are kept"},
+      {"map.retention", "how long single revisions are kept: one of the two rules is enough; without a rule all stay"},
+      {"localization", "where the robot is in the map"},
+      {"localization.particles", "how many particles there are and when they are resampled"},
+      {"localization.update", "when a scan is weighed again"},
+      {"localization.motion", "motion model: how far odometry may be wrong"},
+      {"localization.wheels", "quality of the wheels, learned while driving"},
+      {"localization.odometry", "what is made of the robot's reports"},
+      {"localization.field", "likelihood field: how a beam is weighed by where it ends"},
+      {"localization.refinement", "sliding a pose to where the scan fits best"},
+      {"localization.track", "how the estimate goes on from scan to scan"},
+      {"localization.temporary", "what temporary obstacles count for"},
+      {"localization.hypothesis", "which particles belong together"},
+      {"localization.fit", "when a pose is lost, and when it is found"},
+      {"localization.global", "global localization: search of the whole map"},
+      {"localization.places", "other pose hypotheses: how each is followed"},
+      {"localization.rivals", "other pose hypotheses: how they are found and when one is believed"},
+      {"localization.stability", "which tiles of the map have proven to stay"},
+      {"localization.beam_check", "beams held against what the map expects"},
+      {"localization.verdict", "whether the pose is called right, wrong or undecided"},
+      {"localization.memory", "what is kept for the next start"},
+      {"mapping", "how the map follows the world"},
+      {"mapping.evidence", "method evidence: votes of beams on what has changed"},
+      {"mapping.evidence.update", "method evidence: what an update must fulfil"},
+      {"mapping.temporary", "temporary layer: what stands or is gone for now"},
+      {"mapping.gate", "write gate: when the pose is sure enough to write to the map"},
+      {"mapping.paper", "method paper: Δ-awareness as published"},
+      {"mapping.paper.update", "method paper: what a merge must fulfil"},
+      {"navigation", "whether and how the robot drives by itself"},
+      {"navigation.safety", "limits that no command exceeds"},
+      {"navigation.wander", "driving about: mode wander"},
+      {"control", "commands of `deltamap ctl`"},
+      {"poses", "the pose of every scan, for other programs"},
+      {"dashboard", "the live page for browsers"},
+      {"recording", "the recording of both ports"},
+  };
+  return kSections;
+}
+
+std::string meaning_of_section(const std::string& name) {
+  const auto& sections = setting_sections();
+  const auto found =
+      std::find_if(sections.begin(), sections.end(), [&](const SettingSection& one) { return one.name == name; });
+  return found == sections.end() ? "" : found->meaning;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/stages/delta_stage.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace deltamap::daemon {
+namespace {
+
+using Kind = Decision::Kind;
+
+constexpr std::chrono::seconds kLookEvery{1};
+
+/// Null where it is an order.
+const ScanSet* set_in(const MapWork& work) {
+  const auto* set = std::get_if<ScanSet>(&work);
+  return set != nullptr && !set->withdraw_from ? set : nullptr;
+}
+
+}  // namespace
+
+DeltaStage::DeltaStage(const Settings& settings, Wiring wiring)
+    : wiring_{std::move(wiring)}, store_scan_{settings.mapping.store_scan, settings.seed} {}
+
+void DeltaStage::run() {
+  while (!wiring_.work.is_drained()) {
+    pulse_.beat();
+    const auto work = wiring_.work.receive_within(kLookEvery);
+    if (!work) continue;
+    offer_waiting();
+    if (const auto* order = std::get_if<MapOrder>(&*work)) {
+      hand_over(*order);
+    } else {
+      look_for_changes(std::get<TrackedScan>(*work));
+    }
+  }
+}
+
+void DeltaStage::look_for_changes(const TrackedScan& tracked) {
+  auto set = store_scan_.observe(tracked);
+  offer_things();
+  const mapping::Awareness& awareness = store_scan_.awareness();
+  wiring_.telemetry.r_d.set(awareness.r_d);
+  wiring_.telemetry.in_phase.set(awareness.in_phase);
+  wiring_.telemetry.phase.set(awareness.phase);
+  wiring_.telemetry.stored_scans.set(awareness.stored_scans);
+  tell_of_gate();
+  if (set && !set->withdraw_from) {
+    wiring_.telemetry.phases_closed.add(1);
+    note({Kind::kPhaseClosed, tracked.scan.number, set->phase});
+  }
+  if (set) hand_over(std::move(*set));
+  if (wiring_.shows_scans()) show_scans();
+}
+
+/// What waits for the map thread waits too.
+void DeltaStage::show_scans() {
+  mapping::StoredScans stored = store_scan_.stored();
+  for (const MapWork& work : waiting_) {
+    if (const ScanSet* set = set_in(work)) {
+      stored.waiting.insert(stored.waiting.end(), set->scans.begin(), set->scans.end());
+    }
+  }
+  wiring_.show_scans(std::move(stored));
+}
+
+void DeltaStage::offer_waiting() {
+  while (!waiting_.empty() && wiring_.sets.try_send(std::move(waiting_.front()))) waiting_.pop_front();
+}
+
+void DeltaStage::offer_things() {
+  const std::shared_ptr<const TemporaryThings>& newest = store_scan_.temporary();
+  if (newest == nullptr) return;
+  if (newest->number != things_shown_ && wiring_.show(newest)) things_shown_ = newest->number;
+  if (newest->number == things_sent_) return;
+  const std::uint32_t number = newest->number;
+  wiring_.telemetry.things_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
+  wiring_.telemetry.things_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
+  if (wiring_.things.try_send(std::shared_ptr<const TemporaryThings>{newest})) things_sent_ = number;
+}
+
+void DeltaStage::tell_of_gate() {
+  const mapping::Awareness& awareness = store_scan_.awareness();
+  wiring_.telemetry.gate.set(awareness.gate, awareness.gate_times);
+  const std::string line = gate_watch_.observe(awareness);
+  if (!line.empty()) wiring_.log(line);
+}
+
+/// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an
+/// operator gives few.
+void DeltaStage::hand_over(MapWork work) {
+  const ScanSet* set = set_in(work);
+  const bool set_waits = std::any_of(waiting_.begin(), waiting_.end(), set_in);
+  if (set_waits && set != nullptr) {
+    wiring_.telemetry.sets_lost.add(1);
+    note({Kind::kSetLost, 0, set->phase});
+    return;
+  }
+  waiting_.push_back(std::move(work));
+  offer_waiting();
+}
+
+}  // namespace deltamap::daemon

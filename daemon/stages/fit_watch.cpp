@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/stages/fit_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace deltamap::daemon {
+namespace {
+
+// As localization.fit and the check of a remembered pose judge (localization/fit_monitor.hpp, start_pose.hpp).
+constexpr int kFirstScans = 5;
+constexpr double kFits = 0.6;
+constexpr double kMisfit = 0.4;
+constexpr double kMemory_s = 3.0;
+
+// A search needs some seconds and metres, someone may stand in the way for a while.
+constexpr double kLong_s = 60.0;
+constexpr double kFar_m = 10.0;
+
+const std::string kSayWhere = "say where the robot stands by `deltamap ctl relocalize X,Y,DEG`";
+
+std::string percent(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
+
+}  // namespace
+
+std::string fit_words(std::optional<double> fit) {
+  if (!fit) return "no beam came back, so that nothing tells whether it fits";
+  const std::string share = percent(*fit) + " of its beams fit";
+  return *fit >= kFits ? share : "only " + share + ": is it the right place, and the right map?";
+}
+
+LogLine refused_start_line() {
+  return {"the start pose lies more than 1 m from free floor, so that the whole map is searched; " + kSayWhere, true};
+}
+
+void FitWatch::pass(const TrackedScan& tracked) {
+  const Timestamp time = tracked.scan.time;
+  passed_s_ = last_ ? std::max(0.0, seconds(time - *last_)) : 0.0;
+  driven_m_ = last_ ? distance_between(last_odom_from_robot_, tracked.odom_from_robot) : 0.0;
+  last_ = time;
+  last_odom_from_robot_ = tracked.odom_from_robot;
+}
+
+LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit) {
+  pass(tracked);
+  if (fit) {
+    first_scans_ = std::min(first_scans_ + 1, kFirstScans + 1);
+    first_fit_ += *fit;
+    if (looks_at_start_ && first_scans_ == kFirstScans) {
+      looks_at_start_ = false;
+      return judged_start();
+    }
+    const double before = mean_fit_.value_or(*fit);
+    mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kMemory_s)) * (*fit - before);
+  }
+  const bool is_unfit = tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kMisfit;
+  unfit_s_ = is_unfit ? unfit_s_ + passed_s_ : 0.0;
+  unfit_m_ = is_unfit ? unfit_m_ + driven_m_ : 0.0;
+  return judged_long(tracked.estimate.state);
+}
+
+LogLine FitWatch::judged_start() {
+  const double mean = first_fit_ / kFirstScans;
+  if (mean >= kFits) return {};
+  return {"the start pose does not fit: " + percent(mean) +
+              " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere,
+          true};
+}
+
+LogLine FitWatch::judged_long(LocalizerState state) {
+  if (unfit_s_ == 0.0) return {std::exchange(said_, false) ? "the map fits again" : ""};
+  // A search that nobody drives for gets no further.
+  const bool is_long = unfit_s_ >= kLong_s && (unfit_m_ >= kFar_m || state == LocalizerState::kGlobal);
+  if (said_ || !is_long) return {};
+  said_ = true;
+  const std::string best = mean_fit_ ? percent(*mean_fit_) + " of the beams fit at the best one; " : "";
+  return {"no place in the map has been sure for " + std::to_string(std::lround(unfit_s_)) + " s and " +
+              std::to_string(std::lround(unfit_m_)) + " m: " + best +
+              "is it the map of this place, and 'laser.mount' right? Else " + kSayWhere,
+          true};
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/stages/gate_watch.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr double kLong_s = 60.0;
+
+std::string text_of(double time_s) { return std::to_string(std::lround(time_s)) + " s"; }
+
+}  // namespace
+
+std::string GateWatch::observe(const mapping::Awareness& awareness) {
+  if (awareness.gate == mapping::GateReason::kOpen) {
+    if (!std::exchange(said_, false)) return {};
+    return "map is written again: the gate was shut for " + text_of(shut_for_s_);
+  }
+  shut_for_s_ = awareness.gate_shut_for_s;
+  if (said_ || shut_for_s_ < kLong_s) return {};
+  said_ = true;
+  return "map is not written: the gate is shut for " + text_of(shut_for_s_) +
+         " reason=" + std::string(mapping::name_of(awareness.gate));
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/stages/localization_stage.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <vector>
+
+#include "drivers/port/port_clock.hpp"
+#include "navigation/pose_stop.hpp"
+#include "navigation/remembered_obstacles.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using Kind = Decision::Kind;
+
+constexpr double kNoScan_s = 0.7;                     // without a scan: what an operator asks for is not done
+constexpr std::chrono::milliseconds kLookEvery{200};  // for what an operator asks while no message comes
+
+std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batch) {
+  for (std::size_t i = batch.size(); i-- > 0;) {
+    if (std::holds_alternative<Scan>(batch[i])) return i;
+  }
+  return std::nullopt;
+}
+
+/// A clock that fell back does not end the keeping.
+bool is_due(const std::optional<Timestamp>& last, Timestamp time, double period_s) {
+  return !last || time < *last || seconds(time - *last) >= period_s;
+}
+
+}  // namespace
+
+LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& start, std::uint64_t first_map,
+                                     Wiring wiring)
+    : wiring_{std::move(wiring)},
+      step_{settings, start},
+      drives_without_pose_{settings.navigation.drive_without_pose},
+      mapping_enabled_{settings.mapping.enabled},
+      first_revision_{start.revision},
+      first_map_{first_map},
+      map_{start.map},
+      memory_{settings.memory},
+      is_kept_{!settings.map.store.empty()},
+      fit_watch_{settings.initial_pose.has_value()} {
+  if (settings.navigation.mode == navigation::DriveMode::kWander) {
+    pilot_.emplace(settings.navigation.wander, settings.seed);
+  }
+  if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
+    (void)wiring_.recorder.send(refused_start_line());
+  }
+}
+
+void LocalizationStage::run() {
+  std::vector<SensorMessage> batch;
+  batch.reserve(wiring_.sensors.capacity());
+  last_scan_came_ = drivers::port::port_clock_now();
+  while (!wiring_.sensors.is_drained()) {
+    pulse_.beat();
+    auto message = wiring_.sensors.receive_within(kLookEvery);
+    while (const auto params = wiring_.wander.try_receive()) {
+      if (pilot_) pilot_->set_params(*params);
+    }
+    if (seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s) take_commands_without_scan();
+    if (!message) continue;
+    // After a stall the queue is drained: all odometry counts, of the scans only the newest.
+    batch.clear();
+    batch.push_back(std::move(*message));
+    while (batch.size() < wiring_.sensors.capacity()) {
+      auto more = wiring_.sensors.try_receive();
+      if (!more) break;
+      batch.push_back(std::move(*more));
+    }
+    work_off(batch);
+  }
+  if (!pose_kept_) return;
+  keep_pose();
+  keep_stability();
+}
+
+void LocalizationStage::work_off(std::vector<SensorMessage>& batch) {
+  const auto newest_scan = newest_scan_in(batch);
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (const auto* odometry = std::get_if<Odometry>(&batch[i])) {
+      step_.observe(*odometry);
+    } else if (i == newest_scan) {
+      localize(std::move(std::get<Scan>(batch[i])));
+    } else {
+      pass_over(std::get<Scan>(batch[i]));
+    }
+  }
+}
+
+void LocalizationStage::pass_over(const Scan& scan) {
+  wiring_.telemetry.dropped.add(1);
+  note({Kind::kScanDropped, scan.number, 0});
+  (void)wiring_.recorder.send(step_.pass_over(scan));
+}
+
+void LocalizationStage::localize(Scan scan) {
+  last_scan_came_ = drivers::port::port_clock_now();
+  const std::uint32_t number = scan.number;
+  take_revisions(number);
+  take_things(number);
+  take_commands(scan);
+  TrackedScan tracked = step_.observe(std::move(scan));
+  show(tracked.estimate, tracked.scan.received);
+  wiring_.show(tracked, step_.row(), wiring_.telemetry.latency_s.value(), step_.particles());
+  answer_relocalize(number);
+  tell_changes();
+  if (LogLine line = fit_watch_.observe(tracked, step_.fit()); !line.text.empty())
+    (void)wiring_.recorder.send(std::move(line));
+  (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
+  (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
+  map_ = tracked.estimate.map;
+  keep_now_and_then(tracked.scan.time);
+  if (pilot_) pilot(tracked);
+  if (!mapping_enabled_ || is_paused_ || wiring_.tracked_scans.try_send(std::move(tracked))) return;
+  wiring_.telemetry.tracked_lost.add(1);
+  note({Kind::kTrackedLost, number, 0});
+}
+
+void LocalizationStage::take_revisions(std::uint32_t scan) {
+  while (const auto revision = wiring_.revisions.try_receive()) {
+    step_.apply(*revision);
+    // Counted from the start of the run, as a replay does.
+    note({Kind::kRevision, scan, revision->number - first_revision_});
+  }
+}
+
+void LocalizationStage::take_things(std::uint32_t scan) {
+  std::shared_ptr<const TemporaryThings> newest;
+  while (auto things = wiring_.things.try_receive()) newest = std::move(*things);
+  if (newest == nullptr || is_paused_) return;
+  note({Kind::kThings, scan, newest->number});
+  things_ = newest;
+  step_.apply(std::move(newest));
+}
+
+void LocalizationStage::pilot(const TrackedScan& tracked) {
+  using navigation::StopReason;
+  const StopReason held_by = drives_without_pose_ ? StopReason::kNone : navigation::pose_stop(tracked.estimate);
+  wiring_.telemetry.wanted_speed_m_per_s.set(0.0);
+  wiring_.telemetry.wanted_turn_rate_rad_per_s.set(0.0);
+  if (held_by != StopReason::kNone) return wiring_.drive({tracked.scan.time, 0.0, 0.0}, held_by);
+  const DriveCommand wanted = pilot_->step(tracked, obstacles_beside(tracked));
+  wiring_.telemetry.wanted_speed_m_per_s.set(wanted.speed_m_per_s);
+  wiring_.telemetry.wanted_turn_rate_rad_per_s.set(wanted.turn_rate_rad_per_s);
+  wiring_.drive(wanted, held_by);
+}
+
+std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& tracked) const {
+  if (things_ == nullptr) return {};
+  return navigation::remembered_obstacles(*things_, tracked, {});
+}
+
+// --- the operator ---
+
+void LocalizationStage::take_commands(const Scan& scan) {
+  while (const auto command = wiring_.commands.try_receive()) {
+    if (command->kind == control::Command::Kind::kSave) {
+      save(*command);
+    } else if (command->kind == control::Command::Kind::kRelocalize) {
+      relocalize(*command, scan);
+    } else if (command->kind == control::Command::Kind::kUndo || command->kind == control::Command::Kind::kRollBack) {
+      order_map(*command, scan);
+    } else {
+      pause(*command, scan);
+    }
+  }
+}
+
+void LocalizationStage::take_commands_without_scan() {
+  while (const auto command = wiring_.commands.try_receive()) {
+    if (command->kind == control::Command::Kind::kSave) {
+      save(*command);
+      continue;
+    }
+    const double silent_s = seconds(drivers::port::port_clock_now() - last_scan_came_);
+    char text[96];
+    (void)std::snprintf(text, sizeof text, "not done: no scan has come for %.0f s; look at the laser", silent_s);
+    wiring_.answer({command->ticket, false, text});
+  }
+}
+
+void LocalizationStage::relocalize(const control::Command& command, const Scan& scan) {
+  if (relocalized_) wiring_.answer({*relocalized_, false, "another pose has come before the next scan"});
+  relocalized_.reset();
+  const bool is_there = step_.relocalize(command.map_from_robot);
+  note({Kind::kRelocalized, scan.number, 0, command.map_from_robot, scan.time});
+  if (is_there) {
+    relocalized_ = command.ticket;
+  } else {
+    wiring_.answer({command.ticket, false, "no free floor lies within 1 m of it: the whole map is searched"});
+  }
+}
+
+void LocalizationStage::answer_relocalize(std::uint32_t scan) {
+  if (!relocalized_) return;
+  wiring_.answer({*relocalized_, true,
+                  "the robot starts there with scan " + std::to_string(scan) + ": " + fit_words(step_.fit())});
+  relocalized_.reset();
+}
+
+void LocalizationStage::order_map(const control::Command& command, const Scan& scan) {
+  if (!mapping_enabled_) {
+    return wiring_.answer({command.ticket, false, "'mapping.enabled' is false: nobody works on the map"});
+  }
+  MapOrder order;
+  order.kind = command.kind == control::Command::Kind::kUndo ? MapOrder::Kind::kUndo : MapOrder::Kind::kRollBack;
+  order.revision = command.revision;
+  order.scan = scan.number;
+  order.scan_time = scan.time;
+  order.ticket = command.ticket;
+  if (wiring_.tracked_scans.try_send(order)) return;
+  wiring_.answer({command.ticket, false, "not done: too many scans wait for Δ-mapping, try again"});
+}
+
+void LocalizationStage::pause(const control::Command& command, const Scan& scan) {
+  const std::string from = " from scan " + std::to_string(scan.number) + " on";
+  if (!mapping_enabled_)
+    return wiring_.answer({command.ticket, false, "'mapping.enabled' is false: there is nothing to pause"});
+  is_paused_ = command.kind == control::Command::Kind::kPause;
+  wiring_.telemetry.paused.set(is_paused_);
+  if (is_paused_) {  // nobody would notice what leaves
+    things_.reset();
+    step_.apply(things_);
+  }
+  note({is_paused_ ? Kind::kPaused : Kind::kResumed, scan.number, 0, {}, scan.time});
+  wiring_.answer({command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from});
+}
+
+/// The recorder answers when both are on disk.
+void LocalizationStage::save(const control::Command& command) {
+  if (!pose_kept_) {
+    wiring_.answer({command.ticket, false, "no scan has been localized yet: nothing to save"});
+  } else if (!wiring_.recorder.send(
+                 std::make_unique<const SaveOrder>(SaveOrder{command.ticket, pose_to_keep(), map_}))) {
+    wiring_.answer({command.ticket, false, "the disk is too slow: try again"});
+  }
+}
+
+// --- what others see ---
+
+void LocalizationStage::show(const Estimate& estimate, Timestamp received) {
+  const double latency_s = seconds(drivers::port::port_clock_now() - received);
+  latency_.add(latency_s);
+  wiring_.telemetry.localized.add(1);
+  wiring_.telemetry.fit.set(step_.fit().value_or(-1.0));
+  wiring_.telemetry.calibration.set(step_.calibration());
+  wiring_.telemetry.latency_s.set(latency_s);
+  wiring_.telemetry.estimate.set(estimate);
+}
+
+void LocalizationStage::tell_changes() {
+  const LocalizationRow& row = step_.row();
+  if (row.state != told_state_) {
+    (void)wiring_.recorder.send(LogLine{state_line(row)});
+    told_state_ = row.state;
+  }
+  if (row.belief.verdict != told_verdict_) {
+    (void)wiring_.recorder.send(LogLine{verdict_line(row)});
+    told_verdict_ = row.belief.verdict;
+  }
+}
+
+// --- what outlives the run ---
+
+void LocalizationStage::keep_now_and_then(Timestamp time) {
+  has_tracked_ = has_tracked_ || step_.row().state == LocalizerState::kTracking;
+  if (is_due(pose_kept_, time, memory_.pose_period_s)) {
+    pose_kept_ = time;
+    keep_pose();
+  }
+  if (!stability_kept_) stability_kept_ = time;  // at the start there is nothing new
+  if (is_due(stability_kept_, time, memory_.stability_period_s)) {
+    stability_kept_ = time;
+    keep_stability();
+  }
+}
+
+void LocalizationStage::keep_pose() {
+  if (is_kept_ && has_tracked_) (void)wiring_.recorder.send(std::make_unique<const KeptPose>(pose_to_keep()));
+}
+
+void LocalizationStage::keep_stability() {
+  if (!is_kept_) return;
+  (void)wiring_.recorder.send(std::make_unique<const KeptStability>(
+      KeptStability{.first_map = first_map_, .revision = step_.row().revision, .record = step_.stability()}));
+}
+
+KeptPose LocalizationStage::pose_to_keep() const {
+  const LocalizationRow& row = step_.row();
+  return {.first_map = first_map_,
+          .revision = row.revision,
+          .time = row.time,
+          .map_from_robot = row.map_from_robot,
+          .covariance = row.covariance,
+          .is_sure = row.state == LocalizerState::kTracking && row.belief.verdict != PoseVerdict::kWrong,
+          .calibration = step_.calibration()};
+}
+
+}  // namespace deltamap::daemon

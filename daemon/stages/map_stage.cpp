@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/stages/map_stage.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "drivers/port/port_clock.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using drivers::port::port_clock_now;
+
+constexpr std::chrono::seconds kRetryPeriod{1};  // between looks at outputs that could not be written
+
+/// "revision 9 takes revision 7 back: 41 cells, 3 have changed since and stay"
+std::string words_of(const MapOrder& order, const MapRevision& made, std::size_t kept) {
+  const std::string wanted = "revision " + std::to_string(order.revision);
+  std::string text = "revision " + std::to_string(made.number) + " ";
+  text += order.kind == MapOrder::Kind::kUndo ? "takes " + wanted + " back" : "is " + wanted + " again";
+  text += " from the next scan on: " + std::to_string(made.changes.size()) + " cells";
+  return kept == 0 ? text : text + ", " + std::to_string(kept) + " have changed since and stay";
+}
+
+/// " scans=120 acceptance=0.973"
+std::string evidence_of(const ChangeNote& note) {
+  char acceptance[16];
+  (void)std::snprintf(acceptance, sizeof acceptance, "%.3f", note.acceptance);
+  return " scans=" + std::to_string(note.scans) + " acceptance=" + acceptance;
+}
+
+StoreToKeep with_retention(StoreToKeep store, const mapping::Retention& retention) {
+  store.retention = retention;
+  return store;
+}
+
+}  // namespace
+
+MapStage::MapStage(const Settings& settings, const StartMap& start, const std::optional<std::filesystem::path>& out,
+                   StoreToKeep store, Wiring wiring)
+    : wiring_{std::move(wiring)},
+      step_{settings, start},
+      outputs_{{.out = out,
+                .store_file = settings.map.store,
+                .newest_file = settings.map.newest,
+                .store = with_retention(std::move(store), settings.map.retention),
+                .start = {start.map, start.revision},
+                .method = step_.method()},
+               wiring_.telemetry.outputs,
+               wiring_.warn,
+               port_clock_now()} {}
+
+void MapStage::run(const std::deque<MapWork>& rest) {
+  while (!wiring_.work.is_drained()) {
+    pulse_.beat();
+    if (const auto work = wiring_.work.receive_within(kRetryPeriod)) take(*work);
+    outputs_.retry(port_clock_now());
+  }
+  for (const MapWork& work : rest) take(work);
+  outputs_.close(port_clock_now());
+}
+
+void MapStage::take(const MapWork& work) {
+  if (const auto* order = std::get_if<MapOrder>(&work)) return obey(*order);
+  update(std::get<ScanSet>(work));
+}
+
+void MapStage::update(const ScanSet& set) {
+  const MapStep::Result result = step_.update(set);
+  if (!result.revision) {
+    wiring_.telemetry.refused.add(1);
+    wiring_.log("map unchanged: phase=" + std::to_string(set.phase) + evidence_of(result.note) +
+                " verdict=refused reason=" + result.note.reason);
+    return hand_on(result);
+  }
+  if (!result.note.withdraws.empty()) {
+    wiring_.log("pose proved wrong: withdrawn=" + std::to_string(result.note.withdraws.size()) + " revisions");
+  }
+  wiring_.log("map changed: revision=" + std::to_string(result.revision->number) +
+              " phase=" + std::to_string(set.phase) + " added=" + std::to_string(result.note.added) +
+              " freed=" + std::to_string(result.note.freed) + evidence_of(result.note) +
+              " verdict=" + (result.note.withdraws.empty() ? "accepted" : "withdrawn"));
+  hand_on(result);
+}
+
+void MapStage::obey(const MapOrder& order) {
+  const GridGeometry& geometry = step_.map()->geometry();
+  mapping::MapStore::Undoing wanted;
+  try {
+    wanted = outputs_.cells_of(order, *step_.map());
+  } catch (const std::exception& error) {
+    return wiring_.answer({order.ticket, false, std::string("not done: ") + error.what()});
+  }
+  const SetCells set{order, geometry.width, geometry.height, std::move(wanted.changes)};
+  const MapStep::Result result = step_.obey(set);
+  if (!result.revision) return wiring_.answer({order.ticket, false, "not done: " + result.note.reason});
+  note(set);
+  wiring_.log("map changed: revision=" + std::to_string(result.revision->number) +
+              " added=" + std::to_string(result.note.added) + " freed=" + std::to_string(result.note.freed) +
+              " reason=" + result.note.reason);
+  hand_on(result);
+  const std::string behind = outputs_.why_behind();
+  wiring_.answer({order.ticket, true,
+                  words_of(order, *result.revision, wanted.kept) +
+                      (behind.empty() ? std::string{} : "; not in the store yet: " + behind)});
+}
+
+void MapStage::note(const SetCells& set) {
+  for (std::string& part : notes_of(set)) (void)wiring_.recorder.send(std::move(part));
+}
+
+void MapStage::hand_on(const MapStep::Result& result) {
+  changes_.add(result.note);
+  wiring_.show(result.revision ? &*result.revision : nullptr, result.note);
+  if (result.revision) {
+    wiring_.telemetry.newest_revision.set(result.revision->number);
+    MapRevision published = *result.revision;
+    (void)wiring_.revisions.try_send(std::move(published));
+  }
+  outputs_.save(result, port_clock_now());
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/steps/localization_step.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace deltamap::daemon {
+namespace {
+
+std::optional<localization::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
+  if (settings.initial_pose) return localization::InitialPose{*settings.initial_pose};
+  if (!start.remembered) return std::nullopt;
+  return localization::InitialPose{*start.remembered, settings.memory.position_deviation_m,
+                                   settings.memory.heading_deviation_rad, true};
+}
+
+}  // namespace
+
+void require_pose_on(const GridGeometry& map, const Settings& settings) {
+  if (!settings.initial_pose || map.contains(map.cell_at(settings.initial_pose->position()))) return;
+  const Point2 high = map.origin + map.resolution_m * Point2{map.width, map.height};
+  char text[256];
+  (void)std::snprintf(text, sizeof text,
+                      "'localization.initial_pose': %g,%g lies outside the map, which reaches from %g to %g m in x and "
+                      "from %g to %g m in y",
+                      settings.initial_pose->x, settings.initial_pose->y, map.origin.x(), high.x(), map.origin.y(),
+                      high.y());
+  throw SettingsError(text);
+}
+
+LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
+    : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
+      odometry_{settings.localizer.odometry},
+      ratio_{settings.mapping.store_scan.divergence},
+      last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
+  if (start.revision > 0)
+    apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
+  if (start.calibration) localizer_.restore(*start.calibration);
+  if (start.stability) (void)localizer_.restore(*start.stability);  // of other tiles than ours: begins anew
+}
+
+void LocalizationStep::observe(const Odometry& odometry) {
+  localizer_.observe(odometry);
+  odometry_.add(odometry);
+}
+
+TrackedScan LocalizationStep::observe(Scan scan) {
+  TrackedScan tracked = localizer_.observe(std::move(scan));
+  last_map_from_robot_ = tracked.estimate.map_from_robot;
+  last_odometry_ = odometry_.at(tracked.scan.time);
+  count_time(tracked.scan.time);
+  last_state_ = tracked.estimate.state;
+  last_verdict_ = tracked.estimate.belief.verdict;
+  note(tracked);
+  return tracked;
+}
+
+TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
+  count_time(scan.time);
+  const auto odometry = odometry_.at(scan.time);
+  if (!odometry || !last_odometry_) return {scan.time, last_map_from_robot_};
+  const Pose2 motion = motion_between(last_odometry_->joined_from_robot, odometry->joined_from_robot);
+  return {scan.time, last_map_from_robot_ * motion};
+}
+
+void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(revision); }
+
+void LocalizationStep::apply(std::shared_ptr<const TemporaryThings> things) { localizer_.apply(std::move(things)); }
+
+bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
+  const std::uint64_t refused = localizer_.counts().poses_refused;
+  localizer_.relocalize(localization::InitialPose{map_from_robot});
+  return localizer_.counts().poses_refused == refused;
+}
+
+std::map<std::string, std::uint64_t> LocalizationStep::counts() const {
+  const localization::LocalizerCounts& c = localizer_.counts();
+  return {{"scans", c.scans},
+          {"scans_without_return", c.scans_without_return},
+          {"scans_without_odometry", c.scans_without_odometry},
+          {"clock_fell_back", c.clock_fell_back},
+          {"odometry_epochs", c.odometry_epochs},
+          {"gaps", c.gaps},
+          {"poses_in_obstacle", c.poses_in_obstacle},
+          {"poses_refused", c.poses_refused},
+          {"poses_confirmed", c.poses_confirmed},
+          {"poses_refuted", c.poses_refuted},
+          {"searches", c.searches},
+          {"recoveries", c.recoveries}};
+}
+
+double LocalizationStep::covered_s() const { return first_scan_ ? seconds(*last_scan_ - *first_scan_) : 0.0; }
+
+void LocalizationStep::count_time(Timestamp time) {
+  if (!first_scan_) first_scan_ = time;
+  if (last_scan_) {
+    const double passed_s = std::max(0.0, seconds(time - *last_scan_));
+    if (last_state_ == LocalizerState::kLost) time_lost_s_ += passed_s;
+    if (last_state_ == LocalizerState::kGlobal) time_global_s_ += passed_s;
+    if (last_verdict_ == PoseVerdict::kRight) verdict_times_.right_s += passed_s;
+    if (last_verdict_ == PoseVerdict::kUndecided) verdict_times_.undecided_s += passed_s;
+    if (last_verdict_ == PoseVerdict::kWrong) verdict_times_.wrong_s += passed_s;
+  }
+  last_scan_ = time;
+}
+
+void LocalizationStep::note(const TrackedScan& tracked) {
+  // As Δ-awareness does: averages of the weights of a tracked pose alone.
+  if (tracked.estimate.state == LocalizerState::kTracking) (void)ratio_.observe(tracked.estimate.w_avg);
+  row_ = row_of(tracked);
+  row_.w_fast = ratio_.w_fast();
+  row_.w_slow = ratio_.w_slow();
+  row_.r_d = ratio_.value();
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the localization thread does with each message, and what a replay does in its place: odometry, revisions, scans
+// and an operator's pose to the localizer; a trajectory point and a line of localization.csv for every scan.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "core/messages.hpp"
+#include "daemon/outputs/localization_log.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/settings/settings.hpp"
+#include "localization/localizer.hpp"
+#include "localization/odometry_buffer.hpp"
+#include "mapping/awareness/divergence_ratio.hpp"
+
+namespace deltamap::daemon {
+
+/// What a run starts on: M_0, or the newest revision of the store, and what an earlier run has left.
+struct StartMap {
+  std::shared_ptr<const OccupancyGrid> map;
+  std::uint32_t revision = 0;
+  /// map_from_robot at the end of the run before; the settings' pose goes before it.
+  std::optional<Pose2> remembered{};
+  std::optional<localization::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
+  std::optional<localization::DriveCalibration> calibration{};  ///< and of wheels and mount
+};
+
+/// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.
+void require_pose_on(const GridGeometry& map, const Settings& settings);
+
+class LocalizationStep {
+ public:
+  /// Throws std::runtime_error where the map has no free cell.
+  LocalizationStep(const Settings& settings, const StartMap& start);
+
+  void observe(const Odometry& odometry);
+  [[nodiscard]] TrackedScan observe(Scan scan);
+  /// A scan that a newer one has overtaken: where odometry alone says that it was taken.
+  [[nodiscard]] TrajectoryPoint pass_over(const Scan& scan);
+  void apply(const MapRevision& revision);
+  /// What is different from the map for now; null: nothing is known any more.
+  void apply(std::shared_ptr<const TemporaryThings> things);
+  /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°). False where nobody can stand there: the
+  /// whole map is searched then.
+  bool relocalize(const Pose2& map_from_robot);
+
+  /// Of the newest scan that was localized.
+  [[nodiscard]] const LocalizationRow& row() const { return row_; }
+  /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
+  [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
+  [[nodiscard]] std::optional<localization::DriveCalibration> calibration() const { return localizer_.calibration(); }
+  /// What the newest pose rests on; null where not on particles (localizer.hpp).
+  [[nodiscard]] const localization::ParticleSet* particles() const { return localizer_.particles(); }
+  [[nodiscard]] localization::StabilityRecord stability() const { return localizer_.stability(); }
+  [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
+  [[nodiscard]] double time_global_s() const { return time_global_s_; }
+  [[nodiscard]] const VerdictTimes& verdict_times() const { return verdict_times_; }
+  /// What befell the localizer (localization/localizer_counts.hpp), by name.
+  [[nodiscard]] std::map<std::string, std::uint64_t> counts() const;
+  /// From the first scan to the last.
+  [[nodiscard]] double covered_s() const;
+
+ private:
+  void count_time(Timestamp time);
+  void note(const TrackedScan& tracked);
+
+  localization::Localizer localizer_;
+  localization::OdometryBuffer odometry_;  // for the scans that the localizer does not see
+  mapping::awareness::DivergenceRatio ratio_;
+  LocalizationRow row_;
+  Pose2 last_map_from_robot_;
+  std::optional<localization::OdometryAt> last_odometry_;
+  LocalizerState last_state_ = LocalizerState::kGlobal;
+  PoseVerdict last_verdict_ = PoseVerdict::kUndecided;
+  std::optional<Timestamp> first_scan_;
+  std::optional<Timestamp> last_scan_;
+  double time_lost_s_ = 0.0;
+  double time_global_s_ = 0.0;
+  VerdictTimes verdict_times_;
+};
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the map thread does with each S(k), and what a replay does in its place: updates the newest map, prepares the
+// localizer's patch, and says what became of the Δ-phase. What it writes is provisional until a later set says that it
+// is settled; an order takes it back. An operator sets cells as he wants them. The revision goes to the localizer, the
+// note to changes.jsonl.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/records/map_order.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/steps/localization_step.hpp"
+#include "mapping/held_cells.hpp"
+
+namespace deltamap::daemon {
+
+class MapStep {
+ public:
+  MapStep(const Settings& settings, StartMap start);
+
+  struct Result {
+    std::optional<MapRevision> revision;
+    ChangeNote note;
+  };
+  /// A set, or an order to withdraw.
+  [[nodiscard]] Result update(const ScanSet& set);
+  /// An operator's cells take the states that the order gives them, whatever they are. Older evidence does not write
+  /// them again. No revision where they are so already, or the map has another size.
+  [[nodiscard]] Result obey(const SetCells& wanted);
+
+  /// "paper" or "evidence": kept with each revision.
+  [[nodiscard]] std::string_view method() const { return method_; }
+  /// M_k, the newest map.
+  [[nodiscard]] const std::shared_ptr<const OccupancyGrid>& map() const { return newest_.map; }
+  [[nodiscard]] std::uint32_t revision() const { return newest_.revision; }
+
+ private:
+  struct Provisional {
+    std::uint32_t number = 0;
+    Timestamp time;
+    std::vector<CellChange> changes;
+  };
+
+  [[nodiscard]] Result withdraw(const ScanSet& order);
+  void settle(const std::optional<Timestamp>& before);
+  [[nodiscard]] MapRevision publish(Timestamp time, std::vector<CellChange> changes);
+
+  std::string_view method_;
+  mapping::MapUpdateParams update_;
+  localization::LocalizerParams localizer_;
+  StartMap newest_;
+  std::deque<Provisional> provisional_;  // oldest first
+  mapping::HeldCells held_;              // that an operator has set
+};
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/steps/run_begin.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "daemon/records/journal.hpp"
+#include "mapping/map_codec.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::string_view kHead = "began from";
+constexpr std::size_t kTileBytes = 4;  // of a StabilityRecord
+
+std::string_view as_text(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Runs of equal tiles, as most of them have nothing to tell: length (1 to 255), tile.
+Bytes packed_tiles(const Bytes& tiles) {
+  Bytes packed;
+  for (std::size_t at = 0; at + kTileBytes <= tiles.size();) {
+    const auto tile = std::span(tiles).subspan(at, kTileBytes);
+    std::size_t run = 1;
+    while (run < 255 && at + (run + 1) * kTileBytes <= tiles.size() &&
+           std::equal(tile.begin(), tile.end(), tiles.begin() + static_cast<std::ptrdiff_t>(at + run * kTileBytes))) {
+      ++run;
+    }
+    packed.push_back(static_cast<std::uint8_t>(run));
+    packed.insert(packed.end(), tile.begin(), tile.end());
+    at += run * kTileBytes;
+  }
+  return packed;
+}
+
+Bytes unpacked_tiles(std::string_view packed) {
+  Bytes tiles;
+  for (; packed.size() > kTileBytes; packed.remove_prefix(1 + kTileBytes)) {
+    for (unsigned run = static_cast<unsigned char>(packed[0]); run > 0; --run) {
+      for (const char byte : packed.substr(1, kTileBytes)) tiles.push_back(static_cast<std::uint8_t>(byte));
+    }
+  }
+  return tiles;
+}
+
+Json as_json(const GridGeometry& geometry) {
+  return {{"width", geometry.width},
+          {"height", geometry.height},
+          {"resolution_m", geometry.resolution_m},
+          {"origin_m", {geometry.origin.x(), geometry.origin.y()}}};
+}
+
+GridGeometry geometry_in(const Json& json) {
+  return {json.at("width").get<int>(), json.at("height").get<int>(), json.at("resolution_m").get<double>(),
+          Point2{json.at("origin_m").at(0).get<double>(), json.at("origin_m").at(1).get<double>()}};
+}
+
+/// Throws Json::exception where the head is not what begin_notes() writes; nothing where the bytes are not.
+std::optional<RunBegin> begin_in(const Json& head, std::string_view bytes) {
+  RunBegin begin;
+  begin.first_map = head.at("first_map").get<std::uint64_t>();
+  begin.memory = head.at("memory").get<std::uint64_t>();
+  begin.start.revision = head.at("revision").get<std::uint32_t>();
+  if (const auto pose = head.find("pose"); pose != head.end()) {
+    begin.start.remembered = Pose2{pose->at(0).get<double>(), pose->at(1).get<double>(), pose->at(2).get<double>()};
+  }
+  if (const auto calibration = head.find("calibration"); calibration != head.end()) {
+    begin.start.calibration = localization::calibration_of(calibration->get<std::vector<double>>());
+    if (!begin.start.calibration) return std::nullopt;
+  }
+  const auto map_size = head.at("map_bytes").get<std::size_t>();
+  if (map_size > bytes.size()) return std::nullopt;
+  if (const auto map = head.find("map"); map != head.end()) {
+    auto grid = mapping::decoded_grid(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), map_size),
+                                      geometry_in(*map));
+    if (!grid) return std::nullopt;
+    begin.start.map = std::make_shared<const OccupancyGrid>(std::move(*grid));
+  }
+  if (const auto stability = head.find("stability"); stability != head.end()) {
+    begin.start.stability = {geometry_in(*stability), stability->at("cells_a_tile").get<int>(),
+                             unpacked_tiles(bytes.substr(map_size))};
+  }
+  return begin;
+}
+
+std::optional<RunBegin> begin_of(const std::string& content) {
+  const auto end = content.find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  try {
+    return begin_in(Json::parse(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(end)),
+                    std::string_view(content).substr(end + 1));
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> begin_notes(const RunBegin& begin) {
+  const StartMap& start = begin.start;
+  if (start.revision == 0 && !start.remembered && !start.stability && !start.calibration) return {};
+  Json head{{"first_map", begin.first_map}, {"memory", begin.memory}, {"revision", start.revision}};
+  Bytes bytes;
+  if (start.revision > 0) {
+    head["map"] = as_json(start.map->geometry());
+    bytes = mapping::encoded_grid(*start.map);
+  }
+  head["map_bytes"] = bytes.size();
+  if (start.calibration) head["calibration"] = localization::numbers_of(*start.calibration);
+  if (start.remembered) head["pose"] = {start.remembered->x, start.remembered->y, start.remembered->theta};
+  if (start.stability) {
+    head["stability"] = as_json(start.stability->geometry);
+    head["stability"]["cells_a_tile"] = start.stability->cells_a_tile;
+    const Bytes tiles = packed_tiles(start.stability->bytes);
+    bytes.insert(bytes.end(), tiles.begin(), tiles.end());
+  }
+  return notes_in_parts(kHead, head.dump().append("\n").append(as_text(bytes)));
+}
+
+std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map, const RunBegin& begin) {
+  if (settings.recording.file.empty()) return {};
+  std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, begin.memory})};
+  for (std::string& note : begin_notes(begin)) notes.push_back(std::move(note));
+  return notes;
+}
+
+BeginReader::BeginReader() : parts_{kHead} {}
+
+void BeginReader::read(std::string_view note) {
+  if (!parts_.read(note)) return;
+  begin_.reset();
+  if (const auto& content = parts_.content()) begin_ = begin_of(*content);
+}
+
+}  // namespace deltamap::daemon

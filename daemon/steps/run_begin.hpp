@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a recorded run began from besides M_0 and its settings: M_k, the pose that was kept, what had proven stable,
+// what was known of wheels and mount. It stands in the recording itself, as notes after the first one, so that one file
+// is all that a replay needs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/records/note_parts.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/steps/localization_step.hpp"
+
+namespace deltamap::daemon {
+
+struct RunBegin {
+  std::uint64_t first_map = 0;  ///< grid_hash() of M_0
+  std::uint64_t memory = 0;     ///< RunIdentity::memory
+  StartMap start;               ///< its map is null where the run began on M_0 itself
+};
+
+/// Empty where the run began from M_0 alone. Each note fits a pcapng comment.
+[[nodiscard]] std::vector<std::string> begin_notes(const RunBegin& begin);
+
+/// What a run begins from: enough for a replay to obey its journal. `map`: grid_hash() of the map it begins on. Empty
+/// where nothing is recorded.
+[[nodiscard]] std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map, const RunBegin& begin);
+
+/// Puts the notes of one recording together again.
+class BeginReader {
+ public:
+  BeginReader();
+  /// Any note, in order; those of other kinds are passed over. The first part of another run forgets the one before.
+  void read(std::string_view note);
+  /// A new run: what was read belongs to the one before.
+  void forget() { *this = {}; }
+
+  /// Some notes were there, and not all, or they are damaged.
+  [[nodiscard]] bool is_incomplete() const { return parts_.has_begun() && !begin_; }
+  [[nodiscard]] const std::optional<RunBegin>& begin() const { return begin_; }
+
+ private:
+  PartsReader parts_;
+  std::optional<RunBegin> begin_;
+};
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/telemetry/telemetry.hpp"
+
+#include <cinttypes>
+#include <cstdio>
+
+#include "core/angle.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+const char* up(const Gauge<bool>& device) { return device.value() ? "up" : "--"; }
+
+const char* phase_mark(const Telemetry& t) { return t.paused.value() ? "-" : t.in_phase.value() ? "*" : ""; }
+
+}  // namespace
+
+std::string_view name_of(LocalizerState state) {
+  switch (state) {
+    case LocalizerState::kGlobal:
+      return "global";
+    case LocalizerState::kTracking:
+      return "tracking";
+    case LocalizerState::kLost:
+      return "lost";
+  }
+  return "";
+}
+
+std::string_view name_of(PoseVerdict verdict) {
+  switch (verdict) {
+    case PoseVerdict::kUndecided:
+      return "undecided";
+    case PoseVerdict::kRight:
+      return "right";
+    case PoseVerdict::kWrong:
+      return "wrong";
+  }
+  return "";
+}
+
+void BeamCountGauges::set(const BeamCounts& counts) {
+  expected.set(counts.expected);
+  fit.set(counts.fit);
+  short_of.set(counts.short_of);
+  beyond.set(counts.beyond);
+}
+
+BeamCounts BeamCountGauges::value() const {
+  return {.expected = expected.value(), .fit = fit.value(), .short_of = short_of.value(), .beyond = beyond.value()};
+}
+
+void EstimateGauges::set(const Estimate& estimate) {
+  x_m.set(estimate.map_from_robot.x);
+  y_m.set(estimate.map_from_robot.y);
+  heading_rad.set(estimate.map_from_robot.theta);
+  n_eff.set(estimate.n_eff);
+  w_avg.set(estimate.w_avg);
+  std::size_t next = 0;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) covariance[next++].set(estimate.covariance(row, column));
+  }
+  state.set(static_cast<std::uint8_t>(estimate.state));
+  particles.set(estimate.particles);
+  revision.set(estimate.revision);
+  const Belief& belief = estimate.belief;
+  pose_right.set(belief.pose_right);
+  map_wrong.set(belief.map_wrong);
+  verdict.set(static_cast<std::uint8_t>(belief.verdict));
+  stable.set(belief.stable);
+  elsewhere.set(belief.elsewhere);
+  rival_share.set(belief.rival_share);
+  rival_x_m.set(belief.map_from_rival.x);
+  rival_y_m.set(belief.map_from_rival.y);
+  rival_heading_rad.set(belief.map_from_rival.theta);
+}
+
+void CalibrationGauges::set(const std::optional<localization::DriveCalibration>& calibration) {
+  known.set(calibration.has_value());
+  if (!calibration) return;
+  const auto found = numbers_of(calibration->wheels, calibration->mount_error);
+  const auto spread = numbers_of(calibration->wheel_deviations, calibration->mount_deviations);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    values[i].set(found[i]);
+    deviations[i].set(spread[i]);
+  }
+}
+
+void GateGauges::set(mapping::GateReason now, const mapping::GateTimes& times) {
+  reason.set(static_cast<std::uint8_t>(now));
+  for (std::size_t i = 0; i < times.size(); ++i) times_s[i].set(times[i]);
+}
+
+mapping::GateTimes GateGauges::times() const {
+  mapping::GateTimes times{};
+  for (std::size_t i = 0; i < times.size(); ++i) times[i] = times_s[i].value();
+  return times;
+}
+
+std::string status_line(const Telemetry& t) {
+  const EstimateGauges& e = t.estimate;
+  const auto state = name_of(static_cast<LocalizerState>(e.state.value()));
+  const auto verdict = name_of(static_cast<PoseVerdict>(e.verdict.value()));
+  const std::uint64_t drops = t.odometry_lost.value() + t.scans_lost.value() + t.dropped.value() +
+                              t.tracked_lost.value() + t.sets_lost.value() + t.recording_lost.value();
+  char line[352];
+  const int length = std::snprintf(
+      line, sizeof line,
+      "robot=%s laser=%s scans=%" PRIu64 " %.*s pose=%.*s x=%.2f y=%.2f heading=%.0f n_eff=%.0f/%" PRIu32
+      " w_avg=%.3f map=%" PRIu32 " refused=%" PRIu32 " phase=%" PRIu32 "%s drops=%" PRIu64 " latency_ms=%.1f",
+      up(t.robot_up), up(t.laser_up), t.scans.value(), static_cast<int>(state.size()), state.data(),
+      static_cast<int>(verdict.size()), verdict.data(), e.x_m.value(), e.y_m.value(), degrees(e.heading_rad.value()),
+      e.n_eff.value(), e.particles.value(), e.w_avg.value(), e.revision.value(), t.refused.value(), t.phase.value(),
+      phase_mark(t), drops, t.latency_s.value() * 1e3);
+  return {line, static_cast<std::size_t>(length)};
+}
+
+}  // namespace deltamap::daemon

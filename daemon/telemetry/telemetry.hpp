@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the stages tell about themselves while they run: plain counters and last values, each written by one thread and
+// read by any, without locks. The status line and, later, the dashboard read them.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/messages.hpp"
+#include "daemon/telemetry/output_board.hpp"
+#include "localization/drive_calibration.hpp"
+#include "mapping/write_gate.hpp"
+
+namespace deltamap::daemon {
+
+/// One value that one thread writes and others look at.
+template <typename T>
+class Gauge {
+ public:
+  void set(T value) { value_.store(value, std::memory_order_relaxed); }
+  /// By its only writer.
+  void add(T amount) { set(value() + amount); }
+  [[nodiscard]] T value() const { return value_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<T> value_{};
+};
+
+struct BeamCountGauges {
+  Gauge<std::uint32_t> expected, fit, short_of, beyond;
+  void set(const BeamCounts& counts);
+  [[nodiscard]] BeamCounts value() const;
+};
+
+/// The newest estimate, value by value: a reader may find two scans mixed, which a person does not see.
+struct EstimateGauges {
+  Gauge<double> x_m, y_m, heading_rad, n_eff, w_avg;
+  std::array<Gauge<double>, 6> covariance;  ///< xx xy xh yy yh hh
+  Gauge<std::uint8_t> state;                ///< LocalizerState
+  Gauge<std::uint32_t> particles, revision;
+  Gauge<double> pose_right, map_wrong;
+  Gauge<std::uint8_t> verdict;  ///< PoseVerdict
+  BeamCountGauges stable, elsewhere;
+  Gauge<double> rival_share, rival_x_m, rival_y_m, rival_heading_rad;
+  void set(const Estimate& estimate);
+};
+
+/// What driving has told of wheels and mount, with deviations.
+struct CalibrationGauges {
+  Gauge<bool> known;
+  std::array<Gauge<double>, 7> values,
+      deviations;  ///< distance, turn, drift (rad/m), lag (s), mount x, y (m), yaw (rad)
+  void set(const std::optional<localization::DriveCalibration>& calibration);
+};
+
+struct GateGauges {
+  Gauge<std::uint8_t> reason;  ///< mapping::GateReason
+  std::array<Gauge<double>, mapping::kGateReasons> times_s;
+  void set(mapping::GateReason now, const mapping::GateTimes& times);
+  [[nodiscard]] mapping::GateTimes times() const;
+};
+
+struct Telemetry {
+  // io thread
+  Gauge<bool> robot_up, laser_up;
+  Gauge<bool> drives;                ///< the pilot's commands are listened to
+  Gauge<bool> by_hand;               ///< a person's are, and the pilot's are not
+  Gauge<std::uint8_t> drive_switch;  ///< drivers::pioneer::DriveSwitch: what a person said last
+  Gauge<double> battery_v;
+  Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason
+  Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
+  // recorder thread
+  Gauge<std::uint64_t> recorded_bytes;
+  Gauge<bool> records;  ///< false: never began, has ended, or pauses
+  OutputBoard outputs;  ///< recorder and map thread
+  // control thread
+  Gauge<std::uint8_t> log_level;  ///< LogLevel
+  // localization thread
+  Gauge<std::uint64_t> localized, dropped, tracked_lost;
+  EstimateGauges estimate;
+  CalibrationGauges calibration;
+  Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none came back
+  Gauge<double> latency_s;
+  Gauge<double> wanted_speed_m_per_s, wanted_turn_rate_rad_per_s;  ///< by the pilot; 0 where it wants to stand
+  Gauge<bool> paused;                                              ///< by the operator: Δ-mapping sees no scans
+  // delta thread
+  Gauge<double> r_d;
+  Gauge<bool> in_phase;
+  Gauge<std::uint32_t> phase, stored_scans, phases_closed, sets_lost;
+  Gauge<std::uint32_t> things_standing, things_gone;  ///< blocks of the temporary layer
+  GateGauges gate;
+  // map thread
+  Gauge<std::uint32_t> newest_revision, refused;
+};
+
+/// One line for a person: devices, state, verdict and pose, N_eff, w_avg, revision, Δ-phase, drops, latency.
+[[nodiscard]] std::string status_line(const Telemetry& telemetry);
+
+[[nodiscard]] std::string_view name_of(LocalizerState state);
+[[nodiscard]] std::string_view name_of(PoseVerdict verdict);
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/carmen/carmen_survey.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <type_traits>
+
+#include "core/angle.hpp"
+#include "drivers/carmen/carmen_words.hpp"
+
+namespace deltamap::drivers::carmen {
+namespace {
+
+using drivers::lms200::ScanVariant;
+using drivers::lms200::Units;
+
+constexpr double kNoReturnShare = 0.003;  // CONTRACT.md: of the beams, before the largest values count as no return
+constexpr double kNoReturnWidthM =
+    0.15;  // CONTRACT.md: so far below the largest one; a cluster of codes is 0.11 m wide
+constexpr double kDecimalTolerance = 1e-9;   // m
+constexpr double kMultipleTolerance = 1e-6;  // of a centimetre: what parsing decimals may cost
+constexpr std::int64_t kLongestWord = 0x7FFF;
+
+std::int64_t word_of(double range_m, double words_per_m) { return std::llround(std::min(range_m * words_per_m, 1e9)); }
+
+/// What has to be known of all ranges; for both units, until it is clear which one it is.
+class RangeCensus {
+ public:
+  void add(double range_m) {
+    ++beams_;
+    const double range_cm = range_m * 100.0;
+    all_are_centimetres_ = all_are_centimetres_ && std::abs(range_cm - std::round(range_cm)) < kMultipleTolerance;
+    if (range_m > 0.0 && (largest_.empty() || range_m >= lowest_of(largest_.rbegin()->first))) {
+      ++largest_[range_m];
+      largest_.erase(largest_.begin(), largest_.lower_bound(lowest_of(largest_.rbegin()->first)));
+    }
+    note_word(longest_cm_, word_of(range_m, 100.0));
+    note_word(longest_mm_, word_of(range_m, 1000.0));
+  }
+
+  [[nodiscard]] Units units() const { return all_are_centimetres_ ? Units::kCentimetre : Units::kMillimetre; }
+  /// The mode with the fewest bits of range that holds the longest word, its codes included (B4: 00, 04, 06).
+  [[nodiscard]] std::uint8_t measuring_mode() const {
+    const std::int64_t longest = units() == Units::kCentimetre ? longest_cm_ : longest_mm_;
+    return longest <= 0x1FFF ? 0x00 : longest <= 0x3FFF ? 0x04 : 0x06;
+  }
+  /// The values near the largest one, where they are many. Where that is a code of the scanner, its codes alone: ranges
+  /// may be as long.
+  void find_no_return(CarmenSurvey& survey) const {
+    const double words_per_m = units() == Units::kCentimetre ? 100.0 : 1000.0;
+    const auto is_code = [&](double range_m) { return is_scanner_code(word_of(range_m, words_per_m)); };
+    const bool codes_alone = !largest_.empty() && is_code(largest_.rbegin()->first);
+    std::size_t count = 0;
+    std::optional<double> lowest_m;
+    for (const auto& [range_m, beams] : largest_) {
+      if (codes_alone && !is_code(range_m)) continue;
+      if (!lowest_m) lowest_m = range_m;
+      count += beams;
+    }
+    const double share = static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, beams_));
+    if (!lowest_m || share < kNoReturnShare) return;
+    survey.no_return_m = lowest_m;
+    survey.no_return_up_to_m = largest_.rbegin()->first;
+    survey.no_return_share = share;
+  }
+
+ private:
+  static double lowest_of(double largest_m) { return largest_m - kNoReturnWidthM - kDecimalTolerance; }
+  static void note_word(std::int64_t& longest, std::int64_t word) {
+    if (word <= kLongestWord) longest = std::max(longest, word);  // longer ones become "beyond maximum" in any mode
+  }
+
+  std::size_t beams_ = 0;
+  bool all_are_centimetres_ = true;
+  std::map<double, std::size_t> largest_;  // beams by range, for the ranges near the largest one
+  std::int64_t longest_cm_ = 0;
+  std::int64_t longest_mm_ = 0;
+};
+
+void add_scan(CarmenSurvey& survey, RangeCensus& census, const CarmenScan& scan) {
+  if (scan.poses && !survey.scans_carry_poses) {  // what came before without a pose is left out
+    survey.scans_carry_poses = true;
+    survey.doubled_scans = survey.scans;
+    survey.scans = 0;
+    survey.odometry = {};
+  }
+  if (survey.scans_carry_poses && !scan.poses) {
+    ++survey.doubled_scans;
+    return;
+  }
+  if (survey.scans == 0) survey.variant = nearest_variant(scan);
+  ++survey.scans;
+  for (const double range_m : scan.ranges_m) census.add(range_m);
+}
+
+/// How well each of the two times tells the scans of a log apart.
+class ClockCensus {
+ public:
+  void add(const CarmenTimes& times, bool is_scan) {
+    if (!first_) first_ = times;
+    has_stamps_ = has_stamps_ && times.stamp;
+    has_logger_ = has_logger_ && times.logger;
+    if (!is_scan) return;
+    ++scans_;
+    same_stamp_ += scans_ > 1 && times.stamp == last_.stamp ? 1 : 0;
+    same_logger_ += scans_ > 1 && times.logger == last_.logger ? 1 : 0;
+    last_ = times;
+  }
+  void choose(CarmenSurvey& survey) const {
+    const bool stamps_serve = has_stamps_ && 2 * same_stamp_ <= scans_;
+    const bool logger_serves = has_logger_ && 2 * same_logger_ <= scans_;
+    if (stamps_serve) return;
+    if (!logger_serves) {
+      survey.no_clock = has_stamps_ ? std::to_string(same_stamp_) + " of " + std::to_string(scans_) +
+                                          " scans have the time stamp of the one before"
+                                    : "its lines have no time stamp";
+      return;
+    }
+    // The first line keeps its stamp, as far as it tells.
+    survey.clock.by_logger = true;
+    survey.clock.logger_began =
+        first_->stamp ? *first_->stamp - *first_->logger : Timestamp{} + std::max(Duration{0}, -*first_->logger);
+  }
+
+ private:
+  std::optional<CarmenTimes> first_;
+  CarmenTimes last_;
+  bool has_stamps_ = true;
+  bool has_logger_ = true;
+  std::size_t scans_ = 0;
+  std::size_t same_stamp_ = 0;
+  std::size_t same_logger_ = 0;
+};
+
+void find_clock(CarmenSurvey& survey, const std::filesystem::path& log) {
+  CarmenLog lines{log};
+  ClockCensus census;
+  while (const auto record = lines.next()) {
+    std::visit([&](const auto& held) { census.add(held.times, std::is_same_v<decltype(held), const CarmenScan&>); },
+               *record);
+  }
+  census.choose(survey);
+}
+
+}  // namespace
+
+ScanVariant nearest_variant(const CarmenScan& scan) {
+  const double step_deg = degrees(scan.bearing_step_rad);
+  const double field_deg = step_deg * static_cast<double>(scan.ranges_m.size() - 1);
+  const std::uint16_t angle_deg = std::abs(field_deg - 180.0) <= std::abs(field_deg - 100.0) ? 180 : 100;
+  const auto distance = [&](const ScanVariant& v) { return std::abs(v.resolution_centideg * 0.01 - step_deg); };
+  ScanVariant nearest{angle_deg, 100};
+  for (const std::uint16_t centideg : {std::uint16_t{50}, std::uint16_t{25}}) {
+    const ScanVariant variant{angle_deg, centideg};
+    if (is_possible(variant) && distance(variant) < distance(nearest)) nearest = variant;
+  }
+  return nearest;
+}
+
+CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> no_return_m,
+                       const std::function<void(std::uint64_t read, std::uint64_t total)>& tell_bytes) {
+  CarmenSurvey survey;
+  find_clock(survey, log);
+  CarmenLog lines{log, survey.clock};
+  RangeCensus census;
+  while (const auto record = lines.next()) {
+    if (tell_bytes) tell_bytes(lines.read_bytes(), lines.size_bytes());
+    if (const auto* scan = std::get_if<CarmenScan>(&*record)) {
+      add_scan(survey, census, *scan);
+    } else if (!survey.scans_carry_poses) {
+      const auto& odometry = std::get<CarmenOdometry>(*record);
+      survey.odometry.push_back({odometry.time, odometry.odom_from_robot});
+    }
+  }
+  survey.cut = lines.cut();
+  if (survey.scans == 0) throw std::runtime_error(log.string() + ": no scan from the first line to the last");
+  std::stable_sort(survey.odometry.begin(), survey.odometry.end(),
+                   [](const TimedPose& a, const TimedPose& b) { return a.time < b.time; });
+  survey.units = census.units();
+  survey.measuring_mode = census.measuring_mode();
+  if (no_return_m) {
+    if (*no_return_m > 0.0) survey.no_return_m = no_return_m;
+  } else {
+    census.find_no_return(survey);
+  }
+  return survey;
+}
+
+std::string no_return_line(const CarmenSurvey& survey) {
+  if (!survey.no_return_m) return "";
+  std::ostringstream line;
+  line << "no return: ";
+  if (survey.no_return_share == 0.0) {
+    line << *survey.no_return_m << " m and more, as given";
+  } else {
+    line << "the log's largest value" << (*survey.no_return_m < survey.no_return_up_to_m ? "s " : " ");
+    if (*survey.no_return_m < survey.no_return_up_to_m) line << *survey.no_return_m << " to ";
+    line << survey.no_return_up_to_m << " m, " << 100.0 * survey.no_return_share
+         << " % of the beams (--no-return R overrides)";
+  }
+  return line.str();
+}
+
+}  // namespace deltamap::drivers::carmen

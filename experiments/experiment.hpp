@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an experiment is: runs that know nothing of each other, each with what it measured, and a report that is made of
+// them all. The same options give the same results, however many runs go on at once.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "daemon/settings/settings.hpp"
+#include "experiments/certainty.hpp"
+#include "experiments/scan_table.hpp"
+#include "localization/localizer_params.hpp"
+
+namespace deltamap::experiments {
+
+struct Options {
+  std::filesystem::path scenarios = "config/scenarios";
+  std::optional<std::filesystem::path> data{};  ///< recorded maps
+  std::uint64_t seed = 1;
+  bool quick = false;                         ///< fewer runs, shorter drives: to see that it works
+  std::optional<double> minutes{};            ///< of one drive, in place of the experiment's, > 0
+  std::optional<int> repeats{};               ///< seeds or runs a cell, in place of the experiment's, > 0
+  localization::LocalizerParams localizer{};  ///< as the daemon would have it
+  daemon::MappingSettings mapping{};          ///< the same
+};
+
+struct Picture {
+  std::string title;
+  std::string svg;
+};
+
+/// What one run has to show: a line of NAME.csv, and its scans.
+struct Outcome {
+  std::vector<std::pair<std::string, std::string>> labels;  ///< what was done
+  std::vector<std::pair<std::string, double>> numbers;      ///< what came out
+  ScanTable scans;
+  std::vector<Picture> pictures{};  ///< for the report to choose from
+
+  [[nodiscard]] const std::string& label(std::string_view name) const;
+  [[nodiscard]] double number(std::string_view name) const;
+};
+
+struct Run {
+  std::string name;  ///< unique in the experiment, fit for a file's name
+  std::function<Outcome()> work;
+};
+
+/// What was promised of a figure.
+struct Target {
+  std::optional<double> least{};
+  std::optional<double> most{};
+
+  [[nodiscard]] bool is_met_by(double value) const { return (!least || value >= *least) && (!most || value <= *most); }
+};
+
+struct Figure {
+  std::string name;
+  double value = 0.0;  ///< NaN where there is nothing to measure
+  std::string unit{};  ///< empty: a share or a count
+  std::optional<Target> target{};
+  std::string peers{};                   ///< what others reach
+  std::optional<Certainty> certainty{};  ///< of a figure that is made of runs
+};
+
+struct Series {
+  std::string name;
+  std::vector<std::pair<double, double>> points;
+};
+
+struct Chart {
+  std::string title;
+  std::string x;
+  std::string y;
+  std::vector<Series> series{};
+  bool with_diagonal = false;  ///< y = x, for reliability
+};
+
+struct TextTable {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+struct Report {
+  std::vector<Figure> figures;
+  std::vector<Chart> charts;
+  std::vector<TextTable> tables;
+  std::vector<Picture> pictures{};
+};
+
+class Experiment {
+ public:
+  virtual ~Experiment() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  [[nodiscard]] virtual std::string what() const = 0;  ///< one line
+  /// Numbers that end in _ms or _mb are then the machine's, and differ from one time to the next.
+  [[nodiscard]] virtual bool measures_time() const { return false; }
+  /// One run at a time: others beside it would be measured too.
+  [[nodiscard]] virtual bool runs_alone() const { return measures_time(); }
+  /// Throws std::runtime_error where a scenario cannot be read.
+  [[nodiscard]] virtual std::vector<Run> runs(const Options& options) const = 0;
+  /// `outcomes` in the order of the runs.
+  [[nodiscard]] virtual Report report(const std::vector<Outcome>& outcomes) const = 0;
+};
+
+}  // namespace deltamap::experiments

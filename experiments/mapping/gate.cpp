@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// `gate`: is anything written into the map while the robot is not where it believes to be, does it stay there, and how
+// long is nothing written although all is well?
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "experiments/mapping/gate_run.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/watch/mapping_run.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+constexpr std::array kPlaces{"hall", "depot", "changed"};
+constexpr std::array kGates{"gated", "open"};
+
+class Gate : public Experiment {
+ public:
+  [[nodiscard]] std::string name() const override { return "gate"; }
+  [[nodiscard]] std::string what() const override {
+    return "A robot that maps while a fork-lift works is carried by one bay or anywhere, or slips: what is written "
+           "while its pose is wrong";
+  }
+  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
+  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
+};
+
+std::vector<Run> Gate::runs(const Options& options) const {
+  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
+  std::vector<Run> runs;
+  for (const std::string place : kPlaces) {
+    const auto scenario =
+        std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / (place + ".yaml")));
+    for (const PoseEvent event : kPoseEvents) {
+      for (const std::string gate : kGates) {
+        for (int i = 0; i < seeds; ++i) {
+          const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+          const std::string what{name_of(event)};
+          GateRun run{*scenario, settings_of(options, "evidence"), event, seed};
+          run.settings.mapping.store_scan.gate.enabled = gate == "gated";
+          if (options.quick) run.before_s = run.after_s = 30.0;
+          if (options.minutes) {
+            run.after_s = 60.0 * *options.minutes;
+            run.before_s = std::min(run.before_s, run.after_s);
+          }
+          runs.push_back(
+              {place + "-" + what + "-" + gate + "-seed" + std::to_string(seed), [=] {
+                 Outcome outcome = outcome_of(run);
+                 outcome.labels = {{"place", place}, {"event", what}, {"gate", gate}, {"seed", std::to_string(seed)}};
+                 return outcome;
+               }});
+        }
+      }
+    }
+  }
+  return runs;
+}
+
+/// The runs of one kind; an empty word stands for all.
+class Kind {
+ public:
+  Kind(const std::vector<Outcome>& outcomes, const std::string& place, const std::string& event,
+       const std::string& gate) {
+    for (const Outcome& outcome : outcomes) {
+      const auto fits = [&](const char* label, const std::string& wanted) {
+        return wanted.empty() || outcome.label(label) == wanted;
+      };
+      if (fits("place", place) && fits("event", event) && fits("gate", gate)) chosen_.push_back(&outcome);
+    }
+  }
+  [[nodiscard]] bool empty() const { return chosen_.empty(); }
+  [[nodiscard]] double sum(const std::string& number) const {
+    double sum = 0.0;
+    for (const Outcome* outcome : chosen_) sum += outcome->number(number);
+    return sum;
+  }
+  [[nodiscard]] double mean(const std::string& number) const {
+    return sum(number) / static_cast<double>(chosen_.size());
+  }
+  [[nodiscard]] const std::vector<const Outcome*>& outcomes() const { return chosen_; }
+
+ private:
+  std::vector<const Outcome*> chosen_;
+};
+
+/// Why it was shut, the longest first left to the reader: every reason that was.
+std::vector<std::vector<std::string>> reasons_of(const Kind& kind, const std::string& where, const std::string& when) {
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 1; i < mapping::kGateReasons; ++i) {
+    const std::string reason{mapping::name_of(static_cast<mapping::GateReason>(i))};
+    const double share = kind.mean("shut_" + when + "_" + reason);
+    if (share > 0.0)
+      rows.push_back({where, when == "before" ? "all is well" : "after the event", reason, text_of(share)});
+  }
+  return rows;
+}
+
+Chart course_of(const Kind& kind, const std::string& title) {
+  Chart chart{title, "time, s", "error of the pose, m (at most 1)", {}};
+  for (const Outcome* outcome : kind.outcomes()) {
+    Series series{"seed " + outcome->label("seed"), {}};
+    const std::vector<double> time_s = outcome->scans.column("t_s");
+    const std::vector<double> error_m = outcome->scans.column("error_m");
+    for (std::size_t i = 0; i < time_s.size(); i += 10)
+      series.points.emplace_back(time_s[i], std::min(1.0, error_m[i]));
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+Report Gate::report(const std::vector<Outcome>& outcomes) const {
+  Report report;
+  TextTable table{
+      "By place and event, all seeds",
+      {"place", "event", "gate", "revisions", "cells", "written astray", "of them still there after 60 s",
+       "revisions withdrawn", "sets refused", "pose wrong, s", "of that gate open, s", "shut after the event"},
+      {}};
+  TextTable reasons{"Why the gate was shut, share of the time", {"place and event", "when", "reason", "share"}, {}};
+  for (const std::string place : kPlaces) {
+    for (const PoseEvent event : kPoseEvents) {
+      const std::string what{name_of(event)};
+      for (const std::string gate : kGates) {
+        const Kind kind{outcomes, place, what, gate};
+        if (kind.empty()) continue;
+        const auto sum = [&](const char* number) { return text_of(kind.sum(number)); };
+        table.rows.push_back({place, what, gate, sum("revisions"), sum("cells"), sum("cells_astray"),
+                              sum("cells_astray_that_stood"), sum("revisions_withdrawn"), sum("sets_refused_in_doubt"),
+                              sum("wrong_s"), sum("wrong_and_open_s"), text_of(kind.mean("shut_after"))});
+        if (gate != "gated") continue;
+        for (auto& row : reasons_of(kind, place + ", " + what, "after")) reasons.rows.push_back(std::move(row));
+        if (event != PoseEvent::kNothing) report.charts.push_back(course_of(kind, place + ", " + what));
+      }
+    }
+    const Kind gated{outcomes, place, "", "gated"};
+    const Kind open{outcomes, place, "", "open"};
+    if (gated.empty() || open.empty()) continue;
+    report.figures.push_back({place + ": cells written while the pose was off by more than 0.3 m",
+                              gated.sum("cells_astray"), "", Target{.most = 0.0}});
+    report.figures.push_back({place + ": cells written while off by more than 0.3 m that are there 60 s later",
+                              gated.sum("cells_astray_that_stood"), "", Target{.most = 0.0}});
+    report.figures.push_back({place + ": cells drawn from scans taken so far off", gated.sum("cells_drawn_astray"), "",
+                              Target{.most = 0.0}});
+    report.figures.push_back({place + ": cells written while the pose was off by more than 0.3 m, without the gate",
+                              open.sum("cells_astray"), ""});
+    report.figures.push_back(
+        {place + ": cells written while off by more than 0.3 m that are there 60 s later, without the gate",
+         open.sum("cells_astray_that_stood"), ""});
+    const Kind quiet{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "gated"};
+    if (quiet.empty()) continue;
+    const Kind quiet_open{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "open"};
+    report.figures.push_back({place + ": share of the time shut while nothing befalls the robot",
+                              quiet.mean("shut_after"), "", Target{.most = 0.02}});
+    if (quiet_open.empty()) continue;
+    report.figures.push_back({place + ": cells written while nothing befalls it, of those without the gate",
+                              quiet.sum("cells") / quiet_open.sum("cells"), ""});
+  }
+  report.tables = {std::move(table), std::move(reasons)};
+  return report;
+}
+
+}  // namespace
+
+std::unique_ptr<Experiment> gate_experiment() { return std::make_unique<Gate>(); }
+
+}  // namespace deltamap::experiments

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// `unseen`: forty minutes in a world that nobody has tuned on. Every seed is another kind of building, map, laser,
+// robot and life in it; what a choice is worth shows in the median and the tail of many seeds, never in one.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "daemon/settings/settings.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/seed_summary.hpp"
+#include "experiments/watch/pose_course.hpp"
+#include "experiments/watch/watched_drive.hpp"
+#include "simulation/drawn/unseen_world.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+using simulation::drawn::UnseenKind;
+
+constexpr int kSeeds = 60;
+constexpr int kQuickSeeds = 3;
+constexpr double kMinutes = 40.0;
+constexpr double kQuickMinutes = 6.0;
+constexpr std::uint64_t kFirstClosing = 1000;  // below: for development
+constexpr std::uint64_t kLastClosing = 1059;
+
+/// One set must not be mixed with the other.
+void expect_one_set(std::uint64_t first, std::uint64_t last) {
+  const bool is_development = first >= 1 && last < kFirstClosing;
+  const bool is_closing = first >= kFirstClosing && last <= kLastClosing;
+  if (is_development || is_closing) return;
+  throw daemon::SettingsError(
+      "--seed " + std::to_string(first) + " with " + std::to_string(last - first + 1) +
+      " seeds: unseen has seeds 1 to 999 for development and 1000 to 1059 for closing notes alone");
+}
+
+/// "180/0.5 8m 12.5Hz"
+std::string laser_text(const UnseenKind& kind) {
+  return drivers::lms200::name_of(kind.fan) + " " + text_of(kind.range_m) + "m " +
+         text_of(std::round(10.0 / kind.scan_period_s) / 10.0) + "Hz";
+}
+
+std::string map_text(const UnseenKind& kind) {
+  std::string text = kind.from_first_drive ? "first drive" : "exact";
+  if (kind.outdated_share > 0.0) text += " " + text_of(std::round(100.0 * kind.outdated_share)) + "% outdated";
+  return text;
+}
+
+void add_kind(Outcome& outcome, const UnseenKind& kind, std::uint64_t seed) {
+  outcome.labels.insert(outcome.labels.begin(), {{"seed", std::to_string(seed)},
+                                                 {"layout", std::string{name_of(kind.layout)}},
+                                                 {"laser", laser_text(kind)},
+                                                 {"map", map_text(kind)},
+                                                 {"start", kind.knows_start ? "given" : "global"}});
+  const std::vector<std::pair<std::string, double>> drawn{
+      {"resolution_m", kind.resolution_m},
+      {"outdated_share", kind.outdated_share},
+      {"range_noise_m", kind.range_noise_m},
+      {"mount_off_m", kind.told_from_true_mount.position().norm()},
+      {"mount_off_deg", degrees(kind.told_from_true_mount.theta)},
+      {"speed_m_per_s", kind.speed_m_per_s},
+      {"wheel_scale", kind.wheels.scale},
+      {"wheel_turn", kind.wheels.turn},
+      {"wheel_drift_deg_per_m", degrees(kind.wheels.drift_rad_per_m)},
+      {"wheel_noise_m_per_sqrt_m", kind.wheel_noise_m_per_sqrt_m},
+      {"odometry_lag_s", kind.odometry_lag_s},
+      {"people", kind.people.all},
+      {"changes_per_min", kind.changes_per_min}};
+  outcome.numbers.insert(outcome.numbers.end(), drawn.begin(), drawn.end());
+}
+
+Outcome drive_through(std::uint64_t seed, double minutes, const Options& options) {
+  const UnseenKind kind = simulation::drawn::unseen_kind(seed);
+  simulation::drawn::UnseenWorld world = simulation::drawn::unseen_world(kind, seed);
+  WatchedRun run{world.drawn.scenario,
+                 world.drawn.drive,
+                 std::make_shared<const OccupancyGrid>(std::move(world.first_map)),
+                 {},
+                 minutes,
+                 kind.knows_start};
+  run.settings.localizer = options.localizer;
+  run.settings.mapping = options.mapping;
+  Outcome outcome = watched_drive(run);
+  add_kind(outcome, kind, seed);
+  return outcome;
+}
+
+std::vector<SpreadAsked> asked() {
+  return {{"error_rms_m", "m", Better::kLess, 0.01, 0.03, 0.10},
+          {"laser_error_rms_m", "m"},
+          {"error_most_m", "m"},
+          {"off_share"},
+          {"stretches_off"},
+          {"jumps", "", Better::kLess, 0.0, 0.0, 0.0},
+          {"found_after_s", "s"},
+          {"wrong_before_found_s", "s"},
+          {"searching_while_near_s", "s"},
+          {"recall", "", Better::kMore, 0.98, {}, 0.9},
+          {"precision", "", Better::kMore, 0.98, {}, 0.9},
+          {"skill", "", Better::kMore, 0.92, {}, 0.7},
+          {"gate_shut_while_right", "", Better::kLess, 0.02, {}, 0.15},
+          {"cells_written_astray", "", Better::kLess, 0.0, 0.0, 0.0},
+          {"wall_drift_m", "m", Better::kLess, {}, {}, 0.02},
+          {"inside_95", "", Better::kMore, 0.90},
+          {"inside_95_after_slip", "", Better::kMore, 0.90},
+          {"localizer_cpu_ms", "ms a scan"},
+          {"mapping_cpu_ms", "ms a scan"}};
+}
+
+/// Why a drive counts as failed; empty where it does not.
+std::string failure_of(const Outcome& outcome) {
+  std::string failure;
+  const auto add = [&](bool failed, const std::string& what) {
+    if (failed) failure += (failure.empty() ? "" : ", ") + what;
+  };
+  add(outcome.number("start_found") == 0.0, "start not found");
+  add(outcome.number("stretches_off") > 0.0, "off for " + text_of(outcome.number("longest_off_s")) + " s");
+  add(outcome.number("jumps") > 0.0, text_of(outcome.number("jumps")) + " jumps");
+  add(outcome.number("error_rms_m") > 0.10, "RMSE " + text_of(outcome.number("error_rms_m")) + " m");
+  add(outcome.number("gate_shut_while_right") > 0.15, "gate shut " + text_of(outcome.number("gate_shut_while_right")));
+  add(outcome.number("cells_written_astray") > 0.0,
+      text_of(outcome.number("cells_written_astray")) + " cells written astray");
+  add(outcome.number("skill") < 0.7, "skill " + text_of(outcome.number("skill")));
+  add(outcome.number("recall") < 0.9, "recall " + text_of(outcome.number("recall")));
+  return failure;
+}
+
+TextTable failed_seeds(const std::vector<Outcome>& outcomes) {
+  TextTable table{
+      "Failed seeds", {"seed", "world", "laser", "map", "start", "what failed", "first off after, s", "then"}, {}};
+  for (const Outcome& outcome : outcomes) {
+    const std::string failure = failure_of(outcome);
+    if (failure.empty()) continue;
+    table.rows.push_back({outcome.label("seed"), outcome.label("layout"), outcome.label("laser"), outcome.label("map"),
+                          outcome.label("start"), failure, text_of(outcome.number("first_off_s")),
+                          outcome.label("cause")});
+  }
+  return table;
+}
+
+/// The longest first.
+TextTable shut_while_right(const std::vector<Outcome>& outcomes) {
+  std::vector<std::pair<double, std::vector<std::string>>> rows;
+  for (const std::string& why : all_whys_shut()) {
+    double all_s = 0.0;
+    std::size_t seeds = 0;
+    const Outcome* worst = nullptr;
+    for (const Outcome& outcome : outcomes) {
+      const double shut_s = outcome.number(shut_number(why));
+      all_s += shut_s;
+      seeds += shut_s > 0.0 ? 1 : 0;
+      if (worst == nullptr || shut_s > worst->number(shut_number(why))) worst = &outcome;
+    }
+    if (seeds == 0) continue;
+    rows.push_back({all_s, {why, text_of(std::round(all_s)), std::to_string(seeds), worst->label("seed")}});
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  TextTable table{
+      "Why the gate was shut while the pose was right", {"why", "s, all seeds", "seeds", "longest in seed"}, {}};
+  for (auto& row : rows) table.rows.push_back(std::move(row.second));
+  return table;
+}
+
+/// The values of all seeds in order of size: how long the tail is.
+Chart chart_of(const std::string& what, const std::string& number, const std::vector<Outcome>& outcomes) {
+  std::vector<double> values;
+  for (const Outcome& outcome : outcomes) values.push_back(outcome.number(number));
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  std::sort(values.begin(), values.end());
+  Series series{number, {}};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    series.points.emplace_back(static_cast<double>(i + 1) / static_cast<double>(values.size()), values[i]);
+  return {what + ", seeds in order", "share of the seeds", what, {series}};
+}
+
+class Unseen : public Experiment {
+ public:
+  [[nodiscard]] std::string name() const override { return "unseen"; }
+  [[nodiscard]] std::string what() const override {
+    return "Worlds that nobody has tuned on, another kind for every seed (1-999: development; 1000-1059: closing "
+           "notes)";
+  }
+  [[nodiscard]] bool measures_time() const override { return true; }  // CPU time of the thread
+  [[nodiscard]] bool runs_alone() const override { return false; }
+  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
+  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
+};
+
+std::vector<Run> Unseen::runs(const Options& options) const {
+  const auto seeds = static_cast<std::uint64_t>(options.repeats.value_or(options.quick ? kQuickSeeds : kSeeds));
+  const double minutes = options.minutes.value_or(options.quick ? kQuickMinutes : kMinutes);
+  expect_one_set(options.seed, options.seed + seeds - 1);
+  std::vector<Run> runs;
+  for (std::uint64_t seed = options.seed; seed < options.seed + seeds; ++seed) {
+    runs.push_back({"seed" + std::to_string(seed), [=] { return drive_through(seed, minutes, options); }});
+  }
+  return runs;
+}
+
+Report Unseen::report(const std::vector<Outcome>& outcomes) const {
+  Report report;
+  const auto count = [&](const std::string& name, const auto& holds, const std::optional<Target>& target = {}) {
+    const auto found = std::count_if(outcomes.begin(), outcomes.end(), holds);
+    report.figures.push_back({name, static_cast<double>(found), "", target});
+  };
+  count(
+      "seeds off by more than 0.5 m for more than 5 s",
+      [](const Outcome& o) { return o.number("stretches_off") > 0.0; }, Target{.most = 1.0});
+  count("seeds whose start was not found", [](const Outcome& o) { return o.number("start_found") == 0.0; });
+  count("seeds that failed in any way", [](const Outcome& o) { return !failure_of(o).empty(); });
+  for (Figure& figure : spread_figures(asked(), outcomes)) report.figures.push_back(std::move(figure));
+  report.charts.push_back(chart_of("RMSE of the pose, m", "error_rms_m", outcomes));
+  report.charts.push_back(chart_of("skill of the map", "skill", outcomes));
+  report.charts.push_back(
+      chart_of("gate shut while the pose is right, share of the time", "gate_shut_while_right", outcomes));
+  report.tables.push_back(failed_seeds(outcomes));
+  report.tables.push_back(shut_while_right(outcomes));
+  return report;
+}
+
+}  // namespace
+
+std::unique_ptr<Experiment> unseen_experiment() { return std::make_unique<Unseen>(); }
+
+}  // namespace deltamap::experiments

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of a drive, a row for every scan; and the statistics that are made of them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace deltamap::experiments {
+
+class ScanTable {
+ public:
+  ScanTable() = default;
+  explicit ScanTable(std::vector<std::string> columns) : columns_{std::move(columns)} {}
+
+  /// As many as there are columns.
+  void add(const std::vector<double>& row);
+  [[nodiscard]] std::size_t rows() const { return columns_.empty() ? 0 : values_.size() / columns_.size(); }
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+  [[nodiscard]] std::vector<double> column(std::string_view name) const;
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const { return values_[row * columns_.size() + column]; }
+  [[nodiscard]] std::size_t index_of(std::string_view column) const;
+
+ private:
+  std::vector<std::string> columns_;
+  std::vector<double> values_;
+};
+
+/// Shortest text that tells the number to six digits; empty for NaN.
+[[nodiscard]] std::string text_of(double number);
+
+// NaN where there are no values.
+[[nodiscard]] double mean_of(const std::vector<double>& values);
+[[nodiscard]] double root_mean_square(const std::vector<double>& values);
+/// The smallest value that at least this share of all does not exceed.
+[[nodiscard]] double quantile(std::vector<double> values, double share);
+/// Share of the values above a limit.
+[[nodiscard]] double share_above(const std::vector<double>& values, double limit);
+
+/// The most that the true share may be where `hits` of `all` were seen: upper end of Wilson's interval of 95 %.
+[[nodiscard]] double wilson_upper(double hits, double all);
+
+void append(std::vector<double>& values, const std::vector<double>& more);
+
+}  // namespace deltamap::experiments

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a figure is over many seeds: its median, what nine of ten reach, and the worst.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.hpp"
+
+namespace deltamap::experiments {
+
+enum class Better : std::uint8_t { kLess, kMore };
+
+/// NaN where there are no values.
+struct Spread {
+  double median = 0.0;
+  double nine_of_ten = 0.0;  ///< nine of ten seeds are as good or better
+  double worst = 0.0;
+};
+/// Values that are NaN say nothing and are left out.
+[[nodiscard]] Spread spread_of(const std::vector<double>& values, Better better);
+
+/// A number of every run, and what is asked of its median, of nine of ten, and of the worst.
+struct SpreadAsked {
+  std::string number;
+  std::string unit{};
+  Better better = Better::kLess;
+  std::optional<double> median{};
+  std::optional<double> nine_of_ten{};
+  std::optional<double> worst{};
+};
+
+/// Three figures of each number.
+[[nodiscard]] std::vector<Figure> spread_figures(const std::vector<SpreadAsked>& asked,
+                                                 const std::vector<Outcome>& outcomes);
+
+}  // namespace deltamap::experiments

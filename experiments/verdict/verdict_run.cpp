@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiments/verdict/verdict_run.hpp"
+
+#include <cmath>
+#include "experiments/drive/view_difference.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+constexpr double kDriving_m_per_s = 0.05;
+constexpr double kTurning_rad_per_s = radians(3.0);
+constexpr double kMostWaiting = 2.0;  // times the driving that is wanted: then the run ends all the same
+
+constexpr double kOracle_s = 30.0;  // of driving: the path that the oracle sees
+constexpr double kViewEvery_s = 2.5;
+
+constexpr double kOtherEndShare = 0.05;  // of the beams end elsewhere: the map is wrong here
+
+/// Whether the robot moved or turned between two scans.
+bool has_driven(const Pose2& before, const Pose2& now, double dt_s) {
+  return distance_between(before, now) > kDriving_m_per_s * dt_s ||
+         std::abs(turn_between(before.theta, now.theta)) > kTurning_rad_per_s * dt_s;
+}
+
+/// Where this run's robot begins: on the free floor of the place as M_0 shows it.
+Pose2 beginning_of(const VerdictPlace& place, const VerdictRun& run) {
+  const simulation::VirtualDrive drive{place.scenario, {.seed = run.seed, .people = place.people}};
+  Random random{run.seed + 7919};
+  return drive.place_anywhere(random);
+}
+
+}  // namespace
+
+VerdictScans verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
+                           const VerdictRun& run) {
+  const Pose2 begin = beginning_of(place, run);
+  simulation::VirtualDriveParams drive{.seed = run.seed, .map_from_start = begin, .max_range_m = run.max_range_m};
+  drive.people = place.people;
+  LocalizerDrive pair{place.scenario, drive, place.localizer, place.map, localization::InitialPose{begin}};
+  (void)pair.localizer().restore(lived_in);
+  const simulation::RayCaster as_mapped{place.scenario.world};
+  Random random{run.seed + 104729};
+  ScanTable scans{{"since_event_s", "driven_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state",
+                   "pose_right", "map_wrong", "verdict", "map_is_wrong", "stable_expected", "stable_fit",
+                   "rival_share"}};
+  std::optional<double> event_s;
+  std::optional<Followed> last;  // since the event
+  std::vector<Pose2> views;      // map_from_laser, one now and then while driving
+  double driven_s = 0.0;
+  const double end_s = run.before_s + kMostWaiting * run.after_driving_s;
+  for (double passed_s = 0.0; passed_s < end_s && driven_s < run.after_driving_s;) {
+    if (!event_s && passed_s >= run.before_s) {
+      event_s = passed_s;
+      if (run.changed_share > 0.0) (void)pair.drive().change_many(run.changed_share, busy_forklift(1.0));
+      befall(pair.drive(), run.event, random);
+    }
+    const Followed scan = pair.next();
+    passed_s = scan.passed_s;
+    if (event_s && last && has_driven(last->map_from_robot, scan.map_from_robot, passed_s - last->passed_s)) {
+      driven_s += passed_s - last->passed_s;
+    }
+    if (event_s) last = scan;
+    const Pose2 map_from_laser = scan.map_from_robot * place.scenario.laser.optics.robot_from_laser;
+    if (event_s && driven_s <= kOracle_s && driven_s >= kViewEvery_s * static_cast<double>(views.size())) {
+      views.push_back(map_from_laser);
+    }
+    const PoseError error = error_of(scan);
+    const Belief& belief = scan.estimate.belief;
+    const bool differs =
+        event_s && run.changed_share > 0.0 &&
+        differing_share(pair.drive().surfaces(), as_mapped, map_from_laser, run.max_range_m) > kOtherEndShare;
+    scans.add({event_s ? passed_s - *event_s : passed_s - run.before_s, driven_s, scan.map_from_robot.x,
+               scan.map_from_robot.y, scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
+               static_cast<double>(scan.estimate.state), belief.pose_right, belief.map_wrong,
+               static_cast<double>(belief.verdict), differs ? 1.0 : 0.0, static_cast<double>(belief.stable.expected),
+               static_cast<double>(belief.stable.fit), belief.rival_share});
+  }
+  VerdictScans answer{std::move(scans), place.oracle->ambiguity(views, pair.drive().surfaces(), run.max_range_m)};
+  const std::size_t needed = place.oracle->views_needed(views, pair.drive().surfaces(), run.max_range_m, answer.path);
+  answer.unique_after_s = needed > 0 ? kViewEvery_s * static_cast<double>(needed - 1) : std::nan("");
+  return answer;
+}
+
+}  // namespace deltamap::experiments

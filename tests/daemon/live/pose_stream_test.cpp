@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program that listens to the poses of a running daemon, and one that stalls.
+#include "daemon/live/pose_stream.hpp"
+
+#include <map>
+
+#include "tests/support/control_fixture.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using nlohmann::json;
+
+class PoseStreamTest : public test::ControlDeskTest {
+ protected:
+  PoseStreamTest() { settings_.poses.socket = folder_.path() / "poses.sock"; }
+
+  /// Lines of type "pose" by their scan.
+  static std::map<int, json> poses_of(test::SocketClient& client, std::size_t wanted) {
+    std::map<int, json> poses;
+    for (std::string line = client.line(); !line.empty() && poses.size() < wanted; line = client.line()) {
+      const json told = json::parse(line);
+      if (told["type"] == "pose") poses[told["scan"]] = told;
+    }
+    return poses;
+  }
+  /// x, by scan, as localization.csv of the run has it.
+  [[nodiscard]] std::map<int, double> logged_x() const {
+    std::map<int, double> found;
+    std::istringstream text{test::content_of(folder_.path() / "live/localization.csv")};
+    std::string line;
+    std::getline(text, line);
+    while (std::getline(text, line)) {
+      int number = 0;
+      double x = 0.0;
+      if (std::sscanf(line.c_str(), "%*[^,],%d,%*[^,],%lf", &number, &x) == 2) found[number] = x;
+    }
+    return found;
+  }
+};
+
+TEST_F(PoseStreamTest, TellsTheVeryPosesThatTheRunWritesScanByScan) {
+  constexpr std::size_t kWanted = 50;
+  std::map<int, json> told;
+  std::string hello;
+  const RunReport report = run_live(std::chrono::microseconds(6000), [&](const Pipeline&) {
+    test::SocketClient stalls{settings_.poses.socket};
+    test::SocketClient client{settings_.poses.socket};
+    hello = client.line();
+    told = poses_of(client, kWanted);
+  });
+  EXPECT_EQ(json::parse(hello)["type"], "hello");
+  EXPECT_EQ(json::parse(hello)["protocol"], 1);
+  ASSERT_EQ(told.size(), kWanted);
+  const auto left_out = static_cast<std::uint64_t>(told.rbegin()->first - told.begin()->first) + 1 - kWanted;
+  EXPECT_LE(left_out, report.scans.lost + report.scans.dropped) << "no scan that has a pose is left out";
+  const auto logged = logged_x();
+  for (const auto& [scan, pose] : told) {
+    ASSERT_TRUE(logged.contains(scan)) << scan;
+    EXPECT_NEAR(pose["x_m"].get<double>(), logged.at(scan), 1e-8);  // the log has nine digits
+    EXPECT_EQ(pose["state"], "tracking");
+    EXPECT_TRUE(pose["gate"].contains("open"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(settings_.poses.socket));
+}
+
+TEST_F(PoseStreamTest, WithoutDeltaMappingThereIsNoGate) {
+  settings_.mapping.enabled = false;
+  std::map<int, json> told;
+  (void)run_live(std::chrono::microseconds(2000), [&](const Pipeline&) {
+    test::SocketClient client{settings_.poses.socket};
+    told = poses_of(client, 1);
+  });
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told.begin()->second["gate"], nullptr);
+}
+
+TEST_F(PoseStreamTest, ASocketThatCannotBeHadIsAWarningAndTheRunGoesOn) {
+  (void)folder_.write("poses.sock", "precious");
+  std::vector<std::string> warnings;
+  prepare_ = [&](Pipeline::Options& live) { live.warn = [&](const std::string& line) { warnings.push_back(line); }; };
+  EXPECT_GT(run_live(std::chrono::microseconds(0)).scans.decoded, 0u);
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_EQ(warnings.front(), "no stream of poses in this run: " + settings_.poses.socket +
+                                  ": cannot listen: a file that is no socket is in the way");
+}
+
+TEST_F(PoseStreamTest, ASecondDaemonOnTheSameSocketEndsBeforeItDoesHarm) {
+  Settings other = settings_;
+  other.control.socket.clear();
+  (void)run_live(std::chrono::microseconds(0), [&](const Pipeline&) {
+    EXPECT_THROW((Pipeline{other, options()}), sockets::AlreadyServed);
+  });
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

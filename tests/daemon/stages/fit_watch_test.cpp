@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pose that fits nowhere and a map of somewhere else are told, once and at once.
+#include "daemon/stages/fit_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace deltamap::daemon {
+namespace {
+
+constexpr double kPeriod_s = 0.2;
+
+/// What is said while scans of this fit come, 0.1 m of driving apart.
+class Watched {
+ public:
+  explicit Watched(bool is_given) : watch_{is_given} {}
+
+  /// It does not move while it is held.
+  void hold() { step_m_ = 0.0; }
+
+  std::string after(double duration_s, std::optional<double> fit, LocalizerState state = LocalizerState::kTracking) {
+    std::string said;
+    for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
+      tracked_.scan.time += duration_from_seconds(kPeriod_s);
+      tracked_.odom_from_robot.x += step_m_;
+      tracked_.estimate.state = state;
+      const LogLine line = watch_.observe(tracked_, fit);
+      if (!line.text.empty()) said += (line.is_warning ? "warning: " : "") + line.text + "\n";
+    }
+    return said;
+  }
+
+ private:
+  double step_m_ = 0.1;
+  FitWatch watch_;
+  TrackedScan tracked_;
+};
+
+TEST(FitWatch, AStartPoseThatDoesNotFitIsToldAfterTheFirstScans) {
+  EXPECT_EQ(Watched{true}.after(1.0, 0.23),
+            "warning: the start pose does not fit: 23 % of the beams end where the map says; the map may be another, "
+            "or the pose "
+            "wrong: say where the robot stands by `deltamap ctl relocalize X,Y,DEG`\n");
+  EXPECT_EQ(Watched{true}.after(10.0, 0.9), "");
+  EXPECT_EQ(Watched{false}.after(1.0, 0.23), "") << "nobody gave one";
+}
+
+TEST(FitWatch, ScansWithoutAReturnSayNothingOfTheStartPose) {
+  Watched watched{true};
+  EXPECT_EQ(watched.after(5.0, std::nullopt), "");
+  EXPECT_NE(watched.after(1.0, 0.1), "");
+}
+
+TEST(FitWatch, AForeignMapIsToldOnceAfterAMinuteOfSearching) {
+  Watched watched{false};
+  EXPECT_EQ(watched.after(59.0, 0.45, LocalizerState::kGlobal), "");
+  const std::string said = watched.after(60.0, 0.45, LocalizerState::kGlobal);
+  EXPECT_EQ(
+      said.rfind("warning: no place in the map has been sure for 60 s and 30 m: 45 % of the beams fit at the best one",
+                 0),
+      0u)
+      << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
+  EXPECT_EQ(watched.after(5.0, 0.9), "the map fits again\n");
+}
+
+TEST(FitWatch, ASearchThatNobodyDrivesForIsToldToo) {
+  Watched watched{false};
+  watched.hold();
+  EXPECT_EQ(watched.after(59.0, std::nullopt, LocalizerState::kGlobal), "");
+  const std::string said = watched.after(60.0, std::nullopt, LocalizerState::kGlobal);
+  EXPECT_EQ(said.rfind("warning: no place in the map has been sure for 60 s and 0 m: is it the map", 0), 0u) << said;
+  EXPECT_EQ(watched.after(100.0, 0.2, LocalizerState::kTracking), "") << "one who stands in front of a sure pose";
+}
+
+TEST(FitWatch, APoseThatIsTrackedAndDoesNotFitForAMinuteIsToldToo) {
+  Watched watched{false};
+  EXPECT_EQ(watched.after(100.0, 0.9), "");
+  EXPECT_NE(watched.after(70.0, 0.2), "");
+}
+
+TEST(FitWatch, ARefusedStartIsAWarning) { EXPECT_TRUE(refused_start_line().is_warning); }
+
+TEST(FitWatch, TheFitIsPutIntoWords) {
+  EXPECT_EQ(fit_words(0.934), "93 % of its beams fit");
+  EXPECT_EQ(fit_words(0.12), "only 12 % of its beams fit: is it the right place, and the right map?");
+  EXPECT_EQ(fit_words(std::nullopt), "no beam came back, so that nothing tells whether it fits");
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/stages/gate_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap::daemon {
+namespace {
+
+mapping::Awareness shut(double for_s) {
+  mapping::Awareness awareness;
+  awareness.gate = mapping::GateReason::kRival;
+  awareness.gate_shut_for_s = for_s;
+  return awareness;
+}
+
+TEST(GateWatch, SpeaksOnceAfterAMinuteAndWhenItIsOpenAgain) {
+  GateWatch watch;
+  EXPECT_EQ(watch.observe({}), "");
+  EXPECT_EQ(watch.observe(shut(59.0)), "");
+  EXPECT_EQ(watch.observe(shut(60.0)), "map is not written: the gate is shut for 60 s reason=rival");
+  EXPECT_EQ(watch.observe(shut(90.0)), "");
+  EXPECT_EQ(watch.observe({}), "map is written again: the gate was shut for 90 s");
+  EXPECT_EQ(watch.observe({}), "");
+}
+
+TEST(GateWatch, KeepsSilentAboutMoments) {
+  GateWatch watch;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(watch.observe(shut(2.0)), "");
+    EXPECT_EQ(watch.observe({}), "");
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the map thread makes of sets and of orders to withdraw.
+#include "daemon/steps/map_step.hpp"
+
+#include <gtest/gtest.h>
+
+#include "daemon/maps/revision_keeper.hpp"
+#include "mapping/map_update.hpp"
+#include "mapping/store_scan.hpp"
+#include "tests/support/drawn_hall.hpp"
+#include "tests/support/drawn_scan.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+Timestamp at(double time_s) { return timestamp_from_ns(1'000'000'000'000) + duration_from_seconds(time_s); }
+
+/// A hall in which a box has appeared, driven past once: the set that draws it.
+class Withdrawal : public testing::Test {
+ protected:
+  Withdrawal() {
+    test::fill(with_box, {9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied);
+    test::fill(with_two, {9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied);
+    test::fill(with_two, {14.0, 7.5}, {15.0, 8.0}, CellState::kOccupied);
+  }
+
+  /// Drives until a set changes the map.
+  MapStep::Result change(const OccupancyGrid& world) {
+    test::DrawnScanParams noise;
+    for (int scan = 0; scan < 600; ++scan, time_s += 0.2) {
+      const double way_m = std::fmod(time_s * 0.4, 10.0);
+      const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
+      const auto set = store_scan.observe(test::drawn_scan(world, step.map(), pose, time_s, random, noise));
+      if (!set) continue;
+      MapStep::Result result = step.update(*set);
+      if (result.revision) return result;
+    }
+    ADD_FAILURE() << "nothing was written";
+    return {};
+  }
+  [[nodiscard]] static ScanSet order(Timestamp from, double time_s) {
+    ScanSet order;
+    order.began = order.ended = at(time_s);
+    order.withdraw_from = from;
+    return order;
+  }
+
+  OccupancyGrid hall = test::drawn_hall(0.05);
+  OccupancyGrid with_box = hall;
+  OccupancyGrid with_two = hall;
+  Settings settings;
+  MapStep step{settings, {std::make_shared<const OccupancyGrid>(hall), 0}};
+  mapping::StoreScan store_scan{settings.mapping.store_scan, 1};
+  Random random{5};
+  double time_s = 0.0;
+};
+
+TEST_F(Withdrawal, TakesEverythingProvisionalBackInOneRevision) {
+  (void)change(with_box);
+  const std::uint32_t written = step.revision();
+  const MapStep::Result result = step.update(order(Timestamp::min(), time_s + 1.0));
+  ASSERT_TRUE(result.revision);
+  EXPECT_EQ(*result.revision->map, hall);
+  EXPECT_EQ(result.revision->number, written + 1);
+  EXPECT_EQ(*step.map(), hall);
+  EXPECT_EQ(result.note.reason, "withdrawn");
+  EXPECT_EQ(result.note.withdraws.back(), written);
+  EXPECT_FALSE(result.revision->field_patch.box.empty()) << "the localizer takes it like any revision";
+  EXPECT_NE(json_line(result.note).find("\"withdraws\":["), std::string::npos);
+}
+
+TEST_F(Withdrawal, LeavesWhatWasWrittenBefore) {
+  (void)change(with_box);
+  const OccupancyGrid kept = *step.map();
+  const Timestamp between = at(time_s + 0.05);
+  time_s += 0.2;
+  (void)change(with_two);
+  ASSERT_NE(*step.map(), kept);
+  (void)step.update(order(between, time_s + 1.0));
+  EXPECT_EQ(*step.map(), kept);
+}
+
+TEST_F(Withdrawal, LeavesWhatIsSettled) {
+  const MapStep::Result written = change(with_box);
+  const OccupancyGrid kept = *step.map();
+  ScanSet later;
+  later.settled = written.note.time + std::chrono::nanoseconds{1};
+  (void)step.update(later);
+  const MapStep::Result result = step.update(order(Timestamp::min(), time_s + 1.0));
+  EXPECT_FALSE(result.revision);
+  EXPECT_EQ(result.note.reason, "nothing to withdraw");
+  EXPECT_EQ(*step.map(), kept);
+}
+
+TEST_F(Withdrawal, IsNotDoneTwice) {
+  (void)change(with_box);
+  (void)step.update(order(Timestamp::min(), time_s + 1.0));
+  EXPECT_FALSE(step.update(order(Timestamp::min(), time_s + 2.0)).revision);
+}
+
+TEST_F(Withdrawal, StandsInTheMapStore) {
+  const test::TemporaryFolder folder;
+  mapping::MapStore store{folder.path() / "store.sqlite", hall};
+  keep(store, change(with_box), step.method());
+  ASSERT_EQ(store.newest(), step.revision());
+  keep(store, step.update(order(Timestamp::min(), time_s + 1.0)), step.method());
+  EXPECT_EQ(store.history().back().note.cause, "withdrawn");
+  EXPECT_EQ(store.grid(store.newest()), hall);
+}
+
+TEST_F(Withdrawal, ASetOfADoubtfulPoseIsRefusedByName) {
+  ScanSet set;
+  set.pose_in_doubt = true;
+  const MapStep::Result result = step.update(set);
+  EXPECT_FALSE(result.revision);
+  EXPECT_EQ(result.note.reason, "pose in doubt");
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

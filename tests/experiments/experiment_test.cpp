@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap experiment` at the command line, with drives of seconds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "daemon/telemetry/version.hpp"
+#include "experiments/localization/weakest_axis.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/report/result_files.hpp"
+#include "experiments/report/svg_chart.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/tool_run.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::run_deltamap;
+using test::ToolRun;
+
+ToolRun experiment(const std::string& name, const fs::path& out, const std::vector<std::string>& more = {}) {
+  return test::run_experiment(name, out.string(), "0.1", more);
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(Experiment, EachLeavesATableASummaryAndAPage) {
+  for (const auto& known : experiments::experiments()) {
+    const test::TemporaryFolder folder;
+    const ToolRun answer = experiment(known->name(), folder.path(), {"--json"});
+    ASSERT_EQ(answer.exit_code, 0) << answer.errors;
+    std::vector<std::string> expected{known->name() + ".csv", "index.html", "summary.json"};
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(names_in(folder.path()), expected);
+    EXPECT_EQ(answer.output, content_of(folder.path() / "summary.json"));
+    const auto summary = nlohmann::json::parse(answer.output);
+    EXPECT_EQ(summary["experiment"], known->name());
+    EXPECT_GT(summary["runs"], 0);
+    EXPECT_GE(summary["figures"].size(), 3u) << known->name();
+    for (const auto& figure : summary["figures"]) EXPECT_EQ(figure.contains("target"), figure.contains("met"));
+    const std::string page = content_of(folder.path() / "index.html");
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_EQ(page.find("src="), std::string::npos) << "a page stands alone";
+    EXPECT_EQ(page.find("http"), std::string::npos) << "a page stands alone";
+  }
+}
+
+TEST(Experiment, SummaryAndPageSayWhichProgramMadeThemWithWhichSettings) {
+  const experiments::Results results{"name", "what", 1,  false,
+                                     {},     {},     {}, daemon::parse_settings("{mapping: {method: paper}}", "f")};
+  const auto summary = nlohmann::json::parse(experiments::summary_json(results));
+  EXPECT_EQ(summary["version"], daemon::version());
+  EXPECT_EQ(summary["commit"], daemon::commit());
+  EXPECT_EQ(summary["settings"]["changed"], nlohmann::json::parse(R"({"mapping.method": "paper"})"));
+  const std::string told =
+      "commit " + std::string(daemon::commit()) + "; settings as delivered, but mapping.method: paper.";
+  EXPECT_NE(experiments::page_html(results).find(told), std::string::npos);
+}
+
+TEST(Experiment, TableHasAColumnForEveryNumberThatAnyRunHas) {
+  const experiments::Results results{
+      "name",
+      "what",
+      1,
+      false,
+      {{"one", {}}, {"two", {}}},
+      {{{{"drive", "x"}}, {{"a", 1.0}, {"b", 2.0}}, {}}, {{{"drive", "y"}}, {{"b", 3.0}, {"c", 4.0}}, {}}},
+      {},
+      {}};
+  EXPECT_EQ(experiments::runs_csv(results), "run,drive,a,b,c\none,x,1,2,\ntwo,y,,3,4\n");
+}
+
+/// A table without the columns whose names end in _ms or _mb.
+std::vector<std::string> without_times(const std::string& csv) {
+  std::vector<bool> is_time;
+  std::vector<std::string> left;
+  std::istringstream lines{csv};
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells{line};
+    std::size_t column = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++column) {
+      if (is_time.size() == column)
+        is_time.push_back(cell.ends_with("_ms") || cell.ends_with("_mb"));  // the first line names them
+      if (!is_time[column]) left.push_back(cell);
+    }
+  }
+  return left;
+}
+
+TEST(Experiment, GivesTheSameFilesHoweverManyRunsGoOnAtOnce) {
+  for (const auto& known : experiments::experiments()) {
+    const test::TemporaryFolder one;
+    const test::TemporaryFolder three;
+    ASSERT_EQ(experiment(known->name(), one.path(), {"--jobs", "1"}).exit_code, 0);
+    ASSERT_EQ(experiment(known->name(), three.path(), {"--jobs", "3"}).exit_code, 0);
+    if (known->measures_time()) {
+      const std::string table = known->name() + ".csv";
+      EXPECT_EQ(without_times(content_of(one.path() / table)), without_times(content_of(three.path() / table)));
+      continue;
+    }
+    for (const std::string& name : names_in(one.path())) {
+      EXPECT_EQ(content_of(one.path() / name), content_of(three.path() / name)) << name;
+    }
+  }
+}
+
+TEST(Experiment, WritesEveryScanOnRequest) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(experiment("hall", folder.path(), {"--scans"}).exit_code, 0);
+  const auto files = names_in(folder.path() / "scans");
+  ASSERT_EQ(files.size(), 4u);
+  const std::string scans = content_of(folder.path() / "scans" / files.front());
+  EXPECT_EQ(scans.substr(0, 4), "t_s,");
+  EXPECT_GT(std::count(scans.begin(), scans.end(), '\n'), 50);
+}
+
+TEST(Experiment, RefusesAnUnknownNameAndListsThoseThatThereAre) {
+  const test::TemporaryFolder folder;
+  const ToolRun answer = experiment("hal", folder.path() / "new");
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_NE(answer.errors.find("'hal'"), std::string::npos) << answer.errors;
+  for (const auto& known : experiments::experiments()) {
+    EXPECT_NE(answer.errors.find(known->name()), std::string::npos) << answer.errors;
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "new"));
+}
+
+TEST(Experiment, ListsThoseThatThereAreALineEach) {
+  const ToolRun answer = run_deltamap({"experiment", "--list"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.errors;
+  std::istringstream lines{answer.output};
+  for (const auto& known : experiments::experiments()) {
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(line, known->name() + "\t" + (known->runs_alone() ? "times" : "") + "\t" + known->what());
+  }
+  EXPECT_EQ(lines.peek(), EOF);
+}
+
+TEST(Experiment, RefusesAFolderThatCannotBeWrittenInOneLine) {
+  const test::TemporaryFolder folder;
+  const ToolRun answer = experiment("hall", folder.write("file", "x") / "below");
+  EXPECT_EQ(answer.exit_code, 1);
+  EXPECT_EQ(std::count(answer.errors.begin(), answer.errors.end(), '\n'), 1) << answer.errors;
+  EXPECT_NE(answer.errors.find("below"), std::string::npos) << answer.errors;
+}
+
+TEST(Experiment, RefusesAFolderWithoutScenariosInOneLine) {
+  const test::TemporaryFolder folder;
+  const ToolRun answer = run_deltamap(
+      {"experiment", "hall", "--out", (folder.path() / "out").string(), "--scenarios", folder.path().string()});
+  EXPECT_EQ(answer.exit_code, 1);
+  EXPECT_NE(answer.errors.find("hall.yaml"), std::string::npos) << answer.errors;
+}
+
+TEST(Experiment, RefusesASettingThatThereIsNot) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--set", "localization.no_such_key=1"}).exit_code, 2);
+  EXPECT_EQ(experiment("hall", folder.path() / "out", {"--jobs", "0"}).exit_code, 2);
+  EXPECT_EQ(run_deltamap({"experiment", "hall", "--out", folder.path().string(), "--minutes", "-1"}).exit_code, 2);
+}
+
+TEST(Experiment, TriesTheFolderWithoutLeavingATrace) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(experiments::expect_writable(folder.write("file", "x") / "below"), std::runtime_error);
+  experiments::expect_writable(folder.path() / "made");
+  EXPECT_TRUE(names_in(folder.path() / "made").empty());
+}
+
+TEST(Experiment, DoesOnlyTheRunsThatAreAskedFor) {
+  const test::TemporaryFolder folder;
+  const ToolRun answer = experiment("hall", folder.path(), {"--only", "500x60-8m", "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.errors;
+  EXPECT_EQ(nlohmann::json::parse(answer.output)["runs"], 1);
+  EXPECT_EQ(experiment("hall", folder.path(), {"--only", "no such run"}).exit_code, 2);
+}
+
+TEST(Target, IsMetOnlyByAMeasuredFigureWithinItsLimits) {
+  const experiments::Target target{.least = 0.9, .most = 0.98};
+  EXPECT_TRUE(target.is_met_by(0.95));
+  EXPECT_FALSE(target.is_met_by(0.89));
+  EXPECT_FALSE(target.is_met_by(1.0));
+  EXPECT_FALSE(target.is_met_by(std::nan("")));
+}
+
+TEST(ScanTable, AnswersItsStatistics) {
+  EXPECT_DOUBLE_EQ(experiments::root_mean_square({3.0, -4.0, 0.0, 0.0}), 2.5);
+  EXPECT_DOUBLE_EQ(experiments::quantile({5.0, 1.0, 4.0, 2.0, 3.0}, 0.8), 4.0);
+  EXPECT_DOUBLE_EQ(experiments::share_above({0.1, 0.6, 0.5, 0.7}, 0.5), 0.5);
+  EXPECT_TRUE(std::isnan(experiments::mean_of({})));
+}
+
+TEST(Chart, MakesTextHarmless) {
+  const std::string html = experiments::figure_of({"t", "a < b", "y", {{"\"one\"", {{0.0, 1.0}, {1.0, 2.0}}}}});
+  EXPECT_EQ(html.find("a < b"), std::string::npos);
+  EXPECT_NE(html.find("a &lt; b"), std::string::npos);
+  EXPECT_NE(html.find("&quot;one&quot;"), std::string::npos);
+}
+
+TEST(Chart, AxesFitTheDataAndHaveRoundEnds) {
+  const auto ends = [](double low, double high) {
+    const experiments::Axis axis = experiments::axis_for(low, high);
+    EXPECT_GE((axis.high - axis.low) / axis.step, 2.0 - 1e-9) << low << " " << high;
+    EXPECT_LE((axis.high - axis.low) / axis.step, 7.0 + 1e-9) << low << " " << high;
+    return std::pair{axis.low, axis.high};
+  };
+  const auto [low, high] = ends(0.981, 0.992);
+  EXPECT_NEAR(low, 0.98, 1e-9) << "not from 0";
+  EXPECT_NEAR(high, 0.992, 0.0021);
+  EXPECT_EQ(ends(0.2, 0.9).first, 0.0) << "0 is near";
+  EXPECT_EQ(ends(-9.0, -1.0).second, 0.0);
+  EXPECT_LT(ends(5.0, 5.0).first, 5.0);
+  EXPECT_GT(ends(5.0, 5.0).second, 5.0);
+  EXPECT_LT(ends(0.0, 0.0).first, ends(0.0, 0.0).second);
+}
+
+TEST(Chart, ALineLeavesOutWhatIsNoNumberAndNothingIsDrawnOfNothing) {
+  const double nothing = std::nan("");
+  const std::string html =
+      experiments::figure_of({"t", "x", "y", {{"one", {{0.0, 1.0}, {1.0, nothing}, {2.0, 3.0}}}, {"none", {}}}});
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_NE(html.find("points=\"\""), std::string::npos);
+  EXPECT_EQ(experiments::figure_of({"t", "x", "y"}).find("nan"), std::string::npos);
+}
+
+TEST(Chart, NumbersHaveThreeDigits) {
+  EXPECT_EQ(experiments::short_text(0.0123456), "0.0123");
+  EXPECT_EQ(experiments::short_text(12345.678), "12346");
+  EXPECT_EQ(experiments::short_text(1764000000.0), "1764000000");
+  EXPECT_EQ(experiments::short_text(std::nan("")), "–");
+  EXPECT_EQ(experiments::shortened("0.123456 (0.1 … 1.98765), seed 10001, 1.23456e-05"),
+            "0.123 (0.1 … 1.99), seed 10001, 1.23e-05");
+  EXPECT_EQ(experiments::shortened("version 1.2.3, 4 of 5."), "version 1.2.3, 4 of 5.");
+}
+
+TEST(Certainty, HoldsTheMeanOfRunsThatScatter) {
+  std::vector<double> values;
+  for (int i = 0; i < 40; ++i) values.push_back(i % 2 == 0 ? 1.0 : 3.0);
+  values.push_back(std::nan(""));
+  const experiments::Certainty mean = experiments::certainty_of_mean(values);
+  EXPECT_EQ(mean.runs, 40u);
+  EXPECT_NEAR(mean.low, 2.0 - 1.96 / std::sqrt(40.0), 0.1) << "as the normal distribution has it";
+  EXPECT_NEAR(mean.high, 2.0 + 1.96 / std::sqrt(40.0), 0.1);
+  const experiments::Certainty again = experiments::certainty_of_mean(values);
+  EXPECT_EQ(mean.low, again.low) << "the same runs, the same interval";
+  EXPECT_FALSE(experiments::certainty_of_mean({1.0, 2.0, 3.0, 4.0}).has_interval()) << "too few";
+  EXPECT_FALSE(experiments::certainty_of_extreme(values).has_interval());
+  EXPECT_EQ(experiments::certainty_of_extreme(values).runs, 40u);
+}
+
+TEST(Experiment, PageTellsIntervalAndRunsBesideAFigure) {
+  experiments::Results results{"name", "what", 1, false, {}, {}, {}, {}};
+  results.report.figures = {{"error, mean", 0.0312345, "m", {}, "", experiments::Certainty{36, 0.02, 0.04}},
+                            {"worst", 0.5, "m", {}, "", experiments::Certainty{.runs = 36}}};
+  const std::string page = experiments::page_html(results);
+  EXPECT_NE(page.find("0.0312 m</td><td class=\"number\">0.02 … 0.04</td><td>36</td>"), std::string::npos) << page;
+  const auto summary = nlohmann::json::parse(experiments::summary_json(results));
+  EXPECT_EQ(summary["figures"][0]["interval_95"], nlohmann::json({0.02, 0.04}));
+  EXPECT_EQ(summary["figures"][1]["runs"], 36);
+  EXPECT_FALSE(summary["figures"][1].contains("interval_95"));
+  EXPECT_NE(page.find("--accent"), std::string::npos) << "the live page's colours";
+  EXPECT_NE(page.find("prefers-color-scheme"), std::string::npos);
+}
+
+TEST(WeakestAxis, LiesAlongACorridorWithoutEnd) {
+  const simulation::World corridor{{{1, simulation::ObjectKind::kWall, simulation::Polyline{{{-50, 0}, {50, 0}}}},
+                                    {2, simulation::ObjectKind::kWall, simulation::Polyline{{{-50, 4}, {50, 4}}}}}};
+  const auto axis = experiments::weakest_axis(corridor, simulation::RayCaster{corridor}, {0.0, 1.5, 0.3}, 8.0);
+  EXPECT_NEAR(std::abs(axis.direction.x()), 1.0, 1e-6);
+  EXPECT_NEAR(axis.share, 0.0, 1e-9);
+}
+
+TEST(WeakestAxis, IsWellObservedInARoom) {
+  const simulation::World room{
+      {{1, simulation::ObjectKind::kWall, simulation::Polyline{{{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}}}}}};
+  EXPECT_GT(experiments::weakest_axis(room, simulation::RayCaster{room}, {3.0, 3.0, 0.3}, 8.0).share, 0.1);
+}
+
+}  // namespace
+}  // namespace deltamap::experiments

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap calibrate motion`: how far the wheels of a recording can be trusted, as keys to paste into the settings.
+#include <CLI/CLI.hpp>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/grid_file.hpp"
+#include "daemon/records/recording_decoder.hpp"
+#include "daemon/settings/settings.hpp"
+#include "drivers/port/replay_port.hpp"
+#include "localization/localizer.hpp"
+#include "localization/motion_calibration.hpp"
+#include "tool/progress.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using localization::Fitted;
+using localization::MotionCalibration;
+using localization::MotionSource;
+using localization::Systematic;
+
+constexpr std::size_t kFewestSegments = 20;  // a deviation from 20 segments is good to 16 % at best
+constexpr double kLeastSureShare = 0.5;      // of the scans; a robot on a foreign map seldom has more
+constexpr double kSurePositionM = 0.15;      // an estimate that claims less does not count
+constexpr double kSureHeadingRad = radians(4.0);
+constexpr double kVague = 0.3;  // relative standard error from which on a deviation is warned about
+
+struct CalibrateOptions {
+  std::string recording;
+  std::string map;
+  std::string config;
+  std::vector<std::string> overrides;
+  std::string initial_pose;
+  bool as_json = false;
+};
+
+struct Drive {
+  std::vector<localization::MotionSegment> segments;
+  double driven_m = 0.0;
+  double turned_rad = 0.0;
+  std::size_t scans = 0;
+  std::size_t sure_scans = 0;
+  std::optional<drivers::port::LogCut> cut;  ///< the recording ends there
+};
+
+bool is_sure(const Estimate& estimate) {
+  const Eigen::Vector3d variance = estimate.covariance.diagonal();
+  return estimate.state == LocalizerState::kTracking &&
+         variance.head<2>().maxCoeff() < kSurePositionM * kSurePositionM &&
+         variance.z() < kSureHeadingRad * kSureHeadingRad;
+}
+
+/// Follows the recording on the map and cuts it into segments.
+Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) {
+  std::optional<localization::InitialPose> start;
+  if (settings.initial_pose) start = localization::InitialPose{*settings.initial_pose};
+  localization::LocalizerParams params = settings.localizer;
+  params.follow_surfaces = false;  // wheels as they count, not as they have been corrected
+  localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), start,
+                                    settings.seed};
+  const auto& update = settings.localizer.update;
+  localization::MotionSegments pairs{
+      {.step_m = std::max(1e-3, update.distance_m), .step_rad = std::max(1e-3, update.turn_rad)}};
+  Drive drive;
+  drivers::port::ReplayPort port{options.recording, {}};
+  daemon::RecordingDecoder decoder{settings};
+  const daemon::RecordingDecoder::Sinks sinks{
+      [&](Odometry&& odometry, std::uint32_t) { localizer.observe(odometry); },
+      [&](Scan&& scan) {
+        const TrackedScan tracked = localizer.observe(std::move(scan));
+        const bool sure = is_sure(tracked.estimate);
+        ++drive.scans;
+        drive.sure_scans += sure ? 1 : 0;
+        pairs.observe({tracked.odom_from_robot, tracked.odometry_epoch, tracked.estimate.map_from_robot, sure});
+      }};
+  Progress progress{"calibrate", port.size_bytes()};
+  while (const auto replayed = port.next()) {
+    decoder.feed(replayed->record, sinks);
+    progress.show(port.read_bytes());
+  }
+  drive.cut = port.cut();
+  drive.segments = pairs.segments();
+  for (const auto& segment : drive.segments) {
+    drive.driven_m += segment.driven_m;
+    drive.turned_rad += segment.turned_rad;
+  }
+  return drive;
+}
+
+/// A key of the settings, and the deviation that it holds.
+struct FittedKey {
+  const char* key;
+  MotionSource source;
+  double unit;  ///< of the key, in SI
+  const char* supported_by;
+};
+constexpr FittedKey kKeys[] = {
+    {"turn_per_turn", MotionSource::kTurnPerTurn, 1.0, "turning"},
+    {"turn_per_metre_deg", MotionSource::kTurnPerMetre, radians(1.0), "driving"},
+    {"metre_per_metre", MotionSource::kMetrePerMetre, 1.0, "driving"},
+    {"metre_per_turn_m", MotionSource::kMetrePerTurn, 1.0, "turning"},
+};
+
+bool is_vague(const Fitted& fitted) { return !(fitted.error < kVague * fitted.value); }
+
+void print_keys(const MotionCalibration& found) {
+  std::cout << "localization:\n  motion:\n" << std::fixed << std::setprecision(4);
+  for (const FittedKey& key : kKeys) {
+    const Fitted& fitted = found.of(key.source);
+    if (is_vague(fitted)) {
+      std::cout << "    # " << key.key << ": keep the default, too little " << key.supported_by << " to tell (";
+    } else {
+      std::cout << "    " << key.key << ": " << fitted.value / key.unit << "  # from " << key.supported_by << " (";
+    }
+    std::cout << fitted.value / key.unit << " +- " << fitted.error / key.unit << ")\n";
+  }
+}
+
+void print_text(const MotionCalibration& as_they_are, const MotionCalibration& corrected, const Drive& drive) {
+  std::cout << std::setprecision(3) << "# " << drive.driven_m << " m and " << degrees(drive.turned_rad) / 360.0
+            << " turns in " << drive.segments.size() << " segments, " << 100.0 * as_they_are.outlier_share
+            << " % of them rather slips; the localizer's own error "
+            << as_they_are.of(MotionSource::kEstimatePosition).value << " m, "
+            << degrees(as_they_are.of(MotionSource::kEstimateHeading).value) << " deg\n";
+  print_keys(as_they_are);
+  std::cout << "# systematic, covered by the deviations above since the localizer does not correct it:\n"
+            << "# true metres a metre of odometry: " << 1.0 + corrected.wheel_scale.value << " +- "
+            << corrected.wheel_scale.error << " (wheels)\n"
+            << "# true turn a turn of odometry:    " << 1.0 + corrected.turn_scale.value << " +- "
+            << corrected.turn_scale.error << " (track)\n"
+            << "# true turn a metre driven:        " << degrees(corrected.drift_rad_per_m.value) << " +- "
+            << degrees(corrected.drift_rad_per_m.error)
+            << " deg (unequal wheels)\n# with it corrected, the deviations would be";
+  for (const FittedKey& key : kKeys) std::cout << ' ' << corrected.of(key.source).value / key.unit;
+  std::cout << '\n';
+}
+
+Json json_of(const Fitted& fitted, double unit = 1.0) {
+  return {{"value", fitted.value / unit}, {"error", fitted.error / unit}};
+}
+
+void print_json(const MotionCalibration& as_they_are, const MotionCalibration& corrected, const Drive& drive) {
+  Json motion;
+  Json motion_corrected;
+  for (const FittedKey& key : kKeys) {
+    motion[key.key] = json_of(as_they_are.of(key.source), key.unit);
+    motion[key.key]["enough"] = !is_vague(as_they_are.of(key.source));
+    motion_corrected[key.key] = json_of(corrected.of(key.source), key.unit);
+  }
+  const Json all{{"cut", drive.cut ? Json(drive.cut->text) : Json(nullptr)},
+                 {"segments", drive.segments.size()},
+                 {"driven_m", drive.driven_m},
+                 {"turned_deg", degrees(drive.turned_rad)},
+                 {"outlier_share", as_they_are.outlier_share},
+                 {"estimate_position_m", as_they_are.of(MotionSource::kEstimatePosition).value},
+                 {"estimate_heading_deg", degrees(as_they_are.of(MotionSource::kEstimateHeading).value)},
+                 {"motion", motion},
+                 {"systematic",
+                  {{"wheel_scale", json_of(corrected.wheel_scale)},
+                   {"turn_scale", json_of(corrected.turn_scale)},
+                   {"drift_deg_per_m", json_of(corrected.drift_rad_per_m, radians(1.0))},
+                   {"motion_if_corrected", motion_corrected}}}};
+  std::cout << all.dump(2) << '\n';
+}
+
+void require_enough(const Drive& drive, const std::string& recording) {
+  std::ostringstream line;
+  line << std::setprecision(3) << recording << ": ";
+  if (static_cast<double>(drive.sure_scans) < kLeastSureShare * static_cast<double>(drive.scans)) {
+    line << "the pose was sure at " << drive.sure_scans << " of " << drive.scans
+         << " scans only: another map, or a start unknown";
+    throw std::runtime_error(line.str());
+  }
+  if (drive.segments.size() < kFewestSegments) {
+    line << "too little motion to calibrate from: " << drive.driven_m << " m and " << degrees(drive.turned_rad)
+         << " deg with a sure pose, " << drive.segments.size() << " of " << kFewestSegments << " segments";
+    throw std::runtime_error(line.str());
+  }
+}
+
+void run(CalibrateOptions& options) {
+  if (!options.initial_pose.empty())
+    options.overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
+  const daemon::Settings settings = options.config.empty() ? daemon::parse_settings("", "defaults", options.overrides)
+                                                           : daemon::read_settings(options.config, options.overrides);
+  const Drive drive = driven(options, settings);
+  if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
+  require_enough(drive, options.recording);
+  const MotionCalibration as_they_are = localization::fitted_motion(drive.segments, Systematic::kLeftIn);
+  const MotionCalibration corrected = localization::fitted_motion(drive.segments, Systematic::kTakenOut);
+  if (options.as_json)
+    print_json(as_they_are, corrected, drive);
+  else
+    print_text(as_they_are, corrected, drive);
+}
+
+}  // namespace
+
+void add_calibrate_motion(CLI::App& calibrate) {
+  auto* command = calibrate.add_subcommand("motion", "how far the wheels of a recording can be trusted");
+  auto options = std::make_shared<CalibrateOptions>();
+  command->add_option("recording", options->recording, "pcapng of both ports")->required();
+  command->add_option("--map", options->map, "where it was recorded, map_server YAML")->required();
+  command->add_option("--config", options->config, "settings, YAML");
+  command->add_option("--initial-pose", options->initial_pose,
+                      "X,Y,DEG of the robot in the map at the first scan; over the settings' pose");
+  command->add_option("--set", options->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+  command->add_flag("--json", options->as_json, "print the result as JSON");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace deltamap::tool

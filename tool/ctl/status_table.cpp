@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tool/ctl/status_table.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+namespace deltamap::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double number(const Json& json, const char* path) {
+  const auto found = Json::json_pointer(path);
+  return json.contains(found) && json[found].is_number() ? json[found].get<double>() : 0.0;
+}
+
+std::string word(const Json& json, const char* path) {
+  const auto found = Json::json_pointer(path);
+  return json.contains(found) && json[found].is_string() ? json[found].get<std::string>() : "-";
+}
+
+template <typename... Values>
+std::string line(const char* name, const char* format, const Values&... values) {
+  char head[16];
+  char text[256];
+  (void)std::snprintf(head, sizeof head, "%-13s", name);
+  (void)std::snprintf(text, sizeof text, format, values...);
+  return std::string(head) + text + "\n";
+}
+
+std::string pose_line(const Json& s) {
+  const double deviation_deg = std::sqrt(number(s, "/covariance/hh_rad2")) * 57.29577951308232;
+  return line("pose", "x=%.2f y=%.2f m heading=%.1f deg (deviations %.3f, %.3f m, %.1f deg)", number(s, "/pose/x_m"),
+              number(s, "/pose/y_m"), number(s, "/pose/heading_deg"), std::sqrt(number(s, "/covariance/xx_m2")),
+              std::sqrt(number(s, "/covariance/yy_m2")), deviation_deg);
+}
+
+std::string belief_lines(const Json& s) {
+  std::string text = line("belief", "pose %s (right %.2f), map wrong here %.2f", word(s, "/belief/verdict").c_str(),
+                          number(s, "/belief/pose_right"), number(s, "/belief/map_wrong"));
+  text += line("", "beams that fit: %.0f of %.0f on what is stable, %.0f of %.0f elsewhere",
+               number(s, "/belief/stable/fit"), number(s, "/belief/stable/expected"),
+               number(s, "/belief/elsewhere/fit"), number(s, "/belief/elsewhere/expected"));
+  if (number(s, "/belief/rival/share") <= 0.0) return text;
+  return text + line("", "or else at x=%.2f y=%.2f m heading=%.0f deg (share %.2f)", number(s, "/belief/rival/x_m"),
+                     number(s, "/belief/rival/y_m"), number(s, "/belief/rival/heading_deg"),
+                     number(s, "/belief/rival/share"));
+}
+
+std::string map_line(const Json& s) {
+  return line("map", "revision %.0f (newest %.0f), %.0f refused, mapping %s, phase %.0f%s", number(s, "/revision"),
+              number(s, "/newest_revision"), number(s, "/refused"), word(s, "/mapping").c_str(),
+              number(s, "/phase/number"), s.value("/phase/open"_json_pointer, false) ? " open" : "");
+}
+
+/// How long nothing could be written, and why.
+std::string gate_line(const Json& s) {
+  std::string why;
+  double shut_s = 0.0;
+  if (const auto at = "/gate/shut_s"_json_pointer; s.contains(at) && s[at].is_object()) {
+    for (const auto& [reason, time_s] : s[at].items()) {
+      const double reason_s = time_s.is_number() ? time_s.get<double>() : 0.0;
+      shut_s += reason_s;
+      why += (why.empty() ? ": " : ", ") + reason + " " + std::to_string(std::lround(reason_s)) + " s";
+    }
+  }
+  const bool open = s.value("/gate/open"_json_pointer, false);
+  return line("write gate", "%s, shut %.0f of %.0f s%s", open ? "open" : ("shut, " + word(s, "/gate/reason")).c_str(),
+              shut_s, number(s, "/gate/observed_s"), why.c_str());
+}
+
+std::string scans_line(const Json& s) {
+  double drops = 0.0;
+  if (s.contains("drops") && s["drops"].is_object()) {
+    for (const auto& count : s["drops"]) drops += count.is_number() ? count.get<double>() : 0.0;
+  }
+  return line("scans", "%.0f, %.0f localized, %.0f messages dropped, latency %.1f ms", number(s, "/scans"),
+              number(s, "/localized"), drops, number(s, "/latency_ms"));
+}
+
+std::string utc_clock(double unix_s) {
+  const auto whole = static_cast<std::time_t>(unix_s);
+  std::tm calendar{};
+  char text[32];
+  (void)std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", gmtime_r(&whole, &calendar));
+  return text;
+}
+
+/// All that is well in one line; what is not written in a line of its own.
+std::string outputs_lines(const Json& s) {
+  if (!s.contains("outputs") || !s["outputs"].is_object() || s["outputs"].empty())
+    return line("saving", "%s", "nothing");
+  std::string written;
+  std::string paused;
+  for (const auto& [name, output] : s["outputs"].items()) {
+    if (output.value("written", true)) {
+      written += (written.empty() ? "" : ", ") + name;
+    } else {
+      paused +=
+          line("", "%s",
+               (name + " not since " + utc_clock(number(output, "/since")) + " UTC: " + word(output, "/why")).c_str());
+    }
+  }
+  return line("saving", "%s", written.empty() ? "nothing" : written.c_str()) + paused;
+}
+
+}  // namespace
+
+std::string status_table(const std::string& reply_line) {
+  const Json s = Json::parse(reply_line, nullptr, false);
+  std::string text = line("state", "%s", word(s, "/state").c_str());
+  text += pose_line(s);
+  text += belief_lines(s);
+  text += line("filter", "%.0f particles, n_eff %.0f, w_avg %.3f, %.0f %% of the beams fit", number(s, "/particles"),
+               number(s, "/n_eff"), number(s, "/w_avg"), 100.0 * number(s, "/fit"));
+  text += map_line(s);
+  text += gate_line(s);
+  text += scans_line(s);
+  text += line("ports", "robot %s (%.1f V), laser %s", word(s, "/ports/robot").c_str(), number(s, "/battery_v"),
+               word(s, "/ports/laser").c_str());
+  text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),
+               word(s, "/stopped_by").c_str());
+  text += line("running", "%.0f s, log from %s on", number(s, "/since_start_s"), word(s, "/log_level").c_str());
+  if (s.contains("recording") && s["recording"].is_object()) {
+    text += line("recording", "%s, %.1f MB%s", word(s, "/recording/file").c_str(), number(s, "/recording/bytes") * 1e-6,
+                 s.value("/recording/goes_on"_json_pointer, false) ? "" : ", is not being written");
+  }
+  return text + outputs_lines(s);
+}
+
+}  // namespace deltamap::tool

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap decode robot|laser HEX…`: frames by name and field, and the garbage between them.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tool/decode/decoded_frame.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct DecodeOptions {
+  std::string line;
+  std::vector<std::string> hex;
+  int measuring_mode = -1;
+  bool json = false;
+};
+
+std::vector<std::uint8_t> bytes_from(const std::vector<std::string>& words) {
+  std::vector<std::uint8_t> bytes;
+  for (const std::string& word : words) {
+    std::string digits;
+    for (const char c : word) {
+      if (c != ' ' && c != ':' && c != ',') digits.push_back(c);
+    }
+    if (digits.starts_with("0x") || digits.starts_with("0X")) digits.erase(0, 2);
+    const bool is_hex = digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+    if (digits.size() % 2 != 0 || !is_hex) throw CLI::ValidationError("HEX", "\"" + word + "\" is not bytes in hex");
+    for (std::size_t i = 0; i < digits.size(); i += 2) {
+      bytes.push_back(static_cast<std::uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
+    }
+  }
+  return bytes;
+}
+
+std::string hex_of(std::span<const std::uint8_t> bytes) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string hex;
+  for (const std::uint8_t byte : bytes) {
+    hex.push_back(kDigits[byte >> 4]);
+    hex.push_back(kDigits[byte & 0xF]);
+  }
+  return hex;
+}
+
+struct Garbage {
+  std::size_t at = 0;
+  std::span<const std::uint8_t> bytes;
+};
+
+std::vector<Garbage> garbage_between(const std::vector<DecodedFrame>& frames, std::span<const std::uint8_t> bytes) {
+  std::vector<Garbage> garbage;
+  std::size_t at = 0;
+  const auto add_until = [&](std::size_t end) {
+    if (end > at) garbage.push_back({at, bytes.subspan(at, end - at)});
+  };
+  for (const DecodedFrame& frame : frames) {
+    add_until(frame.at);
+    at = frame.at + frame.size;
+  }
+  add_until(bytes.size());
+  return garbage;
+}
+
+Json json_of(const DecodedFrame& frame) {
+  Json fields = Json::object();
+  for (const auto& [name, value] : frame.fields) {
+    std::visit([&fields, &key = name](const auto& v) { fields[key] = v; }, value);
+  }
+  return {{"name", frame.name}, {"from", frame.from}, {"at", frame.at}, {"bytes", frame.size}, {"fields", fields}};
+}
+
+void print_json(const DecodedStream& stream, const std::vector<Garbage>& garbage) {
+  Json report{{"frames", Json::array()}, {"garbage", Json::array()}};
+  for (const DecodedFrame& frame : stream.frames) report["frames"].push_back(json_of(frame));
+  for (const Garbage& g : garbage) report["garbage"].push_back({{"at", g.at}, {"hex", hex_of(g.bytes)}});
+  std::cout << report.dump(2) << '\n';
+}
+
+void print_text(const DecodedStream& stream, const std::vector<Garbage>& garbage) {
+  for (const DecodedFrame& frame : stream.frames) {
+    std::cout << frame.name << "  (from " << frame.from << ", byte " << frame.at << ", " << frame.size << " bytes)\n";
+    const Json fields = json_of(frame)["fields"];
+    for (const auto& [name, value] : fields.items()) {
+      std::cout << "  " << name << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
+    }
+  }
+  for (const Garbage& g : garbage) {
+    std::cout << "garbage  (byte " << g.at << ", " << g.bytes.size() << " bytes): " << hex_of(g.bytes) << '\n';
+  }
+}
+
+std::string why_nothing(const DecodedStream& stream) {
+  if (stream.counts.bad_checksum > 0) return "wrong checksum";
+  if (stream.counts.bad_length > 0) return "impossible length";
+  if (stream.counts.truncated > 0) return "cut short";
+  return "no header";
+}
+
+void decode(const DecodeOptions& options) {
+  const std::vector<std::uint8_t> bytes = bytes_from(options.hex);
+  const std::optional<std::uint8_t> mode =
+      options.measuring_mode >= 0 ? std::optional{static_cast<std::uint8_t>(options.measuring_mode)} : std::nullopt;
+  const DecodedStream stream =
+      options.line == "robot" ? decoded_robot_stream(bytes) : decoded_laser_stream(bytes, mode);
+  const std::vector<Garbage> garbage = garbage_between(stream.frames, bytes);
+  if (options.json) {
+    print_json(stream, garbage);
+  } else {
+    print_text(stream, garbage);
+  }
+  if (stream.frames.empty()) {
+    throw std::runtime_error("decode " + options.line + ": no frame in " + std::to_string(bytes.size()) +
+                             " bytes: " + why_nothing(stream));
+  }
+}
+
+}  // namespace
+
+void add_decode(CLI::App& app) {
+  auto options = std::make_shared<DecodeOptions>();
+  CLI::App* command = app.add_subcommand("decode", "frames of either serial line, by name and field");
+  command->add_option("line", options->line, "robot or laser")->required()->check(CLI::IsMember({"robot", "laser"}));
+  command->add_option("HEX", options->hex, "bytes in hex, in one word or many")->required();
+  command->add_option("--measuring-mode", options->measuring_mode, "laser: reads ranges in this mode (byte 5 of 74h)")
+      ->check(CLI::Range(0, 63));
+  command->add_flag("--json", options->json, "print JSON");
+  command->callback([options] { decode(*options); });
+}
+
+}  // namespace deltamap::tool

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame of either serial protocol in words, and what lay around it: what `deltamap decode` prints.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "drivers/decoder_counts.hpp"
+
+namespace deltamap::tool {
+
+using FieldValue =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<std::int64_t>, std::vector<std::string>>;
+
+/// In the order of the wire.
+using NamedFields = std::vector<std::pair<std::string, FieldValue>>;
+
+struct DecodedFrame {
+  std::string name;
+  std::string from;      ///< "host", "robot", "laser" or "either"
+  std::size_t at = 0;    ///< index of its first byte
+  std::size_t size = 0;  ///< bytes
+  NamedFields fields;
+};
+
+struct DecodedStream {
+  std::vector<DecodedFrame> frames;  ///< in order
+  drivers::DecoderCounts counts;     ///< why the rest is garbage
+};
+
+/// Frames of the Pioneer's line, from either end (protocols.md A).
+[[nodiscard]] DecodedStream decoded_robot_stream(std::span<const std::uint8_t> bytes);
+
+/// Telegrams of the laser's line, from either end (protocols.md B). Ranges are read where the measuring mode is given:
+/// scans do not tell it.
+[[nodiscard]] DecodedStream decoded_laser_stream(std::span<const std::uint8_t> bytes,
+                                                 std::optional<std::uint8_t> measuring_mode);
+
+}  // namespace deltamap::tool

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap experiment`: drives simulated robots until the figures of an experiment are known.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "daemon/settings/settings.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/report/result_files.hpp"
+#include "experiments/run_pool.hpp"
+#include "tool/progress.hpp"
+#include "tool/scenario_place.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+struct ExperimentOptions {
+  std::string name;
+  std::filesystem::path out;
+  std::string config;
+  std::vector<std::string> overrides;
+  int jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  std::string only;  // part of a run's name
+  bool with_scans = false;
+  bool as_json = false;
+  experiments::Options options;
+};
+
+std::unique_ptr<experiments::Experiment> experiment_named(const std::string& name) {
+  std::string names;
+  for (auto& known : experiments::experiments()) {
+    if (known->name() == name) return std::move(known);
+    names += (names.empty() ? "" : ", ") + known->name();
+  }
+  throw CLI::ValidationError{"there is no experiment '" + name + "'; there are " + names};
+}
+
+/// A line each: its name, whether it measures the machine, and what it is.
+void list_experiments() {
+  for (const auto& known : experiments::experiments()) {
+    std::cout << known->name() << '\t' << (known->runs_alone() ? "times" : "") << '\t' << known->what() << '\n';
+  }
+}
+
+void print(const experiments::Results& results) {
+  for (const experiments::Figure& figure : results.report.figures) {
+    std::cout << std::left << std::setw(64) << figure.name << ' ' << std::setw(10) << experiments::text_of(figure.value)
+              << ' ' << figure.unit;
+    if (figure.target) std::cout << (figure.target->is_met_by(figure.value) ? "  met" : "  missed");
+    std::cout << '\n';
+  }
+}
+
+/// Who interrupts now comes too late: the files are a moment's work.
+void write(const experiments::Results& results, const ExperimentOptions& given) {
+  const auto interrupted = std::signal(SIGINT, SIG_IGN);
+  const auto ended = std::signal(SIGTERM, SIG_IGN);
+  experiments::write_results(results, given.out, given.with_scans);
+  (void)std::signal(SIGINT, interrupted);
+  (void)std::signal(SIGTERM, ended);
+}
+
+void run(const ExperimentOptions& given) {
+  const auto chosen = experiment_named(given.name);
+  experiments::Options options = given.options;
+  const daemon::Settings settings = given.config.empty() ? daemon::parse_settings("", "--set", given.overrides)
+                                                         : daemon::read_settings(given.config, given.overrides);
+  options.localizer = settings.localizer;
+  options.mapping = settings.mapping;
+  experiments::expect_writable(given.out);
+  experiments::Results results{
+      chosen->name(), chosen->what(), options.seed, options.quick, chosen->runs(options), {}, {}, settings};
+  std::erase_if(results.runs,
+                [&](const experiments::Run& one) { return one.name.find(given.only) == std::string::npos; });
+  if (results.runs.empty())
+    throw CLI::ValidationError{"no run of '" + given.name + "' has '" + given.only + "' in its name"};
+  {
+    Progress progress{chosen->name(), results.runs.size()};
+    progress.show(0);
+    const int jobs = chosen->runs_alone() ? 1 : given.jobs;
+    results.outcomes = experiments::outcomes_of(results.runs, jobs, [&](std::size_t done) { progress.show(done); });
+  }
+  results.report = chosen->report(results.outcomes);
+  write(results, given);
+  if (given.as_json) {
+    std::cout << experiments::summary_json(results);
+  } else {
+    print(results);
+  }
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& app) {
+  auto given = std::make_shared<ExperimentOptions>();
+  given->options.scenarios = scenario_folder();
+  CLI::App& command = *app.add_subcommand("experiment", "what the localizer reaches in simulated drives");
+  std::string names;
+  for (const auto& known : experiments::experiments()) names += (names.empty() ? "" : ", ") + known->name();
+  command.add_option("name", given->name, names)->required();
+  command.add_option("--out", given->out, "folder for NAME.csv, summary.json and index.html")->required();
+  command.add_flag("--quick", given->options.quick, "fewer and shorter runs: to see that it works");
+  command.add_option(
+      "--seed", given->options.seed,
+      "first seed (default 1); unseen: 1 to 999 are for development, 1000 to 1059 for closing notes alone");
+  command
+      .add_option("--jobs", given->jobs,
+                  "runs at once (default: the processors); one where an experiment measures the machine")
+      ->check(CLI::Range(1, 256));
+  command.add_option("--minutes", given->options.minutes, "of each drive, in place of the experiment's")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--repeats", given->options.repeats, "seeds, or runs of each kind, in place of the experiment's")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--only", given->only, "only runs with this in their name, for example depot-bay");
+  command.add_option("--scenarios", given->options.scenarios,
+                     "folder of the scenarios (default: config/scenarios, or where they are installed)");
+  command.add_option("--data", given->options.data, "folder of recorded maps (default: DELTAMAP_DATA)")
+      ->envname("DELTAMAP_DATA");
+  command.add_option("--config", given->config, "settings of the localizer, YAML (default: as delivered)");
+  command.add_option("--set", given->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+  command.add_flag("--scans", given->with_scans, "write scans/RUN.csv too: every scan of every run");
+  command.add_flag_callback(
+      "--list",
+      [] {
+        list_experiments();
+        throw CLI::Success{};
+      },
+      "name, 'times' where it measures the machine, and meaning of every experiment, separated by tabs");
+  command.add_flag("--json", given->as_json, "print the summary as JSON");
+  command.callback([given] { run(*given); });
+}
+
+}  // namespace deltamap::tool

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap map history STORE …`: what the map store remembers: list it, take out a revision, compare two, go back to
+// one, draw what one has changed, take one back and keep what came later, name one so that it stays.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/file_lock.hpp"
+#include "core/grid_file.hpp"
+#include "daemon/maps/png_bytes.hpp"
+#include "mapping/map_store.hpp"
+#include "mapping/merge/acceptance.hpp"
+#include "tool/picture/scene.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+using mapping::MapStore;
+using mapping::StoredRevision;
+
+struct Options {
+  std::string store;
+  std::uint32_t number = 0;
+  std::uint32_t other = 0;
+  std::string out;
+  std::string name;
+  bool json = false;
+  bool cells = false;
+};
+
+std::string utc(Timestamp time) {
+  if (unix_ns(time) == 0) return "-";
+  const std::time_t seconds =
+      std::chrono::system_clock::to_time_t(std::chrono::time_point_cast<std::chrono::system_clock::duration>(time));
+  std::tm calendar{};
+  gmtime_r(&seconds, &calendar);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &calendar);
+  return text;
+}
+
+nlohmann::json box_as_json(const CellBox& box) {
+  if (box.empty()) return nullptr;
+  return {box.first.column, box.first.row, box.last.column - 1, box.last.row - 1};
+}
+
+nlohmann::json covariance_as_json(const std::optional<PoseCovariance>& covariance) {
+  if (!covariance) return nullptr;
+  const auto& c = *covariance;
+  return {{"xx_m2", c(0, 0)}, {"xy_m2", c(0, 1)},    {"xh_m_rad", c(0, 2)},
+          {"yy_m2", c(1, 1)}, {"yh_m_rad", c(1, 2)}, {"hh_rad2", c(2, 2)}};
+}
+
+const char* name_of(CellState state) {
+  switch (state) {
+    case CellState::kFree:
+      return "free";
+    case CellState::kOccupied:
+      return "occupied";
+    case CellState::kUnknown:
+      return "unknown";
+  }
+  return "?";
+}
+
+Timestamp store_time(const MapStore& store, std::uint32_t number) {
+  for (const StoredRevision& revision : store.history()) {
+    if (!revision.refused && revision.number == number) return revision.time;
+  }
+  return {};
+}
+
+void list(const Options& options) {
+  const MapStore store{options.store};
+  if (!options.json)
+    std::printf("%6s  %-19s  %5s  %8s  %7s  %7s  %s\n", "k", "time (UTC)", "phase", "occupied", "freed", "accept.",
+                "cause");
+  for (const StoredRevision& revision : store.history()) {
+    if (options.json) {
+      nlohmann::json line{{"number", revision.number},
+                          {"refused", revision.refused},
+                          {"time_ns", unix_ns(revision.time)},
+                          {"phase", revision.note.phase},
+                          {"acceptance", revision.note.acceptance},
+                          {"cause", revision.note.cause},
+                          {"covariance", covariance_as_json(revision.note.covariance)},
+                          {"occupied", revision.occupied},
+                          {"freed", revision.freed},
+                          {"unknown", revision.unknown},
+                          {"box", box_as_json(revision.box)}};
+      if (!revision.name.empty()) line["name"] = revision.name;
+      std::cout << line.dump() << '\n';
+      continue;
+    }
+    const std::string number = revision.refused ? "-" : std::to_string(revision.number);
+    const std::string name = revision.name.empty() ? "" : "  \"" + revision.name + "\"";
+    std::printf("%6s  %-19s  %5u  %8u  %7u  %7.3f  %s%s%s\n", number.c_str(), utc(revision.time).c_str(),
+                revision.note.phase, revision.occupied, revision.freed, revision.note.acceptance,
+                revision.refused ? "refused: " : "", revision.note.cause.c_str(), name.c_str());
+  }
+}
+
+void write_revision(const Options& options) {
+  write_grid(MapStore{options.store}.grid(options.number), options.out);
+  if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
+}
+
+nlohmann::json changes_as_json(const std::vector<CellChange>& changes) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const CellChange& change : changes) {
+    list.push_back({change.cell.column, change.cell.row, name_of(change.before), name_of(change.after)});
+  }
+  return list;
+}
+
+void print(const std::vector<CellChange>& changes) {
+  for (const CellChange& change : changes) {
+    std::printf("%d %d %s %s\n", change.cell.column, change.cell.row, name_of(change.before), name_of(change.after));
+  }
+}
+
+void compare(const Options& options) {
+  const MapStore store{options.store};
+  const OccupancyGrid before = store.grid(options.number);
+  const OccupancyGrid after = store.grid(options.other);
+  const auto changes = changes_between(before, after);
+  std::size_t became[3] = {};
+  for (const CellChange& change : changes) ++became[static_cast<std::size_t>(change.after)];
+  const double acceptance = mapping::merge::acceptance(before, after).value();
+  nlohmann::json result{{"from", options.number},   {"to", options.other},
+                        {"cells", changes.size()},  {"freed", became[0]},
+                        {"occupied", became[1]},    {"unknown", became[2]},
+                        {"acceptance", acceptance}, {"box", box_as_json(bounding_box(changes))}};
+  if (options.json) {
+    if (options.cells) result["changes"] = changes_as_json(changes);
+    std::cout << result.dump() << '\n';
+  } else {
+    std::printf("%zu cells differ: %zu became occupied, %zu free, %zu unknown; acceptance %.4f\n", changes.size(),
+                became[1], became[0], became[2], acceptance);
+    if (options.cells) print(changes);
+  }
+}
+
+/// Left the place before Δ K, right after it.
+void draw_delta(const Options& options) {
+  constexpr double kAround_m = 3.0;
+  const MapStore store{options.store};
+  if (options.number == 0) throw std::runtime_error("revision 0 is the first map: it has changed nothing");
+  const std::vector<CellChange> changes = store.changes(options.number);
+  const OccupancyGrid after = store.grid(options.number);
+  std::vector<CellChange> back = changes;
+  for (CellChange& change : back) std::swap(change.before, change.after);
+  const OccupancyGrid before = patched(after, back);
+  const int around = static_cast<int>(kAround_m / after.resolution_m());
+  picture::Scene scene{.map = before};
+  if (!changes.empty()) scene.shown = grown(bounding_box(changes), around, after.geometry());
+  scene.title = "before";
+  const picture::Raster left = drawn(scene);
+  picture::Scene changed{.map = after, .before = &before};
+  changed.shown = scene.shown;
+  changed.title = "M" + std::to_string(options.number) + ", " + utc(store_time(store, options.number)) + " UTC";
+  const picture::Raster both = side_by_side(left, drawn(changed));
+  daemon::write_bytes(daemon::png_of(both.width, both.height, both.rgb), options.out);
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", options.number}, {"picture", options.out}, {"cells", changes.size()}}.dump()
+              << '\n';
+  }
+}
+
+void roll_back(const Options& options) {
+  const auto lock = lock_of_file(options.store);  // a daemon that writes there would lose its place
+  MapStore store{options.store};
+  const std::uint32_t number = store.roll_back(options.number, std::chrono::system_clock::now());
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", number}, {"same_as", options.number}}.dump() << '\n';
+  } else {
+    std::printf("revision %u is revision %u again\n", number, options.number);
+  }
+}
+
+void undo(const Options& options) {
+  const auto lock = lock_of_file(options.store);
+  MapStore store{options.store};
+  const std::uint32_t number = store.undo(options.number, std::chrono::system_clock::now());
+  const std::size_t cells = store.changes(number).size();
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", number}, {"undone", options.number}, {"cells", cells}}.dump() << '\n';
+  } else {
+    std::printf("revision %u takes revision %u back: %zu cells\n", number, options.number, cells);
+  }
+}
+
+/// Without the store's lock: a daemon that writes there does not lose its place.
+void set_name(const Options& options) {
+  MapStore{options.store}.set_name(options.number, options.name);
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", options.number}, {"name", options.name}}.dump() << '\n';
+  } else if (options.name.empty()) {
+    std::printf("revision %u has no name\n", options.number);
+  } else {
+    std::printf("revision %u stays, as \"%s\"\n", options.number, options.name.c_str());
+  }
+}
+
+}  // namespace
+
+void add_map_history(CLI::App& map) {
+  auto options = std::make_shared<Options>();
+  CLI::App* history =
+      map.add_subcommand("history", "the revisions of a map: list, export, diff, picture, rollback, undo, name");
+  history->require_subcommand(1);
+  history->fallthrough();
+  history->add_option("STORE", options->store, "map store (SQLite)")->required();
+  history->add_flag("--json", options->json, "one JSON object a line");
+
+  CLI::App* lister = history->add_subcommand("list", "every revision and refusal, oldest first");
+  lister->fallthrough()->callback([options] { list(*options); });
+
+  CLI::App* exporter = history->add_subcommand("export", "write revision K as a map");
+  exporter->add_option("K", options->number)->required();
+  exporter->add_option("OUT", options->out, "map_server YAML to write")->required();
+  exporter->fallthrough()->callback([options] { write_revision(*options); });
+
+  CLI::App* differ = history->add_subcommand("diff", "what changed from revision J to K");
+  differ->add_option("J", options->number)->required();
+  differ->add_option("K", options->other)->required();
+  differ->add_flag("--cells", options->cells, "each cell: column, row, before, after");
+  differ->fallthrough()->callback([options] { compare(*options); });
+
+  CLI::App* painter = history->add_subcommand("picture", "draw what revision K has changed: before and after");
+  painter->add_option("K", options->number)->required();
+  painter->add_option("OUT", options->out, "PNG to write")->required();
+  painter->fallthrough()->callback([options] { draw_delta(*options); });
+
+  CLI::App* roller = history->add_subcommand("rollback", "make revision K the newest again; nothing is lost");
+  roller->add_option("K", options->number)->required();
+  roller->fallthrough()->callback([options] { roll_back(*options); });
+
+  CLI::App* undoer = history->add_subcommand("undo", "take revision K back and keep what came later; nothing is lost");
+  undoer->add_option("K", options->number)->required();
+  undoer->fallthrough()->callback([options] { undo(*options); });
+
+  CLI::App* namer = history->add_subcommand("name", "revision K stays, whatever map.retention says, and is listed so");
+  namer->add_option("K", options->number)->required();
+  namer->add_option("NAME", options->name, "one line; \"\": takes the name away")->required();
+  namer->fallthrough()->callback([options] { set_name(*options); });
+}
+
+}  // namespace deltamap::tool

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap replay`: the whole pipeline on recorded bytes, as fast as it can.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <iostream>
+#include <memory>
+
+#include "daemon/replay/replay_run.hpp"
+#include "tool/progress.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+std::atomic<bool> interrupted{false};  // by a signal: the only thing that a handler may touch
+
+struct ReplayOptions {
+  daemon::ReplayJob job;
+  std::string config;
+  std::vector<std::string> overrides;
+  std::string initial_pose;
+  std::optional<std::int64_t> seed;
+  bool as_json = false;
+};
+
+void print_summary(const daemon::RunReport& report) {
+  const double scans = static_cast<double>(report.scans.decoded);
+  std::cout << report.scans.decoded << " scans, " << report.phases << " delta phases, " << report.changes.accepted()
+            << " revisions, " << report.changes.refused() << " refused, lost " << report.time_lost_s << " s, "
+            << report.cpu_total_s / scans * 1e3 << " ms CPU a scan, peak "
+            << static_cast<double>(report.peak_resident_bytes) / (1024.0 * 1024.0) << " MB, journal " << report.journal
+            << "; began with " << report.began << '\n';
+}
+
+void run(ReplayOptions& options) {
+  auto& overrides = options.overrides;
+  if (!options.initial_pose.empty()) overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
+  if (options.seed) overrides.push_back("seed=" + std::to_string(*options.seed));
+  options.job.settings = daemon::read_settings(options.config, overrides);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = true; });
+  daemon::RunReport report;
+  {
+    constexpr std::uint64_t kSteps = 1000;
+    Progress progress{"replay", kSteps};
+    report = daemon::run_replay(options.job, [&](double done) {
+      progress.show(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)));
+      return !interrupted;
+    });
+  }
+  if (report.cut) std::cerr << "deltamap: warning: " << report.cut->text << '\n';
+  if (options.as_json)
+    std::cout << daemon::json_text(report, options.job.settings);
+  else
+    print_summary(report);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+  auto* command = app.add_subcommand("replay", "the whole pipeline on recorded bytes, as fast as it can");
+  auto options = std::make_shared<ReplayOptions>();
+  command->add_option("recording", options->job.recording, "pcapng of both ports")->required();
+  command->add_option("--map", options->job.map, "M_0, map_server YAML")->required();
+  command->add_option("--config", options->config, "settings, YAML")->required();
+  command->add_option("--out", options->job.out, "folder for trajectory.tum, map, changes.jsonl, report.json")
+      ->required();
+  command->add_option("--seed", options->seed, "over the settings' seed");
+  command->add_option("--initial-pose", options->initial_pose,
+                      "X,Y,DEG of the robot in the map at the first scan; over the settings' pose");
+  command->add_option("--from", options->job.from_s, "seconds after the first byte to begin at")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--to", options->job.to_s, "seconds after the first byte to end at")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--map-delay", options->job.map_delay_s,
+                   "seconds from the end of a delta phase until its revision is taken, without a journal")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--set", options->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+  command->add_flag("--json", options->as_json, "print the report as JSON");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace deltamap::tool

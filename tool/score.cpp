@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap score`: holds what the daemon made of a simulation against its truth.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/grid_file.hpp"
+#include "simulation/score/change_score.hpp"
+#include "simulation/score/trajectory_score.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+namespace score = simulation::score;
+using Json = nlohmann::ordered_json;
+
+struct ScoreOptions {
+  std::filesystem::path truth;
+  std::filesystem::path world;
+  std::filesystem::path trajectory;
+  std::filesystem::path map;
+  std::filesystem::path start_map;
+  double range_m = 0.0;
+  int face_beams = score::ChangeScoreParams{}.face_beams;
+  bool json = false;
+};
+
+struct Tally {
+  std::size_t eligible = 0;
+  std::size_t found = 0;
+
+  [[nodiscard]] double recall() const {
+    return eligible == 0 ? 1.0 : static_cast<double>(found) / static_cast<double>(eligible);
+  }
+};
+
+/// Of new faces, or of faces that are gone.
+Tally tally(const score::ChangeScore& changes, bool appears) {
+  Tally counted;
+  for (const auto& change : changes.changes) {
+    if (change.appears != appears) continue;
+    counted.eligible += change.is_eligible ? 1 : 0;
+    counted.found += change.is_found ? 1 : 0;
+  }
+  return counted;
+}
+
+Json json_of(const score::ScoredChange& change, Timestamp start) {
+  return {{"t_s", seconds(change.time - start)},
+          {"kind", simulation::name_of(change.kind)},
+          {"part", change.appears ? "appeared" : "gone"},
+          {"id", change.id},
+          {"at", {change.box.centre.x(), change.box.centre.y()}},
+          {"seen_s", change.seen_s},
+          {"overtaken", change.is_overtaken},
+          {"visible_cells", change.visible_cells},
+          {"right_cells", change.right_cells},
+          {"eligible", change.is_eligible},
+          {"found", change.is_found}};
+}
+
+Json json_of(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes, Timestamp start) {
+  const Tally all{changes.eligible, changes.found};
+  const auto json_of_tally = [](const Tally& t) {
+    return Json{{"found", t.found}, {"eligible", t.eligible}, {"recall", t.recall()}};
+  };
+  Json json;
+  json["localization"] = {{"poses", trajectory.poses},
+                          {"median_m", trajectory.median_m},
+                          {"p95_m", trajectory.p95_m},
+                          {"max_m", trajectory.max_m},
+                          {"share_beyond_0.5_m", trajectory.share_beyond_half_metre},
+                          {"median_heading_deg", degrees(trajectory.median_heading_rad)}};
+  json["changes"] = json_of_tally(all);
+  json["changes"]["appeared"] = json_of_tally(tally(changes, true));
+  json["changes"]["gone"] = json_of_tally(tally(changes, false));
+  json["ghosts"] = {{"m2", changes.ghosts_m2}, {"stale_m2", changes.stale_ghosts_m2}};
+  json["each_change"] = Json::array();
+  for (const auto& change : changes.changes) json["each_change"].push_back(json_of(change, start));
+  return json;
+}
+
+void print(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes) {
+  const Tally all{changes.eligible, changes.found};
+  const Tally appeared = tally(changes, true);
+  const Tally gone = tally(changes, false);
+  std::cout << std::fixed << std::setprecision(3) << "localization: median " << trajectory.median_m << " m, p95 "
+            << trajectory.p95_m << " m, max " << trajectory.max_m << " m, beyond 0.5 m " << std::setprecision(1)
+            << 100.0 * trajectory.share_beyond_half_metre << " % of " << trajectory.poses << " poses\n"
+            << "changes found: " << all.found << " of " << all.eligible << " seen for 10 s (" << 100.0 * all.recall()
+            << " %); appeared " << appeared.found << "/" << appeared.eligible << ", gone " << gone.found << "/"
+            << gone.eligible << "; not seen or overtaken: " << changes.changes.size() - all.eligible << '\n'
+            << std::setprecision(2) << "ghosts: " << changes.ghosts_m2 << " m², of which " << changes.stale_ghosts_m2
+            << " m² stand since the start map\n";
+}
+
+void run_score(const ScoreOptions& options) {
+  const simulation::Scenario scenario = simulation::read_scenario(options.world);
+  const simulation::Truth truth = simulation::read_truth(options.truth);
+  const auto trajectory = score::trajectory_score(score::read_trajectory(options.trajectory), truth);
+  if (trajectory.poses == 0) {
+    throw std::runtime_error(options.trajectory.string() + ": no pose lies within the time of " +
+                             options.truth.string());
+  }
+  score::ChangeScoreParams params;
+  params.range_m = options.range_m > 0.0 ? options.range_m : scenario.laser.max_range_m;
+  params.face_beams = options.face_beams;
+  const auto changes =
+      score::change_score(scenario, truth, read_grid(options.start_map), read_grid(options.map), params);
+  if (options.json) {
+    std::cout << json_of(trajectory, changes, truth.poses.front().time).dump(2) << '\n';
+  } else {
+    print(trajectory, changes);
+  }
+}
+
+}  // namespace
+
+void add_score(CLI::App& app) {
+  auto options = std::make_shared<ScoreOptions>();
+  CLI::App& command = *app.add_subcommand("score", "a trajectory and a map against the truth of a simulation");
+  command.add_option("--truth", options->truth, "what deltamap sim --truth wrote")->required();
+  command.add_option("--world", options->world, "the scenario that was simulated")->required();
+  command.add_option("--trajectory", options->trajectory, "TUM file")->required();
+  command.add_option("--map", options->map, "the map at the end (YAML)")->required();
+  command.add_option("--start-map", options->start_map, "the map at the start (YAML)")->required();
+  command.add_option("--range", options->range_m, "how far the robot sees, m (default: the scenario's laser)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--face-beams", options->face_beams, "beams of one scan that make a face seen (default 3)")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--json", options->json, "print JSON");
+  command.callback([options] { run_score(*options); });
+}
+
+}  // namespace deltamap::tool

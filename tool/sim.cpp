@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap sim`: plays a P3-DX and an LMS200 in a simulated world, or draws that world's first map.
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "core/grid_file.hpp"
+#include "simulation/start_map.hpp"
+#include "tool/live_simulation.hpp"
+#include "tool/scenario_place.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+struct SimOptions {
+  std::string world;
+  std::filesystem::path write_map;
+  double resolution_m = 0.05;
+  LiveSimulationOptions live;
+};
+
+void simulate(const SimOptions& options) {
+  const simulation::Scenario scenario = simulation::read_scenario(scenario_file(options.world));
+  if (options.write_map.empty()) return run_live(scenario, options.live);
+  write_grid(simulation::start_map(scenario, options.resolution_m), options.write_map);
+}
+
+}  // namespace
+
+void add_sim(CLI::App& app) {
+  auto options = std::make_shared<SimOptions>();
+  CLI::App& sim = *app.add_subcommand("sim", "a robot and its laser on two pseudo-terminals, in a world that changes");
+  sim.add_option("--world", options->world, "scenario: a YAML file, or the name of a delivered one")->required();
+  sim.add_option("--links", options->live.links, "folder for the links robot and laser (default: here)");
+  sim.add_option("--seed", options->live.seed, "seed of everything that happens by chance (default 1)");
+  sim.add_option("--truth", options->live.truth, "write the true pose and every change, JSON lines");
+  sim.add_option("--for", options->live.run_s, "end after so many seconds")->check(CLI::PositiveNumber);
+  sim.add_option("--change-every", options->live.change_every_s, "seconds between changes, in place of the scenario's")
+      ->check(CLI::PositiveNumber);
+  sim.add_option("--write-map", options->write_map, "write the map of the world at the start (YAML) and end");
+  sim.add_option("--resolution", options->resolution_m, "of that map, m a cell (default 0.05)")
+      ->check(CLI::Range(0.005, 1.0));
+  sim.callback([options] { simulate(*options); });
+}
+
+}  // namespace deltamap::tool

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tool/view/view_desk.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "daemon/live/live_messages.hpp"
+#include "daemon/live/page_answers.hpp"
+#include "daemon/live/pose_line.hpp"
+#include "drivers/port/port_clock.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+using daemon::dashboard::Answer;
+using daemon::dashboard::Request;
+using Json = nlohmann::ordered_json;
+
+constexpr daemon::LiveBoard::Kept kWholeRun{.samples = 7 * 86'400, .changes = 20'000};
+constexpr double kTellPeriod_s = 0.99;    // the page takes longer silence for a lost connection
+constexpr Duration kRounding{1'000'000};  // of a time as text
+constexpr double kMostUnix_s = 9e9;
+constexpr const char* kJson = "application/json";
+
+/// "time=1764000000.25"
+std::optional<Timestamp> time_in(std::string_view query) {
+  constexpr std::string_view kName = "time=";
+  if (!query.starts_with(kName)) return std::nullopt;
+  query.remove_prefix(kName.size());
+  double time_s = 0.0;
+  const auto [end, error] = std::from_chars(query.data(), query.data() + query.size(), time_s);
+  if (error != std::errc{} || end != query.data() + query.size()) return std::nullopt;
+  if (!(std::abs(time_s) <= kMostUnix_s)) return std::nullopt;
+  return timestamp_from_ns(static_cast<std::int64_t>(std::llround(time_s * 1e6)) * 1000);
+}
+
+double unix_s(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
+
+}  // namespace
+
+ViewDesk::ViewDesk(ViewedRun run, std::uint16_t port)
+    : run_{std::move(run)},
+      board_{run_.map, run_.revision, kWholeRun},
+      history_{run_.store},
+      moments_{std::filesystem::temp_directory_path()},
+      server_{{.port = port,
+               .guard = {},
+               .answer = [this](const Request& request) { return answer(request); },
+               .open = [this] { return std::make_unique<daemon::LiveStream>(news_, board_); },
+               .refresh = [this] { refresh(); }}} {
+  run_.settings.dashboard.control = false;  // whatever the run itself allowed
+  news_.hello.set(daemon::hello_message(
+      run_.settings, daemon::RunName{run_.kind, run_.name, run_.first_revision, !run_.store.empty()}));
+}
+
+void ViewDesk::show(const TrackedScan& tracked, const daemon::LocalizationRow& row, double latency_s) {
+  board_.show(tracked, row, latency_s);
+  const daemon::LiveScan scan{.number = row.number, .row = row, .latency_s = latency_s, .beams = beams_of(tracked)};
+  std::vector<std::string> messages{pose_line({row, latency_s, std::nullopt})};
+  if (!scan.beams.empty()) messages.push_back(daemon::scan_message(scan));
+  moments_.add(row.time, messages);
+}
+
+void ViewDesk::show(const MapRevision* revision, const daemon::ChangeNote& note) { board_.show(revision, note); }
+
+void ViewDesk::tell_progress(double done) {
+  const std::scoped_lock lock{mutex_};
+  done_ = done;
+}
+
+void ViewDesk::tell_complete(const std::string& note) {
+  const std::scoped_lock lock{mutex_};
+  done_ = 1.0;
+  is_complete_ = true;
+  note_ = note;
+}
+
+Answer ViewDesk::answer(const Request& request) {
+  const std::string& path = request.path;
+  if (path == "/") return daemon::page_file("index.html");
+  if (path.starts_with("/page/")) return daemon::page_file(std::string_view(path).substr(6));
+  if (path == "/api/moment") return moment(request.query);
+  if (path == "/api/history") return {.type = kJson, .body = daemon::history_json(board_) + "\n"};
+  if (path.starts_with("/api/revision/")) return revision(path);
+  for (const char* form : {"png", "yaml", "pgm"}) {
+    if (path == std::string("/api/map.") + form) return daemon::map_answer(board_.map(), form);
+  }
+  return daemon::page_file(path);  // has no '/' in front: never found
+}
+
+Answer ViewDesk::moment(const std::string& query) const {
+  const auto time = time_in(query);
+  if (!time) return {.status = 400, .body = "/api/moment?time=T needs a time, Unix s\n"};
+  auto messages = moments_.at(*time + kRounding);
+  if (!messages) return {.status = 404, .body = "the run has no scan\n"};
+  return {.type = "application/octet-stream", .body = *std::move(messages)};
+}
+
+Answer ViewDesk::revision(const std::string& path) {
+  const auto wanted = daemon::revision_path(path);
+  if (!wanted || run_.first_revision == 0) return history_.answer(path);
+  if (wanted->number < run_.first_revision) {
+    return {.status = 404, .body = "revision " + std::to_string(wanted->number) + " is of a run before\n"};
+  }
+  const std::uint32_t in_store = wanted->number - run_.first_revision;
+  return history_.answer("/api/revision/" + std::to_string(in_store) + "/" + std::string(wanted->part));
+}
+
+std::string ViewDesk::run_message() const {
+  const MomentFile::Span span = moments_.span();
+  const std::scoped_lock lock{mutex_};
+  Json json;
+  json["type"] = "run";
+  json["complete"] = is_complete_;
+  json["done"] = done_;
+  json["scans"] = span.scans;
+  json["from"] = span.scans == 0 ? Json(nullptr) : Json(unix_s(span.from));
+  json["to"] = span.scans == 0 ? Json(nullptr) : Json(unix_s(span.to));
+  json["revision"] = board_.map().revision;
+  json["note"] = note_;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void ViewDesk::refresh() {
+  const Timestamp now = drivers::port::port_clock_now();
+  if (news_.run.number != 0 && now >= told_ && seconds(now - told_) < kTellPeriod_s) return;
+  told_ = now;
+  news_.run.set(run_message());
+}
+
+}  // namespace deltamap::tool
