@@ -56,7 +56,7 @@ std::string figures_html(const Report& report) {
     } else {
       rows += cell("") + cell("");
     }
-    rows += cell(shortened(figure.peers)) + "</tr>\n";
+    rows += cell(shortened(figure.peers), "td", figure.peers.empty() ? nullptr : "others") + "</tr>\n";
   }
   return table_of("Figures", {"figure", "measured", "95 % interval", "runs", "target", "met", "others"}, rows);
 }

@@ -14,10 +14,10 @@ namespace deltamap::experiments {
 namespace {
 
 constexpr double kWidth = 480.0;  // as wide as a column: the text stays readable on a phone
-constexpr double kHeight = 270.0;
+constexpr double kHeight = 278.0;
 constexpr double kLeft = 52.0;
 constexpr double kRight = 12.0;
-constexpr double kTop = 22.0;
+constexpr double kTop = 30.0;
 constexpr double kBottom = 40.0;
 
 // Of the theme (daemon/dashboard/page/theme.css); after them the same again, dashed, then dotted.
@@ -195,8 +195,8 @@ std::string escaped(const std::string& text) {
 
 std::string figure_of(const Chart& chart) {
   const Frame frame = frame_of(chart);
-  std::string html = "<figure class=\"chart\"><figcaption>" + escaped(chart.title) + " <small>" + escaped(chart.x) +
-                     "<output></output></small></figcaption>\n<div class=\"keys\">";
+  std::string html = "<figure class=\"chart\"><figcaption>" + escaped(chart.title) +
+                     "<small><output></output></small></figcaption>\n<div class=\"keys\">";
   for (std::size_t i = 0; i < chart.series.size(); ++i) html += key_of(chart.series[i], i);
   html += "</div>\n<svg viewBox=\"0 0 " + text_of(kWidth) + " " + text_of(kHeight) +
           "\" tabindex=\"0\" role=\"img\" aria-label=\"" + escaped(chart.title + ": " + chart.y + " over " + chart.x) +
@@ -205,7 +205,7 @@ std::string figure_of(const Chart& chart) {
   if (chart.with_diagonal) html += frame.diagonal();
   for (std::size_t i = 0; i < chart.series.size(); ++i) html += polyline_of(chart.series[i], frame, i);
   html += "<line class=\"instant\" y1=\"" + text_of(kTop) + "\" y2=\"" + text_of(kHeight - kBottom) + "\"/>\n";
-  html += Frame::label(4.0, 14.0, "start", chart.y);
+  html += Frame::label(4.0, 13.0, "start", chart.y);
   html += Frame::label(0.5 * (kLeft + kWidth - kRight), kHeight - 6.0, "middle", chart.x);
   return html + "</svg></figure>\n";
 }
