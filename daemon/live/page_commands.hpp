@@ -10,9 +10,12 @@
 #include "daemon/dashboard/request.hpp"
 #include "daemon/live/hand_drive.hpp"
 
+namespace deltamap::daemon::control {
+class ControlDesk;
+}
+
 namespace deltamap::daemon {
 
-class ControlDesk;
 class IoStage;
 
 struct PageControl {

@@ -46,7 +46,7 @@ Timestamp time_in(std::string_view text) {
 template <typename Value, std::size_t size>
 Value named(std::string_view text, const std::array<Value, size>& values) {
   for (const Value value : values) {
-    if (name_of(value) == text) return value;
+    if (daemon::name_of(value) == text) return value;
   }
   throw std::invalid_argument("'" + std::string(text) + "' is unknown");
 }

@@ -57,8 +57,9 @@ ViewDesk::ViewDesk(ViewedRun run, std::uint16_t port)
 
 void ViewDesk::show(const TrackedScan& tracked, const daemon::LocalizationRow& row, double latency_s) {
   board_.show(tracked, row, latency_s);
-  const daemon::LiveScan scan{.number = row.number, .row = row, .latency_s = latency_s, .beams = beams_of(tracked)};
-  std::vector<std::string> messages{pose_line({row, latency_s, std::nullopt})};
+  const daemon::LiveScan scan{
+      .number = row.number, .row = row, .latency_s = latency_s, .beams = daemon::beams_of(tracked)};
+  std::vector<std::string> messages{daemon::pose_line({row, latency_s, std::nullopt})};
   if (!scan.beams.empty()) messages.push_back(daemon::scan_message(scan));
   moments_.add(row.time, messages);
 }
