@@ -80,7 +80,7 @@ struct BeamCounts {
 };
 
 enum class PoseVerdict : std::uint8_t {
-  kUndecided,  ///< too little in view that has proven stable, or another place fits as well
+  kUndecided,  ///< too little in view that has proven stable, or another pose hypothesis fits as well
   kRight,
   kWrong
 };
@@ -93,8 +93,8 @@ struct Belief {
   BeamCounts stable;         ///< beams on cells that have long proven stable: bad fit there speaks of the pose
   BeamCounts elsewhere;      ///< all others: bad fit there speaks of the map
   bool is_checked = false;   ///< the counts are of this scan; else of the last one that was held against the map
-  double rival_share = 0.0;  ///< of the belief that the best other place in the map holds, [0, 1]
-  Pose2 map_from_rival;      ///< that place; of no meaning where its share is 0
+  double other_share = 0.0;  ///< of the belief that the best other pose hypothesis holds, [0, 1]
+  Pose2 map_from_other;      ///< that hypothesis; of no meaning where its share is 0
 };
 
 /// What the localizer believes at one scan.
@@ -150,8 +150,13 @@ struct ScanSet {
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the set ended
   bool pose_in_doubt = false;        ///< the pose did not hold over the whole set: nothing of it may be written
   std::optional<Timestamp> settled;  ///< what was written up to then is provisional no longer
-  /// An order in place of a set: what was written from then on, and is still provisional, is taken back.
-  std::optional<Timestamp> withdraw_from;
+};
+
+/// The pose has proven wrong: what was written by it, and is still provisional, is taken back.
+struct WithdrawOrder {
+  Timestamp time;                                      ///< of the scan that proved it
+  Timestamp from;                                      ///< what was written from then on
+  PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose at that scan
 };
 
 /// M_k: the map after a Δ.

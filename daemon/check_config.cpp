@@ -21,8 +21,8 @@
 #include "daemon/start_banner.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "drivers/port/port_check.hpp"
-#include "mapping/map_store.hpp"
-#include "mapping/store_error.hpp"
+#include "mapping/store/map_store.hpp"
+#include "mapping/store/store_error.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -33,7 +33,7 @@ using Level = Finding::Level;
 Finding settings_finding(const Settings& settings, const std::string& config) {
   return {Level::kOk, "settings",
           config + ": " + std::to_string(changed_settings(settings).size()) + " not as delivered, fingerprint " +
-              fingerprint_text(settings)};
+              hex_of(settings_fingerprint(settings))};
 }
 
 std::string cells_text(const OccupancyGrid& grid) {
@@ -79,15 +79,15 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
   };
   try {
     copy_store(store, copied);
-    const mapping::MapStore copy{copied, first};
+    const mapping::store::MapStore copy{copied, first};
     std::size_t refusals = 0;
-    for (const mapping::StoredRevision& one : copy.history()) refusals += one.refused ? 1 : 0;
+    for (const mapping::store::StoredRevision& one : copy.history()) refusals += one.refused ? 1 : 0;
     std::string text = store + ": newest revision of this map " + std::to_string(copy.newest()) + ", " +
                        std::to_string(refusals) + " refusals";
     if (copy.dropped() == 0) return {Level::kOk, "store", text};
     return {Level::kWarning, "store", text + ", " + std::to_string(copy.dropped()) + " damaged revisions are dropped"};
-  } catch (const mapping::StoreError& error) {
-    const bool is_unsound = error.kind == mapping::StoreError::Kind::kUnsound;
+  } catch (const mapping::store::StoreError& error) {
+    const bool is_unsound = error.kind == mapping::store::StoreError::Kind::kUnsound;
     const char* what_then = is_unsound ? ": a start would set it aside" : ": a start would go on without it";
     return {Level::kWarning, "store", of_the_store(error.what()) + what_then};
   } catch (const std::exception& error) {

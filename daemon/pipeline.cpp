@@ -18,6 +18,7 @@
 #include "daemon/stages/localization_stage.hpp"
 #include "daemon/stages/map_stage.hpp"
 #include "daemon/steps/run_begin.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "drivers/port/port_clock.hpp"
 
@@ -55,7 +56,7 @@ struct Pipeline::State {
                                           // journaled; of an order its sender is told
   Channel<MapWork> sets{2};           // delta → map: one more waits in the delta thread, the next is lost, journaled
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
-  Channel<std::shared_ptr<const TemporaryThings>> things{8};  // delta → localization: offered again at the next scan
+  Channel<std::shared_ptr<const TransientObstacles>> transients{8};  // delta → localization: offered again next scan
   Channel<control::Command> commands{16};       // control → localization: the newest command, and its sender is told
   Channel<navigation::WanderParams> wander{4};  // whoever reloads → localization: refused, and who asked is told
 
@@ -67,8 +68,8 @@ struct Pipeline::State {
   std::unique_ptr<PoseStream> poses;              // of each scan → programs on this machine; may be null
   Recorder recorder;                              // bytes, decisions, lines → disk
   IoStage io;                                     // bytes → Odometry, Scan
-  LocalizationStage localization;  // Odometry, Scan, MapRevision, TemporaryThings, Command → TrackedScan, DriveCommand
-  DeltaStage delta;                // TrackedScan → ScanSet, TemporaryThings
+  LocalizationStage localization;  // Odometry, Scan, MapRevision, transients, Command → TrackedScan, DriveCommand
+  DeltaStage delta;                // TrackedScan → ScanSet, TransientObstacles
   MapStage map;                    // ScanSet, MapOrder → MapRevision
 
   void tell(const control::CommandOutcome& outcome) {
@@ -133,7 +134,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                    options.first_map,
                    {.sensors = sensors,
                     .revisions = revisions,
-                    .things = things,
+                    .transients = transients,
                     .commands = commands,
                     .wander = wander,
                     .tracked_scans = tracked_scans,
@@ -142,7 +143,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
                     .show =
                         [this](const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
-                               const localization::ParticleSet* particles) {
+                               const localization::particles::ParticleSet* particles) {
                           if (page) page->board().show(tracked, row, latency_s, particles);
                           if (poses) poses->show(row, latency_s);
                         },
@@ -150,7 +151,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
       delta{settings,
             {.work = tracked_scans,
              .sets = sets,
-             .things = things,
+             .transients = transients,
              .recorder = recorder.from_awareness(),
              .telemetry = telemetry,
              .log = options.log,
@@ -276,23 +277,11 @@ RunReport Pipeline::stop() {
   s.end_threads();
   RunReport report;
   const Telemetry& t = s.telemetry;
-  report.scans = {.decoded = t.scans.value(),
-                  .localized = t.localized.value(),
-                  .dropped = t.dropped.value(),
-                  .lost = t.scans_lost.value(),
-                  .odometry = t.odometry.value(),
-                  .odometry_lost = t.odometry_lost.value(),
-                  .tracked_lost = t.tracked_lost.value(),
-                  .sets_lost = t.sets_lost.value(),
-                  .recording_lost = s.recorder.refused()};
+  report.scans = counts_of(t);
+  report.scans.recording_lost = s.recorder.refused();
   report.phases = t.phases_closed.value();
   report.changes = s.map.changes();
-  const LocalizationStep& localization = s.localization.step();
-  report.time_lost_s = localization.time_lost_s();
-  report.time_global_s = localization.time_global_s();
-  report.verdict_times = localization.verdict_times();
-  report.localizer = localization.counts();
-  report.recorded_s = localization.covered_s();
+  add_to(report, s.localization.step());
   report.gate_times = s.delta.awareness().gate_times;
   report.cpu = {s.io_thread->cpu_s(), s.localization_thread->cpu_s(), s.delta_thread->cpu_s(), s.map_thread->cpu_s(),
                 s.recorder_thread->cpu_s()};
@@ -300,9 +289,7 @@ RunReport Pipeline::stop() {
   report.wall_s = seconds(drivers::port::port_clock_now().time_since_epoch()) - s.wall_began_s;
   report.peak_resident_bytes = peak_resident_bytes();
   report.latency_of = "last byte of a scan to its pose";
-  report.latency_p50_s = s.localization.latency().quantile_s(0.5);
-  report.latency_p99_s = s.localization.latency().quantile_s(0.99);
-  report.latency_max_s = s.localization.latency().max_s();
+  report.latency = s.localization.latency();
   report.wire = s.io.counts();
   if (s.options.out) s.write_report(report);
   return report;

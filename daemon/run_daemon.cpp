@@ -34,7 +34,7 @@
 #include "daemon/system/service.hpp"
 #include "daemon/system/stop_signals.hpp"
 #include "daemon/telemetry/version.hpp"
-#include "mapping/store_error.hpp"
+#include "mapping/store/store_error.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -90,7 +90,7 @@ void remember_pose(const Settings& settings, Pipeline::Options& options, Console
 }
 
 /// What the runs before have learned; of cells that were rewritten since, nothing.
-void remember_stability(const Settings& settings, const mapping::MapStore& store, Pipeline::Options& options,
+void remember_stability(const Settings& settings, const mapping::store::MapStore& store, Pipeline::Options& options,
                         Console& console) {
   auto answer = read_kept_stability(memory_places(settings.map.store).stability, options.first_map);
   if (!answer.why_not.empty()) console.log(LogLevel::kWarn, "stability is earned anew: " + answer.why_not);
@@ -98,7 +98,7 @@ void remember_stability(const Settings& settings, const mapping::MapStore& store
   std::vector<CellChange> changes;
   try {
     changes = changes_between(store.grid(answer.kept->revision), *options.start.map);
-  } catch (const mapping::StoreError& error) {
+  } catch (const mapping::store::StoreError& error) {
     console.log(LogLevel::kWarn, std::string("stability is earned anew: ") + error.what());
     return;
   }

@@ -15,7 +15,7 @@ std::vector<std::string> start_banner(const Settings& settings, const std::strin
                                       std::optional<std::uint32_t> revision) {
   std::vector<std::string> lines{"deltamapd " + version_text()};
   lines.push_back("settings: file=" + config + " changed=" + std::to_string(changed_settings(settings).size()) +
-                  " fingerprint=" + fingerprint_text(settings));
+                  " fingerprint=" + hex_of(settings_fingerprint(settings)));
   lines.push_back("map: file=" + settings.map.file + " size=" + size_text(map));
   lines.push_back(revision ? "store: file=" + settings.map.store + " revision=" + std::to_string(*revision)
                            : "store: none, the map is not kept across restarts");

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +28,9 @@ struct Options {
   std::optional<int> repeats{};               ///< seeds or runs a cell, in place of the experiment's, > 0
   localization::LocalizerParams localizer{};  ///< as the daemon would have it
   daemon::MappingSettings mapping{};          ///< the same
+
+  /// Of one cell: as many as are asked for; else `whole`, one where it is to be quick.
+  [[nodiscard]] std::vector<std::uint64_t> seeds(int whole) const;
 };
 
 struct Picture {
@@ -95,19 +97,19 @@ struct Report {
   std::vector<Picture> pictures{};
 };
 
-class Experiment {
- public:
-  virtual ~Experiment() = default;
-  [[nodiscard]] virtual std::string name() const = 0;
-  [[nodiscard]] virtual std::string what() const = 0;  ///< one line
-  /// Numbers that end in _ms or _mb are then the machine's, and differ from one time to the next.
-  [[nodiscard]] virtual bool measures_time() const { return false; }
-  /// One run at a time: others beside it would be measured too.
-  [[nodiscard]] virtual bool runs_alone() const { return measures_time(); }
+struct Experiment {
+  std::string name;
+  std::string what;  ///< one line
   /// Throws std::runtime_error where a scenario cannot be read.
-  [[nodiscard]] virtual std::vector<Run> runs(const Options& options) const = 0;
-  /// `outcomes` in the order of the runs.
-  [[nodiscard]] virtual Report report(const std::vector<Outcome>& outcomes) const = 0;
+  std::function<std::vector<Run>(const Options&)> runs;
+  /// Of the outcomes in the order of the runs.
+  std::function<Report(const std::vector<Outcome>&)> report;
+  /// Then numbers that end in _ms or _mb differ from one time to the next.
+  enum class Times : std::uint8_t {
+    kNothing,
+    kThread,  ///< the CPU time of the run's thread
+    kMachine  ///< one run at a time: others beside it would be measured too
+  } times = Times::kNothing;
 };
 
 }  // namespace deltamap::experiments

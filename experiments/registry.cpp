@@ -3,25 +3,24 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
+#include <utility>
 
 namespace deltamap::experiments {
 
-std::vector<std::unique_ptr<Experiment>> experiments() {
-  std::vector<std::unique_ptr<Experiment>> all;
-  all.push_back(hall_experiment());
-  all.push_back(stale_map_experiment());
-  all.push_back(verdict_experiment());
-  all.push_back(fig2_4_experiment());
-  all.push_back(fig6_experiment());
-  all.push_back(fig13_experiment());
-  all.push_back(fig14_experiment());
-  all.push_back(table1_experiment());
-  all.push_back(merge_experiment());
-  all.push_back(gate_experiment());
-  all.push_back(shifted_hall_experiment());
-  all.push_back(unseen_experiment());
-  for (auto& one : changing_world_experiments()) all.push_back(std::move(one));
+std::vector<Experiment> experiments() {
+  std::vector<Experiment> all{hall_experiment(),   stale_map_experiment(),    verdict_experiment(),
+                              fig2_4_experiment(), fig6_experiment(),         fig13_experiment(),
+                              fig14_experiment(),  table1_experiment(),       merge_experiment(),
+                              gate_experiment(),   shifted_hall_experiment(), unseen_experiment()};
+  for (Experiment& one : changing_world_experiments()) all.push_back(std::move(one));
   return all;
+}
+
+std::vector<std::uint64_t> Options::seeds(int whole) const {
+  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(repeats.value_or(quick ? 1 : whole)));
+  std::iota(seeds.begin(), seeds.end(), seed);
+  return seeds;
 }
 
 const std::string& Outcome::label(std::string_view name) const {

@@ -2,30 +2,28 @@
 // The experiments that there are.
 #pragma once
 
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "experiments/experiment.hpp"
 
 namespace deltamap::experiments {
 
-[[nodiscard]] std::unique_ptr<Experiment> hall_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> stale_map_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> verdict_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> fig2_4_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> fig6_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> fig13_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> fig14_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> table1_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> merge_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> gate_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> shifted_hall_experiment();
-[[nodiscard]] std::unique_ptr<Experiment> unseen_experiment();
+[[nodiscard]] Experiment hall_experiment();
+[[nodiscard]] Experiment stale_map_experiment();
+[[nodiscard]] Experiment verdict_experiment();
+[[nodiscard]] Experiment fig2_4_experiment();
+[[nodiscard]] Experiment fig6_experiment();
+[[nodiscard]] Experiment fig13_experiment();
+[[nodiscard]] Experiment fig14_experiment();
+[[nodiscard]] Experiment table1_experiment();
+[[nodiscard]] Experiment merge_experiment();
+[[nodiscard]] Experiment gate_experiment();
+[[nodiscard]] Experiment shifted_hall_experiment();
+[[nodiscard]] Experiment unseen_experiment();
 /// table2, fig10-12, endurance, and others of their kind.
-[[nodiscard]] std::vector<std::unique_ptr<Experiment>> changing_world_experiments();
+[[nodiscard]] std::vector<Experiment> changing_world_experiments();
 
 /// All, by name.
-[[nodiscard]] std::vector<std::unique_ptr<Experiment>> experiments();
+[[nodiscard]] std::vector<Experiment> experiments();
 
 }  // namespace deltamap::experiments

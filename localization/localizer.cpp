@@ -8,7 +8,7 @@
 namespace deltamap::localization {
 
 Localizer::Localizer(const LocalizerParams& params, std::shared_ptr<const OccupancyGrid> map,
-                     std::optional<InitialPose> initial_pose, std::uint64_t seed)
+                     std::optional<particles::InitialPose> initial_pose, std::uint64_t seed)
     : state_{std::make_unique<State>(params, std::move(map), seed)} {
   if (initial_pose) {
     state_->start_at(*initial_pose);
@@ -23,27 +23,32 @@ Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
 void Localizer::observe(const Odometry& odometry) { state_->take(odometry); }
 
+std::optional<Pose2> Localizer::odom_from_robot(Timestamp time) const {
+  const auto odometry = state_->odometry.at(time);
+  return odometry ? std::optional{odometry->continuous_odom_from_robot} : std::nullopt;
+}
+
 TrackedScan Localizer::observe(Scan scan) {
   State& state = *state_;
   TrackedScan tracked;
   if (state.last_scan && scan.time < *state.last_scan) state.odometry.clock_fell_back(*state.last_scan);
-  const ScanInstant now{scan.time, state.odometry.at(scan.time)};
-  const BodyVelocity velocity = state.odometry.velocity_at(scan.time);
+  const motion::ScanInstant now{scan.time, state.odometry.at(scan.time)};
+  const motion::BodyVelocity velocity = state.odometry.velocity_at(scan.time);
   if (const auto known = state.tracker.calibration()) {
     state.odometry.calibrate(known->wheels);
     scan.robot_from_laser = known->mount_error * scan.robot_from_laser;
   }
-  tracked.rays = deskewed(scan, velocity);
-  state.ends = scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
-  if (state.params.follow_surfaces) state.faced = faced_ends(scan, tracked.rays, std::move(state.faced));
+  tracked.rays = motion::deskewed(scan, velocity);
+  state.ends = motion::scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
+  if (state.params.follow_surfaces) state.faced = surfaces::faced_ends(scan, tracked.rays, std::move(state.faced));
   state.velocity = velocity;
   state.note_oddities(now);
-  const RefinedPose believed = state.believed(now);
+  const sensor::RefinedPose believed = state.believed(now);
   state.judge(scan, tracked.rays, now, believed);
 
   tracked.estimate = state.estimate(scan.time, believed);
   if (now.odometry) {
-    tracked.odom_from_robot = now.odometry->joined_from_robot;
+    tracked.odom_from_robot = now.odometry->continuous_odom_from_robot;
     tracked.odometry_epoch = now.odometry->epoch;
   }
   tracked.speed_m_per_s = velocity.speed_m_per_s;
@@ -57,44 +62,48 @@ void Localizer::apply(const MapRevision& revision) {
   const bool follows = revision.number == state.revision + 1 && revision.map->geometry() == state.map->geometry();
   if (follows && (revision.changes.empty() || !revision.field_patch.box.empty())) {
     state.field.apply(revision.field_patch);
-    state.rivals.apply(*revision.map, state.field, revision.field_patch.box);
+    state.hypotheses.apply(*revision.map, state.field, revision.field_patch.box);
     state.judgement.forget(revision.changes);
   } else {
-    state.field = LikelihoodField{*revision.map, state.params.field};
+    state.field = sensor::LikelihoodField{*revision.map, state.params.field};
     state.judgement.forget(*state.map, *revision.map);
-    state.rivals.apply(*revision.map, state.field, revision.map->box());
+    state.hypotheses.apply(*revision.map, state.field, revision.map->box());
   }
   state.tracker.apply(revision.map, follows ? bounding_box(revision.changes) : revision.map->box());
   state.map = revision.map;
   state.revision = revision.number;
 }
 
-void Localizer::apply(std::shared_ptr<const TemporaryThings> things) { state_->things = std::move(things); }
+void Localizer::apply(std::shared_ptr<const TransientObstacles> transients) {
+  state_->transients = std::move(transients);
+}
 
-void Localizer::relocalize(const InitialPose& pose) { state_->start_at(pose); }
+void Localizer::relocalize(const particles::InitialPose& pose) { state_->start_at(pose); }
 
-const RivalReport& Localizer::rivals() const { return state_->rivals.report(); }
+const hypotheses::HypothesisReport& Localizer::hypotheses() const { return state_->hypotheses.report(); }
 
 std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 
-std::optional<DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }
+std::optional<motion::DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }
 
-const ParticleSet* Localizer::particles() const { return state_->searches() ? nullptr : state_->tracker.particles(); }
+const particles::ParticleSet* Localizer::particles() const {
+  return state_->searches() ? nullptr : state_->tracker.particles();
+}
 
 const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 
-StabilityRecord Localizer::stability() const { return state_->judgement.stability().record(); }
+belief::StabilityRecord Localizer::stability() const { return state_->judgement.stability().record(); }
 
-bool Localizer::restore(const StabilityRecord& record) { return state_->judgement.restore(record); }
+bool Localizer::restore(const belief::StabilityRecord& record) { return state_->judgement.restore(record); }
 
-void Localizer::restore(const DriveCalibration& learned) {
+void Localizer::restore(const motion::DriveCalibration& learned) {
   state_->tracker.restore(learned);
   if (const auto known = calibration()) state_->odometry.calibrate(known->wheels);
 }
 
 FieldPatch prepared_field_patch(const LocalizerParams& params, const OccupancyGrid& map,
                                 std::span<const CellChange> changes) {
-  return field_patch(map, changes, params.field);
+  return sensor::field_patch(map, changes, params.field);
 }
 
 }  // namespace deltamap::localization

@@ -9,24 +9,26 @@
 #include <span>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
-#include "localization/drive_calibration.hpp"
+#include "core/transient_obstacles.hpp"
+#include "localization/belief/stability.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer_counts.hpp"
-#include "localization/rivals.hpp"
-#include "localization/stability.hpp"
-#include "localization/start_pose.hpp"
+#include "localization/motion/drive_calibration.hpp"
+#include "localization/particles/start_pose.hpp"
 
 namespace deltamap::localization {
 
 struct LocalizerParams;
+namespace particles {
 struct ParticleSet;
+}
 
 class Localizer {
  public:
   /// Without an initial pose the whole map is searched (global localization).
   /// Throws std::runtime_error where the map has no free cell.
   Localizer(const LocalizerParams& params, std::shared_ptr<const OccupancyGrid> map,
-            std::optional<InitialPose> initial_pose, std::uint64_t seed);
+            std::optional<particles::InitialPose> initial_pose, std::uint64_t seed);
   ~Localizer();
   Localizer(Localizer&&) noexcept;
   Localizer& operator=(Localizer&&) noexcept;
@@ -36,32 +38,36 @@ class Localizer {
   /// One answer for every scan, whether the robot moved or not, lost or not.
   [[nodiscard]] TrackedScan observe(Scan scan);
 
+  /// Where the wheels say that the robot was, in one frame over all epochs (TrackedScan::odom_from_robot); nothing
+  /// before the first report.
+  [[nodiscard]] std::optional<Pose2> odom_from_robot(Timestamp time) const;
+
   /// Takes M_k from the next scan on: copies the prepared patch where k follows the present number, else rebuilds.
   void apply(const MapRevision& revision);
   /// What is different from M_k for now, from the next scan on; null: nothing is known. Never localized on.
-  void apply(std::shared_ptr<const TemporaryThings> things);
+  void apply(std::shared_ptr<const TransientObstacles> transients);
 
   /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp).
-  void relocalize(const InitialPose& pose);
+  void relocalize(const particles::InitialPose& pose);
 
   /// What else in the map the scans may mean, as of the last scan.
-  [[nodiscard]] const RivalReport& rivals() const;
+  [[nodiscard]] const hypotheses::HypothesisReport& hypotheses() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
   /// What the pose rests on, valid until the next message; null where it does not rest on particles: while straight
   /// surfaces lead, and while the whole map is searched.
-  [[nodiscard]] const ParticleSet* particles() const;
+  [[nodiscard]] const particles::ParticleSet* particles() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;
 
   /// Errors of wheels and mount, as far as driving among surfaces has told; nothing where surfaces are not followed.
-  [[nodiscard]] std::optional<DriveCalibration> calibration() const;
+  [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;
 
   /// What of the map has proven to stay, to be kept across restarts.
-  [[nodiscard]] StabilityRecord stability() const;
+  [[nodiscard]] belief::StabilityRecord stability() const;
   /// Takes what an earlier run has learned; false, and nothing taken, where it belongs to a map of another geometry.
-  [[nodiscard]] bool restore(const StabilityRecord& record);
+  [[nodiscard]] bool restore(const belief::StabilityRecord& record);
   /// Before the first scan: what an earlier run has learned of wheels and mount.
-  void restore(const DriveCalibration& learned);
+  void restore(const motion::DriveCalibration& learned);
 
  private:
   struct State;

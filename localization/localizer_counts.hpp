@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What has befallen a localizer since its start: for telemetry and the operator.
+// Counts of what a localizer has met since its start (gaps, epochs, searches, recoveries), for telemetry and operator.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct LocalizerCounts {
   std::uint64_t poses_confirmed = 0;    ///< remembered ones that the first scans fitted
   std::uint64_t poses_refuted = 0;      ///< and those that they did not fit: searched instead
   std::uint64_t searches = 0;           ///< of the whole map
-  std::uint64_t recoveries = 0;         ///< another place has won over the believed one
+  std::uint64_t recoveries = 0;         ///< another pose has won over the believed one
 };
 
 }  // namespace deltamap::localization

@@ -3,41 +3,41 @@
 #pragma once
 
 #include "core/angle.hpp"
-#include "localization/fit_monitor.hpp"
-#include "localization/global_search.hpp"
-#include "localization/hypotheses.hpp"
-#include "localization/judgement.hpp"
-#include "localization/likelihood_field.hpp"
-#include "localization/motion_model.hpp"
-#include "localization/odometry_buffer.hpp"
-#include "localization/particle_filter.hpp"
-#include "localization/place_bank.hpp"
-#include "localization/pose_refinement.hpp"
-#include "localization/pose_track.hpp"
-#include "localization/rivals.hpp"
-#include "localization/temporary_beams.hpp"
-#include "localization/tracker.hpp"
+#include "localization/belief/fit_monitor.hpp"
+#include "localization/belief/judgement.hpp"
+#include "localization/hypotheses/global_search.hpp"
+#include "localization/hypotheses/hypothesis_bank.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
+#include "localization/motion/motion_model.hpp"
+#include "localization/motion/odometry_buffer.hpp"
+#include "localization/particles/particle_clusters.hpp"
+#include "localization/particles/particle_filter.hpp"
+#include "localization/sensor/likelihood_field.hpp"
+#include "localization/sensor/pose_refinement.hpp"
+#include "localization/sensor/transient_beams.hpp"
+#include "localization/tracking/pose_filter.hpp"
+#include "localization/tracking/tracker.hpp"
 
 namespace deltamap::localization {
 
 struct LocalizerParams {
   double gap_s = 20.0;  ///< without scan and odometry, after which the pose must prove itself again, s; > 0
   int beams = 0;        ///< beams of a scan that score, evenly chosen among the valid ones; 0 = all
-  ParticleFilterParams particles;
-  OdometryBufferParams odometry;
-  MotionModelParams motion;
-  LikelihoodFieldParams field;
-  HypothesisParams hypothesis;
-  RefinementParams refinement;
-  PoseTrackParams track;
-  UpdateParams update;
+  particles::ParticleFilterParams particles;
+  motion::OdometryBufferParams odometry;
+  motion::MotionModelParams motion;
+  sensor::LikelihoodFieldParams field;
+  particles::ParticleClusterParams hypothesis;
+  sensor::RefinementParams refinement;
+  tracking::PoseFilterParams track;
+  tracking::UpdateParams update;
   bool follow_surfaces = true;  ///< as of TrackerParams
-  GlobalSearchParams global;
-  RivalsParams rivals;
-  PlaceBankParams places;
-  FitParams fit;
-  JudgementParams judgement;
-  TemporaryBeamsParams temporary;
+  hypotheses::GlobalSearchParams global;
+  hypotheses::HypothesisTrackerParams rivals;
+  hypotheses::HypothesisBankParams places;
+  belief::FitParams fit;
+  belief::JudgementParams judgement;
+  sensor::TransientBeamsParams temporary;
 };
 
 }  // namespace deltamap::localization

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include "localization/weighing.hpp"
+#include "localization/sensor/weighing.hpp"
 
 namespace deltamap::localization {
 namespace {
 
-constexpr std::uint64_t kSeedOfRivals = 0x52697661;
+constexpr std::uint64_t kSeedOfHypotheses = 0x52697661;
 constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a person gave,
 constexpr double kTrustInASearch = 0.5;  // at one that a search has found,
 constexpr double kTrustInNothing = 0.1;  // and before there is any
@@ -24,7 +24,7 @@ constexpr double kClearlyBetter = 0.15;  // share of the ends that one place exp
 constexpr double kSearchBeginsM = 1.0;
 const double kSearchBeginsRad = radians(90.0);
 
-TrackerParams tracker_params(const LocalizerParams& given) {
+tracking::TrackerParams tracker_params(const LocalizerParams& given) {
   return {.particles = given.particles,
           .motion = given.motion,
           .hypothesis = given.hypothesis,
@@ -39,23 +39,23 @@ TrackerParams tracker_params(const LocalizerParams& given) {
 Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const OccupancyGrid> first_map,
                         std::uint64_t seed)
     : params{given},
-      map{with_free_space(std::move(first_map))},
+      map{particles::with_free_space(std::move(first_map))},
       field{*map, given.field},
       odometry{given.odometry},
       tracker{tracker_params(given), map, seed},
       monitor{given.fit},
       judgement{*map, given.judgement},
-      rivals{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfRivals} {}
+      hypotheses{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfHypotheses} {}
 
-void Localizer::State::start_at(const InitialPose& given) {
-  const Start start = usable_start(*map, given);
-  counts.poses_in_obstacle += start.kind == StartKind::kCheck && !given.remembered ? 1 : 0;
-  counts.poses_refused += start.kind == StartKind::kAnywhere ? 1 : 0;
-  if (start.kind == StartKind::kAnywhere) return start_anywhere();
+void Localizer::State::start_at(const particles::InitialPose& given) {
+  const particles::Start start = particles::usable_start(*map, given);
+  counts.poses_in_obstacle += start.kind == particles::StartKind::kCheck && !given.remembered ? 1 : 0;
+  counts.poses_refused += start.kind == particles::StartKind::kAnywhere ? 1 : 0;
+  if (start.kind == particles::StartKind::kAnywhere) return start_anywhere();
   (void)tracker.start_around(start.pose);
   start_tracking();
-  rivals.start_believing();
-  if (start.kind == StartKind::kCheck) check_pose();
+  hypotheses.start_believing();
+  if (start.kind == particles::StartKind::kCheck) check_pose();
 }
 
 void Localizer::State::start_tracking() {
@@ -75,26 +75,26 @@ void Localizer::State::start_anywhere() {
   given_up.reset();
   ++counts.searches;
   check.end();
-  rivals.start_anywhere();
+  hypotheses.start_anywhere();
   judgement.start(kTrustInNothing);
-  best = anywhere_in(*map);
+  best = particles::anywhere_in(*map);
   monitor.start(LocalizerState::kGlobal);
 }
 
-RefinedPose Localizer::State::believe_in(const Pose2& place, const ScanInstant& now) {
-  const InitialPose around{place, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0};
-  RefinedPose believed = tracker.start_around(around, now);
+sensor::RefinedPose Localizer::State::believe_in(const Pose2& hypothesis, const motion::ScanInstant& now) {
+  const particles::InitialPose around{hypothesis, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0};
+  sensor::RefinedPose believed = tracker.start_around(around, now);
   start_tracking();
-  if (!rivals.is_near_believed(place)) judgement.start(kTrustInASearch, true);
-  rivals.start_believing_in(place);
+  if (!hypotheses.is_near_believed(hypothesis)) judgement.start(kTrustInASearch, true);
+  hypotheses.start_believing_in(hypothesis);
   return believed;
 }
 
-void Localizer::State::doubt(const Pose2& map_from_believed, const ScanInstant& now) {
-  given_up = GivenUp{map_from_believed, joined_at(now)};
+void Localizer::State::doubt(const Pose2& map_from_believed, const motion::ScanInstant& now) {
+  given_up = GivenUp{map_from_believed, continuous_odom_at(now)};
   check.end();
   ++counts.searches;
-  rivals.stop_believing();
+  hypotheses.stop_believing();
   judgement.start(kTrustInNothing);
   monitor.start(LocalizerState::kGlobal);
 }
@@ -106,21 +106,21 @@ void Localizer::State::take(const Odometry& report) {
   if (!last_scan || searches()) return;
   const Timestamp behind = report.time - duration_from_seconds(kScansLagS);
   if (seconds(behind - *last_scan) < kScansCeaseS) return;
-  const ScanInstant now{behind, odometry.at(behind)};
-  if (now.odometry && !has_jumped(now)) tracker.carry(now);
+  const motion::ScanInstant now{behind, odometry.at(behind)};
+  if (now.odometry && !has_jumped(now)) tracker.predict(now);
 }
 
-bool Localizer::State::has_jumped(const ScanInstant& now) const {
+bool Localizer::State::has_jumped(const motion::ScanInstant& now) const {
   return now.odometry && last_epoch && now.odometry->epoch != *last_epoch;
 }
 
-bool Localizer::State::covers_the_gap(const ScanInstant& now) const {
+bool Localizer::State::covers_the_gap(const motion::ScanInstant& now) const {
   return now.odometry && !has_jumped(now) && std::max(silence_s, now.odometry->uncovered_s) < params.gap_s;
 }
 
 bool Localizer::State::searches() const { return monitor.state() == LocalizerState::kGlobal && !check.under_way(); }
 
-void Localizer::State::note_oddities(const ScanInstant& now) {
+void Localizer::State::note_oddities(const motion::ScanInstant& now) {
   ++counts.scans;
   counts.scans_without_return += ends.size() == 0 ? 1 : 0;
   counts.scans_without_odometry += now.odometry ? 0 : 1;
@@ -139,17 +139,20 @@ void Localizer::State::note_oddities(const ScanInstant& now) {
   check_pose();
 }
 
-RefinedPose Localizer::State::believed(const ScanInstant& now) { return searches() ? search(now) : track(now); }
+sensor::RefinedPose Localizer::State::believed(const motion::ScanInstant& now) {
+  return searches() ? search(now) : track(now);
+}
 
-RefinedPose Localizer::State::search(const ScanInstant& now) {
-  const RivalReport& report = rivals.observe(field, {.ends = ends, .joined_from_robot = joined_at(now)});
-  if (const std::optional<Place> place = rivals.best_place()) {
-    best = {place->map_from_robot, place->covariance, place->share};
-    if (ends.size() > 0) w_avg = mean_likelihood(field, ends, best.map_from_robot);
+sensor::RefinedPose Localizer::State::search(const motion::ScanInstant& now) {
+  const hypotheses::HypothesisReport& report =
+      hypotheses.observe(field, {.ends = ends, .continuous_odom_from_robot = continuous_odom_at(now)});
+  if (const std::optional<hypotheses::PoseHypothesis> hypothesis = hypotheses.best_hypothesis()) {
+    best = {hypothesis->map_from_robot, hypothesis->covariance, hypothesis->share};
+    if (ends.size() > 0) w_avg = sensor::mean_likelihood(field, ends, best.map_from_robot);
   }
-  n_eff = report.effective_places;
+  n_eff = report.effective_hypotheses;
   if (given_up) {
-    const Pose2 motion = motion_between(given_up->joined_from_robot, joined_at(now));
+    const Pose2 motion = motion_between(given_up->continuous_odom_from_robot, continuous_odom_at(now));
     const bool only_begun = motion.position().norm() < kSearchBeginsM && std::abs(motion.theta) < kSearchBeginsRad;
     if (only_begun) return {given_up->map_from_robot * motion, best.covariance};
     given_up.reset();
@@ -157,26 +160,26 @@ RefinedPose Localizer::State::search(const ScanInstant& now) {
   return {best.map_from_robot, best.covariance};
 }
 
-RefinedPose Localizer::State::track(const ScanInstant& now) {
-  const Tracker::Answer tracked =
+sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
+  const tracking::Tracker::Answer tracked =
       tracker.observe({.now = now, .ends = weighing_ends(now), .field = field, .faced = faced, .velocity = velocity});
   best = tracker.best();
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);
   const bool lost = monitor.state() == LocalizerState::kLost;
-  const RivalReport& report =
-      rivals.observe(field, {.ends = ends,
-                             .joined_from_robot = joined_at(now),
-                             .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
-                             .held = proven_hold.share(),
-                             .unknown_s = tracked.unknown_s});
-  if (report.listed == 0 || !has_won(report.rivals.front(), tracked.believed.map_from_robot)) return tracked.believed;
-  const Pose2 winner = report.rivals.front().map_from_robot;
+  const hypotheses::HypothesisReport& report = hypotheses.observe(
+      field, {.ends = ends,
+              .continuous_odom_from_robot = continuous_odom_at(now),
+              .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
+              .stable_support = stable_support.share(),
+              .unknown_s = tracked.unknown_s});
+  if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
+  const Pose2 winner = report.others.front().map_from_robot;
   if (lost || distance_between(winner, tracked.believed.map_from_robot) < params.rivals.nearby_m) {
     ++counts.recoveries;
     return believe_in(winner, now);
   }
-  const double as_well = explained_share(field, ends, winner) - kClearlyBetter;
+  const double as_well = sensor::explained_share(field, ends, winner) - kClearlyBetter;
   if (const std::optional<Pose2> near = explained_nearby(tracked.believed.map_from_robot, as_well)) {
     ++counts.recoveries;
     return believe_in(*near, now);
@@ -187,11 +190,11 @@ RefinedPose Localizer::State::track(const ScanInstant& now) {
 
 /// Robots slip more often than they are carried away: where the wheels may have slipped to, the scan may fit too.
 std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, double share) const {
-  const PoseCovariance spread = slip_covariance(params.motion, believed.theta);
+  const PoseCovariance spread = motion::slip_covariance(params.motion, believed.theta);
   std::optional<Pose2> nearest;
-  for (const Pose2& from : slips_around(params.motion, believed)) {
-    const Pose2 slid = refined(field, ends, {from, spread}, 1.0, params.refinement).map_from_robot;
-    const double explained = explained_share(field, ends, slid);
+  for (const Pose2& from : motion::slips_around(params.motion, believed)) {
+    const Pose2 slid = sensor::refined(field, ends, {from, spread}, 1.0, params.refinement).map_from_robot;
+    const double explained = sensor::explained_share(field, ends, slid);
     if (explained < share) continue;
     share = explained;
     nearest = slid;
@@ -199,38 +202,39 @@ std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, d
   return nearest;
 }
 
-const BeamEnds& Localizer::State::weighing_ends(const ScanInstant& now) {
-  const bool knows = params.temporary.weighing && things && !things->standing.empty() && last_believed;
+const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstant& now) {
+  const bool knows = params.temporary.weighing && transients && !transients->standing.empty() && last_believed;
   if (!knows || ends.size() == 0) return ends;
-  const Pose2 expected = *last_believed * motion_between(last_joined, joined_at(now));
-  ends_beside_things = lasting_ends(ends, *things, expected, std::move(ends_beside_things));
-  const double left = static_cast<double>(ends_beside_things.size());
-  return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_things : ends;
+  const Pose2 expected = *last_believed * motion_between(last_odom, continuous_odom_at(now));
+  ends_beside_transients = sensor::lasting_ends(ends, *transients, expected, std::move(ends_beside_transients));
+  const double left = static_cast<double>(ends_beside_transients.size());
+  return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_transients : ends;
 }
 
 Belief Localizer::State::belief() const {
   Belief belief = judgement.belief();
-  if (searches() || !tracker.is_held()) return belief;
+  if (searches() || !tracker.is_fixed_by_surfaces()) return belief;
   belief.verdict = PoseVerdict::kRight;
-  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.rival_share);
+  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.other_share);
   return belief;
 }
 
-bool Localizer::State::has_won(const RivalPlace& place, const Pose2& believed) const {
-  if (place.share_around < params.rivals.winning_share || place.followed_m < params.rivals.wins_after_m) return false;
-  if (ends.size() == 0 || tracker.is_held()) return false;
-  const double fit = explained_share(field, ends, place.map_from_robot);
-  return fit >= params.fit.found_above || fit >= explained_share(field, ends, believed) + kClearlyBetter;
+bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const {
+  if (hypothesis.share_around < params.rivals.winning_share || hypothesis.followed_m < params.rivals.wins_after_m)
+    return false;
+  if (ends.size() == 0 || tracker.is_fixed_by_surfaces()) return false;
+  const double fit = sensor::explained_share(field, ends, hypothesis.map_from_robot);
+  return fit >= params.fit.found_above || fit >= sensor::explained_share(field, ends, believed) + kClearlyBetter;
 }
 
-void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays, const ScanInstant& now,
-                             const RefinedPose& believed) {
-  FitMonitor::Observation seen = passed_since_last_scan(now);
-  last_joined = joined_at(now);
+void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays, const motion::ScanInstant& now,
+                             const sensor::RefinedPose& believed) {
+  belief::FitMonitor::Observation seen = passed_since_last_scan(now);
+  last_odom = continuous_odom_at(now);
   last_scan = now.time;
   const bool is_tracking = monitor.state() == LocalizerState::kTracking && !check.under_way();
   last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
-  seen.fit = explained_share(field, ends, believed.map_from_robot);
+  seen.fit = sensor::explained_share(field, ends, believed.map_from_robot);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
   newest_fit = blind ? std::nullopt : std::optional{seen.fit};
   if (check.under_way()) return blind ? void() : judge_start(seen.fit);
@@ -241,67 +245,67 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .believed = believed,
                                             .state = before,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
-                                            .rivals = rivals.report(),
-                                            .things = params.temporary.belief ? things.get() : nullptr});
+                                            .hypotheses = hypotheses.report(),
+                                            .transients = params.temporary.belief ? transients.get() : nullptr});
   if (before == LocalizerState::kTracking) {
-    proven_hold.observe(judged.stable);
+    stable_support.observe(judged.stable);
   } else {
-    proven_hold.forget();
+    stable_support.forget();
   }
   if (blind) return;
   seen.verdict = judged.verdict;
   seen.trust = judgement.trust();
-  seen.beaten = rivals.report().beaten;
-  if (tracker.is_held()) {
+  seen.beaten = hypotheses.report().beaten;
+  if (tracker.is_fixed_by_surfaces()) {
     seen.verdict = PoseVerdict::kRight;
     seen.trust = std::max(seen.trust, kTrustInASearch);
     seen.beaten = false;
   }
   const LocalizerState after = monitor.observe(seen, best);
-  rivals.suspect(monitor.suspicious());
+  hypotheses.suspect(monitor.suspicious());
   if (before != after) enter(after, before, believed.map_from_robot, now);
 }
 
-FitMonitor::Observation Localizer::State::passed_since_last_scan(const ScanInstant& now) const {
+belief::FitMonitor::Observation Localizer::State::passed_since_last_scan(const motion::ScanInstant& now) const {
   if (!last_scan) return {};
-  FitMonitor::Observation seen{.passed_s = std::max(0.0, seconds(now.time - *last_scan))};
-  const Pose2 motion = motion_between(last_joined, joined_at(now));
+  belief::FitMonitor::Observation seen{.passed_s = std::max(0.0, seconds(now.time - *last_scan))};
+  const Pose2 motion = motion_between(last_odom, continuous_odom_at(now));
   seen.driven_m = motion.position().norm();
   seen.turned_rad = std::abs(motion.theta);
   return seen;
 }
 
 void Localizer::State::judge_start(double fit) {
-  const PoseCheck::Answer answer = check.observe(fit, params.fit.found_above);
-  counts.poses_confirmed += answer == PoseCheck::Answer::kFits ? 1 : 0;
-  counts.poses_refuted += answer == PoseCheck::Answer::kDoesNotFit ? 1 : 0;
-  if (answer == PoseCheck::Answer::kFits) monitor.start(LocalizerState::kTracking);
-  if (answer == PoseCheck::Answer::kDoesNotFit) start_anywhere();
+  const particles::PoseCheck::Answer answer = check.observe(fit, params.fit.found_above);
+  counts.poses_confirmed += answer == particles::PoseCheck::Answer::kFits ? 1 : 0;
+  counts.poses_refuted += answer == particles::PoseCheck::Answer::kDoesNotFit ? 1 : 0;
+  if (answer == particles::PoseCheck::Answer::kFits) monitor.start(LocalizerState::kTracking);
+  if (answer == particles::PoseCheck::Answer::kDoesNotFit) start_anywhere();
 }
 
 void Localizer::State::enter(LocalizerState after, LocalizerState before, const Pose2& believed,
-                             const ScanInstant& now) {
-  if (after == LocalizerState::kLost) rivals.stop_believing();
-  if (before == LocalizerState::kLost && after == LocalizerState::kTracking) rivals.start_believing_in(believed);
+                             const motion::ScanInstant& now) {
+  if (after == LocalizerState::kLost) hypotheses.stop_believing();
+  if (before == LocalizerState::kLost && after == LocalizerState::kTracking) hypotheses.start_believing_in(believed);
   if (before == LocalizerState::kLost && after == LocalizerState::kGlobal) {
     ++counts.searches;
-    given_up = GivenUp{believed, joined_at(now)};
+    given_up = GivenUp{believed, continuous_odom_at(now)};
   }
   if (before == LocalizerState::kGlobal && after == LocalizerState::kTracking) (void)believe_in(believed, now);
 }
 
-Pose2 Localizer::State::joined_at(const ScanInstant& now) const {
-  return now.odometry ? now.odometry->joined_from_robot : last_joined;
+Pose2 Localizer::State::continuous_odom_at(const motion::ScanInstant& now) const {
+  return now.odometry ? now.odometry->continuous_odom_from_robot : last_odom;
 }
 
-Estimate Localizer::State::estimate(Timestamp time, const RefinedPose& believed) const {
+Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& believed) const {
   return {.time = time,
           .map_from_robot = believed.map_from_robot,
           .covariance = believed.covariance + tracker.unknown_mount(believed.map_from_robot.theta),
           .state = monitor.state(),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(
-              monitor.state() == LocalizerState::kGlobal ? rivals.report().places : tracker.particle_count()),
+              monitor.state() == LocalizerState::kGlobal ? hypotheses.report().followed : tracker.particle_count()),
           .belief = belief(),
           .w_avg = w_avg,
           .revision = revision,

@@ -5,38 +5,14 @@
 
 namespace deltamap::mapping {
 
-std::string_view name_of(Refusal refusal) {
-  switch (refusal) {
-    case Refusal::kNone:
-      return "none";
-    case Refusal::kTooFewScans:
-      return "too few scans";
-    case Refusal::kNoAlignment:
-      return "no alignment";
-    case Refusal::kNoMerge:
-      return "no merge";
-    case Refusal::kLowAcceptance:
-      return "low acceptance";
-    case Refusal::kImplausible:
-      return "implausible";
-    case Refusal::kNothingChanged:
-      return "nothing changed";
-    case Refusal::kPoseInDoubt:
-      return "pose in doubt";
-    case Refusal::kSetByOperator:
-      return "set by an operator";
-  }
-  return "?";
-}
-
-MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params) {
+scan_set::MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params) {
   if (set.pose_in_doubt) {
-    MapUpdate update;
-    update.refusal = Refusal::kPoseInDoubt;
+    scan_set::MapUpdate update;
+    update.refusal = scan_set::Refusal::kPoseInDoubt;
     return update;
   }
-  return set.method == MappingMethod::kPaper ? paper_update(map, set, params.paper)
-                                             : evidence_update(map, set, params.evidence);
+  return set.method == MappingMethod::kPaper ? paper::paper_update(map, set, params.paper)
+                                             : redraw::evidence_update(map, set, params.evidence);
 }
 
 }  // namespace deltamap::mapping

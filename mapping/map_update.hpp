@@ -2,39 +2,16 @@
 // Front door 2 of mapping: (M_{k-1}, S(k)) → M_k, or the reason for refusal. One pure function.
 #pragma once
 
-#include <cstdint>
-#include <string_view>
-#include <vector>
-
 #include "core/messages.hpp"
+#include "core/occupancy_grid.hpp"
+#include "mapping/scan_set/map_change.hpp"
 
 namespace deltamap::mapping {
 
 struct MapUpdateParams;
 
-enum class Refusal : std::uint8_t {
-  kNone,
-  kTooFewScans,    ///< nothing to align
-  kNoAlignment,    ///< the scans do not agree with each other
-  kNoMerge,        ///< no rigid motion brings the local map onto the map
-  kLowAcceptance,  ///< Eq. 11 below its threshold
-  kImplausible,    ///< the merge contradicts the localizer's pose by more than its covariance allows (χ²)
-  kNothingChanged,
-  kPoseInDoubt,   ///< the set rests on a pose that has proven wrong, or may have been (write gate)
-  kSetByOperator  ///< all that it would change has been set by an operator a moment ago
-};
-[[nodiscard]] std::string_view name_of(Refusal refusal);
-
-struct MapUpdate {
-  Refusal refusal = Refusal::kNone;
-  std::vector<CellChange> changes;  ///< empty where refused
-  double acceptance = 0.0;          ///< Eq. 11 of local map and map
-  Pose2 map_from_local;             ///< the merge's correction of the localizer's frame; identity = none
-
-  [[nodiscard]] bool accepted() const { return refusal == Refusal::kNone; }
-};
-
 /// The method is the set's own.
-[[nodiscard]] MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set, const MapUpdateParams& params);
+[[nodiscard]] scan_set::MapUpdate map_update(const OccupancyGrid& map, const ScanSet& set,
+                                             const MapUpdateParams& params);
 
 }  // namespace deltamap::mapping

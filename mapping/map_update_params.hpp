@@ -2,14 +2,14 @@
 // The parameters of map_update(): one set a method.
 #pragma once
 
-#include "mapping/evidence_update.hpp"
-#include "mapping/paper_update.hpp"
+#include "mapping/paper/paper_update.hpp"
+#include "mapping/redraw/evidence_update.hpp"
 
 namespace deltamap::mapping {
 
 struct MapUpdateParams {
-  EvidenceUpdateParams evidence;
-  PaperUpdateParams paper;
+  redraw::EvidenceUpdateParams evidence;
+  paper::PaperUpdateParams paper;
 };
 
 }  // namespace deltamap::mapping

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/store_scan.hpp"
 
-#include "mapping/waiting_scans.hpp"
+#include "mapping/scan_set/waiting_scans.hpp"
 
 namespace deltamap::mapping {
 namespace {
@@ -26,11 +26,11 @@ struct StoreScan::State {
     gate.observe(tracked);
     if (gate.gate().has_proven_wrong()) {
       waiting.clear();
-      evidence.temporary().clear();
+      evidence.transients().clear();
     }
     if (!gate.lets_vote()) {
       if (gate.waits_to_vote(tracked.estimate)) waiting.keep(tracked);
-      evidence.temporary().hide(tracked.scan.time);
+      evidence.transients().hide(tracked.scan.time);
     } else if (waiting.empty()) {
       gate.take(evidence.observe(tracked), tracked);
     } else {
@@ -44,11 +44,11 @@ struct StoreScan::State {
   }
 
   MappingMethod method;
-  awareness::DivergenceRatio ratio;
-  awareness::DeltaPhase paper;
-  awareness::EvidencePhase evidence;
-  GatedSets gate;
-  WaitingScans waiting;
+  paper::DivergenceRatio ratio;
+  paper::DeltaPhase paper;
+  evidence::EvidencePhase evidence;
+  gate::GatedSets gate;
+  scan_set::WaitingScans waiting;
   Awareness awareness;
 };
 
@@ -57,6 +57,8 @@ StoreScan::StoreScan(const StoreScanParams& params, std::uint64_t seed)
 StoreScan::~StoreScan() = default;
 StoreScan::StoreScan(StoreScan&&) noexcept = default;
 StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
+
+const std::optional<WithdrawOrder>& StoreScan::withdrawal() const { return state_->gate.withdrawal(); }
 
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
@@ -70,8 +72,8 @@ StoredScans StoreScan::stored() const {
   return stored;
 }
 
-const std::shared_ptr<const TemporaryThings>& StoreScan::temporary() const {
-  return state_->evidence.temporary().newest();
+const std::shared_ptr<const TransientObstacles>& StoreScan::transients() const {
+  return state_->evidence.transients().newest();
 }
 
 std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {

@@ -9,20 +9,20 @@
 #include <optional>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
-#include "mapping/awareness/delta_phase.hpp"
-#include "mapping/awareness/divergence_ratio.hpp"
-#include "mapping/awareness/evidence_phase.hpp"
-#include "mapping/gated_sets.hpp"
+#include "core/transient_obstacles.hpp"
+#include "mapping/evidence/evidence_phase.hpp"
+#include "mapping/gate/gated_sets.hpp"
+#include "mapping/paper/delta_phase.hpp"
+#include "mapping/paper/divergence_ratio.hpp"
 
 namespace deltamap::mapping {
 
 struct StoreScanParams {
   MappingMethod method = MappingMethod::kEvidence;
-  awareness::DivergenceRatioParams divergence;  ///< w_fast, w_slow and r_d: kept with both methods
-  awareness::DeltaPhaseParams delta_phase;      ///< paper
-  awareness::EvidencePhaseParams evidence;      ///< evidence
-  WriteGateParams gate;                         ///< evidence: when the pose is sure enough to write by
+  paper::DivergenceRatioParams divergence;  ///< w_fast, w_slow and r_d: kept with both methods
+  paper::DeltaPhaseParams delta_phase;      ///< paper
+  evidence::EvidencePhaseParams evidence;   ///< evidence
+  gate::WriteGateParams gate;               ///< evidence: when the pose is sure enough to write by
 };
 
 /// What Δ-awareness thought of the last scan, for telemetry and the paper's Figures 2 to 4.
@@ -35,10 +35,10 @@ struct Awareness {
   std::uint32_t stored_scans = 0;   ///< in the present phase
   std::uint32_t short_beams = 0;    ///< evidence: beams of this scan that ended before the map says
   std::uint32_t through_beams = 0;  ///< evidence: beams of this scan that went through what the map says
-  GateReason gate = GateReason::kOpen;
-  GateReason gate_confirms_after = GateReason::kOpen;  ///< kOpen: nothing has to be confirmed
-  double gate_shut_for_s = 0.0;                        ///< since it was open last
-  GateTimes gate_times{};
+  gate::GateReason gate = gate::GateReason::kOpen;
+  gate::GateReason gate_confirms_after = gate::GateReason::kOpen;  ///< kOpen: nothing has to be confirmed
+  double gate_shut_for_s = 0.0;                                    ///< since it was open last
+  gate::GateTimes gate_times{};
 };
 
 /// Scans that are kept for a map update: to be looked at.
@@ -55,15 +55,16 @@ class StoreScan {
   StoreScan(StoreScan&&) noexcept;
   StoreScan& operator=(StoreScan&&) noexcept;
 
-  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update(), or an order to take back
-  /// what was written (ScanSet::withdraw_from).
+  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update().
   [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
+  /// In place of a set: the last scan has proven the pose wrong.
+  [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const;
 
   [[nodiscard]] const Awareness& awareness() const;
   [[nodiscard]] StoredScans stored() const;
   /// What is different now and not map (evidence alone): the newest snapshot, another one only where something has
   /// changed. Null until there was something; empty while the pose is in doubt.
-  [[nodiscard]] const std::shared_ptr<const TemporaryThings>& temporary() const;
+  [[nodiscard]] const std::shared_ptr<const TransientObstacles>& transients() const;
 
  private:
   struct State;

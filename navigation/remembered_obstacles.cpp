@@ -29,16 +29,16 @@ bool is_seen_through(const Scan& scan, const Point2& place_in_robot, double radi
 
 }  // namespace
 
-std::vector<Point2> remembered_obstacles(const TemporaryThings& things, const TrackedScan& tracked,
+std::vector<Point2> remembered_obstacles(const TransientObstacles& transients, const TrackedScan& tracked,
                                          const RememberedParams& params) {
   std::vector<Point2> obstacles;
   if (tracked.estimate.state != LocalizerState::kTracking) return obstacles;
   const Pose2 robot_from_map = inverse(tracked.estimate.map_from_robot);
-  for (const std::uint32_t block : things.standing) {
-    const Point2 middle = robot_from_map * things.blocks.centre_of(things.blocks.cell_of(block));
+  for (const std::uint32_t block : transients.standing) {
+    const Point2 middle = robot_from_map * transients.blocks.centre_of(transients.blocks.cell_of(block));
     const double away_m = middle.norm();
     if (away_m > params.within_m || away_m < params.hull_m) continue;
-    if (is_seen_through(tracked.scan, middle, 0.5 * things.blocks.resolution_m, params.clear_m)) continue;
+    if (is_seen_through(tracked.scan, middle, 0.5 * transients.blocks.resolution_m, params.clear_m)) continue;
     obstacles.push_back(middle);
   }
   return obstacles;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 
 namespace deltamap::navigation {
 
@@ -19,7 +19,7 @@ struct RememberedParams {
 
 /// Middles of the blocks in the robot's frame at Scan::time; none while the pose is not tracked. What every beam in its
 /// direction goes through has left.
-[[nodiscard]] std::vector<Point2> remembered_obstacles(const TemporaryThings& things, const TrackedScan& tracked,
+[[nodiscard]] std::vector<Point2> remembered_obstacles(const TransientObstacles& transients, const TrackedScan& tracked,
                                                        const RememberedParams& params);
 
 }  // namespace deltamap::navigation

@@ -13,7 +13,7 @@
 #include "daemon/settings/settings.hpp"
 #include "drivers/port/replay_port.hpp"
 #include "localization/localizer.hpp"
-#include "localization/motion_calibration.hpp"
+#include "localization/motion/motion_calibration.hpp"
 #include "tool/progress.hpp"
 #include "tool/subcommands.hpp"
 
@@ -21,10 +21,10 @@ namespace deltamap::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using localization::Fitted;
-using localization::MotionCalibration;
-using localization::MotionSource;
-using localization::Systematic;
+using localization::motion::Fitted;
+using localization::motion::MotionCalibration;
+using localization::motion::MotionSource;
+using localization::motion::Systematic;
 
 constexpr std::size_t kFewestSegments = 20;  // a deviation from 20 segments is good to 16 % at best
 constexpr double kLeastSureShare = 0.5;      // of the scans; a robot on a foreign map seldom has more
@@ -42,7 +42,7 @@ struct CalibrateOptions {
 };
 
 struct Drive {
-  std::vector<localization::MotionSegment> segments;
+  std::vector<localization::motion::MotionSegment> segments;
   double driven_m = 0.0;
   double turned_rad = 0.0;
   std::size_t scans = 0;
@@ -59,14 +59,14 @@ bool is_sure(const Estimate& estimate) {
 
 /// Follows the recording on the map and cuts it into segments.
 Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) {
-  std::optional<localization::InitialPose> start;
-  if (settings.initial_pose) start = localization::InitialPose{*settings.initial_pose};
+  std::optional<localization::particles::InitialPose> start;
+  if (settings.initial_pose) start = localization::particles::InitialPose{*settings.initial_pose};
   localization::LocalizerParams params = settings.localizer;
   params.follow_surfaces = false;  // wheels as they count, not as they have been corrected
   localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), start,
                                     settings.seed};
   const auto& update = settings.localizer.update;
-  localization::MotionSegments pairs{
+  localization::motion::MotionSegments pairs{
       {.step_m = std::max(1e-3, update.distance_m), .step_rad = std::max(1e-3, update.turn_rad)}};
   Drive drive;
   drivers::port::ReplayPort port{options.recording, {}};
@@ -193,8 +193,8 @@ void run(CalibrateOptions& options) {
   const Drive drive = driven(options, settings);
   if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
   require_enough(drive, options.recording);
-  const MotionCalibration as_they_are = localization::fitted_motion(drive.segments, Systematic::kLeftIn);
-  const MotionCalibration corrected = localization::fitted_motion(drive.segments, Systematic::kTakenOut);
+  const MotionCalibration as_they_are = localization::motion::fitted_motion(drive.segments, Systematic::kLeftIn);
+  const MotionCalibration corrected = localization::motion::fitted_motion(drive.segments, Systematic::kTakenOut);
   if (options.as_json)
     print_json(as_they_are, corrected, drive);
   else

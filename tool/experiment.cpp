@@ -31,19 +31,23 @@ struct ExperimentOptions {
   experiments::Options options;
 };
 
-std::unique_ptr<experiments::Experiment> experiment_named(const std::string& name) {
+experiments::Experiment experiment_named(const std::string& name) {
   std::string names;
   for (auto& known : experiments::experiments()) {
-    if (known->name() == name) return std::move(known);
-    names += (names.empty() ? "" : ", ") + known->name();
+    if (known.name == name) return std::move(known);
+    names += (names.empty() ? "" : ", ") + known.name;
   }
   throw CLI::ValidationError{"there is no experiment '" + name + "'; there are " + names};
+}
+
+bool runs_alone(const experiments::Experiment& experiment) {
+  return experiment.times == experiments::Experiment::Times::kMachine;
 }
 
 /// A line each: its name, whether it measures the machine, and what it is.
 void list_experiments() {
   for (const auto& known : experiments::experiments()) {
-    std::cout << known->name() << '\t' << (known->runs_alone() ? "times" : "") << '\t' << known->what() << '\n';
+    std::cout << known.name << '\t' << (runs_alone(known) ? "times" : "") << '\t' << known.what << '\n';
   }
 }
 
@@ -66,26 +70,26 @@ void write(const experiments::Results& results, const ExperimentOptions& given) 
 }
 
 void run(const ExperimentOptions& given) {
-  const auto chosen = experiment_named(given.name);
+  const experiments::Experiment chosen = experiment_named(given.name);
   experiments::Options options = given.options;
   const daemon::Settings settings = given.config.empty() ? daemon::parse_settings("", "--set", given.overrides)
                                                          : daemon::read_settings(given.config, given.overrides);
   options.localizer = settings.localizer;
   options.mapping = settings.mapping;
   experiments::expect_writable(given.out);
-  experiments::Results results{
-      chosen->name(), chosen->what(), options.seed, options.quick, chosen->runs(options), {}, {}, settings};
+  experiments::Results results{chosen.name,          chosen.what, options.seed, options.quick,
+                               chosen.runs(options), {},          {},           settings};
   std::erase_if(results.runs,
                 [&](const experiments::Run& one) { return one.name.find(given.only) == std::string::npos; });
   if (results.runs.empty())
     throw CLI::ValidationError{"no run of '" + given.name + "' has '" + given.only + "' in its name"};
   {
-    Progress progress{chosen->name(), results.runs.size()};
+    Progress progress{chosen.name, results.runs.size()};
     progress.show(0);
-    const int jobs = chosen->runs_alone() ? 1 : given.jobs;
+    const int jobs = runs_alone(chosen) ? 1 : given.jobs;
     results.outcomes = experiments::outcomes_of(results.runs, jobs, [&](std::size_t done) { progress.show(done); });
   }
-  results.report = chosen->report(results.outcomes);
+  results.report = chosen.report(results.outcomes);
   write(results, given);
   if (given.as_json) {
     std::cout << experiments::summary_json(results);
@@ -101,7 +105,7 @@ void add_experiment(CLI::App& app) {
   given->options.scenarios = scenario_folder();
   CLI::App& command = *app.add_subcommand("experiment", "what the localizer reaches in simulated drives");
   std::string names;
-  for (const auto& known : experiments::experiments()) names += (names.empty() ? "" : ", ") + known->name();
+  for (const auto& known : experiments::experiments()) names += (names.empty() ? "" : ", ") + known.name;
   command.add_option("name", given->name, names)->required();
   command.add_option("--out", given->out, "folder for NAME.csv, summary.json and index.html")->required();
   command.add_flag("--quick", given->options.quick, "fewer and shorter runs: to see that it works");

@@ -30,9 +30,9 @@ Json belief_json(const EstimateGauges& estimate) {
   json["stable"] = counts_json(estimate.stable.value());
   json["elsewhere"] = counts_json(estimate.elsewhere.value());
   json["rival"] = nullptr;
-  if (const double share = estimate.rival_share.value(); share > 0.0) {
+  if (const double share = estimate.other_share.value(); share > 0.0) {
     json["rival"] =
-        pose_json(estimate.rival_x_m.value(), estimate.rival_y_m.value(), estimate.rival_heading_rad.value());
+        pose_json(estimate.other_x_m.value(), estimate.other_y_m.value(), estimate.other_heading_rad.value());
     json["rival"]["share"] = share;
   }
   return json;
@@ -54,20 +54,14 @@ void add_estimate(Json& json, const Telemetry& t) {
   json["revision"] = estimate.revision.value();
 }
 
-Json drops_json(const Telemetry& t) {
-  return {{"scans_overtaken", t.dropped.value()},     {"scans_lost", t.scans_lost.value()},
-          {"odometry_lost", t.odometry_lost.value()}, {"tracked_lost", t.tracked_lost.value()},
-          {"sets_lost", t.sets_lost.value()},         {"recording_lost", t.recording_lost.value()}};
-}
-
 Json gate_json(const GateGauges& gate) {
-  const auto now = static_cast<mapping::GateReason>(gate.reason.value());
-  const mapping::GateTimes times = gate.times();
+  const auto now = static_cast<mapping::gate::GateReason>(gate.reason.value());
+  const mapping::gate::GateTimes times = gate.times();
   Json json;
-  json["open"] = now == mapping::GateReason::kOpen;
-  json["reason"] = now == mapping::GateReason::kOpen ? Json(nullptr) : Json(mapping::name_of(now));
-  json["observed_s"] = mapping::observed_s(times);
-  json["shut_s"] = mapping::shut_by_reason(times);
+  json["open"] = now == mapping::gate::GateReason::kOpen;
+  json["reason"] = now == mapping::gate::GateReason::kOpen ? Json(nullptr) : Json(name_of(now));
+  json["observed_s"] = mapping::gate::observed_s(times);
+  json["shut_s"] = mapping::gate::shut_by_reason(times);
   return json;
 }
 
@@ -105,7 +99,7 @@ Json outputs_json(const Telemetry& t) {
     Json& told = json[output.name];
     told = {{"file", output.file}, {"written", output.written}, {"lost", output.lost}};
     if (output.written) continue;
-    told["since"] = static_cast<double>(unix_ns(output.since)) * 1e-9;
+    told["since"] = unix_seconds(output.since);
     told["why"] = output.why;
   }
   return json;
@@ -124,13 +118,13 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                    {"open", t.in_phase.value()},
                    {"stored_scans", t.stored_scans.value()},
                    {"r_d", t.r_d.value()}};
-  json["temporary"] = {{"standing_blocks", t.things_standing.value()}, {"gone_blocks", t.things_gone.value()}};
+  json["temporary"] = {{"standing_blocks", t.transients_standing.value()}, {"gone_blocks", t.transients_gone.value()}};
   json["gate"] = gate_json(t.gate);
   json["calibration"] = calibration_json(t.calibration);
   json["scans"] = t.scans.value();
   json["localized"] = t.localized.value();
   json["odometry"] = t.odometry.value();
-  json["drops"] = drops_json(t);
+  for (const auto& [name, count] : drops_of(counts_of(t))) json["drops"][name] = count;
   json["ports"] = {{"robot", t.robot_up.value() ? "up" : "down"}, {"laser", t.laser_up.value() ? "up" : "down"}};
   json["drive"] = !t.drives.value()   ? "off"
                   : t.by_hand.value() ? "by hand"

@@ -3,10 +3,10 @@
 
 #include <chrono>
 #include <exception>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
+
+#include "daemon/kept/kept_text.hpp"
 
 #include "core/replace_file.hpp"
 
@@ -46,15 +46,6 @@ std::string json_text(DriveSwitch value, const std::string& robot_port) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Json content_of(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error || size > kLargestFile) return {};
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return Json::parse(text.str(), nullptr, false);
-}
-
 std::optional<std::string> text_in(const Json& json, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return std::nullopt;
   return json[key].get<std::string>();
@@ -73,7 +64,7 @@ KeptDriveAnswer read_kept_drive(const DrivePlace& place) {
   std::error_code error;
   const auto status = fs::symlink_status(place.file, error);
   if (place.file.empty() || status.type() == fs::file_type::not_found) return {};
-  const Json json = content_of(place.file);
+  const Json json = Json::parse(kept_text(place.file, kLargestFile), nullptr, false);
   const auto name = text_in(json, kSwitchKey);
   const auto value = name ? drivers::pioneer::drive_switch_named(*name) : std::nullopt;
   const auto port = text_in(json, kPortKey);

@@ -4,11 +4,10 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
+#include "daemon/kept/kept_text.hpp"
 #include "daemon/settings/fingerprint.hpp"
 
 namespace deltamap::daemon {
@@ -18,12 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uintmax_t kLargestFile = 4096;
 
-std::string hex_of(std::uint64_t hash) {
-  char text[24];
-  (void)std::snprintf(text, sizeof text, "%016" PRIx64, hash);
-  return text;
-}
-
 std::optional<double> number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_number()) return std::nullopt;
@@ -32,14 +25,14 @@ std::optional<double> number_in(const Json& json, const char* key) {
 }
 
 /// Nothing where none was written, or something else.
-std::optional<localization::DriveCalibration> calibration_in(const Json& json) {
+std::optional<localization::motion::DriveCalibration> calibration_in(const Json& json) {
   const auto found = json.find("calibration");
   if (found == json.end() || !found->is_array()) return std::nullopt;
   std::vector<double> numbers;
   for (const Json& number : *found) {
     if (number.is_number()) numbers.push_back(number.get<double>());
   }
-  return localization::calibration_of(numbers);
+  return localization::motion::calibration_of(numbers);
 }
 
 /// Nothing where it is not what json_text() writes.
@@ -86,7 +79,7 @@ std::string json_text(const KeptPose& pose) {
   const PoseCovariance& c = pose.covariance;
   json["covariance"] = {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
   json["sure"] = pose.is_sure;
-  if (pose.calibration) json["calibration"] = localization::numbers_of(*pose.calibration);
+  if (pose.calibration) json["calibration"] = localization::motion::numbers_of(*pose.calibration);
   return json.dump() + "\n";
 }
 
@@ -98,20 +91,17 @@ KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t f
     answer.why_not = file.string() + ": " + why;
     return answer;
   };
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error || size > kLargestFile) return refused("holds no pose");
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  const Json json = Json::parse(text.str(), nullptr, false);
+  const std::string text = kept_text(file, kLargestFile);
+  const Json json = Json::parse(text, nullptr, false);
   const auto pose = pose_in(json, first_map);
   if (!pose) return refused("holds no pose");
   answer.calibration = pose->calibration;
-  if (answer.calibration) answer.fingerprint = fingerprint_of(text.str());
+  if (answer.calibration) answer.fingerprint = fingerprint_of(text);
   const auto map = json.find("map");
   if (map == json.end() || *map != hex_of(first_map)) return refused("the pose belongs to another map");
   if (!pose->is_sure) return refused("the robot did not know where it was");
   answer.pose = pose;
-  answer.fingerprint = fingerprint_of(text.str());
+  answer.fingerprint = fingerprint_of(text);
   return answer;
 }
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/messages.hpp"
-#include "localization/drive_calibration.hpp"
+#include "localization/motion/drive_calibration.hpp"
 
 namespace deltamap::daemon {
 
@@ -22,7 +22,7 @@ struct KeptPose {
   Pose2 map_from_robot;
   PoseCovariance covariance = PoseCovariance::Zero();
   bool is_sure = false;  ///< tracking, and nothing spoke against the pose; else a start does not use it
-  std::optional<localization::DriveCalibration> calibration{};  ///< a start uses it whatever the pose is worth
+  std::optional<localization::motion::DriveCalibration> calibration{};  ///< a start uses it whatever the pose is worth
 };
 
 /// Where things are kept that belong to a store; all empty where there is none.
@@ -38,7 +38,7 @@ struct MemoryPlaces {
 /// The pose that a start may use, or why there is none.
 struct KeptPoseAnswer {
   std::optional<KeptPose> pose;
-  std::optional<localization::DriveCalibration> calibration{};
+  std::optional<localization::motion::DriveCalibration> calibration{};
   std::string why_not;            ///< one line that names the file; empty where there is none to be read
   std::uint64_t fingerprint = 0;  ///< of the file, where anything in it may be used
 };

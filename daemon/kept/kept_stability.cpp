@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/kept/kept_stability.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "daemon/kept/kept_text.hpp"
 #include "daemon/settings/fingerprint.hpp"
 
 namespace deltamap::daemon {
@@ -69,25 +68,22 @@ KeptStabilityAnswer read_kept_stability(const std::filesystem::path& file, std::
   KeptStabilityAnswer answer;
   std::error_code error;
   if (!std::filesystem::exists(std::filesystem::status(file, error))) return answer;
-  std::ostringstream text;
-  if (std::filesystem::file_size(file, error) <= kLargestFile) {
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-  }
-  answer.kept = kept_in(text.str());
+  const std::string text = kept_text(file, kLargestFile);
+  answer.kept = kept_in(text);
   if (!answer.kept) {
     answer.why_not = file.string() + ": holds nothing about stability, or is damaged";
   } else if (answer.kept->first_map != first_map) {
     answer = {std::nullopt, file.string() + ": what has proven stable belongs to another map", 0};
   } else {
-    answer.fingerprint = fingerprint_of(text.str());
+    answer.fingerprint = fingerprint_of(text);
   }
   return answer;
 }
 
-localization::StabilityRecord without(const localization::StabilityRecord& record,
-                                      const localization::StabilityParams& params,
-                                      std::span<const CellChange> changes) {
-  localization::Stability stability{record.geometry, params};
+localization::belief::StabilityRecord without(const localization::belief::StabilityRecord& record,
+                                              const localization::belief::StabilityParams& params,
+                                              std::span<const CellChange> changes) {
+  localization::belief::Stability stability{record.geometry, params};
   if (!stability.restore(record)) return record;  // a record of other tiles: the localizer will refuse it too
   stability.forget(changes);
   return stability.record();

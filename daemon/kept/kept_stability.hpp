@@ -8,14 +8,14 @@
 #include <optional>
 #include <string>
 
-#include "localization/stability.hpp"
+#include "localization/belief/stability.hpp"
 
 namespace deltamap::daemon {
 
 struct KeptStability {
   std::uint64_t first_map = 0;  ///< grid_hash() of M_0
   std::uint32_t revision = 0;   ///< of the map that it was earned on
-  localization::StabilityRecord record;
+  localization::belief::StabilityRecord record;
 };
 
 /// One JSON line that names map, revision and checksum, then the bytes of the record.
@@ -30,8 +30,8 @@ struct KeptStabilityAnswer {
 [[nodiscard]] KeptStabilityAnswer read_kept_stability(const std::filesystem::path& file, std::uint64_t first_map);
 
 /// The same record where these cells have been rewritten since.
-[[nodiscard]] localization::StabilityRecord without(const localization::StabilityRecord& record,
-                                                    const localization::StabilityParams& params,
-                                                    std::span<const CellChange> changes);
+[[nodiscard]] localization::belief::StabilityRecord without(const localization::belief::StabilityRecord& record,
+                                                            const localization::belief::StabilityParams& params,
+                                                            std::span<const CellChange> changes);
 
 }  // namespace deltamap::daemon

@@ -95,9 +95,9 @@ void DashboardDesk::refresh() {
   const Timestamp now = port_clock_now();
   refresh_scan(now);
   refresh_stored(now);
-  if (auto things = board_.things(); things != things_ || news_.transient.number == 0) {
-    things_ = std::move(things);
-    news_.transient.set(transient_message(things_.get()));
+  if (auto transients = board_.transients(); transients != transients_ || news_.transient.number == 0) {
+    transients_ = std::move(transients);
+    news_.transient.set(transient_message(transients_.get()));
   }
   if (!is_due(status_sent_, now, kStatusPeriod_s)) return;
   status_sent_ = now;

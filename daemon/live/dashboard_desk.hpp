@@ -57,7 +57,7 @@ class DashboardDesk {
   Timestamp began_;
   LiveNews news_;
   LiveScan scan_;  // newest
-  std::shared_ptr<const TemporaryThings> things_;
+  std::shared_ptr<const TransientObstacles> transients_;
   bool has_particles_ = false;   // that viewers know of
   mapping::StoredScans stored_;  // that viewers know of
   Timestamp scan_sent_, status_sent_, stored_sent_;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "localization/particle_sample.hpp"
+#include "localization/particles/particle_sample.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -59,14 +59,14 @@ LiveBoard::LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t rev
     : map_{std::move(map)}, revision_{revision}, samples_{kept.samples}, changes_{kept.changes} {}
 
 void LiveBoard::show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
-                     const localization::ParticleSet* particles) {
+                     const localization::particles::ParticleSet* particles) {
   ++scans_seen_;
   const double passed_s = seconds(row.time - last_sample_);
   const bool is_sampled = passed_s >= kSamplePeriod_s || passed_s < 0.0;
   const bool is_watched = this->is_watched();
   if (!is_sampled && !is_watched) return;
   std::vector<Pose2> sample;
-  if (is_watched && particles != nullptr) sample = localization::sampled_poses(*particles, kParticlesShown);
+  if (is_watched && particles != nullptr) sample = localization::particles::sampled_poses(*particles, kParticlesShown);
   const std::unique_lock lock{mutex_, std::try_to_lock};
   if (!lock.owns_lock()) return;
   if (is_sampled) keep_sample(row, latency_s);
@@ -141,10 +141,10 @@ mapping::StoredScans LiveBoard::stored() const {
   return stored_;
 }
 
-bool LiveBoard::show(const std::shared_ptr<const TemporaryThings>& things) {
+bool LiveBoard::show(const std::shared_ptr<const TransientObstacles>& transients) {
   const std::unique_lock lock{mutex_, std::try_to_lock};
   if (!lock.owns_lock()) return false;
-  things_ = things;
+  transients_ = transients;
   return true;
 }
 
@@ -169,9 +169,9 @@ bool LiveBoard::fetch(LiveScan& scan) const {
   return true;
 }
 
-std::shared_ptr<const TemporaryThings> LiveBoard::things() const {
+std::shared_ptr<const TransientObstacles> LiveBoard::transients() const {
   const std::scoped_lock lock{mutex_};
-  return things_;
+  return transients_;
 }
 
 LiveBoard::Past<LiveSample> LiveBoard::samples_from(std::uint64_t number, std::size_t most) const {

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "core/messages.hpp"
-#include "core/temporary_things.hpp"
+#include "core/transient_obstacles.hpp"
 #include "daemon/live/live_figures.hpp"
 #include "daemon/outputs/change_note.hpp"
 #include "daemon/outputs/localization_log.hpp"
-#include "localization/particle_set.hpp"
+#include "localization/particles/particle_set.hpp"
 #include "mapping/store_scan.hpp"
 
 namespace deltamap::daemon {
@@ -38,7 +38,7 @@ struct LiveScan {
   LocalizationRow row;
   double latency_s = 0.0;        ///< from the scan's last byte to its pose
   std::vector<LiveBeam> beams;   ///< those that brought back a range
-  std::vector<Pose2> particles;  ///< a few for all (localization/particle_sample.hpp); none where they rest
+  std::vector<Pose2> particles;  ///< a few for all (localization/particles/particle_sample.hpp); none where they rest
 };
 
 /// About a second of a run, for path and charts.
@@ -89,12 +89,12 @@ class LiveBoard {
   /// Localization thread. Shows nothing where the page is just looking: the next scan comes soon.
   /// `particles` may be null: the pose does not rest on them.
   void show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
-            const localization::ParticleSet* particles = nullptr);
+            const localization::particles::ParticleSet* particles = nullptr);
   /// Delta thread, where somebody watches; not taken where the page is just looking: the next scan comes soon.
   void show(mapping::StoredScans stored);
   [[nodiscard]] bool is_watched() const { return is_watched_.load(std::memory_order_relaxed); }
   /// Delta thread. False: not taken, to be offered again at the next scan. Null: nothing is known.
-  [[nodiscard]] bool show(const std::shared_ptr<const TemporaryThings>& things);
+  [[nodiscard]] bool show(const std::shared_ptr<const TransientObstacles>& transients);
   /// Map thread. `revision` may be null: refused.
   void show(const MapRevision* revision, const ChangeNote& note);
 
@@ -122,7 +122,7 @@ class LiveBoard {
   [[nodiscard]] Map map(std::uint64_t from = 0) const;
   /// Copies the newest scan over an older one; false where there is no newer one.
   bool fetch(LiveScan& scan) const;
-  [[nodiscard]] std::shared_ptr<const TemporaryThings> things() const;
+  [[nodiscard]] std::shared_ptr<const TransientObstacles> transients() const;
   [[nodiscard]] mapping::StoredScans stored() const;
   /// At most `most` items, the oldest first.
   [[nodiscard]] Past<LiveSample> samples_from(std::uint64_t number, std::size_t most) const;
@@ -156,7 +156,7 @@ class LiveBoard {
   Timestamp last_sample_;
   std::function<LiveFigures()> figures_ = [] { return LiveFigures{}; };
   LiveFigures figures_at_sample_;
-  std::shared_ptr<const TemporaryThings> things_;
+  std::shared_ptr<const TransientObstacles> transients_;
   mapping::StoredScans stored_;  // nothing while nobody watches
   std::shared_ptr<const OccupancyGrid> map_;
   std::uint32_t revision_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live/live_figures.hpp"
 
-#include "daemon/live/live_messages.hpp"
+#include "daemon/system/used_memory.hpp"
 
 namespace deltamap::daemon {
 

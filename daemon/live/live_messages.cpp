@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live/live_messages.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "daemon/dashboard/wire.hpp"
 #include "daemon/live/pose_line.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/version.hpp"
 
 namespace deltamap::daemon {
@@ -51,8 +49,6 @@ constexpr const char* kSampleColumns[] = {"x_m",
 static_assert(std::size(kSampleColumns) == LiveSample::kColumns);
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-double unix_s(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
 
 Json blocks_json(const std::vector<std::uint32_t>& blocks) {
   const auto shown = static_cast<std::ptrdiff_t>(std::min(blocks.size(), kMostBlocks));
@@ -115,7 +111,7 @@ std::string map_message(const GridGeometry& geometry, std::uint32_t revision) {
 }
 
 std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
-  PoseNews news{scan.row, scan.latency_s, static_cast<mapping::GateReason>(telemetry.gate.reason.value()), {}};
+  PoseNews news{scan.row, scan.latency_s, static_cast<mapping::gate::GateReason>(telemetry.gate.reason.value()), {}};
   if (telemetry.drives.value() && !telemetry.by_hand.value()) {
     news.pilot = {telemetry.wanted_speed_m_per_s.value(), telemetry.wanted_turn_rate_rad_per_s.value()};
   }
@@ -126,7 +122,7 @@ std::string scan_message(const LiveScan& scan) {
   std::string bytes;
   append_kind(bytes, MessageKind::kScan);
   append_number(bytes, static_cast<std::uint32_t>(scan.beams.size()));
-  append_number(bytes, unix_s(scan.row.time));
+  append_number(bytes, unix_seconds(scan.row.time));
   const Pose2& pose = scan.row.map_from_robot;
   for (const double number : {pose.x, pose.y, pose.theta}) append_number(bytes, static_cast<float>(number));
   for (const LiveBeam& beam : scan.beams) {
@@ -175,7 +171,7 @@ std::string stored_message(const mapping::StoredScans& stored) {
 std::string scan_json(const LiveScan& scan) {
   const Pose2& pose = scan.row.map_from_robot;
   Json json;
-  json["time"] = unix_s(scan.row.time);
+  json["time"] = unix_seconds(scan.row.time);
   json["pose"] = {{"x_m", pose.x}, {"y_m", pose.y}, {"heading_rad", pose.theta}};
   json["state"] = name_of(scan.row.state);
   json["verdict"] = name_of(scan.row.belief.verdict);
@@ -184,17 +180,17 @@ std::string scan_json(const LiveScan& scan) {
   return text_of(json);
 }
 
-std::string transient_message(const TemporaryThings* things) {
+std::string transient_message(const TransientObstacles* transients) {
   Json json;
   json["type"] = "transient";
   json["standing"] = Json::array();
   json["gone"] = Json::array();
-  if (things != nullptr) {
-    json["block_m"] = things->blocks.resolution_m;
-    json["origin_m"] = {things->blocks.origin.x(), things->blocks.origin.y()};
-    json["blocks_across"] = things->blocks.width;
-    json["standing"] = blocks_json(things->standing);
-    json["gone"] = blocks_json(things->gone);
+  if (transients != nullptr) {
+    json["block_m"] = transients->blocks.resolution_m;
+    json["origin_m"] = {transients->blocks.origin.x(), transients->blocks.origin.y()};
+    json["blocks_across"] = transients->blocks.width;
+    json["standing"] = blocks_json(transients->standing);
+    json["gone"] = blocks_json(transients->gone);
   }
   return text_of(json);
 }
@@ -209,7 +205,7 @@ std::string samples_message(const LiveBoard::Past<LiveSample>& past) {
   append_kind(bytes, MessageKind::kSamples);
   append_number(bytes, static_cast<std::uint32_t>(past.items.size()));
   const Timestamp began = past.items.empty() ? Timestamp{} : past.items.front().time;
-  append_number(bytes, unix_s(began));
+  append_number(bytes, unix_seconds(began));
   for (const LiveSample& sample : past.items) {
     append_number(bytes, static_cast<float>(seconds(sample.time - began)));
     for (const float value : sample.values) append_number(bytes, value);
@@ -232,14 +228,6 @@ std::string history_json(const LiveBoard& board) {
   json["forgotten"] = changes.first;
   json["changes"] = list_of(changes.items);
   return text_of(json);
-}
-
-std::uint64_t resident_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t all = 0;
-  std::uint64_t resident = 0;
-  if (!(statm >> all >> resident)) return 0;
-  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace deltamap::daemon

@@ -33,8 +33,8 @@ struct RunName {
 [[nodiscard]] std::string stored_message(const mapping::StoredScans& stored);
 /// /api/scan: the newest scan in words.
 [[nodiscard]] std::string scan_json(const LiveScan& scan);
-/// "transient": blocks that differ from the map for now. `things` may be null.
-[[nodiscard]] std::string transient_message(const TemporaryThings* things);
+/// "transient": blocks that differ from the map for now. `transients` may be null.
+[[nodiscard]] std::string transient_message(const TransientObstacles* transients);
 /// "status": /api/status, and the memory that this process has now.
 [[nodiscard]] std::string status_message(const std::string& status_json);
 /// Binary: rows of figures, oldest first.
@@ -44,8 +44,5 @@ struct RunName {
 
 /// /api/history: M_0 … M_k of this run.
 [[nodiscard]] std::string history_json(const LiveBoard& board);
-
-/// Memory of this process that is resident now; 0 where the system does not tell.
-[[nodiscard]] std::uint64_t resident_bytes();
 
 }  // namespace deltamap::daemon

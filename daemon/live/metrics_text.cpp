@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "daemon/live/live_messages.hpp"
+#include "daemon/system/used_memory.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/version.hpp"
 
@@ -81,16 +81,16 @@ void add_map(Text& text, const Telemetry& t) {
   text.gauge("divergence_ratio", "r_d of the newest scan.", t.r_d.value());
   text.gauge("stored_scans", "Scans that the running phase has stored.", t.stored_scans.value());
   text.gauge("mapping_paused", "1 while an operator has paused mapping.", t.paused.value() ? 1.0 : 0.0);
-  const auto now = static_cast<mapping::GateReason>(t.gate.reason.value());
-  text.gauge("gate_open", "1 while the map may be written.", now == mapping::GateReason::kOpen ? 1.0 : 0.0);
+  const auto now = static_cast<mapping::gate::GateReason>(t.gate.reason.value());
+  text.gauge("gate_open", "1 while the map may be written.", now == mapping::gate::GateReason::kOpen ? 1.0 : 0.0);
   text.head("gate_seconds_total", "Time of the write gate, by what held it shut (open: nothing).", "counter");
-  const mapping::GateTimes times = t.gate.times();
+  const mapping::gate::GateTimes times = t.gate.times();
   for (std::size_t i = 0; i < times.size(); ++i) {
-    text.row("gate_seconds_total", label("reason", mapping::name_of(static_cast<mapping::GateReason>(i))), times[i]);
+    text.row("gate_seconds_total", label("reason", name_of(static_cast<mapping::gate::GateReason>(i))), times[i]);
   }
   text.head("temporary_blocks", "Blocks that differ from the map for now, by kind.", "gauge");
-  text.row("temporary_blocks", label("kind", "standing"), t.things_standing.value());
-  text.row("temporary_blocks", label("kind", "gone"), t.things_gone.value());
+  text.row("temporary_blocks", label("kind", "standing"), t.transients_standing.value());
+  text.row("temporary_blocks", label("kind", "gone"), t.transients_gone.value());
 }
 
 void add_machine(Text& text, const Telemetry& t, double since_start_s) {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "daemon/dashboard/request.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 
 namespace deltamap::daemon {
 
@@ -32,7 +32,7 @@ class PageHistory {
   [[nodiscard]] dashboard::Answer answer_from_store(const RevisionPath& wanted);
 
   std::filesystem::path file_;
-  std::optional<mapping::MapStore> store_;
+  std::optional<mapping::store::MapStore> store_;
 };
 
 }  // namespace deltamap::daemon

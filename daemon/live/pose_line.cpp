@@ -16,17 +16,17 @@ Json covariance_json(const PoseCovariance& c) {
 }
 
 Json hypothesis_json(const Belief& belief) {
-  if (belief.rival_share <= 0.0) return nullptr;
-  return {{"x_m", belief.map_from_rival.x},
-          {"y_m", belief.map_from_rival.y},
-          {"heading_rad", belief.map_from_rival.theta},
-          {"share", belief.rival_share}};
+  if (belief.other_share <= 0.0) return nullptr;
+  return {{"x_m", belief.map_from_other.x},
+          {"y_m", belief.map_from_other.y},
+          {"heading_rad", belief.map_from_other.theta},
+          {"share", belief.other_share}};
 }
 
-Json gate_json(const std::optional<mapping::GateReason>& gate) {
+Json gate_json(const std::optional<mapping::gate::GateReason>& gate) {
   if (!gate) return nullptr;
-  const bool is_open = *gate == mapping::GateReason::kOpen;
-  return {{"open", is_open}, {"reason", is_open ? Json(nullptr) : Json(mapping::name_of(*gate))}};
+  const bool is_open = *gate == mapping::gate::GateReason::kOpen;
+  return {{"open", is_open}, {"reason", is_open ? Json(nullptr) : Json(name_of(*gate))}};
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ std::string pose_line(const PoseNews& news) {
   const LocalizationRow& row = news.row;
   Json json;
   json["type"] = "pose";
-  json["time"] = static_cast<double>(unix_ns(row.time)) * 1e-9;
+  json["time"] = unix_seconds(row.time);
   json["scan"] = row.number;
   json["x_m"] = row.map_from_robot.x;
   json["y_m"] = row.map_from_robot.y;

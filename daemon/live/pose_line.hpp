@@ -6,7 +6,7 @@
 #include <string>
 
 #include "daemon/outputs/localization_log.hpp"
-#include "mapping/write_gate.hpp"
+#include "mapping/gate/write_gate.hpp"
 
 namespace deltamap::daemon {
 
@@ -19,9 +19,9 @@ struct PilotWish {
 /// What is told of a localized scan.
 struct PoseNews {
   LocalizationRow row;
-  double latency_s = 0.0;                   ///< from the scan's last byte to its pose
-  std::optional<mapping::GateReason> gate;  ///< nothing: nobody works on the map
-  std::optional<PilotWish> pilot{};         ///< nothing: it does not drive, or is not told of
+  double latency_s = 0.0;                         ///< from the scan's last byte to its pose
+  std::optional<mapping::gate::GateReason> gate;  ///< nothing: nobody works on the map
+  std::optional<PilotWish> pilot{};               ///< nothing: it does not drive, or is not told of
 };
 
 /// "pose": the pose, what is believed of it, and the write gate. Without line end.

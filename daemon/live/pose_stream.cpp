@@ -34,9 +34,9 @@ void PoseStream::show(const LocalizationRow& row, double latency_s) {
   lines_.wake();
 }
 
-std::optional<mapping::GateReason> PoseStream::gate() const {
+std::optional<mapping::gate::GateReason> PoseStream::gate() const {
   if (!mapping_enabled_ || telemetry_.paused.value()) return std::nullopt;
-  return static_cast<mapping::GateReason>(telemetry_.gate.reason.value());
+  return static_cast<mapping::gate::GateReason>(telemetry_.gate.reason.value());
 }
 
 std::unique_ptr<PoseStream> begun_pose_stream(const Settings& settings, const Telemetry& telemetry,

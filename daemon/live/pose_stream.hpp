@@ -27,7 +27,7 @@ class PoseStream {
   void stop() { lines_.stop(); }
 
  private:
-  [[nodiscard]] std::optional<mapping::GateReason> gate() const;
+  [[nodiscard]] std::optional<mapping::gate::GateReason> gate() const;
 
   bool mapping_enabled_;
   const Telemetry& telemetry_;

@@ -21,7 +21,7 @@ StoreToKeep begun_history(const std::filesystem::path& file, const StartMap& sta
   return {.open =
               [file, first = start.map] {
                 for (const char* part : {"", "-wal", "-shm"}) remove_old(file.string() + part);
-                return mapping::MapStore{file, *first};
+                return mapping::store::MapStore{file, *first};
               },
           .numbers_before = start.revision};
 }
@@ -66,7 +66,7 @@ void MapOutputs::save(const MapStep::Result& result, Timestamp now) {
 
 const RevisionKeeper* MapOutputs::memory() const { return store_ ? &*store_ : history_ ? &*history_ : nullptr; }
 
-mapping::MapStore::Undoing MapOutputs::cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const {
+mapping::store::MapStore::Undoing MapOutputs::cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const {
   if (memory() == nullptr) throw std::runtime_error("'map.store' is not set: nothing remembers the revisions");
   return memory()->cells_of(order, newest_map);
 }

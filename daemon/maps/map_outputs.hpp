@@ -32,7 +32,8 @@ class MapOutputs {
   void save(const MapStep::Result& result, Timestamp now);
   /// As RevisionKeeper::cells_of(), from the store of the settings, else from the history of --out. Throws
   /// std::runtime_error where there is neither.
-  [[nodiscard]] mapping::MapStore::Undoing cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const;
+  [[nodiscard]] mapping::store::MapStore::Undoing cells_of(const MapOrder& order,
+                                                           const OccupancyGrid& newest_map) const;
   /// Why what remembers the revisions does not hold the newest; empty where it does.
   [[nodiscard]] std::string why_behind() const;
   /// Once a second: what could not be written is tried again.

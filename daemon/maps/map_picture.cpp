@@ -13,7 +13,7 @@ namespace {
 constexpr int kMargin_cells = 4;
 
 // Free, occupied, unknown.
-constexpr std::array<std::array<std::uint8_t, 3>, 3> kColours{{{255, 255, 255}, {24, 26, 30}, {216, 218, 222}}};
+constexpr std::array<std::array<std::uint8_t, 3>, 3> kColours{{{255, 255, 255}, {24, 26, 30}, {204, 208, 213}}};
 
 }  // namespace
 

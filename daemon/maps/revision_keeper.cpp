@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kLookForOld =
     std::chrono::minutes(1);  // a look reads an index; what it finds is 64 revisions at most
 
-mapping::RevisionNote note_of(const MapStep::Result& result, std::string_view method) {
+mapping::store::RevisionNote note_of(const MapStep::Result& result, std::string_view method) {
   const ChangeNote& note = result.note;
   const std::string cause = result.revision && note.reason.empty() ? std::string(method) : note.reason;
   return {note.phase, note.acceptance, cause, note.by_operator ? std::nullopt : std::optional{note.covariance}};
@@ -20,7 +20,7 @@ mapping::RevisionNote note_of(const MapStep::Result& result, std::string_view me
 
 }  // namespace
 
-void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_view method,
+void keep(mapping::store::MapStore& store, const MapStep::Result& result, std::string_view method,
           std::uint32_t numbers_before) {
   if (!result.revision) return store.append_refusal(result.note.time, note_of(result, method));
   MapRevision revision = *result.revision;
@@ -50,7 +50,8 @@ bool RevisionKeeper::follows(const MapRevision& revision) const {
   return revision.number - to_.numbers_before == to_.store->newest() + 1;
 }
 
-mapping::MapStore::Undoing RevisionKeeper::cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const {
+mapping::store::MapStore::Undoing RevisionKeeper::cells_of(const MapOrder& order,
+                                                           const OccupancyGrid& newest_map) const {
   if (const std::string why = why_behind(); !why.empty()) {
     throw std::runtime_error("the newest revisions are not in the store yet: " + why);
   }
@@ -136,13 +137,13 @@ void RevisionKeeper::store_missed() {
 /// Behind what the store holds: one that could be opened only now, or that another program has written to, holds more
 /// than this run knew of.
 void RevisionKeeper::store_whole(const Missed& missed) {
-  mapping::MapStore& store = *to_.store;
+  mapping::store::MapStore& store = *to_.store;
   store.catch_up();
   const MapRevision& newest = *missed.newest.revision;
   const std::uint32_t first = std::max(missed.first - to_.numbers_before, store.newest() + 1);
   const std::uint32_t numbers_before = missed.first - first;
   const std::uint32_t number = newest.number - numbers_before;
-  mapping::RevisionNote note = note_of(missed.newest, method_);
+  mapping::store::RevisionNote note = note_of(missed.newest, method_);
   if (first < number) note.cause += " (" + std::to_string(first) + " to " + std::to_string(number) + " in one)";
   store.append_whole(number, newest.time, *newest.map, note);
   to_.numbers_before = numbers_before;

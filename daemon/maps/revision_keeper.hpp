@@ -14,24 +14,24 @@
 #include "core/file_lock.hpp"
 #include "daemon/outputs/retrying_output.hpp"
 #include "daemon/steps/map_step.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 
 namespace deltamap::daemon {
 
 /// `numbers_before` is what the store does not count: the revision that the run started on, where the store began with
 /// it; modulo 2^32, for a store can be ahead of the run. Throws std::runtime_error naming the file.
-void keep(mapping::MapStore& store, const MapStep::Result& result, std::string_view method,
+void keep(mapping::store::MapStore& store, const MapStep::Result& result, std::string_view method,
           std::uint32_t numbers_before = 0);
 
 /// A store that takes a run's revisions, and how to open it where that was not possible yet.
 struct StoreToKeep {
   std::filesystem::path to_lock{};  ///< the file that this run alone may write to; empty: locked elsewhere
   std::optional<FileLock> lock{};   ///< nothing: there could be none yet; until the end of the run
-  std::optional<mapping::MapStore> store{};
-  std::function<mapping::MapStore()> open{};
+  std::optional<mapping::store::MapStore> store{};
+  std::function<mapping::store::MapStore()> open{};
   std::string why_not{};             ///< where it is not open
   std::uint32_t numbers_before = 0;  ///< as keep() has it
-  mapping::Retention retention{};
+  mapping::store::Retention retention{};
 };
 
 class RevisionKeeper {
@@ -42,7 +42,8 @@ class RevisionKeeper {
   void take(const MapStep::Result& result, Timestamp now);
   /// What an order would set in the newest map of the run; `kept` as MapStore has it, 0 for a rollback. Throws
   /// std::runtime_error with one line: the store is behind, it has no such revision, or there is nothing to do.
-  [[nodiscard]] mapping::MapStore::Undoing cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const;
+  [[nodiscard]] mapping::store::MapStore::Undoing cells_of(const MapOrder& order,
+                                                           const OccupancyGrid& newest_map) const;
   /// Why the store does not hold the newest revision; empty where it does.
   [[nodiscard]] std::string why_behind() const;
   /// Once a second, while nothing else is to be done: what could not be stored is tried again, and a little of what the

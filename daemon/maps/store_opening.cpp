@@ -6,16 +6,16 @@
 
 #include "daemon/outputs/output_place.hpp"
 #include "daemon/settings/start_error.hpp"
-#include "mapping/map_salvage.hpp"
-#include "mapping/store_error.hpp"
+#include "mapping/store/map_salvage.hpp"
+#include "mapping/store/store_error.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-using mapping::MapStore;
-using mapping::SalvagedMap;
-using mapping::StoreError;
+using mapping::store::MapStore;
+using mapping::store::SalvagedMap;
+using mapping::store::StoreError;
 
 /// The database with its log, under the first free name NAME.set-aside-1, -2 …; nothing where it cannot be renamed.
 std::optional<fs::path> set_aside(const fs::path& file) {
@@ -56,7 +56,7 @@ void take(OpenedStore& opened, MapStore store, const OccupancyGrid& first) {
 
 /// The store cannot be used as it is.
 void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGrid& first, const StoreError& reason) {
-  const auto saved = mapping::newest_whole_map(file, first);
+  const auto saved = mapping::store::newest_whole_map(file, first);
   const auto aside = reason.kind == StoreError::Kind::kOther ? std::nullopt : set_aside(file);
   opened.start = start_on(first, saved);
   const std::string from = saved ? "goes on with its revision=" + std::to_string(saved->number)

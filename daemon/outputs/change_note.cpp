@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 Json as_json(const ChangeNote& change) {
   Json json;
-  json["time"] = static_cast<double>(unix_ns(change.time)) * 1e-9;
+  json["time"] = unix_seconds(change.time);
   json["phase"] = change.phase;
   json["scans"] = change.scans;
   json["accepted"] = change.revision.has_value();

@@ -93,8 +93,8 @@ std::string csv_line(const LocalizationRow& row) {
   line.word(name_of(row.belief.verdict));
   line.counts(row.belief.is_checked ? row.belief.stable : BeamCounts{});
   line.counts(row.belief.is_checked ? row.belief.elsewhere : BeamCounts{});
-  line.number(row.belief.rival_share);
-  line.pose(row.belief.map_from_rival);
+  line.number(row.belief.other_share);
+  line.pose(row.belief.map_from_other);
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) line.number(row.covariance(i, j));
   }
@@ -116,7 +116,7 @@ std::string verdict_line(const LocalizationRow& row) {
   const Belief& belief = row.belief;
   char text[96];
   (void)std::snprintf(text, sizeof text, " pose_right=%.2f map_wrong=%.2f rival=%.2f scan=%" PRIu32, belief.pose_right,
-                      belief.map_wrong, belief.rival_share, row.number);
+                      belief.map_wrong, belief.other_share, row.number);
   return "pose verdict: " + std::string(name_of(belief.verdict)) + text + " stable=" + share_of(belief.stable) +
          " elsewhere=" + share_of(belief.elsewhere);
 }

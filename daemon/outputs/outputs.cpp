@@ -6,7 +6,6 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -18,7 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double unix_seconds(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
 double milliseconds(double seconds) { return seconds * 1e3; }
 
 Json as_json(const std::optional<drivers::port::LogCut>& cut) {
@@ -48,9 +46,7 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   json["scans"] = scans.decoded;
   json["localized"] = scans.localized;
   json["odometry"] = scans.odometry;
-  json["drops"] = {{"scans_overtaken", scans.dropped},     {"scans_lost", scans.lost},
-                   {"odometry_lost", scans.odometry_lost}, {"tracked_lost", scans.tracked_lost},
-                   {"sets_lost", scans.sets_lost},         {"recording_lost", scans.recording_lost}};
+  for (const auto& [name, count] : drops_of(scans)) json["drops"][name] = count;
   json["delta_phases"] = report.phases;
   Json revisions = Json::array();
   for (const ChangeTally::Revision& revision : report.changes.revisions()) {
@@ -69,9 +65,9 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
                           {"undecided_s", report.verdict_times.undecided_s},
                           {"wrong_s", report.verdict_times.wrong_s}};
-  json["write_gate"] = {{"observed_s", mapping::observed_s(report.gate_times)},
-                        {"shut_s", mapping::shut_s(report.gate_times)},
-                        {"shut_by_reason_s", mapping::shut_by_reason(report.gate_times)}};
+  json["write_gate"] = {{"observed_s", mapping::gate::observed_s(report.gate_times)},
+                        {"shut_s", mapping::gate::shut_s(report.gate_times)},
+                        {"shut_by_reason_s", mapping::gate::shut_by_reason(report.gate_times)}};
   json["localizer"] = report.localizer;
   json["recorded_s"] = report.recorded_s;
   const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));
@@ -82,9 +78,9 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   json["wall_s"] = report.wall_s;
   json["peak_resident_bytes"] = report.peak_resident_bytes;
   json["latency_ms"] = {{"of", report.latency_of},
-                        {"p50", milliseconds(report.latency_p50_s)},
-                        {"p99", milliseconds(report.latency_p99_s)},
-                        {"max", milliseconds(report.latency_max_s)}};
+                        {"p50", milliseconds(report.latency.quantile_s(0.5))},
+                        {"p99", milliseconds(report.latency.quantile_s(0.99))},
+                        {"max", milliseconds(report.latency.max_s())}};
   if (!report.journal.empty()) {
     json["journal"] = {
         {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
@@ -93,16 +89,6 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   }
   json["wire"] = report.wire;
   return json.dump(2) + "\n";
-}
-
-std::uint64_t peak_resident_bytes() {
-  // Not getrusage: its maximum is inherited from whoever started this program.
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    std::uint64_t kilobytes = 0;
-    if (std::sscanf(line.c_str(), "VmHWM: %" SCNu64, &kilobytes) == 1) return kilobytes * 1024;
-  }
-  return 0;
 }
 
 void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out) {

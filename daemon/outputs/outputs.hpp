@@ -13,8 +13,10 @@
 #include "core/file_lock.hpp"
 #include "core/messages.hpp"
 #include "daemon/outputs/change_note.hpp"
+#include "daemon/telemetry/latency_histogram.hpp"
+#include "daemon/telemetry/scan_counts.hpp"
 #include "drivers/port/log_cut.hpp"
-#include "mapping/write_gate.hpp"
+#include "mapping/gate/write_gate.hpp"
 
 namespace deltamap::daemon {
 
@@ -28,18 +30,6 @@ struct TrajectoryPoint {
 
 /// One line of trajectory.tum: "t x y 0 0 0 qz qw" and a line end.
 [[nodiscard]] std::string tum_line(const TrajectoryPoint& point);
-
-struct ScanCounts {
-  std::uint64_t decoded = 0;
-  std::uint64_t localized = 0;
-  std::uint64_t dropped = 0;  ///< overtaken by a newer scan
-  std::uint64_t lost = 0;     ///< sensor channel full
-  std::uint64_t odometry = 0;
-  std::uint64_t odometry_lost = 0;
-  std::uint64_t tracked_lost = 0;    ///< localized, but not seen by Δ-awareness
-  std::uint64_t sets_lost = 0;       ///< Δ-phases that found the map thread busy
-  std::uint64_t recording_lost = 0;  ///< chunks of bytes that the recorder could not take
-};
 
 struct StageCpu {
   double decoding_s = 0.0;  ///< live: the whole io thread
@@ -64,7 +54,7 @@ struct RunReport {
   double time_lost_s = 0.0;
   double time_global_s = 0.0;
   VerdictTimes verdict_times;
-  mapping::GateTimes gate_times{};                 ///< how long the write gate was open, and shut by reason
+  mapping::gate::GateTimes gate_times{};           ///< how long the write gate was open, and shut by reason
   std::map<std::string, std::uint64_t> localizer;  ///< what befell it, by name
   double recorded_s = 0.0;                         ///< from the first scan to the last
   StageCpu cpu;
@@ -72,9 +62,7 @@ struct RunReport {
   double wall_s = 0.0;
   std::uint64_t peak_resident_bytes = 0;
   std::string latency_of;  ///< "last byte to pose" or "step", the time that localizing took
-  double latency_p50_s = 0.0;
-  double latency_p99_s = 0.0;
-  double latency_max_s = 0.0;
+  LatencyHistogram latency;
   std::string journal;  ///< replay: "obeyed", "none" or why it was not obeyed
   std::uint32_t journal_differences = 0;
   std::uint32_t commands = 0;                 ///< replay: of an operator, obeyed
@@ -85,9 +73,6 @@ struct RunReport {
 
 /// `settings` are those of the run: they stand in the report, with version and commit.
 [[nodiscard]] std::string json_text(const RunReport& report, const Settings& settings);
-
-/// Highest resident set of this process so far.
-[[nodiscard]] std::uint64_t peak_resident_bytes();
 
 /// Throws std::runtime_error where `out` is the folder of the map that the run begins with: it would be overwritten.
 void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out);

@@ -5,6 +5,8 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "daemon/settings/fingerprint.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -54,12 +56,8 @@ std::optional<Decision> command_of_note(const std::string& note) {
 }  // namespace
 
 std::string note_of(const RunIdentity& run) {
-  char text[104];
-  (void)std::snprintf(text, sizeof text, "run settings %016" PRIx64 " map %016" PRIx64, run.settings, run.map);
-  if (run.memory == 0) return text;
-  char memory[32];
-  (void)std::snprintf(memory, sizeof memory, " memory %016" PRIx64, run.memory);
-  return std::string(text) + memory;
+  const std::string note = "run settings " + hex_of(run.settings) + " map " + hex_of(run.map);
+  return run.memory == 0 ? note : note + " memory " + hex_of(run.memory);
 }
 
 std::optional<RunIdentity> run_of_note(std::string_view note) {
@@ -78,7 +76,7 @@ std::string note_of(const Decision& decision) {
   switch (decision.kind) {
     case Kind::kRevision:
       return "revision " + number + " before scan " + scan;
-    case Kind::kThings:
+    case Kind::kTransients:
       return "temporary " + number + " before scan " + scan;
     case Kind::kScanDropped:
       return "scan " + scan + " dropped";
@@ -109,7 +107,8 @@ std::optional<Decision> decision_of_note(std::string_view note) {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   if (matches(text, "revision %" SCNu32 " before scan %" SCNu32 "%n", &a, &b)) return Decision{Kind::kRevision, b, a};
-  if (matches(text, "temporary %" SCNu32 " before scan %" SCNu32 "%n", &a, &b)) return Decision{Kind::kThings, b, a};
+  if (matches(text, "temporary %" SCNu32 " before scan %" SCNu32 "%n", &a, &b))
+    return Decision{Kind::kTransients, b, a};
   if (matches(text, "scan %" SCNu32 " dropped%n", &a)) return Decision{Kind::kScanDropped, a, 0};
   if (matches(text, "scan %" SCNu32 " lost%n", &a)) return Decision{Kind::kScanLost, a, 0};
   if (matches(text, "odometry %" SCNu32 " lost%n", &a)) return Decision{Kind::kOdometryLost, 0, a};
@@ -139,8 +138,8 @@ void Journal::read(std::string_view note) {
     case Kind::kRevision:
       revisions_[decision->scan] = decision->number;
       break;
-    case Kind::kThings:
-      things_[decision->scan] = decision->number;
+    case Kind::kTransients:
+      transients_[decision->scan] = decision->number;
       break;
     case Kind::kScanDropped:
       dropped_.insert(decision->scan);
@@ -189,9 +188,9 @@ std::optional<std::uint32_t> Journal::revision_before(std::uint32_t scan) const 
   return found == revisions_.end() ? std::nullopt : std::optional{found->second};
 }
 
-std::optional<std::uint32_t> Journal::things_before(std::uint32_t scan) const {
-  const auto found = things_.find(scan);
-  return found == things_.end() ? std::nullopt : std::optional{found->second};
+std::optional<std::uint32_t> Journal::transients_before(std::uint32_t scan) const {
+  const auto found = transients_.find(scan);
+  return found == transients_.end() ? std::nullopt : std::optional{found->second};
 }
 
 std::optional<std::uint32_t> Journal::closing_scan(std::uint32_t phase) const {

@@ -31,7 +31,7 @@ struct RunIdentity {
 struct Decision {
   enum class Kind : std::uint8_t {
     kRevision,      ///< revision `number` taken before scan `scan`
-    kThings,        ///< snapshot `number` of the temporary layer taken before scan `scan`
+    kTransients,    ///< snapshot `number` of the transient layer taken before scan `scan`
     kScanDropped,   ///< overtaken by a newer one; it has a line in the trajectory, predicted by odometry
     kScanLost,      ///< found the sensor channel full: nobody saw it
     kOdometryLost,  ///< odometry number `number` found the sensor channel full
@@ -72,8 +72,8 @@ class Journal {
   [[nodiscard]] bool has_gap() const { return has_gap_; }
   /// The newest revision to be taken before the scan; nothing where none is.
   [[nodiscard]] std::optional<std::uint32_t> revision_before(std::uint32_t scan) const;
-  /// Likewise of the temporary layer.
-  [[nodiscard]] std::optional<std::uint32_t> things_before(std::uint32_t scan) const;
+  /// Likewise of the transient layer.
+  [[nodiscard]] std::optional<std::uint32_t> transients_before(std::uint32_t scan) const;
   [[nodiscard]] bool was_dropped(std::uint32_t scan) const { return dropped_.contains(scan); }
   [[nodiscard]] bool was_lost(std::uint32_t scan) const { return lost_.contains(scan); }
   [[nodiscard]] bool odometry_was_lost(std::uint32_t number) const { return lost_odometry_.contains(number); }
@@ -93,9 +93,9 @@ class Journal {
 
   std::optional<RunIdentity> run_;
   bool has_gap_ = false;
-  std::map<std::uint32_t, std::uint32_t> revisions_;  // scan → revision
-  std::map<std::uint32_t, std::uint32_t> things_;     // scan → snapshot
-  std::map<std::uint32_t, std::uint32_t> closed_;     // phase → scan
+  std::map<std::uint32_t, std::uint32_t> revisions_;   // scan → revision
+  std::map<std::uint32_t, std::uint32_t> transients_;  // scan → snapshot
+  std::map<std::uint32_t, std::uint32_t> closed_;      // phase → scan
   std::vector<Decision> commands_;
   SetCellsReader set_cells_;
   std::set<std::uint32_t> dropped_, lost_, lost_odometry_, lost_tracked_, lost_sets_;

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "mapping/map_codec.hpp"
+#include "mapping/store/map_codec.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -29,8 +29,8 @@ std::shared_ptr<const SetCells> set_cells_in(const Json& head, std::string_view 
   set.width = head.at("width").get<int>();
   set.height = head.at("height").get<int>();
   if (set.width <= 0 || set.height <= 0 || set.width > kLongestSide || set.height > kLongestSide) return nullptr;
-  auto changes = mapping::decoded_changes(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
-                                          lattice_of(set.width, set.height));
+  auto changes = mapping::store::decoded_changes(
+      std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), lattice_of(set.width, set.height));
   if (!changes) return nullptr;
   set.changes = *std::move(changes);
   return std::make_shared<const SetCells>(std::move(set));
@@ -50,7 +50,7 @@ std::vector<std::string> notes_of(const SetCells& set) {
                   {"time_ns", unix_ns(set.order.scan_time)},
                   {"width", set.width},
                   {"height", set.height}};
-  const auto bytes = mapping::encoded_changes(set.changes, lattice_of(set.width, set.height));
+  const auto bytes = mapping::store::encoded_changes(set.changes, lattice_of(set.width, set.height));
   std::string content = head.dump() + "\n";
   content.append(bytes.begin(), bytes.end());
   return notes_in_parts(kHead, content);

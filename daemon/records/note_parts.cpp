@@ -2,7 +2,6 @@
 #include "daemon/records/note_parts.hpp"
 
 #include <algorithm>
-#include <cinttypes>
 #include <cstdint>
 #include <cstdio>
 
@@ -48,11 +47,7 @@ std::optional<std::string> bytes_of_base64(std::string_view text) {
 }
 
 /// 16 hexadecimal digits: the checksum of all that follows.
-std::string sealed(std::string_view content) {
-  char checksum[24];
-  (void)std::snprintf(checksum, sizeof checksum, "%016" PRIx64, fingerprint_of(content));
-  return std::string(checksum).append(content);
-}
+std::string sealed(std::string_view content) { return hex_of(fingerprint_of(content)).append(content); }
 
 /// What was sealed; nothing where it is damaged.
 std::optional<std::string> unsealed(const std::string& bytes) {

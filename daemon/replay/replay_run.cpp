@@ -13,34 +13,17 @@
 #include "daemon/records/journal.hpp"
 #include "daemon/records/recording_decoder.hpp"
 #include "daemon/replay/replay_start.hpp"
-#include "daemon/replay/revision_queue.hpp"
-#include "daemon/replay/things_queue.hpp"
-#include "daemon/steps/localization_step.hpp"
-#include "daemon/steps/map_step.hpp"
-#include "daemon/telemetry/latency_histogram.hpp"
+#include "daemon/replay/sequential_run.hpp"
+#include "daemon/system/used_memory.hpp"
+#include "daemon/telemetry/cpu_timer.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "drivers/port/replay_port.hpp"
-#include "mapping/store_scan.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 using drivers::port::ReplayPort;
 using drivers::port::ReplayWindow;
-
-/// Adds the CPU time between its birth and its end.
-class CpuTimer {
- public:
-  explicit CpuTimer(double& sum_s) : sum_s_{sum_s}, began_s_{thread_cpu_s()} {}
-  ~CpuTimer() { sum_s_ += elapsed_s(); }
-  CpuTimer(const CpuTimer&) = delete;
-  CpuTimer& operator=(const CpuTimer&) = delete;
-  [[nodiscard]] double elapsed_s() const { return thread_cpu_s() - began_s_; }
-
- private:
-  double& sum_s_;
-  double began_s_;
-};
 
 class Replay {
  public:
@@ -51,11 +34,7 @@ class Replay {
         obeys_{begun.journal == "obeyed"},
         next_command_{journal_.commands().begin()},
         first_revision_{begun.start.revision},
-        localization_{job.settings, begun.start},
-        store_scan_{job.settings.mapping.store_scan, job.settings.seed},
-        map_{job.settings, begun.start},
-        revisions_{obeys_ ? &journal_ : nullptr, job.map_delay_s, begun.start.revision},
-        things_{obeys_ ? &journal_ : nullptr},
+        run_{job.settings, begun.start, obeys_ ? &journal_ : nullptr, job.map_delay_s},
         store_{out / "map_store.sqlite", *begun.start.map},
         trajectory_{out / "trajectory.tum"},
         localization_log_{out / "localization.csv"},
@@ -73,8 +52,7 @@ class Replay {
   void take(Scan&& scan);
   void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
-  void update_map(const ScanSet& set);
-  void keep_result(MapStep::Result result);
+  void keep_result(const MapStep::Result& result);
 
   const ReplayJob& job_;
   const Journal& journal_;
@@ -84,16 +62,13 @@ class Replay {
   bool has_begun_ = false;
   bool is_paused_ = false;
   std::uint32_t first_revision_;
-  LocalizationStep localization_;
-  mapping::StoreScan store_scan_;
-  MapStep map_;
-  RevisionQueue revisions_;
-  ThingsQueue things_;
-  mapping::MapStore store_;
+  SequentialRun run_;
+  mapping::store::MapStore store_;
   LineFile trajectory_;
   LineFile localization_log_;
   LineFile changes_;
-  LatencyHistogram step_times_;
+  double decoding_cpu_s_ = 0.0;
+  double recording_cpu_s_ = 0.0;
   RunReport report_;
 };
 
@@ -109,7 +84,7 @@ void Replay::run(const ReplayProgress& progress) {
     odometry.clear();
     scans.clear();
     {
-      const CpuTimer timer{report_.cpu.decoding_s};
+      const CpuTimer timer{decoding_cpu_s_};
       const auto replayed = port.next();
       if (!replayed) break;
       decoder.feed(replayed->record, sinks);
@@ -134,8 +109,7 @@ void Replay::take(Odometry&& odometry, std::uint32_t number) {
     ++report_.scans.odometry_lost;
     return;
   }
-  const CpuTimer timer{report_.cpu.localization_s};
-  localization_.observe(odometry);
+  run_.observe(odometry);
 }
 
 void Replay::take(Scan&& scan) {
@@ -146,28 +120,24 @@ void Replay::take(Scan&& scan) {
   }
   if (obeys_ && journal_.was_dropped(scan.number)) {
     ++report_.scans.dropped;
-    trajectory_.write(tum_line(localization_.pass_over(scan)));
+    trajectory_.write(tum_line(run_.localization().pass_over(scan)));
     return;
   }
-  std::optional<TrackedScan> tracked;
-  double cost_s = 0.0;
-  {
-    const CpuTimer timer{report_.cpu.localization_s};
-    while (const auto revision = revisions_.next_before(scan)) localization_.apply(*revision);
-    if (auto things = things_.next_before(scan.number)) localization_.apply(std::move(things));
-    obey_commands_before(scan);
-    tracked = localization_.observe(std::move(scan));
-    cost_s = timer.elapsed_s();
-    step_times_.add(cost_s);
-  }
+  const double before_s = run_.cpu().localization_s;
+  run_.take_what_is_due(scan);
+  obey_commands_before(scan);
+  const TrackedScan tracked = run_.observe(std::move(scan));
+  const double cost_s = run_.cpu().localization_s - before_s;
+  report_.latency.add(cost_s);
   ++report_.scans.localized;
+  const LocalizationRow& row = run_.localization().row();
   {
-    const CpuTimer timer{report_.cpu.recording_s};
-    trajectory_.write(tum_line({tracked->scan.time, tracked->estimate.map_from_robot}));
-    localization_log_.write(csv_line(localization_.row()));
+    const CpuTimer timer{recording_cpu_s_};
+    trajectory_.write(tum_line({tracked.scan.time, tracked.estimate.map_from_robot}));
+    localization_log_.write(csv_line(row));
   }
-  if (job_.watch.scan) job_.watch.scan(*tracked, localization_.row(), cost_s);
-  if (job_.settings.mapping.enabled && !is_paused_) look_for_changes(*tracked);
+  if (job_.watch.scan) job_.watch.scan(tracked, row, cost_s);
+  if (job_.settings.mapping.enabled && !is_paused_) look_for_changes(tracked);
 }
 
 /// What the operator did is an input as the bytes are: obeyed whatever becomes of the journal.
@@ -178,10 +148,11 @@ void Replay::obey_commands_before(const Scan& scan) {
     if (place > 0) break;
     ++report_.commands;
     const bool is_of_before = !has_begun_ && place < 0;  // the window begins later
-    if (command.kind == Decision::Kind::kRelocalized && !is_of_before) localization_.relocalize(command.map_from_robot);
-    if (command.kind == Decision::Kind::kMapSet) keep_result(map_.obey(*command.set));
+    if (command.kind == Decision::Kind::kRelocalized && !is_of_before)
+      run_.localization().relocalize(command.map_from_robot);
+    if (command.kind == Decision::Kind::kMapSet) keep_result(run_.obey(*command.set));
     if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
-    if (is_paused_) localization_.apply(std::shared_ptr<const TemporaryThings>{});
+    if (is_paused_) run_.localization().apply(std::shared_ptr<const TransientObstacles>{});
     if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
   }
   has_begun_ = true;
@@ -192,14 +163,9 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
     ++report_.scans.tracked_lost;
     return;
   }
-  std::optional<ScanSet> set;
-  {
-    const CpuTimer timer{report_.cpu.awareness_s};
-    set = store_scan_.observe(tracked);
-    things_.push(store_scan_.temporary());
-  }
+  const std::optional<ScanSet> set = run_.look_for_changes(tracked);
+  if (const auto withdrawn = run_.withdraw()) keep_result(*withdrawn);
   if (!set) return;
-  if (set->withdraw_from) return update_map(*set);
   ++report_.phases;
   const auto closing = journal_.closing_scan(set->phase);
   const bool is_unknown = !closing && is_cut_;
@@ -208,21 +174,14 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
     ++report_.scans.sets_lost;
     return;
   }
-  update_map(*set);
+  keep_result(run_.update_map(*set));
 }
 
-void Replay::update_map(const ScanSet& set) {
-  const CpuTimer timer{report_.cpu.map_update_s};
-  keep_result(map_.update(set));
-}
-
-void Replay::keep_result(MapStep::Result result) {
+void Replay::keep_result(const MapStep::Result& result) {
   changes_.write(json_line(result.note));
-  keep(store_, result, map_.method(), first_revision_);
+  keep(store_, result, run_.map().method(), first_revision_);
   report_.changes.add(result.note);
   if (job_.watch.change) job_.watch.change(result.revision ? &*result.revision : nullptr, result.note);
-  if (!result.revision) return;
-  revisions_.push(std::move(*result.revision));
 }
 
 RunReport Replay::finish(const std::filesystem::path& out) {
@@ -232,17 +191,13 @@ RunReport Replay::finish(const std::filesystem::path& out) {
   trajectory_.flush();
   localization_log_.flush();
   changes_.flush();
-  write_grid(*map_.map(), out / "map.yaml");
-  report_.time_lost_s = localization_.time_lost_s();
-  report_.time_global_s = localization_.time_global_s();
-  report_.verdict_times = localization_.verdict_times();
-  report_.localizer = localization_.counts();
-  report_.recorded_s = localization_.covered_s();
-  report_.gate_times = store_scan_.awareness().gate_times;
+  write_grid(*run_.map().map(), out / "map.yaml");
+  add_to(report_, run_.localization());
+  report_.gate_times = run_.store_scan().awareness().gate_times;
+  report_.cpu = run_.cpu();
+  report_.cpu.decoding_s = decoding_cpu_s_;
+  report_.cpu.recording_s = recording_cpu_s_;
   report_.latency_of = "localizing one scan, CPU time";
-  report_.latency_p50_s = step_times_.quantile_s(0.5);
-  report_.latency_p99_s = step_times_.quantile_s(0.99);
-  report_.latency_max_s = step_times_.max_s();
   return report_;
 }
 

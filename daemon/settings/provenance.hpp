@@ -3,21 +3,11 @@
 // summary, so that a figure can be made again. What is not listed has its default at that commit.
 #pragma once
 
-#include <cinttypes>
-#include <cstdio>
-#include <string>
-
+#include "daemon/settings/fingerprint.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/version.hpp"
 
 namespace deltamap::daemon {
-
-/// settings_fingerprint() as sixteen hex digits.
-[[nodiscard]] inline std::string fingerprint_text(const Settings& settings) {
-  char text[17];
-  (void)std::snprintf(text, sizeof text, "%016" PRIx64, settings_fingerprint(settings));
-  return text;
-}
 
 /// Adds `version`, `commit` and `settings` to a JSON object. Values that are JSON are kept as such.
 template <typename Json>
@@ -28,7 +18,7 @@ void add_provenance(Json& json, const Settings& settings) {
   for (const auto& [key, value] : changed_settings(settings)) {
     changed[key] = Json::accept(value) ? Json::parse(value) : Json(value);
   }
-  json["settings"] = {{"fingerprint", fingerprint_text(settings)}, {"changed", changed}};
+  json["settings"] = {{"fingerprint", hex_of(settings_fingerprint(settings))}, {"changed", changed}};
 }
 
 }  // namespace deltamap::daemon

@@ -18,7 +18,7 @@
 #include "drivers/pioneer/session.hpp"
 #include "localization/localizer_params.hpp"
 #include "mapping/map_update_params.hpp"
-#include "mapping/retention.hpp"
+#include "mapping/store/retention.hpp"
 #include "mapping/store_scan.hpp"
 #include "navigation/drive_mode.hpp"
 #include "navigation/safety.hpp"
@@ -37,10 +37,10 @@ struct LaserSettings {
 };
 
 struct MapSettings {
-  std::string file;              ///< M_0
-  std::string store;             ///< revisions; empty: not kept
-  mapping::Retention retention;  ///< of the store
-  std::string newest;            ///< YAML of the newest revision, for other programs; empty: none
+  std::string file;                     ///< M_0
+  std::string store;                    ///< revisions; empty: not kept
+  mapping::store::Retention retention;  ///< of the store
+  std::string newest;                   ///< YAML of the newest revision, for other programs; empty: none
 };
 
 struct MappingSettings {

@@ -138,7 +138,7 @@ void add_places(localization::LocalizerParams& localizer, Keys& keys) {
                            "headings of each position that is searched"));
 }
 
-void add_beam_check(localization::JudgementParams& judgement, Keys& keys) {
+void add_beam_check(localization::belief::JudgementParams& judgement, Keys& keys) {
   keys.push_back(number_key("localization.beam_check.after_m", judgement.check_m, "m", 0.0, 10.0,
                             "distance driven until beams are held against the map again"));
   keys.push_back(degrees_key("localization.beam_check.after_deg", judgement.check_rad, 0.0, 180.0,

@@ -115,7 +115,7 @@ void add_models(localization::LocalizerParams& localizer, Keys& keys) {
                "whether straight surfaces lead the pose where they explain the scans; false: particles always do"));
 }
 
-void add_temporary(localization::TemporaryBeamsParams& temporary, Keys& keys) {
+void add_temporary(localization::sensor::TransientBeamsParams& temporary, Keys& keys) {
   const std::string at = "localization.temporary.";
   keys.push_back(flag_key(at + "weighing", temporary.weighing,
                           "leave beams that end at a temporary obstacle out of the weights of the particles"));

@@ -17,7 +17,7 @@ SettingKey most_range_key(std::string name, double& judged_m, double& drawn_m) {
   return key;
 }
 
-void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, double& longest_drawn_m, Keys& keys) {
+void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& longest_drawn_m, Keys& keys) {
   keys.push_back(number_key("mapping.persistence_s", evidence.passing.persistence_s, "s", 0.0, 86400.0,
                             "time that a small free-standing object, or what comes and goes, must last to become map"));
   const std::string at = "mapping.evidence.";
@@ -44,7 +44,7 @@ void add_evidence(mapping::awareness::EvidencePhaseParams& evidence, double& lon
                             "time without votes after which a block starts anew"));
 }
 
-void add_temporary(mapping::awareness::TemporaryParams& temporary, Keys& keys) {
+void add_temporary(mapping::evidence::TransientLayerParams& temporary, Keys& keys) {
   const std::string at = "mapping.temporary.";
   keys.push_back(whole_key(at + "least_votes", temporary.least_votes, "", 1, 255,
                            "keyframes that put a block into the temporary layer (method evidence)"));
@@ -57,7 +57,7 @@ void add_temporary(mapping::awareness::TemporaryParams& temporary, Keys& keys) {
                            "blocks of each kind in the temporary layer; 32 bytes each"));
 }
 
-void add_evidence_update(mapping::EvidenceUpdateParams& evidence, Keys& keys) {
+void add_evidence_update(mapping::redraw::EvidenceUpdateParams& evidence, Keys& keys) {
   const std::string with_evidence = "mapping.evidence.update.";
   keys.push_back(whole_key(with_evidence + "least_scans", evidence.least_scans, "", 1, 1000,
                            "scans that must fit; an update from fewer is refused"));
@@ -90,7 +90,7 @@ void add_paper(mapping::StoreScanParams& store_scan, Keys& keys) {
       whole_key("mapping.paper.most_scans", phase.most_scans, "", 2, 100000, "scans kept in one Δ-phase"), "S_k"));
 }
 
-void add_paper_update(mapping::PaperUpdateParams& paper, Keys& keys) {
+void add_paper_update(mapping::paper::PaperUpdateParams& paper, Keys& keys) {
   const std::string as_published = "mapping.paper.update.";
   keys.push_back(whole_key(as_published + "least_scans", paper.least_scans, "", 2, 1000,
                            "scans that draw a local map; fewer draw none"));
@@ -104,7 +104,7 @@ void add_paper_update(mapping::PaperUpdateParams& paper, Keys& keys) {
                  "chi-square of three degrees of freedom above which a merge contradicts the localizer's pose"));
 }
 
-void add_gate(mapping::WriteGateParams& gate, Keys& keys) {
+void add_gate(mapping::gate::WriteGateParams& gate, Keys& keys) {
   const std::string at = "mapping.gate.";
   keys.push_back(
       flag_key(at + "enabled", gate.enabled, "write to the map only while the pose is sure (method evidence)"));

@@ -12,11 +12,7 @@ using Kind = Decision::Kind;
 
 constexpr std::chrono::seconds kLookEvery{1};
 
-/// Null where it is an order.
-const ScanSet* set_in(const MapWork& work) {
-  const auto* set = std::get_if<ScanSet>(&work);
-  return set != nullptr && !set->withdraw_from ? set : nullptr;
-}
+bool is_set(const MapWork& work) { return std::holds_alternative<ScanSet>(work); }
 
 }  // namespace
 
@@ -39,18 +35,19 @@ void DeltaStage::run() {
 
 void DeltaStage::look_for_changes(const TrackedScan& tracked) {
   auto set = store_scan_.observe(tracked);
-  offer_things();
+  offer_transients();
   const mapping::Awareness& awareness = store_scan_.awareness();
   wiring_.telemetry.r_d.set(awareness.r_d);
   wiring_.telemetry.in_phase.set(awareness.in_phase);
   wiring_.telemetry.phase.set(awareness.phase);
   wiring_.telemetry.stored_scans.set(awareness.stored_scans);
   tell_of_gate();
-  if (set && !set->withdraw_from) {
+  if (const auto& order = store_scan_.withdrawal()) hand_over(*order);
+  if (set) {
     wiring_.telemetry.phases_closed.add(1);
     note({Kind::kPhaseClosed, tracked.scan.number, set->phase});
+    hand_over(std::move(*set));
   }
-  if (set) hand_over(std::move(*set));
   if (wiring_.shows_scans()) show_scans();
 }
 
@@ -69,15 +66,15 @@ void DeltaStage::offer_waiting() {
   while (!waiting_.empty() && wiring_.sets.try_send(std::move(waiting_.front()))) waiting_.pop_front();
 }
 
-void DeltaStage::offer_things() {
-  const std::shared_ptr<const TemporaryThings>& newest = store_scan_.temporary();
+void DeltaStage::offer_transients() {
+  const std::shared_ptr<const TransientObstacles>& newest = store_scan_.transients();
   if (newest == nullptr) return;
-  if (newest->number != things_shown_ && wiring_.show(newest)) things_shown_ = newest->number;
-  if (newest->number == things_sent_) return;
+  if (newest->number != transients_shown_ && wiring_.show(newest)) transients_shown_ = newest->number;
+  if (newest->number == transients_sent_) return;
   const std::uint32_t number = newest->number;
-  wiring_.telemetry.things_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
-  wiring_.telemetry.things_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
-  if (wiring_.things.try_send(std::shared_ptr<const TemporaryThings>{newest})) things_sent_ = number;
+  wiring_.telemetry.transients_standing.set(static_cast<std::uint32_t>(newest->standing.size()));
+  wiring_.telemetry.transients_gone.set(static_cast<std::uint32_t>(newest->gone.size()));
+  if (wiring_.transients.try_send(std::shared_ptr<const TransientObstacles>{newest})) transients_sent_ = number;
 }
 
 void DeltaStage::tell_of_gate() {
@@ -90,9 +87,8 @@ void DeltaStage::tell_of_gate() {
 /// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an
 /// operator gives few.
 void DeltaStage::hand_over(MapWork work) {
-  const ScanSet* set = set_in(work);
-  const bool set_waits = std::any_of(waiting_.begin(), waiting_.end(), set_in);
-  if (set_waits && set != nullptr) {
+  const auto* set = std::get_if<ScanSet>(&work);
+  if (set != nullptr && std::any_of(waiting_.begin(), waiting_.end(), is_set)) {
     wiring_.telemetry.sets_lost.add(1);
     note({Kind::kSetLost, 0, set->phase});
     return;

@@ -25,12 +25,12 @@ class DeltaStage {
   struct Wiring {
     Channel<DeltaWork>& work;
     Channel<MapWork>& sets;
-    Channel<std::shared_ptr<const TemporaryThings>>& things;
+    Channel<std::shared_ptr<const TransientObstacles>>& transients;
     RecorderInput& recorder;
     Telemetry& telemetry;
     std::function<void(const std::string&)> log;  ///< a short line
     /// For the live page. False: refused, it is shown again at the next scan.
-    std::function<bool(const std::shared_ptr<const TemporaryThings>&)> show;
+    std::function<bool(const std::shared_ptr<const TransientObstacles>&)> show;
     std::function<bool()> shows_scans;                     ///< for the live page: somebody looks at the next
     std::function<void(mapping::StoredScans)> show_scans;  ///< never waits
   };
@@ -48,7 +48,7 @@ class DeltaStage {
   void look_for_changes(const TrackedScan& tracked);
   void hand_over(MapWork work);
   void offer_waiting();
-  void offer_things();
+  void offer_transients();
   void show_scans();
   void tell_of_gate();
   void note(const Decision& decision) { (void)wiring_.recorder.send(note_of(decision)); }
@@ -56,9 +56,9 @@ class DeltaStage {
   Wiring wiring_;
   mapping::StoreScan store_scan_;
   GateWatch gate_watch_;
-  std::uint32_t things_sent_ = 0;   // number of the newest snapshot that the localizer has been sent
-  std::uint32_t things_shown_ = 0;  // and that the page has
-  std::deque<MapWork> waiting_;     // the map thread was busy: offered again at the next scan; one set, and orders
+  std::uint32_t transients_sent_ = 0;   // number of the newest snapshot that the localizer has been sent
+  std::uint32_t transients_shown_ = 0;  // and that the page has
+  std::deque<MapWork> waiting_;         // the map thread was busy: offered again at the next scan; one set, and orders
   Pulse pulse_;
 };
 

@@ -8,7 +8,7 @@
 namespace deltamap::daemon {
 namespace {
 
-// As localization.fit and the check of a remembered pose judge (localization/fit_monitor.hpp, start_pose.hpp).
+// As localization.fit and the check of a remembered pose judge (localization/belief/fit_monitor.hpp, start_pose.hpp).
 constexpr int kFirstScans = 5;
 constexpr double kFits = 0.6;
 constexpr double kMisfit = 0.4;

@@ -15,7 +15,7 @@ namespace deltamap::daemon {
 /// "93 % of its beams fit", and what to look at where few do. `fit`: nothing where no beam came back.
 [[nodiscard]] std::string fit_words(std::optional<double> fit);
 
-/// Of a start pose that is not near free floor (localization/start_pose.hpp).
+/// Of a start pose that is not near free floor (localization/particles/start_pose.hpp).
 [[nodiscard]] LogLine refused_start_line();
 
 class FitWatch {

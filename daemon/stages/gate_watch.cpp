@@ -14,7 +14,7 @@ std::string text_of(double time_s) { return std::to_string(std::lround(time_s)) 
 }  // namespace
 
 std::string GateWatch::observe(const mapping::Awareness& awareness) {
-  if (awareness.gate == mapping::GateReason::kOpen) {
+  if (awareness.gate == mapping::gate::GateReason::kOpen) {
     if (!std::exchange(said_, false)) return {};
     return "map is written again: the gate was shut for " + text_of(shut_for_s_);
   }
@@ -22,7 +22,7 @@ std::string GateWatch::observe(const mapping::Awareness& awareness) {
   if (said_ || shut_for_s_ < kLong_s) return {};
   said_ = true;
   return "map is not written: the gate is shut for " + text_of(shut_for_s_) +
-         " reason=" + std::string(mapping::name_of(awareness.gate));
+         " reason=" + std::string(name_of(awareness.gate));
 }
 
 }  // namespace deltamap::daemon

@@ -101,7 +101,7 @@ void LocalizationStage::localize(Scan scan) {
   last_scan_came_ = drivers::port::port_clock_now();
   const std::uint32_t number = scan.number;
   take_revisions(number);
-  take_things(number);
+  take_transients(number);
   take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
   show(tracked.estimate, tracked.scan.received);
@@ -128,12 +128,12 @@ void LocalizationStage::take_revisions(std::uint32_t scan) {
   }
 }
 
-void LocalizationStage::take_things(std::uint32_t scan) {
-  std::shared_ptr<const TemporaryThings> newest;
-  while (auto things = wiring_.things.try_receive()) newest = std::move(*things);
+void LocalizationStage::take_transients(std::uint32_t scan) {
+  std::shared_ptr<const TransientObstacles> newest;
+  while (auto transients = wiring_.transients.try_receive()) newest = std::move(*transients);
   if (newest == nullptr || is_paused_) return;
-  note({Kind::kThings, scan, newest->number});
-  things_ = newest;
+  note({Kind::kTransients, scan, newest->number});
+  transients_ = newest;
   step_.apply(std::move(newest));
 }
 
@@ -150,8 +150,8 @@ void LocalizationStage::pilot(const TrackedScan& tracked) {
 }
 
 std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& tracked) const {
-  if (things_ == nullptr) return {};
-  return navigation::remembered_obstacles(*things_, tracked, {});
+  if (transients_ == nullptr) return {};
+  return navigation::remembered_obstacles(*transients_, tracked, {});
 }
 
 // --- the operator ---
@@ -223,8 +223,8 @@ void LocalizationStage::pause(const control::Command& command, const Scan& scan)
   is_paused_ = command.kind == control::Command::Kind::kPause;
   wiring_.telemetry.paused.set(is_paused_);
   if (is_paused_) {  // nobody would notice what leaves
-    things_.reset();
-    step_.apply(things_);
+    transients_.reset();
+    step_.apply(transients_);
   }
   note({is_paused_ ? Kind::kPaused : Kind::kResumed, scan.number, 0, {}, scan.time});
   wiring_.answer({command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from});

@@ -28,7 +28,7 @@ class LocalizationStage {
   struct Wiring {
     Channel<SensorMessage>& sensors;
     Channel<MapRevision>& revisions;
-    Channel<std::shared_ptr<const TemporaryThings>>& things;
+    Channel<std::shared_ptr<const TransientObstacles>>& transients;
     Channel<control::Command>& commands;
     Channel<navigation::WanderParams>& wander;  ///< of a reload: the newest is taken
     Channel<DeltaWork>& tracked_scans;          ///< and what an operator wants of the map
@@ -37,7 +37,8 @@ class LocalizationStage {
     /// What the pilot wants, or why it does not drive.
     std::function<void(const DriveCommand&, navigation::StopReason)> drive;
     /// For the live page: a scan, what is known of it, its latency in s, and the particles or null. Never waits.
-    std::function<void(const TrackedScan&, const LocalizationRow&, double, const localization::ParticleSet*)> show;
+    std::function<void(const TrackedScan&, const LocalizationRow&, double, const localization::particles::ParticleSet*)>
+        show;
     std::function<void(const control::CommandOutcome&)> answer;  ///< never waits
   };
   /// Throws std::runtime_error where the map has no free cell.
@@ -56,7 +57,7 @@ class LocalizationStage {
   void pass_over(const Scan& scan);
   void localize(Scan scan);
   void take_revisions(std::uint32_t scan);
-  void take_things(std::uint32_t scan);
+  void take_transients(std::uint32_t scan);
   void pilot(const TrackedScan& tracked);
   /// For the pilot: what stands there although the scan does not show it.
   [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked) const;
@@ -89,7 +90,7 @@ class LocalizationStage {
   std::uint32_t first_revision_;
   std::uint64_t first_map_;
   std::shared_ptr<const OccupancyGrid> map_;
-  std::shared_ptr<const TemporaryThings> things_;  // may be null
+  std::shared_ptr<const TransientObstacles> transients_;  // may be null
   MemorySettings memory_;
   bool is_kept_;                        // there is a store to keep it beside
   std::optional<Timestamp> pose_kept_;  // nothing until the first scan

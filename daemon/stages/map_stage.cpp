@@ -31,7 +31,7 @@ std::string evidence_of(const ChangeNote& note) {
   return " scans=" + std::to_string(note.scans) + " acceptance=" + acceptance;
 }
 
-StoreToKeep with_retention(StoreToKeep store, const mapping::Retention& retention) {
+StoreToKeep with_retention(StoreToKeep store, const mapping::store::Retention& retention) {
   store.retention = retention;
   return store;
 }
@@ -63,15 +63,19 @@ void MapStage::run(const std::deque<MapWork>& rest) {
 }
 
 void MapStage::take(const MapWork& work) {
-  if (const auto* order = std::get_if<MapOrder>(&work)) return obey(*order);
-  update(std::get<ScanSet>(work));
+  if (const auto* set = std::get_if<ScanSet>(&work)) {
+    tell_and_hand_on(step_.update(*set));
+  } else if (const auto* order = std::get_if<WithdrawOrder>(&work)) {
+    tell_and_hand_on(step_.withdraw(*order));
+  } else {
+    obey(std::get<MapOrder>(work));
+  }
 }
 
-void MapStage::update(const ScanSet& set) {
-  const MapStep::Result result = step_.update(set);
+void MapStage::tell_and_hand_on(const MapStep::Result& result) {
   if (!result.revision) {
     wiring_.telemetry.refused.add(1);
-    wiring_.log("map unchanged: phase=" + std::to_string(set.phase) + evidence_of(result.note) +
+    wiring_.log("map unchanged: phase=" + std::to_string(result.note.phase) + evidence_of(result.note) +
                 " verdict=refused reason=" + result.note.reason);
     return hand_on(result);
   }
@@ -79,7 +83,7 @@ void MapStage::update(const ScanSet& set) {
     wiring_.log("pose proved wrong: withdrawn=" + std::to_string(result.note.withdraws.size()) + " revisions");
   }
   wiring_.log("map changed: revision=" + std::to_string(result.revision->number) +
-              " phase=" + std::to_string(set.phase) + " added=" + std::to_string(result.note.added) +
+              " phase=" + std::to_string(result.note.phase) + " added=" + std::to_string(result.note.added) +
               " freed=" + std::to_string(result.note.freed) + evidence_of(result.note) +
               " verdict=" + (result.note.withdraws.empty() ? "accepted" : "withdrawn"));
   hand_on(result);
@@ -87,7 +91,7 @@ void MapStage::update(const ScanSet& set) {
 
 void MapStage::obey(const MapOrder& order) {
   const GridGeometry& geometry = step_.map()->geometry();
-  mapping::MapStore::Undoing wanted;
+  mapping::store::MapStore::Undoing wanted;
   try {
     wanted = outputs_.cells_of(order, *step_.map());
   } catch (const std::exception& error) {

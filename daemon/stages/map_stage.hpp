@@ -46,7 +46,7 @@ class MapStage {
 
  private:
   void take(const MapWork& work);
-  void update(const ScanSet& set);
+  void tell_and_hand_on(const MapStep::Result& result);
   /// Answers whoever gave the order.
   void obey(const MapOrder& order);
   void note(const SetCells& set);

@@ -8,11 +8,11 @@
 namespace deltamap::daemon {
 namespace {
 
-std::optional<localization::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
-  if (settings.initial_pose) return localization::InitialPose{*settings.initial_pose};
+std::optional<localization::particles::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
+  if (settings.initial_pose) return localization::particles::InitialPose{*settings.initial_pose};
   if (!start.remembered) return std::nullopt;
-  return localization::InitialPose{*start.remembered, settings.memory.position_deviation_m,
-                                   settings.memory.heading_deviation_rad, true};
+  return localization::particles::InitialPose{*start.remembered, settings.memory.position_deviation_m,
+                                              settings.memory.heading_deviation_rad, true};
 }
 
 }  // namespace
@@ -31,7 +31,6 @@ void require_pose_on(const GridGeometry& map, const Settings& settings) {
 
 LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
     : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
-      odometry_{settings.localizer.odometry},
       ratio_{settings.mapping.store_scan.divergence},
       last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
   if (start.revision > 0)
@@ -40,15 +39,10 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
   if (start.stability) (void)localizer_.restore(*start.stability);  // of other tiles than ours: begins anew
 }
 
-void LocalizationStep::observe(const Odometry& odometry) {
-  localizer_.observe(odometry);
-  odometry_.add(odometry);
-}
-
 TrackedScan LocalizationStep::observe(Scan scan) {
   TrackedScan tracked = localizer_.observe(std::move(scan));
   last_map_from_robot_ = tracked.estimate.map_from_robot;
-  last_odometry_ = odometry_.at(tracked.scan.time);
+  last_odom_from_robot_ = localizer_.odom_from_robot(tracked.scan.time);
   count_time(tracked.scan.time);
   last_state_ = tracked.estimate.state;
   last_verdict_ = tracked.estimate.belief.verdict;
@@ -58,19 +52,20 @@ TrackedScan LocalizationStep::observe(Scan scan) {
 
 TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
   count_time(scan.time);
-  const auto odometry = odometry_.at(scan.time);
-  if (!odometry || !last_odometry_) return {scan.time, last_map_from_robot_};
-  const Pose2 motion = motion_between(last_odometry_->joined_from_robot, odometry->joined_from_robot);
-  return {scan.time, last_map_from_robot_ * motion};
+  const auto odom_from_robot = localizer_.odom_from_robot(scan.time);
+  if (!odom_from_robot || !last_odom_from_robot_) return {scan.time, last_map_from_robot_};
+  return {scan.time, last_map_from_robot_ * motion_between(*last_odom_from_robot_, *odom_from_robot)};
 }
 
 void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(revision); }
 
-void LocalizationStep::apply(std::shared_ptr<const TemporaryThings> things) { localizer_.apply(std::move(things)); }
+void LocalizationStep::apply(std::shared_ptr<const TransientObstacles> transients) {
+  localizer_.apply(std::move(transients));
+}
 
 bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
   const std::uint64_t refused = localizer_.counts().poses_refused;
-  localizer_.relocalize(localization::InitialPose{map_from_robot});
+  localizer_.relocalize(localization::particles::InitialPose{map_from_robot});
   return localizer_.counts().poses_refused == refused;
 }
 
@@ -88,6 +83,14 @@ std::map<std::string, std::uint64_t> LocalizationStep::counts() const {
           {"poses_refuted", c.poses_refuted},
           {"searches", c.searches},
           {"recoveries", c.recoveries}};
+}
+
+void add_to(RunReport& report, const LocalizationStep& step) {
+  report.time_lost_s = step.time_lost_s();
+  report.time_global_s = step.time_global_s();
+  report.verdict_times = step.verdict_times();
+  report.localizer = step.counts();
+  report.recorded_s = step.covered_s();
 }
 
 double LocalizationStep::covered_s() const { return first_scan_ ? seconds(*last_scan_ - *first_scan_) : 0.0; }

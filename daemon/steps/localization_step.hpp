@@ -12,8 +12,7 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
-#include "localization/odometry_buffer.hpp"
-#include "mapping/awareness/divergence_ratio.hpp"
+#include "mapping/paper/divergence_ratio.hpp"
 
 namespace deltamap::daemon {
 
@@ -23,8 +22,8 @@ struct StartMap {
   std::uint32_t revision = 0;
   /// map_from_robot at the end of the run before; the settings' pose goes before it.
   std::optional<Pose2> remembered{};
-  std::optional<localization::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
-  std::optional<localization::DriveCalibration> calibration{};  ///< and of wheels and mount
+  std::optional<localization::belief::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
+  std::optional<localization::motion::DriveCalibration> calibration{};  ///< and of wheels and mount
 };
 
 /// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.
@@ -35,13 +34,13 @@ class LocalizationStep {
   /// Throws std::runtime_error where the map has no free cell.
   LocalizationStep(const Settings& settings, const StartMap& start);
 
-  void observe(const Odometry& odometry);
+  void observe(const Odometry& odometry) { localizer_.observe(odometry); }
   [[nodiscard]] TrackedScan observe(Scan scan);
   /// A scan that a newer one has overtaken: where odometry alone says that it was taken.
   [[nodiscard]] TrajectoryPoint pass_over(const Scan& scan);
   void apply(const MapRevision& revision);
   /// What is different from the map for now; null: nothing is known any more.
-  void apply(std::shared_ptr<const TemporaryThings> things);
+  void apply(std::shared_ptr<const TransientObstacles> transients);
   /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°). False where nobody can stand there: the
   /// whole map is searched then.
   bool relocalize(const Pose2& map_from_robot);
@@ -50,10 +49,12 @@ class LocalizationStep {
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
   /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
-  [[nodiscard]] std::optional<localization::DriveCalibration> calibration() const { return localizer_.calibration(); }
+  [[nodiscard]] std::optional<localization::motion::DriveCalibration> calibration() const {
+    return localizer_.calibration();
+  }
   /// What the newest pose rests on; null where not on particles (localizer.hpp).
-  [[nodiscard]] const localization::ParticleSet* particles() const { return localizer_.particles(); }
-  [[nodiscard]] localization::StabilityRecord stability() const { return localizer_.stability(); }
+  [[nodiscard]] const localization::particles::ParticleSet* particles() const { return localizer_.particles(); }
+  [[nodiscard]] localization::belief::StabilityRecord stability() const { return localizer_.stability(); }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }
   [[nodiscard]] const VerdictTimes& verdict_times() const { return verdict_times_; }
@@ -67,11 +68,10 @@ class LocalizationStep {
   void note(const TrackedScan& tracked);
 
   localization::Localizer localizer_;
-  localization::OdometryBuffer odometry_;  // for the scans that the localizer does not see
-  mapping::awareness::DivergenceRatio ratio_;
+  mapping::paper::DivergenceRatio ratio_;
   LocalizationRow row_;
   Pose2 last_map_from_robot_;
-  std::optional<localization::OdometryAt> last_odometry_;
+  std::optional<Pose2> last_odom_from_robot_;
   LocalizerState last_state_ = LocalizerState::kGlobal;
   PoseVerdict last_verdict_ = PoseVerdict::kUndecided;
   std::optional<Timestamp> first_scan_;
@@ -80,5 +80,8 @@ class LocalizationStep {
   double time_global_s_ = 0.0;
   VerdictTimes verdict_times_;
 };
+
+/// What the report of a run says of its localizer.
+void add_to(RunReport& report, const LocalizationStep& step);
 
 }  // namespace deltamap::daemon

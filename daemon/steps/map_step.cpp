@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include "mapping/taken_back.hpp"
+#include "mapping/map_update.hpp"
+#include "mapping/store/taken_back.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -43,8 +44,8 @@ MapStep::MapStep(const Settings& settings, StartMap start)
       update_{settings.mapping.update},
       localizer_{settings.localizer},
       newest_{std::move(start)},
-      held_{{.hold_s = settings.mapping.store_scan.evidence.passing.persistence_s,
-             .margin_cells = settings.mapping.update.evidence.added_reach_cells}} {}
+      operator_cells_{{.hold_s = settings.mapping.store_scan.evidence.passing.persistence_s,
+                       .margin_cells = settings.mapping.update.evidence.added_reach_cells}} {}
 
 MapRevision MapStep::publish(Timestamp time, std::vector<CellChange> changes) {
   newest_.map = std::make_shared<const OccupancyGrid>(patched(*newest_.map, changes));
@@ -63,17 +64,16 @@ void MapStep::settle(const std::optional<Timestamp>& before) {
 }
 
 MapStep::Result MapStep::update(const ScanSet& set) {
-  if (set.withdraw_from) return withdraw(set);
   settle(set.settled);
-  mapping::MapUpdate update = mapping::map_update(*newest_.map, set, update_);
+  mapping::scan_set::MapUpdate update = mapping::map_update(*newest_.map, set, update_);
   if (update.accepted()) {
-    update.changes = held_.allowed(std::move(update.changes), set);
-    if (update.changes.empty()) update.refusal = mapping::Refusal::kSetByOperator;
+    update.changes = operator_cells_.allowed(std::move(update.changes), set);
+    if (update.changes.empty()) update.refusal = mapping::scan_set::Refusal::kSetByOperator;
   }
   Result result{.revision = std::nullopt, .note = note_of(set, update.changes, newest_.map->geometry())};
   result.note.acceptance = update.acceptance;
   if (!update.accepted()) {
-    result.note.reason = mapping::name_of(update.refusal);
+    result.note.reason = name_of(update.refusal);
     return result;
   }
   result.revision = publish(set.ended, std::move(update.changes));
@@ -92,7 +92,7 @@ MapStep::Result MapStep::obey(const SetCells& wanted) {
     result.note.reason += ": another map";
     return result;
   }
-  held_.hold(geometry, wanted.changes, wanted.order.scan_time);
+  operator_cells_.hold(geometry, wanted.changes, wanted.order.scan_time);
   std::vector<CellChange> changes;
   for (const auto& [cell, before, after] : wanted.changes) {
     const CellState now = (*newest_.map)[cell];
@@ -108,22 +108,25 @@ MapStep::Result MapStep::obey(const SetCells& wanted) {
   return result;
 }
 
-MapStep::Result MapStep::withdraw(const ScanSet& order) {
+MapStep::Result MapStep::withdraw(const WithdrawOrder& order) {
   OccupancyGrid map = *newest_.map;
   std::vector<std::uint32_t> withdrawn;
-  while (!provisional_.empty() && provisional_.back().time >= *order.withdraw_from) {
-    const std::vector<CellChange> back = mapping::taken_back(map, provisional_.back().changes);
+  while (!provisional_.empty() && provisional_.back().time >= order.from) {
+    const std::vector<CellChange> back = mapping::store::taken_back(map, provisional_.back().changes);
     map = patched(std::move(map), back);
     withdrawn.push_back(provisional_.back().number);
     provisional_.pop_back();
   }
   std::vector<CellChange> changes = changes_between(*newest_.map, map);
-  Result result{.revision = std::nullopt, .note = note_of(order, changes, map.geometry())};
+  ChangeNote note;
+  note.time = order.time;
+  note.covariance = order.covariance;
+  Result result{.revision = std::nullopt, .note = with_cells(std::move(note), changes, map.geometry())};
   result.note.reason = changes.empty() ? "nothing to withdraw" : "withdrawn";
   if (changes.empty()) return result;
   std::reverse(withdrawn.begin(), withdrawn.end());
   result.note.withdraws = std::move(withdrawn);
-  result.revision = publish(order.ended, std::move(changes));
+  result.revision = publish(order.time, std::move(changes));
   result.note.revision = result.revision->number;
   return result;
 }

@@ -15,7 +15,7 @@
 #include "daemon/records/map_order.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/localization_step.hpp"
-#include "mapping/held_cells.hpp"
+#include "mapping/gate/operator_cells.hpp"
 
 namespace deltamap::daemon {
 
@@ -27,8 +27,9 @@ class MapStep {
     std::optional<MapRevision> revision;
     ChangeNote note;
   };
-  /// A set, or an order to withdraw.
   [[nodiscard]] Result update(const ScanSet& set);
+  /// What was written since, and no set has settled, is taken back in one revision.
+  [[nodiscard]] Result withdraw(const WithdrawOrder& order);
   /// An operator's cells take the states that the order gives them, whatever they are. Older evidence does not write
   /// them again. No revision where they are so already, or the map has another size.
   [[nodiscard]] Result obey(const SetCells& wanted);
@@ -46,7 +47,6 @@ class MapStep {
     std::vector<CellChange> changes;
   };
 
-  [[nodiscard]] Result withdraw(const ScanSet& order);
   void settle(const std::optional<Timestamp>& before);
   [[nodiscard]] MapRevision publish(Timestamp time, std::vector<CellChange> changes);
 
@@ -54,8 +54,8 @@ class MapStep {
   mapping::MapUpdateParams update_;
   localization::LocalizerParams localizer_;
   StartMap newest_;
-  std::deque<Provisional> provisional_;  // oldest first
-  mapping::HeldCells held_;              // that an operator has set
+  std::deque<Provisional> provisional_;          // oldest first
+  mapping::gate::OperatorCells operator_cells_;  // that an operator has set
 };
 
 }  // namespace deltamap::daemon

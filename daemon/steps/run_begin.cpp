@@ -6,7 +6,7 @@
 #include <span>
 
 #include "daemon/records/journal.hpp"
-#include "mapping/map_codec.hpp"
+#include "mapping/store/map_codec.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -70,14 +70,14 @@ std::optional<RunBegin> begin_in(const Json& head, std::string_view bytes) {
     begin.start.remembered = Pose2{pose->at(0).get<double>(), pose->at(1).get<double>(), pose->at(2).get<double>()};
   }
   if (const auto calibration = head.find("calibration"); calibration != head.end()) {
-    begin.start.calibration = localization::calibration_of(calibration->get<std::vector<double>>());
+    begin.start.calibration = localization::motion::calibration_of(calibration->get<std::vector<double>>());
     if (!begin.start.calibration) return std::nullopt;
   }
   const auto map_size = head.at("map_bytes").get<std::size_t>();
   if (map_size > bytes.size()) return std::nullopt;
   if (const auto map = head.find("map"); map != head.end()) {
-    auto grid = mapping::decoded_grid(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), map_size),
-                                      geometry_in(*map));
+    auto grid = mapping::store::decoded_grid(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), map_size),
+                                             geometry_in(*map));
     if (!grid) return std::nullopt;
     begin.start.map = std::make_shared<const OccupancyGrid>(std::move(*grid));
   }
@@ -108,10 +108,10 @@ std::vector<std::string> begin_notes(const RunBegin& begin) {
   Bytes bytes;
   if (start.revision > 0) {
     head["map"] = as_json(start.map->geometry());
-    bytes = mapping::encoded_grid(*start.map);
+    bytes = mapping::store::encoded_grid(*start.map);
   }
   head["map_bytes"] = bytes.size();
-  if (start.calibration) head["calibration"] = localization::numbers_of(*start.calibration);
+  if (start.calibration) head["calibration"] = localization::motion::numbers_of(*start.calibration);
   if (start.remembered) head["pose"] = {start.remembered->x, start.remembered->y, start.remembered->theta};
   if (start.stability) {
     head["stability"] = as_json(start.stability->geometry);

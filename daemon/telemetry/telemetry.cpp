@@ -69,13 +69,13 @@ void EstimateGauges::set(const Estimate& estimate) {
   verdict.set(static_cast<std::uint8_t>(belief.verdict));
   stable.set(belief.stable);
   elsewhere.set(belief.elsewhere);
-  rival_share.set(belief.rival_share);
-  rival_x_m.set(belief.map_from_rival.x);
-  rival_y_m.set(belief.map_from_rival.y);
-  rival_heading_rad.set(belief.map_from_rival.theta);
+  other_share.set(belief.other_share);
+  other_x_m.set(belief.map_from_other.x);
+  other_y_m.set(belief.map_from_other.y);
+  other_heading_rad.set(belief.map_from_other.theta);
 }
 
-void CalibrationGauges::set(const std::optional<localization::DriveCalibration>& calibration) {
+void CalibrationGauges::set(const std::optional<localization::motion::DriveCalibration>& calibration) {
   known.set(calibration.has_value());
   if (!calibration) return;
   const auto found = numbers_of(calibration->wheels, calibration->mount_error);
@@ -86,23 +86,35 @@ void CalibrationGauges::set(const std::optional<localization::DriveCalibration>&
   }
 }
 
-void GateGauges::set(mapping::GateReason now, const mapping::GateTimes& times) {
+void GateGauges::set(mapping::gate::GateReason now, const mapping::gate::GateTimes& times) {
   reason.set(static_cast<std::uint8_t>(now));
   for (std::size_t i = 0; i < times.size(); ++i) times_s[i].set(times[i]);
 }
 
-mapping::GateTimes GateGauges::times() const {
-  mapping::GateTimes times{};
+mapping::gate::GateTimes GateGauges::times() const {
+  mapping::gate::GateTimes times{};
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = times_s[i].value();
   return times;
+}
+
+ScanCounts counts_of(const Telemetry& t) {
+  return {.decoded = t.scans.value(),
+          .localized = t.localized.value(),
+          .dropped = t.dropped.value(),
+          .lost = t.scans_lost.value(),
+          .odometry = t.odometry.value(),
+          .odometry_lost = t.odometry_lost.value(),
+          .tracked_lost = t.tracked_lost.value(),
+          .sets_lost = t.sets_lost.value(),
+          .recording_lost = t.recording_lost.value()};
 }
 
 std::string status_line(const Telemetry& t) {
   const EstimateGauges& e = t.estimate;
   const auto state = name_of(static_cast<LocalizerState>(e.state.value()));
   const auto verdict = name_of(static_cast<PoseVerdict>(e.verdict.value()));
-  const std::uint64_t drops = t.odometry_lost.value() + t.scans_lost.value() + t.dropped.value() +
-                              t.tracked_lost.value() + t.sets_lost.value() + t.recording_lost.value();
+  std::uint64_t drops = 0;
+  for (const auto& [name, count] : drops_of(counts_of(t))) drops += count;
   char line[352];
   const int length = std::snprintf(
       line, sizeof line,

@@ -11,8 +11,9 @@
 
 #include "core/messages.hpp"
 #include "daemon/telemetry/output_board.hpp"
-#include "localization/drive_calibration.hpp"
-#include "mapping/write_gate.hpp"
+#include "daemon/telemetry/scan_counts.hpp"
+#include "localization/motion/drive_calibration.hpp"
+#include "mapping/gate/write_gate.hpp"
 
 namespace deltamap::daemon {
 
@@ -44,7 +45,7 @@ struct EstimateGauges {
   Gauge<double> pose_right, map_wrong;
   Gauge<std::uint8_t> verdict;  ///< PoseVerdict
   BeamCountGauges stable, elsewhere;
-  Gauge<double> rival_share, rival_x_m, rival_y_m, rival_heading_rad;
+  Gauge<double> other_share, other_x_m, other_y_m, other_heading_rad;
   void set(const Estimate& estimate);
 };
 
@@ -53,14 +54,14 @@ struct CalibrationGauges {
   Gauge<bool> known;
   std::array<Gauge<double>, 7> values,
       deviations;  ///< distance, turn, drift (rad/m), lag (s), mount x, y (m), yaw (rad)
-  void set(const std::optional<localization::DriveCalibration>& calibration);
+  void set(const std::optional<localization::motion::DriveCalibration>& calibration);
 };
 
 struct GateGauges {
   Gauge<std::uint8_t> reason;  ///< mapping::GateReason
-  std::array<Gauge<double>, mapping::kGateReasons> times_s;
-  void set(mapping::GateReason now, const mapping::GateTimes& times);
-  [[nodiscard]] mapping::GateTimes times() const;
+  std::array<Gauge<double>, mapping::gate::kGateReasons> times_s;
+  void set(mapping::gate::GateReason now, const mapping::gate::GateTimes& times);
+  [[nodiscard]] mapping::gate::GateTimes times() const;
 };
 
 struct Telemetry {
@@ -90,11 +91,13 @@ struct Telemetry {
   Gauge<double> r_d;
   Gauge<bool> in_phase;
   Gauge<std::uint32_t> phase, stored_scans, phases_closed, sets_lost;
-  Gauge<std::uint32_t> things_standing, things_gone;  ///< blocks of the temporary layer
+  Gauge<std::uint32_t> transients_standing, transients_gone;  ///< blocks of the transient layer
   GateGauges gate;
   // map thread
   Gauge<std::uint32_t> newest_revision, refused;
 };
+
+[[nodiscard]] ScanCounts counts_of(const Telemetry& telemetry);
 
 /// One line for a person: devices, state, verdict and pose, N_eff, w_avg, revision, Δ-phase, drops, latency.
 [[nodiscard]] std::string status_line(const Telemetry& telemetry);

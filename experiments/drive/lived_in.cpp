@@ -26,13 +26,13 @@ LivedIn::LivedIn(const simulation::Scenario& scenario, std::vector<simulation::P
                  const LivedInParams& params)
     : scenario_{scenario}, people_{std::move(people)}, localizer_{localizer}, map_{std::move(map)}, params_{params} {}
 
-const localization::StabilityRecord& LivedIn::stability() {
+const localization::belief::StabilityRecord& LivedIn::stability() {
   std::call_once(driven_, [this] { drive(); });
   return stability_;
 }
 
 std::size_t LivedIn::proven_tiles() {
-  localization::Stability learned{map_->geometry(), localizer_.judgement.stability};
+  localization::belief::Stability learned{map_->geometry(), localizer_.judgement.stability};
   return learned.restore(stability()) ? learned.proven_tiles() : 0;
 }
 
@@ -42,10 +42,10 @@ void LivedIn::drive() {
   drive.max_range_m = params_.max_range_m;
   drive.people = people_;
   drive.forklift = busy_forklift(params_.change_every_s);
-  LocalizerDrive pair{scenario_, drive, localizer_, map_, localization::InitialPose{scenario_.robot.map_from_start}};
-  while (pair.next().passed_s < 60.0 * params_.minutes) {
+  MappingDrive robot{scenario_, drive, localizer_alone(localizer_), {map_}};
+  while (robot.next().passed_s < 60.0 * params_.minutes) {
   }
-  stability_ = pair.localizer().stability();
+  stability_ = robot.localization().stability();
 }
 
 }  // namespace deltamap::experiments

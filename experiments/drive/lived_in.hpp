@@ -5,7 +5,7 @@
 
 #include <mutex>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 
 namespace deltamap::experiments {
 
@@ -28,7 +28,7 @@ class LivedIn {
           const localization::LocalizerParams& localizer, std::shared_ptr<const OccupancyGrid> map,
           const LivedInParams& params);
 
-  [[nodiscard]] const localization::StabilityRecord& stability();
+  [[nodiscard]] const localization::belief::StabilityRecord& stability();
   /// Tiles of the map that have proven to stay.
   [[nodiscard]] std::size_t proven_tiles();
 
@@ -41,7 +41,7 @@ class LivedIn {
   std::shared_ptr<const OccupancyGrid> map_;
   LivedInParams params_;
   std::once_flag driven_;
-  localization::StabilityRecord stability_;
+  localization::belief::StabilityRecord stability_;
 };
 
 }  // namespace deltamap::experiments

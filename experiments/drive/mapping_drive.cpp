@@ -3,19 +3,26 @@
 
 #include <utility>
 
-#include "daemon/telemetry/stage.hpp"
-
 namespace deltamap::experiments {
+namespace {
+
+constexpr double kMapDelay_s = 0.0;  // a revision is taken before the next scan
+
+daemon::StageCpu between(const daemon::StageCpu& before, const daemon::StageCpu& after) {
+  return {.localization_s = after.localization_s - before.localization_s,
+          .awareness_s = after.awareness_s - before.awareness_s,
+          .map_update_s = after.map_update_s - before.map_update_s};
+}
+
+}  // namespace
 
 MappingDrive::MappingDrive(const simulation::Scenario& scenario, const simulation::VirtualDriveParams& drive,
-                           const daemon::Settings& settings, std::shared_ptr<const OccupancyGrid> first_map,
-                           bool knows_start)
+                           const daemon::Settings& settings, const daemon::StartMap& start, bool knows_start)
     : settings_{settings}, drive_{scenario, drive}, last_pose_{drive_.map_from_robot()} {
   settings_.seed = drive.seed;
-  const auto start = knows_start ? std::optional{localization::InitialPose{last_pose_}} : std::nullopt;
-  localizer_.emplace(settings_.localizer, first_map, start, settings_.seed);
-  store_scan_.emplace(settings_.mapping.store_scan, settings_.seed);
-  map_.emplace(settings_, daemon::StartMap{.map = std::move(first_map)});
+  settings_.initial_pose.reset();
+  if (knows_start) settings_.initial_pose = last_pose_;
+  run_.emplace(settings_, start, nullptr, kMapDelay_s);
 }
 
 Mapped MappingDrive::next() {
@@ -29,36 +36,41 @@ Mapped MappingDrive::next() {
   mapped.about = drive_.movers().bodies();
   mapped.time = step.scan.time;
   mapped.passed_s = seconds(step.scan.time - *first_);
-  const double began_s = daemon::thread_cpu_s();
-  for (const Odometry& odometry : step.odometry) localizer_->observe(odometry);
-  mapped.tracked = localizer_->observe(std::move(step.scan));
-  const TrackedScan& tracked = mapped.tracked;
-  const double localized_s = daemon::thread_cpu_s();
-  mapped.costs.localizer_s = localized_s - began_s;
-  mapped.estimate = tracked.estimate;
-  last_pose_ = tracked.estimate.map_from_robot;
-  const auto set = settings_.mapping.enabled ? store_scan_->observe(tracked) : std::nullopt;
-  mapped.awareness = store_scan_->awareness();
-  if (things_ != store_scan_->temporary()) localizer_->apply(things_ = store_scan_->temporary());
-  mapped.things = things_;
-  const double aware_s = daemon::thread_cpu_s();
-  mapped.costs.awareness_s = aware_s - localized_s;
-  if (!set) return mapped;
-  mapped.update = map_->update(*set);
-  if (mapped.update->revision) localizer_->apply(*mapped.update->revision);
-  mapped.costs.update_s = daemon::thread_cpu_s() - aware_s;
+  const daemon::StageCpu before = run_->cpu();
+  for (const Odometry& odometry : step.odometry) run_->observe(odometry);
+  run_->take_what_is_due(step.scan);
+  mapped.tracked = run_->observe(std::move(step.scan));
+  mapped.estimate = mapped.tracked.estimate;
+  last_pose_ = mapped.estimate.map_from_robot;
+  if (settings_.mapping.enabled) {
+    const auto set = run_->look_for_changes(mapped.tracked);
+    mapped.update = set ? run_->update_map(*set) : run_->withdraw();
+  }
+  mapped.awareness = run_->store_scan().awareness();
+  mapped.transients = run_->store_scan().transients();
+  mapped.costs = between(before, run_->cpu());
   return mapped;
 }
 
 void MappingDrive::restart() {
-  const localization::StabilityRecord stability = localizer_->stability();
-  const localization::InitialPose kept{last_pose_, settings_.memory.position_deviation_m,
-                                       settings_.memory.heading_deviation_rad, true};
-  const std::uint64_t seed = settings_.seed + ++starts_;
-  localizer_.emplace(settings_.localizer, map_->map(), kept, seed);
-  (void)localizer_->restore(stability);
-  store_scan_.emplace(settings_.mapping.store_scan, seed);
-  map_.emplace(settings_, daemon::StartMap{.map = map_->map(), .revision = map_->revision()});
+  daemon::StartMap kept{.map = run_->map().map(), .revision = run_->map().revision(), .remembered = last_pose_};
+  kept.stability = run_->localization().stability();
+  settings_.initial_pose.reset();
+  ++settings_.seed;
+  run_.emplace(settings_, kept, nullptr, kMapDelay_s);
+}
+
+daemon::Settings localizer_alone(const localization::LocalizerParams& params) {
+  daemon::Settings settings;
+  settings.localizer = params;
+  settings.mapping.enabled = false;
+  return settings;
+}
+
+PoseError error_of(const Mapped& scan) {
+  const Pose2& estimate = scan.estimate.map_from_robot;
+  return {estimate.position() - scan.map_from_robot.position(),
+          turn_between(scan.map_from_robot.theta, estimate.theta)};
 }
 
 }  // namespace deltamap::experiments

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/drive/room_changes.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/report/svg_map.hpp"
@@ -98,7 +99,7 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon
   params.max_range_m = kMaxRange_m;
   params.route.round = round_of_the_room();
   params.route.comfort_m = kComfort_m;
-  MappingDrive drive{scenario, params, settings, first};
+  MappingDrive drive{scenario, params, settings, {first}};
   MappingWatch watch{scenario, first, {.range_m = kMaxRange_m}};
   RoomChanges changes{schedule(minutes), scenario, Random{kBoxes + seed}};
   std::optional<Emptied> emptied;
@@ -137,25 +138,12 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon
   return outcome;
 }
 
-class Figure13 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig13"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figure 13 of the paper: a room of 10 by 4 m, four boxes of an obstacle taken away and put back";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figure13::runs(const Options& options) const {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "room.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 10);
+std::vector<Run> runs_of(const Options& options) {
+  const auto scenario = scenario_of(options, "room.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 6.0 : kWhole_min);
   std::vector<Run> runs;
   for (const std::string method : {"evidence", "paper"}) {
-    for (int i = 0; i < seeds; ++i) {
-      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+    for (const std::uint64_t seed : options.seeds(10)) {
       runs.push_back({method + "-seed" + std::to_string(seed), [=, settings = settings_of(options, method)] {
                         return take_out_and_put_back(*scenario, settings, method, seed, minutes);
                       }});
@@ -204,7 +192,7 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
   add("refused Δ-phases a run", "refused", kMean, "", std::nullopt);
 }
 
-Report Figure13::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   TextTable table{"Runs",
                   {"method", "seed", "boxes gone: F1", "stale F1", "boxes back: F1", "cells that differ", "wrong m²",
@@ -232,6 +220,11 @@ Report Figure13::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig13_experiment() { return std::make_unique<Figure13>(); }
+Experiment fig13_experiment() {
+  return {.name = "fig13",
+          .what = "Figure 13 of the paper: a room of 10 by 4 m, four boxes of an obstacle taken away and put back",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

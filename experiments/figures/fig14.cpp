@@ -2,13 +2,12 @@
 // `fig14`: the paper's Figure 14 (§5): CPU and memory over time, inside and outside Δ-phases, on a drive of two hours
 // in which a container changes every minute.
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "daemon/system/used_memory.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/mapping_run.hpp"
@@ -19,13 +18,7 @@ namespace {
 constexpr double kPart_s = 60.0;  // of the drive, a row each
 
 /// Of this process, now.
-double resident_mb() {
-  std::ifstream statm("/proc/self/statm");
-  double all_pages = 0.0;
-  double resident_pages = 0.0;
-  statm >> all_pages >> resident_pages;
-  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
-}
+double resident_mb() { return static_cast<double>(daemon::resident_bytes()) / (1024.0 * 1024.0); }
 
 /// What a scan took, and where.
 struct ScanCost {
@@ -60,8 +53,8 @@ class CostBook {
  private:
   [[nodiscard]] static ScanCost cost_of(const Mapped& scan) {
     const auto milliseconds = [](double seconds) { return static_cast<float>(1e3 * seconds); };
-    return {milliseconds(scan.costs.localizer_s), milliseconds(scan.costs.awareness_s),
-            milliseconds(scan.costs.update_s), scan.awareness.in_phase || scan.update.has_value()};
+    return {milliseconds(scan.costs.localization_s), milliseconds(scan.costs.awareness_s),
+            milliseconds(scan.costs.map_update_s), scan.awareness.in_phase || scan.update.has_value()};
   }
   std::vector<ScanCost> costs_;
   std::vector<float> memory_;
@@ -142,7 +135,7 @@ Outcome measured_drive(const simulation::Scenario& scenario, const daemon::Setti
   (void)malloc_trim(0);  // what earlier runs have left
   const double before_mb = resident_mb();
   {
-    MappingDrive drive{scenario, params, settings, first_map(scenario)};
+    MappingDrive drive{scenario, params, settings, {first_map(scenario)}};
     for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
       const Mapped scan = drive.next();
       passed_s = scan.passed_s;
@@ -158,25 +151,11 @@ Outcome measured_drive(const simulation::Scenario& scenario, const daemon::Setti
   return outcome;
 }
 
-class Figure14 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig14"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figure 14 of the paper: CPU and memory over time, inside and outside Δ-phases";
-  }
-  [[nodiscard]] bool measures_time() const override { return true; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figure14::runs(const Options& options) const {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
-  const int seeds = options.repeats.value_or(1);
+std::vector<Run> runs_of(const Options& options) {
+  const auto scenario = scenario_of(options, "hall.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 10.0 : 120.0);
   std::vector<Run> runs;
-  for (int i = 0; i < seeds; ++i) {
-    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+  for (const std::uint64_t seed : options.seeds(1)) {
     for (const std::string method : {"evidence", "paper"}) {
       runs.push_back({method + "-seed" + std::to_string(seed), [=, settings = settings_of(options, method)] {
                         return measured_drive(*scenario, settings, method, seed, minutes);
@@ -239,7 +218,7 @@ Chart chart_of(const std::vector<Outcome>& outcomes, const std::string& title, c
   return chart;
 }
 
-Report Figure14::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string method : {"evidence", "paper"}) {
     if (!std::isnan(mean_number(outcomes, method, "scans"))) add_figures(report, outcomes, method);
@@ -254,6 +233,12 @@ Report Figure14::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig14_experiment() { return std::make_unique<Figure14>(); }
+Experiment fig14_experiment() {
+  return {.name = "fig14",
+          .what = "Figure 14 of the paper: CPU and memory over time, inside and outside Δ-phases",
+          .runs = runs_of,
+          .report = report_of,
+          .times = Experiment::Times::kMachine};
+}
 
 }  // namespace deltamap::experiments

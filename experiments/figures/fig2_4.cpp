@@ -5,9 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/lived_in.hpp"
-#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/drive/view_difference.hpp"
 #include "experiments/registry.hpp"
 #include "mapping/store_scan.hpp"
@@ -104,8 +105,7 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
   simulation::VirtualDriveParams drive;
   drive.seed = seed;
   drive.route.round = lap();
-  LocalizerDrive pair{scenario, drive, localizer, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(localizer), {first_map(scenario)}};
   const simulation::RayCaster as_mapped{scenario.world};
   Indicators indicators{seed};
   Outcome outcome;
@@ -116,42 +116,28 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
       is_second = true;
       if (changes) (void)pair.drive().change_many(kChangedShare, busy_forklift(1.0));
     }
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
-    indicators.observe(pair.tracked());
+    indicators.observe(scan.tracked);
     if (!is_second) continue;
     const Pose2 map_from_laser = scan.map_from_robot * scenario.laser.optics.robot_from_laser;
     const mapping::Awareness& paper = indicators.paper();
     outcome.scans.add({passed_s - 60.0 * minutes, scan.estimate.w_avg, paper.w_fast, paper.w_slow, paper.r_d,
                        paper.in_phase ? 1.0 : 0.0, indicators.stored(),
                        differing_share(pair.drive().surfaces(), as_mapped, map_from_laser, kNear_m),
-                       indicators.speaking_beams(), pair.tracked().turn_rate_rad_per_s,
-                       error_of(scan).position.norm()});
+                       indicators.speaking_beams(), scan.tracked.turn_rate_rad_per_s, error_of(scan).position.norm()});
   }
   outcome.labels = {{"world", changes ? "changed" : "still"}, {"seed", std::to_string(seed)}};
   outcome.numbers = numbers_of(outcome.scans);
   return outcome;
 }
 
-class Figures2To4 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig2-4"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figures 2 to 4 of the paper: w_avg, w_fast, w_slow and r_d on a lap with and without a change";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figures2To4::runs(const Options& options) const {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
+std::vector<Run> runs_of(const Options& options) {
+  const auto scenario = scenario_of(options, "hall.yaml");
   const localization::LocalizerParams localizer = localizer_variants(options.localizer).front().params;
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
   const double minutes = options.minutes.value_or(kLap_min);
   std::vector<Run> runs;
-  for (int i = 0; i < seeds; ++i) {
-    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+  for (const std::uint64_t seed : options.seeds(5)) {
     for (const bool changes : {false, true}) {
       runs.push_back({std::string{changes ? "changed" : "still"} + "-seed" + std::to_string(seed),
                       [=] { return two_laps(*scenario, localizer, seed, changes, minutes); }});
@@ -251,7 +237,7 @@ Chart averages(const Outcome& outcome, const std::string& title) {
   return chart;
 }
 
-Report Figures2To4::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   report.figures = figures_of(outcomes);
   Chart figure2{"Figure 2: w_avg without and with a change", "time, s", "w_avg", {}};
@@ -269,6 +255,11 @@ Report Figures2To4::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig2_4_experiment() { return std::make_unique<Figures2To4>(); }
+Experiment fig2_4_experiment() {
+  return {.name = "fig2-4",
+          .what = "Figures 2 to 4 of the paper: w_avg, w_fast, w_slow and r_d on a lap with and without a change",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

@@ -5,11 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/lived_in.hpp"
-#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
-#include "mapping/awareness/delta_phase.hpp"
+#include "mapping/paper/delta_phase.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -46,7 +47,7 @@ const std::array<Path, 6>& paths() {
 ScanTable empty_table() { return ScanTable{{"t_s", "n_eff_share", "turn_rate_rad_per_s", "tracking"}}; }
 
 std::vector<std::pair<std::string, double>> numbers_of(const ScanTable& scans) {
-  const double gate = mapping::awareness::DeltaPhaseParams{}.least_n_eff_share;
+  const double gate = mapping::paper::DeltaPhaseParams{}.least_n_eff_share;
   const std::vector<double> shares = scans.column("n_eff_share");
   const std::vector<double> rates = scans.column("turn_rate_rad_per_s");
   std::vector<double> turning;
@@ -74,18 +75,17 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   drive.route.round = path.round;
   localization::LocalizerParams params = variant.params;
   params.follow_surfaces = false;  // N_eff is the particles'; where surfaces lead they rest
-  LocalizerDrive pair{scenario, drive, params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(params), {first_map(scenario)}};
   if (path.changes) (void)pair.drive().change_many(kChangedShare, busy_forklift(1.0));
   if (path.turn_rad_per_s) pair.drive().hold({.turn_rate_rad_per_s = *path.turn_rad_per_s});
   const double settle_s = std::min(kSettle_s, 0.5 * 60.0 * minutes);
   Outcome outcome;
   outcome.scans = empty_table();
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     if (passed_s < settle_s) continue;
-    outcome.scans.add({passed_s, scan.estimate.n_eff / scan.estimate.particles, pair.tracked().turn_rate_rad_per_s,
+    outcome.scans.add({passed_s, scan.estimate.n_eff / scan.estimate.particles, scan.tracked.turn_rate_rad_per_s,
                        scan.estimate.state == LocalizerState::kTracking ? 1.0 : 0.0});
   }
   outcome.labels = {{"localizer", variant.name}, {"path", path.name}, {"seed", std::to_string(seed)}};
@@ -93,25 +93,12 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   return outcome;
 }
 
-class Figure6 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "fig6"; }
-  [[nodiscard]] std::string what() const override {
-    return "Figure 6 of the paper: N_eff straight past changes, turning and on a winding path, and what it rejects";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Figure6::runs(const Options& options) const {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
+std::vector<Run> runs_of(const Options& options) {
+  const auto scenario = scenario_of(options, "hall.yaml");
   std::vector<Run> runs;
   for (const LocalizerVariant& variant : localizer_variants(options.localizer)) {
     for (const Path& path : paths()) {
-      for (int i = 0; i < seeds; ++i) {
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+      for (const std::uint64_t seed : options.seeds(5)) {
         const double minutes = options.minutes.value_or(options.quick ? 0.5 * path.minutes : path.minutes);
         runs.push_back({variant.name + "-" + path.name + "-seed" + std::to_string(seed),
                         [=, &path] { return follow(*scenario, variant, path, seed, minutes); }});
@@ -149,7 +136,7 @@ void add_figures(Report& report, const std::string& variant, const Path& path, c
   }
 }
 
-Report Figure6::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   const std::string first_seed = outcomes.front().label("seed");
   for (const std::string variant : {"500x60", "delivered"}) {
@@ -175,6 +162,12 @@ Report Figure6::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> fig6_experiment() { return std::make_unique<Figure6>(); }
+Experiment fig6_experiment() {
+  return {
+      .name = "fig6",
+      .what = "Figure 6 of the paper: N_eff straight past changes, turning and on a winding path, and what it rejects",
+      .runs = runs_of,
+      .report = report_of};
+}
 
 }  // namespace deltamap::experiments

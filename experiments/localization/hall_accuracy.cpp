@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/localization/weakest_axis.hpp"
 #include "experiments/registry.hpp"
 
@@ -19,7 +20,7 @@ constexpr double kInside1 = 3.841;
 constexpr double kInside2 = 5.991;
 constexpr double kInside3 = 7.815;
 
-std::vector<double> row_of(const Followed& scan, const WeakestAxis& axis) {
+std::vector<double> row_of(const Mapped& scan, const WeakestAxis& axis) {
   const PoseError error = error_of(scan);
   const PoseCovariance& covariance = scan.estimate.covariance;
   const Eigen::Matrix2d position_covariance = covariance.topLeftCorner<2, 2>();
@@ -100,12 +101,11 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& set
   simulation::VirtualDriveParams drive;
   drive.seed = seed;
   drive.max_range_m = range_m;
-  LocalizerDrive pair{scenario, drive, setting.params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(setting.params), {first_map(scenario)}};
   Outcome outcome;
   outcome.scans = empty_table();
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     const Pose2 map_from_laser = scan.map_from_robot * scenario.laser.optics.robot_from_laser;
     outcome.scans.add(
@@ -116,26 +116,13 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& set
   return outcome;
 }
 
-class HallAccuracy : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "hall"; }
-  [[nodiscard]] std::string what() const override {
-    return "The localizer alone in the paper's hall, nothing changes, with a laser of 80 m and of 8 m";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> HallAccuracy::runs(const Options& options) const {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
+std::vector<Run> runs_of(const Options& options) {
+  const auto scenario = scenario_of(options, "hall.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 2.0 : 10.0);
   std::vector<Run> runs;
   for (const LocalizerVariant& setting : localizer_variants(options.localizer)) {
     for (const double range_m : {80.0, 8.0}) {
-      for (int i = 0; i < seeds; ++i) {
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+      for (const std::uint64_t seed : options.seeds(5)) {
         runs.push_back({setting.name + "-" + text_of(range_m) + "m-seed" + std::to_string(seed),
                         [=] { return follow(*scenario, setting, range_m, seed, minutes); }});
       }
@@ -181,7 +168,7 @@ Series errors_over_time(const Outcome& outcome, const std::string& name) {
   return series;
 }
 
-Report HallAccuracy::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string setting : {"500x60", "delivered"}) {
     for (const std::string range : {"80", "8"}) {
@@ -204,6 +191,11 @@ Report HallAccuracy::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> hall_experiment() { return std::make_unique<HallAccuracy>(); }
+Experiment hall_experiment() {
+  return {.name = "hall",
+          .what = "The localizer alone in the paper's hall, nothing changes, with a laser of 80 m and of 8 m",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/angle.hpp"
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/watched_drive.hpp"
 
@@ -44,25 +44,11 @@ std::vector<Kind> kinds() {
   return all;
 }
 
-class ShiftedHall : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "shifted-hall"; }
-  [[nodiscard]] std::string what() const override {
-    return "An hour among containers of 5 m that are shifted by up to 0.8 m, one a minute, with poor wheels";
-  }
-  [[nodiscard]] bool measures_time() const override { return true; }  // CPU time of the thread
-  [[nodiscard]] bool runs_alone() const override { return false; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> ShiftedHall::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   std::vector<Run> runs;
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 3);
   const double minutes = options.minutes.value_or(options.quick ? 5.0 : 60.0);
   for (const Kind& kind : kinds()) {
-    for (int i = 0; i < seeds; ++i) {
-      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+    for (const std::uint64_t seed : options.seeds(3)) {
       runs.push_back(
           {kind.name + "-seed" + std::to_string(seed), [=] {
              auto [scenario, drive] = simulation::drawn::shifted_hall(kind.hall, seed);
@@ -87,7 +73,7 @@ Series error_series(const Outcome& outcome) {
   return series;
 }
 
-Report ShiftedHall::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const Kind& kind : kinds()) {
     std::vector<double> rms_m, most_m, off, jumps, wheel_distance, wheel_turn, wheel_lag_s;
@@ -139,6 +125,12 @@ Report ShiftedHall::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> shifted_hall_experiment() { return std::make_unique<ShiftedHall>(); }
+Experiment shifted_hall_experiment() {
+  return {.name = "shifted-hall",
+          .what = "An hour among containers of 5 m that are shifted by up to 0.8 m, one a minute, with poor wheels",
+          .runs = runs_of,
+          .report = report_of,
+          .times = Experiment::Times::kThread};
+}
 
 }  // namespace deltamap::experiments

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/localizer_variants.hpp"
+#include "experiments/drive/mapping_drive.hpp"
 #include "experiments/registry.hpp"
 
 namespace deltamap::experiments {
@@ -44,13 +45,12 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   drive.seed = seed;
   drive.max_range_m = range_m;
   drive.forklift = scenario.forklift;
-  LocalizerDrive pair{scenario, drive, variant.params, first_map(scenario),
-                      localization::InitialPose{scenario.robot.map_from_start}};
+  MappingDrive pair{scenario, drive, localizer_alone(variant.params), {first_map(scenario)}};
   Outcome outcome;
   outcome.scans = empty_table();
   std::size_t changes = 0;
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     changes += scan.changes.size();
     const PoseError error = error_of(scan);
@@ -66,26 +66,13 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   return outcome;
 }
 
-class StaleMap : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "stale-map"; }
-  [[nodiscard]] std::string what() const override {
-    return "The paper's hall, a container pushed aside by at most 0.8 m every minute, the map never updated";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> StaleMap::runs(const Options& options) const {
-  const auto scenario =
-      std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / "hall_shifts.yaml"));
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 3);
+std::vector<Run> runs_of(const Options& options) {
+  const auto scenario = scenario_of(options, "hall_shifts.yaml");
   const double minutes = options.minutes.value_or(options.quick ? 5.0 : 60.0);
   std::vector<Run> runs;
   for (const LocalizerVariant& variant : localizer_variants(options.localizer)) {
     for (const double range_m : {80.0, 8.0}) {
-      for (int i = 0; i < seeds; ++i) {
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+      for (const std::uint64_t seed : options.seeds(3)) {
         runs.push_back({variant.name + "-" + text_of(range_m) + "m-seed" + std::to_string(seed),
                         [=] { return follow(*scenario, variant, range_m, seed, minutes); }});
       }
@@ -160,7 +147,7 @@ void add_figures(Report& report, const std::string& variant, const std::string& 
   report.figures.push_back(pooled.mean(where + "changes of a drive", "changes"));
 }
 
-Report StaleMap::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string variant : {"500x60", "delivered"}) {
     for (const std::string range : {"80", "8"}) {
@@ -185,6 +172,11 @@ Report StaleMap::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> stale_map_experiment() { return std::make_unique<StaleMap>(); }
+Experiment stale_map_experiment() {
+  return {.name = "stale-map",
+          .what = "The paper's hall, a container pushed aside by at most 0.8 m every minute, the map never updated",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

@@ -75,26 +75,11 @@ std::optional<Target> target_of(const Asked& asked) {
   return asked.target;
 }
 
-class ChangingWorld : public Experiment {
- public:
-  explicit ChangingWorld(Plan plan) : plan_{std::move(plan)} {}
-  [[nodiscard]] std::string name() const override { return plan_.name; }
-  [[nodiscard]] std::string what() const override { return plan_.what; }
-  [[nodiscard]] bool measures_time() const override { return plan_.measures_machine; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-
- private:
-  Plan plan_;
-};
-
-std::vector<Run> ChangingWorld::runs(const Options& options) const {
+std::vector<Run> runs_of(const Plan& plan, const Options& options) {
   std::vector<Run> runs;
-  for (const Drive& kind : plan_.drives) {
+  for (const Drive& kind : plan.drives) {
     const simulation::Scenario scenario = simulation::read_scenario(options.scenarios / kind.scenario);
-    const int seeds = options.repeats.value_or(options.quick ? 1 : kind.seeds);
-    for (int i = 0; i < seeds; ++i) {
-      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+    for (const std::uint64_t seed : options.seeds(kind.seeds)) {
       for (const std::string& method : kind.methods) {
         MappingRun run{scenario, {}, settings_of(options, method)};
         run.drive.seed = seed;
@@ -176,13 +161,13 @@ TextTable table_of(const std::string& drive, const std::vector<const Outcome*>& 
   return table;
 }
 
-Report ChangingWorld::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const Plan& plan, const std::vector<Outcome>& outcomes) {
   Report report;
-  for (const Drive& kind : plan_.drives) {
+  for (const Drive& kind : plan.drives) {
     const auto ours = chosen(outcomes, kind.name, "evidence");
     const auto paper = chosen(outcomes, kind.name, "paper");
     if (ours.empty()) continue;  // not asked for
-    for (const Asked& asked : plan_.asked) {
+    for (const Asked& asked : plan.asked) {
       if (!asked.drive.empty() && asked.drive != kind.name) continue;
       const std::vector<double> values = values_of(ours, asked.number);
       if (values.empty()) continue;
@@ -388,11 +373,16 @@ Plan changed_start() {
 
 }  // namespace
 
-std::vector<std::unique_ptr<Experiment>> changing_world_experiments() {
-  std::vector<std::unique_ptr<Experiment>> all;
-  for (Plan& plan : std::vector<Plan>{table2(), seven_hours(), endurance(), live_map(), passers(), standing_still(),
-                                      creeping(), changed_start(), fast()})
-    all.push_back(std::make_unique<ChangingWorld>(std::move(plan)));
+std::vector<Experiment> changing_world_experiments() {
+  std::vector<Experiment> all;
+  for (const Plan& plan : {table2(), seven_hours(), endurance(), live_map(), passers(), standing_still(), creeping(),
+                           changed_start(), fast()}) {
+    all.push_back({.name = plan.name,
+                   .what = plan.what,
+                   .runs = [plan](const Options& options) { return runs_of(plan, options); },
+                   .report = [plan](const std::vector<Outcome>& outcomes) { return report_of(plan, outcomes); },
+                   .times = plan.measures_machine ? Experiment::Times::kMachine : Experiment::Times::kNothing});
+  }
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/mapping/gate_run.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/mapping_run.hpp"
@@ -15,27 +16,13 @@ namespace {
 constexpr std::array kPlaces{"hall", "depot", "changed"};
 constexpr std::array kGates{"gated", "open"};
 
-class Gate : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "gate"; }
-  [[nodiscard]] std::string what() const override {
-    return "A robot that maps while a fork-lift works is carried by one bay or anywhere, or slips: what is written "
-           "while its pose is wrong";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Gate::runs(const Options& options) const {
-  const int seeds = options.repeats.value_or(options.quick ? 1 : 5);
+std::vector<Run> runs_of(const Options& options) {
   std::vector<Run> runs;
   for (const std::string place : kPlaces) {
-    const auto scenario =
-        std::make_shared<const simulation::Scenario>(simulation::read_scenario(options.scenarios / (place + ".yaml")));
+    const auto scenario = scenario_of(options, place + ".yaml");
     for (const PoseEvent event : kPoseEvents) {
       for (const std::string gate : kGates) {
-        for (int i = 0; i < seeds; ++i) {
-          const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
+        for (const std::uint64_t seed : options.seeds(5)) {
           const std::string what{name_of(event)};
           GateRun run{*scenario, settings_of(options, "evidence"), event, seed};
           run.settings.mapping.store_scan.gate.enabled = gate == "gated";
@@ -87,8 +74,8 @@ class Kind {
 /// Why it was shut, the longest first left to the reader: every reason that was.
 std::vector<std::vector<std::string>> reasons_of(const Kind& kind, const std::string& where, const std::string& when) {
   std::vector<std::vector<std::string>> rows;
-  for (std::size_t i = 1; i < mapping::kGateReasons; ++i) {
-    const std::string reason{mapping::name_of(static_cast<mapping::GateReason>(i))};
+  for (std::size_t i = 1; i < mapping::gate::kGateReasons; ++i) {
+    const std::string reason{name_of(static_cast<mapping::gate::GateReason>(i))};
     const double share = kind.mean("shut_" + when + "_" + reason);
     if (share > 0.0)
       rows.push_back({where, when == "before" ? "all is well" : "after the event", reason, text_of(share)});
@@ -109,7 +96,7 @@ Chart course_of(const Kind& kind, const std::string& title) {
   return chart;
 }
 
-Report Gate::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   TextTable table{
       "By place and event, all seeds",
@@ -161,6 +148,13 @@ Report Gate::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> gate_experiment() { return std::make_unique<Gate>(); }
+Experiment gate_experiment() {
+  return {.name = "gate",
+          .what =
+              "A robot that maps while a fork-lift works is carried by one bay or anywhere, or slips: what is written "
+              "while its pose is wrong",
+          .runs = runs_of,
+          .report = report_of};
+}
 
 }  // namespace deltamap::experiments

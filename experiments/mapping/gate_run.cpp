@@ -5,8 +5,8 @@
 #include <cmath>
 #include <deque>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/lived_in.hpp"
-#include "experiments/drive/localizer_drive.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/watch/error_course.hpp"
 
@@ -84,18 +84,18 @@ class Count {
 };
 
 /// What passed between two readings of the gate's clock.
-mapping::GateTimes between(const mapping::GateTimes& earlier, const mapping::GateTimes& later) {
-  mapping::GateTimes times{};
+mapping::gate::GateTimes between(const mapping::gate::GateTimes& earlier, const mapping::gate::GateTimes& later) {
+  mapping::gate::GateTimes times{};
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = later[i] - earlier[i];
   return times;
 }
 
-void add_shares(const mapping::GateTimes& times, const std::string& when, Outcome& outcome) {
-  const double all_s = mapping::observed_s(times);
-  outcome.numbers.emplace_back("shut_" + when, mapping::shut_s(times) / all_s);
+void add_shares(const mapping::gate::GateTimes& times, const std::string& when, Outcome& outcome) {
+  const double all_s = mapping::gate::observed_s(times);
+  outcome.numbers.emplace_back("shut_" + when, mapping::gate::shut_s(times) / all_s);
   for (std::size_t i = 1; i < times.size(); ++i) {
-    const auto reason = static_cast<mapping::GateReason>(i);
-    outcome.numbers.emplace_back("shut_" + when + "_" + std::string{mapping::name_of(reason)}, times[i] / all_s);
+    const auto reason = static_cast<mapping::gate::GateReason>(i);
+    outcome.numbers.emplace_back("shut_" + when + "_" + std::string{name_of(reason)}, times[i] / all_s);
   }
 }
 
@@ -106,7 +106,7 @@ Outcome outcome_of(const GateRun& run) {
   simulation::VirtualDriveParams params;
   params.seed = run.seed;
   params.forklift = busy_forklift(run.change_every_s);
-  MappingDrive drive{run.scenario, params, run.settings, first};
+  MappingDrive drive{run.scenario, params, run.settings, {first}};
   Random random{run.seed + 104729};
   Count count{run};
   Outcome outcome;
@@ -116,7 +116,7 @@ Outcome outcome_of(const GateRun& run) {
   double wrong_s = 0.0;
   double unnoticed_s = 0.0;  // the pose was wrong and the gate open
   double last_s = 0.0;
-  mapping::GateTimes times_before{};
+  mapping::gate::GateTimes times_before{};
   for (double passed_s = 0.0; passed_s < run.before_s + run.after_s;) {
     if (!befallen && passed_s >= run.before_s) {
       befallen = true;
@@ -128,7 +128,7 @@ Outcome outcome_of(const GateRun& run) {
     const Estimate& estimate = scan.estimate;
     const double error_m = distance_between(estimate.map_from_robot, scan.map_from_robot);
     count.observe(scan, error_m, drive.map());
-    const bool is_open = scan.awareness.gate == mapping::GateReason::kOpen;
+    const bool is_open = scan.awareness.gate == mapping::gate::GateReason::kOpen;
     if (error_m > run.wrong_pose_m) wrong_s += passed_s - last_s;
     if (error_m > run.wrong_pose_m && is_open) unnoticed_s += passed_s - last_s;
     last_s = passed_s;
@@ -139,7 +139,7 @@ Outcome outcome_of(const GateRun& run) {
                                : 0.0;
     outcome.scans.add(
         {passed_s, error_m, static_cast<double>(estimate.state), static_cast<double>(estimate.belief.verdict),
-         estimate.belief.pose_right, estimate.belief.rival_share,
+         estimate.belief.pose_right, estimate.belief.other_share,
          std::sqrt(estimate.covariance.topLeftCorner<2, 2>().trace()), static_cast<double>(scan.awareness.gate),
          written, withdrew ? static_cast<double>(scan.update->revision->changes.size()) : 0.0, scan.map_from_robot.x,
          scan.map_from_robot.y, 1.0 * beams.expected, 1.0 * beams.fit, 1.0 * beams.short_of, 1.0 * beams.beyond});

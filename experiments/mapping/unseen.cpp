@@ -173,20 +173,7 @@ Chart chart_of(const std::string& what, const std::string& number, const std::ve
   return {what + ", seeds in order", "share of the seeds", what, {series}};
 }
 
-class Unseen : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "unseen"; }
-  [[nodiscard]] std::string what() const override {
-    return "Worlds that nobody has tuned on, another kind for every seed (1-999: development; 1000-1059: closing "
-           "notes)";
-  }
-  [[nodiscard]] bool measures_time() const override { return true; }  // CPU time of the thread
-  [[nodiscard]] bool runs_alone() const override { return false; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Unseen::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const auto seeds = static_cast<std::uint64_t>(options.repeats.value_or(options.quick ? kQuickSeeds : kSeeds));
   const double minutes = options.minutes.value_or(options.quick ? kQuickMinutes : kMinutes);
   expect_one_set(options.seed, options.seed + seeds - 1);
@@ -197,7 +184,7 @@ std::vector<Run> Unseen::runs(const Options& options) const {
   return runs;
 }
 
-Report Unseen::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   const auto count = [&](const std::string& name, const auto& holds, const std::optional<Target>& target = {}) {
     const auto found = std::count_if(outcomes.begin(), outcomes.end(), holds);
@@ -220,6 +207,14 @@ Report Unseen::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> unseen_experiment() { return std::make_unique<Unseen>(); }
+Experiment unseen_experiment() {
+  return {.name = "unseen",
+          .what =
+              "Worlds that nobody has tuned on, another kind for every seed (1-999: development; 1000-1059: closing "
+              "notes)",
+          .runs = runs_of,
+          .report = report_of,
+          .times = Experiment::Times::kThread};
+}
 
 }  // namespace deltamap::experiments

@@ -9,8 +9,8 @@
 #include "experiments/merge/merge_table.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/report/svg_map.hpp"
-#include "mapping/merge/global_merge.hpp"
-#include "mapping/merge/prior_merge.hpp"
+#include "mapping/grid_registration/global_merge.hpp"
+#include "mapping/grid_registration/prior_merge.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -65,13 +65,14 @@ Outcome merge_often(const std::string& name, bool with_prior, std::uint64_t layo
     if (with_prior) {
       const Pose2 guess = guess_of(truth, mapping::merge::LocalCells{local.grid}.middle_in_local(), random);
       taken_ms = cpu_ms([&] {
-        const auto merge = mapping::merge::prior_merge(place.map, local.grid, guess, prior_covariance(), {});
+        const auto merge =
+            mapping::grid_registration::prior_merge(place.map, local.grid, guess, prior_covariance(), {});
         found = merge.map_from_guess * guess;
         is_refused = !merge.accepted();
       });
     } else {
       taken_ms = cpu_ms([&] {
-        const auto merge = mapping::merge::global_merge(place.map, local.grid, {});
+        const auto merge = mapping::grid_registration::global_merge(place.map, local.grid, {});
         found = merge.map_from_local;
         is_refused = !merge.accepted();
       });
@@ -87,17 +88,6 @@ Outcome merge_often(const std::string& name, bool with_prior, std::uint64_t layo
   return outcome;
 }
 
-class MergeAccuracy : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "merge"; }
-  [[nodiscard]] std::string what() const override {
-    return "Maps merged with a prior (sigma 0.15 m, 2 deg) and without, two parts that share two thirds";
-  }
-  [[nodiscard]] bool measures_time() const override { return true; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
 std::vector<std::string> places_for(const Options& options) {
   std::vector<std::string> places;
   for (const MergeLayout& layout : merge_layouts()) places.push_back(layout.name);
@@ -111,7 +101,7 @@ std::vector<std::string> places_for(const Options& options) {
   return places;
 }
 
-std::vector<Run> MergeAccuracy::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const std::vector<std::string> places = places_for(options);
   const int all = options.quick ? 300 : 10000;
   const int of_a_place =
@@ -165,7 +155,7 @@ std::vector<std::string> places_in(const std::vector<Outcome>& outcomes) {
   return places;
 }
 
-Report MergeAccuracy::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   add_figures(report, outcomes, "with", 3.0);
   add_figures(report, outcomes, "without", 25.0);
@@ -200,6 +190,12 @@ Report MergeAccuracy::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> merge_experiment() { return std::make_unique<MergeAccuracy>(); }
+Experiment merge_experiment() {
+  return {.name = "merge",
+          .what = "Maps merged with a prior (sigma 0.15 m, 2 deg) and without, two parts that share two thirds",
+          .runs = runs_of,
+          .report = report_of,
+          .times = Experiment::Times::kMachine};
+}
 
 }  // namespace deltamap::experiments

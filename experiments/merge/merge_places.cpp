@@ -11,13 +11,12 @@
 #include "core/grid_file.hpp"
 #include "core/scratch_folder.hpp"
 #include "experiments/merge/merge_layouts.hpp"
-#include "mapping/merge/transformed_grid.hpp"
+#include "mapping/registration/transformed_grid.hpp"
 
 namespace deltamap::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-namespace merge = mapping::merge;
 
 constexpr double kFirstShare = 0.75;  // the map's columns end here …
 constexpr double kOtherShare = 0.25;  // … and the other world's begin here
@@ -47,9 +46,11 @@ MergePlace place_of(const std::string& name, const OccupancyGrid& world, const O
   const bool between = std::lround(part) % 2 == 0;
   const double half_m = between ? 0.5 * world.resolution_m() : 0.0;
   const Pose2 map_from_other{half_m, half_m, 0.0};
-  OccupancyGrid map = merge::moved_grid(merge::part_of(world, 0.0, kFirstShare), map_from_other, kMergeResolution_m);
-  merge::OverlayMap overlay{map};
-  return {name, std::move(map), merge::part_of(other_world, kOtherShare, 1.0), map_from_other, std::move(overlay)};
+  OccupancyGrid map = mapping::registration::moved_grid(mapping::registration::part_of(world, 0.0, kFirstShare),
+                                                        map_from_other, kMergeResolution_m);
+  mapping::merge::OverlayMap overlay{map};
+  return {name, std::move(map), mapping::registration::part_of(other_world, kOtherShare, 1.0), map_from_other,
+          std::move(overlay)};
 }
 
 }  // namespace
@@ -80,19 +81,19 @@ LocalMap turned_local(const MergePlace& place, bool whole, Random& random) {
   if (whole) x_cells = std::round(x_cells), y_cells = std::round(y_cells), turn_deg = std::round(turn_deg);
   const Pose2 local_from_other{kMergeResolution_m * x_cells, kMergeResolution_m * y_cells,
                                wrapped_angle(radians(turn_deg))};
-  return {local_from_other, merge::moved_grid(place.other, local_from_other, kMergeResolution_m)};
+  return {local_from_other, mapping::registration::moved_grid(place.other, local_from_other, kMergeResolution_m)};
 }
 
 MergeMeasure measured(const MergePlace& place, const LocalMap& local, const Pose2& map_from_local) {
-  const merge::LocalCells cells{local.grid};
+  const mapping::merge::LocalCells cells{local.grid};
   const Pose2 truth = place.map_from_other * inverse(local.local_from_other);
   const auto acceptance_at = [&](const Pose2& pose) {
-    return place.overlay.score(cells, merge::cell_motion(pose, place.map.geometry(), cells)).acceptance();
+    return place.overlay.score(cells, mapping::merge::cell_motion(pose, place.map.geometry(), cells)).acceptance();
   };
   MergeMeasure measure;
   measure.acceptance = acceptance_at(map_from_local);
   measure.true_acceptance = acceptance_at(truth);
-  measure.agreement = merge::surface_agreement(place.map, local.grid, map_from_local);
+  measure.agreement = mapping::registration::surface_agreement(place.map, local.grid, map_from_local);
   measure.off_cells =
       (map_from_local * cells.middle_in_local() - truth * cells.middle_in_local()).norm() / kMergeResolution_m;
   measure.turn_deg = std::abs(degrees(turn_between(truth.theta, map_from_local.theta)));

@@ -54,18 +54,7 @@ Outcome merge_often(const std::string& layout, std::uint64_t seed, bool whole, c
   return outcome;
 }
 
-class Table1 : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "table1"; }
-  [[nodiscard]] std::string what() const override {
-    return "Table 1 of the paper: maps merged without a prior by MA1 to MA4, two parts that share two thirds";
-  }
-  [[nodiscard]] bool measures_time() const override { return true; }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override;
-};
-
-std::vector<Run> Table1::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const int transforms = options.repeats.value_or(options.quick ? 10 : 100);
   const int seeds = options.quick || options.repeats ? 1 : 2;
   std::vector<Run> runs;
@@ -172,7 +161,7 @@ void add_pictures(Report& report, const std::vector<Outcome>& outcomes) {
   }
 }
 
-Report Table1::report(const std::vector<Outcome>& outcomes) const {
+Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   TextTable table{"Merges without a prior",
                   {"place", "angles", "method", "transforms", "mean acceptance", "worst", "true pose's own", "paper",
@@ -206,6 +195,12 @@ Report Table1::report(const std::vector<Outcome>& outcomes) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> table1_experiment() { return std::make_unique<Table1>(); }
+Experiment table1_experiment() {
+  return {.name = "table1",
+          .what = "Table 1 of the paper: maps merged without a prior by MA1 to MA4, two parts that share two thirds",
+          .runs = runs_of,
+          .report = report_of,
+          .times = Experiment::Times::kMachine};
+}
 
 }  // namespace deltamap::experiments

@@ -4,7 +4,7 @@
 #include <cassert>
 
 #include "mapping/merge/overlay_score.hpp"
-#include "mapping/merge/transformed_grid.hpp"
+#include "mapping/registration/transformed_grid.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -57,7 +57,7 @@ std::string svg_of_difference(const OccupancyGrid& map, const OccupancyGrid& oth
 
 std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local, const Pose2& map_from_local) {
   // A frame that holds both.
-  const OccupancyGrid placed = mapping::merge::moved_grid(local, map_from_local, map.resolution_m());
+  const OccupancyGrid placed = mapping::registration::moved_grid(local, map_from_local, map.resolution_m());
   const GridGeometry& one = map.geometry();
   const GridGeometry& other = placed.geometry();
   const auto far = [](const GridGeometry& g) { return Point2{g.origin + g.resolution_m * Point2{g.width, g.height}}; };
@@ -65,7 +65,7 @@ std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local, c
   const Point2 size = (far(one).cwiseMax(far(other)) - low) / one.resolution_m;
   const GridGeometry frame{static_cast<int>(std::ceil(size.x())), static_cast<int>(std::ceil(size.y())),
                            one.resolution_m, low};
-  const OccupancyGrid below = mapping::merge::transformed_grid(map, {}, frame);
+  const OccupancyGrid below = mapping::registration::transformed_grid(map, {}, frame);
   OccupancyGrid above{frame};
   for (const Cell& cell : contour_cells(local)) {
     const Cell there = frame.cell_at(map_from_local * local.geometry().centre_of(cell));

@@ -64,18 +64,7 @@ Outcome outcome_of(const Place& place, const VerdictRun& run, std::size_t range)
   return outcome;
 }
 
-class Verdict : public Experiment {
- public:
-  [[nodiscard]] std::string name() const override { return "verdict"; }
-  [[nodiscard]] std::string what() const override {
-    return "Lost, or the map out of date? Poses right, a bay off, slipped and elsewhere, in halls that changed and did "
-           "not";
-  }
-  [[nodiscard]] std::vector<Run> runs(const Options& options) const override;
-  [[nodiscard]] Report report(const std::vector<Outcome>& outcomes) const override { return verdict_report(outcomes); }
-};
-
-std::vector<Run> Verdict::runs(const Options& options) const {
+std::vector<Run> runs_of(const Options& options) {
   const int repeats = options.repeats.value_or(options.quick ? 5 : 50);
   std::vector<Run> runs;
   for (const std::string name : {"hall", "depot"}) {
@@ -103,6 +92,14 @@ std::vector<Run> Verdict::runs(const Options& options) const {
 
 }  // namespace
 
-std::unique_ptr<Experiment> verdict_experiment() { return std::make_unique<Verdict>(); }
+Experiment verdict_experiment() {
+  return {
+      .name = "verdict",
+      .what =
+          "Lost, or the map out of date? Poses right, a bay off, slipped and elsewhere, in halls that changed and did "
+          "not",
+      .runs = runs_of,
+      .report = verdict_report};
+}
 
 }  // namespace deltamap::experiments

@@ -31,21 +31,22 @@ Pose2 beginning_of(const VerdictPlace& place, const VerdictRun& run) {
 
 }  // namespace
 
-VerdictScans verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
+VerdictScans verdict_scans(const VerdictPlace& place, const localization::belief::StabilityRecord& lived_in,
                            const VerdictRun& run) {
   const Pose2 begin = beginning_of(place, run);
   simulation::VirtualDriveParams drive{.seed = run.seed, .map_from_start = begin, .max_range_m = run.max_range_m};
   drive.people = place.people;
-  LocalizerDrive pair{place.scenario, drive, place.localizer, place.map, localization::InitialPose{begin}};
-  (void)pair.localizer().restore(lived_in);
+  daemon::StartMap start{.map = place.map};
+  start.stability = lived_in;
+  MappingDrive pair{place.scenario, drive, localizer_alone(place.localizer), start};
   const simulation::RayCaster as_mapped{place.scenario.world};
   Random random{run.seed + 104729};
   ScanTable scans{{"since_event_s", "driven_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state",
                    "pose_right", "map_wrong", "verdict", "map_is_wrong", "stable_expected", "stable_fit",
                    "rival_share"}};
   std::optional<double> event_s;
-  std::optional<Followed> last;  // since the event
-  std::vector<Pose2> views;      // map_from_laser, one now and then while driving
+  std::optional<Mapped> last;  // since the event
+  std::vector<Pose2> views;    // map_from_laser, one now and then while driving
   double driven_s = 0.0;
   const double end_s = run.before_s + kMostWaiting * run.after_driving_s;
   for (double passed_s = 0.0; passed_s < end_s && driven_s < run.after_driving_s;) {
@@ -54,7 +55,7 @@ VerdictScans verdict_scans(const VerdictPlace& place, const localization::Stabil
       if (run.changed_share > 0.0) (void)pair.drive().change_many(run.changed_share, busy_forklift(1.0));
       befall(pair.drive(), run.event, random);
     }
-    const Followed scan = pair.next();
+    const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     if (event_s && last && has_driven(last->map_from_robot, scan.map_from_robot, passed_s - last->passed_s)) {
       driven_s += passed_s - last->passed_s;
@@ -73,7 +74,7 @@ VerdictScans verdict_scans(const VerdictPlace& place, const localization::Stabil
                scan.map_from_robot.y, scan.map_from_robot.theta, error.position.norm(), error.heading_rad,
                static_cast<double>(scan.estimate.state), belief.pose_right, belief.map_wrong,
                static_cast<double>(belief.verdict), differs ? 1.0 : 0.0, static_cast<double>(belief.stable.expected),
-               static_cast<double>(belief.stable.fit), belief.rival_share});
+               static_cast<double>(belief.stable.fit), belief.other_share});
   }
   VerdictScans answer{std::move(scans), place.oracle->ambiguity(views, pair.drive().surfaces(), run.max_range_m)};
   const std::size_t needed = place.oracle->views_needed(views, pair.drive().surfaces(), run.max_range_m, answer.path);

@@ -37,7 +37,7 @@ struct VerdictScans {
 /// after twice that time. `driven_s`: seconds since the event in which the robot went faster than 0.05 m/s or turned
 /// faster than 3°/s. `map_is_wrong`: more than 5 % of the beams truly end
 /// where M_0's world would not have ended them, people left aside.
-[[nodiscard]] VerdictScans verdict_scans(const VerdictPlace& place, const localization::StabilityRecord& lived_in,
-                                         const VerdictRun& run);
+[[nodiscard]] VerdictScans verdict_scans(const VerdictPlace& place,
+                                         const localization::belief::StabilityRecord& lived_in, const VerdictRun& run);
 
 }  // namespace deltamap::experiments

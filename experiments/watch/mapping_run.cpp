@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiments/watch/mapping_run.hpp"
 
-#include "experiments/drive/localizer_drive.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/report/svg_map.hpp"
 #include "experiments/watch/mapping_watch.hpp"
@@ -10,7 +10,7 @@ namespace deltamap::experiments {
 
 Outcome outcome_of(const MappingRun& run) {
   const auto first = first_map(run.scenario);
-  MappingDrive drive{run.scenario, run.drive, run.settings, first};
+  MappingDrive drive{run.scenario, run.drive, run.settings, {first}};
   MappingWatch watch{run.scenario, first, {.range_m = run.drive.max_range_m}};
   const double restart_every_s = 60.0 * run.minutes / (run.restarts + 1);
   double next_restart_s = restart_every_s;

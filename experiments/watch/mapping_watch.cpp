@@ -18,13 +18,13 @@ constexpr int kFaceBeams = 3;   // of one view make a face seen
 constexpr int kGhostReach = 2;  // cells from anything that stands
 constexpr std::size_t kLeastRowsOfALine = 3;
 
-/// The map as one who knows the temporary layer sees it: what stands occupied, what has gone free.
-OccupancyGrid with_things(OccupancyGrid map, const TemporaryThings* things) {
-  if (things == nullptr || things->empty()) return map;
-  const int side = static_cast<int>(std::lround(things->blocks.resolution_m / map.resolution_m()));
+/// The map as one who knows the transient layer sees it: what stands occupied, what has gone free.
+OccupancyGrid with_transients(OccupancyGrid map, const TransientObstacles* transients) {
+  if (transients == nullptr || transients->empty()) return map;
+  const int side = static_cast<int>(std::lround(transients->blocks.resolution_m / map.resolution_m()));
   const auto draw = [&](const std::vector<std::uint32_t>& blocks, CellState state, bool only_occupied) {
     for (const std::uint32_t index : blocks) {
-      const Cell block = things->blocks.cell_of(index);
+      const Cell block = transients->blocks.cell_of(index);
       for (int i = 0; i < side * side; ++i) {
         const Cell cell{block.column * side + i % side, block.row * side + i / side};
         if (!map.geometry().contains(cell)) continue;
@@ -32,8 +32,8 @@ OccupancyGrid with_things(OccupancyGrid map, const TemporaryThings* things) {
       }
     }
   };
-  draw(things->gone, CellState::kFree, true);
-  draw(things->standing, CellState::kOccupied, false);
+  draw(transients->gone, CellState::kFree, true);
+  draw(transients->standing, CellState::kOccupied, false);
   return map;
 }
 
@@ -66,7 +66,7 @@ void MappingWatch::refresh_surfaces() {
 void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   now_s_ = scan.passed_s;
   about_ = scan.about;
-  things_ = scan.things;
+  transients_ = scan.transients;
   for (const simulation::Change& change : scan.changes)
     changes_.apply(change, scan.time, scan.map_from_robot.position());
   for (const simulation::MoverEvent& event : scan.events) changes_.apply(event);
@@ -77,7 +77,7 @@ void MappingWatch::observe(const Mapped& scan, const OccupancyGrid& map) {
   const double error_m = distance_between(scan.map_from_robot, scan.estimate.map_from_robot);
   errors_.add(scan.time, error_m);
   errors_since_row_m_.push_back(error_m);
-  if (scan.update) judge_writing(scan);
+  if (scan.update) judge_writing(scan, map);
   override_.observe(scan.tracked);
   if (now_s_ >= next_look_s_) look(scan);
   if (now_s_ >= next_judgement_s_) {
@@ -107,7 +107,7 @@ void MappingWatch::look(const Mapped& scan) {
 
 void MappingWatch::judge_changes(const OccupancyGrid& map) {
   by_map_.judge(changes_, map, surfaces_, now_s_);
-  by_layer_.judge(changes_, with_things(map, things_.get()), surfaces_, now_s_, &by_map_);
+  by_layer_.judge(changes_, with_transients(map, transients_.get()), surfaces_, now_s_, &by_map_);
 }
 
 bool MappingWatch::is_near_someone(const Point2& place) const {
@@ -140,17 +140,22 @@ void MappingWatch::count_ghosts(const OccupancyGrid& map) {
   const Ghosts ghosts = ghosts_in(map);
   ghosts_now_ = ghosts.all;
   ghosts_of_map_.add(ghosts, minutes);
-  ghosts_of_layer_.add(ghosts_in(with_things(map, things_.get())), minutes);
+  ghosts_of_layer_.add(ghosts_in(with_transients(map, transients_.get())), minutes);
   ghosts_of_override_.add(ghosts_in(override_.map()), minutes);
 }
 
-void MappingWatch::judge_writing(const Mapped& scan) {
+void MappingWatch::judge_writing(const Mapped& scan, const OccupancyGrid& map) {
   if (!scan.update->revision) {
     written_.note_refused();
     return;
   }
+  const std::vector<CellChange>& changes = scan.update->revision->changes;
+  if (!scan.update->note.withdraws.empty()) {
+    written_.observe_withdrawal(changes);
+    return;
+  }
   const double error_m = std::max(errors_.at_m(scan.time), errors_.at_m(scan.update->note.time));
-  written_.observe(scan.update->revision->changes, truth_, error_m > params_.wrong_pose_m);
+  written_.observe({changes, map, error_m > params_.wrong_pose_m}, truth_, surfaces_);
 }
 
 MappingWatch::Scores MappingWatch::scores_of(const OccupancyGrid& map) const {

@@ -72,7 +72,8 @@ class MappingWatch {
   };
   [[nodiscard]] Ghosts ghosts_in(const OccupancyGrid& map) const;
   void count_ghosts(const OccupancyGrid& map);
-  void judge_writing(const Mapped& scan);
+  /// `map`: after the update.
+  void judge_writing(const Mapped& scan, const OccupancyGrid& map);
   void add_course_row(const OccupancyGrid& map);
   void refresh_surfaces();
 
@@ -85,8 +86,8 @@ class MappingWatch {
   OccupancyGrid surfaces_;       // all that stands now, passing things too
   OccupancyGrid ever_surfaces_;  // all that has ever stood in M_0 and the world, without what passes
   ChangeFollowing by_map_;
-  ChangeFollowing by_layer_;  // M_k and the temporary layer over it
-  std::shared_ptr<const TemporaryThings> things_;
+  ChangeFollowing by_layer_;  // M_k and the transient layer over it
+  std::shared_ptr<const TransientObstacles> transients_;
   OverrideMap override_;
   ScanTable course_;
   ErrorCourse errors_;

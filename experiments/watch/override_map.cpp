@@ -6,9 +6,9 @@
 namespace deltamap::experiments {
 
 bool OverrideMap::is_keyframe(const TrackedScan& tracked) const {
-  namespace awareness = mapping::awareness;
   if (tracked.estimate.state != LocalizerState::kTracking) return false;
-  return !last_ || awareness::is_next_keyframe(awareness::KeyframeParams{}, *last_, awareness::place_of(tracked));
+  return !last_ || mapping::scan_set::is_next_keyframe(mapping::scan_set::KeyframeParams{}, *last_,
+                                                       mapping::scan_set::place_of(tracked));
 }
 
 void OverrideMap::set(Cell cell, CellState state) {
@@ -17,7 +17,7 @@ void OverrideMap::set(Cell cell, CellState state) {
 
 void OverrideMap::observe(const TrackedScan& tracked) {
   if (!is_keyframe(tracked)) return;
-  last_ = mapping::awareness::place_of(tracked);
+  last_ = mapping::scan_set::place_of(tracked);
   const Pose2& map_from_robot = tracked.estimate.map_from_robot;
   const auto for_each_range = [&](auto&& take) {
     for (std::size_t i = 0; i < tracked.rays.size(); ++i) {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/messages.hpp"
-#include "mapping/awareness/keyframe_choice.hpp"
+#include "mapping/scan_set/keyframe_choice.hpp"
 
 namespace deltamap::experiments {
 
@@ -23,7 +23,7 @@ class OverrideMap {
   void set(Cell cell, CellState state);
 
   OccupancyGrid map_;
-  std::optional<mapping::awareness::ScanPlace> last_;
+  std::optional<mapping::scan_set::ScanPlace> last_;
 };
 
 }  // namespace deltamap::experiments

@@ -2,11 +2,9 @@
 #include "experiments/watch/pipeline_day.hpp"
 
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <future>
 #include <limits>
 #include <mutex>
@@ -16,7 +14,8 @@
 #include "core/scratch_folder.hpp"
 #include "daemon/maps/store_opening.hpp"
 #include "daemon/pipeline.hpp"
-#include "experiments/drive/localizer_drive.hpp"
+#include "daemon/system/used_memory.hpp"
+#include "experiments/drive/first_map.hpp"
 #include "experiments/drive/virtual_ports.hpp"
 
 namespace deltamap::experiments {
@@ -28,13 +27,6 @@ constexpr double kLook_s = 5.0;  // of the drive, between two looks at the heap
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 double megabytes(double bytes) { return bytes / (1024.0 * 1024.0); }
-
-double resident_mb() {
-  double all_pages = 0.0;
-  double resident_pages = 0.0;
-  std::ifstream("/proc/self/statm") >> all_pages >> resident_pages;
-  return megabytes(resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
-}
 
 double heap_mb() {
   const struct mallinfo2 heap = mallinfo2();
@@ -55,7 +47,8 @@ class MemoryBook {
       next_look_s_ = passed_s + kLook_s;
     }
     if (is_sample) {
-      samples_.push_back({passed_s, std::exchange(least_mb_, kNone_mb), resident_mb()});
+      samples_.push_back(
+          {passed_s, std::exchange(least_mb_, kNone_mb), megabytes(static_cast<double>(daemon::resident_bytes()))});
       if (sampled_) sampled_(samples_.back());
     }
     return passed_s < drive_s_;

@@ -12,7 +12,7 @@
 namespace deltamap::experiments {
 namespace {
 
-using mapping::GateReason;
+using mapping::gate::GateReason;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOff_m = 0.5;
@@ -26,9 +26,9 @@ constexpr double kAfterSlip_s = 60.0;  // in which the covariance is judged apar
 constexpr double kInside95 = 7.815;    // 95 % quantile of χ², 3 degrees of freedom
 
 std::string why_shut(GateReason reason, GateReason confirms_after) {
-  std::string why{mapping::name_of(reason)};
+  std::string why{name_of(reason)};
   const bool tells_more = reason == GateReason::kConfirming && confirms_after != GateReason::kOpen;
-  if (tells_more && confirms_after != reason) why += " after " + std::string{mapping::name_of(confirms_after)};
+  if (tells_more && confirms_after != reason) why += " after " + std::string{name_of(confirms_after)};
   return why;
 }
 
@@ -43,10 +43,10 @@ double share_of(double part, double all) { return all > 0.0 ? part / all : kNoth
 
 std::vector<std::string> all_whys_shut() {
   std::vector<std::string> whys;
-  for (std::size_t i = 1; i < mapping::kGateReasons; ++i) {
+  for (std::size_t i = 1; i < mapping::gate::kGateReasons; ++i) {
     const auto reason = static_cast<GateReason>(i);
     whys.push_back(why_shut(reason, GateReason::kOpen));
-    const bool begins = mapping::proves_wrong(reason) || reason == GateReason::kMisfit;
+    const bool begins = mapping::gate::proves_wrong(reason) || reason == GateReason::kInlierDrop;
     if (begins) whys.push_back(why_shut(GateReason::kConfirming, reason));
   }
   return whys;
@@ -105,9 +105,9 @@ void PoseCourse::note_happenings(const Mapped& scan, const Befallen& befallen) {
   if (scan.slips > 0) slip_s_ = now_s_;
   slips_ += scan.slips;
   ++scans_;
-  costs_.localizer_s += scan.costs.localizer_s;
+  costs_.localization_s += scan.costs.localization_s;
   costs_.awareness_s += scan.costs.awareness_s;
-  costs_.update_s += scan.costs.update_s;
+  costs_.map_update_s += scan.costs.map_update_s;
 }
 
 void PoseCourse::search(const Mapped& scan, double error_m) {
@@ -209,8 +209,8 @@ PoseCourse::Numbers PoseCourse::numbers() const {
                   {"empty_view_s", empty_view_s_},
                   {"slips", static_cast<double>(slips_)},
                   {"gaps", static_cast<double>(gaps_)},
-                  {"localizer_cpu_ms", ms_a_scan(costs_.localizer_s)},
-                  {"mapping_cpu_ms", ms_a_scan(costs_.awareness_s + costs_.update_s)}};
+                  {"localizer_cpu_ms", ms_a_scan(costs_.localization_s)},
+                  {"mapping_cpu_ms", ms_a_scan(costs_.awareness_s + costs_.map_update_s)}};
   for (const std::string& why : all_whys_shut()) {
     const auto found = shut_while_right_s_.find(why);
     numbers.emplace_back(shut_number(why), found == shut_while_right_s_.end() ? 0.0 : found->second);

@@ -95,7 +95,7 @@ class PoseCourse {
   double empty_view_s_ = 0.0;
 
   std::size_t scans_ = 0;
-  StageCosts costs_;  // of all scans
+  daemon::StageCpu costs_;  // of all scans
 };
 
 }  // namespace deltamap::experiments

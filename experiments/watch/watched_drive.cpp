@@ -31,6 +31,7 @@ constexpr std::array kMapNumbers{"changes_seen_10s",
                                  "refused",
                                  "cells_written",
                                  "cells_written_astray",
+                                 "cells_withdrawn",
                                  "walls_kept",
                                  "wall_drift_m",
                                  "ghost_cells_at_end"};
@@ -79,11 +80,11 @@ std::vector<std::pair<std::string, double>> map_numbers(std::optional<MappingWat
 
 /// How far what was found of the wheels is from the truth; not a number where nothing is looked for.
 std::vector<std::pair<std::string, double>> wheel_numbers(const WatchedRun& run,
-                                                          const localization::Localizer& localizer) {
+                                                          const daemon::LocalizationStep& localizer) {
   const simulation::RobotParams& body = run.scenario.robot.body;
   const double driven_of_counted = 1.0 + 0.5 * (body.left_wheel_error + body.right_wheel_error);
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  localization::WheelErrors found{kUnknown, kUnknown, kUnknown, kUnknown};
+  localization::motion::WheelErrors found{kUnknown, kUnknown, kUnknown, kUnknown};
   if (const auto calibration = localizer.calibration()) found = calibration->wheels;
   return {{"wheel_distance_error", std::abs(1.0 + found.distance - driven_of_counted)},
           {"wheel_turn_error", std::abs(1.0 + found.turn - driven_of_counted / (1.0 + body.track_error))},
@@ -93,7 +94,7 @@ std::vector<std::pair<std::string, double>> wheel_numbers(const WatchedRun& run,
 }  // namespace
 
 Outcome watched_drive(const WatchedRun& run) {
-  MappingDrive drive{run.scenario, run.drive, run.settings, run.first_map, run.knows_start};
+  MappingDrive drive{run.scenario, run.drive, run.settings, {run.first_map}, run.knows_start};
   std::optional<MappingWatch> watch;
   if (run.settings.mapping.enabled) {
     watch.emplace(run.scenario, run.first_map,
@@ -126,7 +127,7 @@ Outcome watched_drive(const WatchedRun& run) {
   outcome.labels = {{"cause", course.cause()}};
   outcome.numbers = course.numbers();
   for (auto& number : map_numbers(watch, drive.map())) outcome.numbers.push_back(std::move(number));
-  for (auto& number : wheel_numbers(run, drive.localizer())) outcome.numbers.push_back(std::move(number));
+  for (auto& number : wheel_numbers(run, drive.localization())) outcome.numbers.push_back(std::move(number));
   return outcome;
 }
 

@@ -35,16 +35,18 @@ std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {
   return things;
 }
 
-bool agrees(const OccupancyGrid& truth, const CellChange& change) {
+/// What is drawn may lie a cell beside its surface. So a freed cell is right, too, where its surface still is drawn a
+/// cell beside: a face that is moved by a cell has not gone.
+bool agrees(const CellChange& change, const OccupancyGrid& map, const OccupancyGrid& truth) {
   if (change.after == CellState::kOccupied) return has_occupied_within(truth, change.cell, 1);
   if (change.after == CellState::kUnknown) return truth[change.cell] != CellState::kFree;
-  return truth[change.cell] != CellState::kOccupied;
+  return truth[change.cell] != CellState::kOccupied || has_occupied_within(map, change.cell, 1);
 }
 
 }  // namespace
 
-void WrittenCells::count_things(const std::vector<CellChange>& written, const OccupancyGrid& truth) {
-  const auto is_right = [&](const CellChange& change) { return agrees(truth, change); };
+template <typename IsRight>
+void WrittenCells::count_things(const std::vector<CellChange>& written, IsRight&& is_right) {
   for (const std::vector<CellChange>& thing : things_of(written)) {
     if (thing.size() < kSpeck) continue;
     ++things_;
@@ -53,23 +55,34 @@ void WrittenCells::count_things(const std::vector<CellChange>& written, const Oc
   }
 }
 
-void WrittenCells::observe(std::span<const CellChange> changes, const simulation::score::MapTruth& truth,
-                           bool is_astray) {
+void WrittenCells::observe(const Written& written, const simulation::score::MapTruth& truth,
+                           const OccupancyGrid& standing) {
   ++revisions_;
-  cells_ += changes.size();
-  if (is_astray) cells_astray_ += changes.size();
+  cells_ += written.changes.size();
+  if (written.is_astray) cells_astray_ += written.changes.size();
+  const auto is_right = [&](const CellChange& change) { return agrees(change, written.map, truth.visible()); };
   std::vector<CellChange> come;
   std::vector<CellChange> gone;
-  for (const CellChange& change : changes) {
+  for (const CellChange& change : written.changes) {
     const std::size_t cell = geometry_.index_of(change.cell);
     ++writes_[cell];
-    cells_wrong_ += agrees(truth.visible(), change) ? 0 : 1;
+    cells_wrong_ += is_right(change) ? 0 : 1;
     if (truth.is_at_door(cell)) continue;  // it comes and goes
     if (change.after == CellState::kOccupied) come.push_back(change);
     if (change.before == CellState::kOccupied && change.after == CellState::kFree) gone.push_back(change);
   }
-  count_things(come, truth.visible());
-  count_things(gone, truth.visible());
+  // Who has stood there for so long that the map takes him in does stand there.
+  count_things(come, [&](const CellChange& change) {
+    return is_right(change) || has_occupied_within(standing, change.cell, 1);
+  });
+  count_things(gone, is_right);
+}
+
+void WrittenCells::observe_withdrawal(std::span<const CellChange> changes) {
+  ++revisions_;
+  cells_ += changes.size();
+  cells_withdrawn_ += changes.size();
+  for (const CellChange& change : changes) ++writes_[geometry_.index_of(change.cell)];
 }
 
 std::vector<std::pair<std::string, double>> WrittenCells::numbers(const simulation::score::CellMask& seen,
@@ -92,6 +105,7 @@ std::vector<std::pair<std::string, double>> WrittenCells::numbers(const simulati
           {"cells_written", whole(cells_)},
           {"cells_wrong", share(cells_wrong_, cells_)},
           {"cells_written_astray", whole(cells_astray_)},
+          {"cells_withdrawn", whole(cells_withdrawn_)},
           {"writes_per_cell_hour", share(writes, seen_cells) / hours},
           {"most_writes_of_a_cell", static_cast<double>(most_writes)},
           {"revisions", whole(revisions_)},

@@ -18,8 +18,15 @@ class WrittenCells {
  public:
   explicit WrittenCells(const GridGeometry& map) : geometry_{map}, writes_(map.cell_count(), 0) {}
 
-  /// A revision. `is_astray`: it rests on a pose that was wrong.
-  void observe(std::span<const CellChange> changes, const simulation::score::MapTruth& truth, bool is_astray);
+  struct Written {
+    std::span<const CellChange> changes;
+    const OccupancyGrid& map;  ///< that they have led to
+    bool is_astray = false;    ///< it rests on a pose that was wrong
+  };
+  /// A revision that draws. `standing`: all that stands now, passing things too.
+  void observe(const Written& written, const simulation::score::MapTruth& truth, const OccupancyGrid& standing);
+  /// A revision that takes back what others have drawn: nothing new is said of the world.
+  void observe_withdrawal(std::span<const CellChange> changes);
   void note_refused() { ++refused_; }
 
   [[nodiscard]] std::size_t revisions() const { return revisions_; }
@@ -28,11 +35,13 @@ class WrittenCells {
                                                                     double hours) const;
 
  private:
-  void count_things(const std::vector<CellChange>& written, const OccupancyGrid& truth);
+  template <typename IsRight>
+  void count_things(const std::vector<CellChange>& written, IsRight&& is_right);
 
   GridGeometry geometry_;
   std::size_t cells_ = 0;
   std::size_t cells_astray_ = 0;
+  std::size_t cells_withdrawn_ = 0;
   std::size_t cells_wrong_ = 0;
   std::size_t things_ = 0;
   std::size_t things_wrong_ = 0;

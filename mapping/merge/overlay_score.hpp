@@ -9,7 +9,7 @@
 
 #include "core/grid_contour.hpp"
 #include "core/occupancy_grid.hpp"
-#include "mapping/merge/acceptance.hpp"
+#include "mapping/registration/acceptance.hpp"
 
 namespace deltamap::mapping::merge {
 

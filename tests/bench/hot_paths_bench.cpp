@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "core/channel.hpp"
-#include "localization/deskew.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "localization/weighing.hpp"
+#include "localization/motion/deskew.hpp"
+#include "localization/sensor/weighing.hpp"
 #include "mapping/merge/map_merge.hpp"
 #include "mapping/store_scan.hpp"
 #include "tests/support/cast_scan.hpp"
@@ -25,7 +25,7 @@ std::shared_ptr<const OccupancyGrid> hall() {
   static const auto grid = [] {
     const OccupancyGrid fine = test::drawn_warehouse(1);
     return std::make_shared<const OccupancyGrid>(
-        mapping::merge::transformed_grid(fine, {}, {720, 720, 0.05, fine.geometry().origin}));
+        mapping::registration::transformed_grid(fine, {}, {720, 720, 0.05, fine.geometry().origin}));
   }();
   return grid;
 }
@@ -57,16 +57,16 @@ Odometry odometry_at(int step) {
 }
 
 void weigh_one_particle(benchmark::State& state) {
-  const localization::LikelihoodField field{*hall(), {}};
-  const auto rays = localization::deskewed(scans().front(), {});
-  const auto ends = localization::scoring_ends(scans().front(), rays, static_cast<int>(state.range(0)));
+  const localization::sensor::LikelihoodField field{*hall(), {}};
+  const auto rays = localization::motion::deskewed(scans().front(), {});
+  const auto ends = localization::motion::scoring_ends(scans().front(), rays, static_cast<int>(state.range(0)));
   Random random{1};
   std::vector<Pose2> particles;
   for (int i = 0; i < 500; ++i)
     particles.push_back({kStart.x + random.normal(0.1), kStart.y + random.normal(0.1), random.normal(0.05)});
   std::size_t next = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(localization::misfit_steps(field, ends, particles[next]));
+    benchmark::DoNotOptimize(localization::sensor::misfit_steps(field, ends, particles[next]));
     next = next + 1 == particles.size() ? 0 : next + 1;
   }
   state.counters["per_beam"] = benchmark::Counter(
@@ -85,7 +85,8 @@ void drive(benchmark::State& state, int beams, const Use& use) {
   for (auto _ : state) {
     if (step % 600 == 0) {
       state.PauseTiming();
-      localizer = std::make_unique<localization::Localizer>(params, hall(), localization::InitialPose{kStart}, 1);
+      localizer =
+          std::make_unique<localization::Localizer>(params, hall(), localization::particles::InitialPose{kStart}, 1);
       state.ResumeTiming();
     }
     use(*localizer, step % 600);
@@ -103,7 +104,7 @@ BENCHMARK(localize_one_scan)->ArgName("beams")->Arg(60)->Arg(0)->Unit(benchmark:
 
 void look_for_changes_in_one_scan(benchmark::State& state) {
   localization::LocalizerParams params;
-  localization::Localizer localizer{params, hall(), localization::InitialPose{kStart}, 1};
+  localization::Localizer localizer{params, hall(), localization::particles::InitialPose{kStart}, 1};
   std::vector<TrackedScan> tracked;
   for (int step = 0; step < 600; ++step) {
     localizer.observe(odometry_at(step));

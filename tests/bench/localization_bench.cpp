@@ -14,7 +14,7 @@
 #include "core/grid_file.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "localization/weighing.hpp"
+#include "localization/sensor/weighing.hpp"
 #include "tests/support/carmen_feed.hpp"
 
 namespace {
@@ -42,19 +42,19 @@ double cpu_seconds() {
 
 void write_pose(std::ostream& out, const Estimate& estimate) {
   const Pose2& pose = estimate.map_from_robot;
-  out << static_cast<double>(unix_ns(estimate.time)) * 1e-9 << ' ' << pose.x << ' ' << pose.y << " 0 0 0 "
+  out << unix_seconds(estimate.time) << ' ' << pose.x << ' ' << pose.y << " 0 0 0 "
       << std::sin(0.5 * pose.theta) << ' ' << std::cos(0.5 * pose.theta) << '\n';
 }
 
 void run(const Options& options, const localization::LocalizerParams& params) {
-  std::optional<localization::InitialPose> initial;
+  std::optional<localization::particles::InitialPose> initial;
   if (options.initial_pose.size() == 3) {
-    initial =
-        localization::InitialPose{{options.initial_pose[0], options.initial_pose[1], radians(options.initial_pose[2])}};
+    initial = localization::particles::InitialPose{
+        {options.initial_pose[0], options.initial_pose[1], radians(options.initial_pose[2])}};
   }
   localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), initial,
                                     options.seed};
-  const localization::LikelihoodField field{read_grid(options.map), params.field};
+  const localization::sensor::LikelihoodField field{read_grid(options.map), params.field};
   std::ofstream out{options.out};
   out.setf(std::ios::fixed);
   out.precision(6);
@@ -71,12 +71,12 @@ void run(const Options& options, const localization::LocalizerParams& params) {
     cpu_s.push_back(cpu_seconds() - start_s);
     const Estimate& estimate = tracked.estimate;
     write_pose(out, estimate);
-    figures << static_cast<double>(unix_ns(estimate.time)) * 1e-9 << ' ' << static_cast<int>(estimate.state) << ' '
+    figures << unix_seconds(estimate.time) << ' ' << static_cast<int>(estimate.state) << ' '
             << estimate.n_eff << ' ' << estimate.particles << ' ' << estimate.w_avg << ' '
             << std::sqrt(estimate.covariance(0, 0)) << ' ' << std::sqrt(estimate.covariance(1, 1)) << ' '
             << std::sqrt(estimate.covariance(2, 2)) << ' '
-            << localization::explained_share(field, localization::scoring_ends(tracked.scan, tracked.rays, 0),
-                                             estimate.map_from_robot)
+            << localization::sensor::explained_share(
+                   field, localization::motion::scoring_ends(tracked.scan, tracked.rays, 0), estimate.map_from_robot)
             << ' ' << estimate.covariance(0, 1) << '\n';
   }
   const localization::LocalizerCounts& counts = localizer.counts();

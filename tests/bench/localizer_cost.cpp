@@ -63,19 +63,19 @@ std::vector<DriveStep> drive(std::size_t scans) {
 
 localization::Localizer localizer_at_start(const localization::LocalizerParams& params) {
   return {params, std::make_shared<const OccupancyGrid>(surveyed_hall()),
-          localization::InitialPose{HallLaps::start(), 0.05, radians(1.0)}, 1};
+          localization::particles::InitialPose{HallLaps::start(), 0.05, radians(1.0)}, 1};
 }
 
 /// ParticleFilter::weigh alone, its normalization of the weights included.
 void weigh(const Job& job) {
   const std::vector<DriveStep> steps = drive(1);
   const localization::LocalizerParams params;
-  const localization::LikelihoodField field{surveyed_hall(), params.field};
-  const auto rays = localization::deskewed(steps.front().scan, {});
-  const auto ends = localization::scoring_ends(steps.front().scan, rays, job.beams);
+  const localization::sensor::LikelihoodField field{surveyed_hall(), params.field};
+  const auto rays = localization::motion::deskewed(steps.front().scan, {});
+  const auto ends = localization::motion::scoring_ends(steps.front().scan, rays, job.beams);
   constexpr int kParticles = 500;
   constexpr int kRounds = 100;
-  localization::ParticleFilter filter{{.min = kParticles, .max = kParticles}, 1};
+  localization::particles::ParticleFilter filter{{.min = kParticles, .max = kParticles}, 1};
   filter.start_around(HallLaps::start(), 0.1, radians(3.0));
   std::int64_t sum = 0;
   const int rounds = job.repetitions == 1 ? 1 : kRounds;
@@ -160,13 +160,13 @@ void patch(const Job& job) {
   }
   const std::vector<CellChange> changes = changes_between(before, after);
   const localization::LocalizerParams params;
-  localization::LikelihoodField field{before, params.field};
+  localization::sensor::LikelihoodField field{before, params.field};
   print("units", job.repetitions);
   print("ms", 1e3 * median_s(job.repetitions,
                              [&] { field.apply(localization::prepared_field_patch(params, after, changes)); }));
   if (job.repetitions == 1) return;
   print("rebuild_ms", 1e3 * median_s(job.repetitions, [&] {
-                        field = localization::LikelihoodField{after, params.field};
+                        field = localization::sensor::LikelihoodField{after, params.field};
                       }));
 }
 

@@ -18,7 +18,7 @@
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/maps/newest_map.hpp"
 #include "daemon/maps/store_opening.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 const GridGeometry kGeometry{200, 120, 0.05, {-1.0, -2.0}};
 constexpr int kSerialBits = 32;  // in the lowest row
 constexpr int kBoxes = 20;       // that stand elsewhere every few serials
-constexpr mapping::Retention kRetention{.revisions = 20, .days = 0.0};
+constexpr mapping::store::Retention kRetention{.revisions = 20, .days = 0.0};
 
 /// Differs from that of the next serial in a few cells.
 OccupancyGrid map_of(std::uint32_t serial) {
@@ -153,10 +153,10 @@ std::optional<std::uint32_t> serial_in(const fs::path& yaml) {
 }
 
 /// Every revision that the store tells of; answers how many.
-int count_sound(const mapping::MapStore& store) {
+int count_sound(const mapping::store::MapStore& store) {
   int sound = 0;
   std::optional<std::uint32_t> before;
-  for (const mapping::StoredRevision& revision : store.history()) {
+  for (const mapping::store::StoredRevision& revision : store.history()) {
     if (revision.refused) continue;
     const auto serial = serial_of(store.grid(revision.number));
     if (!serial) throw std::runtime_error("revision " + std::to_string(revision.number) + " is torn");

@@ -15,7 +15,7 @@
 #include "daemon/outputs/state_folders.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/telemetry/version.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -52,7 +52,7 @@ class CheckConfig : public testing::Test {
   }
   void write_store() const {
     fs::create_directories(folder_.path() / "state");
-    mapping::MapStore store{settings_.map.store, first_};
+    mapping::store::MapStore store{settings_.map.store, first_};
     OccupancyGrid changed = first_;
     changed.set({0, 0}, CellState::kFree);
     MapRevision revision;
@@ -115,7 +115,7 @@ TEST_F(CheckConfig, ReadsWhatAKilledDaemonHasLeftInTheLog) {
   const std::string living = settings_.map.store;
   settings_.map.store = folder_.path() / "state/killed.sqlite";
   write_store();
-  mapping::MapStore open{settings_.map.store, first_};  // keeps the log
+  mapping::store::MapStore open{settings_.map.store, first_};  // keeps the log
   open.append_refusal({}, {});
   for (const char* part : {"", "-wal"}) fs::copy_file(settings_.map.store + part, living + part);
   settings_.map.store = living;

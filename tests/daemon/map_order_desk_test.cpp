@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/maps/store_opening.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/control_fixture.hpp"
 
 namespace deltamap::daemon {
@@ -52,7 +52,7 @@ class MapOrderDeskTest : public test::ControlDeskTest {
     return nullptr;
   }
   [[nodiscard]] std::string cause(std::uint32_t number) const {
-    for (const auto& revision : mapping::MapStore{settings_.map.store}.history()) {
+    for (const auto& revision : mapping::store::MapStore{settings_.map.store}.history()) {
       if (revision.number == number && !revision.refused) return revision.note.cause;
     }
     return "";
@@ -86,7 +86,7 @@ TEST_F(MapOrderDeskTest, AnUndoIsARevisionLikeAnyOtherAndAReplayDoesItBitForBit)
   EXPECT_EQ(line["revision"], number);
   EXPECT_EQ(line["reason"], "undo of 1 by an operator");
   EXPECT_EQ(cause(number), "undo of 1 by an operator");
-  const mapping::MapStore store{settings_.map.store};
+  const mapping::store::MapStore store{settings_.map.store};
   for (const CellChange& change : store.changes(number)) EXPECT_EQ(store.grid(number)[change.cell], change.after);
 
   std::filesystem::remove(settings_.map.store);
@@ -99,7 +99,7 @@ TEST_F(MapOrderDeskTest, AnUndoIsARevisionLikeAnyOtherAndAReplayDoesItBitForBit)
 
 TEST_F(MapOrderDeskTest, WhatWasUndoneDoesNotComeBackWithinTheDrive) {
   const std::uint32_t number = live_with_undo();
-  const mapping::MapStore store{settings_.map.store};
+  const mapping::store::MapStore store{settings_.map.store};
   const OccupancyGrid last = read_grid(folder_.path() / "live/map.yaml");
   for (const CellChange& change : store.changes(number)) {
     EXPECT_EQ(last[change.cell], change.after) << change.cell.column << " " << change.cell.row;
@@ -108,7 +108,7 @@ TEST_F(MapOrderDeskTest, WhatWasUndoneDoesNotComeBackWithinTheDrive) {
 
 TEST_F(MapOrderDeskTest, AReplayWithOtherSettingsObeysItToo) {
   const std::uint32_t number = live_with_undo();
-  const std::vector<CellChange> undone = mapping::MapStore{settings_.map.store}.changes(number);
+  const std::vector<CellChange> undone = mapping::store::MapStore{settings_.map.store}.changes(number);
   settings_.seed = 2;
   settings_.localizer.beams = 90;
   const RunReport again = replay("live.pcapng", "replayed");
@@ -134,7 +134,7 @@ TEST_F(MapOrderDeskTest, ARollbackGoesBackBehindTheStartOfTheRunAndAReplayNeedsN
     EXPECT_GT(number, first);
   });
   EXPECT_EQ(second.scans.recording_lost, 0u);
-  EXPECT_EQ(mapping::MapStore{settings_.map.store}.grid(number), test::small_room(false));
+  EXPECT_EQ(mapping::store::MapStore{settings_.map.store}.grid(number), test::small_room(false));
   EXPECT_EQ(cause(number), "rolled back to 0 by an operator");
   std::filesystem::remove(settings_.map.store);
   const RunReport again = replay("live.pcapng", "replayed");
@@ -167,7 +167,7 @@ TEST_F(MapOrderDeskTest, WhatCannotBeDoneIsToldInOneLineAndChangesNothing) {
     (void)testing::internal::GetCapturedStderr();
   });
   EXPECT_TRUE(live.changes.empty());
-  EXPECT_EQ(mapping::MapStore{settings_.map.store}.newest(), 0u);
+  EXPECT_EQ(mapping::store::MapStore{settings_.map.store}.newest(), 0u);
 }
 
 TEST_F(MapOrderDeskTest, WithMappingOffOrAStoreThatFailsNothingIsDoneAndThatIsSaid) {
@@ -178,7 +178,7 @@ TEST_F(MapOrderDeskTest, WithMappingOffOrAStoreThatFailsNothingIsDoneAndThatIsSa
   });
   settings_.mapping.enabled = true;
   prepare_ = [](Pipeline::Options& options) {
-    options.store.open = []() -> mapping::MapStore {
+    options.store.open = []() -> mapping::store::MapStore {
       throw std::runtime_error("store.sqlite: No space left on device");
     };
   };

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "daemon/kept/kept_stability.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 
 namespace deltamap::daemon {
@@ -38,7 +38,7 @@ class RestartTest : public test::PipelineFixture {
 
   /// As run_daemon() does.
   void begin_where_it_ended(Pipeline::Options& options) {
-    const mapping::MapStore store{folder_.path() / "first/map_store.sqlite"};
+    const mapping::store::MapStore store{folder_.path() / "first/map_store.sqlite"};
     ASSERT_GE(store.newest(), 1u) << "the box must have become map";
     const MemoryPlaces places = memory_places(settings_.map.store);
     const auto pose = read_kept_pose(places.pose, options.first_map);

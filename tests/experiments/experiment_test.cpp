@@ -46,16 +46,16 @@ std::vector<std::string> names_in(const fs::path& folder) {
 TEST(Experiment, EachLeavesATableASummaryAndAPage) {
   for (const auto& known : experiments::experiments()) {
     const test::TemporaryFolder folder;
-    const ToolRun answer = experiment(known->name(), folder.path(), {"--json"});
+    const ToolRun answer = experiment(known.name, folder.path(), {"--json"});
     ASSERT_EQ(answer.exit_code, 0) << answer.errors;
-    std::vector<std::string> expected{known->name() + ".csv", "index.html", "summary.json"};
+    std::vector<std::string> expected{known.name + ".csv", "index.html", "summary.json"};
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(names_in(folder.path()), expected);
     EXPECT_EQ(answer.output, content_of(folder.path() / "summary.json"));
     const auto summary = nlohmann::json::parse(answer.output);
-    EXPECT_EQ(summary["experiment"], known->name());
+    EXPECT_EQ(summary["experiment"], known.name);
     EXPECT_GT(summary["runs"], 0);
-    EXPECT_GE(summary["figures"].size(), 3u) << known->name();
+    EXPECT_GE(summary["figures"].size(), 3u) << known.name;
     for (const auto& figure : summary["figures"]) EXPECT_EQ(figure.contains("target"), figure.contains("met"));
     const std::string page = content_of(folder.path() / "index.html");
     EXPECT_NE(page.find("<svg"), std::string::npos);
@@ -110,10 +110,10 @@ TEST(Experiment, GivesTheSameFilesHoweverManyRunsGoOnAtOnce) {
   for (const auto& known : experiments::experiments()) {
     const test::TemporaryFolder one;
     const test::TemporaryFolder three;
-    ASSERT_EQ(experiment(known->name(), one.path(), {"--jobs", "1"}).exit_code, 0);
-    ASSERT_EQ(experiment(known->name(), three.path(), {"--jobs", "3"}).exit_code, 0);
-    if (known->measures_time()) {
-      const std::string table = known->name() + ".csv";
+    ASSERT_EQ(experiment(known.name, one.path(), {"--jobs", "1"}).exit_code, 0);
+    ASSERT_EQ(experiment(known.name, three.path(), {"--jobs", "3"}).exit_code, 0);
+    if (known.times != experiments::Experiment::Times::kNothing) {
+      const std::string table = known.name + ".csv";
       EXPECT_EQ(without_times(content_of(one.path() / table)), without_times(content_of(three.path() / table)));
       continue;
     }
@@ -139,7 +139,7 @@ TEST(Experiment, RefusesAnUnknownNameAndListsThoseThatThereAre) {
   EXPECT_EQ(answer.exit_code, 2);
   EXPECT_NE(answer.errors.find("'hal'"), std::string::npos) << answer.errors;
   for (const auto& known : experiments::experiments()) {
-    EXPECT_NE(answer.errors.find(known->name()), std::string::npos) << answer.errors;
+    EXPECT_NE(answer.errors.find(known.name), std::string::npos) << answer.errors;
   }
   EXPECT_FALSE(fs::exists(folder.path() / "new"));
 }
@@ -151,7 +151,8 @@ TEST(Experiment, ListsThoseThatThereAreALineEach) {
   for (const auto& known : experiments::experiments()) {
     std::string line;
     ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_EQ(line, known->name() + "\t" + (known->runs_alone() ? "times" : "") + "\t" + known->what());
+    EXPECT_EQ(line, known.name + "\t" + (known.times == experiments::Experiment::Times::kMachine ? "times" : "") +
+                        "\t" + known.what);
   }
   EXPECT_EQ(lines.peek(), EOF);
 }

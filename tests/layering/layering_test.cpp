@@ -12,11 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/source_tree.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = DELTAMAP_SOURCE_DIR;
+const fs::path kRoot = test::source_path("");
 
 // A wing may include itself and these. `simulation` may use of the drivers only the device codecs.
 const std::map<std::string, std::set<std::string>> kArrows = {
@@ -37,9 +39,6 @@ const std::map<std::string, std::set<std::string>> kForbiddenInside = {
     {"drivers/lms200", {"drivers/port", "drivers/pioneer", "drivers/carmen"}},
     {"drivers/port", {"drivers/pioneer", "drivers/lms200", "drivers/carmen"}},
     {"daemon", {"drivers/carmen"}},
-    {"mapping/awareness", {"mapping/alignment", "mapping/merge"}},
-    {"mapping/alignment", {"mapping/awareness", "mapping/merge"}},
-    {"mapping/merge", {"mapping/awareness"}},
 };
 
 bool lies_under(const std::string& path, const std::string& folder) { return path.rfind(folder + "/", 0) == 0; }
@@ -135,6 +134,53 @@ TEST(Layering, TheRoomsOfAWingIncludeEachOtherInNoCircle) {
   for (const auto& wing : kWings) {
     for (const auto& [room, others] : circles_of(rooms_of(wing))) {
       for (const auto& other : others) ADD_FAILURE() << room << " includes " << other << ", which leads back";
+    }
+  }
+}
+
+// The rooms of the two large wings and what each may include. The front doors beside the rooms may include all of them.
+const Rooms kRoomArrows = {
+    {"localization/motion", {}},
+    {"localization/sensor", {"localization/motion"}},
+    {"localization/particles", {"localization/motion", "localization/sensor"}},
+    {"localization/surfaces", {"localization/motion", "localization/sensor"}},
+    {"localization/tracking",
+     {"localization/motion", "localization/sensor", "localization/particles", "localization/surfaces"}},
+    {"localization/hypotheses", {"localization/motion", "localization/sensor"}},
+    {"localization/belief", {"localization/sensor", "localization/particles", "localization/hypotheses"}},
+    {"mapping/registration", {}},
+    {"mapping/scan_set", {}},
+    {"mapping/merge", {"mapping/registration"}},
+    {"mapping/grid_registration", {"mapping/registration", "mapping/merge"}},
+    {"mapping/paper", {"mapping/registration", "mapping/scan_set", "mapping/merge"}},
+    {"mapping/votes", {}},
+    {"mapping/evidence", {"mapping/scan_set", "mapping/votes"}},
+    {"mapping/redraw", {"mapping/registration", "mapping/scan_set", "mapping/votes"}},
+    {"mapping/gate", {}},
+    {"mapping/store", {}},
+};
+
+TEST(Layering, RoomsOfLocalizationAndMappingIncludeWhatIsDrawnAndStandAmongFewArrows) {
+  for (const std::string wing : {"localization", "mapping"}) {
+    std::size_t arrows = 0;
+    for (const auto& [room, others] : rooms_of(wing)) {
+      if (room == wing) continue;
+      ASSERT_TRUE(kRoomArrows.contains(room)) << room;
+      arrows += others.size();
+      for (const auto& other : others) EXPECT_TRUE(kRoomArrows.at(room).contains(other)) << room << " → " << other;
+    }
+    EXPECT_LE(arrows, 15u) << wing;
+  }
+}
+
+TEST(Layering, EveryRoomOfLocalizationAndMappingIsANamespace) {
+  for (const std::string wing : {"localization", "mapping"}) {
+    for (const auto& file : sources_of(wing)) {
+      const std::string path = fs::relative(file, kRoot).string();
+      const std::string name = "deltamap::" + std::regex_replace(room_of(path), std::regex{"/"}, "::");
+      std::ifstream in(file);
+      const std::string text{std::istreambuf_iterator<char>(in), {}};
+      EXPECT_NE(text.find("namespace " + name + " {"), std::string::npos) << path << ": " << name;
     }
   }
 }

@@ -58,7 +58,7 @@ Errors drive_round(const OccupancyGrid& world, double max_range_m, std::uint64_t
   params.particles.min = 500;
   params.particles.max = 500;
   const Pose2 start{2.5, 2.5, 0.0};
-  Localizer localizer{params, std::make_shared<const OccupancyGrid>(hall()), InitialPose{start}, seed};
+  Localizer localizer{params, std::make_shared<const OccupancyGrid>(hall()), particles::InitialPose{start}, seed};
   Random random{seed + 100};
   Pose2 truth = start;
   Pose2 odom;

@@ -30,7 +30,8 @@ OccupancyGrid corridor() {
 class DriveThrough {
  public:
   explicit DriveThrough(std::uint64_t seed)
-      : localizer_{{}, std::make_shared<const OccupancyGrid>(corridor()), InitialPose{truth_}, seed}, random_{seed} {}
+      : localizer_{{}, std::make_shared<const OccupancyGrid>(corridor()), particles::InitialPose{truth_}, seed},
+        random_{seed} {}
 
   Estimate next() {
     time_ += duration_from_seconds(kScanPeriodS);

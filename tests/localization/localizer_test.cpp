@@ -85,7 +85,7 @@ LocalizerParams small() {
 }
 
 Localizer localizer_at_start(const LocalizerParams& params, const OccupancyGrid& map, std::uint64_t seed = 1) {
-  return Localizer{params, std::make_shared<const OccupancyGrid>(map), InitialPose{{4.1, 1.5, 0.05}}, seed};
+  return Localizer{params, std::make_shared<const OccupancyGrid>(map), particles::InitialPose{{4.1, 1.5, 0.05}}, seed};
 }
 
 TEST(Localizer, FollowsADrivingRobotThroughDrift) {
@@ -206,7 +206,7 @@ TEST(Localizer, StartsAgainAroundThePoseThatAPersonGives) {
 TEST(Localizer, RefusesAMapWithoutFreeCells) {
   const auto full = std::make_shared<const OccupancyGrid>(test::drawn_grid({"###", "# #"}));
   EXPECT_THROW((Localizer{LocalizerParams{}, full, std::nullopt, 1}), std::runtime_error);
-  EXPECT_THROW((Localizer{LocalizerParams{}, std::make_shared<const OccupancyGrid>(), InitialPose{}, 1}),
+  EXPECT_THROW((Localizer{LocalizerParams{}, std::make_shared<const OccupancyGrid>(), particles::InitialPose{}, 1}),
                std::runtime_error);
 }
 

@@ -14,6 +14,7 @@
 #include "localization/localizer_params.hpp"
 #include "tests/support/carmen_feed.hpp"
 #include "tests/support/recorded_map.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::localization {
@@ -41,11 +42,6 @@ struct ReferencePose {
   Timestamp time;
   Pose2 map_from_laser;
 };
-
-std::filesystem::path data_folder() {
-  const char* folder = std::getenv("DELTAMAP_DATA");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  return folder != nullptr ? folder : DELTAMAP_SOURCE_DIR "/../shared/data";
-}
 
 std::filesystem::path unpacked(const std::filesystem::path& packed, const std::filesystem::path& folder) {
   std::filesystem::path to = folder / packed.stem();
@@ -88,10 +84,10 @@ TEST_P(RealLogs, AreFollowedWithinTheFiguresThatWePromise) {
   const Pose2 laser_from_robot{-real.laser_ahead_m, 0.0, 0.0};
   LocalizerParams params;
   params.particles.min = 500;
-  std::optional<InitialPose> initial;
+  std::optional<particles::InitialPose> initial;
   if (real.initial_pose_given) {
     params.particles.max = 500;
-    initial = InitialPose{reference.front().map_from_laser * laser_from_robot};
+    initial = particles::InitialPose{reference.front().map_from_laser * laser_from_robot};
   }
   Localizer localizer{params, std::make_shared<const OccupancyGrid>(*map), initial, real.seed};
   test::CarmenFeed feed{unpacked(log, folder.path()), real.laser_ahead_m};

@@ -71,7 +71,7 @@ class Tour {
   Odometry odometry_ = at_rest();
 };
 
-Localizer localizer_at(std::optional<InitialPose> pose, std::uint64_t seed) {
+Localizer localizer_at(std::optional<particles::InitialPose> pose, std::uint64_t seed) {
   LocalizerParams params;
   params.particles.max = 2000;
   return Localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()), pose, seed};
@@ -96,7 +96,7 @@ TEST(Recovery, FindsARobotThatWasCarriedAwayWithinThirtySeconds) {
   int late = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Tour tour{seed};
-    Localizer localizer = localizer_at(InitialPose{tour.truth()}, seed);
+    Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
     for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
     Random random{seed + 100};
     const Point2 low = seed % 2 == 0 ? Point2{11.0, 0.6} : Point2{4.0, 6.2};
@@ -111,7 +111,7 @@ TEST(Recovery, FindsARobotThatWasCarriedAwayWithinThirtySeconds) {
 TEST(Recovery, FindsARobotThatSlippedAMetre) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Tour tour{seed};
-    Localizer localizer = localizer_at(InitialPose{tour.truth()}, seed);
+    Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
     for (int i = 0; i < 30 + 3 * static_cast<int>(seed); ++i) (void)tour.next(localizer);
     const Pose2 before = tour.truth();
     tour.carry_to(before * Pose2{0.9, 0.4, 0.3});
@@ -122,7 +122,7 @@ TEST(Recovery, FindsARobotThatSlippedAMetre) {
 TEST(Recovery, NeverJumpsWhileAllIsWell) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Tour tour{seed};
-    Localizer localizer = localizer_at(InitialPose{tour.truth()}, seed);
+    Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
     for (int i = 0; i < 500; ++i) ASSERT_TRUE(right(tour.next(localizer), tour)) << seed << ' ' << i;
     EXPECT_EQ(localizer.counts().recoveries, 0u);
     EXPECT_EQ(localizer.counts().searches, 0u);
@@ -132,7 +132,7 @@ TEST(Recovery, NeverJumpsWhileAllIsWell) {
 
 TEST(RememberedPose, IsBelievedOnceTheFirstScansFit) {
   Tour tour{1};
-  Localizer localizer = localizer_at(InitialPose{.map_from_robot = tour.truth(), .remembered = true}, 1);
+  Localizer localizer = localizer_at(particles::InitialPose{.map_from_robot = tour.truth(), .remembered = true}, 1);
   const TrackedScan first = tour.next(localizer);
   EXPECT_NE(first.estimate.state, LocalizerState::kTracking);
   EXPECT_TRUE(right(first, tour));
@@ -144,7 +144,8 @@ TEST(RememberedPose, IsBelievedOnceTheFirstScansFit) {
 TEST(RememberedPose, IsGivenUpWhereTheFirstScansDoNotFit) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Tour tour{seed};
-    Localizer localizer = localizer_at(InitialPose{.map_from_robot = {12.0, 12.5, 2.0}, .remembered = true}, seed);
+    Localizer localizer =
+        localizer_at(particles::InitialPose{.map_from_robot = {12.0, 12.5, 2.0}, .remembered = true}, seed);
     for (int i = 0; i < 300; ++i) {
       const TrackedScan tracked = tour.next(localizer);
       ASSERT_TRUE(tracked.estimate.state != LocalizerState::kTracking || right(tracked, tour)) << seed << ' ' << i;
@@ -157,7 +158,7 @@ TEST(RememberedPose, IsGivenUpWhereTheFirstScansDoNotFit) {
 TEST(GivenPose, InsideAContainerIsMovedBesideItAndChecked) {
   Tour tour{1};
   tour.carry_to({8.0, 3.0, 0.0});
-  Localizer localizer = localizer_at(InitialPose{{9.2, 3.0, 0.0}, 0.4}, 1);
+  Localizer localizer = localizer_at(particles::InitialPose{{9.2, 3.0, 0.0}, 0.4}, 1);
   EXPECT_EQ(localizer.counts().poses_in_obstacle, 1u);
   EXPECT_NE(tour.next(localizer).estimate.state, LocalizerState::kTracking);
   EXPECT_LT(scans_until_right(localizer, tour, 300), 300);
@@ -167,7 +168,7 @@ TEST(GivenPose, OutsideTheMapOrOfNoNumberMeansThatTheWholeMapIsSearched) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Pose2& nonsense : {Pose2{-50.0, 3.0, 0.0}, Pose2{1e300, 0.0, 0.0}, Pose2{nan, 3.0, 0.0}}) {
     Tour tour{2};
-    Localizer localizer = localizer_at(InitialPose{nonsense}, 2);
+    Localizer localizer = localizer_at(particles::InitialPose{nonsense}, 2);
     EXPECT_EQ(localizer.counts().poses_refused, 1u);
     EXPECT_EQ(localizer.counts().searches, 1u);
     EXPECT_LT(scans_until_right(localizer, tour, 300), 300);
@@ -193,7 +194,7 @@ TEST(BadInput, ScansWithoutReturnsWhileThePoseIsUnknownFindNothingAndBreakNothin
 
 TEST(BadInput, AClockThatFallsBackIsCountedAndThePoseKept) {
   Tour tour{4};
-  Localizer localizer = localizer_at(InitialPose{tour.truth()}, 4);
+  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 4);
   for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
   tour.wait(-3600.0);
   for (int i = 0; i < 50; ++i) ASSERT_TRUE(right(tour.next(localizer), tour)) << i;
@@ -203,7 +204,7 @@ TEST(BadInput, AClockThatFallsBackIsCountedAndThePoseKept) {
 TEST(BadInput, AScanThatFallsBackBeforeOdometryDoesNeitherMovesNorLosesThePose) {
   for (const double back_s : {0.5, 1.0, 20.0, 3600.0}) {
     Tour tour{4};
-    Localizer localizer = localizer_at(InitialPose{tour.truth()}, 4);
+    Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 4);
     for (int i = 0; i < 120; ++i) (void)tour.next(localizer);
     tour.wait(-back_s);
     ASSERT_TRUE(right(localizer.observe(tour.scan()), tour)) << back_s;
@@ -213,7 +214,7 @@ TEST(BadInput, AScanThatFallsBackBeforeOdometryDoesNeitherMovesNorLosesThePose) 
 
 TEST(BadInput, BlindScansLeaveThePoseUndecided) {
   Tour tour{8};
-  Localizer localizer = localizer_at(InitialPose{tour.truth()}, 8);
+  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 8);
   for (int i = 0; i < 200; ++i) (void)tour.next(localizer);
   PoseVerdict verdict = PoseVerdict::kRight;
   for (int i = 0; i < 300; ++i) {
@@ -232,7 +233,7 @@ TEST(ScanGap, IsBridgedByTheWheelsAndThePoseStaysTracked) {
   for (const double gap_s : {1.0, 4.0, 10.0, 25.0, 40.0, 60.0}) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
       Tour tour{seed};
-      Localizer localizer = localizer_at(InitialPose{tour.truth()}, seed);
+      Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
       for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
       tour.drive_unseen(localizer, gap_s);
       const TrackedScan first = tour.next(localizer);
@@ -254,8 +255,8 @@ TEST(ScanGap, TheFirstScanFindsTheRobotWhereTheWheelsHaveBroughtIt) {
     Tour tour{2};
     LocalizerParams params;
     params.follow_surfaces = surfaces;
-    Localizer localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()), InitialPose{tour.truth()},
-                        2};
+    Localizer localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()),
+                        particles::InitialPose{tour.truth()}, 2};
     for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
     tour.drive_unseen(localizer, 12.0);
     for (int i = 0; i < 4; ++i) {  // it stands: the scan itself shows no motion
@@ -269,7 +270,7 @@ TEST(ScanGap, TheFirstScanFindsTheRobotWhereTheWheelsHaveBroughtIt) {
 /// A view that fits little is no proof against a pose that the wheels have kept.
 TEST(ScanGap, ThePoseIsKeptWhereTheWorldHasChangedMeanwhile) {
   Tour tour{3};
-  Localizer localizer = localizer_at(InitialPose{tour.truth()}, 3);
+  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 3);
   for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
   tour.drive_unseen(localizer, 4.0);
   for (double left_s = 26.0; left_s > 0.0; left_s -= kScanPeriodS) {
@@ -290,8 +291,8 @@ TEST(ScanGap, ThePoseIsKeptWhereTheWorldHasChangedMeanwhile) {
 TEST(ScanGap, WidensThePoseByWhatWasDrivenNotByWhatLiesBetweenItsEnds) {
   LocalizerParams params;
   params.motion.slip_probability = 0.0;
-  Localizer localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()), InitialPose{{2.0, 1.0, 0.0}},
-                      1};
+  Localizer localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()),
+                      particles::InitialPose{{2.0, 1.0, 0.0}}, 1};
   Odometry odometry = at_rest();
   Scan blind;
   const auto deviation_after = [&](double turn_rad) {
@@ -314,7 +315,7 @@ TEST(ScanGap, WidensThePoseByWhatWasDrivenNotByWhatLiesBetweenItsEnds) {
 
 TEST(BadInput, AMinuteOfSilenceMakesThePoseProveItself) {
   Tour tour{5};
-  Localizer localizer = localizer_at(InitialPose{tour.truth()}, 5);
+  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 5);
   for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
   tour.wait(60.0);
   EXPECT_EQ(tour.next(localizer).estimate.state, LocalizerState::kGlobal);
@@ -326,7 +327,7 @@ TEST(BadInput, AMinuteOfSilenceMakesThePoseProveItself) {
 
 TEST(BadInput, ARobotCarriedOffInAMinuteOfSilenceIsSearchedForAtOnce) {
   Tour tour{6};
-  Localizer localizer = localizer_at(InitialPose{tour.truth()}, 6);
+  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 6);
   for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
   tour.wait(60.0);
   tour.restart_controller();

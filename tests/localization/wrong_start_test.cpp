@@ -9,6 +9,7 @@
 #include "localization/localizer_params.hpp"
 #include "simulation/start_map.hpp"
 #include "simulation/virtual_drive.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kWrongM = 0.5;
 
 struct Room {
-  simulation::Scenario scenario = simulation::read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/room.yaml");
+  simulation::Scenario scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
   std::shared_ptr<const OccupancyGrid> map = std::make_shared<const OccupancyGrid>(
       simulation::start_map(scenario.world, scenario.robot.map_from_start.position(), 0.05));
 };
@@ -27,21 +28,22 @@ TrackedScan next(simulation::VirtualDrive& drive, Localizer& localizer) {
   return localizer.observe(std::move(step.scan));
 }
 
-StabilityRecord lived_in(const Room& room) {
+belief::StabilityRecord lived_in(const Room& room) {
   simulation::VirtualDrive drive{room.scenario, {.seed = 5}};
-  Localizer localizer{LocalizerParams{}, room.map, InitialPose{drive.map_from_robot()}, 5};
+  Localizer localizer{LocalizerParams{}, room.map, particles::InitialPose{drive.map_from_robot()}, 5};
   for (int scan = 0; scan < 4000; ++scan) (void)next(drive, localizer);
   return localizer.stability();
 }
 
 /// Longest time in s that a pose that is wrong was called right.
-double longest_taken_in_s(const Room& room, const std::optional<StabilityRecord>& stability, std::uint64_t seed) {
+double longest_taken_in_s(const Room& room, const std::optional<belief::StabilityRecord>& stability,
+                          std::uint64_t seed) {
   simulation::VirtualDriveParams params{.seed = seed};
   params.forklift = simulation::ForkliftParams{.change_every_s = 20.0, .passage_m = 0.9};
   simulation::VirtualDrive drive{room.scenario, params};
   Pose2 wrong = drive.map_from_robot();
   wrong.x += 1.1;
-  Localizer localizer{LocalizerParams{}, room.map, InitialPose{wrong}, seed};
+  Localizer localizer{LocalizerParams{}, room.map, particles::InitialPose{wrong}, seed};
   EXPECT_TRUE(!stability || localizer.restore(*stability));
   double longest_s = 0.0;
   double now_s = 0.0;
@@ -63,7 +65,7 @@ TEST(WrongStart, IsNotCalledRightWhereNothingHasProvenStable) {
 
 TEST(WrongStart, IsNotCalledRightInARoomThatHasBeenLivedIn) {
   const Room room;
-  const StabilityRecord stability = lived_in(room);
+  const belief::StabilityRecord stability = lived_in(room);
   for (const std::uint64_t seed : {1u, 2u, 3u}) EXPECT_LT(longest_taken_in_s(room, stability, seed), 2.0) << seed;
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "mapping/awareness/divergence_ratio.hpp"
+#include "mapping/paper/divergence_ratio.hpp"
 #include "mapping/store_scan.hpp"
 
 namespace deltamap::mapping {
@@ -14,21 +14,21 @@ namespace {
 constexpr double kExact = 1e-12;
 
 TEST(DivergenceRatio, StartsBothAveragesAtTheFirstWeight) {
-  awareness::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
+  paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
   EXPECT_EQ(ratio.observe(0.8), 0.0);
   EXPECT_EQ(ratio.w_fast(), 0.8);
   EXPECT_EQ(ratio.w_slow(), 0.8);
 }
 
 TEST(DivergenceRatio, FollowsEquationsTwoAndThree) {
-  awareness::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
+  paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
   (void)ratio.observe(0.8);
   EXPECT_NEAR(ratio.observe(0.4), 1.0 - 0.76 / 0.796, kExact);  // 0.8 - 0.1 · 0.4 and 0.8 - 0.01 · 0.4
   EXPECT_NEAR(ratio.observe(0.9), 1.0 - (0.76 + 0.1 * 0.14) / (0.796 + 0.01 * 0.104), kExact);
 }
 
 TEST(DivergenceRatio, IsNegativeWhereScansFitBetterThanTheyUsedTo) {
-  awareness::DivergenceRatio ratio{{}};
+  paper::DivergenceRatio ratio{{}};
   (void)ratio.observe(0.4);
   EXPECT_LT(ratio.observe(0.8), 0.0);
 }

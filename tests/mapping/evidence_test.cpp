@@ -33,7 +33,7 @@ class Drive {
       const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
       const auto set = store.observe(test::drawn_scan(world(time_s), map, pose, time_s, random, noise));
       if (!set) continue;
-      const MapUpdate update = map_update(*map, *set, {});
+      const scan_set::MapUpdate update = map_update(*map, *set, {});
       if (!update.accepted()) continue;
       ++revisions;
       map = std::make_shared<const OccupancyGrid>(patched(*map, update.changes));
@@ -226,7 +226,7 @@ class EvidenceUpdate : public testing::Test {
 
 TEST_F(EvidenceUpdate, WritesOnlyAroundTheVerdicts) {
   ASSERT_FALSE(set.verdicts.empty());
-  const MapUpdate update = map_update(map, set, {});
+  const scan_set::MapUpdate update = map_update(map, set, {});
   ASSERT_TRUE(update.accepted());
   EXPECT_GT(update.acceptance, 0.95);
   for (const CellChange& change : update.changes) {
@@ -235,9 +235,9 @@ TEST_F(EvidenceUpdate, WritesOnlyAroundTheVerdicts) {
 }
 
 TEST_F(EvidenceUpdate, BringsDisplacedScansBackOntoTheMap) {
-  const MapUpdate straight = map_update(map, set, {});
+  const scan_set::MapUpdate straight = map_update(map, set, {});
   test::change_each(set.scans, [](TrackedScan& tracked) { tracked.estimate.map_from_robot.y -= 0.08; });
-  const MapUpdate displaced = map_update(map, set, {});
+  const scan_set::MapUpdate displaced = map_update(map, set, {});
   ASSERT_TRUE(displaced.accepted());
   EXPECT_NEAR(displaced.map_from_local.y - straight.map_from_local.y, 0.08, 0.03);
 }
@@ -247,20 +247,20 @@ TEST_F(EvidenceUpdate, RefusesScansThatContradictTheirOwnPoses) {
     tracked.estimate.map_from_robot.y -= 0.25;
     tracked.estimate.covariance = Eigen::Vector3d{1e-6, 1e-6, 1e-6}.asDiagonal();
   });
-  const MapUpdate update = map_update(map, set, {});
-  EXPECT_EQ(update.refusal, Refusal::kImplausible);
+  const scan_set::MapUpdate update = map_update(map, set, {});
+  EXPECT_EQ(update.refusal, scan_set::Refusal::kImplausible);
   EXPECT_TRUE(update.changes.empty());
 }
 
 TEST_F(EvidenceUpdate, RefusesASingleScan) {
   set.scans.resize(1);
-  EXPECT_EQ(map_update(map, set, {}).refusal, Refusal::kTooFewScans);
+  EXPECT_EQ(map_update(map, set, {}).refusal, scan_set::Refusal::kTooFewScans);
 }
 
 TEST_F(EvidenceUpdate, FindsNothingToDoTwice) {
-  const MapUpdate once = map_update(map, set, {});
-  const MapUpdate twice = map_update(patched(map, once.changes), set, {});
-  EXPECT_EQ(twice.refusal, Refusal::kNothingChanged);
+  const scan_set::MapUpdate once = map_update(map, set, {});
+  const scan_set::MapUpdate twice = map_update(patched(map, once.changes), set, {});
+  EXPECT_EQ(twice.refusal, scan_set::Refusal::kNothingChanged);
 }
 
 }  // namespace

@@ -11,11 +11,11 @@ namespace {
 
 const Pose2 kPose{3.0, 2.0, radians(90.0)};
 
-TemporaryThings thing_at(const Point2& place) {
-  TemporaryThings things;
-  things.blocks = {100, 100, 0.1, {0.0, 0.0}};
-  things.standing = {static_cast<std::uint32_t>(things.blocks.index_of(things.blocks.cell_at(place)))};
-  return things;
+TransientObstacles thing_at(const Point2& place) {
+  TransientObstacles transients;
+  transients.blocks = {100, 100, 0.1, {0.0, 0.0}};
+  transients.standing = {static_cast<std::uint32_t>(transients.blocks.index_of(transients.blocks.cell_at(place)))};
+  return transients;
 }
 
 /// A scan in the middle of nothing: every beam ends at 6 m, unless the kind says otherwise.

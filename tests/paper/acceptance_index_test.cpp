@@ -2,11 +2,11 @@
 // Eq. 11 on halls: what it says, and what it hides.
 #include <gtest/gtest.h>
 
-#include "mapping/merge/acceptance.hpp"
-#include "mapping/merge/contour_score.hpp"
+#include "mapping/registration/acceptance.hpp"
+#include "mapping/registration/contour_score.hpp"
 #include "tests/support/changed_hall.hpp"
 
-namespace deltamap::mapping::merge {
+namespace deltamap::mapping {
 namespace {
 
 TEST(Equation11, IsAgreementOverAgreementAndDisagreement) {
@@ -19,20 +19,20 @@ TEST(Equation11, IsAgreementOverAgreementAndDisagreement) {
     if (before[cell] == CellState::kUnknown || after[cell] == CellState::kUnknown) continue;
     ++(before[cell] == after[cell] ? same : different);
   }
-  const Acceptance counts = acceptance(before, after);
+  const registration::Acceptance counts = registration::acceptance(before, after);
   EXPECT_EQ(counts.agreeing, same);
   EXPECT_EQ(counts.disagreeing, different);
   EXPECT_DOUBLE_EQ(counts.value(), static_cast<double>(same) / static_cast<double>(same + different));
-  EXPECT_DOUBLE_EQ(acceptance(after, before).value(), counts.value());
-  EXPECT_DOUBLE_EQ(acceptance(after, after).value(), 1.0);
+  EXPECT_DOUBLE_EQ(registration::acceptance(after, before).value(), counts.value());
+  EXPECT_DOUBLE_EQ(registration::acceptance(after, after).value(), 1.0);
 }
 
 TEST(Equation11, HardlyNoticesAMapThatIsNeverUpdated) {
   const OccupancyGrid stale = test::drawn_hall(0.05);
   const OccupancyGrid truth = test::changed_hall();
-  EXPECT_GT(acceptance(stale, truth).value(), 0.95) << "three containers are wrong";
-  EXPECT_LT(contour_score(truth, stale).f1(), 0.93);
+  EXPECT_GT(registration::acceptance(stale, truth).value(), 0.95) << "three containers are wrong";
+  EXPECT_LT(registration::contour_score(truth, stale).f1(), 0.93);
 }
 
 }  // namespace
-}  // namespace deltamap::mapping::merge
+}  // namespace deltamap::mapping

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "mapping/awareness/delta_phase.hpp"
+#include "mapping/paper/delta_phase.hpp"
 #include "tests/support/changed_hall.hpp"
 #include "tests/support/hall_drive.hpp"
 
@@ -16,7 +16,7 @@ class MeanShare {
   void operator()(const TrackedScan& tracked) {
     const double share = tracked.estimate.n_eff / tracked.estimate.particles;
     sum_ += share;
-    below_gate_ += share < mapping::awareness::DeltaPhaseParams{}.least_n_eff_share ? 1 : 0;
+    below_gate_ += share < mapping::paper::DeltaPhaseParams{}.least_n_eff_share ? 1 : 0;
     ++count_;
   }
   [[nodiscard]] double value() const { return sum_ / count_; }

@@ -8,7 +8,7 @@
 
 #include "tests/support/merge_tally.hpp"
 
-namespace deltamap::mapping::merge {
+namespace deltamap::mapping {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kLayouts{701, 702};
@@ -16,7 +16,7 @@ constexpr double kResolution_m = 0.1;
 
 struct Row {
   const char* name;
-  MergeMethod method;
+  merge::MergeMethod method;
   double acceptance = 0.0;
   double seconds = 0.0;
   int right = 0;
@@ -33,8 +33,10 @@ void add(Row& row, const test::MergeTally& tally) {
 }
 
 TEST(Table1, AllFourMethodsPlaceHeldOutHalls) {
-  std::array<Row, 4> rows{
-      {{"MA1", MergeMethod::kMa1}, {"MA2", MergeMethod::kMa2}, {"MA3", MergeMethod::kMa3}, {"MA4", MergeMethod::kMa4}}};
+  std::array<Row, 4> rows{{{"MA1", merge::MergeMethod::kMa1},
+                           {"MA2", merge::MergeMethod::kMa2},
+                           {"MA3", merge::MergeMethod::kMa3},
+                           {"MA4", merge::MergeMethod::kMa4}}};
   const char* const more = std::getenv("DELTAMAP_MERGE_TRIALS");
   const int trials = more != nullptr ? std::atoi(more) : 10;
   for (const std::uint64_t layout : kLayouts) {
@@ -42,9 +44,9 @@ TEST(Table1, AllFourMethodsPlaceHeldOutHalls) {
     const OccupancyGrid map = test::moved_grid(test::part_of(hall, 0.0, 0.75), {}, kResolution_m);
     const OccupancyGrid other = test::part_of(hall, 0.25, 1.0);
     for (Row& row : rows) {
-      MapMergeParams params;
+      merge::MapMergeParams params;
       params.method = row.method;
-      add(row, test::tally_of([&](const OccupancyGrid& local) { return map_merge(map, local, params); }, other,
+      add(row, test::tally_of([&](const OccupancyGrid& local) { return merge::map_merge(map, local, params); }, other,
                               kResolution_m, trials, 1000 + layout));
     }
   }
@@ -75,7 +77,7 @@ TEST(Table1, WholeDegreesFlatterTheMethod) {
     const auto acceptance_at = [&](double turn_degrees) {
       const OccupancyGrid local =
           test::moved_grid(other, {x_m, y_m, wrapped_angle(radians(turn_degrees))}, kResolution_m);
-      return map_merge(map, local, {}).score.acceptance();
+      return merge::map_merge(map, local, {}).score.acceptance();
     };
     whole += acceptance_at(degrees) / kTrials;
     between += acceptance_at(degrees + 0.5) / kTrials;
@@ -86,4 +88,4 @@ TEST(Table1, WholeDegreesFlatterTheMethod) {
 }
 
 }  // namespace
-}  // namespace deltamap::mapping::merge
+}  // namespace deltamap::mapping

@@ -8,7 +8,7 @@
 
 #include "mapping/map_update.hpp"
 #include "mapping/map_update_params.hpp"
-#include "mapping/merge/contour_score.hpp"
+#include "mapping/registration/contour_score.hpp"
 #include "mapping/store_scan.hpp"
 #include "tests/support/changed_hall.hpp"
 #include "tests/support/hall_drive.hpp"
@@ -32,7 +32,7 @@ TEST(UpdateLoop, BringsTheMapNearerToTheChangedHallAndKeepsTheRobotInIt) {
         most_error_m = std::max(most_error_m, distance_between(tracked.estimate.map_from_robot, drive.truth()));
         const auto set = store.observe(tracked);
         if (!set) return;
-        MapUpdate update = map_update(map, *set, {});
+        scan_set::MapUpdate update = map_update(map, *set, {});
         std::printf("lap %d: %zu scans, acceptance %.3f, %s, %zu cells\n", lap, set->scans.size(), update.acceptance,
                     std::string{name_of(update.refusal)}.c_str(), update.changes.size());
         if (!update.accepted()) return;
@@ -43,8 +43,8 @@ TEST(UpdateLoop, BringsTheMapNearerToTheChangedHallAndKeepsTheRobotInIt) {
       });
     }
   }
-  const double stale = merge::contour_score(after, before).f1();
-  const double updated = merge::contour_score(after, map).f1();
+  const double stale = registration::contour_score(after, before).f1();
+  const double updated = registration::contour_score(after, map).f1();
   std::printf("contour F1 %.3f -> %.3f in %u revisions, error at most %.2f m\n", stale, updated, revision,
               most_error_m);
   EXPECT_GE(revision, 1U);

@@ -8,12 +8,13 @@
 
 #include "simulation/start_map.hpp"
 #include "simulation/virtual_drive.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {
 
 Scenario named(const std::string& name) {
-  return read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
+  return read_scenario(test::source_path("config/scenarios/") + name + ".yaml");
 }
 
 bool stands_at(const World& world, const Box& slot) {

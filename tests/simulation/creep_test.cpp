@@ -9,6 +9,7 @@
 #include "simulation/scenario.hpp"
 #include "simulation/simulation.hpp"
 #include "simulation/virtual_drive.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 const Circle kFarAway{{-100, -100}, 0.25};
 constexpr double kExact_m = 1e-9;
 
-Scenario hall() { return read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/hall.yaml"); }
+Scenario hall() { return read_scenario(test::source_path("config/scenarios/hall.yaml")); }
 
 Creep creep_in(const Scenario& scenario, const CreepParams& params, std::uint64_t seed = 1) {
   return {params, scenario.world, scenario.robot.map_from_start.position(), Random{seed}};
@@ -96,7 +97,7 @@ TEST(Creep, NeverPushesIntoAnotherContainer) {
 }
 
 TEST(Creep, IsToldByTheLiveSimulatorAndByTheVirtualDrive) {
-  Scenario scenario = read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/creep.yaml");
+  Scenario scenario = read_scenario(test::source_path("config/scenarios/creep.yaml"));
   scenario.creep->every_s = 5.0;
   scenario.changed_at_start = ChangedStartParams{.share = 0.25};
   const Timestamp start = timestamp_from_ns(1'700'000'000'000'000'000);

@@ -6,12 +6,13 @@
 #include <string>
 
 #include "simulation/scenario.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {
 
 Scenario delivered(const std::string& name) {
-  return read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
+  return read_scenario(test::source_path("config/scenarios/") + name + ".yaml");
 }
 
 struct History {

@@ -9,11 +9,12 @@
 
 #include "simulation/simulation.hpp"
 #include "simulation/virtual_drive.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {
 
-Scenario endurance() { return read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/endurance.yaml"); }
+Scenario endurance() { return read_scenario(test::source_path("config/scenarios/endurance.yaml")); }
 
 TEST(Movers, LetTheRobotDriveAboutAmongTenActorsAndDoors) {
   VirtualDriveParams params;
@@ -64,7 +65,7 @@ TEST(Movers, RepeatFromTheirSeed) {
 }
 
 TEST(Movers, ShowAStandingForkLiftInTheScans) {
-  Scenario scenario = read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/hall.yaml");
+  Scenario scenario = read_scenario(test::source_path("config/scenarios/hall.yaml"));
   scenario.laser.optics.range_noise_m = scenario.laser.optics.dropout_share = scenario.laser.optics.mixed_share = 0.0;
   scenario.actors.push_back(
       {.path = {{8.0, 2.5}, {8.0, 2.6}}, .is_forklift = true, .walk_least_s = 1e5, .walk_most_s = 2e5});

@@ -8,6 +8,7 @@
 #include "core/angle.hpp"
 #include "simulation/passages.hpp"
 #include "simulation/virtual_drive.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 const devices::DriveTarget kStraight{.speed_m_per_s = 0.5};
 
 Scenario exact_hall() {
-  Scenario scenario = read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/hall.yaml");
+  Scenario scenario = read_scenario(test::source_path("config/scenarios/hall.yaml"));
   scenario.laser.optics.range_noise_m = scenario.laser.optics.dropout_share = scenario.laser.optics.mixed_share = 0.0;
   RobotParams& body = scenario.robot.body;
   body.track_error = body.left_wheel_error = body.right_wheel_error = 0.0;

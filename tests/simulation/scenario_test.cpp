@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/scenario.hpp"
+#include "tests/support/source_tree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -135,13 +136,13 @@ TEST(Scenario, ReadsActorsAndDoors) {
 
 TEST(Scenario, EveryDeliveredScenarioCanBeRead) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(DELTAMAP_SOURCE_DIR "/config/scenarios")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("config/scenarios"))) {
     EXPECT_FALSE(read_scenario(entry.path()).world.objects.empty()) << entry.path();
     ++count;
   }
   EXPECT_GE(count, 6);
   for (const char* name : {"hall", "hall_shifts", "room", "demo"}) {
-    const Scenario scenario = read_scenario(std::string(DELTAMAP_SOURCE_DIR "/config/scenarios/") + name + ".yaml");
+    const Scenario scenario = read_scenario(test::source_path("config/scenarios/") + name + ".yaml");
     EXPECT_TRUE(scenario.forklift) << name;
     EXPECT_FALSE(scenario.slots.empty()) << name;
   }

@@ -9,6 +9,7 @@
 
 #include "drivers/lms200/session.hpp"
 #include "drivers/pioneer/session.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {
@@ -19,7 +20,7 @@ namespace pioneer = drivers::pioneer;
 constexpr Timestamp kStart = timestamp_from_ns(1'700'000'000'000'000'000);
 
 Scenario delivered(const std::string& name) {
-  return read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
+  return read_scenario(test::source_path("config/scenarios/") + name + ".yaml");
 }
 
 /// Both sessions on both lines of a simulation.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drive in virtual time: repeatable, true to its truth, and honest about what odometry cannot see.
 #include "simulation/virtual_drive.hpp"
+#include "tests/support/source_tree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace deltamap::simulation {
 namespace {
 
-Scenario hall() { return read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/hall.yaml"); }
+Scenario hall() { return read_scenario(test::source_path("config/scenarios/hall.yaml")); }
 
 Scenario exact_hall() {
   Scenario scenario = hall();
@@ -103,7 +104,7 @@ TEST(VirtualDrive, GetsAlongWithPeopleAndAForkLift) {
   VirtualDriveParams params;
   params.seed = 8;
   params.forklift = ForkliftParams{.change_every_s = 20.0};
-  VirtualDrive drive{read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/depot.yaml"), params};
+  VirtualDrive drive{read_scenario(test::source_path("config/scenarios/depot.yaml")), params};
   double driven_m = 0.0;
   double least_room_m = 10.0;
   std::size_t changes = 0;

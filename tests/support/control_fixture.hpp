@@ -13,6 +13,7 @@
 #include "tests/support/pipeline_fixture.hpp"
 #include "tests/support/simulated_ports.hpp"
 #include "tests/support/socket_client.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tool/run_tool.hpp"
 
 namespace deltamap::test {
@@ -59,8 +60,7 @@ class DriveTest : public ControlDeskTest {
   void run(
       const std::function<void(SimulatedPorts&)>& operate,
       const std::function<void(SimulatedPorts&)>& prepare = [](SimulatedPorts&) {}, int after_scan = 5) {
-    const auto scenario =
-        simulation::read_scenario(std::filesystem::path(DELTAMAP_SOURCE_DIR) / "config/scenarios/room.yaml");
+    const auto scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
     SimulatedPorts ports{scenario, 1};
     prepare(ports);
     daemon::Pipeline::Options live = options();

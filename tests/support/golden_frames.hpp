@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/source_tree.hpp"
+
 namespace deltamap::tests {
 
 struct GoldenFrame {
@@ -25,7 +27,7 @@ struct GoldenStream {
 };
 
 [[nodiscard]] inline GoldenStream golden_stream(const std::string& name) {
-  const std::string path = DELTAMAP_SOURCE_DIR "/tests/data/" + name;
+  const std::string path = test::source_path("tests/data/") + name;
   std::ifstream bytes(path + ".bytes", std::ios::binary);
   GoldenStream stream{{std::istreambuf_iterator<char>(bytes), {}}, {}};
   std::ifstream expected(path + ".expected");

@@ -2,22 +2,18 @@
 // The frames that several independent programs agree on, from the shared data (DELTAMAP_DATA).
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-namespace deltamap::tests {
+#include "tests/support/source_tree.hpp"
 
-[[nodiscard]] inline std::filesystem::path data_folder() {
-  const char* configured = std::getenv("DELTAMAP_DATA");
-  return configured != nullptr ? configured : DELTAMAP_SOURCE_DIR "/../shared/data";
-}
+namespace deltamap::tests {
 
 /// nullopt where the data is missing: tests then skip and say so.
 [[nodiscard]] inline std::optional<nlohmann::json> golden_vectors() {
-  std::ifstream file{data_folder() / "golden_vectors.json"};
+  std::ifstream file{test::data_folder() / "golden_vectors.json"};
   if (!file) return std::nullopt;
   return nlohmann::json::parse(file);
 }
@@ -27,5 +23,5 @@ namespace deltamap::tests {
 /// Declares `name` with the vectors, or skips the test loudly.
 #define DELTAMAP_GOLDEN_VECTORS_OR_SKIP(name)                                                          \
   const auto name##_or_none = deltamap::tests::golden_vectors();                                       \
-  if (!name##_or_none) GTEST_SKIP() << "no golden_vectors.json in " << deltamap::tests::data_folder(); \
+  if (!name##_or_none) GTEST_SKIP() << "no golden_vectors.json in " << deltamap::test::data_folder(); \
   const nlohmann::json& name = *name##_or_none

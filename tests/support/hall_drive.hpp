@@ -24,7 +24,8 @@ class HallDrive {
   HallDrive(const OccupancyGrid& map, const Pose2& start, std::uint64_t seed) : HallDrive{map, start, seed, params()} {}
   HallDrive(const OccupancyGrid& map, const Pose2& start, std::uint64_t seed,
             const localization::LocalizerParams& given)
-      : localizer_{given, std::make_shared<const OccupancyGrid>(map), localization::InitialPose{start}, seed},
+      : localizer_{given, std::make_shared<const OccupancyGrid>(map), localization::particles::InitialPose{start},
+                   seed},
         random_{seed + 1000},
         truth_{start} {
     odometry_.time = timestamp_from_ns(1'700'000'000'000'000'000);

@@ -6,7 +6,7 @@
 #include "core/angle.hpp"
 #include "core/occupancy_grid.hpp"
 #include "core/random.hpp"
-#include "mapping/merge/transformed_grid.hpp"
+#include "mapping/registration/transformed_grid.hpp"
 #include "tests/support/drawn_hall.hpp"
 
 namespace deltamap::test {
@@ -31,7 +31,7 @@ inline OccupancyGrid drawn_warehouse(std::uint64_t seed) {
   return hall;
 }
 
-using mapping::merge::moved_grid;
-using mapping::merge::part_of;
+using mapping::registration::moved_grid;
+using mapping::registration::part_of;
 
 }  // namespace deltamap::test

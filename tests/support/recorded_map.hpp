@@ -2,21 +2,19 @@
 // Maps recorded by others, where DELTAMAP_DATA (by default shared/data beside the project) holds them.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "core/grid_file.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::test {
 
 /// maps/NAME.yaml with its image, unpacked where it is compressed; nothing where it is missing.
 inline std::optional<OccupancyGrid> recorded_map(const std::string& name) {
-  const char* folder = std::getenv("DELTAMAP_DATA");
-  const std::filesystem::path maps =
-      std::filesystem::path{folder != nullptr ? folder : DELTAMAP_SOURCE_DIR "/../shared/data"} / "maps";
+  const std::filesystem::path maps = data_folder() / "maps";
   const std::filesystem::path yaml = maps / (name + ".yaml");
   if (!std::filesystem::exists(yaml)) return std::nullopt;
   if (std::filesystem::exists(maps / (name + ".pgm"))) return read_grid(yaml);

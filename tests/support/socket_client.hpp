@@ -2,7 +2,9 @@
 // A client of the control socket that may be as rude as a test needs it.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -13,14 +15,24 @@
 
 namespace deltamap::test {
 
+inline sockaddr_un address_of(const std::filesystem::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+  return address;
+}
+
+/// As a crash does: the socket's file is there, and nobody listens.
+inline void leave_socket_behind(const std::filesystem::path& path) {
+  const int left = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  const sockaddr_un address = address_of(path);
+  ASSERT_EQ(::bind(left, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ::close(left);
+}
+
 class SocketClient {
  public:
-  explicit SocketClient(const std::filesystem::path& path) : socket_{AF_UNIX} {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
-    socket_.connect(address);
-  }
+  explicit SocketClient(const std::filesystem::path& path) : socket_{AF_UNIX} { socket_.connect(address_of(path)); }
 
   [[nodiscard]] bool is_connected() const { return socket_.is_connected(); }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/source_tree.hpp"
 #include "tool/run_tool.hpp"
 
 namespace deltamap::test {
@@ -34,7 +35,7 @@ struct ToolRun {
 [[nodiscard]] inline ToolRun run_experiment(const std::string& name, const std::string& out, const std::string& minutes,
                                             const std::vector<std::string>& more) {
   std::vector<std::string> words{
-      "experiment", name,    "--out",     out, "--scenarios", DELTAMAP_SOURCE_DIR "/config/scenarios",
+      "experiment", name,    "--out",     out, "--scenarios", test::source_path("config/scenarios"),
       "--minutes",  minutes, "--repeats", "1"};
   words.insert(words.end(), more.begin(), more.end());
   return run_deltamap(words);

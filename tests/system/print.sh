@@ -4,10 +4,7 @@
 # on standard error, while --check-config looks at the rest. usage: print.sh FOLDER-OF-PROGRAMS
 set -euo pipefail
 bin=$1
-cd "$(dirname "$0")/../.."
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-fail() { echo "print: $*" >&2; exit 1; }
+source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 
 same() { cmp -s "$1" "$2" || fail "$1 is not what the program prints"; }
 "$bin/deltamapd" --print-schema >"$out/schema" || fail "--print-schema ends with $?"

@@ -18,7 +18,7 @@ end_all() {
   rm -rf "$out"
 }
 trap end_all EXIT
-fail() { echo "$test_name: $1" >&2; cat "$out"/*.log >&2; exit 1; }
+fail() { echo "$test_name: $1" >&2; cat "$out"/*.log >&2 2>/dev/null || true; exit 1; }
 
 write_first_map() { "$bin/deltamap" sim --world "$world" --write-map "$out/m0.yaml"; }
 

@@ -19,6 +19,7 @@
 #include "drivers/pioneer/odometry.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/port/byte_log.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tool/run_tool.hpp"
 
@@ -335,8 +336,7 @@ TEST(ImportCarmen, AnswersWithTheExitCodesOfTheTool) {
 
 /// Every log of the real data: each scan's time to a microsecond, each range to rounding.
 TEST(ImportCarmen, GivesBackTheTimesAndRangesOfRealLogs) {
-  const char* const named = std::getenv("DELTAMAP_DATA");
-  const std::filesystem::path data = named != nullptr ? named : DELTAMAP_SOURCE_DIR "/../shared/data";
+  const std::filesystem::path data = test::data_folder();
   if (!std::filesystem::exists(data / "logs" / "intel.log.xz")) GTEST_SKIP() << "no real logs in " << data;
   if (std::system("command -v xz > /dev/null 2>&1") != 0) GTEST_SKIP() << "xz is not installed";
   const test::TemporaryFolder folder;

@@ -9,15 +9,15 @@
 #include <string>
 
 #include "core/grid_file.hpp"
-#include "mapping/merge/acceptance.hpp"
-#include "mapping/merge/contour_score.hpp"
+#include "mapping/registration/acceptance.hpp"
+#include "mapping/registration/contour_score.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
 namespace {
 
-void print_comparison(const mapping::merge::Acceptance& cells, const mapping::merge::ContourScore& contour,
-                      bool as_json) {
+void print_comparison(const mapping::registration::Acceptance& cells,
+                      const mapping::registration::ContourScore& contour, bool as_json) {
   if (as_json) {
     const nlohmann::ordered_json json = {{"acceptance", cells.value()},
                                          {"agreeing_cells", cells.agreeing},
@@ -50,7 +50,7 @@ void add_map_compare(CLI::App& map) {
   command->callback([options] {
     const OccupancyGrid one = read_grid(options->one);
     const OccupancyGrid other = read_grid(options->other);
-    print_comparison(mapping::merge::acceptance(one, other), mapping::merge::contour_score(one, other),
+    print_comparison(mapping::registration::acceptance(one, other), mapping::registration::contour_score(one, other),
                      options->as_json);
   });
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "daemon/maps/png_bytes.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "simulation/score/trajectory_score.hpp"
 #include "tool/picture/animated_png.hpp"
 #include "tool/picture/scene.hpp"
@@ -37,7 +37,7 @@ struct Step {
 };
 
 /// M_0 from the beginning, each revision from its time on.
-std::vector<Step> steps_of(const mapping::MapStore& store) {
+std::vector<Step> steps_of(const mapping::store::MapStore& store) {
   std::vector<Step> steps;
   for (const auto& revision : store.history()) {
     if (!revision.refused) steps.push_back({revision.time, revision.number});
@@ -74,7 +74,7 @@ std::vector<Point2> path_to(const std::vector<StampedPose>& poses, std::size_t l
 }
 
 void film(const Options& options) {
-  const mapping::MapStore store{options.store};
+  const mapping::store::MapStore store{options.store};
   const std::vector<Step> steps = steps_of(store);
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);
   const Timestamp began = poses.front().time;

@@ -16,16 +16,16 @@
 #include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
 #include "daemon/maps/png_bytes.hpp"
-#include "mapping/map_store.hpp"
-#include "mapping/merge/acceptance.hpp"
+#include "mapping/registration/acceptance.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tool/picture/scene.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
 namespace {
 
-using mapping::MapStore;
-using mapping::StoredRevision;
+using mapping::store::MapStore;
+using mapping::store::StoredRevision;
 
 struct Options {
   std::string store;
@@ -135,7 +135,7 @@ void compare(const Options& options) {
   const auto changes = changes_between(before, after);
   std::size_t became[3] = {};
   for (const CellChange& change : changes) ++became[static_cast<std::size_t>(change.after)];
-  const double acceptance = mapping::merge::acceptance(before, after).value();
+  const double acceptance = mapping::registration::acceptance(before, after).value();
   nlohmann::json result{{"from", options.number},   {"to", options.other},
                         {"cells", changes.size()},  {"freed", became[0]},
                         {"occupied", became[1]},    {"unknown", became[2]},

@@ -12,17 +12,15 @@
 #include <vector>
 
 #include "core/grid_file.hpp"
-#include "mapping/merge/acceptance.hpp"
-#include "mapping/merge/global_merge.hpp"
+#include "mapping/grid_registration/global_merge.hpp"
+#include "mapping/grid_registration/prior_merge.hpp"
 #include "mapping/merge/map_merge.hpp"
-#include "mapping/merge/prior_merge.hpp"
-#include "mapping/merge/transformed_grid.hpp"
+#include "mapping/registration/acceptance.hpp"
+#include "mapping/registration/transformed_grid.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
 namespace {
-
-namespace merge = mapping::merge;
 
 constexpr double kPriorDeviation_m = 0.2;  // as for an initial pose
 constexpr double kPriorDeviation_deg = 5.0;
@@ -38,7 +36,7 @@ struct Options {
 
 struct Result {
   Pose2 map_from_local;
-  merge::MergeRefusal refusal = merge::MergeRefusal::kNone;
+  mapping::merge::MergeRefusal refusal = mapping::merge::MergeRefusal::kNone;
   double seconds = 0.0;
 };
 
@@ -51,26 +49,26 @@ Result merged_with_prior(const OccupancyGrid& map, const OccupancyGrid& local, c
   std::vector<Point2> points;
   for (const Cell& cell : contour_cells(local)) points.emplace_back(map_from_local * local.geometry().centre_of(cell));
   const double heading_deviation_rad = radians(kPriorDeviation_deg);
-  merge::PosePrior prior;
-  prior.position_in_map = map_from_local * merge::LocalCells{local}.middle_in_local();
+  mapping::grid_registration::PosePrior prior;
+  prior.position_in_map = map_from_local * mapping::merge::LocalCells{local}.middle_in_local();
   prior.covariance = Eigen::Vector3d{kPriorDeviation_m * kPriorDeviation_m, kPriorDeviation_m * kPriorDeviation_m,
                                      heading_deviation_rad * heading_deviation_rad}
                          .asDiagonal();
-  const merge::PriorMerge merged = merge::prior_merge(map, points, prior, {});
+  const mapping::grid_registration::PriorMerge merged = mapping::grid_registration::prior_merge(map, points, prior, {});
   return {merged.map_from_guess * map_from_local, merged.refusal, 0.0};
 }
 
 Result merged_without_prior(const OccupancyGrid& map, const OccupancyGrid& local, const std::string& method) {
   if (method == "global") {
-    const merge::MapMerge merged = merge::global_merge(map, local, {});
+    const mapping::merge::MapMerge merged = mapping::grid_registration::global_merge(map, local, {});
     return {merged.map_from_local, merged.refusal, 0.0};
   }
-  merge::MapMergeParams params;
-  params.method = method == "ma2"   ? merge::MergeMethod::kMa2
-                  : method == "ma3" ? merge::MergeMethod::kMa3
-                  : method == "ma4" ? merge::MergeMethod::kMa4
-                                    : merge::MergeMethod::kMa1;
-  const merge::MapMerge merged = merge::map_merge(map, local, params);
+  mapping::merge::MapMergeParams params;
+  params.method = method == "ma2"   ? mapping::merge::MergeMethod::kMa2
+                  : method == "ma3" ? mapping::merge::MergeMethod::kMa3
+                  : method == "ma4" ? mapping::merge::MergeMethod::kMa4
+                                    : mapping::merge::MergeMethod::kMa1;
+  const mapping::merge::MapMerge merged = mapping::merge::map_merge(map, local, params);
   return {merged.map_from_local, merged.refusal, 0.0};
 }
 
@@ -89,7 +87,7 @@ OccupancyGrid at_resolution(const OccupancyGrid& grid, double resolution_m) {
   geometry.width = static_cast<int>(std::ceil(grid.width() * grid.resolution_m() / resolution_m));
   geometry.height = static_cast<int>(std::ceil(grid.height() * grid.resolution_m() / resolution_m));
   geometry.resolution_m = resolution_m;
-  return merge::transformed_grid(grid, {}, geometry);
+  return mapping::registration::transformed_grid(grid, {}, geometry);
 }
 
 void print_result(const Result& result, double acceptance, double agreement, const Options& options) {
@@ -117,14 +115,14 @@ void run(const Options& options) {
   const OccupancyGrid map = read_grid(options.map);
   const OccupancyGrid local = at_resolution(read_grid(options.local), map.resolution_m());
   const Result result = timed_merge(map, local, options);
-  const OccupancyGrid moved = merge::transformed_grid(local, result.map_from_local, map.geometry());
-  print_result(result, merge::acceptance(map, moved).value(),
-               merge::surface_agreement(map, local, result.map_from_local), options);
-  if (result.refusal != merge::MergeRefusal::kNone) {
+  const OccupancyGrid moved = mapping::registration::transformed_grid(local, result.map_from_local, map.geometry());
+  print_result(result, mapping::registration::acceptance(map, moved).value(),
+               mapping::registration::surface_agreement(map, local, result.map_from_local), options);
+  if (result.refusal != mapping::merge::MergeRefusal::kNone) {
     throw std::runtime_error(options.local + ": not merged into " + options.map + ": " +
                              std::string{name_of(result.refusal)});
   }
-  write_grid(merge::overridden(map, moved), options.out);
+  write_grid(mapping::registration::overridden(map, moved), options.out);
 }
 
 }  // namespace

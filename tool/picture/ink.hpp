@@ -11,7 +11,7 @@ using Ink = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
 inline constexpr Ink kFree{255, 255, 255};
 inline constexpr Ink kOccupied{24, 26, 30};
-inline constexpr Ink kUnknown{216, 218, 222};
+inline constexpr Ink kUnknown{204, 208, 213};
 inline constexpr Ink kNewlyOccupied{213, 94, 0};
 inline constexpr Ink kNewlyFree{86, 180, 233};
 inline constexpr Ink kForgotten{204, 121, 167};

@@ -36,7 +36,6 @@ std::optional<Timestamp> time_in(std::string_view query) {
   return timestamp_from_ns(static_cast<std::int64_t>(std::llround(time_s * 1e6)) * 1000);
 }
 
-double unix_s(Timestamp time) { return static_cast<double>(unix_ns(time)) * 1e-9; }
 
 }  // namespace
 
@@ -117,8 +116,8 @@ std::string ViewDesk::run_message() const {
   json["complete"] = is_complete_;
   json["done"] = done_;
   json["scans"] = span.scans;
-  json["from"] = span.scans == 0 ? Json(nullptr) : Json(unix_s(span.from));
-  json["to"] = span.scans == 0 ? Json(nullptr) : Json(unix_s(span.to));
+  json["from"] = span.scans == 0 ? Json(nullptr) : Json(unix_seconds(span.from));
+  json["to"] = span.scans == 0 ? Json(nullptr) : Json(unix_seconds(span.to));
   json["revision"] = board_.map().revision;
   json["note"] = note_;
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

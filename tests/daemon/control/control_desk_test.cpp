@@ -139,7 +139,7 @@ TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame
   EXPECT_EQ(again.journal, "obeyed");
   EXPECT_EQ(again.journal_differences, 0u);
   expect_same_files("live", "replayed");
-  EXPECT_GT(mapping::shut_s(again.gate_times), 0.0);
+  EXPECT_GT(mapping::gate::shut_s(again.gate_times), 0.0);
 }
 
 TEST_F(ControlDeskTest, WhileMappingIsPausedTheMapStaysAsItIs) {

@@ -160,14 +160,7 @@ TEST_F(ServerTest, TheSocketIsForOwnerAndGroupAndGoneAtTheEnd) {
 }
 
 TEST_F(ServerTest, WhatACrashLeftBehindIsReplaced) {
-  {
-    const int left = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, socket().c_str(), sizeof address.sun_path - 1);
-    ASSERT_EQ(::bind(left, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    ::close(left);
-  }
+  test::leave_socket_behind(socket());
   ASSERT_TRUE(fs::exists(socket()));
   serve_echo();
   EXPECT_EQ(exchange(socket(), "alive"), "re: alive");

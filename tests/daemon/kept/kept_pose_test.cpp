@@ -46,7 +46,7 @@ TEST(KeptPose, WheelsAndMountComeBackThoughThePoseIsOfNoUse) {
   const test::TemporaryFolder folder;
   KeptPose lost = some_pose();
   lost.is_sure = false;
-  lost.calibration = localization::DriveCalibration{
+  lost.calibration = localization::motion::DriveCalibration{
       {1.0 / 7.0, -0.02, 1e-9, 0.1}, {0.01, 0.02, 0.03, 0.04}, {0.01, -0.01, 1.0 / 300.0}, {0.001, 0.002, 0.003}};
   const auto file = folder.write("store.pose.json", json_text(lost));
   const KeptPoseAnswer answer = read_kept_pose(file, 1);

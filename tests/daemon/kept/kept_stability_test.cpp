@@ -8,8 +8,8 @@
 namespace deltamap::daemon {
 namespace {
 
-using localization::Stability;
-using localization::StabilityParams;
+using localization::belief::Stability;
+using localization::belief::StabilityParams;
 
 constexpr Cell kProven{10, 10};
 const GridGeometry kGeometry{40, 30, 0.05, {-1.0, 2.0}};

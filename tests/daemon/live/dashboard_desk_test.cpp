@@ -68,7 +68,7 @@ class DashboardDeskTest : public testing::Test {
     tracked.rays[0].end = {1.25F, 0.5F};
     LocalizationRow row;
     row.map_from_robot = {0.5, 0.25, 0.125};
-    row.belief.rival_share = 0.25;
+    row.belief.other_share = 0.25;
     row.time = timestamp_from_ns(1'700'000'000'500'000'000);
     desk_->board().show(tracked, row, 0.001);
   }
@@ -236,11 +236,11 @@ TEST_F(DashboardDeskTest, AViewerSeesPoseScanMapAndWhatChangesInIt) {
   EXPECT_EQ(test::decoded_cells(bytes[1]).box, (CellBox{{1, 1}, {2, 2}}));
   EXPECT_EQ(told["changes"]["changes"][0]["revision"], 1);
 
-  auto things = std::make_shared<TemporaryThings>();
-  things->blocks = {.width = 9, .height = 9, .resolution_m = 0.25, .origin = {0.0, 0.0}};
-  things->standing = {4, 7};
+  auto transients = std::make_shared<TransientObstacles>();
+  transients->blocks = {.width = 9, .height = 9, .resolution_m = 0.25, .origin = {0.0, 0.0}};
+  transients->standing = {4, 7};
   told.clear();
-  EXPECT_TRUE(desk_->board().show(things));
+  EXPECT_TRUE(desk_->board().show(transients));
   ASSERT_TRUE(read_until([&] { return told.count("transient") > 0; }));
   EXPECT_EQ(told["transient"]["standing"], Json({4, 7}));
   EXPECT_EQ(told["transient"]["blocks_across"], 9);

@@ -89,7 +89,7 @@ TEST_F(LiveBoardTest, OfAScanTheBeamsWithARangeAreShown) {
 }
 
 TEST_F(LiveBoardTest, AFewParticlesStandForAllWhereSomebodyWatches) {
-  localization::ParticleSet particles;
+  localization::particles::ParticleSet particles;
   particles.resize_uniform(5000);
   board_.show(tracked_scan(), row_at(0), 0.002, &particles);
   LiveScan scan;

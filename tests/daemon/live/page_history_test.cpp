@@ -49,7 +49,7 @@ class PageHistoryTest : public testing::Test {
   test::TemporaryFolder folder_;
   OccupancyGrid map_ = test::drawn_grid({"#..", "..."}, 0.5);
   std::filesystem::path file_ = folder_.path() / "store.sqlite";
-  mapping::MapStore store_{file_, map_};
+  mapping::store::MapStore store_{file_, map_};
   PageHistory history_{file_};
 };
 

@@ -22,7 +22,7 @@ PoseNews news() {
   news.row.belief.verdict = PoseVerdict::kRight;
   news.row.revision = 3;
   news.latency_s = 0.002;
-  news.gate = mapping::GateReason::kOpen;
+  news.gate = mapping::gate::GateReason::kOpen;
   return news;
 }
 
@@ -48,18 +48,18 @@ TEST(PoseLine, TellsPoseCovarianceVerdictTimeAndGate) {
 
 TEST(PoseLine, AShutGateTellsWhyAndNoMappingNoGate) {
   PoseNews shut = news();
-  shut.gate = mapping::GateReason::kLost;
+  shut.gate = mapping::gate::GateReason::kLost;
   const json gate = json::parse(pose_line(shut))["gate"];
   EXPECT_EQ(gate["open"], false);
-  EXPECT_EQ(gate["reason"], mapping::name_of(mapping::GateReason::kLost));
+  EXPECT_EQ(gate["reason"], name_of(mapping::gate::GateReason::kLost));
   shut.gate.reset();
   EXPECT_EQ(json::parse(pose_line(shut))["gate"], nullptr);
 }
 
 TEST(PoseLine, TheOtherHypothesisIsToldWithItsShare) {
   PoseNews doubtful = news();
-  doubtful.row.belief.rival_share = 0.25;
-  doubtful.row.belief.map_from_rival = {4.0, 5.0, 1.0};
+  doubtful.row.belief.other_share = 0.25;
+  doubtful.row.belief.map_from_other = {4.0, 5.0, 1.0};
   EXPECT_EQ(json::parse(pose_line(doubtful))["other_hypothesis"],
             (json{{"x_m", 4.0}, {"y_m", 5.0}, {"heading_rad", 1.0}, {"share", 0.25}}));
 }

@@ -7,7 +7,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/settings/start_error.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/full_disk.hpp"
 #include "tests/support/saving_fixture.hpp"
 #include "tests/support/text_file.hpp"
@@ -16,7 +16,7 @@ namespace deltamap::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-using mapping::MapStore;
+using mapping::store::MapStore;
 using test::at_s;
 
 OccupancyGrid map_of(std::uint32_t number, GridGeometry geometry = {40, 30, 0.1, {0.0, 0.0}}) {
@@ -41,7 +41,7 @@ MapStep::Result result_of(std::uint32_t number) {
 
 class NewestMap : public test::SavingFixture {
  protected:
-  [[nodiscard]] MapOutputs::Options options(const mapping::Retention& retention = {}) const {
+  [[nodiscard]] MapOutputs::Options options(const mapping::store::Retention& retention = {}) const {
     StoreToKeep to;
     to.store.emplace(store, map_of(0));
     to.retention = retention;

@@ -8,7 +8,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/maps/store_opening.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/full_disk.hpp"
 #include "tests/support/not_root.hpp"
 #include "tests/support/saving_fixture.hpp"
@@ -18,7 +18,7 @@ namespace deltamap::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-using mapping::MapStore;
+using mapping::store::MapStore;
 using test::at_s;
 using test::content_of;
 
@@ -157,7 +157,7 @@ class LateStore : public SavingMaps {
     const MapStore kept{store, *start.map};
     EXPECT_EQ(kept.dropped(), 0U);
     std::vector<std::tuple<std::uint32_t, std::string, std::uint32_t>> told;
-    for (const mapping::StoredRevision& one : kept.history()) {
+    for (const mapping::store::StoredRevision& one : kept.history()) {
       if (one.number > 0 && !one.refused)
         told.emplace_back(one.number, one.note.cause, cells_of(kept.grid(one.number)));
     }

@@ -11,7 +11,7 @@
 
 #include "core/random.hpp"
 #include "daemon/settings/start_error.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/full_disk.hpp"
 #include "tests/support/not_root.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -20,7 +20,7 @@ namespace deltamap::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-using mapping::MapStore;
+using mapping::store::MapStore;
 
 std::string content_of(const fs::path& file) {
   std::ostringstream text;

@@ -10,8 +10,8 @@ using Kind = Decision::Kind;
 
 TEST(Journal, EveryDecisionSurvivesTheRecording) {
   for (const Kind kind :
-       {Kind::kRevision, Kind::kThings, Kind::kScanDropped, Kind::kScanLost, Kind::kOdometryLost, Kind::kTrackedLost,
-        Kind::kSetLost, Kind::kPhaseClosed, Kind::kPaused, Kind::kResumed, Kind::kRelocalized}) {
+       {Kind::kRevision, Kind::kTransients, Kind::kScanDropped, Kind::kScanLost, Kind::kOdometryLost,
+        Kind::kTrackedLost, Kind::kSetLost, Kind::kPhaseClosed, Kind::kPaused, Kind::kResumed, Kind::kRelocalized}) {
     Decision decision{kind, 4000000000u, 7};
     if (kind == Kind::kOdometryLost || kind == Kind::kSetLost) decision.scan = 0;
     const bool has_no_number = kind == Kind::kScanDropped || kind == Kind::kScanLost || kind == Kind::kTrackedLost ||
@@ -51,8 +51,8 @@ TEST(Journal, AnswersWhatWasDecidedInTheNewestRun) {
   EXPECT_TRUE(journal.was_dropped(3));
   EXPECT_EQ(journal.revision_before(9), 2u);
   EXPECT_FALSE(journal.revision_before(8));
-  EXPECT_EQ(journal.things_before(9), 5u);
-  EXPECT_FALSE(journal.things_before(8));
+  EXPECT_EQ(journal.transients_before(9), 5u);
+  EXPECT_FALSE(journal.transients_before(8));
   EXPECT_EQ(journal.closing_scan(4), 8u);
   EXPECT_TRUE(journal.commands().empty());
 }

@@ -8,8 +8,8 @@
 #include "core/grid_file.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/revision_queue.hpp"
-#include "daemon/replay/things_queue.hpp"
-#include "mapping/map_store.hpp"
+#include "daemon/replay/transients_queue.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/padded.hpp"
 #include "tests/support/scripted_drive.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -80,7 +80,7 @@ TEST_F(ReplayTest, WritesEveryFileOfTheContract) {
        {"trajectory.tum", "map.yaml", "map.pgm", "changes.jsonl", "report.json", "map_store.sqlite"}) {
     EXPECT_TRUE(fs::exists(folder_.path() / "out" / name)) << name;
   }
-  EXPECT_EQ(mapping::MapStore{folder_.path() / "out/map_store.sqlite"}.grid(0), test::small_room(false));
+  EXPECT_EQ(mapping::store::MapStore{folder_.path() / "out/map_store.sqlite"}.grid(0), test::small_room(false));
 }
 
 TEST_F(ReplayTest, FindsTheSameChangesHoweverMuchUnknownSpaceLiesAroundTheMap) {
@@ -197,23 +197,23 @@ TEST(RevisionQueue, AJournalDecidesBeforeWhichScanARevisionIsTaken) {
   EXPECT_FALSE(queue.next_before(scan));
 }
 
-std::shared_ptr<const TemporaryThings> snapshot(std::uint32_t number) {
-  return std::make_shared<const TemporaryThings>(
-      TemporaryThings{.number = number, .time = {}, .blocks = {}, .standing = {}, .gone = {}});
+std::shared_ptr<const TransientObstacles> snapshot(std::uint32_t number) {
+  return std::make_shared<const TransientObstacles>(
+      TransientObstacles{.number = number, .time = {}, .blocks = {}, .standing = {}, .gone = {}});
 }
 
-TEST(ThingsQueue, WithoutAJournalTheNewestSnapshotIsTakenBeforeTheNextScan) {
-  ThingsQueue queue{nullptr};
+TEST(TransientsQueue, WithoutAJournalTheNewestSnapshotIsTakenBeforeTheNextScan) {
+  TransientsQueue queue{nullptr};
   EXPECT_EQ(queue.next_before(1), nullptr);
   for (const std::uint32_t number : {1u, 2u, 2u}) queue.push(snapshot(number));
   EXPECT_EQ(queue.next_before(2)->number, 2u);
   EXPECT_EQ(queue.next_before(3), nullptr);
 }
 
-TEST(ThingsQueue, AJournalDecidesBeforeWhichScanASnapshotIsTaken) {
+TEST(TransientsQueue, AJournalDecidesBeforeWhichScanASnapshotIsTaken) {
   Journal journal;
   journal.read("temporary 2 before scan 7");
-  ThingsQueue queue{&journal};
+  TransientsQueue queue{&journal};
   for (const std::uint32_t number : {1u, 2u, 3u}) queue.push(snapshot(number));
   EXPECT_EQ(queue.next_before(6), nullptr);
   EXPECT_EQ(queue.next_before(7)->number, 2u);

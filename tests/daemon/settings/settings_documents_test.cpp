@@ -12,6 +12,7 @@
 
 #include "daemon/settings/reader/nearest_key.hpp"
 #include "daemon/settings/settings_sections.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -20,7 +21,7 @@ using Json = nlohmann::json;
 
 std::string content_of(const std::string& file) {
   std::ostringstream text;
-  text << std::ifstream(DELTAMAP_SOURCE_DIR "/" + file, std::ios::binary).rdbuf();
+  text << std::ifstream(test::source_path(file), std::ios::binary).rdbuf();
   return text.str();
 }
 

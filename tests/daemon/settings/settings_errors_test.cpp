@@ -9,21 +9,14 @@
 
 #include "daemon/settings/settings.hpp"
 #include "tests/support/not_root.hpp"
+#include "tests/support/settings_lines.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
-using Lines = std::vector<std::string>;
-
-Lines errors_of(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
-  try {
-    (void)parse_settings(yaml, "f", overrides);
-  } catch (const SettingsError& error) {
-    return error.lines();
-  }
-  return {};
-}
+using test::errors_of;
+using test::Lines;
 
 TEST(SettingsErrors, AllMistakesOfAFileAndOfTheCommandLineAreToldAtOnce) {
   EXPECT_EQ(

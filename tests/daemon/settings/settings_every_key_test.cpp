@@ -9,21 +9,14 @@
 #include <vector>
 
 #include "daemon/settings/settings.hpp"
+#include "tests/support/settings_lines.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
-using Lines = std::vector<std::string>;
+using test::errors_of;
+using test::Lines;
 using Type = SettingKey::Type;
-
-Lines errors_of(const std::string& yaml) {
-  try {
-    (void)parse_settings(yaml, "f");
-  } catch (const SettingsError& error) {
-    return error.lines();
-  }
-  return {};
-}
 
 /// The key alone in a file, each part on a line of its own; `value` stands behind the last colon.
 std::string nested(const std::string& key, const std::string& value) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/settings/settings_documents.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::daemon {
@@ -20,10 +21,10 @@ std::string error_of(const std::string& yaml, const std::vector<std::string>& ov
 
 TEST(Settings, TheDeliveredFilesAreReadable) {
   for (const char* name : {"default", "pioneer", "simulation"}) {
-    const std::string file = std::string(DELTAMAP_SOURCE_DIR "/config/") + name + ".yaml";
+    const std::string file = test::source_path("config/") + name + ".yaml";
     EXPECT_NO_THROW((void)read_settings(file, {})) << file;
   }
-  const Settings pioneer = read_settings(DELTAMAP_SOURCE_DIR "/config/pioneer.yaml", {});
+  const Settings pioneer = read_settings(test::source_path("config/pioneer.yaml"), {});
   EXPECT_EQ(pioneer.navigation.mode, navigation::DriveMode::kOff) << "a daemon that starts does not move the robot";
 }
 

@@ -7,20 +7,13 @@
 #include <vector>
 
 #include "daemon/settings/settings.hpp"
+#include "tests/support/settings_lines.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
-using Lines = std::vector<std::string>;
-
-Lines errors_of(const std::string& yaml) {
-  try {
-    (void)parse_settings(yaml, "f");
-  } catch (const SettingsError& error) {
-    return error.lines();
-  }
-  return {};
-}
+using test::errors_of;
+using test::Lines;
 
 struct Case {
   std::string yaml;

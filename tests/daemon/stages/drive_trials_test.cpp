@@ -10,6 +10,7 @@
 #include "simulation/simulation.hpp"
 #include "tests/support/driving_daemon.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap {
@@ -23,7 +24,7 @@ constexpr Timestamp kStart = timestamp_from_ns(1'700'000'000'000'000'000);
 constexpr std::uint64_t kShards = 8;
 
 simulation::Scenario room() {
-  auto scenario = simulation::read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/room.yaml");
+  auto scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
   scenario.forklift.reset();
   return scenario;
 }

@@ -8,7 +8,7 @@ namespace {
 
 mapping::Awareness shut(double for_s) {
   mapping::Awareness awareness;
-  awareness.gate = mapping::GateReason::kRival;
+  awareness.gate = mapping::gate::GateReason::kOtherHypothesis;
   awareness.gate_shut_for_s = for_s;
   return awareness;
 }

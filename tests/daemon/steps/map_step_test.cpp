@@ -39,11 +39,8 @@ class Withdrawal : public testing::Test {
     ADD_FAILURE() << "nothing was written";
     return {};
   }
-  [[nodiscard]] static ScanSet order(Timestamp from, double time_s) {
-    ScanSet order;
-    order.began = order.ended = at(time_s);
-    order.withdraw_from = from;
-    return order;
+  [[nodiscard]] MapStep::Result withdraw(Timestamp from, double after_s) {
+    return step.withdraw({.time = at(time_s + after_s), .from = from});
   }
 
   OccupancyGrid hall = test::drawn_hall(0.05);
@@ -59,7 +56,7 @@ class Withdrawal : public testing::Test {
 TEST_F(Withdrawal, TakesEverythingProvisionalBackInOneRevision) {
   (void)change(with_box);
   const std::uint32_t written = step.revision();
-  const MapStep::Result result = step.update(order(Timestamp::min(), time_s + 1.0));
+  const MapStep::Result result = withdraw(Timestamp::min(), 1.0);
   ASSERT_TRUE(result.revision);
   EXPECT_EQ(*result.revision->map, hall);
   EXPECT_EQ(result.revision->number, written + 1);
@@ -77,7 +74,7 @@ TEST_F(Withdrawal, LeavesWhatWasWrittenBefore) {
   time_s += 0.2;
   (void)change(with_two);
   ASSERT_NE(*step.map(), kept);
-  (void)step.update(order(between, time_s + 1.0));
+  (void)withdraw(between, 1.0);
   EXPECT_EQ(*step.map(), kept);
 }
 
@@ -87,7 +84,7 @@ TEST_F(Withdrawal, LeavesWhatIsSettled) {
   ScanSet later;
   later.settled = written.note.time + std::chrono::nanoseconds{1};
   (void)step.update(later);
-  const MapStep::Result result = step.update(order(Timestamp::min(), time_s + 1.0));
+  const MapStep::Result result = withdraw(Timestamp::min(), 1.0);
   EXPECT_FALSE(result.revision);
   EXPECT_EQ(result.note.reason, "nothing to withdraw");
   EXPECT_EQ(*step.map(), kept);
@@ -95,16 +92,16 @@ TEST_F(Withdrawal, LeavesWhatIsSettled) {
 
 TEST_F(Withdrawal, IsNotDoneTwice) {
   (void)change(with_box);
-  (void)step.update(order(Timestamp::min(), time_s + 1.0));
-  EXPECT_FALSE(step.update(order(Timestamp::min(), time_s + 2.0)).revision);
+  (void)withdraw(Timestamp::min(), 1.0);
+  EXPECT_FALSE(withdraw(Timestamp::min(), 2.0).revision);
 }
 
 TEST_F(Withdrawal, StandsInTheMapStore) {
   const test::TemporaryFolder folder;
-  mapping::MapStore store{folder.path() / "store.sqlite", hall};
+  mapping::store::MapStore store{folder.path() / "store.sqlite", hall};
   keep(store, change(with_box), step.method());
   ASSERT_EQ(store.newest(), step.revision());
-  keep(store, step.update(order(Timestamp::min(), time_s + 1.0)), step.method());
+  keep(store, withdraw(Timestamp::min(), 1.0), step.method());
   EXPECT_EQ(store.history().back().note.cause, "withdrawn");
   EXPECT_EQ(store.grid(store.newest()), hall);
 }

@@ -21,14 +21,14 @@ RunBegin large_begin() {
       grid.set({column, row}, static_cast<CellState>(random.index_below(3)));
     }
   }
-  localization::StabilityRecord stability{grid.geometry(), 4, {}};
+  localization::belief::StabilityRecord stability{grid.geometry(), 4, {}};
   for (int i = 0; i < 4 * 75 * 100; ++i) stability.bytes.push_back(static_cast<std::uint8_t>(random.index_below(256)));
   RunBegin begin{0xFEDCBA9876543210u, 0xFFFFFFFFFFFFFFFFu, {}};
   begin.start.map = std::make_shared<const OccupancyGrid>(std::move(grid));
   begin.start.revision = 7;
   begin.start.remembered = Pose2{1.0 / 3.0, -2e-9, 3.0 / 7.0};
   begin.start.stability = std::move(stability);
-  begin.start.calibration = localization::DriveCalibration{
+  begin.start.calibration = localization::motion::DriveCalibration{
       {1.0 / 7.0, -0.02, 1e-9, 0.1}, {0.01, 0.02, 0.03, 0.04}, {0.01, -0.01, 1.0 / 300.0}, {0.001, 0.002, 0.003}};
   return begin;
 }

@@ -13,6 +13,7 @@
 #include "drivers/pioneer/session.hpp"
 #include "tests/drivers/pioneer/fake_robot.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {
@@ -172,7 +173,7 @@ std::string row_of(const State& state) {
 
 std::string document() {
   std::ostringstream text;
-  text << std::ifstream(DELTAMAP_SOURCE_DIR "/docs/decisions/who-may-drive.md").rdbuf();
+  text << std::ifstream(test::source_path("docs/decisions/who-may-drive.md")).rdbuf();
   return text.str();
 }
 

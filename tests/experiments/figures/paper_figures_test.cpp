@@ -8,6 +8,7 @@
 #include "experiments/drive/room_changes.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/report/svg_map.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -15,15 +16,15 @@ namespace {
 /// Of one seed, with drives of so many minutes.
 Report small_report(const std::string& name, double minutes, std::uint64_t seed) {
   Options options;
-  options.scenarios = DELTAMAP_SOURCE_DIR "/config/scenarios";
+  options.scenarios = test::source_path("config/scenarios");
   options.seed = seed;
   options.minutes = minutes;
   options.repeats = 1;
   for (const auto& known : experiments()) {
-    if (known->name() != name) continue;
+    if (known.name != name) continue;
     std::vector<Outcome> outcomes;
-    for (const Run& run : known->runs(options)) outcomes.push_back(run.work());
-    return known->report(outcomes);
+    for (const Run& run : known.runs(options)) outcomes.push_back(run.work());
+    return known.report(outcomes);
   }
   ADD_FAILURE() << "no experiment " << name;
   return {};
@@ -107,7 +108,7 @@ std::vector<Point2> containers_in(const simulation::World& world) {
 
 TEST(RoomChanges, TakeBoxesOutOfOneObstacleAndPutThemBackToWhereTheyWere) {
   constexpr double kOneObstacle_m = 1.3;
-  const auto scenario = simulation::read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/room.yaml");
+  const auto scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
   simulation::VirtualDrive drive{scenario, {.seed = 5}};
   RoomChanges changes{{.settle_s = 1.0, .every_s = 1.0, .look_s = 5.0}, scenario, Random{5}};
   bool was_emptied = false;

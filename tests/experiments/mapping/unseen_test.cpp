@@ -31,7 +31,7 @@ class MadeUpDrive {
   explicit MadeUpDrive(bool knows_start, const Pose2& mount = {}) : course{knows_start, mount} {}
 
   void scans(int count, double error_m, LocalizerState state = LocalizerState::kTracking,
-             mapping::GateReason gate = mapping::GateReason::kOpen, const Befallen& befallen = {}) {
+             mapping::gate::GateReason gate = mapping::gate::GateReason::kOpen, const Befallen& befallen = {}) {
     for (int i = 0; i < count; ++i) {
       Mapped scan;
       scan.passed_s = passed_s;
@@ -93,9 +93,9 @@ TEST(PoseCourse, JudgesTheCovarianceByTheLaserAndNotByAMountThatNobodyCanKnow) {
 TEST(PoseCourse, CountsHowLongTheGateIsShutWhileThePoseIsRight) {
   MadeUpDrive drive{true};
   drive.scans(100, 0.05);
-  drive.scans(50, 0.05, LocalizerState::kTracking, mapping::GateReason::kConfirming);
-  drive.scans(50, 0.3, LocalizerState::kTracking, mapping::GateReason::kDoubtful);  // not right: may be shut
-  drive.scans(50, 0.05, LocalizerState::kLost, mapping::GateReason::kLost);
+  drive.scans(50, 0.05, LocalizerState::kTracking, mapping::gate::GateReason::kConfirming);
+  drive.scans(50, 0.3, LocalizerState::kTracking, mapping::gate::GateReason::kDoubtful);  // not right: may be shut
+  drive.scans(50, 0.05, LocalizerState::kLost, mapping::gate::GateReason::kLost);
   EXPECT_NEAR(number(drive.course, "gate_shut_while_right"), 100.0 / 199.0, 1e-6);
   EXPECT_NEAR(number(drive.course, "searching_while_near_s"), 5.0, 1e-6);
 }
@@ -118,12 +118,12 @@ TEST(PoseCourse, FindsAStartOnlyOnceItIsTrackedAndRightForAWhile) {
 
 TEST(PoseCourse, NamesWhatHappenedShortlyBeforeThePoseWentWrong) {
   MadeUpDrive drive{true};
-  drive.scans(10, 0.0, LocalizerState::kTracking, mapping::GateReason::kOpen, {.person_near = true});
+  drive.scans(10, 0.0, LocalizerState::kTracking, mapping::gate::GateReason::kOpen, {.person_near = true});
   drive.scans(250, 0.0);  // the person has long gone
   drive.slips = 1;
   drive.scans(10, 0.0);
   drive.passed_s += 4.0;  // without scans
-  drive.scans(10, 0.0, LocalizerState::kTracking, mapping::GateReason::kOpen, {.change_in_view = true});
+  drive.scans(10, 0.0, LocalizerState::kTracking, mapping::gate::GateReason::kOpen, {.change_in_view = true});
   drive.scans(10, 0.9);
   EXPECT_EQ(drive.course.cause(), "change in view, slip, gap");
   EXPECT_EQ(number(drive.course, "jumps"), 1.0);

@@ -4,9 +4,9 @@
 
 #include "core/angle.hpp"
 #include "experiments/merge/merge_places.hpp"
-#include "mapping/merge/global_merge.hpp"
-#include "mapping/merge/prior_merge.hpp"
-#include "mapping/merge/transformed_grid.hpp"
+#include "mapping/grid_registration/global_merge.hpp"
+#include "mapping/grid_registration/prior_merge.hpp"
+#include "mapping/registration/transformed_grid.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -19,7 +19,7 @@ TEST(GlobalMerge, FindsTheTruePlaceAmongRacksThatRepeat) {
   for (int i = 0; i < 7; ++i) {
     const LocalMap local = turned_local(place, false, random);
     if (i != 0 && i != 6) continue;
-    const mapping::merge::MapMerge merge = mapping::merge::global_merge(place.map, local.grid, {});
+    const mapping::merge::MapMerge merge = mapping::grid_registration::global_merge(place.map, local.grid, {});
     EXPECT_TRUE(merge.accepted()) << i;
     EXPECT_LT(measured(place, local, merge.map_from_local).off_cells, kRight_cells) << i;
   }
@@ -33,7 +33,7 @@ TEST(PriorMerge, DoesNotAskForSurfacesWhereTheMapKnowsNothing) {
   for (int i = 0; i < 3; ++i) {
     const LocalMap local = turned_local(place, false, random);
     const Pose2 truth = place.map_from_other * inverse(local.local_from_other);
-    const auto merge = mapping::merge::prior_merge(place.map, local.grid, truth, covariance, {});
+    const auto merge = mapping::grid_registration::prior_merge(place.map, local.grid, truth, covariance, {});
     EXPECT_TRUE(merge.accepted()) << i;
     EXPECT_LT(measured(place, local, merge.map_from_guess * truth).off_cells, kRight_cells) << i;
   }
@@ -44,9 +44,10 @@ TEST(PriorMerge, EndsAsWellAsTheTruePoseNearTheLatticesOwnTurns) {
   const PoseCovariance covariance = Eigen::Vector3d{0.01, 0.01, 0.001}.asDiagonal();
   for (const double turn_deg : {-179.62, -90.12, 179.25, 0.7, 134.86}) {
     const Pose2 local_from_map{0.43, -0.27, radians(turn_deg)};
-    const OccupancyGrid local = mapping::merge::moved_grid(place.map, local_from_map, place.map.resolution_m());
+    const OccupancyGrid local = mapping::registration::moved_grid(place.map, local_from_map, place.map.resolution_m());
     const mapping::merge::LocalCells cells{local};
-    const auto merge = mapping::merge::prior_merge(place.map, local, inverse(local_from_map), covariance, {});
+    const auto merge =
+        mapping::grid_registration::prior_merge(place.map, local, inverse(local_from_map), covariance, {});
     ASSERT_TRUE(merge.accepted()) << turn_deg;
     const Pose2 found = merge.map_from_guess * inverse(local_from_map);
     const auto motion = mapping::merge::cell_motion(found, place.map.geometry(), cells);

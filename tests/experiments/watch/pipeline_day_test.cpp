@@ -9,6 +9,7 @@
 
 #include "experiments/watch/pipeline_day.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -21,7 +22,7 @@ double hours_to_drive() {
 }
 
 MappingRun run_of(double hours) {
-  MappingRun run{.scenario = simulation::read_scenario(DELTAMAP_SOURCE_DIR "/config/scenarios/endurance.yaml"),
+  MappingRun run{.scenario = simulation::read_scenario(test::source_path("config/scenarios/endurance.yaml")),
                  .drive = {},
                  .settings = {},
                  .minutes = 60.0 * hours};

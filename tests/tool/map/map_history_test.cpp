@@ -9,7 +9,7 @@
 
 #include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/tool_run.hpp"
 
@@ -27,7 +27,7 @@ ToolRun history(std::vector<std::string> words) {
 class MapHistory : public testing::Test {
  protected:
   MapHistory() {
-    mapping::MapStore store{file, first};
+    mapping::store::MapStore store{file, first};
     store.append_refusal(timestamp_from_ns(500), {1, 0.3, "low acceptance"});
     second.set({2, 3}, CellState::kOccupied);
     second.set({4, 3}, CellState::kFree);
@@ -85,7 +85,7 @@ TEST_F(MapHistory, TellsWhatChangedBetweenTwo) {
 TEST_F(MapHistory, GoesBackToAnEarlierMap) {
   const ToolRun run = history({file, "rollback", "0", "--json"});
   EXPECT_EQ(nlohmann::json::parse(run.output)["number"], 2);
-  EXPECT_EQ((mapping::MapStore{file, first}.grid(2)), first);
+  EXPECT_EQ((mapping::store::MapStore{file, first}.grid(2)), first);
 }
 
 TEST_F(MapHistory, TellsEachCellThatChanged) {
@@ -100,7 +100,7 @@ TEST_F(MapHistory, TakesARevisionBack) {
   const ToolRun run = history({file, "undo", "1", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_EQ(nlohmann::json::parse(run.output), (nlohmann::json{{"number", 2}, {"undone", 1}, {"cells", 2}}));
-  EXPECT_EQ((mapping::MapStore{file, first}.grid(2)), first);
+  EXPECT_EQ((mapping::store::MapStore{file, first}.grid(2)), first);
   const ToolRun difference = history({file, "diff", "1", "2", "--cells", "--json"});
   EXPECT_EQ(nlohmann::json::parse(difference.output)["changes"],
             (nlohmann::json{{2, 3, "occupied", "unknown"}, {4, 3, "free", "unknown"}}));
@@ -108,7 +108,7 @@ TEST_F(MapHistory, TakesARevisionBack) {
 
 TEST_F(MapHistory, OfAStoreInUseIsReadAndNotWritten) {
   const auto lock = lock_of_file(file);
-  mapping::MapStore store{file, first};  // the daemon
+  mapping::store::MapStore store{file, first};  // the daemon
   for (const std::string what : {"rollback", "undo"}) {
     const ToolRun run = history({file, what, what == "undo" ? "1" : "0"});
     EXPECT_EQ(run.exit_code, 1);
@@ -125,7 +125,7 @@ TEST_F(MapHistory, OfAStoreInUseIsReadAndNotWritten) {
 TEST_F(MapHistory, TellsThePoseCovarianceOfEachRevision) {
   PoseCovariance covariance;
   covariance << 1, 2, 3, 2, 4, 5, 3, 5, 6;
-  mapping::MapStore store{file, first};
+  mapping::store::MapStore store{file, first};
   store.append_refusal(timestamp_from_ns(7), {3, 0.2, "implausible", covariance});
   std::istringstream lines{history({file, "list", "--json"}).output};
   std::vector<nlohmann::json> rows;

@@ -12,7 +12,7 @@
 
 #include "core/grid_file.hpp"
 #include "daemon/maps/png_bytes.hpp"
-#include "mapping/map_store.hpp"
+#include "mapping/store/map_store.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/tool_run.hpp"
@@ -24,6 +24,7 @@
 namespace deltamap::tool {
 namespace {
 
+using picture::drawn;
 using picture::Ink;
 using picture::Raster;
 using picture::Scene;
@@ -121,7 +122,7 @@ TEST(Scene, DrawsRobotPathAndScanWhereTheyAre) {
     return at(picture, static_cast<std::size_t>((point.x() + 1.0) / 0.05 * 4.0),
               static_cast<std::size_t>((80.0 - (point.y() + 2.0) / 0.05) * 4.0));
   };
-  EXPECT_EQ(pixel({0.9, 0.15}), picture::kRobot);
+  EXPECT_EQ(pixel({0.95, 0.2}), picture::kRobot);
   EXPECT_EQ(pixel({0.5, -1.0}), picture::kPath);
   EXPECT_EQ(pixel({3.0, 1.0}), picture::kScan);
   for (const Ink& ink : {picture::kRobot, picture::kPath, picture::kScan}) EXPECT_EQ(pixels_of(bare, ink), 0u);
@@ -239,7 +240,7 @@ class PictureCommands : public testing::Test {
     OccupancyGrid after = room();
     for (int column = 40; column < 60; ++column) after.set({column, 40}, CellState::kOccupied);
     write_grid(after, folder_.path() / "m1.yaml");
-    mapping::MapStore store{folder_.path() / "store.sqlite", room()};
+    mapping::store::MapStore store{folder_.path() / "store.sqlite", room()};
     MapRevision revision;
     revision.number = 1;
     revision.time = timestamp_from_ns(1'000'000'000);

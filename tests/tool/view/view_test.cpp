@@ -7,6 +7,7 @@
 
 #include "tests/support/live_decoding.hpp"
 #include "tests/support/pipeline_fixture.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/tool_run.hpp"
 #include "tests/support/web_client.hpp"
 #include "tool/view/moment_file.hpp"
@@ -136,7 +137,7 @@ TEST_F(ViewTest, AMomentHoldsThePoseOfItsTime) {
   serve_folder();
   const RunFolder read = read_run_folder(run());
   const daemon::LocalizationRow& wanted = read.rows.at(100);
-  const double time_s = static_cast<double>(unix_ns(wanted.time)) * 1e-9;
+  const double time_s = unix_seconds(wanted.time);
   char address[64];
   (void)std::snprintf(address, sizeof address, "/api/moment?time=%.4f", time_s + 0.01);
   const auto messages = messages_in(got(address).body);
@@ -271,7 +272,7 @@ TEST_F(ViewTest, BadInputIsOneLineAndExitCodeOne) {
   EXPECT_EQ(refused({recording}),
             "deltamap: " + recording + ": a recording needs --map and --config, as `deltamap replay` does\n");
   const std::vector<std::string> how{"--map", folder_.path() / "room.yaml", "--config",
-                                     DELTAMAP_SOURCE_DIR "/config/simulation.yaml"};
+                                     test::source_path("config/simulation.yaml")};
   const std::string text = folder_.write("text.pcapng", "no recording\n").string();
   EXPECT_TRUE(refused({text, how[0], how[1], how[2], how[3]}).starts_with("deltamap: " + text + ": "));
   EXPECT_EQ(test::run_deltamap({"view"}).exit_code, 2);

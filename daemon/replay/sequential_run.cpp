@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/replay/sequential_run.hpp"
+
+#include <utility>
+
+#include "daemon/telemetry/cpu_timer.hpp"
+
+namespace deltamap::daemon {
+
+SequentialRun::SequentialRun(const Settings& settings, const StartMap& start, const Journal* journal,
+                             double map_delay_s)
+    : localization_{settings, start},
+      store_scan_{settings.mapping.store_scan, settings.seed},
+      map_{settings, start},
+      revisions_{journal, map_delay_s, start.revision},
+      transients_{journal} {}
+
+void SequentialRun::observe(const Odometry& odometry) {
+  const CpuTimer timer{cpu_.localization_s};
+  localization_.observe(odometry);
+}
+
+void SequentialRun::take_what_is_due(const Scan& scan) {
+  const CpuTimer timer{cpu_.localization_s};
+  while (const auto revision = revisions_.next_before(scan)) localization_.apply(*revision);
+  if (auto transients = transients_.next_before(scan.number)) localization_.apply(std::move(transients));
+}
+
+TrackedScan SequentialRun::observe(Scan scan) {
+  const CpuTimer timer{cpu_.localization_s};
+  return localization_.observe(std::move(scan));
+}
+
+std::optional<ScanSet> SequentialRun::look_for_changes(const TrackedScan& tracked) {
+  const CpuTimer timer{cpu_.awareness_s};
+  std::optional<ScanSet> set = store_scan_.observe(tracked);
+  transients_.push(store_scan_.transients());
+  return set;
+}
+
+MapStep::Result SequentialRun::update_map(const ScanSet& set) {
+  const CpuTimer timer{cpu_.map_update_s};
+  return handed_on(map_.update(set));
+}
+
+std::optional<MapStep::Result> SequentialRun::withdraw() {
+  if (!store_scan_.withdrawal()) return std::nullopt;
+  const CpuTimer timer{cpu_.map_update_s};
+  return handed_on(map_.withdraw(*store_scan_.withdrawal()));
+}
+
+MapStep::Result SequentialRun::obey(const SetCells& wanted) {
+  const CpuTimer timer{cpu_.map_update_s};
+  return handed_on(map_.obey(wanted));
+}
+
+MapStep::Result SequentialRun::handed_on(MapStep::Result result) {
+  if (result.revision) revisions_.push(*result.revision);
+  return result;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stages of a run one after another in one thread and in the run's own time: localizer, Δ-mapping, map, and what
+// they hand back to the localizer. A replay does so with recorded bytes, a simulated drive with a virtual robot; the
+// threads of pipeline.cpp run the same steps.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/messages.hpp"
+#include "daemon/outputs/outputs.hpp"
+#include "daemon/records/journal.hpp"
+#include "daemon/records/map_order.hpp"
+#include "daemon/replay/revision_queue.hpp"
+#include "daemon/replay/transients_queue.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/steps/localization_step.hpp"
+#include "daemon/steps/map_step.hpp"
+#include "mapping/store_scan.hpp"
+
+namespace deltamap::daemon {
+
+class SequentialRun {
+ public:
+  /// The journal says before which scan the localizer takes what; null: a revision when `map_delay_s` of the run have
+  /// passed since its set ended, all else before the next scan.
+  SequentialRun(const Settings& settings, const StartMap& start, const Journal* journal, double map_delay_s);
+
+  void observe(const Odometry& odometry);
+  /// The localizer takes what is due before this scan.
+  void take_what_is_due(const Scan& scan);
+  [[nodiscard]] TrackedScan observe(Scan scan);
+  /// What is to be handed to update_map().
+  [[nodiscard]] std::optional<ScanSet> look_for_changes(const TrackedScan& tracked);
+  [[nodiscard]] MapStep::Result update_map(const ScanSet& set);
+  /// Nothing where the last scan orders nothing back.
+  [[nodiscard]] std::optional<MapStep::Result> withdraw();
+  [[nodiscard]] MapStep::Result obey(const SetCells& wanted);
+
+  [[nodiscard]] LocalizationStep& localization() { return localization_; }
+  [[nodiscard]] const LocalizationStep& localization() const { return localization_; }
+  [[nodiscard]] const mapping::StoreScan& store_scan() const { return store_scan_; }
+  [[nodiscard]] const MapStep& map() const { return map_; }
+  /// CPU time of this thread so far, by stage.
+  [[nodiscard]] const StageCpu& cpu() const { return cpu_; }
+
+ private:
+  /// Its revision waits for the localizer.
+  [[nodiscard]] MapStep::Result handed_on(MapStep::Result result);
+
+  LocalizationStep localization_;
+  mapping::StoreScan store_scan_;
+  MapStep map_;
+  RevisionQueue revisions_;
+  TransientsQueue transients_;
+  StageCpu cpu_;
+};
+
+}  // namespace deltamap::daemon

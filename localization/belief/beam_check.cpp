@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/belief/beam_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "localization/belief/straight_walk.hpp"
+
+namespace deltamap::localization::belief {
+namespace {
+
+constexpr double kOutOfTheLaserM = 0.1;  // nothing so near the laser is an obstacle of the map
+
+/// How far aside a beam may lie from where the pose puts it.
+struct Aside {
+  double at_laser_m = 0.0;
+  double at_end_m = 0.0;
+};
+
+/// Towards free space, from the cells around; zero inside blocks and on single cells.
+Point2 surface_normal(const OccupancyGrid& map, Cell at) {
+  int columns = 0;
+  int rows = 0;
+  map.tiles().visit_around(at, 2, map.geometry(), [&](Cell cell, CellState state) {
+    if (state != CellState::kFree) return;
+    columns += cell.column - at.column;
+    rows += cell.row - at.row;
+  });
+  const Point2 sum{columns, rows};
+  const double length = sum.norm();
+  return length > 0.0 ? Point2{sum / length} : Point2{0.0, 0.0};
+}
+
+/// The obstacle nearest to a place, at most `reach_m` away.
+std::optional<Cell> obstacle_near(const OccupancyGrid& map, const Point2& place, double reach_m) {
+  const GridGeometry& geometry = map.geometry();
+  const Cell centre = geometry.cell_at(place);
+  if (map.at(centre) == CellState::kOccupied) return centre;
+  const int rings = static_cast<int>(std::ceil(reach_m / geometry.resolution_m));
+  double nearest_m2 = reach_m * reach_m;
+  std::optional<Cell> nearest;
+  for (int ring = 1; ring <= rings && !nearest; ++ring) {
+    for (int row = -ring; row <= ring; ++row) {
+      const int step = std::abs(row) == ring ? 1 : 2 * ring;
+      for (int column = -ring; column <= ring; column += step) {
+        const Cell cell{centre.column + column, centre.row + row};
+        if (map.at(cell) != CellState::kOccupied) continue;
+        const double away_m2 = (geometry.centre_of(cell) - place).squaredNorm();
+        if (away_m2 > nearest_m2) continue;
+        nearest_m2 = away_m2;
+        nearest = cell;
+      }
+    }
+  }
+  return nearest;
+}
+
+class BeamJudge {
+ public:
+  BeamJudge(const OccupancyGrid& map, const sensor::RefinedPose& believed, double max_range_m,
+            const BeamCheckParams& params)
+      : map_{map},
+        max_range_m_{max_range_m},
+        pose_{believed.map_from_robot},
+        params_{params},
+        hit_deviation_m_{std::max(params.hit_deviation_m, map.resolution_m())},
+        position_m_{std::hypot(std::sqrt(widest_variance(believed.covariance)), params.least_position_deviation_m)},
+        heading_rad_{
+            std::hypot(std::sqrt(std::max(0.0, believed.covariance(2, 2))), params.least_heading_deviation_rad)} {}
+
+  [[nodiscard]] Point2 end_of(const RayInRobot& ray) const { return pose_ * Point2{ray.end.cast<double>()}; }
+
+  [[nodiscard]] CheckedBeam judged(const RayInRobot& ray) const {
+    const Point2 from = pose_ * Point2{ray.origin.cast<double>()};
+    const Point2 end = end_of(ray);
+    const double length_m = (end - from).norm();
+    const Aside aside{position_m_, std::hypot(position_m_, length_m * heading_rad_)};
+    if (length_m <= kOutOfTheLaserM || aside.at_end_m > params_.most_aside_m) return {};
+    const double slack_m = params_.deviations * std::hypot(aside.at_end_m, hit_deviation_m_);
+    const Point2 along = (end - from) / length_m;
+
+    if (map_.at(map_.geometry().cell_at(from)) != CellState::kFree) return {};  // no view from inside a block
+    const Met met = first_met(map_, from, along, kOutOfTheLaserM, length_m - params_.beyond_m - slack_m);
+    if (met.what == CellState::kUnknown) return {};
+    if (met.what == CellState::kOccupied) {
+      return is_crossed_beside(from, end, aside, slack_m) ? beam(BeamFit::kBeyond, met.cell) : CheckedBeam{};
+    }
+    if (const auto surface = obstacle_near(map_, end, slack_m)) return beam(BeamFit::kFit, *surface);
+    const Met hidden = first_met(map_, from, along, length_m, max_range_m_ - slack_m);
+    if (hidden.what == CellState::kOccupied) return beam(BeamFit::kShort, hidden.cell);
+    return {};
+  }
+
+ private:
+  static double widest_variance(const PoseCovariance& c) {
+    const double half = 0.5 * (c(0, 0) + c(1, 1));
+    return std::max(0.0, half + std::hypot(0.5 * (c(0, 0) - c(1, 1)), c(0, 1)));
+  }
+
+  [[nodiscard]] CheckedBeam beam(BeamFit what, Cell expected) const {
+    return {what, expected, surface_normal(map_, expected)};
+  }
+
+  /// Do the outermost beams that the pose may as well have sent also go through an obstacle?
+  [[nodiscard]] bool is_crossed_beside(const Point2& from, const Point2& end, const Aside& aside,
+                                       double slack_m) const {
+    const Point2 ahead = (end - from).normalized();
+    const Point2 left{-ahead.y(), ahead.x()};
+    for (const double side : {params_.deviations, -params_.deviations}) {
+      const Point2 start = from + side * aside.at_laser_m * left;
+      const Point2 way = end + side * aside.at_end_m * left - start;
+      const double length_m = way.norm();
+      const Met met = first_met(map_, start, way / length_m, kOutOfTheLaserM, length_m - params_.beyond_m - slack_m);
+      if (met.what != CellState::kOccupied) return false;
+    }
+    return true;
+  }
+
+  const OccupancyGrid& map_;
+  const double max_range_m_;
+  const Pose2 pose_;
+  const BeamCheckParams& params_;
+  const double hit_deviation_m_;
+  const double position_m_;
+  const double heading_rad_;
+};
+
+}  // namespace
+
+std::span<const CheckedBeam> BeamCheck::check(const OccupancyGrid& map, const Scan& scan,
+                                              std::span<const RayInRobot> rays, const sensor::RefinedPose& believed,
+                                              const TransientObstacles* transients) {
+  const BeamJudge judge{map, believed, scan.max_range_m, params_};
+  const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(1, params_.beams)));
+  beams_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = i * rays.size() / count;
+    beams_.push_back(scan.beams[at].kind == BeamKind::kRange ? judge.judged(rays[at]) : CheckedBeam{});
+    if (transients == nullptr) continue;
+    CheckedBeam& beam = beams_.back();
+    beam.is_known = (beam.what == BeamFit::kShort && transients->stands_at(judge.end_of(rays[at]))) ||
+                    (beam.what == BeamFit::kBeyond && transients->is_gone_at(map.geometry().centre_of(beam.expected)));
+  }
+  return beams_;
+}
+
+}  // namespace deltamap::localization::belief

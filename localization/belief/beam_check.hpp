@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Classifies the beams of one scan at the estimated pose by what the map expects there: a beam ends at a surface of the
+// map (fit), before it (short) or beyond what the map has as an obstacle. The pose's covariance is taken into account:
+// a beam that fits at some pose within it does not count against this one.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/angle.hpp"
+#include "core/messages.hpp"
+#include "core/occupancy_grid.hpp"
+#include "core/transient_obstacles.hpp"
+#include "localization/sensor/pose_refinement.hpp"
+
+namespace deltamap::localization::belief {
+
+struct BeamCheckParams {
+  int beams = 72;                                       ///< of a scan that are looked at, evenly chosen; 8..1000
+  double deviations = 2.0;                              ///< half width of what still fits, in σ; > 0
+  double hit_deviation_m = 0.05;                        ///< of laser and map together, m; > 0; at least a cell is used
+  double least_position_deviation_m = 0.02;             ///< added to the pose's σ, m; >= 0
+  double least_heading_deviation_rad = radians(0.286);  ///< added to the heading's σ, rad; >= 0
+  double most_aside_m = 0.3;                            ///< a beam whose place is less certain says nothing, m; > 0
+  double beyond_m = 0.2;  ///< a beam must end this far behind what it went through, m; >= 0
+};
+
+enum class BeamFit : std::uint8_t {
+  kSilent,  ///< no range, off the map, or too uncertain
+  kFit,     ///< ended at a surface of the map
+  kShort,   ///< ended in free space: something stands in the way
+  kBeyond   ///< went through what the map has as an obstacle, for every pose within the covariance
+};
+
+struct CheckedBeam {
+  BeamFit what = BeamFit::kSilent;
+  Cell expected;            ///< the obstacle that the map expects the beam to end at
+  Point2 normal{0.0, 0.0};  ///< of its surface, towards free space; zero where it has none
+  bool is_known = false;    ///< kShort, kBeyond: by what is known to stand or to be gone there for now
+};
+
+class BeamCheck {
+ public:
+  explicit BeamCheck(const BeamCheckParams& params) : params_{params} {}
+
+  /// The chosen beams in order of bearing; valid until the next call. `transients` may be null.
+  std::span<const CheckedBeam> check(const OccupancyGrid& map, const Scan& scan, std::span<const RayInRobot> rays,
+                                     const sensor::RefinedPose& believed,
+                                     const TransientObstacles* transients = nullptr);
+
+ private:
+  BeamCheckParams params_;
+  std::vector<CheckedBeam> beams_;
+};
+
+}  // namespace deltamap::localization::belief

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/belief/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::localization::belief {
+namespace {
+
+PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
+  if (report.followed == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
+  if (report.own_known) {
+    const hypotheses::ReportedHypothesis& other = report.others.front();
+    const bool kidnapped = report.kidnapped_share > other.share;
+    return {.believed = report.own_share,
+            .best_other = std::max(other.share, report.kidnapped_share),  // one of them may be watched, not listed
+            .map_from_other = kidnapped ? report.map_from_kidnapped : other.map_from_robot,
+            .beaten = report.beaten,
+            .unique = report.unique};
+  }
+  const hypotheses::ReportedHypothesis& second = report.others[1];
+  return {.believed = report.others.front().share,
+          .best_other = report.listed > 1 ? second.share : 0.0,
+          .map_from_other = second.map_from_robot,
+          .searching = true};
+}
+
+}  // namespace
+
+Judgement::Judgement(const OccupancyGrid& map, const JudgementParams& params)
+    : params_{params}, stability_{map.geometry(), params.stability}, check_{params.beams}, judge_{params.verdict} {}
+
+void Judgement::start(double pose_right, bool found) {
+  judge_.start(pose_right, found);
+  since_check_.reset();
+  belief_ = judge_.belief();
+}
+
+bool Judgement::due(const PoseJudge::Passed& passed) {
+  if (!since_check_) return true;
+  since_check_->driven_m += passed.driven_m;
+  since_check_->turned_rad += passed.turned_rad;
+  since_check_->time_s += passed.time_s;
+  return since_check_->driven_m >= params_.check_m || since_check_->turned_rad >= params_.check_rad ||
+         since_check_->time_s >= params_.check_s;
+}
+
+const Belief& Judgement::observe(const View& view) {
+  belief_.is_checked = false;
+  if (!due(view.passed)) return belief_;
+  const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
+  since_check_ = PoseJudge::Passed{};
+  const std::span<const CheckedBeam> beams =
+      check_.check(view.map, view.scan, view.rays, view.believed, view.transients);
+  judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses));
+  belief_ = judge_.belief();
+  belief_.is_checked = true;
+  earn(beams, view);
+  return belief_;
+}
+
+void Judgement::earn(std::span<const CheckedBeam> beams, const View& view) {
+  const PoseCovariance& c = view.believed.covariance;
+  const bool sure = view.state == LocalizerState::kTracking && judge_.trust() >= params_.earn_right_above &&
+                    std::sqrt(std::max(c(0, 0), c(1, 1))) <= params_.earn_deviation_m;
+  if (!sure) return;
+  const Point2 seen_from = view.believed.map_from_robot.position();
+  for (const CheckedBeam& beam : beams) {
+    if (beam.what == BeamFit::kFit) stability_.confirm(beam.expected, seen_from, view.scan.time);
+    if (beam.what == BeamFit::kBeyond) stability_.refute(beam.expected, seen_from, view.scan.time);
+  }
+}
+
+void Judgement::forget(const OccupancyGrid& before, const OccupancyGrid& next) {
+  if (before.geometry() == next.geometry()) {
+    stability_.forget(changes_between(before, next));
+  } else {
+    stability_ = Stability{next.geometry(), params_.stability};
+  }
+}
+
+}  // namespace deltamap::localization::belief

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers two questions at each scan: is the pose right, and is the map wrong here? Checks the beams at the estimated
+// pose, lets the tiles of the map earn their stability while the pose is well known, and keeps the belief.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "localization/belief/beam_check.hpp"
+#include "localization/belief/pose_verdict.hpp"
+#include "localization/belief/stability.hpp"
+#include "localization/belief/view_tally.hpp"
+#include "localization/hypotheses/hypothesis_report.hpp"
+
+namespace deltamap::localization::belief {
+
+struct JudgementParams {
+  StabilityParams stability;
+  BeamCheckParams beams;
+  PoseVerdictParams verdict;
+  double check_m = 0.1;             ///< beams are checked again after so much driving, m; >= 0
+  double check_rad = radians(2.0);  ///< or turning, rad; >= 0
+  double check_s = 0.4;             ///< or waiting, s; >= 0
+  double earn_right_above = 0.9;    ///< P(pose right) above which tiles earn stability; 0.5..1
+  double earn_deviation_m = 0.1;    ///< the pose's σ below which they do, m; > 0
+};
+
+class Judgement {
+ public:
+  Judgement(const OccupancyGrid& map, const JudgementParams& params);
+
+  /// Begins anew at a pose that is right with this probability.
+  void start(double pose_right, bool found = false);
+
+  struct View {
+    const OccupancyGrid& map;
+    const Scan& scan;
+    std::span<const RayInRobot> rays;
+    const sensor::RefinedPose& believed;
+    LocalizerState state = LocalizerState::kGlobal;
+    PoseJudge::Passed passed;  ///< since the last scan
+    const hypotheses::HypothesisReport& hypotheses;
+    const TransientObstacles* transients = nullptr;  ///< what is known to be different for now
+  };
+  /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
+  const Belief& observe(const View& view);
+
+  [[nodiscard]] const Belief& belief() const { return belief_; }
+  /// P(pose right) by all beams, whether on proven tiles or not.
+  [[nodiscard]] double trust() const { return judge_.trust(); }
+
+  /// The map is replaced by `next`: what differs has to earn its stability again.
+  void forget(const OccupancyGrid& before, const OccupancyGrid& next);
+  void forget(std::span<const CellChange> changes) { stability_.forget(changes); }
+
+  [[nodiscard]] const Stability& stability() const { return stability_; }
+  [[nodiscard]] bool restore(const StabilityRecord& record) { return stability_.restore(record); }
+
+ private:
+  [[nodiscard]] bool due(const PoseJudge::Passed& passed);
+  void earn(std::span<const CheckedBeam> beams, const View& view);
+
+  JudgementParams params_;
+  Stability stability_;
+  BeamCheck check_;
+  PoseJudge judge_;
+  std::optional<PoseJudge::Passed> since_check_;  ///< none: nothing checked yet
+  Belief belief_;
+};
+
+}  // namespace deltamap::localization::belief

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/belief/pose_verdict.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace deltamap::localization::belief {
+namespace {
+
+constexpr double kOtherView = 0.25;    // a hold that has changed so much is a new view, whatever odometry says
+constexpr double kBeamsOfDoubt = 3.0;  // few beams leave a hold near one half
+constexpr double kLeastProven = 0.25;  // what unproven tiles may say against a pose
+constexpr double kMapMemoryViews = 3.0;
+constexpr double kMapSteepness = 22.0;  // log-odds a unit of the share of beams off the map
+
+double probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
+
+double telling(const Support& support, const PoseVerdictParams& params) {
+  return support.fit + params.short_weight * support.short_of + support.beyond;
+}
+
+/// Share of the beams that hold the pose in a direction; nothing where too few tell of it.
+std::optional<double> hold_along(const Support& stable, const Support& elsewhere, const PoseVerdictParams& params) {
+  const double others = params.unproven_weight;
+  if (stable.expected() + others * elsewhere.expected() < params.least_beams) return std::nullopt;
+  return (stable.fit + others * elsewhere.fit + 0.5 * kBeamsOfDoubt) /
+         (telling(stable, params) + others * telling(elsewhere, params) + kBeamsOfDoubt);
+}
+
+/// Do proven tiles tell of the pose in both directions?
+bool is_proof(const ViewTally& view, const PoseVerdictParams& params) {
+  return view.stable_along[0].expected() >= params.least_beams && view.stable_along[1].expected() >= params.least_beams;
+}
+
+/// ln p(hold | right) - ln p(hold | wrong) of one new view, halved because views of one drive are alike. From drives
+/// in the paper's hall at right poses (unchanged, 10 %, 50 % changed) and wrong ones; docs/decisions/two-answers.md.
+double evidence_of(double hold) {
+  constexpr std::array<double, 11> kByTenths{-2.6, -2.6, -2.0, -1.1, -0.2, 0.25, 0.5, 0.75, 1.0, 1.2, 1.2};
+  const double at = 10.0 * std::clamp(hold, 0.0, 1.0);
+  const std::size_t below = std::min<std::size_t>(9, static_cast<std::size_t>(at));
+  const double share = at - static_cast<double>(below);
+  return kByTenths[below] + share * (kByTenths[below + 1] - kByTenths[below]);
+}
+
+/// What the weaker direction says, and how well it holds the pose; what has not proven to stay speaks little against
+/// it.
+struct Weakest {
+  double hold = 0.0;
+  double evidence = 0.0;
+};
+std::optional<Weakest> weakest_direction(const ViewTally& view, const PoseVerdictParams& params) {
+  std::optional<Weakest> weakest;
+  for (std::size_t i = 0; i < view.stable_along.size(); ++i) {
+    const Support& stable = view.stable_along[i];
+    const Support& elsewhere = view.elsewhere_along[i];
+    const std::optional<double> hold = hold_along(stable, elsewhere, params);
+    if (!hold) continue;
+    const double proven_share = stable.expected() / (stable.expected() + elsewhere.expected());
+    const double evidence = evidence_of(*hold);
+    const Weakest found{*hold, evidence < 0.0 ? evidence * std::max(kLeastProven, proven_share) : evidence};
+    if (!weakest || found.evidence < weakest->evidence) weakest = found;
+  }
+  return weakest;
+}
+
+}  // namespace
+
+void PoseJudge::start(double pose_right, bool found) {
+  found_ = found;
+  right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
+  proof_ = 0.0;
+  views_ = 0.0;
+  unique_views_ = 0.0;
+  suspicion_views_ = 0.0;
+  any_view_ = false;
+  last_hold_.reset();
+  belief_ = {};
+  trust_ = belief_.pose_right = pose_right;
+}
+
+double PoseJudge::novelty(const Passed& passed, std::optional<double> hold) {
+  const bool other = hold && last_hold_ && std::abs(*hold - *last_hold_) > kOtherView;
+  if (other && *hold < *last_hold_) suspicion_views_ = params_.views_of_suspicion;
+  last_hold_ = hold;
+  if (other || !any_view_) return 1.0;
+  return std::min(
+      1.0, passed.driven_m / params_.view_m + passed.turned_rad / params_.view_rad + passed.time_s / params_.view_s);
+}
+
+void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Shares& shares) {
+  belief_.stable = view.stable;
+  belief_.elsewhere = view.elsewhere;
+  belief_.other_share = shares.best_other;
+  belief_.map_from_other = shares.map_from_other;
+
+  const std::optional<Weakest> weakest = weakest_direction(view, params_);
+  const bool proven = is_proof(view, params_);
+  const double fresh = novelty(passed, weakest ? std::optional{weakest->hold} : std::nullopt);
+  const double still_right = probability(right_log_odds_) * (1.0 - fresh * params_.lost_in_a_view);
+  right_log_odds_ = log_odds(std::clamp(still_right, params_.least_wrong, 1.0 - params_.least_wrong));
+  if (weakest) right_log_odds_ += fresh * told_by(weakest->evidence);
+  views_ += fresh;
+  suspicion_views_ = std::max(0.0, suspicion_views_ - fresh);
+  unique_views_ = shares.unique ? unique_views_ + fresh : 0.0;
+  judge_map(view, fresh);
+  proof_ = proven ? 1.0 : proof_ * std::exp(-fresh / params_.proof_memory_views);
+  decide(shares);
+}
+
+/// A place that a search has chosen because it fits proves less by fitting: a wrong one is an image of the right one.
+/// What does not fit speaks against it as against any other.
+double PoseJudge::told_by(double evidence) const {
+  return found_ && evidence > 0.0 ? std::max(0.0, evidence - params_.doubt_after_search) : evidence;
+}
+
+void PoseJudge::judge_map(const ViewTally& view, double fresh) {
+  const std::uint32_t expected = view.stable.expected + view.elsewhere.expected;
+  if (expected == 0) return;
+  const std::uint32_t fit = view.stable.fit + view.elsewhere.fit;
+  const double misfit = 1.0 - static_cast<double>(fit) / static_cast<double>(expected);
+  const double share = any_view_ ? 1.0 - std::exp(-fresh / kMapMemoryViews) : 1.0;
+  misfit_share_ += share * (misfit - misfit_share_);
+  any_view_ = true;
+}
+
+void PoseJudge::decide(const Shares& shares) {
+  trust_ = probability(right_log_odds_) * shares.believed;
+  const bool unseasoned = (found_ && views_ < params_.views_after_search) || suspicion_views_ > 0.0;
+  const auto limit = [&](double proof) { return 1.0 - (1.0 - proof) * (1.0 - params_.unproven_limit); };
+  belief_.pose_right = std::clamp(trust_, 1.0 - limit(proof_), limit(unseasoned ? 0.0 : proof_));
+  const double wrong_if_right = probability(kMapSteepness * (misfit_share_ - params_.changed_above));
+  belief_.map_wrong = belief_.pose_right * wrong_if_right + 0.5 * (1.0 - belief_.pose_right);
+  if (shares.searching) {
+    belief_.verdict = PoseVerdict::kUndecided;
+    return;
+  }
+  const bool right = belief_.pose_right >= params_.right_above && unique_views_ >= params_.unique_for_views;
+  const bool wrong = belief_.pose_right <= params_.wrong_below && shares.beaten;
+  belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
+}
+
+}  // namespace deltamap::localization::belief

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// P(pose right) and P(map wrong), accumulated over the views of a drive. Beams on proven tiles are evidence about the
+// pose: it must be supported in both directions, for along a wall every pose fits. All beams together are evidence
+// about the map, given that the pose is right. Other pose hypotheses that explain the scans as well take belief away. A
+// view counts by how new it is: standing still, or people who walk by, add no certainty.
+#pragma once
+
+#include <optional>
+
+#include "core/angle.hpp"
+#include "core/messages.hpp"
+#include "localization/belief/view_tally.hpp"
+
+namespace deltamap::localization::belief {
+
+struct PoseVerdictParams {
+  double view_m = 0.5;              ///< a view is new after so much driving, m; > 0
+  double view_rad = radians(20.0);  ///< or turning, rad; > 0
+  double view_s = 5.0;              ///< or waiting, s; > 0
+  double short_weight = 0.7;     ///< of a beam that something stands in front of, against one that goes through; 0..1
+  double least_beams = 3.0;      ///< that must tell of a direction before it counts; > 0
+  double unproven_weight = 0.5;  ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
+  double doubt_after_search = 0.35;  ///< taken from what a view says for a place that was found by its fit; >= 0
+  double views_after_search = 6.0;   ///< new views before such a place can be called right; >= 0
+  double views_of_suspicion = 6.0;   ///< likewise after a hold that fell from one scan to the next; >= 0
+  double lost_in_a_view = 0.002;     ///< P(the pose has become wrong since the last new view); 0..0.1
+  double least_wrong = 0.0005;       ///< P(wrong) that no evidence ever undercuts; 0..0.1
+  double right_above = 0.9;          ///< P(pose right) from which the verdict is right; 0.5..1
+  double wrong_below = 0.1;          ///< P(pose right) below which the verdict is wrong; 0..0.5
+  double unproven_limit = 0.85;      ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
+  double unique_for_views = 4.0;     ///< so long no other hypothesis may explain the scans before it is right; >= 0
+  double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles held the pose; > 0
+  double changed_above = 0.1;        ///< share of beams off the map from which it is rather wrong than right; 0..1
+};
+
+class PoseJudge {
+ public:
+  explicit PoseJudge(const PoseVerdictParams& params) : params_{params} {}
+
+  /// Begins anew at a pose that is right with this probability.
+  /// `found`: by a search, which has chosen it because it fits.
+  void start(double pose_right, bool found);
+
+  struct Passed {
+    double driven_m = 0.0;
+    double turned_rad = 0.0;  ///< either way
+    double time_s = 0.0;
+  };
+  /// How the belief is shared between the places in the map that may be it.
+  struct Shares {
+    double believed = 1.0;
+    double best_other = 0.0;
+    Pose2 map_from_other{};
+    bool searching = false;  ///< no place is believed yet: `believed` is the best one's
+    bool beaten = true;      ///< another hypothesis explains the recent scans clearly better
+    bool unique = true;      ///< no other hypothesis explains them about as well
+  };
+  void observe(const ViewTally& view, const Passed& passed, const Shares& shares);
+
+  [[nodiscard]] const Belief& belief() const { return belief_; }
+  /// P(pose right) by all that is in view, proven or not: what stability is earned by.
+  [[nodiscard]] double trust() const { return trust_; }
+
+ private:
+  [[nodiscard]] double novelty(const Passed& passed, std::optional<double> hold);
+  [[nodiscard]] double told_by(double evidence) const;
+  void judge_map(const ViewTally& view, double novelty);
+  void decide(const Shares& shares);
+
+  PoseVerdictParams params_;
+  double right_log_odds_ = 0.0;
+  double trust_ = 0.5;
+  bool found_ = false;
+  double views_ = 0.0;            ///< new ones since the start
+  double suspicion_views_ = 0.0;  ///< left
+  double unique_views_ = 0.0;     ///< in which no other place explained the scans
+  double proof_ = 0.0;            ///< 1 where proven tiles are in view; fades
+  double misfit_share_ = 0.0;     ///< running mean over the last views
+  bool any_view_ = false;
+  std::optional<double> last_hold_;
+  Belief belief_;
+};
+
+}  // namespace deltamap::localization::belief

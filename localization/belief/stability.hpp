@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which tiles of the map have proven to stay. A tile rises by a confirmation from a new position after a while, falls
+// where a beam goes through it, and begins again where a revision rewrites it; nothing is assumed of the first map.
+// Beams on proven tiles are evidence about the pose, all others about the map.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/block_lattice.hpp"
+#include "core/grid_patch.hpp"
+#include "core/occupancy_grid.hpp"
+#include "core/tiled.hpp"
+#include "core/time.hpp"
+
+namespace deltamap::localization::belief {
+
+struct StabilityParams {
+  double tile_m = 0.2;    ///< side of a tile, m; > 0, at least a cell
+  double apart_s = 20.0;  ///< a confirmation counts only so long after the last one, s; > 0
+  double apart_m = 1.0;   ///< and from so far away from where that was made, m; > 0
+  int proven_after = 6;   ///< counted confirmations that prove a tile; 1..60: with apart_s two minutes at least
+};
+
+/// What is kept across restarts: 4 bytes a tile, row by row.
+struct StabilityRecord {
+  GridGeometry geometry;  ///< of the map
+  int cells_a_tile = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+class Stability {
+ public:
+  Stability(const GridGeometry& geometry, const StabilityParams& params);
+
+  /// A beam from `seen_from` has ended where the map has this cell. Call only while the pose is well known.
+  void confirm(Cell cell, const Point2& seen_from, Timestamp time);
+  /// A beam has gone through this cell, which the map has as an obstacle; the same condition.
+  void refute(Cell cell, const Point2& seen_from, Timestamp time);
+  /// Cells that a revision has rewritten.
+  void forget(std::span<const CellChange> changes);
+
+  /// Confirmed often enough and from two directions at least; false outside the map.
+  [[nodiscard]] bool proven(Cell cell) const;
+  [[nodiscard]] std::size_t proven_tiles() const;
+
+  [[nodiscard]] StabilityRecord record() const;
+  /// Takes a record of a map of the same geometry; refuses any other and stays as it is.
+  [[nodiscard]] bool restore(const StabilityRecord& record);
+
+ private:
+  struct Tile {
+    std::uint8_t level = 0;       ///< counted confirmations, at most kMostLevels · proven_after
+    std::uint8_t directions = 0;  ///< a bit for each eighth of the circle that it was confirmed from
+    std::uint8_t place = 0;       ///< of the last count: 4 bits of column and row in units of apart_m / 2
+    std::uint8_t moment = 0;      ///< of the last count, in units of apart_s / 2
+    friend bool operator==(const Tile&, const Tile&) = default;
+  };
+  [[nodiscard]] bool is_proven(const Tile& tile) const;
+  /// Far enough in place and time from the tile's last count? Then this becomes the last one.
+  [[nodiscard]] bool counts(Tile& tile, const Point2& seen_from, Timestamp time) const;
+  /// A tile's place; nothing outside the map.
+  [[nodiscard]] std::optional<Cell> tile_of(Cell cell) const;
+
+  GridGeometry geometry_;
+  StabilityParams params_;
+  BlockLattice lattice_;
+  Tiled<Tile> tiles_;
+};
+
+}  // namespace deltamap::localization::belief

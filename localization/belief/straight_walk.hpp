@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first cell along a straight line that is not free, by the cell borders that the line crosses (after Amanatides
+// and Woo, 1987, as core/grid_ray.hpp), tile by tile so that a step costs an addition and a byte.
+#pragma once
+
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap::localization::belief {
+
+struct Met {
+  CellState what = CellState::kFree;  ///< free: nothing up to the end; outside the map everything is unknown
+  Cell cell;
+};
+
+/// What the line from `from` along the unit vector `along` meets first between the two distances.
+[[nodiscard]] Met first_met(const OccupancyGrid& map, const Point2& from, const Point2& along, double after_m,
+                            double until_m);
+
+}  // namespace deltamap::localization::belief

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/hypotheses/alias_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "localization/hypotheses/global_search.hpp"
+
+namespace deltamap::localization::hypotheses {
+namespace {
+
+constexpr std::size_t kKept = 8;
+constexpr int kRightAngles = 4;
+constexpr double kMetAfterM = 1.0;          // a hypothesis that has been followed for so long is an alias
+constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that an alias may fit worse by
+constexpr double kBeforeItIsSlid = 0.3;     // the same before it is slid to its best fit
+
+}  // namespace
+
+AliasMonitor::AliasMonitor(const HypothesisBankParams& bank, const Effort& effort)
+    : effort_{effort},
+      bank_{bank},
+      aliases_{static_cast<std::size_t>(std::max(0, effort.images))},
+      lattice_{kRightAngles, kKept} {}
+
+void AliasMonitor::predict(const Pose2& motion) {
+  bank_.predict(motion);
+  aliases_.age(motion.position().norm());
+}
+
+void AliasMonitor::observe(const Seen& seen, std::span<const PoseHypothesis> followed) {
+  bank_.believe(seen.map_from_believed);
+  own_fit_ = mean_log_likelihood(seen.field, seen.ends, seen.map_from_believed);
+  bank_.slide_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
+  if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.evidence_weight);
+  note(followed, seen.map_from_believed);
+  note(bank_.others(), seen.map_from_believed);
+  look_again(seen);
+  probe(seen);
+  bank_.settle();
+}
+
+void AliasMonitor::note(std::span<const PoseHypothesis> followed, const Pose2& map_from_believed) {
+  for (const PoseHypothesis& hypothesis : followed) {
+    if (hypothesis.followed_m < kMetAfterM) continue;
+    if (is_within(hypothesis.map_from_robot, map_from_believed, effort_.nearby_m, effort_.nearby_rad)) continue;
+    aliases_.note(map_from_believed, hypothesis.map_from_robot, hypothesis.followed_m);
+  }
+}
+
+void AliasMonitor::look_again(const Seen& seen) {
+  for (int i = 0; i < effort_.images_a_scan; ++i) {
+    const std::optional<Pose2> there = aliases_.next(seen.map_from_believed);
+    if (!there || bank_.knows(*there)) continue;
+    if (mean_log_likelihood(seen.field, seen.ends, *there) < own_fit_ - kBeforeItIsSlid) continue;
+    admit(*there, seen);
+  }
+}
+
+void AliasMonitor::probe(const Seen& seen) {
+  const double heading_rad = seen.map_from_believed.theta;
+  const auto c = static_cast<float>(std::cos(heading_rad));
+  const auto s = static_cast<float>(std::sin(heading_rad));
+  const std::size_t count = seen.near_ends.size();
+  turned_.x_m.resize(count);
+  turned_.y_m.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    turned_.x_m[i] = c * seen.near_ends.x_m[i] - s * seen.near_ends.y_m[i];
+    turned_.y_m[i] = s * seen.near_ends.x_m[i] + c * seen.near_ends.y_m[i];
+  }
+  (void)lattice_.look(seen.coarse, turned_, static_cast<std::size_t>(std::max(0, effort_.probes)));
+  for (const Candidate& candidate : lattice_.best_apart(1)) {
+    if (!may_reach(candidate, own_fit_ - kFitsNearlyAsWell)) continue;
+    const Pose2& at = candidate.map_from_robot;
+    admit({at.x, at.y, wrapped_angle(at.theta + heading_rad)}, seen);
+  }
+}
+
+void AliasMonitor::admit(const Pose2& rough, const Seen& seen) {
+  const Pose2 pose = settled(seen.field, seen.ends, rough);
+  if (bank_.knows(pose) || is_within(pose, seen.map_from_believed, effort_.nearby_m, effort_.nearby_rad)) return;
+  if (mean_log_likelihood(seen.field, seen.ends, pose) < own_fit_ - kFitsNearlyAsWell) return;
+  const Comparison lately = seen.stack.compared_lately(
+      seen.field, pose, seen.map_from_believed, seen.continuous_odom_from_robot, bank_.params().evidence_of_a_beam());
+  bank_.admit({.map_from_robot = pose,
+               .log_evidence = bank_.hypotheses().front().log_evidence + lately.ahead(),
+               .log_prior = std::log(effort_.prior),
+               .since_kidnapping = seen.evidence_weight * lately.ahead(),
+               .lost_since = seen.evidence_weight * lately.lost});
+}
+
+}  // namespace deltamap::localization::hypotheses

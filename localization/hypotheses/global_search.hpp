@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Global localization: searches the whole map with one scan. A lattice of poses is judged on the coarse field, so many
+// poses at each scan, then the best candidates are refined, so many at each scan: no single scan takes long. Which
+// candidate is true is decided by later scans (hypothesis_bank.hpp).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/angle.hpp"
+#include "localization/hypotheses/lattice_search.hpp"
+
+namespace deltamap::localization::hypotheses {
+
+struct GlobalSearchParams {
+  int candidates_a_scan = 100000;          ///< poses looked at in one scan; > 0
+  int places = 600;                        ///< candidates that are slid to their best fit; > 0
+  int places_a_scan = 200;                 ///< of these in one scan; > 0
+  double again_after_m = 0.5;              ///< driven until the whole map is looked at again, m; > 0
+  double again_after_rad = radians(30.0);  ///< or turned, rad; > 0
+};
+
+/// Refines a pose of the coarse lattice to where the scan fits.
+[[nodiscard]] Pose2 settled(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, const Pose2& pose);
+
+class GlobalSearch {
+ public:
+  GlobalSearch(const GlobalSearchParams& params, int headings);
+
+  /// The next scan begins a new look at the whole map.
+  void start();
+  [[nodiscard]] bool under_way() const { return stage_ != Stage::kDone; }
+
+  /// Of one scan, robot frame.
+  struct Ends {
+    const motion::BeamEnds& all;
+    const motion::BeamEnds& near;  ///< that a coarse lattice of headings can place; may be all
+  };
+
+  /// One scan's share of the work. Answers places where this scan fits; valid until the next call.
+  /// `pace`: how much of a full share, (0, 1].
+  [[nodiscard]] std::span<const Pose2> look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
+                                            const Ends& ends, const Pose2& continuous_odom_from_robot,
+                                            double pace = 1.0);
+
+ private:
+  enum class Stage : std::uint8_t { kBegin, kLooking, kSliding, kDone };
+  [[nodiscard]] bool due_again(const Pose2& continuous_odom_from_robot) const;
+
+  GlobalSearchParams params_;
+  LatticeSearch lattice_;
+  Stage stage_ = Stage::kBegin;
+  motion::BeamEnds ends_;             // of the scan that the whole map is held against
+  Pose2 continuous_odom_from_robot_;  // where it was taken
+  std::size_t left_ = 0;              // poses to look at
+  std::vector<Candidate> candidates_;
+  std::size_t next_ = 0;  // candidate to slide
+  std::vector<Pose2> hypotheses_;
+};
+
+}  // namespace deltamap::localization::hypotheses

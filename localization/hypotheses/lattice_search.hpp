@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judges a lattice of poses in the free space of the map, some at each scan: one pose in the middle of each free block
+// and for each heading, by the coarse field. Remembers where it stopped.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "localization/sensor/coarse_field.hpp"
+
+namespace deltamap::localization::hypotheses {
+
+struct Candidate {
+  Pose2 map_from_robot;
+  std::int32_t misfit = 0;   ///< on the coarse field
+  std::uint32_t number = 0;  ///< in the lattice; decides between equals
+  std::uint32_t beams = 0;   ///< that the misfit is of
+};
+
+/// May the scan fit so well (mean ln p(z)) about there? Few poses, slid to their best, fit much better than their
+/// block.
+[[nodiscard]] bool may_reach(const Candidate& candidate, double fit);
+
+class LatticeSearch {
+ public:
+  /// `most` are kept of each look; > 0.
+  LatticeSearch(int headings, std::size_t most);
+
+  /// Forgets what was found, not where it stopped.
+  void clear();
+
+  /// Judges the next `count` poses by the scan. True where the last pose of the lattice was among them: the next one is
+  /// the first again.
+  bool look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count);
+
+  /// The best of all looks since clear(), the best first; each half a metre or 15° away from those before.
+  [[nodiscard]] std::vector<Candidate> best_apart(std::size_t count);
+
+  [[nodiscard]] std::size_t poses(const sensor::CoarseField& field) const {
+    return headings_ * field.free_blocks().size();
+  }
+
+ private:
+  [[nodiscard]] double heading_rad(std::size_t nth) const;
+  void keep(const Candidate& candidate);
+
+  std::size_t headings_;
+  std::size_t stride_;  // between headings looked at one after the other
+  std::size_t most_;
+  std::size_t next_heading_ = 0;
+  std::size_t next_block_ = 0;
+  std::vector<Candidate> best_;  // a heap, the worst in front
+};
+
+}  // namespace deltamap::localization::hypotheses

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes the robot's motion during a sweep out of a scan: each beam becomes a ray in the robot's frame at Scan::time.
+// The ends of the beams with a range are what scores a pose.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "localization/motion/odometry_buffer.hpp"
+
+namespace deltamap::localization::motion {
+
+/// One ray a beam, for a robot that keeps its velocity during the sweep.
+[[nodiscard]] std::vector<RayInRobot> deskewed(const Scan& scan, const BodyVelocity& velocity);
+
+/// The ends of the beams that score, robot frame at Scan::time; a structure of arrays for the weighing kernel.
+struct BeamEnds {
+  std::vector<float> x_m;
+  std::vector<float> y_m;
+  [[nodiscard]] std::size_t size() const { return x_m.size(); }
+};
+
+/// Only beams with a valid range score; of these `beams` are taken evenly (0 = all). Reuses the memory of `ends`.
+[[nodiscard]] BeamEnds scoring_ends(const Scan& scan, const std::vector<RayInRobot>& rays, int beams,
+                                    BeamEnds ends = {});
+
+}  // namespace deltamap::localization::motion

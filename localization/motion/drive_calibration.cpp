@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/motion/drive_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::localization::motion {
+
+Pose2 corrected(const WheelStep& step, const WheelErrors& errors) {
+  const double further_rad = errors.turn * step.motion.theta + errors.drift_rad_per_m * step.motion.position().norm() +
+                             errors.lag_s * step.turn_rate_change_rad_per_s;
+  const Pose2 along_the_arc = Pose2{0.0, 0.0, 0.5 * further_rad} * step.motion;
+  return {(1.0 + errors.distance) * along_the_arc.x + errors.lag_s * step.speed_change_m_per_s,
+          (1.0 + errors.distance) * along_the_arc.y, step.motion.theta + further_rad};
+}
+
+std::array<double, 7> numbers_of(const WheelErrors& wheels, const Pose2& mount) {
+  return {wheels.distance, wheels.turn, wheels.drift_rad_per_m, wheels.lag_s, mount.x, mount.y, mount.theta};
+}
+
+std::array<double, 14> numbers_of(const DriveCalibration& calibration) {
+  const auto& [wheels, wheel_deviations, mount, mount_deviations] = calibration;
+  const auto found = numbers_of(wheels, mount);
+  const auto spread = numbers_of(wheel_deviations, mount_deviations);
+  std::array<double, 14> all{};
+  std::copy_n(found.begin(), 4, all.begin());
+  std::copy_n(spread.begin(), 4, all.begin() + 4);
+  std::copy_n(found.begin() + 4, 3, all.begin() + 8);
+  std::copy_n(spread.begin() + 4, 3, all.begin() + 11);
+  return all;
+}
+
+std::optional<DriveCalibration> calibration_of(std::span<const double> n) {
+  if (n.size() != 14 || !std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); }))
+    return std::nullopt;
+  const DriveCalibration read{
+      {n[0], n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}, {n[8], n[9], n[10]}, {n[11], n[12], n[13]}};
+  const auto is_negative = [](double deviation) { return deviation < 0.0; };
+  const bool is_wrong =
+      std::any_of(n.begin() + 4, n.begin() + 8, is_negative) || std::any_of(n.begin() + 11, n.end(), is_negative);
+  return is_wrong ? std::nullopt : std::optional{read};
+}
+
+}  // namespace deltamap::localization::motion

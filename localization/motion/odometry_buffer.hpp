@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Remembers the last odometry and answers where the wheels say the robot was at any beam's time: interpolated between
+// two reports, extrapolated a little past the newest, never waiting (CONTRACT "Poses and time").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/angle.hpp"
+#include "core/messages.hpp"
+#include "localization/motion/drive_calibration.hpp"
+
+namespace deltamap::localization::motion {
+
+struct OdometryBufferParams {
+  int capacity = 512;                               ///< reports remembered; 2..65536
+  double extrapolation_s = 0.15;                    ///< longest reach past the newest report, s; >= 0
+  double max_speed_m_per_s = 1.5;                   ///< of the robot: faster readings are clamped, m/s; > 0
+  double max_turn_rate_rad_per_s = radians(300.0);  ///< of the robot: faster readings are clamped, rad/s; > 0
+};
+
+struct BodyVelocity {
+  double speed_m_per_s = 0.0;        ///< forward
+  double turn_rate_rad_per_s = 0.0;  ///< counter-clockwise
+};
+
+/// The wheels' answer for one instant.
+struct OdometryAt {
+  Pose2 odom_from_robot;  ///< in the frame of `epoch`
+  std::uint32_t epoch = 0;
+  Pose2 continuous_odom_from_robot;  ///< in one frame over all epochs, without what is known of the wheels' systematic
+                                     ///< errors; the jump between two epochs counts as standing still
+  double uncovered_s = 0.0;  ///< seconds between the instant and the nearest report that could speak for it
+};
+
+class OdometryBuffer {
+ public:
+  explicit OdometryBuffer(const OdometryBufferParams& params);
+
+  /// Reports must come in order of time; one that is not newer than the last is left out, unless the clock fell back by
+  /// more than a second: then the past is forgotten. One that is no number is left out.
+  void add(const Odometry& odometry);
+
+  /// What is known of the wheels: from the next report on.
+  void calibrate(const WheelErrors& errors) { errors_ = errors; }
+
+  /// A scan is older than the one before it: unless the reports have fallen back already, nothing is known until the
+  /// next one comes, which goes on from where the last one was.
+  void clock_fell_back(Timestamp last_scan);
+
+  /// Nothing before the first report.
+  [[nodiscard]] std::optional<OdometryAt> at(Timestamp time) const;
+
+  /// Measured over a tenth of a second around the instant, clamped to what the robot can do.
+  [[nodiscard]] BodyVelocity velocity_at(Timestamp time) const;
+
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+
+ private:
+  struct Report {
+    Timestamp time;
+    Pose2 odom_from_robot;
+    Pose2 continuous_odom_from_robot;
+    std::uint32_t epoch = 0;
+    BodyVelocity reported;
+  };
+  /// 0 is the oldest.
+  [[nodiscard]] const Report& report(std::size_t age_order) const { return ring_[(first_ + age_order) % ring_.size()]; }
+  [[nodiscard]] const Report& newest() const { return report(count_ - 1); }
+  void begin_anew();
+  [[nodiscard]] std::size_t first_not_before(Timestamp time) const;
+  /// As the reports tell it: `lag_s` behind.
+  [[nodiscard]] std::optional<OdometryAt> told_at(Timestamp time) const;
+  [[nodiscard]] OdometryAt extrapolated(const Report& last, double ahead_s) const;
+  [[nodiscard]] BodyVelocity newest_velocity() const;
+  [[nodiscard]] BodyVelocity clamped(const BodyVelocity& velocity) const;
+
+  OdometryBufferParams params_;
+  WheelErrors errors_;
+  std::vector<Report> ring_;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  std::optional<Report> before_restart_;  ///< the newest when the past was forgotten
+};
+
+}  // namespace deltamap::localization::motion

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/surfaces/offset_filter.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "localization/sensor/normal_equations.hpp"
+#include "localization/surfaces/surface_measurement.hpp"
+
+namespace deltamap::localization::surfaces {
+namespace {
+
+constexpr double kStrange = 16.0;          // squared deviations: not where it was expected
+constexpr double kSlipOdds = 7.0;          // nats against one: a slip in 200 m, keyframes of 0.2 m
+constexpr double kHalfAxleM = 0.17;        // between a wheel and the robot's centre
+constexpr double kDoubtsAgainM = 1.0;      // driven between two looks for a slip that lies behind
+constexpr int kMisfitsOfAChange = 3;       // in a row: it was moved while in view
+constexpr double kForgottenAfterM = 15.0;  // driven without a view of it
+constexpr std::size_t kMostFollowed = 32;
+constexpr std::size_t kMostSightings = 24;
+constexpr double kVisitsBefore = 3.0;  // that a surface is taken to have had
+constexpr double kUnknownM = 0.3;      // deviation of a place that no visit has told of
+constexpr double kReassignM = 0.02;    // a keyframe that moves the pose further is read once more
+constexpr double kReassignRad = 0.005;
+constexpr double kFarthestM = 0.3;  // that ends on no surface may move the pose
+constexpr double kFarthestRad = 0.18;
+constexpr int kRestSteps = 6;
+constexpr double kFewestOfADirection = 2.0;  // surfaces that tell of it
+
+using Fixed = Eigen::Vector<double, OffsetState::kFixed>;
+
+/// What the row gives at the state, where its measurement was taken with pose and mount at `at`.
+double expected(const SparseRow& row, const Eigen::VectorXd& mean, const Fixed& at) {
+  double sum = 0.0;
+  for (const SparseRow::Entry& entry : row.used()) {
+    sum += entry.value * (mean[entry.index] - (entry.index < OffsetState::kFixed ? at[entry.index] : 0.0));
+  }
+  return sum;
+}
+
+/// One wheel slips: the robot turns about the other one.
+PoseCovariance one_wheel_covariance(const motion::MotionModelParams& motion) {
+  const double aside_m = kHalfAxleM * motion.slip_rad;
+  return Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, motion.slip_rad * motion.slip_rad}
+      .asDiagonal()
+      .toDenseMatrix();
+}
+
+double covariance_of(const SparseRow& a, const SparseRow& b, const Eigen::MatrixXd& covariance) {
+  double sum = 0.0;
+  for (const SparseRow::Entry& p : a.used()) {
+    for (const SparseRow::Entry& q : b.used()) sum += p.value * q.value * covariance(p.index, q.index);
+  }
+  return sum;
+}
+
+}  // namespace
+
+void OffsetFilter::start(const sensor::RefinedPose& at) {
+  for (const Visit& visit : visits_) map_.record(visit.id).followed_as = SurfaceRecord::kNotFollowed;
+  visits_.clear();
+  switches_.clear();
+  state_.start(at);
+}
+
+void OffsetFilter::begin_anew() {
+  state_ = last_;
+  start(state_.pose());
+}
+
+void OffsetFilter::take(const sensor::RefinedPose& found) {
+  if (!visits_.empty() || !state_.update(found)) start(found);
+}
+
+void OffsetFilter::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
+  if (!map_.apply(std::move(map), changed)) {
+    visits_.clear();
+    switches_.clear();
+    if (state_.mean().size() > 0) state_.start(state_.pose());
+    return;
+  }
+  for (std::size_t i = visits_.size(); i-- > 0;) {
+    visits_[i].id = map_.like(switches_[i].surface);
+    if (!visits_[i].id.is_valid()) cease(i);
+  }
+  renumber();
+}
+
+void OffsetFilter::predict(const motion::WheelStep& step, const PoseCovariance& added) {
+  state_.predict(step, added);
+  const double driven_m = step.motion.position().norm();
+  since_doubt_m_ += driven_m;
+  for (SurfaceSwitch& followed : switches_) followed.unseen_m += driven_m;
+}
+
+std::size_t OffsetFilter::surface_of(const Sighting& sighting) const {
+  return static_cast<std::size_t>(map_.record(sighting.id).followed_as);
+}
+
+void OffsetFilter::follow(const Sighting& sighting) {
+  SurfaceRecord& record = map_.record(sighting.id);
+  if (record.followed_as != SurfaceRecord::kNotFollowed) return;
+  record.followed_as = static_cast<std::int32_t>(visits_.size());
+  visits_.push_back({.id = sighting.id});
+  switches_.push_back(
+      {.surface = sighting.surface,
+       .usual_m = record.offset_m,
+       .prior = (kVisitsBefore * sensor::kUsuallyHolds + record.held) / (kVisitsBefore + record.visits)});
+  state_.append(record.offset_m, sensor::kMovedM, kMovedRad);
+}
+
+/// To be followed by renumber().
+void OffsetFilter::cease(std::size_t surface) {
+  if (visits_[surface].id.is_valid()) {
+    SurfaceRecord& record = map_.record(visits_[surface].id);
+    const double holds = switches_[surface].holds;
+    record.visits += 1.0;
+    record.held += holds;
+    if (holds <= 0.5) record.offset_m = state_.mean()[OffsetState::offset_of(surface)];
+  }
+  drop(surface);
+}
+
+/// Without a memory of the visit. To be followed by renumber().
+void OffsetFilter::drop(std::size_t surface) {
+  if (visits_[surface].id.is_valid()) map_.record(visits_[surface].id).followed_as = SurfaceRecord::kNotFollowed;
+  state_.remove(surface);
+  visits_.erase(visits_.begin() + static_cast<std::ptrdiff_t>(surface));
+  switches_.erase(switches_.begin() + static_cast<std::ptrdiff_t>(surface));
+}
+
+void OffsetFilter::renumber() {
+  for (std::size_t i = 0; i < visits_.size(); ++i)
+    map_.record(visits_[i].id).followed_as = static_cast<std::int32_t>(i);
+}
+
+void OffsetFilter::cease_where_long_unseen() {
+  for (std::size_t i = visits_.size(); i-- > 0;) {
+    if (switches_[i].unseen_m > kForgottenAfterM || visits_[i].misfits >= kMisfitsOfAChange) cease(i);
+  }
+  while (visits_.size() > kMostFollowed) {
+    const auto longest =
+        std::max_element(switches_.begin(), switches_.end(),
+                         [](const SurfaceSwitch& a, const SurfaceSwitch& b) { return a.unseen_m < b.unseen_m; });
+    cease(static_cast<std::size_t>(longest - switches_.begin()));
+  }
+  renumber();
+}
+
+std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                             const Pose2& at) {
+  return finder_.find(map_, field, ends, at, [&](const SurfaceRecord& record) -> SurfacePlace {
+    if (record.followed_as == SurfaceRecord::kNotFollowed) return {record.offset_m, 0.0, kUnknownM};
+    const Eigen::Index offset = OffsetState::offset_of(static_cast<std::size_t>(record.followed_as));
+    return {state_.mean()[offset], state_.mean()[offset + 1],
+            std::sqrt(std::max(0.0, state_.covariance()(offset, offset)))};
+  });
+}
+
+std::span<const Sighting> OffsetFilter::find_by_map(const sensor::LikelihoodField& field,
+                                                    std::span<const FacedEnd> ends, const Pose2& at) {
+  return finder_.find(map_, field, ends, at, [](const SurfaceRecord& record) {
+    return SurfacePlace{record.offset_m, 0.0, kUnknownM};
+  });
+}
+
+std::vector<bool> OffsetFilter::fit_of(std::span<const Sighting> sightings) const {
+  const Pose2 at = state_.pose().map_from_robot;
+  const Fixed here = state_.mean().head<OffsetState::kFixed>();
+  std::vector<bool> fits;
+  for (const Sighting& sighting : sightings) {
+    const SurfaceMeasurement seen = measurement_of(sighting, at, OffsetState::offset_of(surface_of(sighting)));
+    const double cross = covariance_of(seen.distance, seen.turn, state_.covariance());
+    Eigen::Matrix2d spread;
+    spread << covariance_of(seen.distance, seen.distance, state_.covariance()) + seen.distance_variance, cross, cross,
+        covariance_of(seen.turn, seen.turn, state_.covariance()) + (seen.has_turn ? seen.turn_variance : 1.0);
+    const Eigen::Vector2d off{seen.distance_m + expected(seen.distance, state_.mean(), here),
+                              seen.turn_rad + expected(seen.turn, state_.mean(), here)};
+    fits.push_back(off.dot(spread.inverse() * off) <= kStrange);
+  }
+  return fits;
+}
+
+void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at) {
+  const double heading = state_.mean()[2];
+  Fixed here = state_.mean().head<OffsetState::kFixed>();
+  here.head<OffsetState::kPose>() << at.x, at.y, heading + turn_between(heading, at.theta);
+  std::vector<RowMeasurement> rows;
+  rows.reserve(2 * sightings.size());
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (!fits[i]) continue;
+    const SurfaceMeasurement seen = measurement_of(sightings[i], at, OffsetState::offset_of(surface_of(sightings[i])));
+    rows.push_back(
+        {seen.distance, -seen.distance_m - expected(seen.distance, state_.mean(), here), seen.distance_variance});
+    if (!seen.has_turn) continue;
+    rows.push_back({seen.turn, -seen.turn_rad - expected(seen.turn, state_.mean(), here), seen.turn_variance});
+  }
+  state_.update(rows);
+}
+
+/// Where any one surface that seems to have moved would stand where the map has it.
+std::vector<Pose2> OffsetFilter::undone_moves() const {
+  const Pose2 at = state_.pose().map_from_robot;
+  std::vector<Pose2> poses;
+  for (std::size_t i = 0; i < switches_.size(); ++i) {
+    if (switches_[i].holds > 0.5) continue;
+    const Eigen::Index offset = OffsetState::offset_of(i);
+    const Surface& surface = switches_[i].surface;
+    const Pose2 unturned{0.0, 0.0, -state_.mean()[offset + 1]};
+    const Point2 from_centre = at.position() - state_.mean()[offset] * surface.normal - surface.centre;
+    const Point2 there = surface.centre + unturned * from_centre;
+    poses.push_back({there.x(), there.y(), wrapped_angle(at.theta + unturned.theta)});
+  }
+  return poses;
+}
+
+/// Had the wheels slipped? Only now, where something is not where it was expected; metres ago, where something seems to
+/// have moved. Goes to where the surfaces are clearly better explained.
+bool OffsetFilter::follows_slip(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                const motion::MotionModelParams& motion) {
+  const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
+  std::vector<Pose2> undone;
+  if (since_doubt_m_ >= kDoubtsAgainM) undone = undone_moves();
+  if (!is_strange && undone.empty()) return false;
+  since_doubt_m_ = 0.0;
+  const sensor::RefinedPose wheels = state_.pose();
+  const auto number_of = [&](SurfaceMap::Id id) { return map_.record(id).followed_as; };
+  const auto as_followed = [&](const Pose2& at) { return find(field, ends, at); };
+  const auto as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); };
+  std::vector<bool> in_view(switches_.size());
+  for (const Sighting& sighting : sightings) in_view[surface_of(sighting)] = true;
+  const SlipReading no_slip{state_, switches_, PoseCovariance::Zero(), in_view};
+  const double usual = std::max(no_slip.best_near(wheels.map_from_robot, as_followed, number_of).evidence,
+                                no_slip.best_near(wheels.map_from_robot, as_mapped, number_of).evidence);
+  SlipReading::Answer best;
+  best.evidence = usual + kSlipOdds;
+  PoseCovariance slip = PoseCovariance::Zero();
+  const auto look = [&](std::span<const Pose2> poses, const PoseCovariance& spread, auto&& seen_from) {
+    const SlipReading reading{state_, switches_, spread, in_view};
+    for (const Pose2& pose : poses) {
+      SlipReading::Answer there = reading.best_near(pose, seen_from, number_of);
+      if (there.evidence <= best.evidence) continue;
+      best = std::move(there);
+      slip = spread;
+    }
+  };
+  const PoseCovariance now = motion::slip_covariance(motion, wheels.map_from_robot.theta);
+  if (is_strange) {
+    const std::vector<Pose2> around = motion::slips_around(motion, wheels.map_from_robot);
+    look(around, now, as_followed);
+    look(around, one_wheel_covariance(motion), as_followed);
+  }
+  const double aside_m = 0.5 * kForgottenAfterM * motion.slip_rad;  // by a turn that far behind
+  const PoseCovariance behind =
+      now + Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
+  look(undone, behind, as_mapped);
+  if (slip.isZero()) return false;
+  for (std::size_t i = visits_.size(); i-- > 0;) {
+    if (std::find(best.hold_again.begin(), best.hold_again.end(), i) != best.hold_again.end()) drop(i);
+  }
+  renumber();
+  state_.jump(best.pose, slip);
+  return true;
+}
+
+/// The surfaces that the scan shows from a pose, all of them followed.
+std::vector<Sighting> OffsetFilter::followed_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                                  const Pose2& at) {
+  const std::span<const Sighting> found = find(field, ends, at);
+  std::vector<Sighting> sightings{found.begin(), found.end()};
+  std::stable_sort(sightings.begin(), sightings.end(),
+                   [](const Sighting& a, const Sighting& b) { return a.beams > b.beams; });
+  if (sightings.size() > kMostSightings) sightings.resize(kMostSightings);
+  for (const Sighting& sighting : sightings) follow(sighting);
+  return sightings;
+}
+
+OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                         double rest_share, const motion::MotionModelParams& motion) {
+  Seen seen;
+  if (ends.empty()) return seen;
+  last_ = state_.without_surfaces();
+  const Eigen::Vector3d mount = state_.mean().segment<3>(OffsetState::kMount);
+  std::vector<Sighting> sightings = followed_from(field, ends, state_.pose().map_from_robot);
+  std::vector<bool> fits = fit_of(sightings);
+  seen.slipped = follows_slip(field, ends, sightings, fits, motion);
+  const Pose2 at = state_.pose().map_from_robot;
+  if (seen.slipped) {
+    sightings = followed_from(field, ends, at);
+    fits = fit_of(sightings);
+  }
+  OffsetState before = state_;
+  correct_by(sightings, fits, at);
+  const Pose2 now = state_.pose().map_from_robot;
+  if (distance_between(now, at) > kReassignM || std::abs(turn_between(now.theta, at.theta)) > kReassignRad) {
+    std::swap(state_, before);
+    sightings = followed_from(field, ends, now);
+    fits = fit_of(sightings);
+    correct_by(sightings, fits, at);
+  }
+  note_visits(sightings, fits);
+  correct_by_rest(field, rest_share, mount);
+  settle(switches_, state_);
+  const auto count = static_cast<double>(ends.size());
+  seen.straight = 1.0 - static_cast<double>(finder_.rest().size()) / count;
+  seen.holding = std::min(share_of_ends_held(sightings, fits), share_of_surfaces_held());
+  cease_where_long_unseen();
+  return seen;
+}
+
+/// Of the ends, those on surfaces that are where they were expected, and hold.
+double OffsetFilter::share_of_ends_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const {
+  double held = 0.0;
+  double all = static_cast<double>(finder_.rest().size());
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    all += sightings[i].beams;
+    if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5) held += sightings[i].beams;
+  }
+  return all > 0.0 ? held / all : 0.0;
+}
+
+/// Of the surfaces of the last metres that tell of a direction, those that hold; in the direction of which fewer do.
+double OffsetFilter::share_of_surfaces_held() const {
+  Eigen::Matrix2d all = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d held = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < switches_.size(); ++i) {
+    const Point2& normal = switches_[i].surface.normal;
+    all += normal * normal.transpose();
+    if (switches_[i].holds > 0.5) held += normal * normal.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions{all};
+  if (directions.eigenvalues().minCoeff() < kFewestOfADirection) return 0.0;
+  const Eigen::Matrix2d scale = directions.operatorInverseSqrt();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>{scale * held * scale}.eigenvalues().minCoeff();
+}
+
+void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits) {
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const std::size_t number = surface_of(sightings[i]);
+    switches_[number].unseen_m = 0.0;
+    visits_[number].misfits = fits[i] ? 0 : visits_[number].misfits + 1;
+  }
+}
+
+/// Ends on no surface correct the pose alone, as pose_refinement.hpp does: slid to where they fit, held by the rest.
+/// `mount`: as the scan was corrected by.
+void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double share, const Eigen::Vector3d& mount) {
+  if (finder_.rest().size() == 0) return;
+  const Eigen::Vector<double, 6> before = state_.mean().head<6>();
+  const Eigen::Matrix<double, 3, 6> by = state_.scan_by_pose_and_mount();
+  const Eigen::Vector3d start = before.head<3>() + by.rightCols<3>() * (before.tail<3>() - mount);
+  const Eigen::Matrix3d spread = by * state_.covariance().topLeftCorner<6, 6>() * by.transpose();
+  Eigen::Vector3d at = start;
+  Eigen::Matrix3d information;
+  Eigen::Vector3d pull;
+  for (int step = 0; step < kRestSteps; ++step) {
+    const sensor::NormalEquations beams =
+        sensor::normal_equations(field, finder_.rest(), {at.x(), at.y(), wrapped_angle(at.z())});
+    information = share * beams.information;
+    pull = information * (at - start) - share * beams.pull;  // as seen from the start
+    const Eigen::Matrix3d inverse = (Eigen::Matrix3d::Identity() + spread * information).inverse();
+    const Eigen::Vector3d next = start + inverse * spread * pull;
+    const Eigen::Vector3d move = next - at;
+    at = next;
+    if (move.head<2>().norm() < 5e-4 && std::abs(move.z()) < 2e-4) break;
+  }
+  const Eigen::Vector3d moved = at - start;
+  if (moved.head<2>().norm() > kFarthestM || std::abs(moved.z()) > kFarthestRad) return;
+  state_.multiply<6>(0, by.transpose() * information * by, by.transpose() * (pull + information * by * before));
+}
+
+double OffsetFilter::straight_share(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                    const Pose2& pose) {
+  if (ends.empty()) return 0.0;
+  (void)find_by_map(field, ends, pose);
+  return 1.0 - static_cast<double>(finder_.rest().size()) / static_cast<double>(ends.size());
+}
+
+}  // namespace deltamap::localization::surfaces

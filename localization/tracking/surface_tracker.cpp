@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/tracking/surface_tracker.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "localization/sensor/weighing.hpp"
+
+namespace deltamap::localization::tracking {
+namespace {
+
+constexpr double kLeadsAbove = 0.82;  // share of ends on straight surfaces: what a hall of walls and containers shows
+constexpr double kCeasesBelow = 0.3;
+constexpr double kFixedAbove = 0.3;  // of the surfaces that fix the pose
+// What one Gaussian can hold, that surfaces are told apart from.
+constexpr double kOnePlaceM = 0.15;
+const double kOnePlaceRad = radians(4.0);
+constexpr double kNewest = 0.1;             // share of one keyframe in the running means
+const double kKeyframeRad = radians(10.0);  // turned since the last keyframe,
+constexpr double kUnsureM = 0.01;           // or as unsure as what a surface tells
+constexpr double kUnsureRad = 0.004;
+constexpr double kSuddenly = 0.1;  // share of ends that the map ceases to explain: the wheels may have slipped
+// How far a pose that the particles have found is off, besides what they say: cells, and a map drawn a little wrong.
+const PoseCovariance kOfAPose = Eigen::Vector3d{9e-4, 9e-4, 2.5e-5}.asDiagonal();
+constexpr double kStrangest = 25.0;    // squared deviations: a slip is no measure of how the wheels usually do
+constexpr double kLongestStepM = 0.5;  // of one correction
+
+/// Along an axis in which the particles are less sure than a scan would make them they tell what the wheels have told.
+PoseCovariance unobserved_along(const PoseCovariance& spread) {
+  constexpr double kNothing_m2 = 100.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{Eigen::Matrix2d{spread.topLeftCorner<2, 2>()}};
+  PoseCovariance more = PoseCovariance::Zero();
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const Eigen::Vector2d axis = axes.eigenvectors().col(i);
+    if (axes.eigenvalues()[i] > kOfAPose(0, 0)) more.topLeftCorner<2, 2>() += kNothing_m2 * axis * axis.transpose();
+  }
+  return more;
+}
+
+}  // namespace
+
+SurfaceTracker::SurfaceTracker(const OdometryNoiseParams& wheels, const motion::MotionModelParams& motion,
+                               double evidence_beams, std::shared_ptr<const OccupancyGrid> map)
+    : motion_{motion}, odometry_noise_{wheels}, evidence_beams_{evidence_beams}, filter_{std::move(map)} {}
+
+void SurfaceTracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
+  filter_.apply(std::move(map), changed);
+}
+
+bool SurfaceTracker::could_lead(const Seen& seen, const Pose2& map_from_robot) {
+  straight_ += kNewest * (filter_.straight_share(seen.field, seen.faced, map_from_robot) - straight_);
+  return straight_ >= kLeadsAbove;
+}
+
+void SurfaceTracker::learn_from(const sensor::RefinedPose& found, const motion::ScanInstant& now,
+                                const motion::BodyVelocity& velocity) {
+  const bool begins = !last_;
+  if (!begins) {
+    step_to(now, velocity);
+    if (!has_moved()) return;
+  }
+  const sensor::RefinedPose measured{found.map_from_robot,
+                                     found.covariance + kOfAPose + unobserved_along(found.covariance)};
+  begins ? filter_.start(measured) : filter_.take(measured);
+  last_ = Last{now, velocity};
+  since_ = SinceKeyframe{};
+}
+
+sensor::RefinedPose SurfaceTracker::lead_from(const sensor::RefinedPose& at, const Seen& seen) {
+  filter_.start(at);
+  odometry_noise_.forget_stretch();
+  leads_ = true;
+  last_ = Last{seen.now, seen.velocity};
+  since_.reset();
+  holding_ = 0.0;
+  return keyframe(seen);
+}
+
+PoseCovariance SurfaceTracker::noise(const Pose2& motion, double unknown_s) const {
+  PoseCovariance added = odometry_noise_.added(motion, filter_.believed().map_from_robot.theta);
+  added += motion::unknown_motion_covariance(motion_, unknown_s);
+  // Raised where corrections exceed what was expected, never lowered.
+  added.topLeftCorner<2, 2>() *= std::max(1.0, surprise_m_);
+  added(2, 2) *= std::max(1.0, surprise_rad_);
+  return added;
+}
+
+void SurfaceTracker::step_to(const motion::ScanInstant& now, const motion::BodyVelocity& velocity) {
+  motion::WheelStep step{.motion = motion::counted_between(last_->instant, now)};
+  if (now.odometry && last_->instant.odometry) {
+    step.speed_change_m_per_s = velocity.speed_m_per_s - last_->velocity.speed_m_per_s;
+    step.turn_rate_change_rad_per_s = velocity.turn_rate_rad_per_s - last_->velocity.turn_rate_rad_per_s;
+  }
+  const Pose2 corrected = filter_.corrected(step);
+  const PoseCovariance added = noise(corrected, motion::step_between(last_->instant, now).unknown_s);
+  filter_.predict(step, added);
+  last_ = Last{now, velocity};
+  if (!since_) return;
+  since_->by_wheels = since_->by_wheels * step.motion;
+  since_->corrected = since_->corrected * corrected;
+  since_->variance_m2 += std::max(added(0, 0), added(1, 1));
+  since_->variance_rad2 += added(2, 2);
+}
+
+bool SurfaceTracker::is_one_place(const PoseCovariance& spread) {
+  return spread(0, 0) + spread(1, 1) < kOnePlaceM * kOnePlaceM && spread(2, 2) < kOnePlaceRad * kOnePlaceRad;
+}
+
+bool SurfaceTracker::has_moved() const {
+  return since_->by_wheels.position().norm() >= surfaces::kKeyframeM ||
+         std::abs(since_->by_wheels.theta) >= kKeyframeRad;
+}
+
+bool SurfaceTracker::is_due(const Seen& seen) const {
+  if (!since_ || has_moved()) return true;
+  if (since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad) return true;
+  const double explained = sensor::explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
+  return explained < since_->explained - kSuddenly;
+}
+
+void SurfaceTracker::predict(const motion::ScanInstant& now) {
+  if (last_) step_to(now, last_->velocity);
+}
+
+sensor::RefinedPose SurfaceTracker::observe(const Seen& seen) {
+  step_to(seen.now, seen.velocity);
+  if (!is_one_place(filter_.believed().covariance)) {
+    cease();
+    return filter_.believed();
+  }
+  return !seen.faced.empty() && is_due(seen) ? keyframe(seen) : filter_.believed();
+}
+
+sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
+  const double share =
+      std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, seen.faced.size())));
+  const sensor::RefinedPose before = filter_.believed();
+  const surfaces::OffsetFilter::Seen shown = filter_.observe(seen.field, seen.faced, share, motion_);
+  if (shown.slipped) odometry_noise_.forget_stretch();
+  const sensor::RefinedPose after = filter_.believed();
+  const bool runs_away =
+      !shown.slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
+  if (!filter_.is_sound() || runs_away) {
+    filter_.begin_anew();
+    cease();
+    return before;
+  }
+  if (since_ && !shown.slipped) {
+    learn_noise(before, after);
+    odometry_noise_.learn(since_->corrected, after);
+  }
+  since_ = SinceKeyframe{};
+  since_->explained = sensor::explained_share(seen.field, seen.ends, after.map_from_robot);
+  straight_ += kNewest * (shown.straight - straight_);
+  if (shown.slipped) holding_ = 0.0;
+  holding_ += kNewest * (shown.holding - holding_);
+  holds_now_ = shown.holding;
+  if (straight_ < kCeasesBelow) cease();
+  return after;
+}
+
+bool SurfaceTracker::is_fixed_by_surfaces() const { return leads_ && std::min(holding_, holds_now_) >= kFixedAbove; }
+
+void SurfaceTracker::learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after) {
+  const Eigen::Vector3d correction = difference(before.map_from_robot, after.map_from_robot);
+  const auto surprise = [&](Eigen::Index i) {
+    const double gained = std::max(1e-6, before.covariance(i, i) - after.covariance(i, i));
+    return std::min(kStrangest, correction[i] * correction[i] / gained);
+  };
+  surprise_m_ += kNewest * (0.5 * (surprise(0) + surprise(1)) - surprise_m_);
+  surprise_rad_ += kNewest * (surprise(2) - surprise_rad_);
+}
+
+}  // namespace deltamap::localization::tracking

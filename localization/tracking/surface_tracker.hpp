@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracks the believed pose by surfaces, as one Gaussian: predicted by the calibrated wheels, corrected at keyframes by
+// the surfaces in view (offset_filter.hpp). It leads where straight surfaces explain the scans, and the particles rest
+// meanwhile; where they cease to, the particles go on from its pose.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "localization/motion/motion_model.hpp"
+#include "localization/motion/scan_instant.hpp"
+#include "localization/surfaces/offset_filter.hpp"
+#include "localization/tracking/odometry_noise.hpp"
+
+namespace deltamap::localization::tracking {
+
+class SurfaceTracker {
+ public:
+  /// `evidence_beams`: as of ParticleFilterParams.
+  SurfaceTracker(const OdometryNoiseParams& wheels, const motion::MotionModelParams& motion, double evidence_beams,
+                 std::shared_ptr<const OccupancyGrid> map);
+
+  void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
+
+  struct Seen {
+    const motion::ScanInstant& now;
+    motion::BodyVelocity velocity;
+    std::span<const surfaces::FacedEnd> faced;
+    const sensor::LikelihoodField& field;
+    const motion::BeamEnds& ends;  ///< those that score, robot frame
+  };
+  /// Is a pose sure enough to tell the surfaces around it apart?
+  [[nodiscard]] static bool is_one_place(const PoseCovariance& spread);
+
+  [[nodiscard]] bool leads() const { return leads_; }
+  /// Looks at a scan while the particles lead. True where straight surfaces have explained the scans of late.
+  [[nodiscard]] bool could_lead(const Seen& seen, const Pose2& map_from_robot);
+  /// The particles lead: how the wheels err is learned from where they find the robot.
+  void learn_from(const sensor::RefinedPose& found, const motion::ScanInstant& now,
+                  const motion::BodyVelocity& velocity);
+  /// Leads from here on.
+  sensor::RefinedPose lead_from(const sensor::RefinedPose& at, const Seen& seen);
+  /// The pose was set, or the particles have taken over.
+  void cease() {
+    leads_ = false;
+    last_.reset();
+  }
+
+  /// The pose at one more scan. It may have ceased to lead.
+  sensor::RefinedPose observe(const Seen& seen);
+  /// No scan has come for long: predicts by the wheels.
+  void predict(const motion::ScanInstant& now);
+
+  /// Before the first scan: what an earlier run has learned.
+  void restore(const motion::DriveCalibration& learned) { filter_.restore(learned); }
+  [[nodiscard]] motion::DriveCalibration calibration() const { return filter_.calibration(); }
+  /// It leads, and the pose is fixed by surfaces that stand where the map has them.
+  [[nodiscard]] bool is_fixed_by_surfaces() const;
+
+ private:
+  struct Last {
+    motion::ScanInstant instant;
+    motion::BodyVelocity velocity;
+  };
+  [[nodiscard]] PoseCovariance noise(const Pose2& motion, double unknown_s) const;
+  void step_to(const motion::ScanInstant& now, const motion::BodyVelocity& velocity);
+  [[nodiscard]] bool has_moved() const;  ///< far enough since the last keyframe for another
+  [[nodiscard]] bool is_due(const Seen& seen) const;
+  sensor::RefinedPose keyframe(const Seen& seen);
+  void learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after);
+
+  motion::MotionModelParams motion_;
+  OdometryNoiseEstimator odometry_noise_;
+  double evidence_beams_;
+  surfaces::OffsetFilter filter_;
+  std::optional<Last> last_;
+  bool leads_ = false;
+  struct SinceKeyframe {
+    Pose2 by_wheels;
+    Pose2 corrected;
+    double variance_m2 = 0.0;
+    double variance_rad2 = 0.0;
+    double explained = 0.0;  // share of the keyframe's ends, by the map
+  };
+  std::optional<SinceKeyframe> since_;  // none: no keyframe yet
+  double straight_ = 0.0;               // running means over keyframes, shares of ends
+  double holding_ = 0.0;
+  double holds_now_ = 0.0;   // share at the last keyframe
+  double surprise_m_ = 1.0;  // squared corrections as multiples of what was expected, running means
+  double surprise_rad_ = 1.0;
+};
+
+}  // namespace deltamap::localization::tracking

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/tracking/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "localization/sensor/weighing.hpp"
+#include "localization/tracking/surface_tracker.hpp"
+
+namespace deltamap::localization::tracking {
+namespace {
+
+// The particles lie as close as one Gaussian that surfaces can go on from.
+constexpr double kOnePlaceShare = 0.98;
+
+constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are spread once a slip fits best
+
+}  // namespace
+
+Tracker::Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed)
+    : params_{params},
+      filter_{params.particles, seed},
+      pose_filter_{params.track, params.motion},
+      clusters_{params.hypothesis},
+      slip_finder_{params.motion, params.refinement} {
+  if (!params.follow_surfaces) return;
+  surfaces_ = std::make_unique<SurfaceTracker>(params.track.wheels, params.motion, params.particles.evidence_beams,
+                                               std::move(map));
+}
+
+Tracker::~Tracker() = default;
+
+void Tracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
+  if (surfaces_) surfaces_->apply(std::move(map), changed);
+}
+
+const particles::ParticleSet* Tracker::particles() const {
+  return surfaces_ && surfaces_->leads() ? nullptr : &filter_.particles();
+}
+
+bool Tracker::is_fixed_by_surfaces() const { return surfaces_ && surfaces_->is_fixed_by_surfaces(); }
+
+std::optional<motion::DriveCalibration> Tracker::calibration() const {
+  return surfaces_ ? std::optional{surfaces_->calibration()} : std::nullopt;
+}
+
+void Tracker::restore(const motion::DriveCalibration& learned) {
+  if (surfaces_) surfaces_->restore(learned);
+}
+
+PoseCovariance Tracker::unknown_mount(double heading_rad) const {
+  if (!surfaces_ || surfaces_->leads()) return PoseCovariance::Zero();
+  const Pose2 deviations = surfaces_->calibration().mount_deviations;
+  return motion::covariance_along(heading_rad, deviations.x * deviations.x, deviations.y * deviations.y,
+                                  deviations.theta * deviations.theta);
+}
+
+sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {
+  filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
+  best_ = clusters_.best(filter_.particles());
+  drawn_anew_ = false;
+  pose_filter_.forget();
+  if (surfaces_) surfaces_->cease();
+  slip_finder_.forget();
+  last_update_.reset();
+  has_driven_blind_ = false;
+  return {best_.map_from_robot, best_.covariance};
+}
+
+sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose, const motion::ScanInstant& now) {
+  sensor::RefinedPose believed = start_around(pose);
+  last_update_ = now;
+  return believed;
+}
+
+void Tracker::restart_clock(Timestamp time) {
+  if (last_update_) last_update_->time = time;
+}
+
+Tracker::Answer Tracker::observe(const Seen& seen) {
+  const motion::MotionSince since =
+      last_update_ ? motion::motion_since(*last_update_, seen.now, params_.update.time_s) : motion::MotionSince{};
+  const bool are_led = surfaces_ && surfaces_->leads();
+  Answer answer = are_led ? led_by_surfaces(seen) : update_due(since) ? update(seen, since) : follow(seen, since);
+  answer.unknown_s = since.unknown_s;
+  if (surfaces_ && surfaces_->leads()) return answer;
+  pose_filter_.after_scan(seen.now, answer.believed);
+  if (surfaces_ && seen.ends.size() > 0) {
+    surfaces_->learn_from(answer.believed, seen.now, seen.velocity);
+    let_surfaces_lead(seen, answer);
+  }
+  return answer;
+}
+
+/// The particles rest. Where surfaces cease to lead, they begin anew around the pose, at this very scan.
+Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
+  Answer answer;
+  answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field, seen.ends});
+  const Pose2& pose = answer.believed.map_from_robot;
+  if (!surfaces_->leads()) {
+    go_on_from(answer.believed, seen.now);
+    return update(seen, {});
+  }
+  answer.n_eff = static_cast<double>(particle_count());
+  if (seen.ends.size() > 0) answer.w_avg = sensor::mean_likelihood(seen.field, seen.ends, pose);
+  best_ = {pose, answer.believed.covariance, 1.0};
+  last_update_ = seen.now;
+  return answer;
+}
+
+/// The particles take over from the surfaces, as unsure as these were, or where they were sure and have failed, by as
+/// much as a slip.
+void Tracker::go_on_from(const sensor::RefinedPose& believed, const motion::ScanInstant& now) {
+  const PoseCovariance& spread = believed.covariance;
+  const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
+  const double deviation_rad = std::sqrt(std::max(0.0, spread(2, 2)));
+  const double slipped = SurfaceTracker::is_one_place(spread) ? 1.0 : 0.0;
+  (void)start_around({believed.map_from_robot, std::max(slipped * params_.motion.slip_m, deviation_m),
+                      std::max(slipped * params_.motion.slip_rad, deviation_rad)},
+                     now);
+}
+
+void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
+  const PoseCovariance& spread = best_.covariance;
+  const bool one_place = best_.weight > kOnePlaceShare && SurfaceTracker::is_one_place(spread);
+  const SurfaceTracker::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field, seen.ends};
+  if (!one_place || !surfaces_->could_lead(by_surfaces, answer.believed.map_from_robot)) return;
+  answer.believed =
+      surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, by_surfaces);
+}
+
+void Tracker::predict(const motion::ScanInstant& now) {
+  if (!last_update_) return;
+  if (surfaces_) surfaces_->predict(now);
+  if (surfaces_ && surfaces_->leads()) {
+    last_update_ = now;
+    return;
+  }
+  const motion::MotionSince since = motion::motion_since(*last_update_, now, params_.update.time_s);
+  if (!update_due(since)) return;
+  motion::MotionModelParams motion = pose_filter_.particle_motion();
+  motion.slip_probability = 0.0;  // only a scan can tell of a slip
+  filter_.move(since.motion, since.unknown_s, motion);
+  last_update_ = now;
+  has_driven_blind_ = true;
+  pose_filter_.predict(now);
+}
+
+bool Tracker::update_due(const motion::MotionSince& since) const {
+  return !last_update_ || has_driven_blind_ || since.motion.position().norm() >= params_.update.distance_m ||
+         std::abs(since.motion.theta) >= params_.update.turn_rad || since.passed_s >= params_.update.time_s;
+}
+
+/// Moves and weighs the particles; they may be drawn anew afterwards.
+Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& since) {
+  const bool sees = seen.ends.size() > 0;
+  if (last_update_) filter_.move(since.motion, since.unknown_s, pose_filter_.particle_motion());
+  last_update_ = seen.now;
+  has_driven_blind_ = false;
+  const std::span<const Pose2> slips_that_fit = sees ? slips(seen) : std::span<const Pose2>{};
+  filter_.propose_slips(slips_that_fit);
+  std::span<const std::int32_t> misfits;
+  if (sees) misfits = filter_.weigh(seen.field, seen.ends);
+  if (!slips_that_fit.empty() && filter_.best_has_slipped()) {
+    filter_.spread_chosen(params_.motion, kAroundSlip);
+    misfits = filter_.weigh(seen.field, seen.ends);
+  }
+  Answer answer;
+  answer.n_eff = filter_.n_eff();
+  best_ = clusters_.best(filter_.particles());
+  answer.believed = pose_filter_.before_scan(seen.now, best_);
+  if (!sees) return answer;
+  answer.w_avg = mean_over_members(misfits, seen.ends.size());
+  answer.believed = slid(seen, answer.believed);
+  draw_anew_if_needed();
+  return answer;
+}
+
+/// Between updates: the particles stay, the answer follows the wheels and the scan.
+Tracker::Answer Tracker::follow(const Seen& seen, const motion::MotionSince& since) {
+  particles::ParticleCluster moved = best_;
+  moved.map_from_robot = best_.map_from_robot * since.motion;
+  Answer answer;
+  answer.believed = pose_filter_.before_scan(seen.now, moved);
+  if (seen.ends.size() == 0) return answer;
+  if (drawn_anew_) best_.weight = clusters_.best(filter_.particles()).weight;
+  drawn_anew_ = false;
+  answer.w_avg = mean_over_some_members(seen, since.motion);
+  answer.believed = slid(seen, answer.believed);
+  return answer;
+}
+
+std::span<const Pose2> Tracker::slips(const Seen& seen) {
+  const std::optional<Pose2> by_wheels = pose_filter_.predicted_at(seen.now);
+  if (!by_wheels) return {};
+  return slip_finder_.slips(seen.field, seen.ends, *by_wheels, beam_share(seen));
+}
+
+double Tracker::mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const {
+  double sum = 0.0;
+  for (const std::uint32_t i : clusters_.members()) sum += sensor::mean_likelihood(misfits[i], beams);
+  return sum / static_cast<double>(clusters_.members().size());
+}
+
+/// Evenly chosen: enough to know the mean over all of them.
+double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) const {
+  constexpr std::size_t kEnough = 50;
+  const std::span<const std::uint32_t> members = clusters_.members();
+  const std::size_t count = std::min(kEnough, members.size());
+  double sum = 0.0;
+  for (std::size_t nth = 0; nth < count; ++nth) {
+    const Pose2 standing = filter_.particles().pose(members[nth * members.size() / count]);
+    sum += sensor::mean_likelihood(sensor::misfit_steps(seen.field, seen.ends, standing * motion), seen.ends.size());
+  }
+  return sum / static_cast<double>(count);
+}
+
+/// The pose where the scan fits best.
+sensor::RefinedPose Tracker::slid(const Seen& seen, const sensor::RefinedPose& prior) {
+  const sensor::Refinement found =
+      sensor::refined(seen.field, seen.ends, prior, best_.covariance, errors_, beam_share(seen), params_.refinement);
+  errors_ = found.errors;
+  slip_finder_.learn(seen.field, seen.ends, found.pose.map_from_robot);
+  return found.pose;
+}
+
+double Tracker::beam_share(const Seen& seen) const {
+  return std::min(1.0, params_.particles.evidence_beams / static_cast<double>(seen.ends.size()));
+}
+
+void Tracker::draw_anew_if_needed() {
+  const std::size_t before = filter_.particles().size();
+  const bool drawn = filter_.resample_if_needed(clusters_.cell_count());
+  // Where all belonged to the best hypothesis, all that were drawn from them do.
+  drawn_anew_ = drawn && (clusters_.members().size() != before || filter_.particles().size() != before);
+}
+
+}  // namespace deltamap::localization::tracking

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracks one believed pose from scan to scan: particles are moved, weighed and resampled at an update, the pose filter
+// predicts in between, and each scan refines the pose. It knows no other hypotheses and does not ask whether the pose
+// is right (hypothesis_tracker.hpp, judgement.hpp).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "core/angle.hpp"
+#include "localization/motion/drive_calibration.hpp"
+#include "localization/motion/scan_instant.hpp"
+#include "localization/particles/particle_clusters.hpp"
+#include "localization/particles/particle_filter.hpp"
+#include "localization/particles/start_pose.hpp"
+#include "localization/sensor/pose_refinement.hpp"
+#include "localization/surfaces/surface_sighting.hpp"
+#include "localization/tracking/pose_filter.hpp"
+#include "localization/tracking/slip_finder.hpp"
+
+namespace deltamap::localization::tracking {
+
+class SurfaceTracker;
+
+/// When a scan changes the particles' weights. In between the estimate follows odometry and refinement alone, so that a
+/// robot that stands still does not talk itself into certainty.
+struct UpdateParams {
+  double distance_m = 0.05;        ///< driven since the last update, m; >= 0
+  double turn_rad = radians(2.0);  ///< turned since the last update, rad; >= 0
+  double time_s = 1.0;             ///< passed since the last update, s; > 0
+};
+
+struct TrackerParams {
+  particles::ParticleFilterParams particles;
+  motion::MotionModelParams motion;
+  particles::ParticleClusterParams hypothesis;
+  sensor::RefinementParams refinement;
+  PoseFilterParams track;
+  UpdateParams update;
+  bool follow_surfaces = true;  ///< where straight surfaces explain the scans they lead, and the particles rest
+};
+
+class Tracker {
+ public:
+  Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed);
+  ~Tracker();
+
+  /// Another map, the same but for a box of cells.
+  void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
+
+  /// All that came before is forgotten. Answers what is believed before a scan is read.
+  sensor::RefinedPose start_around(const particles::InitialPose& pose);
+  /// As start_around(), at a scan: the motion from there on counts.
+  sensor::RefinedPose start_around(const particles::InitialPose& pose, const motion::ScanInstant& now);
+  /// The clock of the scans has fallen back to this time.
+  void restart_clock(Timestamp time);
+
+  struct Seen {
+    const motion::ScanInstant& now;
+    const motion::BeamEnds& ends;  ///< robot frame; may be empty
+    const sensor::LikelihoodField& field;
+    std::span<const surfaces::FacedEnd> faced{};  ///< the same scan's, for the surfaces; may be empty
+    motion::BodyVelocity velocity{};              ///< at the scan, by the wheels
+  };
+  struct Answer {
+    sensor::RefinedPose believed;
+    std::optional<double> w_avg;  ///< mean likelihood over the believed particles (paper §3.1); none without a return
+    std::optional<double> n_eff;  ///< where the scan was an update
+    double unknown_s = 0.0;       ///< since the last update, not covered by odometry
+  };
+  Answer observe(const Seen& seen);
+  /// No scan has come for long: particles and pose filter are predicted by the wheels up to this instant.
+  void predict(const motion::ScanInstant& now);
+
+  /// Nothing where surfaces are not followed. A scan's mount is to be corrected by it before the scan is seen.
+  [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;
+  /// Before the first scan: what an earlier run has learned.
+  void restore(const motion::DriveCalibration& learned);
+  /// What the particles cannot know of the pose, because the laser's mount is not known better; nothing while the
+  /// surfaces lead, who count it in.
+  [[nodiscard]] PoseCovariance unknown_mount(double heading_rad) const;
+  /// Surfaces that stand where the map has them fix the pose; never while the particles lead.
+  [[nodiscard]] bool is_fixed_by_surfaces() const;
+
+  /// The heaviest hypothesis at the last update.
+  [[nodiscard]] const particles::ParticleCluster& best() const { return best_; }
+  /// As of the last update; null while the surfaces lead: the particles rest then, somewhere behind.
+  [[nodiscard]] const particles::ParticleSet* particles() const;
+  [[nodiscard]] std::size_t particle_count() const { return filter_.particles().size(); }
+
+ private:
+  Answer update(const Seen& seen, const motion::MotionSince& since);
+  Answer follow(const Seen& seen, const motion::MotionSince& since);
+  Answer led_by_surfaces(const Seen& seen);
+  void go_on_from(const sensor::RefinedPose& believed, const motion::ScanInstant& now);
+  void let_surfaces_lead(const Seen& seen, Answer& answer);
+  [[nodiscard]] bool update_due(const motion::MotionSince& since) const;
+  [[nodiscard]] std::span<const Pose2> slips(const Seen& seen);
+  [[nodiscard]] double beam_share(const Seen& seen) const;
+  [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const;
+  [[nodiscard]] double mean_over_some_members(const Seen& seen, const Pose2& motion) const;
+  [[nodiscard]] sensor::RefinedPose slid(const Seen& seen, const sensor::RefinedPose& prior);
+  void draw_anew_if_needed();
+
+  TrackerParams params_;
+  particles::ParticleFilter filter_;
+  PoseFilter pose_filter_;
+  std::unique_ptr<SurfaceTracker> surfaces_;  // none: they never lead
+  particles::ParticleClusterFinder clusters_;
+  particles::ParticleCluster best_;
+  sensor::BeamErrors errors_;
+  SlipFinder slip_finder_;
+  std::optional<motion::ScanInstant> last_update_;
+  bool has_driven_blind_ = false;  ///< the particles have moved since the last update, so that `best_` lies behind
+  bool drawn_anew_ = false;        ///< the particles, so that `clusters_` must look at them again
+};
+
+}  // namespace deltamap::localization::tracking

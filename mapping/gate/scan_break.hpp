@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Detects that a scan does not follow from the one before. The earlier scan is moved on as odometry says, and as the
+// estimate says; where part of the view is then suddenly nearer and part farther away, the robot was carried. An object
+// that comes makes its part nearer alone, one that goes makes it farther alone. Where the wheels have slipped, or their
+// reports come late, the estimate has moved as the scans have. The map is not asked, so that one out of date does not
+// matter. After a way without scans so long that odometry's error would show as much, the scan counts as a break too.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+
+namespace deltamap::mapping::gate {
+
+struct ScanBreakParams {
+  double most = 0.2;                ///< of the beams that may suddenly be nearer or farther away, beyond what is usual;
+                                    ///< [0, 1] (mapping.gate.most_break)
+  double each_way = 0.05;           ///< of them at least so many each way; a break that is larger than
+  double most_one_way = 0.3;        ///< is one whichever way; both [0, 1] (mapping.gate.most_break_one_way)
+  double least_m = 0.25;            ///< a smaller difference of range is none; > 0
+  double wheels_rad_per_m = 0.05;   ///< that odometry may have turned unnoticed; >= 0
+  double wheels_rad_per_rad = 0.1;  ///< likewise; >= 0
+  double usual_s = 10.0;            ///< over which what is usual is averaged: odometry may be poor, edges are many
+  double most_way_m = 1.0;          ///< scans farther apart are not compared; > 0
+  double most_turn_rad = 0.5;       ///< likewise; > 0
+  std::uint32_t least_compared = 30;  ///< beams; fewer say nothing
+};
+
+/// What of the view does not follow from the scan before.
+struct SeenBreak {
+  double share = 0.0;     ///< of the beams, more than usual
+  bool is_large = false;  ///< as large as if the robot had been carried
+};
+
+class ScanBreak {
+ public:
+  explicit ScanBreak(const ScanBreakParams& params) : params_{params} {}
+
+  /// Every scan in order.
+  [[nodiscard]] SeenBreak observe(const TrackedScan& tracked);
+
+ private:
+  struct Shares {
+    double nearer = 0.0;
+    double farther = 0.0;
+  };
+  /// Of the beams that can be compared; nothing where those are too few.
+  [[nodiscard]] std::optional<Shares> compared(const TrackedScan& tracked, const Pose2& now_from_last) const;
+  [[nodiscard]] std::optional<Shares> least_compared(const TrackedScan& tracked) const;
+  [[nodiscard]] bool was_blind(const TrackedScan& tracked) const;
+  void keep(const TrackedScan& tracked);
+
+  ScanBreakParams params_;
+  std::vector<Eigen::Vector2f> ends_;  // of the last scan, robot frame; those that have a range
+  Pose2 odom_from_robot_;
+  Pose2 map_from_robot_;
+  std::uint32_t epoch_ = 0;
+  std::optional<Timestamp> last_;
+  std::optional<Shares> usual_;
+};
+
+}  // namespace deltamap::mapping::gate

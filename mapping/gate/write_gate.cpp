@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/gate/write_gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace deltamap::mapping::gate {
+namespace {
+
+/// A thing in whose place the map is wrong takes up more of the view as the robot comes nearer.
+constexpr double kApproached = 1.5;
+
+/// Of the weight of other doubts. In aisles that look alike one is conceivable for a dozen seconds, and the pose right.
+constexpr double kDoubtOfOther = 0.5;
+
+/// σ along the longest axis of the ellipse.
+double widest_deviation_m(const PoseCovariance& covariance) {
+  const double middle = 0.5 * (covariance(0, 0) + covariance(1, 1));
+  const double half = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
+  return std::sqrt(std::max(0.0, middle + half));
+}
+
+}  // namespace
+
+std::string_view name_of(GateReason reason) {
+  switch (reason) {
+    case GateReason::kOpen:
+      return "open";
+    case GateReason::kSearching:
+      return "searching";
+    case GateReason::kLost:
+      return "lost";
+    case GateReason::kWrong:
+      return "wrong";
+    case GateReason::kJumped:
+      return "jumped";
+    case GateReason::kDisbelieved:
+      return "disbelieved";
+    case GateReason::kConfirming:
+      return "confirming";
+    case GateReason::kDoubtful:
+      return "doubtful";
+    case GateReason::kInlierDrop:
+      return "misfit";
+    case GateReason::kOtherHypothesis:
+      return "rival";
+    case GateReason::kSpread:
+      return "spread";
+  }
+  return "?";
+}
+
+bool proves_wrong(GateReason reason) {
+  return reason == GateReason::kSearching || reason == GateReason::kLost || reason == GateReason::kWrong ||
+         reason == GateReason::kJumped || reason == GateReason::kDisbelieved;
+}
+
+double observed_s(const GateTimes& times) { return std::accumulate(times.begin(), times.end(), 0.0); }
+double shut_s(const GateTimes& times) { return observed_s(times) - times[static_cast<std::size_t>(GateReason::kOpen)]; }
+
+std::map<std::string, double> shut_by_reason(const GateTimes& times) {
+  std::map<std::string, double> shut;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto reason = static_cast<GateReason>(i);
+    if (reason != GateReason::kOpen && times[i] > 0.0) shut[std::string{name_of(reason)}] = times[i];
+  }
+  return shut;
+}
+
+GateReason WriteGate::judged(const TrackedScan& tracked) {
+  const Estimate& estimate = tracked.estimate;
+  const bool jumped = jump_.observe(tracked);
+  inlier_drop_.observe(tracked);
+  if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
+  if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
+  if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
+  if (jumped) return GateReason::kJumped;
+  if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
+  if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
+  if (inlier_drop_.is_sudden()) return GateReason::kInlierDrop;
+  if (estimate.belief.other_share > params_.most_rival_share) return GateReason::kOtherHypothesis;
+  if (widest_deviation_m(estimate.covariance) > params_.most_deviation_m) return GateReason::kSpread;
+  return GateReason::kOpen;
+}
+
+/// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
+/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before. Small
+/// breaks are of things as long as not many more beams cease to fit than have broken off.
+void WriteGate::note_break(const TrackedScan& tracked) {
+  const Timestamp time = tracked.scan.time;
+  const SeenBreak seen = scan_break_.observe(tracked);
+  const bool is_small = !seen.is_large && !is_confirming_ && seen.share > params_.wary_break;
+  if (was_tracking_ && (seen.is_large || is_small)) {
+    if (!broken_) inlier_drop_.remember();
+    if (seen.is_large) {
+      broken_ = Broken{time, 0.0, true};
+    } else if (!broken_) {
+      broken_ = Broken{time, kApproached * seen.share, false};
+    } else if (!broken_->shuts) {
+      broken_->explained += kApproached * seen.share;
+    }
+  }
+  if (!broken_ || is_confirming_) return;
+  const double over_s = broken_->shuts ? std::max(params_.wary_s, params_.break_settles_s) : params_.wary_s;
+  if (inlier_drop_.is_worse_than_remembered(broken_->explained)) {
+    is_confirming_ = true;
+    confirms_after_ = GateReason::kConfirming;
+  } else if (seconds(time - broken_->time) > over_s) {
+    forget_break();
+  }
+}
+
+void WriteGate::forget_break() {
+  broken_.reset();
+  inlier_drop_.forget();
+}
+
+bool WriteGate::breaks_now(Timestamp time) const {
+  return broken_ && broken_->shuts && seconds(time - broken_->time) <= params_.break_settles_s;
+}
+
+bool WriteGate::fits_as_before_break(Timestamp time) const {
+  return !broken_ || seconds(time - broken_->time) > params_.most_unlike_s ||
+         !inlier_drop_.is_worse_than_remembered(0.0);
+}
+
+/// Has the pose held for long and far enough?
+bool WriteGate::holds(GateReason judgement, Timestamp time, double driven_m) {
+  if (judgement != GateReason::kOpen || !fits_as_before_break(time)) {
+    holds_since_ = time;
+    held_m_ = 0.0;
+  } else {
+    held_m_ += driven_m;
+  }
+  return seconds(time - holds_since_) >= params_.confirm_s && held_m_ >= params_.confirm_m;
+}
+
+void WriteGate::observe(const TrackedScan& tracked) {
+  const Timestamp time = tracked.scan.time;
+  if (last_) {
+    const double passed_s = std::max(0.0, seconds(time - *last_));
+    times_[static_cast<std::size_t>(reason_)] += passed_s;
+    shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
+    doubted_for_s_ += reason_ == GateReason::kOtherHypothesis ? kDoubtOfOther * passed_s : passed_s;
+  }
+  last_ = time;
+  const double driven_m = driven_way_.since_last_m(tracked);
+  const GateReason judgement = judged(tracked);
+  note_break(tracked);
+  const bool is_proof = proves_wrong(judgement);
+  if (judgement == GateReason::kOpen) doubted_for_s_ = 0.0;
+  const bool doubts_long = doubted_for_s_ >= params_.most_doubt_s;
+  has_proven_wrong_ = was_tracking_ && !is_distrusted_ && (is_proof || doubts_long);
+  if (has_proven_wrong_) is_distrusted_ = true;
+  if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
+  if (was_tracking_ && !is_confirming_ && (is_proof || inlier_drop_.is_both_ways())) {
+    is_confirming_ = true;
+    confirms_after_ = GateReason::kInlierDrop;
+    // What has only made it wary is a thing that stays: as much as without it need not fit again.
+    if (broken_ && !broken_->shuts) forget_break();
+  }
+  if (is_confirming_ && is_proof) confirms_after_ = judgement;
+  if (is_confirming_ && holds(judgement, time, driven_m)) {
+    is_confirming_ = false;
+    forget_break();
+  }
+  const bool confirms = is_confirming_ || breaks_now(time);
+  reason_ = confirms && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;
+  if (is_open() && is_distrusted_) {
+    is_distrusted_ = false;
+    trusted_since_ = time;
+  }
+  if (is_open()) shut_for_s_ = 0.0;
+  provisional_.observe(tracked, is_open());
+}
+
+}  // namespace deltamap::mapping::gate

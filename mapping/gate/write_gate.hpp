@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decides whether M_k may be written: only while the localizer's belief has one mode and P(pose right) is high. Looks
+// at every tracked scan; tells whether it is open and why not, detects when the pose proves to have been wrong, and
+// counts the time shut by reason, for a gate that stays shut is a failure too.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/messages.hpp"
+#include "mapping/gate/driven_way.hpp"
+#include "mapping/gate/inlier_drop.hpp"
+#include "mapping/gate/pose_jump.hpp"
+#include "mapping/gate/provisional_window.hpp"
+#include "mapping/gate/scan_break.hpp"
+
+namespace deltamap::mapping::gate {
+
+enum class GateReason : std::uint8_t {
+  kOpen,
+  kSearching,        ///< the localizer does not know where the robot is
+  kLost,             ///< it has lost its way
+  kWrong,            ///< it calls its own pose wrong
+  kJumped,           ///< the estimate has moved otherwise than odometry, farther than its covariance explains
+  kDisbelieved,      ///< P(pose right) is so low that it is rather wrong
+  kConfirming,       ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
+  kDoubtful,         ///< P(pose right) is low
+  kInlierDrop,       ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
+  kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
+  kSpread            ///< the best place is spread too wide
+};
+inline constexpr std::size_t kGateReasons = 11;
+/// For status, report and log: "open", "searching", "lost", …
+[[nodiscard]] std::string_view name_of(GateReason reason);
+/// Does it say that the pose was wrong, and not only that it may be?
+[[nodiscard]] bool proves_wrong(GateReason reason);
+
+struct WriteGateParams {
+  bool enabled = true;              ///< false: everything is written, as the paper does (mapping.gate.enabled)
+  double least_pose_right = 0.83;   ///< P(pose right) below which it is shut; [0, 1]
+  double disbelieved_below = 0.3;   ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
+  double most_rival_share = 0.05;   ///< of the belief, that another pose hypothesis may hold; [0, 1]
+  double most_deviation_m = 0.3;    ///< σ of the position along its worst axis; > 0
+  double confirm_s = 20.0;          ///< so long all must hold again after the pose was wrong; >= 0
+  double confirm_m = 10.0;          ///< and so far it must have driven meanwhile; >= 0
+  double most_doubt_s = 10.0;       ///< shut for so long without a proof, what is provisional is withdrawn; > 0
+  double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
+  double hold_rival_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
+  PoseJumpParams jump;
+  InlierDropParams misfit;
+  ScanBreakParams scan_break;
+  double break_settles_s = 1.0;  ///< after a large break it waits so long to see whether the map still fits; >= 0
+  double wary_break = 0.08;      ///< of the beams: what breaks off less makes it not even wary; [0, 1]
+  double wary_s = 5.0;           ///< so long after a break a worse fit says that the robot was carried; >= 0
+  double most_unlike_s = 120.0;  ///< for so long after one as much must fit as before to confirm the pose; >= 0
+  ProvisionalParams provisional;
+};
+
+/// Seconds by reason; those under kOpen are the time open.
+using GateTimes = std::array<double, kGateReasons>;
+[[nodiscard]] double observed_s(const GateTimes& times);
+[[nodiscard]] double shut_s(const GateTimes& times);
+/// By name, without those that never were.
+[[nodiscard]] std::map<std::string, double> shut_by_reason(const GateTimes& times);
+
+class WriteGate {
+ public:
+  explicit WriteGate(const WriteGateParams& params)
+      : params_{params},
+        jump_{params.jump},
+        inlier_drop_{params.misfit},
+        scan_break_{params.scan_break},
+        provisional_{params.provisional} {}
+
+  /// Every tracked scan in order.
+  void observe(const TrackedScan& tracked);
+
+  [[nodiscard]] bool is_open() const { return reason_ == GateReason::kOpen; }
+  [[nodiscard]] GateReason reason() const { return reason_; }
+  /// What the pose is being confirmed after: the proof that it was wrong, kInlierDrop after another view, kConfirming
+  /// after scans that broke off; kOpen where it is not.
+  [[nodiscard]] GateReason confirms_after() const { return is_confirming_ ? confirms_after_ : GateReason::kOpen; }
+  /// Did this scan prove the pose wrong that was believed before it, or is it in doubt for too long?
+  [[nodiscard]] bool has_proven_wrong() const { return has_proven_wrong_; }
+  /// Told that the pose was wrong, and not open since.
+  [[nodiscard]] bool is_distrusted() const { return is_distrusted_; }
+  /// Since when the pose has not been wrong, as far as is known; nothing where it never was.
+  [[nodiscard]] const std::optional<Timestamp>& trusted_since() const { return trusted_since_; }
+  /// What was written before is no longer provisional.
+  [[nodiscard]] std::optional<Timestamp> settled() const { return provisional_.settled(); }
+  [[nodiscard]] const GateTimes& times() const { return times_; }
+  /// Since it was open last.
+  [[nodiscard]] double shut_for_s() const { return shut_for_s_; }
+
+ private:
+  struct Broken {
+    Timestamp time;
+    double explained = 0.0;  // share of the beams that a thing may have taken out of the map's view
+    bool shuts = false;
+  };
+  [[nodiscard]] GateReason judged(const TrackedScan& tracked);
+  void note_break(const TrackedScan& tracked);
+  void forget_break();
+  [[nodiscard]] bool breaks_now(Timestamp time) const;
+  [[nodiscard]] bool fits_as_before_break(Timestamp time) const;
+  [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double driven_m);
+
+  WriteGateParams params_;
+  PoseJump jump_;
+  InlierDropDetector inlier_drop_;
+  ScanBreak scan_break_;
+  std::optional<Broken> broken_;  // the last break of the scans, until it has been explained
+  ProvisionalWindow provisional_;
+  GateReason reason_ = GateReason::kSearching;
+  bool was_tracking_ = false;
+  bool has_proven_wrong_ = false;
+  bool is_confirming_ = false;
+  GateReason confirms_after_ = GateReason::kOpen;
+  bool is_distrusted_ = false;
+  Timestamp holds_since_;
+  double held_m_ = 0.0;  // driven since then
+  DrivenWay driven_way_;
+  std::optional<Timestamp> trusted_since_;
+  std::optional<Timestamp> last_;
+  GateTimes times_{};
+  double shut_for_s_ = 0.0;
+  double doubted_for_s_ = 0.0;  // without a scan that speaks for the pose
+};
+
+}  // namespace deltamap::mapping::gate

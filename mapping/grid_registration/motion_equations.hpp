@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Least squares of a small motion of a local map. A turn counts as what it moves a cell at the lever arm, so that all
+// three unknowns are cells.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "mapping/grid_registration/edge_registration.hpp"
+
+namespace deltamap::mapping::grid_registration {
+
+struct MotionEquations {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+  int paired = 0;  ///< cells that they were summed over
+};
+
+/// The step along the axes of which they observe at least this share of the best one's curvature.
+[[nodiscard]] Eigen::Vector3d observed_step(const MotionEquations& sums, double least_observed);
+
+/// How far a turn of 1 rad moves the edges, root mean square.
+[[nodiscard]] double lever_of(std::span<const EdgeCell> edges);
+
+[[nodiscard]] inline merge::CellMotion moved(const merge::CellMotion& motion, const Eigen::Vector3d& step,
+                                             double lever_cells) {
+  return {motion.turn_rad + step.z() / lever_cells, motion.column + step.x(), motion.row + step.y()};
+}
+
+}  // namespace deltamap::mapping::grid_registration

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map S_k that aligned scans draw by themselves (paper §3.3): every beam frees the cells that it crosses and votes
+// for the cell that it ends in.
+#pragma once
+
+#include <span>
+
+#include "core/messages.hpp"
+#include "core/occupancy_grid.hpp"
+
+namespace deltamap::mapping::paper {
+
+struct LocalMapParams {
+  double longest_m = 12.0;            ///< beyond, neighbouring beams leave cells out; > 0
+  double least_hit_share = 0.25;      ///< hits / (hits + crossings) from which a cell is occupied; (0, 1]
+  std::uint32_t least_crossings = 1;  ///< from which a cell without enough hits is free; > 0
+};
+
+/// One pose for each scan. The cells are those of `lattice` (its resolution and the phase of its borders), as many as
+/// the scans touch. Only valid ranges count.
+[[nodiscard]] OccupancyGrid local_map(std::span<const TrackedScan* const> scans, std::span<const Pose2> map_from_robot,
+                                      const GridGeometry& lattice, const LocalMapParams& params);
+
+}  // namespace deltamap::mapping::paper

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// The journal of the map on disk (SQLite, write-ahead log): every Δ with its cells before and after, time, pose
+// covariance, acceptance and cause, a whole grid every 64, and what was refused. Histories are told apart by the hash
+// of M_0, so that another map never finds old revisions. Of the refusals the newest 1000 are kept. Used by one thread.
+// What goes wrong is told by a StoreError.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/occupancy_grid.hpp"
+#include "mapping/store/retention.hpp"
+
+namespace deltamap::mapping::store {
+
+/// What a revision or a refusal is kept with.
+struct RevisionNote {
+  std::uint32_t phase = 0;  ///< number of the Δ-phase
+  double acceptance = 0.0;  ///< Eq. 11
+  std::string cause;        ///< method, "withdrawn", "undo of K", or the reason of the refusal
+  /// Of the localizer's pose when the Δ-phase ended; nothing where no localizer had a part in it.
+  std::optional<PoseCovariance> covariance{};
+};
+
+struct StoredRevision {
+  std::uint32_t number = 0;  ///< k; a refusal has the number of the revision that stayed
+  bool refused = false;
+  Timestamp time;
+  RevisionNote note;
+  std::uint32_t occupied = 0;  ///< cells that became occupied
+  std::uint32_t freed = 0;     ///< cells that became free
+  std::uint32_t unknown = 0;   ///< cells that became unknown
+  CellBox box;                 ///< of the changed cells
+  std::string name{};          ///< given by a person; empty: none
+};
+
+class MapStore {
+ public:
+  /// Opens the history of M_0, and begins it where there is none. Revisions at the end that cannot be restored are
+  /// dropped. Throws StoreError: one line that names the file (foreign, damaged, not writable).
+  MapStore(const std::filesystem::path& file, const OccupancyGrid& first);
+  /// Opens the history that was used last in an existing file, to read or to roll back.
+  explicit MapStore(const std::filesystem::path& file);
+  ~MapStore();
+  MapStore(MapStore&&) noexcept;
+  MapStore& operator=(MapStore&&) noexcept;
+
+  [[nodiscard]] std::uint32_t newest() const;
+  /// Damaged revisions that opening has dropped.
+  [[nodiscard]] std::uint32_t dropped() const;
+  /// What another program has written since it was opened counts, too.
+  void catch_up();
+  /// M_k. Throws std::runtime_error where there is no such revision, or it is damaged.
+  [[nodiscard]] OccupancyGrid grid(std::uint32_t number) const;
+  /// Accepted and refused, in the order in which they were written.
+  [[nodiscard]] std::vector<StoredRevision> history() const;
+
+  /// The revision must follow the newest one.
+  void append(const MapRevision& revision, const RevisionNote& note);
+  /// M_k with everything that has changed since the newest revision, where those between were never written: they are
+  /// missing from now on. The number is higher than the newest.
+  void append_whole(std::uint32_t number, Timestamp time, const OccupancyGrid& map, const RevisionNote& note);
+  void append_refusal(Timestamp time, const RevisionNote& note);
+  /// What led from M_{k-1} to M_k. Throws as grid() does; M_0 has no changes.
+  [[nodiscard]] std::vector<CellChange> changes(std::uint32_t number) const;
+  /// Writes M_k once more as the newest revision (nothing is lost), and returns its number.
+  std::uint32_t roll_back(std::uint32_t number, Timestamp time);
+  struct Undoing {
+    std::vector<CellChange> changes;  ///< at least one
+    std::size_t kept = 0;             ///< cells of the Δ that have changed since
+  };
+  /// What takes Δ k back and leaves what came later as it is: its cells that no later revision has changed take the
+  /// states they had before it. `newest_map` is that of the newest revision. Throws std::runtime_error where there is
+  /// no such Δ, or nothing of it is left.
+  [[nodiscard]] Undoing undoing(std::uint32_t number, const OccupancyGrid& newest_map) const;
+  /// Writes undoing() as the newest revision and returns its number. Throws as that does.
+  std::uint32_t undo(std::uint32_t number, Timestamp time);
+
+  /// Turns the oldest steps that no rule keeps one by one into one step: at most 63, so that it takes a moment, and in
+  /// one transaction. False where there is nothing to do. `now` is Unix time; what it means where the clock has jumped:
+  /// store_retention.hpp.
+  bool thin_out(const Retention& retention, Timestamp now);
+  /// A named revision stays whatever the rules say; an empty name takes the name away. Throws as grid() does, and where
+  /// the name is longer than 80 bytes or a line. Another program may write to the store meanwhile.
+  void set_name(std::uint32_t number, const std::string& name);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace deltamap::mapping::store

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thins out what a map store remembers: between two whole maps that no rule keeps one by one, the steps become one
+// step. Every revision that remains can be restored, and what it changed is told from the one that remains before it.
+#pragma once
+
+#include <cstdint>
+
+#include "core/grid_geometry.hpp"
+#include "core/time.hpp"
+#include "mapping/store/database.hpp"
+#include "mapping/store/retention.hpp"
+
+namespace deltamap::mapping::store {
+
+/// Thins out the oldest stretch that may be: at most 63 revisions, in one transaction. False where there is none.
+/// `now` is Unix time. The clock may have jumped: a revision whose time lies in the future, or before that of an older
+/// one, is as old as the next one whose time is credible. Throws StoreError.
+bool thin_out(Database& database, std::int64_t map, const GridGeometry& geometry, const Retention& retention,
+              Timestamp now);
+
+}  // namespace deltamap::mapping::store

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+// When the gate shuts and why, what it proves, and what becomes of the sets.
+#include "mapping/gate/write_gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mapping/gate/gated_sets.hpp"
+#include "tests/mapping/straight_drive.hpp"
+
+namespace deltamap::mapping::gate {
+namespace {
+
+ScanSet set_of(double began_s, double ended_s, std::uint32_t phase = 1) {
+  ScanSet set;
+  set.phase = phase;
+  set.began = StraightDrive::at(began_s);
+  set.ended = StraightDrive::at(ended_s);
+  return set;
+}
+
+void drive(StraightDrive& robot, WriteGate& gate, double duration_s) {
+  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) gate.observe(robot.next());
+}
+
+void drive(StraightDrive& robot, ProvisionalWindow& window, double duration_s, bool counts = true) {
+  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) window.observe(robot.next(), counts);
+}
+
+template <typename Change>
+GateReason reason_after(Change change) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  EXPECT_TRUE(gate.is_open());
+  TrackedScan tracked = robot.next();
+  change(tracked.estimate);
+  gate.observe(tracked);
+  return gate.reason();
+}
+
+TEST(WriteGate, IsOpenWhileThePoseIsSure) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 60.0);
+  EXPECT_TRUE(gate.is_open());
+  EXPECT_EQ(shut_s(gate.times()), 0.0);
+  EXPECT_NEAR(observed_s(gate.times()), 60.0, 2 * kPeriod_s);
+}
+
+TEST(WriteGate, TellsWhyItIsShut) {
+  EXPECT_EQ(reason_after([](Estimate& e) { e.state = LocalizerState::kLost; }), GateReason::kLost);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.state = LocalizerState::kGlobal; }), GateReason::kSearching);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.belief.verdict = PoseVerdict::kWrong; }), GateReason::kWrong);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.belief.pose_right = 0.6; }), GateReason::kDoubtful);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.belief.pose_right = 0.2; }), GateReason::kDisbelieved);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.belief.other_share = 0.5; }), GateReason::kOtherHypothesis);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.covariance(1, 1) = 1.0; }), GateReason::kSpread);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.map_from_robot.x += 1.0; }), GateReason::kJumped);
+}
+
+TEST(WriteGate, SeesTheSpreadAlongASlantingAxis) {
+  EXPECT_EQ(reason_after([](Estimate& e) {
+              e.covariance(0, 0) = e.covariance(1, 1) = 0.06;
+              e.covariance(0, 1) = e.covariance(1, 0) = 0.055;
+            }),
+            GateReason::kSpread);
+}
+
+TEST(WriteGate, DoubtShutsItAndProvesNothing) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  TrackedScan tracked = robot.next();
+  tracked.estimate.belief.pose_right = 0.6;
+  gate.observe(tracked);
+  EXPECT_FALSE(gate.is_open());
+  EXPECT_FALSE(gate.has_proven_wrong());
+  gate.observe(robot.next());
+  EXPECT_TRUE(gate.is_open());
+  EXPECT_FALSE(gate.trusted_since());
+}
+
+TEST(WriteGate, AWrongPoseIsToldOnceAndHasToHoldBeforeItOpensAgain) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  int told = 0;
+  for (int i = 0; i < 20; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.state = LocalizerState::kLost;
+    gate.observe(tracked);
+    told += gate.has_proven_wrong() ? 1 : 0;
+  }
+  EXPECT_EQ(told, 1);
+  drive(robot, gate, 19.7);
+  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+  EXPECT_EQ(gate.confirms_after(), GateReason::kLost);
+  drive(robot, gate, 0.6);
+  EXPECT_EQ(gate.confirms_after(), GateReason::kOpen);
+  EXPECT_TRUE(gate.is_open());
+  EXPECT_NEAR(seconds(robot.now() - *gate.trusted_since()), 0.0, 0.6);
+  const auto shut = shut_by_reason(gate.times());
+  EXPECT_NEAR(shut.at("lost"), 2.0, 2 * kPeriod_s);
+  EXPECT_NEAR(shut.at("confirming"), 20.0, 3 * kPeriod_s);
+  EXPECT_EQ(shut.size(), 2u);
+}
+
+TEST(WriteGate, SearchingAtTheStartProvesNothing) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 50; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.state = LocalizerState::kGlobal;
+    gate.observe(tracked);
+    EXPECT_EQ(gate.reason(), GateReason::kSearching);
+    EXPECT_FALSE(gate.has_proven_wrong());
+  }
+  EXPECT_NEAR(gate.shut_for_s(), 5.0, 3 * kPeriod_s);
+  gate.observe(robot.next());
+  EXPECT_TRUE(gate.is_open());
+  EXPECT_EQ(gate.shut_for_s(), 0.0);
+}
+
+TEST(WriteGate, AStandingRobotConfirmsNothing) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  TrackedScan tracked = robot.next();
+  tracked.estimate.state = LocalizerState::kLost;
+  gate.observe(tracked);
+  robot.speed_m_per_s = 0.0;
+  drive(robot, gate, 600.0);
+  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+}
+
+TEST(WriteGate, DoubtThatLastsIsToldOnce) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  int told = 0;
+  for (int i = 0; i < 300; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.pose_right = 0.6;
+    gate.observe(tracked);
+    told += gate.has_proven_wrong() ? 1 : 0;
+    EXPECT_TRUE(told == 0 || i >= 95);
+  }
+  EXPECT_EQ(told, 1);
+  gate.observe(robot.next());
+  EXPECT_TRUE(gate.is_open());
+  EXPECT_EQ(gate.trusted_since(), robot.now());
+}
+
+/// Of 150 beams that the map expects to end somewhere.
+TrackedScan seeing(TrackedScan tracked, std::uint32_t short_of, std::uint32_t beyond) {
+  tracked.estimate.belief.elsewhere = {150, 150 - short_of - beyond, short_of, beyond};
+  return tracked;
+}
+
+TEST(WriteGate, ShutsWhileScansHaveSuddenlyStoppedFitting) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
+  for (int i = 0; i < 8; ++i) gate.observe(seeing(robot.next(), 60, 5));
+  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
+  EXPECT_FALSE(gate.has_proven_wrong());
+  for (int i = 0; i < 150; ++i) gate.observe(seeing(robot.next(), 60, 5));
+  EXPECT_TRUE(gate.is_open()) << "a thing has come and stays";
+}
+
+TEST(WriteGate, WaitsForProofWhereTheWholeViewHasBecomeAnother) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
+  for (int i = 0; i < 10; ++i) gate.observe(seeing(robot.next(), 40, 40));
+  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
+  for (int i = 0; i < 190; ++i) gate.observe(seeing(robot.next(), 5, 5));
+  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+  EXPECT_EQ(gate.confirms_after(), GateReason::kInlierDrop);
+  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 5, 5));
+  EXPECT_TRUE(gate.is_open());
+  EXPECT_FALSE(gate.trusted_since()) << "nothing was proven";
+}
+
+TEST(WriteGate, TakesNoThingThatComesAndAnotherThatGoesAMomentLaterForAnotherView) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
+  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 0));
+  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 34));
+  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
+  EXPECT_TRUE(gate.is_open());
+}
+
+TEST(WriteGate, TakesNoCornerOfAHallThatIsOutOfDateForAnotherPlace) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 20, 20));
+  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 55, 55));
+  EXPECT_TRUE(gate.is_open());
+}
+
+TEST(WriteGate, BelievesNoMisfitOfAFewBeams) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
+  for (int i = 0; i < 20; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.elsewhere = {20, 0, 10, 10};
+    gate.observe(tracked);
+  }
+  EXPECT_TRUE(gate.is_open());
+}
+
+TEST(PoseJump, SeesACorrectionThatCreepsInOverASecond) {
+  StraightDrive robot;
+  PoseJump jump{{}};
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(jump.observe(robot.next()));
+  bool jumped = false;
+  for (int i = 0; i < 10; ++i) {
+    robot.map_from_odom.y += 0.06;
+    jumped = jump.observe(robot.next()) || jumped;
+  }
+  EXPECT_TRUE(jumped);
+}
+
+TEST(PoseJump, LetsASpreadPoseMoveAndASlowDriftPass) {
+  StraightDrive robot;
+  PoseJump jump{{}};
+  for (int i = 0; i < 600; ++i) {
+    robot.map_from_odom.y += 0.004;  // 4 cm a second, as bad wheels may
+    EXPECT_FALSE(jump.observe(robot.next()));
+  }
+  TrackedScan spread = robot.next();
+  spread.estimate.covariance *= 400.0;  // 0.4 m
+  spread.estimate.map_from_robot.y += 0.9;
+  EXPECT_FALSE(jump.observe(spread));
+}
+
+TEST(PoseJump, BeginsAnewWithTheOdometry) {
+  StraightDrive robot;
+  PoseJump jump{{}};
+  for (int i = 0; i < 50; ++i) (void)jump.observe(robot.next());
+  TrackedScan reset = robot.next();
+  reset.odom_from_robot = {};
+  reset.odometry_epoch = 1;
+  EXPECT_FALSE(jump.observe(reset));
+}
+
+TEST(ProvisionalWindow, NeedsBothWayAndTime) {
+  StraightDrive robot;
+  ProvisionalWindow window{{.way_m = 10.0, .time_s = 30.0}};
+  drive(robot, window, 19.0);  // 9.5 m
+  EXPECT_FALSE(window.settled());
+  drive(robot, window, 41.0);  // 30 m: time is what takes longer
+  ASSERT_TRUE(window.settled());
+  EXPECT_NEAR(seconds(robot.now() - *window.settled()), 30.0, 0.3);
+}
+
+TEST(ProvisionalWindow, TimeAloneSettlesNothing) {
+  StraightDrive robot;
+  ProvisionalWindow window{{.way_m = 10.0, .time_s = 30.0}};
+  drive(robot, window, 60.0);
+  const Timestamp stopped = robot.now();
+  robot.speed_m_per_s = 0.0;
+  drive(robot, window, 3600.0);
+  ASSERT_TRUE(window.settled());
+  EXPECT_NEAR(seconds(stopped - *window.settled()), 20.0, 0.5) << "what was written 10 m before it stopped";
+}
+
+TEST(ProvisionalWindow, WhatPassesInDoubtDoesNotCount) {
+  StraightDrive robot;
+  ProvisionalWindow window{{.way_m = 10.0, .time_s = 30.0}};
+  drive(robot, window, 60.0);
+  const Timestamp settled = *window.settled();
+  drive(robot, window, 60.0, false);
+  EXPECT_EQ(window.settled(), settled);
+}
+
+class Sets : public testing::Test {
+ protected:
+  /// Drives on and returns what is handed on.
+  std::vector<ScanSet> on(double duration_s) {
+    std::vector<ScanSet> handed_on;
+    for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
+      TrackedScan tracked = robot.next();
+      tracked.estimate.belief.other_share = other_share;
+      take(tracked, handed_on);
+    }
+    return handed_on;
+  }
+  std::vector<ScanSet> lose_the_way() {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.state = LocalizerState::kLost;
+    std::vector<ScanSet> handed_on;
+    take(tracked, handed_on);
+    return handed_on;
+  }
+  void take(const TrackedScan& tracked, std::vector<ScanSet>& handed_on) {
+    sets.observe(tracked);
+    if (sets.withdrawal()) ordered_back.push_back(*sets.withdrawal());
+    while (auto set = sets.next()) handed_on.push_back(*std::move(set));
+  }
+  void end_set(double span_s, std::uint32_t phase) {
+    sets.take(set_of(robot.time_s() - span_s, robot.time_s(), phase), robot.next());
+  }
+
+  StraightDrive robot;
+  double other_share = 0.0;
+  GatedSets sets{{}};
+  std::vector<WithdrawOrder> ordered_back;
+};
+
+TEST_F(Sets, WaitAMomentAndAreHandedOn) {
+  (void)on(10.0);
+  end_set(5.0, 1);
+  EXPECT_TRUE(on(1.0).empty());
+  const auto handed_on = on(1.0);
+  ASSERT_EQ(handed_on.size(), 1u);
+  EXPECT_FALSE(handed_on[0].pose_in_doubt);
+  EXPECT_GT(handed_on[0].covariance(0, 0), 0.0);
+  EXPECT_FALSE(handed_on[0].settled) << "5 m: all is provisional";
+}
+
+TEST_F(Sets, WaitOnWhileAnotherPlaceIsConceivable) {
+  (void)on(10.0);
+  end_set(5.0, 1);
+  other_share = 0.02;
+  EXPECT_TRUE(on(10.0).empty());
+  EXPECT_TRUE(sets.lets_vote()) << "so little does not shut the gate";
+  other_share = 0.0;
+  EXPECT_EQ(on(kPeriod_s).size(), 1u);
+}
+
+TEST_F(Sets, AreRefusedWhereThePoseProvesWrongWhileTheyWait) {
+  (void)on(10.0);
+  end_set(5.0, 1);
+  const auto handed_on = lose_the_way();
+  ASSERT_EQ(handed_on.size(), 1u) << "nothing was written: no order";
+  EXPECT_TRUE(handed_on[0].pose_in_doubt);
+}
+
+TEST_F(Sets, AreRefusedWhereTheirVotesAreOlderThanTheTrustInThePose) {
+  (void)on(10.0);
+  (void)lose_the_way();
+  (void)on(25.0);
+  end_set(8.0, 1);
+  end_set(1.0, 2);
+  const auto handed_on = on(3.0);
+  ASSERT_EQ(handed_on.size(), 2u);
+  EXPECT_TRUE(handed_on[0].pose_in_doubt);
+  EXPECT_FALSE(handed_on[1].pose_in_doubt);
+}
+
+TEST_F(Sets, WhatWasWrittenLatelyIsOrderedBackOnce) {
+  (void)on(60.0);
+  end_set(2.0, 1);
+  ASSERT_EQ(on(5.0).size(), 1u);
+  EXPECT_TRUE(lose_the_way().empty());
+  ASSERT_EQ(ordered_back.size(), 1u);
+  EXPECT_NEAR(seconds(robot.now() - ordered_back[0].from), 30.0, 0.4);
+  (void)on(10.0);
+  (void)lose_the_way();
+  EXPECT_EQ(ordered_back.size(), 1u) << "nothing was written since";
+}
+
+TEST_F(Sets, WhatIsSettledStays) {
+  (void)on(60.0);
+  end_set(2.0, 1);
+  ASSERT_EQ(on(40.0).size(), 1u);
+  EXPECT_TRUE(lose_the_way().empty());
+}
+
+TEST_F(Sets, AllPassAShutGateThatIsOff) {
+  WriteGateParams off;
+  off.enabled = false;
+  sets = GatedSets{off};
+  (void)on(10.0);
+  (void)lose_the_way();
+  EXPECT_TRUE(sets.lets_vote());
+  end_set(2.0, 1);
+  const auto handed_on = on(kPeriod_s);
+  ASSERT_EQ(handed_on.size(), 1u);
+  EXPECT_FALSE(handed_on[0].pose_in_doubt);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::gate

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/store/map_store.hpp"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "core/random.hpp"
+#include "mapping/store/taken_back.hpp"
+#include "tests/support/drawn_grid.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace deltamap::mapping::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+OccupancyGrid first_map() { return OccupancyGrid{{40, 30, 0.1, {-1.0, -2.0}}, CellState::kFree}; }
+
+/// The map with some cells of its own for each number.
+MapRevision revision_after(const OccupancyGrid& before, std::uint32_t number) {
+  OccupancyGrid after = before;
+  Random random{number};
+  for (int i = 0; i < 5; ++i) {
+    const Cell cell{static_cast<int>(random.index_below(40)), static_cast<int>(random.index_below(30))};
+    after.set(cell, static_cast<CellState>(random.index_below(3)));
+  }
+  MapRevision revision;
+  revision.number = number;
+  revision.time = timestamp_from_ns(std::int64_t{number} * 1'000'000'000);
+  revision.changes = changes_between(before, after);
+  revision.map = std::make_shared<const OccupancyGrid>(std::move(after));
+  return revision;
+}
+
+/// Appends revisions up to `last` and returns every map.
+std::vector<OccupancyGrid> fill(MapStore& store, std::uint32_t last) {
+  std::vector<OccupancyGrid> maps{first_map()};
+  for (std::uint32_t number = 1; number <= last; ++number) {
+    const MapRevision revision = revision_after(maps.back(), number);
+    store.append(revision, {number, 0.97, "evidence"});
+    maps.push_back(*revision.map);
+  }
+  return maps;
+}
+
+std::string complaint(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void run_sql(const fs::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+  sqlite3_close(database);
+}
+
+class Store : public testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+  fs::path file = folder.path() / "store.sqlite";
+};
+
+TEST_F(Store, BeginsWithTheFirstMap) {
+  const MapStore store{file, first_map()};
+  EXPECT_EQ(store.newest(), 0u);
+  EXPECT_EQ(store.grid(0), first_map());
+}
+
+TEST_F(Store, GivesEveryRevisionBackAfterReopening) {
+  std::vector<OccupancyGrid> maps;
+  {
+    MapStore store{file, first_map()};
+    maps = fill(store, 150);  // more than two whole grids
+  }
+  const MapStore store{file, first_map()};
+  ASSERT_EQ(store.newest(), 150u);
+  for (std::uint32_t number = 0; number <= 150; ++number) EXPECT_EQ(store.grid(number), maps[number]) << number;
+}
+
+TEST_F(Store, TellsWhatHappened) {
+  MapStore store{file, first_map()};
+  fill(store, 1);
+  store.append_refusal(timestamp_from_ns(7), {2, 0.4, "low acceptance"});
+  const auto history = store.history();
+  ASSERT_EQ(history.size(), 3u);
+  EXPECT_EQ(history[0].note.cause, "first map");
+  EXPECT_EQ(history[1].number, 1u);
+  EXPECT_EQ(history[1].note.acceptance, 0.97);
+  EXPECT_EQ(history[1].occupied + history[1].freed + history[1].unknown,
+            changes_between(first_map(), store.grid(1)).size());
+  EXPECT_EQ(history[1].box, bounding_box(changes_between(first_map(), store.grid(1))));
+  EXPECT_TRUE(history[2].refused);
+  EXPECT_EQ(history[2].note.cause, "low acceptance");
+  EXPECT_EQ(unix_ns(history[2].time), 7);
+}
+
+TEST_F(Store, KeepsTheHistoriesOfTwoMapsApart) {
+  OccupancyGrid other = first_map();
+  other.set({3, 3}, CellState::kOccupied);
+  {
+    MapStore store{file, first_map()};
+    fill(store, 3);
+  }
+  EXPECT_EQ((MapStore{file, other}.newest()), 0u);
+  EXPECT_EQ((MapStore{file, other}.grid(0)), other);
+  EXPECT_EQ((MapStore{file}.grid(0)), other);  // the one used last
+  EXPECT_EQ((MapStore{file, first_map()}.newest()), 3u);
+}
+
+TEST_F(Store, GoesBackWithoutLosingAnything) {
+  MapStore store{file, first_map()};
+  const auto maps = fill(store, 5);
+  EXPECT_EQ(store.roll_back(2, timestamp_from_ns(1)), 6u);
+  EXPECT_EQ(store.grid(6), maps[2]);
+  EXPECT_EQ(store.grid(5), maps[5]);
+  EXPECT_EQ(store.history().back().note.cause, "rolled back to 2");
+}
+
+/// Appends what turns these cells of the newest map into that state.
+void write(MapStore& store, const std::vector<Cell>& cells, CellState state) {
+  const OccupancyGrid before = store.grid(store.newest());
+  OccupancyGrid after = before;
+  for (const Cell cell : cells) after.set(cell, state);
+  MapRevision revision;
+  revision.number = store.newest() + 1;
+  revision.changes = changes_between(before, after);
+  revision.map = std::make_shared<const OccupancyGrid>(std::move(after));
+  store.append(revision, {.cause = "evidence"});
+}
+
+TEST_F(Store, TakesADeltaBackAndKeepsWhatCameLater) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}, {2, 1}, {3, 1}}, CellState::kOccupied);
+  write(store, {{20, 20}}, CellState::kOccupied);
+  write(store, {{3, 1}}, CellState::kUnknown);  // changed again: no longer what Δ 1 wrote
+  OccupancyGrid wanted = store.grid(3);
+  wanted.set({1, 1}, CellState::kFree);
+  wanted.set({2, 1}, CellState::kFree);
+  const MapStore::Undoing undoing = store.undoing(1, store.grid(3));
+  EXPECT_EQ(undoing.changes.size(), 2u);
+  EXPECT_EQ(undoing.kept, 1u);
+  EXPECT_EQ(store.undo(1, timestamp_from_ns(9)), 4u);
+  EXPECT_EQ(store.grid(4), wanted);
+  EXPECT_EQ(store.history().back().note.cause, "undo of 1");
+  EXPECT_EQ(unix_ns(store.history().back().time), 9);
+  EXPECT_EQ((MapStore{file, first_map()}.grid(4)), wanted);
+}
+
+TEST_F(Store, LeavesACellThatALaterDeltaFoundAgain) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}, {2, 1}}, CellState::kOccupied);
+  write(store, {{1, 1}}, CellState::kFree);
+  write(store, {{1, 1}}, CellState::kOccupied);  // the same state, by another Δ
+  (void)store.undo(1, {});
+  EXPECT_EQ((store.grid(4)[{1, 1}]), CellState::kOccupied);
+  EXPECT_EQ((store.grid(4)[{2, 1}]), CellState::kFree);
+}
+
+TEST_F(Store, TakesAnUndoBack) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}, {2, 1}}, CellState::kOccupied);
+  (void)store.undo(1, {});
+  EXPECT_EQ(store.undo(2, {}), 3u);
+  EXPECT_EQ(store.grid(3), store.grid(1));
+  EXPECT_EQ(store.history().back().note.cause, "undo of 2");
+}
+
+TEST_F(Store, UndoesAcrossWholeGrids) {
+  MapStore store{file, first_map()};
+  write(store, {{39, 29}}, CellState::kOccupied);
+  for (int i = 0; i < 130; ++i) write(store, {{i % 30, i / 30}}, CellState::kOccupied);
+  OccupancyGrid wanted = store.grid(131);
+  wanted.set({39, 29}, CellState::kFree);
+  EXPECT_EQ(store.undo(1, {}), 132u);
+  EXPECT_EQ(store.grid(132), wanted);
+}
+
+TEST_F(Store, TellsInOneLineWhatCannotBeUndone) {
+  MapStore store{file, first_map()};
+  write(store, {{1, 1}}, CellState::kOccupied);
+  (void)store.undo(1, {});
+  store.append_refusal(timestamp_from_ns(7), {2, 0.4, "low acceptance"});
+  const std::string at = file.string() + ": ";
+  EXPECT_EQ(complaint([&] { store.undo(0, {}); }), at + "revision 0 is the first map: there is nothing to undo");
+  EXPECT_EQ(complaint([&] { store.undo(3, {}); }), at + "no revision 3 (newest: 2)");
+  EXPECT_EQ(complaint([&] { store.undo(1, {}); }), at + "nothing of revision 1 is left to undo");
+  EXPECT_EQ(store.newest(), 2u);
+}
+
+TEST_F(Store, KeepsThePoseCovariance) {
+  PoseCovariance covariance;
+  covariance << 1, 2, 3, 2, 4, 5, 3, 5, 6;
+  {
+    MapStore store{file, first_map()};
+    store.append(revision_after(first_map(), 1), {1, 0.97, "evidence", covariance});
+  }
+  const auto history = MapStore{file}.history();
+  EXPECT_FALSE(history[0].note.covariance);
+  EXPECT_EQ(history[1].note.covariance, covariance);
+}
+
+TEST_F(Store, GoesOnWithAFileOfVersion1) {
+  std::vector<OccupancyGrid> maps;
+  {
+    MapStore store{file, first_map()};
+    maps = fill(store, 70);
+    store.append_refusal(timestamp_from_ns(7), {2, 0.4, "low acceptance"});
+  }
+  for (const char* column : {"xx_m2", "xy_m2", "xh_m_rad", "yy_m2", "yh_m_rad", "hh_rad2"}) {
+    run_sql(file, std::string("ALTER TABLE revision DROP COLUMN ") + column);
+  }
+  run_sql(file, "PRAGMA user_version = 1");
+  {
+    const MapStore read{file};
+    EXPECT_EQ(read.grid(70), maps[70]);
+    EXPECT_FALSE(read.history()[70].note.covariance);
+  }
+  MapStore store{file, first_map()};
+  EXPECT_EQ(store.dropped(), 0u);
+  for (std::uint32_t number = 0; number <= 70; ++number) EXPECT_EQ(store.grid(number), maps[number]) << number;
+  store.append(revision_after(maps[70], 71), {3, 0.9, "evidence", PoseCovariance::Identity()});
+  EXPECT_EQ(store.history().back().note.covariance, PoseCovariance::Identity());
+}
+
+TEST_F(Store, RefusesAFileOfALaterVersion) {
+  { const MapStore store{file, first_map()}; }
+  run_sql(file, "PRAGMA user_version = 3");
+  EXPECT_EQ(complaint([&] { MapStore store{file}; }), file.string() + ": map store of version 3, not 1 to 2");
+}
+
+TEST_F(Store, StoresWholeWhatCouldNotBeStoredStepByStep) {
+  std::vector<OccupancyGrid> maps;
+  {
+    MapStore store{file, first_map()};
+    maps = fill(store, 3);
+    for (std::uint32_t number = 4; number <= 9; ++number) maps.push_back(*revision_after(maps.back(), number).map);
+    store.append_whole(9, timestamp_from_ns(9), maps[9], {.cause = "evidence (4 to 9 in one)"});
+    store.append(revision_after(maps[9], 10), {});
+    EXPECT_NE(complaint([&] { store.append_whole(10, {}, maps[9], {}); }).find("older"), std::string::npos);
+  }
+  MapStore store{file, first_map()};
+  EXPECT_EQ(store.dropped(), 0u);
+  EXPECT_EQ(store.newest(), 10u);
+  EXPECT_EQ(store.grid(3), maps[3]);
+  EXPECT_EQ(store.grid(9), maps[9]);
+  EXPECT_EQ(complaint([&] { (void)store.grid(5); }),
+            file.string() + ": revision 5 is not in the store: revision 9 holds it and what came after it");
+  EXPECT_EQ(store.undo(9, {}), 11u);
+}
+
+TEST_F(Store, KeepsTheNewestThousandRefusals) {
+  MapStore store{file, first_map()};
+  fill(store, 2);
+  for (std::uint32_t phase = 0; phase < 1500; ++phase)
+    store.append_refusal(timestamp_from_ns(7), {phase, 0.4, "no merge"});
+  const MapStore again{file, first_map()};
+  const auto history = again.history();
+  ASSERT_EQ(history.size(), 3u + 1000u);
+  EXPECT_EQ(history.back().note.phase, 1499u);
+  EXPECT_EQ(history[3].note.phase, 500u);
+}
+
+TEST(TakenBack, LeavesCellsThatHoldSomethingElse) {
+  const OccupancyGrid before = test::drawn_grid({"....", "...."});
+  const OccupancyGrid after = test::drawn_grid({"##..", "...."});
+  const OccupancyGrid today = test::drawn_grid({"# ..", "...#"});
+  const auto back = taken_back(today, changes_between(before, after));
+  EXPECT_EQ(patched(today, back), test::drawn_grid({". ..", "...#"}));
+  EXPECT_EQ(back.size(), 1u);
+}
+
+TEST_F(Store, RefusesARevisionThatDoesNotFollow) {
+  MapStore store{file, first_map()};
+  EXPECT_NE(complaint([&] { store.append(revision_after(first_map(), 2), {}); }).find("does not follow"),
+            std::string::npos);
+  EXPECT_NE(complaint([&] { (void)store.grid(1); }).find("no revision 1"), std::string::npos);
+}
+
+TEST_F(Store, NoticesAnotherWriter) {
+  MapStore store{file, first_map()};
+  MapStore other{file};
+  (void)other.roll_back(0, timestamp_from_ns(1));
+  EXPECT_NE(complaint([&] { store.append(revision_after(first_map(), 1), {}); }).find("another program"),
+            std::string::npos);
+}
+
+TEST_F(Store, SurvivesBeingKilledBetweenWrites) {
+  const pid_t child = fork();
+  if (child == 0) {
+    MapStore store{file, first_map()};
+    fill(store, 20);
+    _exit(0);  // no destructor, no checkpoint: what a kill leaves behind
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(fs::exists(file.string() + "-wal"));
+  EXPECT_EQ((MapStore{file, first_map()}.newest()), 20u);
+}
+
+TEST_F(Store, ForgetsAWriteThatWasCutInTheLog) {
+  const pid_t child = fork();
+  if (child == 0) {
+    MapStore store{file, first_map()};
+    fill(store, 20);
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  const fs::path wal = file.string() + "-wal";
+  fs::resize_file(wal, fs::file_size(wal) - 100);
+  fs::remove(file.string() + "-shm");
+  MapStore store{file, first_map()};
+  ASSERT_EQ(store.newest(), 19u);
+  store.append(revision_after(store.grid(19), 20), {});
+  EXPECT_EQ(store.newest(), 20u);
+}
+
+TEST_F(Store, StartsFromTheNewestGoodRevision) {
+  std::vector<OccupancyGrid> maps;
+  {
+    MapStore store{file, first_map()};
+    maps = fill(store, 10);
+  }
+  run_sql(file, "UPDATE revision SET changes = x'FFFFFFFF' WHERE number = 8");
+  MapStore store{file, first_map()};
+  EXPECT_EQ(store.newest(), 7u);
+  EXPECT_EQ(store.dropped(), 3u);
+  EXPECT_EQ(store.grid(7), maps[7]);
+  store.append(revision_after(maps[7], 8), {});
+  EXPECT_EQ((MapStore{file, first_map()}.newest()), 8u);
+}
+
+TEST_F(Store, NoticesCellsThatAreNotWhatWasWritten) {
+  {
+    MapStore store{file, first_map()};
+    fill(store, 3);
+  }
+  run_sql(file, "UPDATE revision SET changes = (SELECT changes FROM revision WHERE number = 1) WHERE number = 3");
+  EXPECT_EQ((MapStore{file, first_map()}.newest()), 2u);
+}
+
+TEST_F(Store, NamesTheFileThatIsNoStore) {
+  const fs::path text = folder.write("notes.txt", std::string(5000, 'x'));
+  const fs::path empty = folder.write("empty.sqlite", "");
+  run_sql(folder.path() / "foreign.sqlite", "CREATE TABLE songs (name TEXT)");
+  for (const fs::path& bad : {text, folder.path() / "foreign.sqlite", folder.path(), folder.path() / "no" / "where"}) {
+    const std::string line = complaint([&] { MapStore store(bad, first_map()); });
+    EXPECT_EQ(line.find(bad.string()), 0u) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  }
+  EXPECT_EQ(complaint([&] { MapStore store{empty}; }), empty.string() + ": not a map store");
+  const fs::path missing = folder.path() / "missing.sqlite";
+  EXPECT_EQ(complaint([&] { MapStore store{missing}; }), missing.string() + ": no such file");
+  EXPECT_FALSE(fs::exists(missing));
+}
+
+TEST_F(Store, NamesAFileThatWasCut) {
+  {
+    MapStore store{file, first_map()};
+    fill(store, 100);
+  }
+  fs::resize_file(file, fs::file_size(file) / 2);
+  const std::string line = complaint([&] { MapStore store(file, first_map()); });
+  EXPECT_EQ(line.find(file.string() + ": "), 0u) << line;
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::store

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a beam says about the map: a wall at x = 5 m, the robot at the origin looking along x.
+#include "mapping/votes/beam_evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/drawn_hall.hpp"
+
+namespace deltamap::mapping::votes {
+namespace {
+
+class Beams : public testing::Test {
+ protected:
+  Beams() { test::fill(map, {5.0, -4.0}, {5.1, 4.0}, CellState::kOccupied); }
+
+  BeamVerdict verdict(double range_m, double bearing_rad = 0.0, BeamKind kind = BeamKind::kRange) {
+    TrackedScan tracked;
+    tracked.scan.beams.push_back({static_cast<float>(range_m), 0.0F, kind});
+    const Point2 end = range_m * Point2{std::cos(bearing_rad), std::sin(bearing_rad)};
+    tracked.rays.push_back({{0.0F, 0.0F}, end.cast<float>()});
+    tracked.estimate.map_from_robot = pose;
+    tracked.estimate.covariance =
+        Eigen::Vector3d{position_m * position_m, position_m * position_m, heading_rad * heading_rad}.asDiagonal();
+    tracked.estimate.state = state;
+    tracked.turn_rate_rad_per_s = turn_rate;
+    return beam_evidence(map, ClearSpace{map, {map.geometry(), 2}}, tracked, {}).front();
+  }
+
+  OccupancyGrid map{{220, 200, 0.05, {-1.0, -5.0}}, CellState::kFree};
+  Pose2 pose;
+  double position_m = 0.03;
+  double heading_rad = 0.008;
+  double turn_rate = 0.0;
+  LocalizerState state = LocalizerState::kTracking;
+};
+
+TEST_F(Beams, AreConsistentWhereTheyEndAtTheWall) {
+  EXPECT_EQ(verdict(5.03).what, BeamClass::kConsistent);
+  EXPECT_EQ(verdict(4.92).what, BeamClass::kConsistent);  // within the pose's uncertainty
+  EXPECT_EQ(verdict(5.2).what, BeamClass::kConsistent);
+}
+
+TEST_F(Beams, SayNothingOfTheScanBeforeWhereTheyHaveNoRange) {
+  TrackedScan tracked;
+  tracked.estimate.state = LocalizerState::kTracking;
+  tracked.scan.beams = {{3.0F, 0.0F, BeamKind::kRange}};
+  tracked.rays = {{{0.0F, 0.0F}, {3.0F, 0.0F}}};
+  const ClearSpace clear{map, {map.geometry(), 2}};
+  std::vector<BeamVerdict> verdicts = beam_evidence(map, clear, tracked, {});
+  ASSERT_TRUE(verdicts.front().ends_off_map);
+  tracked.scan.beams.front().kind = BeamKind::kBeyondMaximum;
+  verdicts = beam_evidence(map, clear, tracked, {}, std::move(verdicts));
+  EXPECT_EQ(verdicts.front().what, BeamClass::kSilent);
+  EXPECT_EQ(verdicts.front().length_m, 0.0);
+  EXPECT_FALSE(verdicts.front().ends_off_map);
+}
+
+TEST_F(Beams, AreShortWhereTheyEndInTheFreeSpaceBefore) {
+  const BeamVerdict beam = verdict(3.0);
+  EXPECT_EQ(beam.what, BeamClass::kShort);
+  EXPECT_TRUE(beam.ends_off_map);
+}
+
+TEST_F(Beams, GoThroughWhereTheyEndClearlyBeyond) {
+  const BeamVerdict beam = verdict(7.0);
+  EXPECT_EQ(beam.what, BeamClass::kThrough);
+  ASSERT_EQ(beam.passed.size(), 2u);  // the wall is two cells thick
+  EXPECT_EQ(beam.passed.front(), map.geometry().cell_at({5.02, 0.0}));
+}
+
+TEST_F(Beams, SayUnknownWhereTheMapKnowsNothing) {
+  test::fill(map, {2.0, -5.0}, {4.0, 5.0}, CellState::kUnknown);
+  EXPECT_EQ(verdict(3.0).what, BeamClass::kUnknown);
+}
+
+TEST_F(Beams, AreSilentWithoutARangeOrAPose) {
+  EXPECT_EQ(verdict(7.0, 0.0, BeamKind::kBeyondMaximum).what, BeamClass::kSilent);
+  EXPECT_EQ(verdict(7.0, 0.0, BeamKind::kDazzled).what, BeamClass::kSilent);
+  state = LocalizerState::kLost;
+  EXPECT_EQ(verdict(7.0).what, BeamClass::kSilent);
+  state = LocalizerState::kTracking;
+  heading_rad = 0.2;
+  EXPECT_EQ(verdict(7.0).what, BeamClass::kSilent);
+}
+
+TEST_F(Beams, DoNotSpeakAgainstAWallThatTheyMayHavePassedAside) {
+  test::fill(map, {5.0, 0.05}, {5.1, 4.0}, CellState::kFree);  // the wall ends beside the beam
+  EXPECT_NE(verdict(7.0).what, BeamClass::kThrough);
+}
+
+TEST_F(Beams, DoNotSpeakAgainstAWallThatTheyGraze) {
+  map = OccupancyGrid{map.geometry(), CellState::kFree};
+  test::fill(map, {0.0, 0.05}, {8.0, 0.1}, CellState::kOccupied);  // along the beam, 5 cm aside
+  pose.y = 0.06;                                                   // the estimate is wrong by so much
+  EXPECT_NE(verdict(8.9).what, BeamClass::kThrough);
+}
+
+TEST_F(Beams, DoNotSpeakWhereTheTurnBlursThem) {
+  EXPECT_EQ(verdict(8.0).what, BeamClass::kThrough);
+  turn_rate = 3.0;
+  EXPECT_NE(verdict(8.0).what, BeamClass::kThrough);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::votes
