@@ -146,7 +146,7 @@ std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const votes::Block
 }
 
 KeptScans EvidencePhase::scans_of_waiting() const {
-  Blocks blocks;
+  votes::Blocks blocks;
   std::uint32_t first_ms = now_ms_;
   for (const ProvenBlock& proven : waiting_) {
     blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(proven.block)));
