@@ -55,7 +55,7 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
 void DeltaStage::show_scans() {
   mapping::StoredScans stored = store_scan_.stored();
   for (const MapWork& work : waiting_) {
-    if (const ScanSet* set = set_in(work)) {
+    if (const auto* set = std::get_if<ScanSet>(&work)) {
       stored.waiting.insert(stored.waiting.end(), set->scans.begin(), set->scans.end());
     }
   }
