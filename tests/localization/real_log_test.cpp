@@ -73,7 +73,7 @@ class RealLogs : public testing::TestWithParam<RealLog> {};
 
 TEST_P(RealLogs, AreFollowedWithinTheFiguresThatWePromise) {
   const RealLog& real = GetParam();
-  const std::filesystem::path log = data_folder() / "logs" / (real.log + ".log.xz");
+  const std::filesystem::path log = test::data_folder() / "logs" / (real.log + ".log.xz");
   const auto map = test::recorded_map(real.map);
   if (!map || !std::filesystem::exists(log)) GTEST_SKIP() << "no recorded data in " << data_folder();
   const test::TemporaryFolder folder;
