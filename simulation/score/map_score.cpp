@@ -18,7 +18,28 @@ struct Pairs {
   std::size_t map_cells = 0;
 };
 
-Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where) {
+/// A surface that runs aslant goes through more cells than a line of cells that touch corner to corner: those that it
+/// only clips. Of two beside each other one is left. The corner of a thing is none: its faces go on both ways.
+CellMask clipped(const OccupancyGrid& truth) {
+  CellMask clipped(truth.geometry().cell_count(), 0);
+  const auto is_surface = [&](Cell cell) { return truth.at(cell) == CellState::kOccupied; };
+  const auto is_left = [&](Cell cell) { return is_surface(cell) && clipped[truth.geometry().index_of(cell)] == 0; };
+  for_each_known(truth, [&](Cell cell, CellState state) {
+    if (state != CellState::kOccupied) return;
+    const auto beside = [&](int columns, int rows) { return Cell{cell.column + columns, cell.row + rows}; };
+    const int left = is_left(beside(-1, 0)) ? -1 : 0;
+    const int right = is_left(beside(1, 0)) ? 1 : 0;
+    const int below = is_left(beside(0, -1)) ? -1 : 0;
+    const int above = is_left(beside(0, 1)) ? 1 : 0;
+    const bool turns = right - left == 1 && above - below == 1;
+    const bool is_corner = is_surface(beside(2 * (left + right), 0)) && is_surface(beside(0, 2 * (below + above)));
+    if (turns && !is_corner) clipped[truth.geometry().index_of(cell)] = 1;
+  });
+  return clipped;
+}
+
+/// Of the truth's cells those of `optional` need not be paired.
+Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where, const CellMask& optional) {
   const GridGeometry& geometry = truth.geometry();
   const std::size_t cells = geometry.cell_count();
   Pairs pairs{CellMask(cells, 0), CellMask(cells, 0)};
@@ -27,25 +48,34 @@ Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMas
   const auto pair = [&](std::size_t of_truth, std::size_t of_map) {
     pairs.of_truth[of_truth] = pairs.of_map[of_map] = 1;
     ++pairs.count;
+    pairs.truth_cells += optional[of_truth];
+    // What cannot be seen cannot be wrong, but may be the neighbour of what can.
+    pairs.map_cells += is[of_map] == CellState::kUnknown ? 1 : 0;
   };
   for (std::size_t i = 0; i < cells; ++i) {
     if (where[i] == 0) continue;
-    pairs.truth_cells += is[i] == CellState::kOccupied ? 1 : 0;
-    // What cannot be seen cannot be wrong, but may be the neighbour of what can.
+    pairs.truth_cells += is[i] == CellState::kOccupied && optional[i] == 0 ? 1 : 0;
     pairs.map_cells += said[i] == CellState::kOccupied && is[i] != CellState::kUnknown ? 1 : 0;
-    if (is[i] == CellState::kOccupied && said[i] == CellState::kOccupied) pair(i, i);
   }
-  for (std::size_t i = 0; i < cells; ++i) {
-    if (where[i] == 0 || is[i] != CellState::kOccupied || pairs.of_truth[i] != 0) continue;
-    const Cell cell = geometry.cell_of(i);
-    for (const Cell& step : kAround) {
-      const Cell beside{cell.column + step.column, cell.row + step.row};
-      if (!geometry.contains(beside)) continue;
-      const std::size_t j = geometry.index_of(beside);
-      if (where[j] == 0 || said[j] != CellState::kOccupied || pairs.of_map[j] != 0) continue;
-      pair(i, j);
-      pairs.map_cells += is[j] == CellState::kUnknown ? 1 : 0;
-      break;
+  const auto is_open = [&](std::size_t i) {
+    return where[i] != 0 && said[i] == CellState::kOccupied && pairs.of_map[i] == 0;
+  };
+  for (const int pass : {0, 1}) {  // what need not be drawn takes nothing from what must
+    const auto is_due = [&](std::size_t i) {
+      return where[i] != 0 && is[i] == CellState::kOccupied && optional[i] == pass && pairs.of_truth[i] == 0;
+    };
+    for (std::size_t i = 0; i < cells; ++i) {
+      if (is_due(i) && is_open(i)) pair(i, i);
+    }
+    for (std::size_t i = 0; i < cells; ++i) {
+      if (!is_due(i)) continue;
+      const Cell cell = geometry.cell_of(i);
+      for (const Cell& step : kAround) {
+        const Cell beside{cell.column + step.column, cell.row + step.row};
+        if (!geometry.contains(beside) || !is_open(geometry.index_of(beside))) continue;
+        pair(i, geometry.index_of(beside));
+        break;
+      }
     }
   }
   return pairs;
@@ -54,7 +84,7 @@ Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMas
 }  // namespace
 
 MapScore map_score(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where) {
-  const Pairs pairs = paired(truth, map, where);
+  const Pairs pairs = paired(truth, map, where, clipped(truth));
   MapScore score;
   const auto both = static_cast<double>(pairs.truth_cells + pairs.map_cells);
   score.contour_f1 = both == 0.0 ? 1.0 : 2.0 * static_cast<double>(pairs.count) / both;
@@ -92,7 +122,7 @@ double share_kept(const OccupancyGrid& first, const OccupancyGrid& map, const Ce
     ++all;
   }
   if (all == 0) return std::numeric_limits<double>::quiet_NaN();
-  const Pairs pairs = paired(lasting, map, CellMask(these.size(), 1));
+  const Pairs pairs = paired(lasting, map, CellMask(these.size(), 1), CellMask(these.size(), 0));
   return static_cast<double>(pairs.count) / static_cast<double>(all);
 }
 

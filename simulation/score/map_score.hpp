@@ -14,7 +14,8 @@ namespace deltamap::simulation::score {
 using CellMask = std::vector<std::uint8_t>;
 
 struct MapScore {
-  double contour_f1 = 0.0;  ///< of the occupied cells, 1 cell of tolerance, each used once; [0, 1]
+  double contour_f1 = 0.0;  ///< of the occupied cells, 1 cell of tolerance, each used once; what a slanting surface
+                            ///< only clips need not be drawn; [0, 1]
   double acceptance = 0.0;  ///< Eq. 11 where both know; [0, 1]
   double wrong_m2 = 0.0;    ///< the truth is known, the map says the opposite, and no pair explains it
 };

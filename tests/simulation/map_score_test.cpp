@@ -36,6 +36,26 @@ TEST(MapScore, PairsANeighbourOnceOnly) {
   EXPECT_NEAR(map_score(truth, thick, everywhere(truth)).contour_f1, 2.0 * 4.0 / 12.0, 1e-12);
 }
 
+TEST(MapScore, ASlantingSurfaceMayBeDrawnWithoutTheCellsThatItClips) {
+  const OccupancyGrid truth = test::drawn_grid({"##....", ".##...", "..##..", "...##.", "....##"});
+  const auto f1 = [&](const std::vector<std::string>& lines) {
+    return map_score(truth, test::drawn_grid(lines), everywhere(truth)).contour_f1;
+  };
+  EXPECT_GT(f1({"#.....", ".#....", "..#...", "...#..", "....##"}), 0.9) << "on its other side, all but an end";
+  EXPECT_EQ(f1({"##....", "..#...", "...#..", "....#.", ".....#"}), 1.0);
+  EXPECT_EQ(f1({"##....", ".##...", "..##..", "...##.", "....##"}), 1.0);
+  EXPECT_LT(f1({"#.....", "......", "..#...", "......", "....##"}), 0.9) << "gaps";
+  EXPECT_LT(f1({"###...", ".###..", "..###.", "...###", "....##"}), 0.9) << "too thick";
+  const OccupancyGrid flat = test::drawn_grid({"......", "###...", "..####"});
+  EXPECT_EQ(map_score(flat, test::drawn_grid({"......", "##....", "..####"}), everywhere(flat)).contour_f1, 1.0);
+}
+
+TEST(MapScore, TheCornersOfThingsMustBeDrawn) {
+  const OccupancyGrid truth = test::drawn_grid({"#####", "#...#", "#...#", "#####"});
+  const OccupancyGrid without = test::drawn_grid({".###.", "#...#", "#...#", ".###."});
+  EXPECT_LT(map_score(truth, without, everywhere(truth)).contour_f1, 0.9);
+}
+
 TEST(MapScore, CountsWhatIsMissingAndWhatIsTooMuch) {
   const OccupancyGrid truth = test::drawn_grid({"##....", "......", "......"});
   const OccupancyGrid other = test::drawn_grid({"......", "......", "....##"});
