@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes TARGET, a source that holds the FILES of FOLDER byte for byte.
+# Writes TARGET, a source that holds the FILES of FOLDER byte for byte: page_files() of NAMESPACE, which HEADER declares.
 set(types_html "text/html; charset=utf-8")
 set(types_css "text/css; charset=utf-8")
 set(types_js "text/javascript; charset=utf-8")
@@ -15,9 +15,11 @@ foreach(name IN LISTS FILES)
   math(EXPR number "${number} + 1")
 endforeach()
 file(WRITE ${TARGET} "// SPDX-License-Identifier: Apache-2.0
-#include \"daemon/dashboard/page_files.hpp\"
+#include \"${HEADER}\"
 
-namespace deltamap::daemon::dashboard {
+using deltamap::daemon::dashboard::PageFile;
+
+namespace ${NAMESPACE} {
 namespace {
 
 ${arrays}
@@ -28,5 +30,5 @@ ${table}};
 
 std::span<const PageFile> page_files() { return kFiles; }
 
-}  // namespace deltamap::daemon::dashboard
+}  // namespace ${NAMESPACE}
 ")

@@ -142,8 +142,9 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .telemetry = telemetry,
                     .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
                     .show =
-                        [this](const TrackedScan& tracked, const LocalizationRow& row, double latency_s) {
-                          if (page) page->board().show(tracked, row, latency_s);
+                        [this](const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
+                               const localization::particles::ParticleSet* particles) {
+                          if (page) page->board().show(tracked, row, latency_s, particles);
                           if (poses) poses->show(row, latency_s);
                         },
                     .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}},
@@ -154,7 +155,9 @@ Pipeline::State::State(const Settings& given, Options wanted)
              .recorder = recorder.from_awareness(),
              .telemetry = telemetry,
              .log = options.log,
-             .show = [this](const auto& newest) { return page && page->board().show(newest); }}},
+             .show = [this](const auto& newest) { return page && page->board().show(newest); },
+             .shows_scans = [this] { return page && page->board().is_watched(); },
+             .show_scans = [this](mapping::StoredScans stored) { page->board().show(std::move(stored)); }}},
       map{settings,
           options.start,
           options.out,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "daemon/settings/settings.hpp"
+#include "experiments/certainty.hpp"
 #include "experiments/scan_table.hpp"
 #include "localization/localizer_params.hpp"
 
@@ -66,7 +67,8 @@ struct Figure {
   double value = 0.0;  ///< NaN where there is nothing to measure
   std::string unit{};  ///< empty: a share or a count
   std::optional<Target> target{};
-  std::string peers{};  ///< what others reach
+  std::string peers{};                   ///< what others reach
+  std::optional<Certainty> certainty{};  ///< of a figure that is made of runs
 };
 
 struct Series {

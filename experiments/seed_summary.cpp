@@ -30,10 +30,13 @@ std::vector<Figure> spread_figures(const std::vector<SpreadAsked>& asked, const 
     for (const Outcome& outcome : outcomes) values.push_back(outcome.number(one.number));
     if (std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); })) continue;
     const Spread spread = spread_of(values, one.better);
-    figures.push_back({one.number + ", median", spread.median, one.unit, target_of(one.median, one.better)});
-    figures.push_back(
-        {one.number + ", nine of ten", spread.nine_of_ten, one.unit, target_of(one.nine_of_ten, one.better)});
-    figures.push_back({one.number + ", worst", spread.worst, one.unit, target_of(one.worst, one.better)});
+    const double nine_of_ten = one.better == Better::kLess ? 0.9 : 0.1;
+    figures.push_back({one.number + ", median", spread.median, one.unit, target_of(one.median, one.better), "",
+                       certainty_of_quantile(values, 0.5)});
+    figures.push_back({one.number + ", nine of ten", spread.nine_of_ten, one.unit,
+                       target_of(one.nine_of_ten, one.better), "", certainty_of_quantile(values, nine_of_ten)});
+    figures.push_back({one.number + ", worst", spread.worst, one.unit, target_of(one.worst, one.better), "",
+                       certainty_of_extreme(values)});
   }
   return figures;
 }

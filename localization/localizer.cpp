@@ -86,6 +86,10 @@ std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 
 std::optional<motion::DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }
 
+const particles::ParticleSet* Localizer::particles() const {
+  return state_->searches() ? nullptr : state_->tracker.particles();
+}
+
 const LocalizerCounts& Localizer::counts() const { return state_->counts; }
 
 belief::StabilityRecord Localizer::stability() const { return state_->judgement.stability().record(); }

@@ -19,6 +19,9 @@
 namespace deltamap::localization {
 
 struct LocalizerParams;
+namespace particles {
+struct ParticleSet;
+}
 
 class Localizer {
  public:
@@ -50,6 +53,9 @@ class Localizer {
   /// What else in the map the scans may mean, as of the last scan.
   [[nodiscard]] const hypotheses::HypothesisReport& hypotheses() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
+  /// What the pose rests on, valid until the next message; null where it does not rest on particles: while straight
+  /// surfaces lead, and while the whole map is searched.
+  [[nodiscard]] const particles::ParticleSet* particles() const;
   /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
   [[nodiscard]] std::optional<double> fit() const;
 

@@ -62,6 +62,16 @@ const std::optional<WithdrawOrder>& StoreScan::withdrawal() const { return state
 
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
+StoredScans StoreScan::stored() const {
+  const State& s = *state_;
+  if (s.method == MappingMethod::kPaper) return {.collected = s.paper.kept_scans(), .waiting = {}};
+  StoredScans stored{.collected = s.evidence.scans_of_waiting(), .waiting = {}};
+  for (const ScanSet& set : s.gate.waiting()) {
+    stored.waiting.insert(stored.waiting.end(), set.scans.begin(), set.scans.end());
+  }
+  return stored;
+}
+
 const std::shared_ptr<const TransientObstacles>& StoreScan::transients() const {
   return state_->evidence.transients().newest();
 }

@@ -41,6 +41,13 @@ struct Awareness {
   gate::GateTimes gate_times{};
 };
 
+/// Scans that are kept for a map update: to be looked at.
+struct StoredScans {
+  KeptScans collected;  ///< of the present Δ-phase
+  KeptScans waiting;    ///< of finished sets that are held back
+  bool operator==(const StoredScans&) const = default;
+};
+
 class StoreScan {
  public:
   StoreScan(const StoreScanParams& params, std::uint64_t seed);
@@ -54,6 +61,7 @@ class StoreScan {
   [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const;
 
   [[nodiscard]] const Awareness& awareness() const;
+  [[nodiscard]] StoredScans stored() const;
   /// What is different now and not map (evidence alone): the newest snapshot, another one only where something has
   /// changed. Null until there was something; empty while the pose is in doubt.
   [[nodiscard]] const std::shared_ptr<const TransientObstacles>& transients() const;

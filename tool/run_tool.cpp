@@ -22,6 +22,7 @@ int run_tool(int argc, const char* const* argv) {
   add_sim(app);
   CLI::App& map = *app.add_subcommand("map", "make, compare, merge and look at maps")->require_subcommand(1);
   add_map_compare(map);
+  add_map_film(map);
   add_map_from_poses(map);
   add_map_history(map);
   add_map_merge(map);

@@ -26,6 +26,7 @@ void add_view(CLI::App& app);
 
 // under `deltamap map`
 void add_map_compare(CLI::App& map);
+void add_map_film(CLI::App& map);
 void add_map_from_poses(CLI::App& map);
 void add_map_history(CLI::App& map);
 void add_map_merge(CLI::App& map);

@@ -10,7 +10,7 @@
 
 namespace deltamap::daemon::dashboard {
 
-enum class MessageKind : std::uint8_t { kCells = 1, kSamples = 2, kScan = 3 };
+enum class MessageKind : std::uint8_t { kCells = 1, kSamples = 2, kScan = 3, kParticles = 4, kStored = 5 };
 
 template <typename Integer>
 void append_number(std::string& bytes, Integer number) requires std::is_integral_v<Integer> {

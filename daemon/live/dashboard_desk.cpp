@@ -18,7 +18,8 @@ using dashboard::Answer;
 using dashboard::Request;
 using drivers::port::port_clock_now;
 
-constexpr double kScanPeriod_s = 0.19;    // with a look every 0.1 s: five scans a second at most
+constexpr double kScanPeriod_s = 0.19;  // with a look every 0.1 s: five scans a second at most
+constexpr double kStoredPeriod_s = 0.99;
 constexpr double kStatusPeriod_s = 0.99;  // likewise: once a second
 constexpr const char* kJson = "application/json";
 
@@ -50,7 +51,7 @@ DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, co
                [this] { return std::make_unique<HandDrive>(++drivers_, control_.hand, telemetry_, &port_clock_now); },
            .late_answer = refused_command(504, "not answered yet: the log will say what became of it"),
            .refresh = [this] { refresh(); },
-           .watched = [this](bool is_watched) { board_.watch(is_watched); }}} {
+           .watched = [this](bool is_watched) { watched(is_watched); }}} {
   news_.hello.set(hello_message(settings_));
 }
 
@@ -93,6 +94,7 @@ double DashboardDesk::since_start_s() const { return seconds(port_clock_now() - 
 void DashboardDesk::refresh() {
   const Timestamp now = port_clock_now();
   refresh_scan(now);
+  refresh_stored(now);
   if (auto transients = board_.transients(); transients != transients_ || news_.transient.number == 0) {
     transients_ = std::move(transients);
     news_.transient.set(transient_message(transients_.get()));
@@ -108,6 +110,26 @@ void DashboardDesk::refresh_scan(Timestamp now) {
   if (!is_due(scan_sent_, now, kScanPeriod_s)) return;
   scan_sent_ = now;
   news_.scan.set(scan_message(scan_), true);
+  if (scan_.particles.empty() && !has_particles_) return;
+  has_particles_ = !scan_.particles.empty();
+  news_.particles.set(particles_message(scan_), true);
+}
+
+void DashboardDesk::refresh_stored(Timestamp now) {
+  if (!is_due(stored_sent_, now, kStoredPeriod_s)) return;
+  mapping::StoredScans stored = board_.stored();
+  if (stored == stored_ && news_.stored.number > 0) return;
+  stored_ = std::move(stored);
+  stored_sent_ = now;
+  news_.stored.set(stored_message(stored_), true);
+}
+
+/// With nobody viewing, no scan is kept for the page's sake.
+void DashboardDesk::watched(bool is_watched) {
+  board_.watch(is_watched);
+  if (is_watched) return;
+  stored_ = {};
+  news_.stored.set(stored_message(stored_), true);
 }
 
 std::unique_ptr<DashboardDesk> begun_dashboard(const Settings& settings, const StartMap& start,

@@ -45,6 +45,8 @@ class DashboardDesk {
   /// Every period while there are viewers.
   void refresh();
   void refresh_scan(Timestamp now);
+  void refresh_stored(Timestamp now);
+  void watched(bool is_watched);
 
   Settings settings_;
   PageControl control_;
@@ -56,7 +58,9 @@ class DashboardDesk {
   LiveNews news_;
   LiveScan scan_;  // newest
   std::shared_ptr<const TransientObstacles> transients_;
-  Timestamp scan_sent_, status_sent_;
+  bool has_particles_ = false;   // that viewers know of
+  mapping::StoredScans stored_;  // that viewers know of
+  Timestamp scan_sent_, status_sent_, stored_sent_;
   dashboard::Server server_;  // last: its functions use the others
 };
 

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "localization/particles/particle_sample.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
 constexpr double kSamplePeriod_s = 1.0;
+constexpr std::size_t kParticlesShown = 256;  // more are a blot on the page
 
 std::int16_t centimetres(float length_m) {
   constexpr float kMost_cm = 32000.0F;
@@ -55,16 +58,20 @@ std::vector<LiveBeam> beams_of(const TrackedScan& tracked) {
 LiveBoard::LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t revision, const Kept& kept)
     : map_{std::move(map)}, revision_{revision}, samples_{kept.samples}, changes_{kept.changes} {}
 
-void LiveBoard::show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s) {
+void LiveBoard::show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
+                     const localization::particles::ParticleSet* particles) {
   ++scans_seen_;
   const double passed_s = seconds(row.time - last_sample_);
   const bool is_sampled = passed_s >= kSamplePeriod_s || passed_s < 0.0;
-  const bool is_watched = is_watched_.load(std::memory_order_relaxed);
+  const bool is_watched = this->is_watched();
   if (!is_sampled && !is_watched) return;
+  std::vector<Pose2> sample;
+  if (is_watched && particles != nullptr) sample = localization::particles::sampled_poses(*particles, kParticlesShown);
   const std::unique_lock lock{mutex_, std::try_to_lock};
   if (!lock.owns_lock()) return;
   if (is_sampled) keep_sample(row, latency_s);
   keep_scan(tracked, row, latency_s);
+  scan_.particles = std::move(sample);
 }
 
 void LiveBoard::keep_scan(const TrackedScan& tracked, const LocalizationRow& row, double latency_s) {
@@ -116,6 +123,22 @@ void LiveBoard::add_figures(LiveSample& sample, double passed_s) {
 void LiveBoard::set_figures(std::function<LiveFigures()> figures) {
   const std::scoped_lock lock{mutex_};
   figures_ = std::move(figures);
+}
+
+void LiveBoard::watch(bool is_watched) {
+  const std::scoped_lock lock{mutex_};
+  is_watched_.store(is_watched, std::memory_order_relaxed);
+  if (!is_watched) stored_ = {};
+}
+
+void LiveBoard::show(mapping::StoredScans stored) {
+  const std::unique_lock lock{mutex_, std::try_to_lock};
+  if (lock.owns_lock() && is_watched()) stored_ = std::move(stored);
+}
+
+mapping::StoredScans LiveBoard::stored() const {
+  const std::scoped_lock lock{mutex_};
+  return stored_;
 }
 
 bool LiveBoard::show(const std::shared_ptr<const TransientObstacles>& transients) {

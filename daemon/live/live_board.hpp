@@ -18,6 +18,8 @@
 #include "daemon/live/live_figures.hpp"
 #include "daemon/outputs/change_note.hpp"
 #include "daemon/outputs/localization_log.hpp"
+#include "localization/particles/particle_set.hpp"
+#include "mapping/store_scan.hpp"
 
 namespace deltamap::daemon {
 
@@ -34,8 +36,9 @@ struct LiveBeam {
 struct LiveScan {
   std::uint64_t number = 0;  ///< counts what was shown, from 1; 0: nothing yet
   LocalizationRow row;
-  double latency_s = 0.0;       ///< from the scan's last byte to its pose
-  std::vector<LiveBeam> beams;  ///< those that brought back a range
+  double latency_s = 0.0;        ///< from the scan's last byte to its pose
+  std::vector<LiveBeam> beams;   ///< those that brought back a range
+  std::vector<Pose2> particles;  ///< a few for all (localization/particles/particle_sample.hpp); none where they rest
 };
 
 /// About a second of a run, for path and charts.
@@ -84,7 +87,12 @@ class LiveBoard {
       : LiveBoard{std::move(map), revision, Kept{}} {}
 
   /// Localization thread. Shows nothing where the page is just looking: the next scan comes soon.
-  void show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s);
+  /// `particles` may be null: the pose does not rest on them.
+  void show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
+            const localization::particles::ParticleSet* particles = nullptr);
+  /// Delta thread, where somebody watches; not taken where the page is just looking: the next scan comes soon.
+  void show(mapping::StoredScans stored);
+  [[nodiscard]] bool is_watched() const { return is_watched_.load(std::memory_order_relaxed); }
   /// Delta thread. False: not taken, to be offered again at the next scan. Null: nothing is known.
   [[nodiscard]] bool show(const std::shared_ptr<const TransientObstacles>& transients);
   /// Map thread. `revision` may be null: refused.
@@ -95,8 +103,8 @@ class LiveBoard {
 
   // --- the page's thread ---
 
-  /// Whether anybody views: every scan is kept for the page only then.
-  void watch(bool is_watched) { is_watched_.store(is_watched, std::memory_order_relaxed); }
+  /// Whether anybody views: every scan is kept for the page only then, and what it holds of others is let go after.
+  void watch(bool is_watched);
 
   /// Items in a row. They are counted from the start of the run: what lies before `first` has been forgotten.
   template <typename Item>
@@ -115,6 +123,7 @@ class LiveBoard {
   /// Copies the newest scan over an older one; false where there is no newer one.
   bool fetch(LiveScan& scan) const;
   [[nodiscard]] std::shared_ptr<const TransientObstacles> transients() const;
+  [[nodiscard]] mapping::StoredScans stored() const;
   /// At most `most` items, the oldest first.
   [[nodiscard]] Past<LiveSample> samples_from(std::uint64_t number, std::size_t most) const;
   [[nodiscard]] Past<ChangeNote> changes_from(std::uint64_t number, std::size_t most) const;
@@ -148,6 +157,7 @@ class LiveBoard {
   std::function<LiveFigures()> figures_ = [] { return LiveFigures{}; };
   LiveFigures figures_at_sample_;
   std::shared_ptr<const TransientObstacles> transients_;
+  mapping::StoredScans stored_;  // nothing while nobody watches
   std::shared_ptr<const OccupancyGrid> map_;
   std::uint32_t revision_;
   Ring<CellBox> boxes_{kBoxesKept};

@@ -2,7 +2,9 @@
 #include "daemon/live/live_messages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "daemon/dashboard/wire.hpp"
 #include "daemon/live/pose_line.hpp"
@@ -18,6 +20,9 @@ using dashboard::append_number;
 using dashboard::MessageKind;
 
 constexpr int kProtocol = 1;
+constexpr double kMostSteps = 32767.0;       // of a 16-bit number
+constexpr std::size_t kMostScans = 40;       // of those that are kept for a map update; more are thinned,
+constexpr std::size_t kMostEnds = 120;       // and so are the ends of each
 constexpr std::size_t kMostBlocks = 20'000;  // of a kind; more are not drawn
 
 // In the order of LiveSample::Column.
@@ -48,6 +53,20 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 Json blocks_json(const std::vector<std::uint32_t>& blocks) {
   const auto shown = static_cast<std::ptrdiff_t>(std::min(blocks.size(), kMostBlocks));
   return std::vector<std::uint32_t>(blocks.begin(), blocks.begin() + shown);
+}
+
+/// One scan that is kept: its pose and every so many-th of its ends.
+void append_stored(std::string& bytes, const TrackedScan& tracked, bool waits) {
+  const std::vector<LiveBeam> beams = beams_of(tracked);
+  const std::size_t every = beams.size() / kMostEnds + 1;
+  append_number(bytes, static_cast<std::uint32_t>(waits));
+  const Pose2& pose = tracked.estimate.map_from_robot;
+  for (const double number : {pose.x, pose.y, pose.theta}) append_number(bytes, static_cast<float>(number));
+  append_number(bytes, static_cast<std::uint32_t>((beams.size() + every - 1) / every));
+  for (std::size_t i = 0; i < beams.size(); i += every) {
+    append_number(bytes, beams[i].x_cm);
+    append_number(bytes, beams[i].y_cm);
+  }
 }
 
 Json list_of(const std::vector<ChangeNote>& changes) {
@@ -92,7 +111,11 @@ std::string map_message(const GridGeometry& geometry, std::uint32_t revision) {
 }
 
 std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
-  return pose_line({scan.row, scan.latency_s, static_cast<mapping::gate::GateReason>(telemetry.gate.reason.value())});
+  PoseNews news{scan.row, scan.latency_s, static_cast<mapping::gate::GateReason>(telemetry.gate.reason.value()), {}};
+  if (telemetry.drives.value() && !telemetry.by_hand.value()) {
+    news.pilot = {telemetry.wanted_speed_m_per_s.value(), telemetry.wanted_turn_rate_rad_per_s.value()};
+  }
+  return pose_line(news);
 }
 
 std::string scan_message(const LiveScan& scan) {
@@ -105,6 +128,42 @@ std::string scan_message(const LiveScan& scan) {
   for (const LiveBeam& beam : scan.beams) {
     append_number(bytes, beam.x_cm);
     append_number(bytes, beam.y_cm);
+  }
+  return bytes;
+}
+
+std::string particles_message(const LiveScan& scan) {
+  const Pose2& middle = scan.row.map_from_robot;
+  double reach_m = 0.0;
+  for (const Pose2& pose : scan.particles) {
+    reach_m = std::max({reach_m, std::abs(pose.x - middle.x), std::abs(pose.y - middle.y)});
+  }
+  const double step_m = std::max(0.001, reach_m / kMostSteps);
+  const auto append_steps = [](std::string& bytes, double steps) {
+    append_number(bytes, static_cast<std::int16_t>(std::lround(std::clamp(steps, -kMostSteps, kMostSteps))));
+  };
+  std::string bytes;
+  append_kind(bytes, MessageKind::kParticles);
+  append_number(bytes, static_cast<std::uint32_t>(scan.particles.size()));
+  for (const double number : {middle.x, middle.y, step_m}) append_number(bytes, static_cast<float>(number));
+  for (const Pose2& pose : scan.particles) {
+    append_steps(bytes, (pose.x - middle.x) / step_m);
+    append_steps(bytes, (pose.y - middle.y) / step_m);
+    append_steps(bytes, pose.theta / std::numbers::pi * kMostSteps);
+  }
+  return bytes;
+}
+
+std::string stored_message(const mapping::StoredScans& stored) {
+  const std::size_t count = stored.collected.size() + stored.waiting.size();
+  const std::size_t shown = std::min(count, kMostScans);
+  std::string bytes;
+  append_kind(bytes, MessageKind::kStored);
+  append_number(bytes, static_cast<std::uint32_t>(shown));
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::size_t nth = i * count / shown;
+    const bool waits = nth >= stored.collected.size();
+    append_stored(bytes, waits ? *stored.waiting[nth - stored.collected.size()] : *stored.collected[nth], waits);
   }
   return bytes;
 }

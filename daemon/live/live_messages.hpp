@@ -27,7 +27,11 @@ struct RunName {
 [[nodiscard]] std::string pose_message(const LiveScan& scan, const Telemetry& telemetry);
 /// Binary: the pose of a scan and where its beams ended.
 [[nodiscard]] std::string scan_message(const LiveScan& scan);
-/// /api/scan: the same in words.
+/// Binary: the particles that stand for all of them.
+[[nodiscard]] std::string particles_message(const LiveScan& scan);
+/// Binary: where the scans that are kept for a map update were taken and what they saw, thinned to 20 kB at most.
+[[nodiscard]] std::string stored_message(const mapping::StoredScans& stored);
+/// /api/scan: the newest scan in words.
 [[nodiscard]] std::string scan_json(const LiveScan& scan);
 /// "transient": blocks that differ from the map for now. `transients` may be null.
 [[nodiscard]] std::string transient_message(const TransientObstacles* transients);

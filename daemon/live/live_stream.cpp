@@ -28,10 +28,12 @@ void SharedMessage::set(std::string bytes, bool is_binary) {
 }
 
 std::optional<Message> LiveStream::next() {
-  const std::array<std::pair<const SharedMessage*, std::uint64_t*>, 6> shared{{{&news_.hello, &hello_},
+  const std::array<std::pair<const SharedMessage*, std::uint64_t*>, 8> shared{{{&news_.hello, &hello_},
                                                                                {&news_.run, &run_},
                                                                                {&news_.pose, &pose_},
                                                                                {&news_.scan, &scan_},
+                                                                               {&news_.particles, &particles_},
+                                                                               {&news_.stored, &stored_},
                                                                                {&news_.status, &status_},
                                                                                {&news_.transient, &transient_}}};
   for (const auto& [newest, sent] : shared) {

@@ -22,7 +22,7 @@ struct SharedMessage {
 
 /// What changes while there are viewers. The desk refreshes it; it outlives the streams.
 struct LiveNews {
-  SharedMessage hello, run, pose, scan, transient, status;  // run: of a run that is over
+  SharedMessage hello, run, pose, scan, particles, stored, transient, status;  // run: of a run that is over
 };
 
 class LiveStream final : public dashboard::Stream {
@@ -38,9 +38,10 @@ class LiveStream final : public dashboard::Stream {
 
   const LiveNews& news_;
   const LiveBoard& board_;
-  std::uint64_t hello_ = 0, run_ = 0, pose_ = 0, scan_ = 0, transient_ = 0, status_ = 0;  // numbers that were sent
-  std::uint64_t samples_ = 0, changes_ = 0, boxes_ = 0;                                   // numbers that come next
-  std::optional<GridGeometry> frame_;  // of the map that the viewer knows
+  // Numbers that were sent,
+  std::uint64_t hello_ = 0, run_ = 0, pose_ = 0, scan_ = 0, particles_ = 0, stored_ = 0, transient_ = 0, status_ = 0;
+  std::uint64_t samples_ = 0, changes_ = 0, boxes_ = 0;  // and that come next
+  std::optional<GridGeometry> frame_;                    // of the map that the viewer knows
   std::deque<CellBox> due_;
 };
 

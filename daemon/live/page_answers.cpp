@@ -30,7 +30,7 @@ Answer map_answer(const LiveBoard::Map& map, std::string_view form) {
   answer.headers = {{"X-Deltamap-Revision", std::to_string(map.revision)}};
   if (form == "png") {
     answer.type = "image/png";
-    answer.body = map_picture(*map.grid, *map.grid);
+    answer.body = map_picture(*map.grid);
   } else if (form == "pgm") {
     answer.type = "image/x-portable-graymap";
     answer.body = pgm_of(*map.grid);

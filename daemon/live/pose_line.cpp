@@ -51,6 +51,10 @@ std::string pose_line(const PoseNews& news) {
   json["other_hypothesis"] = hypothesis_json(row.belief);
   json["gate"] = gate_json(news.gate);
   json["latency_ms"] = 1e3 * news.latency_s;
+  if (news.pilot) {
+    json["pilot"] = {{"speed_m_per_s", news.pilot->speed_m_per_s},
+                     {"turn_rate_rad_per_s", news.pilot->turn_rate_rad_per_s}};
+  }
   return json.dump();
 }
 

@@ -10,11 +10,18 @@
 
 namespace deltamap::daemon {
 
+/// What the pilot wants the robot to do.
+struct PilotWish {
+  double speed_m_per_s = 0.0;
+  double turn_rate_rad_per_s = 0.0;
+};
+
 /// What is told of a localized scan.
 struct PoseNews {
   LocalizationRow row;
   double latency_s = 0.0;                         ///< from the scan's last byte to its pose
   std::optional<mapping::gate::GateReason> gate;  ///< nothing: nobody works on the map
+  std::optional<PilotWish> pilot{};               ///< nothing: it does not drive, or is not told of
 };
 
 /// "pose": the pose, what is believed of it, and the write gate. Without line end.

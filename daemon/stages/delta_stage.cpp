@@ -43,10 +43,23 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
   wiring_.telemetry.stored_scans.set(awareness.stored_scans);
   tell_of_gate();
   if (const auto& order = store_scan_.withdrawal()) hand_over(*order);
-  if (!set) return;
-  wiring_.telemetry.phases_closed.add(1);
-  note({Kind::kPhaseClosed, tracked.scan.number, set->phase});
-  hand_over(std::move(*set));
+  if (set) {
+    wiring_.telemetry.phases_closed.add(1);
+    note({Kind::kPhaseClosed, tracked.scan.number, set->phase});
+    hand_over(std::move(*set));
+  }
+  if (wiring_.shows_scans()) show_scans();
+}
+
+/// What waits for the map thread waits too.
+void DeltaStage::show_scans() {
+  mapping::StoredScans stored = store_scan_.stored();
+  for (const MapWork& work : waiting_) {
+    if (const auto* set = std::get_if<ScanSet>(&work)) {
+      stored.waiting.insert(stored.waiting.end(), set->scans.begin(), set->scans.end());
+    }
+  }
+  wiring_.show_scans(std::move(stored));
 }
 
 void DeltaStage::offer_waiting() {

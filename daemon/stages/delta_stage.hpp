@@ -31,6 +31,8 @@ class DeltaStage {
     std::function<void(const std::string&)> log;  ///< a short line
     /// For the live page. False: refused, it is shown again at the next scan.
     std::function<bool(const std::shared_ptr<const TransientObstacles>&)> show;
+    std::function<bool()> shows_scans;                     ///< for the live page: somebody looks at the next
+    std::function<void(mapping::StoredScans)> show_scans;  ///< never waits
   };
   DeltaStage(const Settings& settings, Wiring wiring);
 
@@ -47,6 +49,7 @@ class DeltaStage {
   void hand_over(MapWork work);
   void offer_waiting();
   void offer_transients();
+  void show_scans();
   void tell_of_gate();
   void note(const Decision& decision) { (void)wiring_.recorder.send(note_of(decision)); }
 

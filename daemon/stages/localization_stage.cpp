@@ -105,7 +105,7 @@ void LocalizationStage::localize(Scan scan) {
   take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
   show(tracked.estimate, tracked.scan.received);
-  wiring_.show(tracked, step_.row(), wiring_.telemetry.latency_s.value());
+  wiring_.show(tracked, step_.row(), wiring_.telemetry.latency_s.value(), step_.particles());
   answer_relocalize(number);
   tell_changes();
   if (LogLine line = fit_watch_.observe(tracked, step_.fit()); !line.text.empty())
@@ -140,8 +140,13 @@ void LocalizationStage::take_transients(std::uint32_t scan) {
 void LocalizationStage::pilot(const TrackedScan& tracked) {
   using navigation::StopReason;
   const StopReason held_by = drives_without_pose_ ? StopReason::kNone : navigation::pose_stop(tracked.estimate);
+  wiring_.telemetry.wanted_speed_m_per_s.set(0.0);
+  wiring_.telemetry.wanted_turn_rate_rad_per_s.set(0.0);
   if (held_by != StopReason::kNone) return wiring_.drive({tracked.scan.time, 0.0, 0.0}, held_by);
-  wiring_.drive(pilot_->step(tracked, obstacles_beside(tracked)), held_by);
+  const DriveCommand wanted = pilot_->step(tracked, obstacles_beside(tracked));
+  wiring_.telemetry.wanted_speed_m_per_s.set(wanted.speed_m_per_s);
+  wiring_.telemetry.wanted_turn_rate_rad_per_s.set(wanted.turn_rate_rad_per_s);
+  wiring_.drive(wanted, held_by);
 }
 
 std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& tracked) const {

@@ -36,8 +36,9 @@ class LocalizationStage {
     Telemetry& telemetry;
     /// What the pilot wants, or why it does not drive.
     std::function<void(const DriveCommand&, navigation::StopReason)> drive;
-    /// For the live page: a scan, what is known of it, and its latency in s. Never waits.
-    std::function<void(const TrackedScan&, const LocalizationRow&, double)> show;
+    /// For the live page: a scan, what is known of it, its latency in s, and the particles or null. Never waits.
+    std::function<void(const TrackedScan&, const LocalizationRow&, double, const localization::particles::ParticleSet*)>
+        show;
     std::function<void(const control::CommandOutcome&)> answer;  ///< never waits
   };
   /// Throws std::runtime_error where the map has no free cell.

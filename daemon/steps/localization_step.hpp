@@ -52,6 +52,8 @@ class LocalizationStep {
   [[nodiscard]] std::optional<localization::motion::DriveCalibration> calibration() const {
     return localizer_.calibration();
   }
+  /// What the newest pose rests on; null where not on particles (localizer.hpp).
+  [[nodiscard]] const localization::particles::ParticleSet* particles() const { return localizer_.particles(); }
   [[nodiscard]] localization::belief::StabilityRecord stability() const { return localizer_.stability(); }
   [[nodiscard]] double time_lost_s() const { return time_lost_s_; }
   [[nodiscard]] double time_global_s() const { return time_global_s_; }

@@ -85,7 +85,8 @@ struct Telemetry {
   CalibrationGauges calibration;
   Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none came back
   Gauge<double> latency_s;
-  Gauge<bool> paused;  ///< by the operator: Δ-mapping sees no scans
+  Gauge<double> wanted_speed_m_per_s, wanted_turn_rate_rad_per_s;  ///< by the pilot; 0 where it wants to stand
+  Gauge<bool> paused;                                              ///< by the operator: Δ-mapping sees no scans
   // delta thread
   Gauge<double> r_d;
   Gauge<bool> in_phase;

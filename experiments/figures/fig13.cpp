@@ -166,18 +166,19 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
                        std::optional<Target> target, const std::string& peers = "") {
     const std::vector<double> values = numbers(outcomes, method, name);
     const double value = rank < 0.0 ? mean_of(values) : quantile(values, rank);
-    report.figures.push_back({method + ": " + what, value, unit, ours ? target : std::nullopt, peers});
+    report.figures.push_back({method + ": " + what, value, unit, ours ? target : std::nullopt, peers,
+                              rank < 0.0 ? certainty_of_mean(values) : certainty_of_extreme(values)});
   };
   constexpr double kMean = -1.0;
   constexpr double kLeast = 0.0;
   constexpr double kMost = 1.0;
   const std::string by_eye = "paper: by visual inspection";
   add("boxes gone, contour F1 against the truth, mean", "emptied_f1", kMean, "", std::nullopt, by_eye);
-  add("the same of the first map", "emptied_f1_stale", kMean, "", std::nullopt);
+  add("boxes gone, contour F1 of the first map against the truth, mean", "emptied_f1_stale", kMean, "", std::nullopt);
   add("boxes gone, skill: 0 is the first map, 1 the truth; mean", "emptied_skill", kMean, "", std::nullopt);
-  add("the same, worst", "emptied_skill", kLeast, "", std::nullopt);
+  add("boxes gone, skill: 0 is the first map, 1 the truth; worst", "emptied_skill", kLeast, "", std::nullopt);
   add("boxes back, contour F1 against the first map, mean", "restored_f1", kMean, "", std::nullopt, by_eye);
-  add("the same, worst", "restored_f1", kLeast, "", Target{.least = 0.99});
+  add("boxes back, contour F1 against the first map, worst", "restored_f1", kLeast, "", Target{.least = 0.99});
   add("boxes back, acceptance against the first map, worst", "restored_acceptance", kLeast, "", Target{.least = 0.99});
   add("boxes back, cells that are as they were, worst", "restored_same", kLeast, "", std::nullopt);
   add("boxes back, cells that are not, mean", "restored_differing_cells", kMean, "", std::nullopt);

@@ -198,19 +198,20 @@ std::vector<Figure> figures_of(const std::vector<Outcome>& outcomes) {
       {"no change: scans stored in a lap", mean("still", "stored_scans"), ""},
       {"change: scans with a change in view", mean("changed", "in_view"), ""},
       {"change: scans with r_d > 0", mean("changed", "positive_r_d"), ""},
-      {"change: the same with the change in view",
+      {"change: scans with r_d > 0 with the change in view",
        share_above(changed.r_d_in_view, 0.0),
        "",
        {},
        "paper: all (Fig. 4)"},
-      {"change: the same with none in view", mean("changed", "positive_elsewhere"), "", {}, "paper: none"},
+      {"change: scans with r_d > 0 with none in view", mean("changed", "positive_elsewhere"), "", {}, "paper: none"},
       {"change: largest r_d", extreme("changed", "most_r_d", 1.0), "", {}, "paper: above 0 (Fig. 4)"},
       {"change: w_avg, median with the change in view", mean("changed", "median_w_avg_in_view"), ""},
       {"change: least w_avg", extreme("changed", "least_w_avg", 0.0), "", {}, "paper: sudden falls (Fig. 2b)"},
       {"change: Δ-phases begun in a lap", mean("changed", "phases"), ""},
       {"change: scans stored in a lap", mean("changed", "stored_scans"), ""},
       {"scans with a change in view that r_d tells, 2 % false alarms", share_above(changed.r_d_in_view, r_d_limit), ""},
-      {"the same told by beams (evidence)", share_above(changed.speaking_in_view, beams_limit), ""}};
+      {"scans with the change in view that beams tell (evidence), no more false alarms",
+       share_above(changed.speaking_in_view, beams_limit), ""}};
 }
 
 Series drawn(const ScanTable& scans, const std::string& column, const std::string& name, double least) {

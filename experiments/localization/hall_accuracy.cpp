@@ -151,7 +151,7 @@ void add_figures(Report& report, const std::string& setting, const std::string& 
   add("true position inside the 95 % ellipse", "inside_position", "", ellipse);
   add("true pose inside the 95 % ellipsoid", "inside_pose", "", ellipse);
   add("truth inside the 95 % interval along the weakest axis", "inside_along", "", ellipse);
-  if (!far) add("the same where that axis is unobserved", "inside_unobserved", "", ellipse);
+  if (!far) add("scans inside the 95 % ellipse where the weakest axis is unobserved", "inside_unobserved", "", ellipse);
   add("scans whose weakest axis is unobserved", "unobserved", "", std::nullopt);
   add("scans not tracking", "not_tracking", "", std::nullopt);
   add("particles, mean", "particles", "", std::nullopt);

@@ -90,14 +90,23 @@ Report report_of(const std::vector<Outcome>& outcomes) {
       errors.series.push_back(error_series(outcome));
     }
     if (rms_m.empty()) continue;  // not asked for
-    report.figures.push_back({kind.name + ": RMSE of the worst drive", quantile(rms_m, 1.0), "m", kind.rms_m});
-    report.figures.push_back({kind.name + ": RMSE, mean", mean_of(rms_m), "m"});
-    report.figures.push_back({kind.name + ": farthest scan", quantile(most_m, 1.0), "m"});
-    report.figures.push_back({kind.name + ": time off by more than 0.5 m", mean_of(off)});
-    report.figures.push_back({kind.name + ": jumps away from a right pose, most", quantile(jumps, 1.0)});
+    report.figures.push_back({kind.name + ": RMSE of the worst drive", quantile(rms_m, 1.0), "m", kind.rms_m, "",
+                              certainty_of_extreme(rms_m)});
+    report.figures.push_back({kind.name + ": RMSE, mean", mean_of(rms_m), "m", {}, "", certainty_of_mean(rms_m)});
+    report.figures.push_back(
+        {kind.name + ": farthest scan", quantile(most_m, 1.0), "m", {}, "", certainty_of_extreme(most_m)});
+    report.figures.push_back(
+        {kind.name + ": time off by more than 0.5 m", mean_of(off), "", {}, "", certainty_of_mean(off)});
+    report.figures.push_back({kind.name + ": jumps away from a right pose, most",
+                              quantile(jumps, 1.0),
+                              "",
+                              {},
+                              "",
+                              certainty_of_extreme(jumps)});
     const auto of_wheels = [&](const char* what, const std::vector<double>& errors_of, const char* unit, double most) {
       const std::string name = kind.name + ": wheels at the end, " + what + ", worst error";
-      report.figures.push_back({name, quantile(errors_of, 1.0), unit, Target{.most = most}});
+      report.figures.push_back(
+          {name, quantile(errors_of, 1.0), unit, Target{.most = most}, "", certainty_of_extreme(errors_of)});
     };
     of_wheels("distance", wheel_distance, "", 0.002);
     of_wheels("turn", wheel_turn, "", 0.003);

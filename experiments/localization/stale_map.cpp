@@ -104,9 +104,16 @@ class Pooled {
       if (outcome.label("localizer") == variant && outcome.label("range_m") == range) chosen_.push_back(&outcome);
     }
   }
-  [[nodiscard]] double mean(const std::string& number) const { return mean_of(all(number)); }
   [[nodiscard]] double root_mean_square_of(const std::string& number) const { return root_mean_square(all(number)); }
-  [[nodiscard]] double most(const std::string& number) const { return quantile(all(number), 1.0); }
+  [[nodiscard]] Figure mean(const std::string& name, const std::string& number, const std::string& unit = "") const {
+    return {name, mean_of(all(number)), unit, {}, "", certainty_of_mean(all(number))};
+  }
+  [[nodiscard]] Figure most(const std::string& name, const std::string& number, const std::string& unit) const {
+    return {name, quantile(all(number), 1.0), unit, {}, "", certainty_of_extreme(all(number))};
+  }
+  [[nodiscard]] Certainty certainty_of_rms(const std::string& number) const {
+    return certainty_of_root_mean_square(all(number));
+  }
   [[nodiscard]] const std::vector<const Outcome*>& outcomes() const { return chosen_; }
 
  private:
@@ -121,21 +128,23 @@ class Pooled {
 void add_figures(Report& report, const std::string& variant, const std::string& range, const Pooled& pooled) {
   const std::string where = variant + ", " + range + " m: ";
   const bool far = range == "80";
-  report.figures.push_back({where + "RMSE", pooled.root_mean_square_of("rmse_m"), "m",
-                            Target{.most = far ? 0.15 : 0.25},
-                            far ? "iris_lama 0.165, amcl 0.255" : "amcl 0.283, iris_lama lost"});
-  report.figures.push_back({where + "scans off by more than 0.5 m", pooled.mean("beyond_half_metre"), "",
-                            Target{.most = far ? 0.02 : 0.05}, far ? "iris_lama 0.04" : "amcl 0.13"});
-  report.figures.push_back({where + "RMSE of the worst drive", pooled.most("rmse_m"), "m"});
-  report.figures.push_back({where + "farthest scan", pooled.most("most_m"), "m"});
-  report.figures.push_back({where + "heading, 95 % of scans within", pooled.mean("heading_p95_deg"), "deg"});
-  report.figures.push_back({where + "scans lost", pooled.mean("lost"), ""});
-  report.figures.push_back({where + "scans global", pooled.mean("global"), ""});
-  report.figures.push_back({where + "scans called right", pooled.mean("called_right"), ""});
-  report.figures.push_back({where + "scans called wrong", pooled.mean("called_wrong"), ""});
-  report.figures.push_back({where + "P(pose right), mean", pooled.mean("pose_right"), ""});
-  report.figures.push_back({where + "P(map wrong), mean", pooled.mean("map_wrong"), ""});
-  report.figures.push_back({where + "changes of a drive", pooled.mean("changes"), ""});
+  report.figures.push_back(
+      {where + "RMSE", pooled.root_mean_square_of("rmse_m"), "m", Target{.most = far ? 0.15 : 0.25},
+       far ? "iris_lama 0.165, amcl 0.255" : "amcl 0.283, iris_lama lost", pooled.certainty_of_rms("rmse_m")});
+  Figure off = pooled.mean(where + "scans off by more than 0.5 m", "beyond_half_metre");
+  off.target = Target{.most = far ? 0.02 : 0.05};
+  off.peers = far ? "iris_lama 0.04" : "amcl 0.13";
+  report.figures.push_back(std::move(off));
+  report.figures.push_back(pooled.most(where + "RMSE of the worst drive", "rmse_m", "m"));
+  report.figures.push_back(pooled.most(where + "farthest scan", "most_m", "m"));
+  report.figures.push_back(pooled.mean(where + "heading, 95 % of scans within", "heading_p95_deg", "deg"));
+  report.figures.push_back(pooled.mean(where + "scans lost", "lost"));
+  report.figures.push_back(pooled.mean(where + "scans global", "global"));
+  report.figures.push_back(pooled.mean(where + "scans called right", "called_right"));
+  report.figures.push_back(pooled.mean(where + "scans called wrong", "called_wrong"));
+  report.figures.push_back(pooled.mean(where + "P(pose right), mean", "pose_right"));
+  report.figures.push_back(pooled.mean(where + "P(map wrong), mean", "map_wrong"));
+  report.figures.push_back(pooled.mean(where + "changes of a drive", "changes"));
 }
 
 Report report_of(const std::vector<Outcome>& outcomes) {

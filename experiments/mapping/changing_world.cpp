@@ -63,6 +63,10 @@ double over_all(const std::vector<double>& values, Over over) {
   return mean_of(values);
 }
 
+Certainty certainty_of(const std::vector<double>& values, Over over) {
+  return over == Over::kMean ? certainty_of_mean(values) : certainty_of_extreme(values);
+}
+
 const char* name_of(Over over) { return over == Over::kLeast ? "least" : over == Over::kMost ? "most" : "mean"; }
 
 /// Nothing where the number is only shown.
@@ -172,7 +176,8 @@ Report report_of(const Plan& plan, const std::vector<Outcome>& outcomes) {
       if (!papers.empty())
         peers += (peers.empty() ? "" : "; ") + std::string{"method paper: "} + text_of(over_all(papers, asked.over));
       report.figures.push_back({kind.name + ": " + asked.number + ", " + name_of(asked.over),
-                                over_all(values, asked.over), asked.unit, target_of(asked), peers});
+                                over_all(values, asked.over), asked.unit, target_of(asked), peers,
+                                certainty_of(values, asked.over)});
     }
     auto both = ours;
     both.insert(both.end(), paper.begin(), paper.end());

@@ -124,13 +124,15 @@ Report report_of(const std::vector<Outcome>& outcomes) {
     if (gated.empty() || open.empty()) continue;
     report.figures.push_back({place + ": cells written while the pose was off by more than 0.3 m",
                               gated.sum("cells_astray"), "", Target{.most = 0.0}});
-    report.figures.push_back(
-        {place + ": of them still there 60 s later", gated.sum("cells_astray_that_stood"), "", Target{.most = 0.0}});
+    report.figures.push_back({place + ": cells written while off by more than 0.3 m that are there 60 s later",
+                              gated.sum("cells_astray_that_stood"), "", Target{.most = 0.0}});
     report.figures.push_back({place + ": cells drawn from scans taken so far off", gated.sum("cells_drawn_astray"), "",
                               Target{.most = 0.0}});
-    report.figures.push_back({place + ": the same without the gate", open.sum("cells_astray"), ""});
+    report.figures.push_back({place + ": cells written while the pose was off by more than 0.3 m, without the gate",
+                              open.sum("cells_astray"), ""});
     report.figures.push_back(
-        {place + ": still there 60 s later, without the gate", open.sum("cells_astray_that_stood"), ""});
+        {place + ": cells written while off by more than 0.3 m that are there 60 s later, without the gate",
+         open.sum("cells_astray_that_stood"), ""});
     const Kind quiet{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "gated"};
     if (quiet.empty()) continue;
     const Kind quiet_open{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "open"};

@@ -114,7 +114,7 @@ void add_targets(Report& report, const std::vector<Outcome>& outcomes) {
       {in_hall + "mean CPU time", hall.number("mean_ms"), "ms", Target{.most = 50.0}, "paper 670 ms, 2.5 GHz Core 2"},
       {"MA1, all four layouts, continuous angles: pose right", all.number("right"), "", Target{.least = 0.96}},
       {"MA1, all four layouts, continuous angles: mean acceptance", all.number("acceptance"), ""},
-      {"the same of the true pose", all.number("true_acceptance"), ""},
+      {"MA1, all four layouts, continuous angles: mean acceptance of the true pose", all.number("true_acceptance"), ""},
       {"MA1, all four layouts, continuous angles: mean CPU time", all.number("mean_ms"), "ms", Target{.most = 50.0}},
       {"MA1, all four layouts, continuous angles: wrong and not refused", all.number("wrong_not_refused"), ""}};
 }

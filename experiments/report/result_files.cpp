@@ -115,6 +115,10 @@ std::string summary_json(const Results& results) {
       if (figure.target->most) json["target"]["most"] = *figure.target->most;
       json["met"] = met;
     }
+    if (figure.certainty) json["runs"] = figure.certainty->runs;
+    if (figure.certainty && figure.certainty->has_interval()) {
+      json["interval_95"] = {figure.certainty->low, figure.certainty->high};
+    }
     if (!figure.peers.empty()) json["peers"] = figure.peers;
     summary["figures"].push_back(std::move(json));
   }

@@ -1,66 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of an experiment's results: everything in one file.
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <string_view>
 
+#include "daemon/dashboard/page_files.hpp"
 #include "daemon/telemetry/version.hpp"
+#include "experiments/report/report_files.hpp"
 #include "experiments/report/result_files.hpp"
 #include "experiments/report/svg_chart.hpp"
 
 namespace deltamap::experiments {
 namespace {
 
-constexpr const char* kHead = R"html(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<style>
-body { font: 15px/1.45 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
-table { border-collapse: collapse; margin: .5rem 0 1.5rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .2rem .7rem; border-bottom: 1px solid #ddd; text-align: left; }
-.met { color: #1d7a3a; } .missed { color: #b3261e; font-weight: 600; }
-svg { width: 100%; height: auto; } svg text { font: 12px system-ui, sans-serif; fill: #333; }
-</style>
-)html";
-
 std::string cell(const std::string& text, const char* kind = "td", const char* style = nullptr) {
   const std::string open = style == nullptr ? std::string{kind} : std::string{kind} + " class=\"" + style + "\"";
   return "<" + open + ">" + escaped(text) + "</" + kind + ">";
 }
 
+/// A table that scrolls by itself where the screen is too narrow; `rows` are HTML.
+std::string table_of(const std::string& name, const std::vector<std::string>& columns, const std::string& rows) {
+  std::string html =
+      "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" + escaped(name) + "\"><table><thead><tr>";
+  for (const std::string& column : columns) html += cell(column, "th");
+  return html + "</tr></thead>\n<tbody>" + rows + "</tbody></table></div>\n";
+}
+
 std::string text_of_target(const Target& target) {
   std::string text;
-  if (target.least) text += "≥ " + text_of(*target.least);
+  if (target.least) text += "≥ " + short_text(*target.least);
   if (target.least && target.most) text += ", ";
-  if (target.most) text += "≤ " + text_of(*target.most);
+  if (target.most) text += "≤ " + short_text(*target.most);
   return text;
 }
 
+std::string certainty_cells(const Figure& figure) {
+  if (!figure.certainty) return cell("") + cell("");
+  const Certainty& certainty = *figure.certainty;
+  const std::string interval =
+      certainty.has_interval() ? short_text(certainty.low) + " … " + short_text(certainty.high) : "";
+  return cell(interval, "td", "number") + cell(std::to_string(certainty.runs));
+}
+
 std::string figures_html(const Report& report) {
-  std::string html = "<table><tr>";
-  for (const char* name : {"figure", "measured", "target", "", "others"}) html += cell(name, "th");
-  html += "</tr>\n";
+  std::string rows;
   for (const Figure& figure : report.figures) {
-    const std::string value = std::isnan(figure.value) ? "–" : text_of(figure.value);
-    html += "<tr>" + cell(figure.name) + cell(value + (figure.unit.empty() ? "" : " " + figure.unit));
+    const std::string unit = std::isnan(figure.value) || figure.unit.empty() ? "" : " " + figure.unit;
+    rows +=
+        "<tr>" + cell(figure.name) + cell(short_text(figure.value) + unit, "td", "number") + certainty_cells(figure);
     if (figure.target) {
       const bool met = figure.target->is_met_by(figure.value);
-      html += cell(text_of_target(*figure.target)) + cell(met ? "met" : "missed", "td", met ? "met" : "missed");
+      rows += cell(text_of_target(*figure.target), "td", "number") +
+              cell(met ? "met" : "missed", "td", met ? "met" : "missed");
     } else {
-      html += cell("") + cell("");
+      rows += cell("") + cell("");
     }
-    html += cell(figure.peers) + "</tr>\n";
+    rows += cell(shortened(figure.peers), "td", figure.peers.empty() ? nullptr : "others") + "</tr>\n";
   }
-  return html + "</table>\n";
+  return table_of("Figures", {"figure", "measured", "95 % interval", "runs", "target", "met", "others"}, rows);
 }
 
 std::string table_html(const TextTable& table) {
-  std::string html = "<h2>" + escaped(table.title) + "</h2>\n<table><tr>";
-  for (const std::string& column : table.columns) html += cell(column, "th");
-  html += "</tr>\n";
+  std::string rows;
   for (const auto& row : table.rows) {
-    html += "<tr>";
-    for (const std::string& text : row) html += cell(text);
-    html += "</tr>\n";
+    rows += "<tr>";
+    for (const std::string& text : row) rows += cell(shortened(text));
+    rows += "</tr>\n";
   }
-  return html + "</table>\n";
+  return "<h2>" + escaped(table.title) + "</h2>\n" + table_of(table.title, table.columns, rows);
+}
+
+std::string file_of(std::span<const daemon::dashboard::PageFile> files, std::string_view name) {
+  const auto file = std::find_if(files.begin(), files.end(), [&](const auto& one) { return one.name == name; });
+  return std::string{file == files.end() ? std::string_view{} : file->content};
+}
+
+std::string head_html(const std::string& title) {
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+         "<meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\n<title>" +
+         escaped(title) + "</title>\n<style>\n" + file_of(daemon::dashboard::page_files(), "theme.css") +
+         file_of(page_files(), "report.css") + "</style>\n<script>\n" + file_of(page_files(), "report.js") +
+         "</script></head>\n";
 }
 
 /// "deltamap 0.1.0, commit fc42533; settings as delivered, but seed: 2"
@@ -78,17 +100,25 @@ std::string provenance_text(const daemon::Settings& settings) {
 }  // namespace
 
 std::string page_html(const Results& results) {
-  std::string html = kHead;
-  html += "<title>" + escaped(results.name) + "</title></head><body>\n<h1>" + escaped(results.name) + "</h1>\n";
+  const Report& report = results.report;
+  std::string html = head_html(results.name);
+  html += "<body>\n<header><h1>" + escaped(results.name) +
+          "</h1><button id=\"theme\" type=\"button\" aria-label=\"Dark or light\">◐</button></header>\n<main>\n";
   html += "<p>" + escaped(results.what) + ". " + std::to_string(results.runs.size()) + " runs from seed " +
           std::to_string(results.seed) + (results.quick ? ", quick" : "") + ".</p>\n";
-  html += "<p>" + escaped(provenance_text(results.settings)) + "</p>\n";
-  html += figures_html(results.report);
-  for (const TextTable& table : results.report.tables) html += table_html(table);
-  for (const Chart& chart : results.report.charts) html += "<h2>" + escaped(chart.title) + "</h2>\n" + svg_of(chart);
-  for (const Picture& picture : results.report.pictures)
-    html += "<h2>" + escaped(picture.title) + "</h2>\n" + picture.svg;
-  return html + "</body></html>\n";
+  html += "<p class=\"from\">" + escaped(provenance_text(results.settings)) + "</p>\n";
+  html += "<h2>Figures</h2>\n" + figures_html(report);
+  if (!report.charts.empty()) html += "<h2>Charts</h2>\n<div class=\"charts\">\n";
+  for (const Chart& chart : report.charts) html += figure_of(chart);
+  if (!report.charts.empty()) html += "</div>\n";
+  for (const TextTable& table : report.tables) html += table_html(table);
+  if (!report.pictures.empty()) html += "<h2>Pictures</h2>\n<div class=\"charts\">\n";
+  for (const Picture& picture : report.pictures) {
+    html += "<figure class=\"picture\"><figcaption>" + escaped(picture.title) + "</figcaption>\n" + picture.svg +
+            "</figure>\n";
+  }
+  if (!report.pictures.empty()) html += "</div>\n";
+  return html + "</main></body></html>\n";
 }
 
 }  // namespace deltamap::experiments

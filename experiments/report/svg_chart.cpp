@@ -3,21 +3,33 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <vector>
 
 namespace deltamap::experiments {
 namespace {
 
-constexpr double kWidth = 760.0;
-constexpr double kHeight = 320.0;
-constexpr double kLeft = 70.0;
-constexpr double kRight = 190.0;  // room for the names of the lines
-constexpr double kTop = 34.0;
-constexpr double kBottom = 48.0;
-constexpr std::array<const char*, 8> kColours{"#1f5fa8", "#c4531c", "#2d8a4e", "#8b3fa0",
-                                              "#a88a12", "#3a9fa8", "#b02a4c", "#666666"};
+constexpr double kWidth = 480.0;  // as wide as a column: the text stays readable on a phone
+constexpr double kHeight = 278.0;
+constexpr double kLeft = 52.0;
+constexpr double kRight = 12.0;
+constexpr double kTop = 30.0;
+constexpr double kBottom = 40.0;
+
+// Of the theme (daemon/dashboard/page/theme.css); after them the same again, dashed, then dotted.
+constexpr std::array<const char*, 7> kInks{"--blue", "--red", "--green", "--pink", "--orange", "--sky", "--violet"};
+struct Dash {
+  const char* css;
+  const char* svg;
+};
+constexpr std::array<Dash, 3> kDashes{{{"solid", "none"}, {"dashed", "6 4"}, {"dotted", "2 3"}}};
+
+const char* ink_of(std::size_t line) { return kInks[line % kInks.size()]; }
+const Dash& dash_of(std::size_t line) { return kDashes[line / kInks.size() % kDashes.size()]; }
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
@@ -26,33 +38,14 @@ struct Extent {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  /// Never empty, never of no length.
-  [[nodiscard]] Extent usable() const {
-    if (!(low <= high)) return {0.0, 1.0};
-    return low < high ? *this : Extent{low - 0.5, high + 0.5};
-  }
+  [[nodiscard]] Axis axis() const { return low <= high ? axis_for(low, high) : Axis{}; }
 };
 
-/// 1, 2 or 5 times a power of ten, about five of which fill the extent.
-double tick_step(const Extent& extent) {
-  const double rough = (extent.high - extent.low) / 5.0;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double share = rough / power;
-  return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);
-}
-
-std::vector<double> ticks(const Extent& extent) {
-  const double step = tick_step(extent);
-  const double first = std::ceil(extent.low / step);
-  const int more = static_cast<int>(std::floor(extent.high / step + 1e-9) - first);
-  std::vector<double> at;
-  for (int i = 0; i <= more; ++i) at.push_back((first + i) * step);
-  return at;
-}
+std::string number(double value) { return text_of(std::round(100.0 * value) / 100.0); }
 
 class Frame {
  public:
-  Frame(const Extent& x, const Extent& y) : x_{x}, y_{y} {}
+  Frame(const Axis& x, const Axis& y) : x_{x}, y_{y} {}
   [[nodiscard]] double across(double x) const {
     return kLeft + (x - x_.low) / (x_.high - x_.low) * (kWidth - kLeft - kRight);
   }
@@ -61,11 +54,13 @@ class Frame {
   }
   [[nodiscard]] std::string axes() const {
     std::string svg;
-    for (const double x : ticks(x_)) {
-      svg += line(x, y_.low, x, y_.high) + label(across(x), kHeight - kBottom + 16.0, "middle", text_of(cleaned(x)));
+    for (int i = 0; x_.low + i * x_.step <= x_.high + 0.01 * x_.step; ++i) {
+      const double x = x_.low + i * x_.step;
+      svg += line(x, y_.low, x, y_.high) + label(across(x), kHeight - kBottom + 16.0, "middle", tick(x, x_));
     }
-    for (const double y : ticks(y_)) {
-      svg += line(x_.low, y, x_.high, y) + label(kLeft - 6.0, down(y) + 4.0, "end", text_of(cleaned(y)));
+    for (int i = 0; y_.low + i * y_.step <= y_.high + 0.01 * y_.step; ++i) {
+      const double y = y_.low + i * y_.step;
+      svg += line(x_.low, y, x_.high, y) + label(kLeft - 6.0, down(y) + 4.0, "end", tick(y, y_));
     }
     return svg;
   }
@@ -74,32 +69,106 @@ class Frame {
     const double high = std::min(x_.high, y_.high);
     return low < high ? line(low, low, high, high) : "";
   }
+  /// What page/report.js leads back from pixels to values by.
+  [[nodiscard]] std::string attributes() const {
+    return " data-x=\"" + text_of(x_.low) + " " + text_of(x_.high) + "\" data-y=\"" + text_of(y_.low) + " " +
+           text_of(y_.high) + "\" data-plot=\"" + text_of(kLeft) + " " + text_of(kTop) + " " +
+           text_of(kWidth - kRight) + " " + text_of(kHeight - kBottom) + "\"";
+  }
   [[nodiscard]] static std::string label(double across, double down, const char* anchor, const std::string& text) {
-    return "<text x=\"" + text_of(across) + "\" y=\"" + text_of(down) + "\" text-anchor=\"" + anchor + "\">" +
+    return "<text x=\"" + number(across) + "\" y=\"" + number(down) + "\" text-anchor=\"" + anchor + "\">" +
            escaped(text) + "</text>\n";
   }
 
  private:
-  [[nodiscard]] static double cleaned(double tick) { return std::abs(tick) < 1e-12 ? 0.0 : tick; }
-  [[nodiscard]] std::string line(double x1, double y1, double x2, double y2) const {
-    return "<line x1=\"" + text_of(across(x1)) + "\" y1=\"" + text_of(down(y1)) + "\" x2=\"" + text_of(across(x2)) +
-           "\" y2=\"" + text_of(down(y2)) + "\" stroke=\"#ccc\"/>\n";
+  [[nodiscard]] static std::string tick(double value, const Axis& axis) {
+    return text_of(std::abs(value) < 1e-9 * axis.step ? 0.0 : value);
   }
-  Extent x_;
-  Extent y_;
+  [[nodiscard]] std::string line(double x1, double y1, double x2, double y2) const {
+    return "<line class=\"grid\" x1=\"" + number(across(x1)) + "\" y1=\"" + number(down(y1)) + "\" x2=\"" +
+           number(across(x2)) + "\" y2=\"" + number(down(y2)) + "\"/>\n";
+  }
+  Axis x_;
+  Axis y_;
 };
 
-std::string polyline_of(const Series& series, const Frame& frame, const char* colour) {
+std::string polyline_of(const Series& series, const Frame& frame, std::size_t line) {
   std::string points;
   for (const auto& [x, y] : series.points) {
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
-    points += text_of(frame.across(x)) + "," + text_of(frame.down(y)) + " ";
+    points += number(frame.across(x)) + "," + number(frame.down(y)) + " ";
   }
-  return "<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"" + std::string{colour} + "\" points=\"" + points +
-         "\"/>\n";
+  return "<polyline style=\"stroke:var(" + std::string{ink_of(line)} + ")\" stroke-dasharray=\"" + dash_of(line).svg +
+         "\" points=\"" + points + "\"/>\n";
 }
 
+std::string key_of(const Series& series, std::size_t line) {
+  return "<span style=\"--ink:var(" + std::string{ink_of(line)} + ");--dash:" + dash_of(line).css + "\">" +
+         escaped(series.name) + "<output></output></span>";
+}
+
+Frame frame_of(const Chart& chart) {
+  Extent x;
+  Extent y;
+  for (const Series& series : chart.series) {
+    for (const auto& [px, py] : series.points) {
+      if (!std::isfinite(px) || !std::isfinite(py)) continue;
+      x.take(px);
+      y.take(py);
+    }
+  }
+  return {x.axis(), y.axis()};
+}
+
+bool is_part_of_number(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.'; }
+
 }  // namespace
+
+Axis axis_for(double low, double high) {
+  constexpr double kNearZero = 0.3;  // of the data's largest: an axis from 0 wastes little
+  constexpr double kParts = 5.0;
+  if (low >= 0.0 && low <= kNearZero * high) low = 0.0;
+  if (high <= 0.0 && high >= kNearZero * low) high = 0.0;
+  if (!(high > low)) {
+    const double around = low == 0.0 ? 0.5 : 0.1 * std::abs(low);
+    low -= around;
+    high += around;
+  }
+  const double rough = (high - low) / kParts;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double share = rough / power;
+  const double step = power * (share <= 1.0 ? 1.0 : share <= 2.0 ? 2.0 : share <= 5.0 ? 5.0 : 10.0);
+  return {std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step, step};
+}
+
+std::string short_text(double value) {
+  if (!std::isfinite(value)) return "–";
+  char text[32];
+  const bool is_whole = value == std::round(value) && std::abs(value) < 1e15;
+  (void)std::snprintf(text, sizeof text, is_whole || std::abs(value) >= 100.0 ? "%.0f" : "%.3g", value);
+  return text;
+}
+
+std::string shortened(const std::string& text) {
+  std::string answer;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && is_part_of_number(text[end])) ++end;
+    const std::string token = text.substr(at, end - at);
+    const bool is_decimal = std::count(token.begin(), token.end(), '.') == 1 && token.size() > 2 &&
+                            token.front() != '.' && token.back() != '.';
+    if (end == at) {
+      answer += text[at++];
+      continue;
+    }
+    char* rest = nullptr;
+    const double value = std::strtod(text.c_str() + at, &rest);
+    const auto read = static_cast<std::size_t>(rest - text.c_str()) - at;  // with an exponent
+    answer += is_decimal ? short_text(value) : token;
+    at += is_decimal ? read : token.size();
+  }
+  return answer;
+}
 
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -124,32 +193,21 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-std::string svg_of(const Chart& chart) {
-  Extent x;
-  Extent y;
-  y.take(0.0);
-  for (const Series& series : chart.series) {
-    for (const auto& [px, py] : series.points) {
-      if (!std::isfinite(px) || !std::isfinite(py)) continue;
-      x.take(px);
-      y.take(py);
-    }
-  }
-  const Frame frame{x.usable(), y.usable()};
-  std::string svg = "<svg viewBox=\"0 0 " + text_of(kWidth) + " " + text_of(kHeight) + "\" role=\"img\">\n";
-  svg += frame.axes();
-  if (chart.with_diagonal) svg += frame.diagonal();
-  for (std::size_t i = 0; i < chart.series.size(); ++i) {
-    const char* colour = kColours[i % kColours.size()];
-    svg += polyline_of(chart.series[i], frame, colour);
-    const double down = kTop + 16.0 * static_cast<double>(i);
-    svg += "<rect x=\"" + text_of(kWidth - kRight + 12.0) + "\" y=\"" + text_of(down - 5.0) +
-           "\" width=\"14\" height=\"3\" fill=\"" + colour + "\"/>\n";
-    svg += Frame::label(kWidth - kRight + 32.0, down, "start", chart.series[i].name);
-  }
-  svg += Frame::label(kLeft, 18.0, "start", chart.y);
-  svg += Frame::label(0.5 * (kLeft + kWidth - kRight), kHeight - 10.0, "middle", chart.x);
-  return svg + "</svg>\n";
+std::string figure_of(const Chart& chart) {
+  const Frame frame = frame_of(chart);
+  std::string html = "<figure class=\"chart\"><figcaption>" + escaped(chart.title) +
+                     "<small><output></output></small></figcaption>\n<div class=\"keys\">";
+  for (std::size_t i = 0; i < chart.series.size(); ++i) html += key_of(chart.series[i], i);
+  html += "</div>\n<svg viewBox=\"0 0 " + text_of(kWidth) + " " + text_of(kHeight) +
+          "\" tabindex=\"0\" role=\"img\" aria-label=\"" + escaped(chart.title + ": " + chart.y + " over " + chart.x) +
+          "\"" + frame.attributes() + ">\n";
+  html += frame.axes();
+  if (chart.with_diagonal) html += frame.diagonal();
+  for (std::size_t i = 0; i < chart.series.size(); ++i) html += polyline_of(chart.series[i], frame, i);
+  html += "<line class=\"instant\" y1=\"" + text_of(kTop) + "\" y2=\"" + text_of(kHeight - kBottom) + "\"/>\n";
+  html += Frame::label(4.0, 13.0, "start", chart.y);
+  html += Frame::label(0.5 * (kLeft + kWidth - kRight), kHeight - 6.0, "middle", chart.x);
+  return html + "</svg></figure>\n";
 }
 
 }  // namespace deltamap::experiments

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chart of lines as SVG text, for a page that needs nothing from elsewhere.
+// A chart of lines as HTML with SVG, for a page that needs nothing from elsewhere. The axes fit the data.
 #pragma once
 
 #include <string>
@@ -8,7 +8,22 @@
 
 namespace deltamap::experiments {
 
-[[nodiscard]] std::string svg_of(const Chart& chart);
+/// A <figure> of class "chart": caption, keys of the lines, and the lines; page/report.js tells the values under the
+/// pointer.
+[[nodiscard]] std::string figure_of(const Chart& chart);
+
+/// From a round number below the data to one above; from 0 where the data begin near it.
+struct Axis {
+  double low = 0.0;
+  double high = 1.0;
+  double step = 0.5;  ///< between two ticks
+};
+[[nodiscard]] Axis axis_for(double low, double high);
+
+/// Three digits: what a reader takes in. Whole numbers are whole; "–" where there is nothing.
+[[nodiscard]] std::string short_text(double number);
+/// A text whose numbers with a decimal point have three digits.
+[[nodiscard]] std::string shortened(const std::string& text);
 
 /// Text with <, >, & and " made harmless.
 [[nodiscard]] std::string escaped(const std::string& text);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/drive/first_map.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/verdict/verdict_report.hpp"
 #include "experiments/verdict/verdict_run.hpp"

@@ -28,11 +28,12 @@ double mean_tiles(const std::vector<Outcome>& outcomes, const std::string& place
 }
 
 TextTable table_of(const std::vector<Outcome>& outcomes, const std::string& place) {
-  TextTable table{place,
-                  {"event", "changed", "range, m", "runs", "ambiguous", "once wrong", "wrong called right > 5 s",
-                   "right called lost", "recovered in 30 s, unambiguous", "ambiguous", "recovered",
-                   "called right again", "noticed after, mean s", "Brier pose", "Brier map"},
-                  {}};
+  TextTable table{
+      place,
+      {"event", "changed", "range, m", "runs", "ambiguous runs", "runs once wrong", "wrong called right > 5 s",
+       "right called lost", "recovered in 30 s, unambiguous", "recovered in 30 s, ambiguous", "recovered at all",
+       "called right again", "noticed after, mean s", "Brier score of P(pose right)", "Brier score of P(map wrong)"},
+      {}};
   for (const PoseEvent event : kPoseEvents) {
     for (const double changed : kVerdictChangedShares) {
       for (const double range_m : kVerdictRanges_m) {

@@ -35,6 +35,10 @@ void Tracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& cha
   if (surfaces_) surfaces_->apply(std::move(map), changed);
 }
 
+const particles::ParticleSet* Tracker::particles() const {
+  return surfaces_ && surfaces_->leads() ? nullptr : &filter_.particles();
+}
+
 bool Tracker::is_fixed_by_surfaces() const { return surfaces_ && surfaces_->is_fixed_by_surfaces(); }
 
 std::optional<motion::DriveCalibration> Tracker::calibration() const {

@@ -86,6 +86,8 @@ class Tracker {
 
   /// The heaviest hypothesis at the last update.
   [[nodiscard]] const particles::ParticleCluster& best() const { return best_; }
+  /// As of the last update; null while the surfaces lead: the particles rest then, somewhere behind.
+  [[nodiscard]] const particles::ParticleSet* particles() const;
   [[nodiscard]] std::size_t particle_count() const { return filter_.particles().size(); }
 
  private:

@@ -145,6 +145,17 @@ std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const votes::Block
   return set;
 }
 
+KeptScans EvidencePhase::scans_of_waiting() const {
+  votes::Blocks blocks;
+  std::uint32_t first_ms = now_ms_;
+  for (const ProvenBlock& proven : waiting_) {
+    blocks.push_back(static_cast<std::uint32_t>(layer_.blocks().index_of(proven.block)));
+    first_ms = std::min(first_ms, layer_.ballot(proven.question, proven.block, now_ms_).first_ms);
+  }
+  if (blocks.empty()) return {};
+  return keyframes_.that_saw(blocks, *start_ + std::chrono::milliseconds{first_ms});
+}
+
 /// Smaller regions are noise, but what is gone may have been small.
 bool EvidencePhase::is_large_enough(const std::vector<ProvenBlock>& region) const {
   if (region.size() >= params_.least_blocks) return true;

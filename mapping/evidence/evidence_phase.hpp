@@ -55,6 +55,8 @@ class EvidencePhase {
   [[nodiscard]] std::uint32_t number() const { return phase_; }
   /// Blocks that are proven and wait to be handed on.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+  /// The keyframes that a set of these blocks would be drawn from now, in order of time.
+  [[nodiscard]] KeptScans scans_of_waiting() const;
   [[nodiscard]] std::uint32_t short_beams() const { return short_beams_; }
   [[nodiscard]] std::uint32_t through_beams() const { return through_beams_; }
   /// What every keyframe has told so far, long before it is proven.

@@ -30,6 +30,8 @@ class GatedSets {
   [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const { return withdrawal_; }
 
   [[nodiscard]] const WriteGate& gate() const { return gate_; }
+  /// Finished sets that are not handed on yet, in order of their end.
+  [[nodiscard]] const std::deque<ScanSet>& waiting() const { return waiting_; }
 
  private:
   void withdraw(const TrackedScan& tracked);

@@ -27,6 +27,7 @@ class DeltaPhase {
 
   [[nodiscard]] bool is_open() const { return open_; }
   [[nodiscard]] std::uint32_t number() const { return set_.phase; }
+  [[nodiscard]] const KeptScans& kept_scans() const { return set_.scans; }  ///< of the present phase
   [[nodiscard]] std::uint32_t kept() const { return static_cast<std::uint32_t>(set_.scans.size()); }
 
  private:

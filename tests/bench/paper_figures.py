@@ -21,12 +21,12 @@ ROWS = [
     ("Fig. 2–4: largest r_d", "above 0 only with a change",
      "{no change: largest r_d:.2f} without, {change: largest r_d:.2f} with a change", "fig2-4"),
     ("Fig. 2–4: scans with r_d > 0", "none without a change",
-     "{no change: scans with r_d > 0:pct} without a change, {change: the same with the change in view:pct} with it in view, "
-     "{change: the same with none in view:pct} with none in view", "fig2-4"),
+     "{no change: scans with r_d > 0:pct} without a change, {change: scans with r_d > 0 with the change in view:pct} with it in view, "
+     "{change: scans with r_d > 0 with none in view:pct} with none in view", "fig2-4"),
     ("Fig. 2–4: scans stored a lap", "–", "{no change: scans stored in a lap:.0f} without, {change: scans stored in a lap:.0f} with a change", "fig2-4"),
     ("scans with a change in view that are told at 2 % false alarms", "–",
      "r_d {scans with a change in view that r_d tells, 2 % false alarms:pct}; beams against the map (evidence) "
-     "{the same told by beams (evidence):.1%}", "fig2-4"),
+     "{scans with the change in view that beams tell (evidence), no more false alarms:.1%}", "fig2-4"),
     ("Fig. 6: N_eff / particles", "falls while turning, not by a change",
      "straight {500x60, straight: N_eff / particles:.2f}, past changes {500x60, past-changes: N_eff / particles:.2f}; turning at 0.4, 0.8, "
      "1.6 rad/s " + ", ".join("{500x60, %s: N_eff / particles:.2f}" % kind for kind in GATE[2:]), "fig6"),
@@ -36,7 +36,7 @@ ROWS = [
      "{MA1, the paper's hall, continuous angles: mean acceptance:.4f} over continuous angles; pose right "
      "{MA1, the paper's hall, continuous angles: pose right:.1%}", "table1"),
     ("Table 1: MA1 in all four layouts, mean acceptance; that of the true pose", "–",
-     "{MA1, all four layouts, continuous angles: mean acceptance:.4f}; {the same of the true pose:.4f}; pose right "
+     "{MA1, all four layouts, continuous angles: mean acceptance:.4f}; {MA1, all four layouts, continuous angles: mean acceptance of the true pose:.4f}; pose right "
      "{MA1, all four layouts, continuous angles: pose right:.1%}", "table1"),
     ("Table 1: time of MA1", "0.67 s", "{MA1, all four layouts, continuous angles: mean CPU time:.0f} ms of CPU", "table1"),
     ("Table 2: ten drives of two hours, acceptance (method evidence)", "0.968–0.980",
@@ -48,12 +48,12 @@ ROWS = [
     ("Fig. 10–12: error of the pose", "< 0.5 m",
      "mean at most {hall: error_mean_m, most:.4f} m, 99 % within {hall: error_p99_m, most:.3f} m", "fig10-12"),
     ("Fig. 13: four boxes of the room gone, contour F1 against the truth", "by visual inspection",
-     "first map {evidence: the same of the first map:.3f}; paper {paper: boxes gone, contour F1 against the truth, mean:.3f}, evidence "
+     "first map {evidence: boxes gone, contour F1 of the first map against the truth, mean:.3f}; paper {paper: boxes gone, contour F1 against the truth, mean:.3f}, evidence "
      "{evidence: boxes gone, contour F1 against the truth, mean:.3f}", "fig13"),
     ("Fig. 13: the boxes back, contour F1 against the first map; cells that differ", "by visual inspection",
-     "paper {paper: boxes back, contour F1 against the first map, mean:.3f} (worst {paper: the same, worst@1:.3f}), "
+     "paper {paper: boxes back, contour F1 against the first map, mean:.3f} (worst {paper: boxes back, contour F1 against the first map, worst:.3f}), "
      "{paper: boxes back, cells that are not, mean:.0f} cells; evidence {evidence: boxes back, contour F1 against the first map, mean:.3f} "
-     "(worst {evidence: the same, worst@1:.3f}), {evidence: boxes back, cells that are not, mean:.0f} cells", "fig13"),
+     "(worst {evidence: boxes back, contour F1 against the first map, worst:.3f}), {evidence: boxes back, cells that are not, mean:.0f} cells", "fig13"),
     ("Fig. 14: CPU a scan outside and inside Δ-phases, peak", "peaks, no number",
      "; ".join("%s {%s: CPU a scan outside, mean:.2f}, {%s: CPU a scan inside, mean:.2f}, {%s: CPU a scan inside, peak:.0f} ms" % ((m,) * 4)
                for m in ("paper", "evidence")), "fig14"),

@@ -92,6 +92,18 @@ class Browser:
         self._call("POST", f"/session/{self.session}/actions",
                    {"actions": [{"type": "key", "id": "keys", "actions": actions}]})
 
+    def accessibility_tree(self):
+        """What a screen reader is told: role, name, and whether it takes the focus, of every node that it hears of."""
+        self._devtools("Accessibility.enable")
+        nodes = []
+        for node in self._devtools("Accessibility.getFullAXTree")["nodes"]:
+            if node.get("ignored"):
+                continue
+            value = lambda key: str(node.get(key, {}).get("value", ""))
+            properties = {one["name"]: one["value"].get("value") for one in node.get("properties", [])}
+            nodes.append({"role": value("role"), "name": value("name").strip(), "properties": properties})
+        return nodes
+
     def keys(self, *strokes):
         """Keys that go down or up in whatever has the focus: ("down", "a"), ("up", "a"), and pauses ("wait", seconds)."""
         actions = [{"type": "pause", "duration": round(1000 * value)} if kind == "wait"

@@ -8,6 +8,7 @@ import argparse, concurrent.futures, filecmp, json, pathlib, shutil, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from project import DATA, ROOT, provenance, run, settings_section, unpacked
+from report_page import report_page
 
 TOOLS = DATA.parent / "tools"
 BIN = ROOT / "build/release/bin"
@@ -163,8 +164,11 @@ def main():
     for name, check in checks.items():
         if arguments.only in (None, name):
             check()
+    reports = sorted([*OUT.glob("*/report.json"), *OUT.glob("*/run/report.json")])
+    settings = [line for line in settings_section(reports) if line.startswith("- ")]
+    (OUT / "index.html").write_text(report_page("Figures promised and measured", [provenance() + "."] + settings,
+                                                ["on", "figure", "measured", "at least", "met"], table.rows))
     if not arguments.quick and not arguments.only:
-        reports = sorted([*OUT.glob("*/report.json"), *OUT.glob("*/run/report.json")])
         text = "# Figures promised and measured\n\nWritten by `./dev check`: %s.\n\n%s\n\n%s\n" % (
             provenance(), table.markdown(), "\n".join(settings_section(reports)))
         (ROOT / "docs/results/check.md").write_text(text)

@@ -211,10 +211,75 @@ TEST(ScanTable, AnswersItsStatistics) {
 }
 
 TEST(Chart, MakesTextHarmless) {
-  const std::string svg = experiments::svg_of({"t", "a < b", "y", {{"\"one\"", {{0.0, 1.0}, {1.0, 2.0}}}}});
-  EXPECT_EQ(svg.find("a < b"), std::string::npos);
-  EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
-  EXPECT_NE(svg.find("&quot;one&quot;"), std::string::npos);
+  const std::string html = experiments::figure_of({"t", "a < b", "y", {{"\"one\"", {{0.0, 1.0}, {1.0, 2.0}}}}});
+  EXPECT_EQ(html.find("a < b"), std::string::npos);
+  EXPECT_NE(html.find("a &lt; b"), std::string::npos);
+  EXPECT_NE(html.find("&quot;one&quot;"), std::string::npos);
+}
+
+TEST(Chart, AxesFitTheDataAndHaveRoundEnds) {
+  const auto ends = [](double low, double high) {
+    const experiments::Axis axis = experiments::axis_for(low, high);
+    EXPECT_GE((axis.high - axis.low) / axis.step, 2.0 - 1e-9) << low << " " << high;
+    EXPECT_LE((axis.high - axis.low) / axis.step, 7.0 + 1e-9) << low << " " << high;
+    return std::pair{axis.low, axis.high};
+  };
+  const auto [low, high] = ends(0.981, 0.992);
+  EXPECT_NEAR(low, 0.98, 1e-9) << "not from 0";
+  EXPECT_NEAR(high, 0.992, 0.0021);
+  EXPECT_EQ(ends(0.2, 0.9).first, 0.0) << "0 is near";
+  EXPECT_EQ(ends(-9.0, -1.0).second, 0.0);
+  EXPECT_LT(ends(5.0, 5.0).first, 5.0);
+  EXPECT_GT(ends(5.0, 5.0).second, 5.0);
+  EXPECT_LT(ends(0.0, 0.0).first, ends(0.0, 0.0).second);
+}
+
+TEST(Chart, ALineLeavesOutWhatIsNoNumberAndNothingIsDrawnOfNothing) {
+  const double nothing = std::nan("");
+  const std::string html =
+      experiments::figure_of({"t", "x", "y", {{"one", {{0.0, 1.0}, {1.0, nothing}, {2.0, 3.0}}}, {"none", {}}}});
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_NE(html.find("points=\"\""), std::string::npos);
+  EXPECT_EQ(experiments::figure_of({"t", "x", "y"}).find("nan"), std::string::npos);
+}
+
+TEST(Chart, NumbersHaveThreeDigits) {
+  EXPECT_EQ(experiments::short_text(0.0123456), "0.0123");
+  EXPECT_EQ(experiments::short_text(12345.678), "12346");
+  EXPECT_EQ(experiments::short_text(1764000000.0), "1764000000");
+  EXPECT_EQ(experiments::short_text(std::nan("")), "–");
+  EXPECT_EQ(experiments::shortened("0.123456 (0.1 … 1.98765), seed 10001, 1.23456e-05"),
+            "0.123 (0.1 … 1.99), seed 10001, 1.23e-05");
+  EXPECT_EQ(experiments::shortened("version 1.2.3, 4 of 5."), "version 1.2.3, 4 of 5.");
+}
+
+TEST(Certainty, HoldsTheMeanOfRunsThatScatter) {
+  std::vector<double> values;
+  for (int i = 0; i < 40; ++i) values.push_back(i % 2 == 0 ? 1.0 : 3.0);
+  values.push_back(std::nan(""));
+  const experiments::Certainty mean = experiments::certainty_of_mean(values);
+  EXPECT_EQ(mean.runs, 40u);
+  EXPECT_NEAR(mean.low, 2.0 - 1.96 / std::sqrt(40.0), 0.1) << "as the normal distribution has it";
+  EXPECT_NEAR(mean.high, 2.0 + 1.96 / std::sqrt(40.0), 0.1);
+  const experiments::Certainty again = experiments::certainty_of_mean(values);
+  EXPECT_EQ(mean.low, again.low) << "the same runs, the same interval";
+  EXPECT_FALSE(experiments::certainty_of_mean({1.0, 2.0, 3.0, 4.0}).has_interval()) << "too few";
+  EXPECT_FALSE(experiments::certainty_of_extreme(values).has_interval());
+  EXPECT_EQ(experiments::certainty_of_extreme(values).runs, 40u);
+}
+
+TEST(Experiment, PageTellsIntervalAndRunsBesideAFigure) {
+  experiments::Results results{"name", "what", 1, false, {}, {}, {}, {}};
+  results.report.figures = {{"error, mean", 0.0312345, "m", {}, "", experiments::Certainty{36, 0.02, 0.04}},
+                            {"worst", 0.5, "m", {}, "", experiments::Certainty{.runs = 36}}};
+  const std::string page = experiments::page_html(results);
+  EXPECT_NE(page.find("0.0312 m</td><td class=\"number\">0.02 … 0.04</td><td>36</td>"), std::string::npos) << page;
+  const auto summary = nlohmann::json::parse(experiments::summary_json(results));
+  EXPECT_EQ(summary["figures"][0]["interval_95"], nlohmann::json({0.02, 0.04}));
+  EXPECT_EQ(summary["figures"][1]["runs"], 36);
+  EXPECT_FALSE(summary["figures"][1].contains("interval_95"));
+  EXPECT_NE(page.find("--accent"), std::string::npos) << "the live page's colours";
+  EXPECT_NE(page.find("prefers-color-scheme"), std::string::npos);
 }
 
 TEST(WeakestAxis, LiesAlongACorridorWithoutEnd) {

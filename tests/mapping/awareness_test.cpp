@@ -68,8 +68,11 @@ class PaperPhases : public testing::Test {
 TEST_F(PaperPhases, BeginAtTheFirstPositiveRatioAndEndBelowZero) {
   settle();
   EXPECT_FALSE(store->awareness().in_phase);
+  EXPECT_TRUE(store->stored().collected.empty());
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(send(0.1));
   EXPECT_TRUE(store->awareness().in_phase);
+  EXPECT_EQ(store->stored().collected.size(), store->awareness().stored_scans);
+  EXPECT_GT(store->stored().collected.size(), 5u);
   std::optional<ScanSet> set;
   for (int i = 0; i < 20 && !set; ++i) set = send(0.9);
   ASSERT_TRUE(set);

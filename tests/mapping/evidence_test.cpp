@@ -96,6 +96,26 @@ TEST(Evidence, WritesAContainerThatHasCome) {
   EXPECT_EQ(occupied_share(*drive.map, {9.0, 7.0}, {11.0, 7.8}), 0.0);
 }
 
+TEST(Evidence, ShowsTheScansOfASetWhileItIsCollectedAndWhileItWaits) {
+  Drive drive{hall()};
+  std::size_t collected = 0;
+  std::size_t waiting = 0;
+  drive.through(
+      [&](double) {
+        const StoredScans stored = drive.store.stored();
+        collected = std::max(collected, stored.collected.size());
+        waiting = std::max(waiting, stored.waiting.size());
+        return hall_with({9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied);
+      },
+      30.0);
+  ASSERT_GE(drive.revisions, 1);
+  EXPECT_GE(collected, 2u);
+  EXPECT_LE(collected, 40u);
+  EXPECT_GE(waiting, 2u);
+  drive.through(always(*drive.map), 10.0);
+  EXPECT_EQ(drive.store.stored(), StoredScans{}) << "nothing differs from the map any more";
+}
+
 TEST(Evidence, FreesWhereAContainerHasGone) {
   Drive drive{hall()};
   drive.through(always(hall_with({8.0, 8.5}, {11.0, 10.0}, CellState::kFree)), 40.0);

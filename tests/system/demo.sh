@@ -45,5 +45,6 @@ trap - EXIT
 "$bin/deltamap" score --truth "$out/truth.jsonl" --world "$world" --trajectory "$out/run/trajectory.tum" \
   --start-map "$out/m0.yaml" --map "$out/run/map.yaml"
 "$bin/deltamap" map picture "$out/m0.yaml" "$out/before.png"
-"$bin/deltamap" map picture "$out/run/map.yaml" "$out/after.png" --before "$out/m0.yaml"
-echo "pictures: $out/before.png and $out/after.png (red: newly occupied, green: newly free, blue: forgotten)"
+"$bin/deltamap" map picture "$out/run/map.yaml" "$out/after.png" --before "$out/m0.yaml" --trajectory "$out/run/trajectory.tum"
+"$bin/deltamap" map film "$out/store.sqlite" "$out/film.png" --trajectory "$out/run/trajectory.tum"
+echo "pictures: $out/before.png, $out/after.png and, animated, $out/film.png"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `deltamap map history STORE …`: what the map store remembers: list it, take out a revision, compare two, go back to
-// one, take one back and keep what came later, name one so that it stays.
+// one, draw what one has changed, take one back and keep what came later, name one so that it stays.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -15,8 +15,10 @@
 
 #include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
+#include "daemon/maps/png_bytes.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/store/map_store.hpp"
+#include "tool/picture/scene.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
@@ -68,6 +70,13 @@ const char* name_of(CellState state) {
       return "unknown";
   }
   return "?";
+}
+
+Timestamp store_time(const MapStore& store, std::uint32_t number) {
+  for (const StoredRevision& revision : store.history()) {
+    if (!revision.refused && revision.number == number) return revision.time;
+  }
+  return {};
 }
 
 void list(const Options& options) {
@@ -141,6 +150,32 @@ void compare(const Options& options) {
   }
 }
 
+/// Left the place before Δ K, right after it.
+void draw_delta(const Options& options) {
+  constexpr double kAround_m = 3.0;
+  const MapStore store{options.store};
+  if (options.number == 0) throw std::runtime_error("revision 0 is the first map: it has changed nothing");
+  const std::vector<CellChange> changes = store.changes(options.number);
+  const OccupancyGrid after = store.grid(options.number);
+  std::vector<CellChange> back = changes;
+  for (CellChange& change : back) std::swap(change.before, change.after);
+  const OccupancyGrid before = patched(after, back);
+  const int around = static_cast<int>(kAround_m / after.resolution_m());
+  picture::Scene scene{.map = before};
+  if (!changes.empty()) scene.shown = grown(bounding_box(changes), around, after.geometry());
+  scene.title = "before";
+  const picture::Raster left = drawn(scene);
+  picture::Scene changed{.map = after, .before = &before};
+  changed.shown = scene.shown;
+  changed.title = "M" + std::to_string(options.number) + ", " + utc(store_time(store, options.number)) + " UTC";
+  const picture::Raster both = side_by_side(left, drawn(changed));
+  daemon::write_bytes(daemon::png_of(both.width, both.height, both.rgb), options.out);
+  if (options.json) {
+    std::cout << nlohmann::json{{"number", options.number}, {"picture", options.out}, {"cells", changes.size()}}.dump()
+              << '\n';
+  }
+}
+
 void roll_back(const Options& options) {
   const auto lock = lock_of_file(options.store);  // a daemon that writes there would lose its place
   MapStore store{options.store};
@@ -180,7 +215,8 @@ void set_name(const Options& options) {
 
 void add_map_history(CLI::App& map) {
   auto options = std::make_shared<Options>();
-  CLI::App* history = map.add_subcommand("history", "the revisions of a map: list, export, diff, rollback, undo, name");
+  CLI::App* history =
+      map.add_subcommand("history", "the revisions of a map: list, export, diff, picture, rollback, undo, name");
   history->require_subcommand(1);
   history->fallthrough();
   history->add_option("STORE", options->store, "map store (SQLite)")->required();
@@ -199,6 +235,11 @@ void add_map_history(CLI::App& map) {
   differ->add_option("K", options->other)->required();
   differ->add_flag("--cells", options->cells, "each cell: column, row, before, after");
   differ->fallthrough()->callback([options] { compare(*options); });
+
+  CLI::App* painter = history->add_subcommand("picture", "draw what revision K has changed: before and after");
+  painter->add_option("K", options->number)->required();
+  painter->add_option("OUT", options->out, "PNG to write")->required();
+  painter->fallthrough()->callback([options] { draw_delta(*options); });
 
   CLI::App* roller = history->add_subcommand("rollback", "make revision K the newest again; nothing is lost");
   roller->add_option("K", options->number)->required();

@@ -36,7 +36,6 @@ std::optional<Timestamp> time_in(std::string_view query) {
   return timestamp_from_ns(static_cast<std::int64_t>(std::llround(time_s * 1e6)) * 1000);
 }
 
-
 }  // namespace
 
 ViewDesk::ViewDesk(ViewedRun run, std::uint16_t port)
@@ -57,7 +56,7 @@ ViewDesk::ViewDesk(ViewedRun run, std::uint16_t port)
 void ViewDesk::show(const TrackedScan& tracked, const daemon::LocalizationRow& row, double latency_s) {
   board_.show(tracked, row, latency_s);
   const daemon::LiveScan scan{
-      .number = row.number, .row = row, .latency_s = latency_s, .beams = daemon::beams_of(tracked)};
+      .number = row.number, .row = row, .latency_s = latency_s, .beams = daemon::beams_of(tracked), .particles = {}};
   std::vector<std::string> messages{daemon::pose_line({row, latency_s, std::nullopt})};
   if (!scan.beams.empty()) messages.push_back(daemon::scan_message(scan));
   moments_.add(row.time, messages);

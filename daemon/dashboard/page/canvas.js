@@ -19,3 +19,8 @@ export function once_a_frame(draw) {
     });
   };
 }
+
+export function circle(context, x, y, radius) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+}

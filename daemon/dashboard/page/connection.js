@@ -3,7 +3,7 @@
 
 import { placed_ends } from "./layers.js";
 
-const CELLS = 1, SAMPLES = 2, SCAN = 3;
+const CELLS = 1, SAMPLES = 2, SCAN = 3, PARTICLES = 4, STORED = 5;
 const FIRST_PAUSE_MS = 500, LONGEST_PAUSE_MS = 5000;
 const SILENCE_MS = 4000; // a status comes every second
 
@@ -44,7 +44,31 @@ function scan_of(view) {
   return { ...scan, ends: placed_ends(scan, scan) };
 }
 
-/// `on` holds a function for each kind of message (hello, map, cells, pose, scan, transient, status, samples, changes)
+/// Places and headings, one after another: x, y, heading.
+function particles_of(view) {
+  const count = view.getUint32(4, true), [x, y, step] = [8, 12, 16].map((at) => view.getFloat32(at, true));
+  const poses = new Float32Array(3 * count);
+  for (let i = 0; i < 3 * count; i += 3) {
+    const [dx, dy, turn] = [20, 22, 24].map((at) => view.getInt16(at + 2 * i, true));
+    poses.set([x + dx * step, y + dy * step, turn / 32767 * Math.PI], i);
+  }
+  return poses;
+}
+
+function stored_of(view) {
+  const scans = [];
+  for (let i = 0, at = 8; i < view.getUint32(4, true); ++i) {
+    const [x, y, heading] = [4, 8, 12].map((from) => view.getFloat32(at + from, true));
+    const beams = new Int16Array(2 * view.getUint32(at + 16, true));
+    for (let n = 0; n < beams.length; ++n) beams[n] = view.getInt16(at + 20 + 2 * n, true);
+    const place = { x, y, heading };
+    scans.push({ ...place, waits: view.getUint32(at, true) === 1, ends: placed_ends({ beams }, place) });
+    at += 20 + 2 * beams.length;
+  }
+  return scans;
+}
+
+/// `on` holds a function for each kind of message (hello, map, cells, pose, scan, particles, stored, transient, status, samples, changes)
 /// and link("connecting" | "live" | "lost").
 export class Connection {
   constructor(on) {
@@ -95,5 +119,7 @@ export class Connection {
     if (kind === CELLS) this.on.cells(cells_of(view));
     if (kind === SAMPLES) this.on.samples(samples_of(view, this.columns));
     if (kind === SCAN) this.on.scan(scan_of(view));
+    if (kind === PARTICLES) this.on.particles(particles_of(view));
+    if (kind === STORED) this.on.stored(stored_of(view));
   }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn over the map: one layer a kind of thing, each with its sign in the legend, and a scale bar.
 
-import { ink_of } from "./canvas.js";
+import { draw_particles, draw_stored, draw_way, sign_particles, sign_stored, sign_way } from "./belief_layers.js";
+import { circle, ink_of } from "./canvas.js";
 import { FREE, OCCUPIED } from "./map_view.js";
 
 const REACH_M = 0.15;  // a beam that ends so close to an occupied cell agrees with the map
@@ -11,11 +12,6 @@ const ROBOT_M = 0.25;  // radius
 const LEAST_ROBOT_PX = 7;
 const MOST_RINGS = 8;
 const LEAST_SHARE = 0.005;  // of the belief, of a hypothesis that is drawn
-
-function circle(context, x, y, radius) {
-  context.beginPath();
-  context.arc(x, y, radius, 0, 2 * Math.PI);
-}
 
 /// A triangle that points ahead, on a disc.
 function robot_sign(context, x, y, heading, radius, colour) {
@@ -257,11 +253,15 @@ export const LAYERS = [
     keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink_of("--orange"))],
            ["seen gone", (c) => { c.strokeStyle = ink_of("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
+  { id: "stored", label: "scans kept for the map", is_of_now: true, draw: draw_stored,
+    keys: [["of the running Δ-phase", (c) => sign_stored(c, false)], ["of a set that waits", (c) => sign_stored(c, true)]] },
   { id: "scan", label: "scan: beam ends", is_of_now: true, draw: draw_scan,
     keys: [["on the map's obstacles", (c) => { c.fillStyle = ink_of("--green"); c.fillRect(8, 4, 6, 6); }],
            ["where the map is free", (c) => { c.fillStyle = ink_of("--orange"); circle(c, 11, 7, 4); c.fill(); }],
            ["where it is unknown", (c) => { c.fillStyle = ink_of("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
   { id: "hypothesis", label: "other hypothesis", is_of_now: true, draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
+  { id: "particles", label: "particles, a few for all", is_of_now: true, draw: draw_particles, sign: sign_particles },
+  { id: "way", label: "where the pilot drives", is_of_now: true, draw: draw_way, sign: sign_way },
   { id: "robot", label: `robot, ${SIGMAS} σ`, is_of_now: true, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--blue")) },
 ];
 

@@ -14,7 +14,7 @@ const MOST_SAMPLES = 3600;
 const NARROW_PX = 1280; // the legend would cover the map
 
 const by_id = (id) => document.getElementById(id);
-const model = { samples: [], changes: [], pose: null, scan: null, transient: null, status: null, picked: null, wish: null, delta: null, run: null, until: null };
+const model = { samples: [], changes: [], pose: null, scan: null, particles: [], stored: [], transient: null, status: null, picked: null, wish: null, delta: null, run: null, until: null };
 const shown = new Set(LAYERS.map((layer) => layer.id));
 
 // --- dark and light: as the system, until a person says otherwise ---
@@ -106,6 +106,7 @@ const on = {
     history.allow_undo(Boolean(hello.control));
     history.close();
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
+    model.particles = model.stored = [];
     model.picked = null;
     clear_changes();
   },
@@ -125,6 +126,8 @@ const on = {
     model.scan = scan;
     control.relocalize.update();
   },
+  particles(particles) { model.particles = particles; },  // with the scan
+  stored(stored) { model.stored = stored; view.draw_soon(); },
   transient(transient) { model.transient = transient; view.draw_soon(); },
   status(message) {
     const before = model.status, now = message.status;

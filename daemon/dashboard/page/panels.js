@@ -169,7 +169,10 @@ export function add_changes(changes, all, on_pick) {
 }
 
 export function clear_changes() {
-  document.getElementById("changes").replaceChildren();
+  const hint = document.createElement("li");
+  hint.className = "hint";
+  hint.textContent = "None yet in this run.";
+  document.getElementById("changes").replaceChildren(hint);
   document.getElementById("changes-count").textContent = "";
 }
 

@@ -226,6 +226,10 @@ TEST_F(DashboardDeskTest, AViewerSeesPoseScanMapAndWhatChangesInIt) {
   EXPECT_EQ(test::number_at(bytes[3], 28, 2), 125u);
   EXPECT_EQ(test::number_at(bytes[3], 30, 2), 50u);
 
+  desk_->board().show(mapping::StoredScans{.collected = {std::make_shared<const TrackedScan>()}, .waiting = {}});
+  ASSERT_TRUE(read_until([&] { return bytes.count(5) > 0 && test::u32_at(bytes[5], 4) == 1; }));
+  EXPECT_EQ(bytes.count(4), 0u) << "no particles, and nothing said of them";
+
   bytes.clear();
   show_change({1, 1});
   ASSERT_TRUE(read_until([&] { return bytes.count(1) > 0 && told.count("changes") > 0; }));

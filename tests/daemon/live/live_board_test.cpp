@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "daemon/dashboard/wire.hpp"
+#include "daemon/live/live_messages.hpp"
 #include "daemon/live/live_stream.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/live_decoding.hpp"
@@ -84,6 +86,88 @@ TEST_F(LiveBoardTest, OfAScanTheBeamsWithARangeAreShown) {
   EXPECT_EQ(scan.beams[0].x_cm, 150);
   EXPECT_EQ(scan.beams[0].y_cm, -50);
   EXPECT_EQ(scan.latency_s, 0.002);
+}
+
+TEST_F(LiveBoardTest, AFewParticlesStandForAllWhereSomebodyWatches) {
+  localization::particles::ParticleSet particles;
+  particles.resize_uniform(5000);
+  board_.show(tracked_scan(), row_at(0), 0.002, &particles);
+  LiveScan scan;
+  ASSERT_TRUE(board_.fetch(scan));
+  EXPECT_TRUE(scan.particles.empty()) << "nobody watches";
+  board_.watch(true);
+  board_.show(tracked_scan(), row_at(1), 0.002, &particles);
+  ASSERT_TRUE(board_.fetch(scan));
+  EXPECT_EQ(scan.particles.size(), 256u);
+  board_.show(tracked_scan(), row_at(2), 0.002, nullptr);
+  ASSERT_TRUE(board_.fetch(scan));
+  EXPECT_TRUE(scan.particles.empty()) << "the pose does not rest on them";
+}
+
+TEST_F(LiveBoardTest, ParticlesAreToldFromThePoseInEvenSteps) {
+  LiveScan scan;
+  scan.row.map_from_robot = {10.0, -4.0, 0.0};
+  scan.particles = {{10.5, -4.25, 1.0}, {10.0, -4.0, -3.0}};
+  const std::string near = particles_message(scan);
+  ASSERT_EQ(near.size(), 20u + 2u * 6u);
+  EXPECT_EQ(test::u32_at(near, 0), 4u);
+  EXPECT_EQ(test::u32_at(near, 4), 2u);
+  EXPECT_EQ(test::f32_at(near, 8), 10.0F);
+  EXPECT_EQ(test::f32_at(near, 12), -4.0F);
+  EXPECT_EQ(test::f32_at(near, 16), 0.001F);
+  EXPECT_EQ(static_cast<std::int16_t>(test::number_at(near, 20, 2)), 500);
+  EXPECT_EQ(static_cast<std::int16_t>(test::number_at(near, 22, 2)), -250);
+  EXPECT_EQ(static_cast<std::int16_t>(test::number_at(near, 30, 2)), std::lround(-3.0 / std::numbers::pi * 32767.0));
+  scan.particles.push_back({1010.0, -4.0, 0.0});
+  const std::string far = particles_message(scan);
+  EXPECT_NEAR(test::f32_at(far, 16) * static_cast<float>(static_cast<std::int16_t>(test::number_at(far, 32, 2))),
+              1000.0, 0.1);
+}
+
+TEST_F(LiveBoardTest, StoredScansAreShownToWhoWatchesAndLetGoAfter) {
+  const auto kept = std::make_shared<const TrackedScan>(tracked_scan());
+  board_.show(mapping::StoredScans{.collected = {kept}, .waiting = {}});
+  EXPECT_EQ(kept.use_count(), 1) << "nobody watches";
+  board_.watch(true);
+  board_.show(mapping::StoredScans{.collected = {kept}, .waiting = {}});
+  EXPECT_EQ(board_.stored().collected.size(), 1u);
+  board_.watch(false);
+  EXPECT_EQ(kept.use_count(), 1);
+}
+
+TEST_F(LiveBoardTest, StoredScansAreThinnedToTwentyKilobytes) {
+  TrackedScan large;
+  large.scan.beams.assign(361, {.range_m = 1.0F, .kind = BeamKind::kRange});
+  large.rays.resize(361);
+  large.estimate.map_from_robot = {3.0, 2.0, 1.0};
+  mapping::StoredScans stored;
+  stored.collected.assign(400, std::make_shared<const TrackedScan>(large));
+  EXPECT_LE(stored_message(stored).size(), 20'200u);
+  stored.collected.resize(1);
+  stored.waiting.assign(1, std::make_shared<const TrackedScan>(tracked_scan()));
+  const std::string two = stored_message(stored);
+  EXPECT_EQ(test::u32_at(two, 4), 2u);
+  EXPECT_EQ(test::u32_at(two, 8), 0u) << "collected";
+  EXPECT_EQ(test::f32_at(two, 12), 3.0F);
+  const std::uint32_t ends = test::u32_at(two, 24);
+  EXPECT_GE(ends, 61u);
+  EXPECT_LE(ends, 120u);
+  const std::size_t next = 28 + 4 * ends;
+  EXPECT_EQ(test::u32_at(two, next), 1u) << "waits";
+  EXPECT_EQ(test::u32_at(two, next + 16), 1u);
+  EXPECT_EQ(test::number_at(two, next + 20, 2), 150u);
+  EXPECT_EQ(two.size(), next + 24);
+}
+
+TEST_F(LiveBoardTest, ThePilotsWishIsToldWhileItDrives) {
+  Telemetry telemetry;
+  telemetry.wanted_speed_m_per_s.set(0.5);
+  EXPECT_EQ(pose_message({}, telemetry).find("pilot"), std::string::npos);
+  telemetry.drives.set(true);
+  EXPECT_NE(pose_message({}, telemetry).find(R"("pilot":{"speed_m_per_s":0.5,"turn_rate_rad_per_s":0.0})"),
+            std::string::npos);
+  telemetry.by_hand.set(true);
+  EXPECT_EQ(pose_message({}, telemetry).find("pilot"), std::string::npos);
 }
 
 TEST_F(LiveBoardTest, SamplesComeOnceASecondWithTheRateOfScans) {

@@ -44,12 +44,13 @@ TEST(Figures2To4, AChangeIsToldByTheRatioAndBetterByBeams) {
               0.95 * figure(report, "no change: w_avg, median"));
     EXPECT_GT(figure(report, "change: scans stored in a lap"),
               1.5 * figure(report, "no change: scans stored in a lap"));
-    const double in_view = figure(report, "change: the same with the change in view");
-    EXPECT_GT(in_view, 1.5 * figure(report, "change: the same with none in view"));
+    const double in_view = figure(report, "change: scans with r_d > 0 with the change in view");
+    EXPECT_GT(in_view, 1.5 * figure(report, "change: scans with r_d > 0 with none in view"));
     EXPECT_GT(figure(report, "no change: scans with r_d > 0"), 0.1)
         << "known weakness: noisy where nothing has changed";
     const double by_ratio = figure(report, "scans with a change in view that r_d tells, 2 % false alarms");
-    EXPECT_GT(figure(report, "the same told by beams (evidence)"), std::max(0.9, by_ratio));
+    EXPECT_GT(figure(report, "scans with the change in view that beams tell (evidence), no more false alarms"),
+              std::max(0.9, by_ratio));
   }
 }
 

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The live page and a report for those who see little or use the keyboard alone, at three sizes, light and dark: ./dev test browser."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import accessible
+from page_test import PICTURES, SHOWS_MAP, SIZES
+from running_daemon import BIN, ROOT, RunningDaemon
+from webdriver import Browser
+
+SPACE, ENTER, ESCAPE, RIGHT = " ", "\ue007", "\ue00c", "\ue014"
+
+
+class PageForAll(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        cls.daemon = RunningDaemon(change_every_s=10, token="of-the-browser-tests", settings={"dashboard.control": "true"})
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.__exit__()
+
+    def open(self, width=1280, height=800, mobile=False, dark=False):
+        browser = Browser(width, height, dark, mobile)
+        self.addCleanup(browser.__exit__)
+        browser.open(self.daemon.page())
+        browser.wait(SHOWS_MAP)
+        browser.wait('document.querySelectorAll("#status dd").length > 5')
+        return browser
+
+    def test_names_roles_and_contrast(self):
+        for name, (width, height, mobile) in SIZES.items():
+            for dark in (False, True):
+                with self.subTest(size=name, dark=dark):
+                    browser = self.open(width, height, mobile, dark)
+                    browser.run("document.querySelector('#layers-box').open = true")
+                    self.assertEqual(accessible.findings(browser), [])
+                    self.assertEqual(browser.run(accessible.STICKS_OUT), [])
+                    browser.screenshot(PICTURES / f"layers-{name}-{'dark' if dark else 'light'}.png")
+                    self.assertEqual(browser.errors(), [])
+
+    def test_the_check_finds_what_is_wrong(self):
+        browser = self.open()
+        browser.run("""document.querySelector("#fit").textContent = ""; document.querySelector("#fit").removeAttribute("aria-label");
+                       document.querySelector("#status-title").style.color = "#dddddd"; document.querySelector("#status-title").style.background = "#ffffff";
+                       document.querySelector("#save").id = "pause"; document.querySelector("#zoom-in").style.cssText = "min-width:0;width:9px;padding:0" """)
+        found = "\n".join(accessible.findings(browser))
+        for what in ("no name: button", "contrast 1.", "id twice: pause", "small to touch, 9"):
+            self.assertIn(what, found)
+
+    def test_the_keyboard_reaches_and_uses_everything(self):
+        browser = self.open()
+        browser.wait("document.querySelectorAll('#changes button').length > 0", 120)
+        stops = accessible.walk(browser)
+        self.assertGreaterEqual(len(stops) + 2, browser.run(accessible.CAN_TAKE_FOCUS))  # a change may have come meanwhile
+        self.assertEqual([stop for stop in stops if not stop["is_seen"]], [])
+        self.assertIn("map", [stop["what"] for stop in stops])
+        browser.press("#layer-scan", SPACE)
+        self.assertFalse(browser.run("return document.querySelector('#layer-scan').checked"))
+        browser.press("#changes button", ENTER)
+        self.assertIsNotNone(browser.run("return window.deltamap.model.picked"))
+        before = browser.run("return document.documentElement.dataset.theme")
+        browser.press("#theme", ENTER)
+        self.assertNotEqual(browser.run("return document.documentElement.dataset.theme"), before)
+        browser.press("#charts canvas", "\ue012")  # the left arrow
+        browser.wait('document.querySelector("#charts-instant").textContent.startsWith("at ")')
+        browser.press("#pause", ENTER)
+        browser.wait('window.deltamap.model.status.mapping === "paused"')
+        browser.press("#pause", ENTER)
+        browser.wait('window.deltamap.model.status.mapping === "on"')
+        self.assertEqual(browser.errors(), [])
+
+    def test_what_the_pose_rests_on_is_drawn_and_can_be_switched_off(self):
+        browser = self.open(1440, 900)
+        browser.wait("document.querySelectorAll('#layers input').length === 9")
+        colours = """const { view } = window.deltamap, at = view.canvas.getContext("2d").getImageData(0, 0, view.canvas.width, view.canvas.height).data;
+                     const ink = getComputedStyle(document.documentElement).getPropertyValue("--violet").trim(), [r, g, b] = [1, 3, 5].map((i) => parseInt(ink.slice(i, i + 2), 16));
+                     let count = 0;
+                     for (let i = 0; i < at.length; i += 4) if (Math.hypot(at[i] - r, at[i + 1] - g, at[i + 2] - b) < 12) ++count;
+                     return count;"""
+        # As the daemon sends them; when it does is up to the localizer.
+        browser.run("""const { model, view } = window.deltamap, { x_m, y_m } = model.pose;
+                       window.deltamap.connection.on.particles = () => {}; window.deltamap.connection.on.stored = () => {};
+                       model.particles = [];
+                       const ends = Array.from({ length: 80 }, (_, i) => (i % 2 ? y_m + 1 : x_m + i / 40));
+                       model.stored = [{ x: x_m, y: y_m, heading: 0, waits: false, ends }];
+                       view.show(x_m, y_m); view.scale = 60; view.draw();""")
+        self.assertGreater(browser.run(colours), 100)
+        browser.press("#layer-stored", SPACE)
+        browser.run("window.deltamap.view.draw()")
+        self.assertLess(browser.run(colours), 100)
+        browser.run("""const { model, view } = window.deltamap, { x_m, y_m } = model.pose;
+                       model.particles = Array.from({ length: 600 }, (_, i) => (i % 3 === 2 ? 0.3 : (i % 3 ? y_m : x_m) + ((7 * i) % 11 - 5) / 10));
+                       view.draw();""")
+        browser.screenshot(PICTURES / "particles.png")
+        self.assertEqual(browser.errors(), [])
+
+    def test_the_pilots_way_is_told_while_it_drives(self):
+        browser = self.open()
+        browser.wait("window.deltamap.model.pose?.pilot && window.deltamap.model.pose.pilot.speed_m_per_s !== undefined", 30)
+        self.daemon.ctl("drive", "off")
+        browser.wait("window.deltamap.model.pose && !window.deltamap.model.pose.pilot", 30)
+        self.daemon.ctl("drive", "wander")
+
+
+class ReportForAll(unittest.TestCase):
+    """A report of an experiment, opened as a file."""
+
+    @classmethod
+    def setUpClass(cls):
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        cls.folder = tempfile.TemporaryDirectory(prefix="deltamap-report-")
+        subprocess.run([BIN / "deltamap", "experiment", "hall", "--out", cls.folder.name, "--minutes", "0.5", "--repeats", "2", "--jobs", "1",
+                        "--scenarios", ROOT / "config/scenarios"], check=True, capture_output=True, cwd=ROOT)
+        cls.url = (pathlib.Path(cls.folder.name) / "index.html").as_uri()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def open(self, width=1280, height=800, mobile=False, dark=False):
+        browser = Browser(width, height, dark, mobile)
+        self.addCleanup(browser.__exit__)
+        browser.open(self.url)
+        return browser
+
+    def test_fits_every_size_light_and_dark(self):
+        for name, (width, height, mobile) in SIZES.items():
+            for dark in (False, True):
+                with self.subTest(size=name, dark=dark):
+                    browser = self.open(width, height, mobile, dark)
+                    self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark" if dark else "light")
+                    self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+                    self.assertEqual(browser.run(accessible.STICKS_OUT), [])
+                    self.assertEqual(accessible.findings(browser), [])
+                    least = browser.run("return Math.min(...[...document.querySelectorAll('svg text')].map((one) => one.getBoundingClientRect().height))")
+                    self.assertGreater(least, 9)
+                    browser.screenshot(PICTURES / f"report-{name}-{'dark' if dark else 'light'}.png", whole=True)
+                    self.assertEqual(browser.errors(), [])
+
+    def test_pointer_and_keyboard_tell_the_values_of_all_lines(self):
+        browser = self.open()
+        told = "return [...document.querySelectorAll('figure.chart')][0].querySelector('.keys output').textContent"
+        self.assertEqual(browser.run(told), "")
+        browser.run("document.querySelector('figure.chart svg').scrollIntoView({ block: 'center' })")
+        place = browser.run("""const box = document.querySelector("figure.chart svg").getBoundingClientRect();
+                               return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]""")
+        browser.move(place)
+        browser.wait("document.querySelector('figure.chart .keys output').textContent !== ''")
+        browser.move([2, 2])
+        browser.wait("document.querySelector('figure.chart .keys output').textContent === ''")
+        browser.press("figure.chart svg", RIGHT)
+        first = browser.run("return document.querySelector('figure.chart figcaption output').textContent")
+        browser.press("figure.chart svg", RIGHT)
+        self.assertNotEqual(browser.run("return document.querySelector('figure.chart figcaption output').textContent"), first)
+        # The value is the one that the line has there.
+        value = browser.run("""const figure = document.querySelector("figure.chart"), svg = figure.querySelector("svg");
+            const [low, high] = svg.dataset.y.split(" ").map(Number), [, top, , bottom] = svg.dataset.plot.split(" ").map(Number);
+            const at = Number(svg.querySelector(".instant").getAttribute("x1"));
+            const point = [...svg.querySelector("polyline").points].reduce((best, one) => (Math.abs(one.x - at) < Math.abs(best.x - at) ? one : best));
+            return [low + (bottom - point.y) / (bottom - top) * (high - low), Number(figure.querySelector(".keys output").textContent)]""")
+        self.assertAlmostEqual(value[0], value[1], delta=0.006 * max(abs(value[0]), 1e-6))
+        stops = accessible.walk(browser)
+        self.assertEqual(len(stops), browser.run(accessible.CAN_TAKE_FOCUS))
+        self.assertEqual([stop for stop in stops if not stop["is_seen"]], [])
+        browser.press("#theme", ENTER)
+        self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark")
+
+    def test_the_page_of_the_check_looks_alike(self):
+        sys.path.insert(0, str(ROOT / "tests/support"))
+        from report_page import report_page
+        rows = [("intel <on> ref_intel", "median error, m", 0.0237, "≤ 0.06", True), ("all demos", "changes found", "2 of 13", "≥ 80 %", False)]
+        file = pathlib.Path(self.folder.name) / "check.html"
+        file.write_text(report_page("Figures promised", ["deltamap 0.1.0"], ["on", "figure", "measured", "at least", "met"], rows))
+        for name, (width, height, mobile) in SIZES.items():
+            browser = Browser(width, height, name == "phone", mobile)
+            self.addCleanup(browser.__exit__)
+            browser.open(file.as_uri())
+            self.assertIn("intel <on> ref_intel", browser.run("return document.querySelector('td').textContent"))
+            self.assertEqual(browser.run("return [...document.querySelectorAll('.missed')].length"), 1)
+            self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+            self.assertEqual(accessible.findings(browser), [])
+            self.assertEqual(browser.errors(), [])
+
+    def test_tells_where_it_comes_from(self):
+        browser = self.open()
+        summary = json.loads((pathlib.Path(self.folder.name) / "summary.json").read_text())
+        text = browser.run("return document.body.textContent")
+        for what in (summary["version"], summary["commit"], "settings as delivered"):
+            self.assertIn(what, text)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws a map with what lies on it: what has changed, path, scan, robot; below it a scale bar and a legend.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/occupancy_grid.hpp"
+#include "core/pose2.hpp"
+#include "tool/picture/raster.hpp"
+
+namespace deltamap::tool::picture {
+
+struct Scene {
+  const OccupancyGrid& map;
+  /// Of the same geometry: cells that it has otherwise are coloured, and where they are few, ringed. Null: none.
+  const OccupancyGrid* before = nullptr;
+  std::optional<Pose2> robot{};  ///< map_from_robot
+  std::optional<std::vector<Point2>>
+      path{};                       ///< map frame, in order of time; may be empty: the legend has it all the same
+  std::vector<Point2> scan_ends{};  ///< map frame
+  std::string title{};              ///< above the map; empty: none
+  std::optional<CellBox> shown{};   ///< nothing: what is known of the maps
+  int cell_pixels = 0;              ///< side of a cell in the picture; 0: as fits a page
+};
+
+/// Throws std::runtime_error where the two maps differ in geometry, or the picture would have more than 64 million
+/// pixels.
+[[nodiscard]] Raster drawn(const Scene& scene);
+
+/// Left and right, tops at one height.
+[[nodiscard]] Raster side_by_side(const Raster& left, const Raster& right);
+
+}  // namespace deltamap::tool::picture
