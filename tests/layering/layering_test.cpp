@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = test::source_path("");
+const fs::path kRoot = deltamap::test::source_path("");
 
 // A wing may include itself and these. `simulation` may use of the drivers only the device codecs.
 const std::map<std::string, std::set<std::string>> kArrows = {

@@ -14,8 +14,6 @@
 namespace deltamap::mapping::evidence {
 namespace {
 
-using Blocks = std::vector<std::uint32_t>;
-
 constexpr int kCellsPerBlock = 2;
 const GridGeometry kMap{40, 40, 0.05, {0.0, 0.0}};
 const GridGeometry kBlocks{20, 20, 0.1, {0.0, 0.0}};
@@ -24,10 +22,14 @@ const GridGeometry kBlocks{20, 20, 0.1, {0.0, 0.0}};
 class Layer {
  public:
   explicit Layer(const TransientLayerParams& params = {}) : layer{params, {kMap, kCellsPerBlock}} {}
-  void added(const Blocks& yes, const Blocks& no = {}) { layer.observe({yes, no, {}, {}}, {}, now_ms += 500); }
-  void removed(const Blocks& yes, const Blocks& no = {}) { layer.observe({{}, {}, yes, no}, {}, now_ms += 500); }
-  [[nodiscard]] Blocks standing() const { return layer.newest() ? layer.newest()->standing : Blocks{}; }
-  [[nodiscard]] Blocks gone() const { return layer.newest() ? layer.newest()->gone : Blocks{}; }
+  void added(const votes::Blocks& yes, const votes::Blocks& no = {}) {
+    layer.observe({yes, no, {}, {}}, {}, now_ms += 500);
+  }
+  void removed(const votes::Blocks& yes, const votes::Blocks& no = {}) {
+    layer.observe({{}, {}, yes, no}, {}, now_ms += 500);
+  }
+  [[nodiscard]] votes::Blocks standing() const { return layer.newest() ? layer.newest()->standing : votes::Blocks{}; }
+  [[nodiscard]] votes::Blocks gone() const { return layer.newest() ? layer.newest()->gone : votes::Blocks{}; }
 
   TransientLayer layer;
   std::uint32_t now_ms = 1000;
@@ -38,42 +40,43 @@ TEST(TransientLayer, TakesInABlockAtItsSecondKeyframe) {
   layer.added({7, 30});
   EXPECT_TRUE(layer.standing().empty());
   layer.added({7});
-  EXPECT_EQ(layer.standing(), Blocks{7});
+  EXPECT_EQ(layer.standing(), votes::Blocks{7});
   layer.added({30});
-  EXPECT_EQ(layer.standing(), (Blocks{7, 30}));
+  EXPECT_EQ(layer.standing(), (votes::Blocks{7, 30}));
 }
 
 TEST(TransientLayer, LetsGoOfABlockThatIsSeenThroughInFourKeyframesHoweverLongItStood) {
   Layer layer;
   for (int i = 0; i < 500; ++i) layer.added({7});
   for (int i = 0; i < 3; ++i) layer.added({}, {9, 7});
-  EXPECT_EQ(layer.standing(), Blocks{7});
+  EXPECT_EQ(layer.standing(), votes::Blocks{7});
   layer.added({}, {9, 7});
   EXPECT_TRUE(layer.standing().empty());
 }
 
 TEST(TransientLayer, KeepsWhatIsSeenAgainInBetween) {
   Layer layer;
-  for (int i = 0; i < 20; ++i) layer.added(i % 3 == 2 ? Blocks{} : Blocks{7}, i % 3 == 2 ? Blocks{7} : Blocks{});
-  EXPECT_EQ(layer.standing(), Blocks{7});
+  for (int i = 0; i < 20; ++i)
+    layer.added(i % 3 == 2 ? votes::Blocks{} : votes::Blocks{7}, i % 3 == 2 ? votes::Blocks{7} : votes::Blocks{});
+  EXPECT_EQ(layer.standing(), votes::Blocks{7});
 }
 
 TEST(TransientLayer, ForgetsWhatNobodyLooksAt) {
   Layer layer{{.least_votes = 2, .most_votes = 4, .lapse_s = 10.0}};
   for (int i = 0; i < 4; ++i) layer.added({7});
   for (int i = 0; i < 20; ++i) layer.added({50});
-  EXPECT_EQ(layer.standing(), (Blocks{7, 50}));
+  EXPECT_EQ(layer.standing(), (votes::Blocks{7, 50}));
   layer.added({50});
-  EXPECT_EQ(layer.standing(), Blocks{50});
+  EXPECT_EQ(layer.standing(), votes::Blocks{50});
 }
 
 TEST(TransientLayer, KnowsWhatHasGoneUntilItIsSeenAgain) {
   Layer layer;
   for (int i = 0; i < 2; ++i) layer.removed({3, 4});
-  EXPECT_EQ(layer.gone(), (Blocks{3, 4}));
+  EXPECT_EQ(layer.gone(), (votes::Blocks{3, 4}));
   EXPECT_TRUE(layer.standing().empty());
   for (int i = 0; i < 2; ++i) layer.removed({}, {4});
-  EXPECT_EQ(layer.gone(), Blocks{3});
+  EXPECT_EQ(layer.gone(), votes::Blocks{3});
 }
 
 TEST(TransientLayer, NeverHoldsMoreThanItsCapAndKeepsTheNewest) {
@@ -105,14 +108,14 @@ TEST(TransientLayer, LeavesToTheMapWhatTheMapSays) {
   Layer layer;
   const auto at = [](int column, int row) { return static_cast<std::uint32_t>(kBlocks.index_of({column, row})); };
   for (int i = 0; i < 2; ++i)
-    layer.layer.observe({Blocks{at(5, 5), at(9, 9)}, {}, Blocks{at(2, 12), at(3, 15)}, {}}, {}, 1);
+    layer.layer.observe({votes::Blocks{at(5, 5), at(9, 9)}, {}, votes::Blocks{at(2, 12), at(3, 15)}, {}}, {}, 1);
   OccupancyGrid map{kMap, CellState::kFree};
   map.set({12, 10}, CellState::kOccupied);  // beside block (5, 5): drawn half a cell farther
   map.set({6, 31}, CellState::kOccupied);   // in block (3, 15): still there
   layer.layer.follow(map);
   layer.added({});
-  EXPECT_EQ(layer.standing(), Blocks{at(9, 9)});
-  EXPECT_EQ(layer.gone(), Blocks{at(3, 15)});
+  EXPECT_EQ(layer.standing(), votes::Blocks{at(9, 9)});
+  EXPECT_EQ(layer.gone(), votes::Blocks{at(3, 15)});
 }
 
 TEST(TransientLayer, TellsNobodyWhileThePoseIsInDoubtAndKnowsNothingOnceItWasWrong) {
@@ -121,7 +124,7 @@ TEST(TransientLayer, TellsNobodyWhileThePoseIsInDoubtAndKnowsNothingOnceItWasWro
   layer.layer.hide({});
   EXPECT_TRUE(layer.standing().empty());
   layer.added({});
-  EXPECT_EQ(layer.standing(), Blocks{7});
+  EXPECT_EQ(layer.standing(), votes::Blocks{7});
   layer.layer.clear();
   layer.added({});
   EXPECT_TRUE(layer.standing().empty());
