@@ -113,7 +113,7 @@ void LiveRecording::write(const ByteRecord& record, Timestamp now) {
   remember(record);
   if (!output_.works()) return output_.count_lost();
   if (static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
-  log_(std::string("the recording ends: ") + kFull);
+  log_(std::string("the recording ends: ").append(kFull));
   ended_ = true;
   output_.end(now, kFull);
   writer_.reset();

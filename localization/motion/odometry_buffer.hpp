@@ -32,7 +32,7 @@ struct OdometryAt {
   std::uint32_t epoch = 0;
   Pose2 continuous_odom_from_robot;  ///< in one frame over all epochs, without what is known of the wheels' systematic
                                      ///< errors; the jump between two epochs counts as standing still
-  double uncovered_s = 0.0;  ///< seconds between the instant and the nearest report that could speak for it
+  double uncovered_s = 0.0;          ///< seconds between the instant and the nearest report that could speak for it
 };
 
 class OdometryBuffer {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does a surface stand where the map has it, or was it moved? A binary switch beside the Gaussian. Its effect on the
 // surface's offset is passed on by expectation propagation (Minka 2001) and can be revised for as long as the surface
-// is followed. Pieces of one straight face that are off alike share one switch's evidence.
+// is followed. Pieces of one straight face that are off alike count as one observation.
 #pragma once
 
 #include <Eigen/Core>

@@ -42,8 +42,8 @@ double cpu_seconds() {
 
 void write_pose(std::ostream& out, const Estimate& estimate) {
   const Pose2& pose = estimate.map_from_robot;
-  out << unix_seconds(estimate.time) << ' ' << pose.x << ' ' << pose.y << " 0 0 0 "
-      << std::sin(0.5 * pose.theta) << ' ' << std::cos(0.5 * pose.theta) << '\n';
+  out << unix_seconds(estimate.time) << ' ' << pose.x << ' ' << pose.y << " 0 0 0 " << std::sin(0.5 * pose.theta) << ' '
+      << std::cos(0.5 * pose.theta) << '\n';
 }
 
 void run(const Options& options, const localization::LocalizerParams& params) {
@@ -71,10 +71,9 @@ void run(const Options& options, const localization::LocalizerParams& params) {
     cpu_s.push_back(cpu_seconds() - start_s);
     const Estimate& estimate = tracked.estimate;
     write_pose(out, estimate);
-    figures << unix_seconds(estimate.time) << ' ' << static_cast<int>(estimate.state) << ' '
-            << estimate.n_eff << ' ' << estimate.particles << ' ' << estimate.w_avg << ' '
-            << std::sqrt(estimate.covariance(0, 0)) << ' ' << std::sqrt(estimate.covariance(1, 1)) << ' '
-            << std::sqrt(estimate.covariance(2, 2)) << ' '
+    figures << unix_seconds(estimate.time) << ' ' << static_cast<int>(estimate.state) << ' ' << estimate.n_eff << ' '
+            << estimate.particles << ' ' << estimate.w_avg << ' ' << std::sqrt(estimate.covariance(0, 0)) << ' '
+            << std::sqrt(estimate.covariance(1, 1)) << ' ' << std::sqrt(estimate.covariance(2, 2)) << ' '
             << localization::sensor::explained_share(
                    field, localization::motion::scoring_ends(tracked.scan, tracked.rays, 0), estimate.map_from_robot)
             << ' ' << estimate.covariance(0, 1) << '\n';

@@ -73,12 +73,12 @@ class RealLogs : public testing::TestWithParam<RealLog> {};
 
 TEST_P(RealLogs, AreFollowedWithinTheFiguresThatWePromise) {
   const RealLog& real = GetParam();
-  const std::filesystem::path log = data_folder() / "logs" / (real.log + ".log.xz");
+  const std::filesystem::path log = test::data_folder() / "logs" / (real.log + ".log.xz");
   const auto map = test::recorded_map(real.map);
-  if (!map || !std::filesystem::exists(log)) GTEST_SKIP() << "no recorded data in " << data_folder();
+  if (!map || !std::filesystem::exists(log)) GTEST_SKIP() << "no recorded data in " << test::data_folder();
   const test::TemporaryFolder folder;
   const auto reference =
-      reference_poses(unpacked(data_folder() / "reference" / (real.log + ".gt.txt.xz"), folder.path()));
+      reference_poses(unpacked(test::data_folder() / "reference" / (real.log + ".gt.txt.xz"), folder.path()));
   ASSERT_FALSE(reference.empty());
 
   const Pose2 laser_from_robot{-real.laser_ahead_m, 0.0, 0.0};

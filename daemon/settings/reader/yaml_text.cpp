@@ -140,11 +140,11 @@ class Lines {
     if (begins_value && (c == '"' || c == '\'')) {
       const auto end = end_of_quoted(line, at);
       if (end) return *end - 1;
-      add(at, std::string("the quote ") + c + " that is opened here is not closed on its line");
+      add(at, std::string("the quote ").append(1, c).append(" that is opened here is not closed on its line"));
       return line.size();
     }
     if (begins_value && (c == '|' || c == '>') && behind_colon) {
-      add(at, std::string("'") + c + "' begins a text of several lines: no key takes one");
+      add(at, std::string("'").append(1, c).append("' begins a text of several lines: no key takes one"));
       shape.is_text_of_lines = true;
       return line.size();
     }

@@ -14,8 +14,6 @@
 namespace deltamap::mapping::evidence {
 namespace {
 
-using votes::Blocks = std::vector<std::uint32_t>;
-
 constexpr int kCellsPerBlock = 2;
 const GridGeometry kMap{40, 40, 0.05, {0.0, 0.0}};
 const GridGeometry kBlocks{20, 20, 0.1, {0.0, 0.0}};
