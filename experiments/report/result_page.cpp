@@ -35,6 +35,8 @@ std::string text_of_target(const Target& target) {
   return text;
 }
 
+bool has_certainty(const Figure& figure) { return figure.certainty.has_value(); }
+
 std::string certainty_cells(const Figure& figure) {
   if (!figure.certainty) return cell("") + cell("");
   const Certainty& certainty = *figure.certainty;
@@ -44,6 +46,7 @@ std::string certainty_cells(const Figure& figure) {
 }
 
 std::string figures_html(const Report& report) {
+  const bool has_runs = std::any_of(report.figures.begin(), report.figures.end(), has_certainty);
   std::string rows;
   for (const Figure& figure : report.figures) {
     const std::string unit = std::isnan(figure.value) || figure.unit.empty() ? "" : " " + figure.unit;
