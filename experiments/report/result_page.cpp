@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "daemon/dashboard/page_files.hpp"
 #include "daemon/telemetry/version.hpp"
@@ -50,8 +51,8 @@ std::string figures_html(const Report& report) {
   std::string rows;
   for (const Figure& figure : report.figures) {
     const std::string unit = std::isnan(figure.value) || figure.unit.empty() ? "" : " " + figure.unit;
-    rows +=
-        "<tr>" + cell(figure.name) + cell(short_text(figure.value) + unit, "td", "number") + certainty_cells(figure);
+    rows += "<tr>" + cell(figure.name) + cell(short_text(figure.value) + unit, "td", "number");
+    if (has_runs) rows += certainty_cells(figure);
     if (figure.target) {
       const bool met = figure.target->is_met_by(figure.value);
       rows += cell(text_of_target(*figure.target), "td", "number") +
@@ -61,7 +62,9 @@ std::string figures_html(const Report& report) {
     }
     rows += cell(shortened(figure.peers), "td", figure.peers.empty() ? nullptr : "others") + "</tr>\n";
   }
-  return table_of("Figures", {"figure", "measured", "95 % interval", "runs", "target", "met", "others"}, rows);
+  std::vector<std::string> columns{"figure", "measured", "95 % interval", "runs", "target", "met", "others"};
+  if (!has_runs) columns.erase(columns.begin() + 2, columns.begin() + 4);
+  return table_of("Figures", columns, rows);
 }
 
 std::string table_html(const TextTable& table) {
