@@ -143,7 +143,7 @@ Axis axis_for(double low, double high) {
   const double rough = (high - low) / kParts;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   const double share = rough / power;
-  const double step = power * (share <= 1.0 ? 1.0 : share <= 2.0 ? 2.0 : share <= 5.0 ? 5.0 : 10.0);
+  const double step = power * (share < 1.5 ? 1.0 : share < 3.0 ? 2.0 : share < 7.0 ? 5.0 : 10.0);
   return {std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step, step};
 }
 

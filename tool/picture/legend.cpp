@@ -2,44 +2,36 @@
 #include "tool/picture/legend.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace deltamap::tool::picture {
 namespace {
 
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double kFontScale = 0.45;
 constexpr int kRow_px = 24;
 constexpr int kMargin_px = 10;
 constexpr int kSign_px = 22;  // room for a sign, with the gap behind it
 constexpr int kGap_px = 18;   // between keys
 
-int text_width(const std::string& text) {
-  int base = 0;
-  return cv::getTextSize(text, kFont, kFontScale, 1, &base).width;
-}
-
-void draw_sign(cv::Mat& canvas, const Key& key, cv::Point left_and_middle) {
-  const cv::Point middle = left_and_middle + cv::Point{7, 0};
+void draw_sign(Canvas& canvas, const Key& key, int left, int middle) {
+  const Pixel at{left + 7.0, double(middle)};
   switch (key.sign) {
     case Sign::kCell:
-      cv::rectangle(canvas, middle - cv::Point{6, 6}, middle + cv::Point{6, 6}, colour(key.ink), cv::FILLED);
-      cv::rectangle(canvas, middle - cv::Point{6, 6}, middle + cv::Point{6, 6}, colour(kText), 1);
+      canvas.fill(left, middle - 6, 13, 13, kText);
+      canvas.fill(left + 1, middle - 5, 11, 11, key.ink);
       break;
     case Sign::kLine:
-      cv::line(canvas, middle - cv::Point{7, -4}, middle + cv::Point{7, -4}, colour(key.ink), 2, cv::LINE_AA);
+      canvas.draw_line({{at.x - 7.0, at.y + 4.0}, {at.x + 7.0, at.y - 4.0}}, key.ink);
       break;
     case Sign::kDot:
-      for (const int x : {-5, 0, 5}) cv::circle(canvas, middle + cv::Point{x, x / 3}, 2, colour(key.ink), cv::FILLED);
+      for (const double x : {-5.0, 0.0, 5.0}) canvas.draw_disc({at.x + x, at.y + x / 3.0}, 2, key.ink);
       break;
     case Sign::kArrow:
-      draw_robot(canvas, middle, 0.0, 7.0);
+      canvas.draw_robot(at, 0.0, 7.0);
       break;
     case Sign::kCircle:
-      draw_ring(canvas, middle, 7);
+      canvas.draw_ring(at, 7);
       break;
   }
 }
@@ -52,38 +44,17 @@ std::string length_text(double length_m) {
 }
 
 /// Answers how far right it reaches.
-int draw_scale(cv::Mat& canvas, double pixels_per_m) {
-  const double length_m = scale_length_m(pixels_per_m, std::min(120.0, canvas.cols / 3.0));
-  const int right = kMargin_px + static_cast<int>(std::lround(length_m * pixels_per_m));
+int draw_scale(Canvas& canvas, double pixels_per_m) {
+  const double length_m = scale_length_m(pixels_per_m, std::min(120.0, canvas.width() / 3.0));
+  const int length = static_cast<int>(std::lround(length_m * pixels_per_m));
   const int base = kRow_px / 2 + 5;
-  const cv::Scalar ink = colour(kText);
-  cv::line(canvas, {kMargin_px, base}, {right, base}, ink, 2);
-  for (const int x : {kMargin_px, right}) cv::line(canvas, {x, base - 5}, {x, base}, ink, 2);
-  draw_text(canvas, length_text(length_m), {right + 6, base});
-  return right + 6 + text_width(length_text(length_m));
+  canvas.fill(kMargin_px, base - 1, length, 2, kText);
+  for (const int x : {kMargin_px, kMargin_px + length - 2}) canvas.fill(x, base - 6, 2, 7, kText);
+  canvas.draw_text(length_text(length_m), kMargin_px + length + 6, base);
+  return kMargin_px + length + 6 + Canvas::text_width(length_text(length_m));
 }
 
 }  // namespace
-
-void draw_text(cv::Mat& canvas, const std::string& text, cv::Point left_and_base) {
-  cv::putText(canvas, text, left_and_base, kFont, kFontScale, colour(kText), 1, cv::LINE_AA);
-}
-
-void draw_robot(cv::Mat& canvas, cv::Point2d middle, double heading_rad, double radius) {
-  cv::circle(canvas, middle, static_cast<int>(std::lround(radius)), colour(kRobot), cv::FILLED, cv::LINE_AA);
-  std::array<cv::Point, 3> tip;
-  const std::array<std::pair<double, double>, 3> corners{{{0.8, 0.0}, {0.75, 2.25}, {0.75, -2.25}}};  // radius, bearing
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto [share, bearing] = corners[i];
-    tip[i] = middle + radius * share * cv::Point2d{std::cos(heading_rad + bearing), -std::sin(heading_rad + bearing)};
-  }
-  cv::fillConvexPoly(canvas, tip, colour(kPaper), cv::LINE_AA);
-}
-
-void draw_ring(cv::Mat& canvas, cv::Point middle, int radius) {
-  cv::circle(canvas, middle, radius, colour(kPaper), 4, cv::LINE_AA);
-  cv::circle(canvas, middle, radius, colour(kRing), 2, cv::LINE_AA);
-}
 
 double scale_length_m(double pixels_per_m, double most_px) {
   const double most_m = most_px / pixels_per_m;
@@ -94,22 +65,22 @@ double scale_length_m(double pixels_per_m, double most_px) {
   return power;
 }
 
-cv::Mat drawn_legend(const std::vector<Key>& keys, double pixels_per_m, int width) {
-  const auto room = [](const Key& key) { return kSign_px + text_width(key.text) + kGap_px; };
-  cv::Mat canvas(kRow_px * (2 + static_cast<int>(keys.size())), width, CV_8UC3, colour(kPaper));
+Legend drawn_legend(const std::vector<Key>& keys, double pixels_per_m, int width) {
+  Canvas canvas{width, kRow_px * (2 + static_cast<int>(keys.size())), kPaper};
   int x = draw_scale(canvas, pixels_per_m) + 2 * kGap_px;
   int row = 0;
   for (const Key& key : keys) {
-    if (x + room(key) - kGap_px > width - kMargin_px && x > kMargin_px) {
+    const int room = kSign_px + Canvas::text_width(key.text);
+    if (x + room > width - kMargin_px && x > kMargin_px) {
       x = kMargin_px;
       ++row;
     }
     const int middle = row * kRow_px + kRow_px / 2;
-    draw_sign(canvas, key, {x, middle});
-    draw_text(canvas, key.text, {x + kSign_px, middle + 5});
-    x += room(key);
+    draw_sign(canvas, key, x, middle);
+    canvas.draw_text(key.text, x + kSign_px, middle + 5);
+    x += room + kGap_px;
   }
-  return canvas.rowRange(0, (row + 1) * kRow_px + 6).clone();
+  return {std::move(canvas), (row + 1) * kRow_px + 6};
 }
 
 }  // namespace deltamap::tool::picture

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "core/grid_patch.hpp"
+#include "tool/picture/canvas.hpp"
 #include "tool/picture/changed_places.hpp"
 #include "tool/picture/ink.hpp"
 #include "tool/picture/legend.hpp"
@@ -51,12 +51,16 @@ class View {
   }
   [[nodiscard]] int cell_px() const { return cell_px_; }
   [[nodiscard]] double px_per_m() const { return cell_px_ / geometry_.resolution_m; }
-  [[nodiscard]] cv::Size size() const { return {box_.width() * cell_px_, box_.height() * cell_px_}; }
-  [[nodiscard]] cv::Rect cell(Cell cell) const {
-    return {(cell.column - box_.first.column) * cell_px_, (box_.last.row - 1 - cell.row) * cell_px_, cell_px_,
-            cell_px_};
+  [[nodiscard]] int width() const { return box_.width() * cell_px_; }
+  [[nodiscard]] int height() const { return box_.height() * cell_px_; }
+  /// The upper left corner of a cell.
+  [[nodiscard]] int left_of(Cell cell) const { return (cell.column - box_.first.column) * cell_px_; }
+  [[nodiscard]] int top_of(Cell cell) const { return (box_.last.row - 1 - cell.row) * cell_px_; }
+  [[nodiscard]] Pixel middle_of(const CellBox& cells) const {
+    return {0.5 * (left_of(cells.first) + left_of(cells.last)),
+            0.5 * (top_of(cells.first) + top_of(cells.last)) + cell_px_};
   }
-  [[nodiscard]] cv::Point2d point(const Point2& in_map) const {
+  [[nodiscard]] Pixel pixel(const Point2& in_map) const {
     const Point2 cells = (in_map - geometry_.origin) / geometry_.resolution_m;
     return {(cells.x() - box_.first.column) * cell_px_, (box_.last.row - cells.y()) * cell_px_};
   }
@@ -67,36 +71,35 @@ class View {
   int cell_px_;
 };
 
-void draw_cells(cv::Mat& canvas, const Scene& scene, const View& view, const CellBox& box) {
+void draw_cells(Canvas& canvas, const Scene& scene, const View& view, const CellBox& box) {
   for (int row = box.first.row; row < box.last.row; ++row) {
     for (int column = box.first.column; column < box.last.column; ++column) {
       const Cell cell{column, row};
       if (!scene.map.geometry().contains(cell)) continue;
       const CellState after = scene.map[cell];
-      canvas(view.cell(cell)) = colour(ink_of(scene.before != nullptr ? (*scene.before)[cell] : after, after));
+      const Ink& ink = ink_of(scene.before != nullptr ? (*scene.before)[cell] : after, after);
+      canvas.fill(view.left_of(cell), view.top_of(cell), view.cell_px(), view.cell_px(), ink);
     }
   }
 }
 
-void draw_rings(cv::Mat& canvas, const std::vector<CellBox>& places, const View& view, const CellBox& box) {
+void draw_rings(Canvas& canvas, const std::vector<CellBox>& places, const View& view, const CellBox& box) {
   for (const CellBox& place : places) {
     const int longer = std::max(place.width(), place.height()) * view.cell_px();
     if (longer >= kSmall_px || !box.contains(place.first)) continue;
-    const cv::Rect low = view.cell(place.first);
-    const cv::Rect high = view.cell({place.last.column - 1, place.last.row - 1});
-    draw_ring(canvas, (low.tl() + low.br() + high.tl() + high.br()) / 4, std::max(11, longer / 2 + 7));
+    canvas.draw_ring(view.middle_of(place), std::max(11, longer / 2 + 7));
   }
 }
 
-void draw_path(cv::Mat& canvas, const std::vector<Point2>& path, const View& view) {
-  std::vector<cv::Point> points;
-  for (const Point2& point : path) points.push_back(view.point(point));
-  cv::polylines(canvas, points, false, colour(kPath), 2, cv::LINE_AA);
+void draw_path(Canvas& canvas, const std::vector<Point2>& path, const View& view) {
+  std::vector<Pixel> pixels;
+  for (const Point2& point : path) pixels.push_back(view.pixel(point));
+  canvas.draw_line(pixels, kPath);
 }
 
-void draw_scan(cv::Mat& canvas, const std::vector<Point2>& ends, const View& view) {
+void draw_scan(Canvas& canvas, const std::vector<Point2>& ends, const View& view) {
   const int radius = std::clamp(view.cell_px(), 1, 3);
-  for (const Point2& end : ends) cv::circle(canvas, view.point(end), radius, colour(kScan), cv::FILLED, cv::LINE_AA);
+  for (const Point2& end : ends) canvas.draw_disc(view.pixel(end), radius, kScan);
 }
 
 std::vector<Key> keys_of(const Scene& scene, bool has_rings) {
@@ -114,8 +117,8 @@ std::vector<Key> keys_of(const Scene& scene, bool has_rings) {
   return keys;
 }
 
-cv::Mat drawn_map(const Scene& scene, const View& view, const CellBox& box) {
-  cv::Mat canvas(view.size(), CV_8UC3, colour(kUnknown));
+Canvas drawn_map(const Scene& scene, const View& view, const CellBox& box) {
+  Canvas canvas{view.width(), view.height(), kUnknown};
   draw_cells(canvas, scene, view, box);
   if (scene.path) draw_path(canvas, *scene.path, view);
   draw_scan(canvas, scene.scan_ends, view);
@@ -124,22 +127,10 @@ cv::Mat drawn_map(const Scene& scene, const View& view, const CellBox& box) {
     draw_rings(canvas, changed_places(changes_between(*scene.before, scene.map), reach), view, box);
   }
   if (scene.robot) {
-    draw_robot(canvas, view.point(scene.robot->position()), scene.robot->theta,
-               std::max(7.0, kRobot_m * view.px_per_m()));
+    const double radius = std::max(7.0, kRobot_m * view.px_per_m());
+    canvas.draw_robot(view.pixel(scene.robot->position()), scene.robot->theta, radius);
   }
   return canvas;
-}
-
-Raster raster_of(const cv::Mat& canvas) {
-  Raster raster{static_cast<std::size_t>(canvas.cols), static_cast<std::size_t>(canvas.rows), {}};
-  raster.rgb.reserve(3 * raster.width * raster.height);
-  for (int row = 0; row < canvas.rows; ++row) {
-    const auto* pixel = canvas.ptr<cv::Vec3b>(row);
-    for (int column = 0; column < canvas.cols; ++column) {
-      for (const int channel : {2, 1, 0}) raster.rgb.push_back(pixel[column][channel]);
-    }
-  }
-  return raster;
 }
 
 }  // namespace
@@ -150,15 +141,14 @@ Raster drawn(const Scene& scene) {
   }
   const CellBox box = shown_box(scene);
   const View view{scene, box};
-  const cv::Mat map = drawn_map(scene, view, box);
-  const int width = std::max(map.cols, kLeastWidth_px);
-  const cv::Mat legend = drawn_legend(keys_of(scene, scene.before != nullptr), view.px_per_m(), width);
+  const int width = std::max(view.width(), kLeastWidth_px);
+  const Legend legend = drawn_legend(keys_of(scene, scene.before != nullptr), view.px_per_m(), width);
   const int title = scene.title.empty() ? 0 : kTitle_px;
-  cv::Mat page(title + map.rows + legend.rows, width, CV_8UC3, colour(kPaper));
-  if (title > 0) draw_text(page, scene.title, {10, 17});
-  map.copyTo(page(cv::Rect{(width - map.cols) / 2, title, map.cols, map.rows}));
-  legend.copyTo(page(cv::Rect{0, title + map.rows, legend.cols, legend.rows}));
-  return raster_of(page);
+  Canvas page{width, title + view.height() + legend.rows, kPaper};
+  if (title > 0) page.draw_text(scene.title, 10, 17);
+  page.paste(drawn_map(scene, view, box), (width - view.width()) / 2, title, view.height());
+  page.paste(legend.canvas, 0, title + view.height(), legend.rows);
+  return page.raster();
 }
 
 Raster side_by_side(const Raster& left, const Raster& right) {
