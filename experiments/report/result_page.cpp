@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "daemon/dashboard/page_files.hpp"
 #include "daemon/telemetry/version.hpp"
@@ -35,6 +36,8 @@ std::string text_of_target(const Target& target) {
   return text;
 }
 
+bool has_certainty(const Figure& figure) { return figure.certainty.has_value(); }
+
 std::string certainty_cells(const Figure& figure) {
   if (!figure.certainty) return cell("") + cell("");
   const Certainty& certainty = *figure.certainty;
@@ -44,11 +47,12 @@ std::string certainty_cells(const Figure& figure) {
 }
 
 std::string figures_html(const Report& report) {
+  const bool has_runs = std::any_of(report.figures.begin(), report.figures.end(), has_certainty);
   std::string rows;
   for (const Figure& figure : report.figures) {
     const std::string unit = std::isnan(figure.value) || figure.unit.empty() ? "" : " " + figure.unit;
-    rows +=
-        "<tr>" + cell(figure.name) + cell(short_text(figure.value) + unit, "td", "number") + certainty_cells(figure);
+    rows += "<tr>" + cell(figure.name) + cell(short_text(figure.value) + unit, "td", "number");
+    if (has_runs) rows += certainty_cells(figure);
     if (figure.target) {
       const bool met = figure.target->is_met_by(figure.value);
       rows += cell(text_of_target(*figure.target), "td", "number") +
@@ -58,7 +62,9 @@ std::string figures_html(const Report& report) {
     }
     rows += cell(shortened(figure.peers), "td", figure.peers.empty() ? nullptr : "others") + "</tr>\n";
   }
-  return table_of("Figures", {"figure", "measured", "95 % interval", "runs", "target", "met", "others"}, rows);
+  std::vector<std::string> columns{"figure", "measured", "95 % interval", "runs", "target", "met", "others"};
+  if (!has_runs) columns.erase(columns.begin() + 2, columns.begin() + 4);
+  return table_of("Figures", columns, rows);
 }
 
 std::string table_html(const TextTable& table) {

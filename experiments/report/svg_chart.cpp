@@ -39,6 +39,12 @@ struct Extent {
     high = std::max(high, value);
   }
   [[nodiscard]] Axis axis() const { return low <= high ? axis_for(low, high) : Axis{}; }
+  /// Ends where the data end: time goes no further.
+  [[nodiscard]] Axis ending_axis() const {
+    Axis answer = axis();
+    if (low < high) answer.high = high;
+    return answer;
+  }
 };
 
 std::string number(double value) { return text_of(std::round(100.0 * value) / 100.0); }
@@ -117,7 +123,7 @@ Frame frame_of(const Chart& chart) {
       y.take(py);
     }
   }
-  return {x.axis(), y.axis()};
+  return {x.ending_axis(), y.axis()};
 }
 
 bool is_part_of_number(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.'; }

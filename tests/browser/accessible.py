@@ -94,7 +94,7 @@ return [...document.querySelectorAll("button, input, select, summary, a[href], [
 
 def walk(browser, most=200):
     """Tab by tab through the page: the stops, until the focus leaves or comes round."""
-    browser.run("document.activeElement.blur(); window.scrollTo(0, 0)")
+    browser.run("document.body.tabIndex = -1; document.body.focus(); document.body.removeAttribute('tabindex'); window.scrollTo(0, 0)")  # from the top
     stops = []
     for _ in range(most):
         browser.keys(("down", "\ue004"), ("up", "\ue004"))
