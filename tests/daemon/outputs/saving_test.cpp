@@ -66,7 +66,7 @@ TEST_F(Saving, LinesThatFindNoRoomToWaitAreCounted) {
   {
     const test::FullDisk full;
     for (int i = 0; i < 3000; ++i) {
-      lines.write(std::string(999, 'x') + "\n", at_s(i));
+      lines.write(std::string(999, 'x').append("\n"), at_s(i));
       lines.flush(at_s(i));
     }
   }

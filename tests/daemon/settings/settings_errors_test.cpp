@@ -78,8 +78,9 @@ TEST(SettingsErrors, AFileOfMistakesIsNotToldToItsEnd) {
 }
 
 TEST(SettingsErrors, WhateverANameOrAValueHoldsAMistakeIsOneShortLine) {
-  for (const std::string& yaml : {std::string("\"a\\nb\": 1\n"), std::string("seed: \"a\\nb\\e[31m\"\n"),
-                                  std::string(500000, 'k') + ": 1\n", "seed: " + std::string(500000, 'v') + "\n"}) {
+  for (const std::string& yaml :
+       {std::string("\"a\\nb\": 1\n"), std::string("seed: \"a\\nb\\e[31m\"\n"),
+        std::string(500000, 'k').append(": 1\n"), std::string("seed: ").append(500000, 'v').append("\n")}) {
     const Lines lines = errors_of(yaml);
     ASSERT_EQ(lines.size(), 1u) << yaml.substr(0, 40);
     EXPECT_LT(lines[0].size(), 250u);

@@ -216,8 +216,12 @@ TEST(AnimatedPng, HasEveryFrameAndShowsItsFirstToOldPrograms) {
   std::uint32_t sequence = 0;
   for (const auto& [name, data] : chunks_of(png)) {
     names.push_back(name);
-    if (name == "acTL") EXPECT_EQ(u32_at(data, 0), 4u);
-    if (name == "fcTL" || name == "fdAT") EXPECT_EQ(u32_at(data, 0), sequence++);
+    if (name == "acTL") {
+      EXPECT_EQ(u32_at(data, 0), 4u);
+    }
+    if (name == "fcTL" || name == "fdAT") {
+      EXPECT_EQ(u32_at(data, 0), sequence++);
+    }
     if (name == "fcTL" && sequence == 2) {
       EXPECT_EQ(u32_at(data, 4), 1u) << "what differs is a pixel";
       EXPECT_EQ(u32_at(data, 12), 7u);
