@@ -186,12 +186,6 @@ void OffsetState::update(std::span<const RowMeasurement> measurements) {
   mirror_lower_half();
 }
 
-void OffsetState::mirror_lower_half() {
-  const Eigen::Index size = covariance_.rows();
-  double* const entries = covariance_.data();
-  for (Eigen::Index column = 0; column < size; ++column) {
-    for (Eigen::Index row = column + 1; row < size; ++row) entries[column + row * size] = entries[row + column * size];
-  }
-}
+void OffsetState::mirror_lower_half() { covariance_.triangularView<Eigen::StrictlyUpper>() = covariance_.transpose(); }
 
 }  // namespace deltamap::localization::surfaces
