@@ -13,7 +13,7 @@ constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late
 void GatedSets::observe(const TrackedScan& tracked) {
   now_ = tracked.scan.time;
   withdrawal_.reset();
-  rival_share_ = tracked.estimate.belief.other_share;
+  other_share_ = tracked.estimate.belief.other_share;
   gate_.observe(tracked);
   if (params_.enabled && gate_.has_proven_wrong()) withdraw(tracked);
 }
@@ -50,7 +50,7 @@ void GatedSets::take(std::optional<ScanSet> set, const TrackedScan& tracked) {
 
 bool GatedSets::is_due(const ScanSet& set) const {
   if (!params_.enabled) return true;
-  return gate_.is_open() && rival_share_ <= params_.hold_rival_share && seconds(now_ - set.ended) >= params_.hold_s;
+  return gate_.is_open() && other_share_ <= params_.hold_rival_share && seconds(now_ - set.ended) >= params_.hold_s;
 }
 
 std::optional<ScanSet> GatedSets::next() {

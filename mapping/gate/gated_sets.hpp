@@ -44,7 +44,7 @@ class GatedSets {
   std::optional<WithdrawOrder> withdrawal_;  // of the newest scan
   std::optional<Timestamp> last_handed_on_;  // end of the newest set that may have been written
   Timestamp now_;
-  double rival_share_ = 0.0;
+  double other_share_ = 0.0;
 };
 
 }  // namespace deltamap::mapping::gate
