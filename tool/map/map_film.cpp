@@ -79,11 +79,10 @@ void film(const Options& options) {
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);
   const Timestamp began = poses.front().time;
   const double whole_s = seconds(poses.back().time - began);
-  const OccupancyGrid first = store.grid(revision_at(steps, began));
-  const OccupancyGrid final_map = store.grid(revision_at(steps, poses.back().time));
-  const CellBox shown = grown(united(known_box(first), known_box(final_map)), 4, first.geometry());
-  OccupancyGrid map = first;
   std::uint32_t number = revision_at(steps, began);
+  const OccupancyGrid first = store.grid(number);
+  const CellBox shown = picture::known_part(store.grid(revision_at(steps, poses.back().time)), &first);
+  OccupancyGrid map = first;
   std::vector<picture::Frame> frames;
   for (int i = 0; i < options.frames; ++i) {
     const double passed_s = whole_s * i / std::max(1, options.frames - 1);

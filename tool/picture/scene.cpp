@@ -23,13 +23,6 @@ constexpr double kTogether_m = 0.3;  // changed cells so close are one place
 constexpr int kSmall_px = 26;        // a place with shorter sides is ringed
 constexpr double kRobot_m = 0.25;    // radius
 
-CellBox shown_box(const Scene& scene) {
-  if (scene.shown) return *scene.shown;
-  CellBox known = known_box(scene.map);
-  if (scene.before != nullptr) known = united(known, known_box(*scene.before));
-  return known.empty() ? scene.map.box() : grown(known, kMargin_cells, scene.map.geometry());
-}
-
 const Ink& ink_of(CellState before, CellState after) {
   const bool is_same = before == after;
   if (after == CellState::kOccupied) return is_same ? kOccupied : kNewlyOccupied;
@@ -135,11 +128,17 @@ Canvas drawn_map(const Scene& scene, const View& view, const CellBox& box) {
 
 }  // namespace
 
+CellBox known_part(const OccupancyGrid& map, const OccupancyGrid* before) {
+  CellBox known = known_box(map);
+  if (before != nullptr) known = united(known, known_box(*before));
+  return known.empty() ? map.box() : grown(known, kMargin_cells, map.geometry());
+}
+
 Raster drawn(const Scene& scene) {
   if (scene.before != nullptr && !(scene.before->geometry() == scene.map.geometry())) {
     throw std::runtime_error("the two maps differ in size, origin or resolution");
   }
-  const CellBox box = shown_box(scene);
+  const CellBox box = scene.shown ? *scene.shown : known_part(scene.map, scene.before);
   const View view{scene, box};
   const int width = std::max(view.width(), kLeastWidth_px);
   const Legend legend = drawn_legend(keys_of(scene, scene.before != nullptr), view.px_per_m(), width);

@@ -21,9 +21,12 @@ struct Scene {
       path{};                       ///< map frame, in order of time; may be empty: the legend has it all the same
   std::vector<Point2> scan_ends{};  ///< map frame
   std::string title{};              ///< above the map; empty: none
-  std::optional<CellBox> shown{};   ///< nothing: what is known of the maps
+  std::optional<CellBox> shown{};   ///< nothing: known_part() of the maps
   int cell_pixels = 0;              ///< side of a cell in the picture; 0: as fits a page
 };
+
+/// What is known of either map, and a margin around it; the whole map where nothing is. `before` may be null.
+[[nodiscard]] CellBox known_part(const OccupancyGrid& map, const OccupancyGrid* before);
 
 /// Throws std::runtime_error where the two maps differ in geometry, or the picture would have more than 64 million
 /// pixels.
