@@ -10,30 +10,16 @@ import tempfile
 import unittest
 
 import accessible
-from page_test import PICTURES, SHOWS_MAP, SIZES
-from running_daemon import BIN, ROOT, RunningDaemon
+from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
+from running_daemon import BIN, ROOT
 from webdriver import Browser
 
 SPACE, ENTER, ESCAPE, RIGHT = " ", "\ue007", "\ue00c", "\ue014"
 
 
-class PageForAll(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        PICTURES.mkdir(parents=True, exist_ok=True)
-        cls.daemon = RunningDaemon(change_every_s=10, token="of-the-browser-tests", settings={"dashboard.control": "true"})
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.__exit__()
-
-    def open(self, width=1280, height=800, mobile=False, dark=False):
-        browser = Browser(width, height, dark, mobile)
-        self.addCleanup(browser.__exit__)
-        browser.open(self.daemon.page())
-        browser.wait(SHOWS_MAP)
-        browser.wait('document.querySelectorAll("#status dd").length > 5')
-        return browser
+class PageForAll(PageCase):
+    robot = {"change_every_s": 10, "settings": {"dashboard.control": "true"}}
+    ready = (SHOWS_MAP, 'document.querySelectorAll("#status dd").length > 5')
 
     def test_names_roles_and_contrast(self):
         for name, (width, height, mobile) in SIZES.items():

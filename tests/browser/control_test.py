@@ -6,9 +6,7 @@ import math
 import time
 import unittest
 
-from page_test import PICTURES, SHOWS_MAP, SIZES
-from running_daemon import RunningDaemon
-from webdriver import Browser
+from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
 
 UP, LEFT, ESCAPE, ENTER = "\ue013", "\ue012", "\ue00c", "\ue007"
 SHIFT, CONTROL = "\ue008", "\ue009"
@@ -20,30 +18,15 @@ ON_TOP = """const box = document.querySelector(arguments[0]).getBoundingClientRe
 return document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2)?.closest("button")?.id;"""
 
 
-class ControlTest(unittest.TestCase):
+class ControlTest(PageCase):
     """One robot for all; each test finds it wandering."""
 
-    @classmethod
-    def setUpClass(cls):
-        PICTURES.mkdir(parents=True, exist_ok=True)
-        cls.daemon = RunningDaemon(change_every_s=300, token="of-the-browser-tests")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.__exit__()
+    robot = {"change_every_s": 300}
+    ready = (SHOWS_MAP, HAS_CONTROL, "window.deltamap.model.status")
 
     def setUp(self):
         self.daemon.ctl("drive", "off")  # out of whose hand ever
         self.until(lambda: self.daemon.ctl("drive", "wander").returncode == 0, 30)
-
-    def open(self, width=1280, height=800, mobile=False, dark=False):
-        browser = Browser(width, height, dark, mobile)
-        self.addCleanup(browser.__exit__)
-        browser.open(self.daemon.page())
-        browser.wait(SHOWS_MAP)
-        browser.wait(HAS_CONTROL)
-        browser.wait("window.deltamap.model.status")
-        return browser
 
     def click(self, browser, selector):
         browser.run("document.querySelector(arguments[0]).click()", selector)

@@ -5,9 +5,7 @@
 import json
 import unittest
 
-from page_test import PICTURES, SHOWS_MAP
-from running_daemon import RunningDaemon
-from webdriver import Browser
+from page_case import PICTURES, SHOWS_MAP, PageCase
 
 TEXT = 'document.querySelector("#history-text").textContent'
 IS_SHOWN = f'!document.querySelector("#history-bar").hidden && window.deltamap.model.delta && !{TEXT}.endsWith("…")'
@@ -24,27 +22,16 @@ const state = (column, row) => {
 return [2, 3].map((at) => model.delta.filter((cell) => state(cell[0], cell[1]) === cell[at]).length).concat(model.delta.length);"""
 
 
-class HistoryTest(unittest.TestCase):
+class HistoryTest(PageCase):
     """One robot for all, which has changed its map."""
+
+    ready = (SHOWS_MAP, "window.deltamap.model.status && document.querySelectorAll('#changes button').length > 2")
 
     @classmethod
     def setUpClass(cls):
-        PICTURES.mkdir(parents=True, exist_ok=True)
-        cls.daemon = RunningDaemon(change_every_s=10, token="of-the-browser-tests")
+        super().setUpClass()
         cls.daemon._until(lambda: cls.daemon.status()["newest_revision"] >= 3, 240)
         cls.daemon.ctl("pause")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.__exit__()
-
-    def open(self, width=1280, height=800, mobile=False, dark=False):
-        browser = Browser(width, height, dark, mobile)
-        self.addCleanup(browser.__exit__)
-        browser.open(self.daemon.page())
-        browser.wait(SHOWS_MAP)
-        browser.wait("window.deltamap.model.status && document.querySelectorAll('#changes button').length > 2")
-        return browser
 
     def pick(self, browser, revision):
         browser.run("""const name = `M${arguments[0]}`;

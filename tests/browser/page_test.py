@@ -3,16 +3,12 @@
 """The live page in Chromium, with a simulated robot behind it: ./dev test browser. Screenshots go to build/browser."""
 
 import json
-import pathlib
 import time
 import unittest
 
-from running_daemon import ROOT, RunningDaemon
+from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
 from webdriver import Browser
 
-PICTURES = ROOT / "build/browser"
-SIZES = {"phone": (390, 844, True), "netbook": (1024, 600, False), "desk": (1920, 1080, False)}
-SHOWS_MAP = "window.deltamap?.model.revision !== undefined && window.deltamap.view.tiles.size > 0 && window.deltamap.model.scan"
 IS_LIVE = 'document.body.dataset.link === "live"'
 # Cells of a box of the map (centre and sides, m) that the page shows as free, as a share.
 FREE_SHARE = """
@@ -33,23 +29,8 @@ for (let i = 0; i < data.length; i += 64) colours.add(data[i] << 16 | data[i + 1
 return colours.size;"""
 
 
-class PageTest(unittest.TestCase):
-    """One robot for all."""
-
-    @classmethod
-    def setUpClass(cls):
-        PICTURES.mkdir(parents=True, exist_ok=True)
-        cls.daemon = RunningDaemon(change_every_s=10, token="of-the-browser-tests")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.__exit__()
-
-    def open(self, width=1280, height=800, mobile=False, dark=False):
-        browser = Browser(width, height, dark, mobile)
-        self.addCleanup(browser.__exit__)
-        browser.open(self.daemon.page())
-        return browser
+class PageTest(PageCase):
+    ready = ()  # each test says what it waits for
 
     def expect_calm(self, browser):
         self.assertEqual(browser.errors(), [])
