@@ -30,6 +30,7 @@ void InlierDropDetector::observe(const TrackedScan& tracked) {
   const double since_last_s = last_ ? seconds(tracked.scan.time - *last_) : 0.0;
   const double passed_s = std::clamp(since_last_s, 0.0, kMostOfAMoment * params_.lately_s);
   last_ = tracked.scan.time;
+  known_for_s_ += passed_s;
   for (double Shares::*share : {&Shares::short_of, &Shares::beyond}) {
     usual_.*share = approached(usual_.*share, now.*share, passed_s, params_.usual_s);
     lately_.*share = approached(lately_.*share, now.*share, passed_s, params_.lately_s);

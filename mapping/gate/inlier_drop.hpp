@@ -31,9 +31,9 @@ class InlierDropDetector {
   /// And more than usual are too short, and more too long, at once: as if the whole view were another one.
   [[nodiscard]] bool is_both_ways() const;
 
-  /// What is usual now is what has to come back; nothing where that is not known yet.
+  /// What is usual now is what has to come back; nothing where that is not known yet: a moment is no usual view.
   void remember() {
-    if (last_) remembered_ = usual_;
+    if (known_for_s_ >= params_.usual_s) remembered_ = usual_;
   }
   void forget() { remembered_.reset(); }
   /// Fewer beams fit than usual before it was remembered, and than without that share of them.
@@ -46,6 +46,7 @@ class InlierDropDetector {
   };
   InlierDropParams params_;
   std::optional<Timestamp> last_;
+  double known_for_s_ = 0.0;
   Shares usual_;
   Shares lately_;
   Shares present_;

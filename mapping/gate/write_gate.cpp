@@ -14,6 +14,9 @@ constexpr double kApproached = 1.5;
 /// Of the weight of other doubts. In aisles that look alike one is conceivable for a dozen seconds, and the pose right.
 constexpr double kDoubtOfOther = 0.5;
 
+/// The pose that is believed afterwards may lie anywhere.
+bool may_be_another(GateReason reason) { return reason == GateReason::kSearching || reason == GateReason::kLost; }
+
 /// σ along the longest axis of the ellipse.
 double widest_deviation_m(const PoseCovariance& covariance) {
   const double middle = 0.5 * (covariance(0, 0) + covariance(1, 1));
@@ -90,8 +93,8 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 void WriteGate::note_break(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
   const SeenBreak seen = scan_break_.observe(tracked);
-  const bool is_small = !seen.is_large && !is_confirming_ && seen.share > params_.wary_break;
-  if (was_tracking_ && (seen.is_large || is_small)) {
+  const bool is_small = !seen.is_large && seen.share > params_.wary_break;
+  if (was_tracking_ && !is_confirming_ && (seen.is_large || is_small)) {
     if (!broken_) inlier_drop_.remember();
     if (seen.is_large) {
       broken_ = Broken{time, 0.0, true};
@@ -125,21 +128,24 @@ bool WriteGate::fits_as_before_break(Timestamp time) const {
          !inlier_drop_.is_worse_than_remembered(0.0);
 }
 
-/// Has the pose held for long and far enough?
-bool WriteGate::holds(GateReason judgement, Timestamp time, double driven_m) {
-  if (judgement != GateReason::kOpen || !fits_as_before_break(time)) {
-    holds_since_ = time;
-    held_m_ = 0.0;
-  } else {
+/// Has the pose held for long and far enough? Who hides the view for a moment only holds that up; a proof that the pose
+/// was wrong takes back all that has spoken for it.
+bool WriteGate::holds(GateReason judgement, Timestamp time, double passed_s, double driven_m) {
+  if (proves_wrong(judgement)) {
+    held_s_ = held_m_ = 0.0;
+  } else if (judgement == GateReason::kOpen && fits_as_before_break(time)) {
+    held_s_ += passed_s;
     held_m_ += driven_m;
   }
-  return seconds(time - holds_since_) >= params_.confirm_s && held_m_ >= params_.confirm_m;
+  const bool was_found = may_be_another(confirms_after_);
+  return held_s_ >= (was_found ? params_.confirm_s : params_.confirm_followed_s) &&
+         held_m_ >= (was_found ? params_.confirm_m : params_.confirm_followed_m);
 }
 
 void WriteGate::observe(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
+  const double passed_s = last_ ? std::max(0.0, seconds(time - *last_)) : 0.0;
   if (last_) {
-    const double passed_s = std::max(0.0, seconds(time - *last_));
     times_[static_cast<std::size_t>(reason_)] += passed_s;
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
     doubted_for_s_ += reason_ == GateReason::kOtherHypothesis ? kDoubtOfOther * passed_s : passed_s;
@@ -160,9 +166,11 @@ void WriteGate::observe(const TrackedScan& tracked) {
     // What has only made it wary is a thing that stays: as much as without it need not fit again.
     if (broken_ && !broken_->shuts) forget_break();
   }
-  if (is_confirming_ && is_proof) confirms_after_ = judgement;
-  if (is_confirming_ && holds(judgement, time, driven_m)) {
+  // What a search has found remains found, whatever else speaks against it.
+  if (is_confirming_ && is_proof && !may_be_another(confirms_after_)) confirms_after_ = judgement;
+  if (is_confirming_ && holds(judgement, time, passed_s, driven_m)) {
     is_confirming_ = false;
+    held_s_ = held_m_ = 0.0;
     forget_break();
   }
   const bool confirms = is_confirming_ || breaks_now(time);

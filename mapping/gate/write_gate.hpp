@@ -45,8 +45,10 @@ struct WriteGateParams {
   double disbelieved_below = 0.3;   ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
   double most_rival_share = 0.05;   ///< of the belief, that another pose hypothesis may hold; [0, 1]
   double most_deviation_m = 0.3;    ///< σ of the position along its worst axis; > 0
-  double confirm_s = 20.0;          ///< so long all must hold again after the pose was wrong; >= 0
-  double confirm_m = 10.0;          ///< and so far it must have driven meanwhile; >= 0
+  double confirm_s = 20.0;          ///< so long a pose that a search has found must hold, for it may be an alias; >= 0
+  double confirm_m = 10.0;          ///< and so far the robot must have driven meanwhile; >= 0
+  double confirm_followed_s = 8.0;  ///< the same where the pose was followed all along and something spoke against it,
+  double confirm_followed_m = 4.0;  ///< which an alias cannot explain: seconds and metres; >= 0
   double most_doubt_s = 10.0;       ///< shut for so long without a proof, what is provisional is withdrawn; > 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
   double hold_rival_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
@@ -107,7 +109,7 @@ class WriteGate {
   void forget_break();
   [[nodiscard]] bool breaks_now(Timestamp time) const;
   [[nodiscard]] bool fits_as_before_break(Timestamp time) const;
-  [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double driven_m);
+  [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double passed_s, double driven_m);
 
   WriteGateParams params_;
   PoseJump jump_;
@@ -121,8 +123,8 @@ class WriteGate {
   bool is_confirming_ = false;
   GateReason confirms_after_ = GateReason::kOpen;
   bool is_distrusted_ = false;
-  Timestamp holds_since_;
-  double held_m_ = 0.0;  // driven since then
+  double held_s_ = 0.0;  // of the time that it has been confirmed in, so long nothing spoke against it,
+  double held_m_ = 0.0;  // and so far was driven meanwhile
   DrivenWay driven_way_;
   std::optional<Timestamp> trusted_since_;
   std::optional<Timestamp> last_;

@@ -123,7 +123,7 @@ TEST(WriteGate, ALargeBreakShutsItForItsTimeWhereItIsNeverWary) {
 TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
   StraightDrive robot;
   WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(aisle_scan(robot, 0.0));
+  for (int i = 0; i < 120; ++i) gate.observe(aisle_scan(robot, 0.0));
   const auto carried = [&](std::uint32_t fit) {
     TrackedScan tracked = aisle_scan(robot, 2.5);
     tracked.estimate.belief.elsewhere = {.expected = 100, .fit = fit, .beyond = 100 - fit};
@@ -133,11 +133,11 @@ TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
     carried(50);  // long past usual: the localizer goes on believing in its pose
     ASSERT_FALSE(gate.is_open()) << i;
   }
-  for (int i = 0; i < 180; ++i) {
+  for (int i = 0; i < 75; ++i) {
     carried(95);
     ASSERT_FALSE(gate.is_open()) << i;
   }
-  for (int i = 0; i < 60; ++i) carried(95);
+  for (int i = 0; i < 20; ++i) carried(95);
   EXPECT_TRUE(gate.is_open());
 }
 
