@@ -25,6 +25,9 @@ class Container:
             ["systemd-nspawn", "--quiet", "--directory=%s" % (out / "root"), "--volatile=overlay", "--register=no", "--console=pipe", "--private-network", "--personality=x86",
              "--machine=deltamap-%d" % os.getpid(), "--bind=%s:/mnt/share" % self.share, "--bind=/dev/pts:/mnt/pts", *([] if under_systemd else ["--keep-unit"]), "--boot"],
             stdin=subprocess.DEVNULL, stdout=self.log, stderr=subprocess.STDOUT)
+        self.leader = None
+
+    def begin(self):
         self.leader = self.first_process()
 
     @staticmethod
@@ -59,6 +62,9 @@ class Container:
         self.cables[port].plug()
 
     def end(self):
+        if self.process.poll() is None and self.leader is None:
+            self.process.terminate()
+            self.process.wait(20)
         if self.process.poll() is None:
             self.sh("systemctl poweroff --force --force", 20)
             try:

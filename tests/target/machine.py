@@ -28,6 +28,8 @@ class Machine:
              "-fsdev", "local,id=share,path=%s,security_model=none" % self.share, "-device", "virtio-9p-pci,fsdev=share,mount_tag=share",
              "-device", "virtio-rng-pci", "-qmp", "unix:%s,server=on,wait=off" % (self.folder / "qmp")],
             stdin=subprocess.DEVNULL, stdout=self.log, stderr=subprocess.STDOUT)
+
+    def begin(self):
         self.orders = self.connected("qmp").makefile("rw")
         self.orders.readline()
         self.order("qmp_capabilities")
@@ -91,7 +93,7 @@ class Machine:
 
     def end(self):
         if self.process.poll() is None:
-            self.order("quit")
+            self.process.terminate()
             self.process.wait(60)
         self.log.close()
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -27,11 +27,7 @@ class Trial:
             if self.robot.poll() is not None:
                 raise SystemExit("target: " + (folder / "sim.log").read_text())
             time.sleep(0.1)
-        try:
-            self.target = place(OUT, folder)
-        except BaseException:
-            self.robot.kill()
-            raise
+        self.target = place(OUT, folder)
 
     def check(self, name, is_met, detail=""):
         self.checks.append((name, bool(is_met), str(detail).strip()))
@@ -152,6 +148,7 @@ class Trial:
         self.check("leaves map, store and recording", self.target.sh("cd /var/lib/deltamap && test -s map.pgm -a -s map_store.sqlite -a -s recordings/bytes.pcapng")[0] == 0)
 
     def run(self, deb):
+        self.target.begin()
         self.check("the system comes up", self.comes(self.target.is_up, 600) is not None, self.sh("uname -m"))
         self.install(deb)
         self.start()
