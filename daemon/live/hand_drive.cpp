@@ -72,7 +72,7 @@ void HandDrive::hear(const std::string& message) {
   heard_at_ = now_();
   const bool is_known = spoken->beat < beats_ && spoken->beat + sent_at_.size() >= beats_;
   if (stage_ != Stage::kDrives || !is_known) return;
-  hand_.drive(who_, {.time = sent_at_[spoken->beat % sent_at_.size()],
+  hand_.drive(who_, {.time = sent_at(spoken->beat),
                      .speed_m_per_s = spoken->speed_m_per_s,
                      .turn_rate_rad_per_s = spoken->turn_rate_rad_per_s});
 }
@@ -88,9 +88,9 @@ std::optional<Message> HandDrive::next() {
     if (last_word_.empty()) return std::nullopt;
     return Message{.is_binary = false, .bytes = std::make_shared<const std::string>(std::exchange(last_word_, {}))};
   }
-  const bool is_due = beats_ == 0 || seconds(now - sent_at_[(beats_ - 1) % sent_at_.size()]) >= kBeatPeriod_s;
+  const bool is_due = beats_ == 0 || seconds(now - sent_at(beats_ - 1)) >= kBeatPeriod_s;
   if (stage_ != Stage::kDrives || !is_due) return std::nullopt;
-  sent_at_[beats_ % sent_at_.size()] = now;
+  sent_at(beats_) = now;
   answers_ = 0;
   return message_of({{"type", "beat"}, {"number", beats_++}});
 }

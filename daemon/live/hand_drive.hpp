@@ -40,6 +40,8 @@ class HandDrive final : public dashboard::Dialog {
   void end(const std::string& type, const std::string& why);
   void begin_where_taken();
   void end_where_nobody_is_there(Timestamp now);
+  /// When one of the newest beats was sent.
+  Timestamp& sent_at(std::uint64_t beat) { return sent_at_[static_cast<std::size_t>(beat % sent_at_.size())]; }
 
   std::uint64_t who_;
   Hand hand_;

@@ -14,6 +14,8 @@
 namespace deltamap::drivers::port {
 namespace {
 
+static_assert(sizeof(off_t) == sizeof(std::int64_t), "a recording may grow beyond 2 GB");
+
 constexpr std::size_t kFlushBytes = std::size_t{64} * 1024;
 constexpr std::uint16_t kLinkTypeUser0 = 147;  // LINKTYPE_USER0 of the tcpdump.org registry; USER1 follows
 constexpr std::uint8_t kNanoseconds = 9;

@@ -19,7 +19,7 @@ constexpr std::size_t kMostPacked = 0xFFFF;  // points before a field of 16 bits
 /// What a label adds to the four counts, 16 bits each: one sum in place of four, and no branch.
 constexpr std::array<std::uint64_t, 8> packed_counts() {
   std::array<std::uint64_t, 8> packed{};
-  for (std::uint64_t label = 1; label < packed.size(); ++label) {
+  for (std::size_t label = 1; label < packed.size(); ++label) {
     packed[label] = ((label & kFreeLabel) != 0 ? 1ULL : 0ULL) | ((label & kOccupiedLabel) != 0 ? 1ULL << 16U : 0ULL) |
                     ((label & kNearContour) != 0 ? 1ULL << 32U : 0ULL) | 1ULL << 48U;
   }

@@ -115,7 +115,7 @@ std::optional<std::vector<CellChange>> decoded_changes(std::span<const std::uint
     const auto run = reader.take();
     if (!gap || !run || !is_state(*run >> 2 & 3) || !is_state(*run & 3)) return std::nullopt;
     if (*gap > geometry.cell_count() - next || *run >> 4 > geometry.cell_count() - next - *gap) return std::nullopt;
-    next += *gap;
+    next += static_cast<std::size_t>(*gap);
     for (std::uint64_t left = *run >> 4; left > 0; --left) {
       changes.push_back(
           {geometry.cell_of(next++), static_cast<CellState>(*run >> 2 & 3), static_cast<CellState>(*run & 3)});

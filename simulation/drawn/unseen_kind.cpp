@@ -35,7 +35,7 @@ LayoutKind layout_of(std::uint64_t seed) {
   std::iota(order.begin(), order.end(), 0U);
   Random random = random_for(seed / kLayoutKinds, Stream::kLayout);
   for (std::uint32_t left = kLayoutKinds; left > 1; --left) std::swap(order[left - 1], order[random.index_below(left)]);
-  return static_cast<LayoutKind>(order[seed % kLayoutKinds]);
+  return static_cast<LayoutKind>(order[static_cast<std::size_t>(seed % kLayoutKinds)]);
 }
 
 void draw_map(UnseenKind& kind, Random random) {

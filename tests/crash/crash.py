@@ -256,14 +256,16 @@ def table(done, is_quick):
     return lines
 
 
-def page(done, is_quick, seconds):
-    head = ["# Service", "", "Written by `./dev bench crash%s` (%s, %s, %.0f s)." % (" --quick" if is_quick else "", project.provenance(), datetime.date.today(), seconds), "",
-            "## Crashes and failing disks", "",
+TITLE = "Crashes and failing disks"
+
+
+def section(done, is_quick, seconds):
+    head = ["Written by `./dev bench crash%s` (%s, %s, %.0f s)." % (" --quick" if is_quick else "", project.provenance(), datetime.date.today(), seconds), "",
             "The first three rows run what the daemon's map thread runs (store with retention, `map.newest`, the files of `--out`, kept pose) without a pause, each",
             "trial on what the one before has left. After each trial every revision in the store is restored and held against its content, and so are `map.yaml` and `map.pgm`.",
             "*Lost*: something that was reported as written is not there. *Torn*: a map or revision is neither the old nor the new one. *Not started*: a",
             "start needs a person. *Set aside*: the store was called damaged.", ""]
-    return "\n".join(head + table(done, is_quick)) + "\n"
+    return head + table(done, is_quick)
 
 
 def main():
@@ -279,8 +281,8 @@ def main():
         if wanted.only in (None, name):
             done.append(run())
             print("%s: %d trials, %d failures, %s" % (name, done[-1].runs, done[-1].failures, dict(done[-1].faults) or "nothing lost"), flush=True)
-    text = page(done, wanted.quick, time.monotonic() - began)
-    (wanted.out.write_text(text) if wanted.out else print(text))
+    lines = section(done, wanted.quick, time.monotonic() - began)
+    (project.write_section(wanted.out, TITLE, lines) if wanted.out else print("\n".join(lines)))
     told = [line for trials in done for line in trials.told]
     if wanted.only in (None, "power") and not notices_a_lying_disk(wanted.build.resolve(), wanted.seed):
         told.append("power: a disk that syncs nothing loses nothing: these trials show nothing")

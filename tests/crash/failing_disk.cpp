@@ -6,6 +6,8 @@
 // DELTAMAP_DISK="FOLDER SEED RATE CUT LOG": a call fails with the probability RATE (-1: none does, and no sync is one);
 // the power goes before call CUT (0: never); a line for each failure is appended to the file LOG, which lies outside of
 // FOLDER.
+#undef _FILE_OFFSET_BITS  // both spellings of each call are defined here: that of 32-bit and that of 64-bit places in a
+                          // file
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -29,7 +31,7 @@
 
 namespace {
 
-constexpr off_t kSector = 512;
+constexpr off64_t kSector = 512;
 
 /// The call behind ours; found at its first use, which may come before this library's own constructors.
 template <typename Call>
@@ -45,8 +47,8 @@ ssize_t real_write(int descriptor, const void* data, size_t size) {
   static const auto call = behind<ssize_t (*)(int, const void*, size_t)>("write");
   return call(descriptor, data, size);
 }
-ssize_t real_pwrite(int descriptor, const void* data, size_t size, off_t at) {
-  static const auto call = behind<ssize_t (*)(int, const void*, size_t, off_t)>("pwrite64");
+ssize_t real_pwrite(int descriptor, const void* data, size_t size, off64_t at) {
+  static const auto call = behind<ssize_t (*)(int, const void*, size_t, off64_t)>("pwrite64");
   return call(descriptor, data, size, at);
 }
 ssize_t real_writev(int descriptor, const iovec* parts, int count) {
@@ -57,8 +59,8 @@ int real_fsync(int descriptor) {
   static const auto call = behind<int (*)(int)>("fsync");
   return call(descriptor);
 }
-int real_ftruncate(int descriptor, off_t size) {
-  static const auto call = behind<int (*)(int, off_t)>("ftruncate64");
+int real_ftruncate(int descriptor, off64_t size) {
+  static const auto call = behind<int (*)(int, off64_t)>("ftruncate64");
   return call(descriptor, size);
 }
 int real_rename(const char* from, const char* to) {
@@ -69,9 +71,9 @@ int real_rename(const char* from, const char* to) {
 /// What the disk holds for sure of a file that was written to and not synced since.
 struct Unsynced {
   std::string path;  ///< the newest
-  off_t size = 0;    ///< on disk
+  off64_t size = 0;  ///< on disk
   bool is_new = false;
-  std::map<off_t, std::array<char, kSector>> sectors;  ///< on disk, where they were written over
+  std::map<off64_t, std::array<char, kSector>> sectors;  ///< on disk, where they were written over
 };
 
 struct Rename {
@@ -135,31 +137,31 @@ class Disk {
   }
 
   Unsynced& written(int descriptor, const std::string& path) {
-    struct stat state {};
-    (void)::fstat(descriptor, &state);
+    struct stat64 state {};
+    (void)::fstat64(descriptor, &state);
     const auto [found, is_new] = unsynced_.try_emplace(state.st_ino);
     if (is_new) found->second.size = state.st_size;
     found->second.path = path;
     return found->second;
   }
-  void overwrite(int descriptor, const std::string& path, off_t from, off_t to) {
+  void overwrite(int descriptor, const std::string& path, off64_t from, off64_t to) {
     Unsynced& file = written(descriptor, path);
     const int reader = real_open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    for (off_t at = from / kSector * kSector; at < std::min(to, file.size); at += kSector) {
+    for (off64_t at = from / kSector * kSector; at < std::min(to, file.size); at += kSector) {
       const auto [sector, is_new] = file.sectors.try_emplace(at);
-      if (is_new && ::pread(reader, sector->second.data(), kSector, at) < 0) file.sectors.erase(sector);
+      if (is_new && ::pread64(reader, sector->second.data(), kSector, at) < 0) file.sectors.erase(sector);
     }
     ::close(reader);
   }
   void begin(int descriptor, const std::string& path) {
-    struct stat state {};
-    (void)::fstat(descriptor, &state);
+    struct stat64 state {};
+    (void)::fstat64(descriptor, &state);
     unsynced_[state.st_ino] = {.path = path, .size = 0, .is_new = true, .sectors = {}};
   }
   void sync(int descriptor) {
     if (rate_ < 0.0) return;
-    struct stat state {};
-    (void)::fstat(descriptor, &state);
+    struct stat64 state {};
+    (void)::fstat64(descriptor, &state);
     if (!S_ISDIR(state.st_mode)) {
       unsynced_.erase(state.st_ino);
       return;
@@ -192,9 +194,9 @@ class Disk {
     (void)::kill(::getpid(), SIGKILL);
     std::abort();
   }
-  void lose(ino_t inode, const Unsynced& file) {
-    struct stat present {};
-    if (::stat(file.path.c_str(), &present) != 0 || present.st_ino != inode) return;  // it was removed
+  void lose(ino64_t inode, const Unsynced& file) {
+    struct stat64 present {};
+    if (::stat64(file.path.c_str(), &present) != 0 || present.st_ino != inode) return;  // it was removed
     if (file.is_new && chance(0.3)) {
       ::unlink(file.path.c_str());
       return;
@@ -205,11 +207,11 @@ class Disk {
       if (chance(0.5))
         (void)!real_pwrite(writer, content.data(), static_cast<std::size_t>(std::min(kSector, file.size - at)), at);
     }
-    struct stat state {};
-    (void)::fstat(writer, &state);
+    struct stat64 state {};
+    (void)::fstat64(writer, &state);
     const std::array<char, kSector> nothing{};
-    for (off_t at = file.size; at < state.st_size; at += kSector - at % kSector) {
-      const off_t length = std::min(kSector - at % kSector, state.st_size - at);
+    for (off64_t at = file.size; at < state.st_size; at += kSector - at % kSector) {
+      const off64_t length = std::min(kSector - at % kSector, state.st_size - at);
       if (chance(0.5)) (void)!real_pwrite(writer, nothing.data(), static_cast<std::size_t>(length), at);
     }
     if (chance(0.5)) (void)!real_ftruncate(writer, file.size);
@@ -229,7 +231,7 @@ class Disk {
   long cut_ = 0;
   long calls_ = 0;
   int log_ = -1;
-  std::map<ino_t, Unsynced> unsynced_;
+  std::map<ino64_t, Unsynced> unsynced_;
   std::vector<Rename> renames_;
 };
 
@@ -254,8 +256,8 @@ int opened(const char* path, int flags, mode_t mode) {
   if (const int reason = disk().failure("open", file, {ENOSPC, EIO}); reason != 0) return failed<int>(reason);
   if (!is_new && (flags & O_TRUNC) != 0) {
     const int old = real_open(path, O_RDONLY | O_CLOEXEC);
-    struct stat state {};
-    (void)::fstat(old, &state);
+    struct stat64 state {};
+    (void)::fstat64(old, &state);
     disk().overwrite(old, file, 0, state.st_size);
     ::close(old);
   }
@@ -264,7 +266,7 @@ int opened(const char* path, int flags, mode_t mode) {
   return descriptor;
 }
 
-ssize_t written_at(int descriptor, const void* data, size_t size, off_t at, bool is_appended) {
+ssize_t written_at(int descriptor, const void* data, size_t size, off64_t at, bool is_appended) {
   const std::lock_guard lock{disk().mutex()};
   const std::string file = disk().path_of(descriptor);
   const auto write = [&](size_t length) {
@@ -274,7 +276,7 @@ ssize_t written_at(int descriptor, const void* data, size_t size, off_t at, bool
   if (const int reason = disk().failure("write", file, {ENOSPC, EIO}); reason != 0) return failed<ssize_t>(reason);
   const size_t length = disk().short_of(file, size);
   if (is_appended) at = ::lseek(descriptor, 0, SEEK_CUR);
-  disk().overwrite(descriptor, file, at, at + static_cast<off_t>(length));
+  disk().overwrite(descriptor, file, at, at + static_cast<off64_t>(length));
   return write(length);
 }
 
@@ -287,13 +289,13 @@ int synced(int descriptor) {
   return 0;  // the page cache outlives the process: a real sync would only take time
 }
 
-int cut_short(int descriptor, off_t size) {
+int cut_short(int descriptor, off64_t size) {
   const std::lock_guard lock{disk().mutex()};
   const std::string file = disk().path_of(descriptor);
   if (file.empty()) return real_ftruncate(descriptor, size);
   if (const int reason = disk().failure("truncate", file, {EIO, ENOSPC}); reason != 0) return failed<int>(reason);
-  struct stat state {};
-  (void)::fstat(descriptor, &state);
+  struct stat64 state {};
+  (void)::fstat64(descriptor, &state);
   disk().overwrite(descriptor, file, size, state.st_size);
   return real_ftruncate(descriptor, size);
 }
@@ -324,7 +326,7 @@ ssize_t pwrite(int descriptor, const void* data, size_t size, off_t at) {
   return written_at(descriptor, data, size, at, false);
 }
 
-ssize_t pwrite64(int descriptor, const void* data, size_t size, off_t at) {
+ssize_t pwrite64(int descriptor, const void* data, size_t size, off64_t at) {
   return written_at(descriptor, data, size, at, false);
 }
 
@@ -338,7 +340,7 @@ ssize_t writev(int descriptor, const iovec* parts, int count) {
 int fsync(int descriptor) { return synced(descriptor); }
 int fdatasync(int descriptor) { return synced(descriptor); }
 int ftruncate(int descriptor, off_t size) noexcept { return cut_short(descriptor, size); }
-int ftruncate64(int descriptor, off_t size) noexcept { return cut_short(descriptor, size); }
+int ftruncate64(int descriptor, off64_t size) noexcept { return cut_short(descriptor, size); }
 
 int rename(const char* from, const char* to) noexcept {
   const std::lock_guard lock{disk().mutex()};

@@ -36,12 +36,12 @@ users >/tmp/users.before
 
 # --- install
 run_dpkg -i "/deltamap_$version.deb"
-for program in deltamapd deltamap; do holds "/usr/bin/$program" is 'root:root 755' /usr/bin/$program; done
+for program in /usr/bin/deltamapd /usr/bin/deltamap /usr/libexec/deltamap/restart-delay; do holds "$program" is 'root:root 755' $program; done
 for file in /lib/systemd/system/deltamap.service /lib/udev/rules.d/60-deltamap.rules /usr/lib/sysusers.d/deltamap.conf \
   /usr/lib/tmpfiles.d/deltamap.conf /etc/deltamap/deltamap.yaml /usr/share/man/man8/deltamapd.8.gz \
   /usr/share/man/man1/deltamap.1.gz /usr/share/man/man5/deltamap.yaml.5.gz /usr/share/bash-completion/completions/deltamap \
   /usr/share/deltamap/default.yaml /usr/share/deltamap/deltamap.schema.json /usr/share/deltamap/simulation.yaml /usr/share/deltamap/scenarios/hall.yaml \
-  /usr/share/doc/deltamap/copyright /usr/share/doc/deltamap/changelog.gz /usr/share/doc/deltamap/README.md \
+  /usr/share/doc/deltamap/copyright /usr/share/doc/deltamap/changelog.gz /usr/share/doc/deltamap/README.md* \
   /usr/share/doc/deltamap/operating.md.gz /usr/share/doc/deltamap/examples/deltamap-page.socket \
   /usr/share/doc/deltamap/examples/deltamap-page.conf; do
   holds "$file" is 'root:root 644' "$file"
@@ -119,7 +119,7 @@ holds "the new version is there" test "$(dpkg-query -W -f='${Version}' deltamap)
 
 # --- remove
 run_dpkg -r deltamap
-holds "the programs are gone" fails test -e /usr/bin/deltamapd -o -e /usr/bin/deltamap -o -e /lib/systemd/system/deltamap.service
+holds "the programs are gone" fails test -e /usr/bin/deltamapd -o -e /usr/bin/deltamap -o -e /lib/systemd/system/deltamap.service -o -e /usr/libexec/deltamap
 holds "configuration, maps and their owner stay" test -f /etc/deltamap/deltamap.yaml -a -f /var/lib/deltamap/maps/site.pgm
 holds "the store stays its owner's" is 'deltamap:deltamap 644' /var/lib/deltamap/map_store.sqlite
 run_dpkg --force-confold -i "/deltamap_$version+2.deb"

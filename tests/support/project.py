@@ -30,6 +30,19 @@ def provenance():
     return "deltamap %s on %s, %d processors" % (version(), processor(), os.cpu_count())
 
 
+def write_section(file, title, lines):
+    """Puts a section into a document that several programs write, in place of the section of the same title; a new one goes to the end."""
+    text = file.read_text() if file.exists() else "# %s\n" % file.stem.capitalize()
+    head, *sections = text.rstrip("\n").split("\n## ")
+    made = "\n".join([title, ""] + lines).rstrip("\n") + "\n"
+    titles = [section.split("\n", 1)[0] for section in sections]
+    if title in titles:
+        sections[titles.index(title)] = made
+    else:
+        sections.append(made)
+    file.write_text("\n## ".join([head.rstrip("\n") + "\n"] + [section.rstrip("\n") + "\n" for section in sections]))
+
+
 PLACES = {"robot.port", "laser.port", "map.file", "map.store", "map.newest", "control.socket", "poses.socket",
           "recording.file"}
 

@@ -13,12 +13,14 @@ FARTHEST_M = 1.3     # the pilot's 0.5 m/s for 2 s and two SIP cycles, then brak
 
 
 class Cable(threading.Thread):
-    """Between the simulator's terminal and one of its own; speeds follow. Pulled out, its own end hangs up."""
+    """Between the simulator's terminal and one of its own; speeds follow. Pulled out, its own end hangs up. `seen_as` names the
+    own terminal for a daemon that sees it elsewhere."""
 
-    def __init__(self, device, link):
+    def __init__(self, device, link, seen_as=lambda terminal: terminal):
         super().__init__(daemon=True)
         self.device = os.open(device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         tty.setraw(self.device)
+        self.seen_as = seen_as
         self.link, self.host, self.is_in, self.lock = pathlib.Path(link), None, False, threading.Lock()
         self.plug()
         self.start()
@@ -27,7 +29,7 @@ class Cable(threading.Thread):
         with self.lock:
             self.host, slave = pty.openpty()
             tty.setraw(slave)
-            self.link.symlink_to(os.ttyname(slave))
+            self.link.symlink_to(self.seen_as(os.ttyname(slave)))
             os.close(slave)  # else a dead daemon's lock would outlive it
             self.is_in = True
 
