@@ -52,6 +52,7 @@ struct Outcome {
 struct Run {
   std::string name;  ///< unique in the experiment, fit for a file's name
   std::function<Outcome()> work;
+  bool is_baseline = false;  ///< what others are compared with: done whatever --only says
 };
 
 /// What was promised of a figure.

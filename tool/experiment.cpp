@@ -79,9 +79,10 @@ void run(const ExperimentOptions& given) {
   experiments::expect_writable(given.out);
   experiments::Results results{chosen.name,          chosen.what, options.seed, options.quick,
                                chosen.runs(options), {},          {},           settings};
-  std::erase_if(results.runs,
-                [&](const experiments::Run& one) { return one.name.find(given.only) == std::string::npos; });
-  if (results.runs.empty())
+  std::erase_if(results.runs, [&](const experiments::Run& one) {
+    return !one.is_baseline && one.name.find(given.only) == std::string::npos;
+  });
+  if (std::all_of(results.runs.begin(), results.runs.end(), [](const auto& one) { return one.is_baseline; }))
     throw CLI::ValidationError{"no run of '" + given.name + "' has '" + given.only + "' in its name"};
   {
     Progress progress{chosen.name, results.runs.size()};

@@ -63,10 +63,7 @@ struct RecordingSettings {
 
 /// What outlives the run, beside map.store; a replay does not look at it.
 struct MemorySettings {
-  double pose_period_s = 5.0;         ///< between two writings of the pose; > 0
-  double stability_period_s = 60.0;   ///< between two writings of what has proven stable; > 0
-  double position_deviation_m = 0.5;  ///< how far the robot may have been pushed while it was off; > 0
-  double heading_deviation_rad = radians(20.0);
+  double pose_period_s = 5.0;  ///< between two writings of the pose; > 0
 };
 
 struct ControlSettings {

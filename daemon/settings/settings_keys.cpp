@@ -54,10 +54,6 @@ void add_robot(RobotSettings& robot, Keys& keys) {
   keys.push_back(not_for_results(
       degrees_key("robot.turn_deceleration_deg_per_s2", limits.turn_deceleration_rad_per_s2, 10.0, 300.0,
                   "deceleration of a turn that the controller is set to, for stops of its own too")));
-  keys.push_back(not_for_results(number_key("robot.pulse_interval_s", session.pulse_interval_s, "s", 0.05, 1.5,
-                                            "longest time between two commands to the robot")));
-  keys.push_back(not_for_results(number_key("robot.sip_timeout_s", session.sip_timeout_s, "s", 0.2, 60.0,
-                                            "silence after which the robot counts as gone")));
 }
 
 void add_laser(LaserSettings& laser, Keys& keys) {
@@ -90,10 +86,6 @@ void add_laser(LaserSettings& laser, Keys& keys) {
                             "how far the laser is mounted left of the middle of the wheel axle"));
   keys.push_back(degrees_key("laser.mount.yaw_deg", session.robot_from_laser.theta, -180.0, 180.0,
                              "how far the laser is mounted turned counter-clockwise"));
-  keys.push_back(not_for_results(number_key("laser.power_on_wait_s", session.power_on_wait_s, "s", 0.0, 600.0,
-                                            "how long a silent laser may still be starting up")));
-  keys.push_back(not_for_results(number_key("laser.scan_timeout_s", session.scan_timeout_s, "s", 0.2, 60.0,
-                                            "silence after which the laser counts as gone")));
 }
 
 /// `patrol` has its name already, and nothing behind it.
@@ -121,16 +113,6 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
                  "distance kept between the hull and everything"));
   add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s^2", 0.05, 5.0,
                  "deceleration counted on at most; the controller's own where that is less"));
-  add(number_key("navigation.safety.reaction_s", safety.reaction_s, "s", 0.0, 2.0,
-                 "time from a decision to the wheels"));
-  add(number_key("navigation.safety.command_life_s", safety.command_life_s, "s", 0.05, 2.0,
-                 "age from which a drive command is void"));
-  add(number_key("navigation.safety.odometry_life_s", safety.odometry_life_s, "s", 0.1, 5.0,
-                 "silence of the robot after which it must stand"));
-  add(number_key("navigation.safety.low_battery_s", safety.low_battery_s, "s", 0.0, 600.0,
-                 "time of low voltage that ends driving: longer than the sag of a motor that starts"));
-  add(number_key("navigation.safety.plausible_s", safety.plausible_s, "s", 0.0, 60.0,
-                 "time of scans that are not flagged as implausible before the robot goes on"));
   add(number_key("navigation.safety.max_speed_m_per_s", safety.max_speed_m_per_s, "m/s", 0.01, 2.2,
                  "speed at most, whatever the pilot wants"));
   add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,
@@ -144,11 +126,6 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
                   "turn rate on the spot"));
   add(number_key("navigation.wander.side_clearance_m", wander.side_clearance_m, "m", 0.0, 5.0,
                  "distance kept to both sides while driving"));
-  add(number_key("navigation.wander.turn_away_m", wander.turn_away_m, "m", 0.05, 10.0,
-                 "free path at which the robot stops and turns"));
-  add(number_key("navigation.wander.slow_down_m", wander.slow_down_m, "m", 0.05, 20.0,
-                 "free path below which the robot goes slower"));
-  add(number_key("navigation.wander.go_on_m", wander.go_on_m, "m", 0.05, 20.0, "free path that ends a turn"));
   add(number_key("navigation.wander.shortest_leg_s", wander.shortest_leg_s, "s", 0.1, 3600.0,
                  "shortest time before the robot takes another direction"));
   add(number_key("navigation.wander.longest_leg_s", wander.longest_leg_s, "s", 0.1, 3600.0,
@@ -157,15 +134,10 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
 }
 
 void add_memory(MemorySettings& memory, Keys& keys) {
-  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
-  add(number_key("localization.memory.pose_period_s", memory.pose_period_s, "s", 0.1, 3600.0,
-                 "time between two writings of the pose beside map.store"));
-  add(number_key("localization.memory.stability_period_s", memory.stability_period_s, "s", 1.0, 86400.0,
-                 "time between two writings of what has proven to stay"));
-  add(number_key("localization.memory.position_deviation_m", memory.position_deviation_m, "m", 0.01, 10.0,
-                 "standard deviation of a kept position: the robot may have been pushed while it was off"));
-  add(degrees_key("localization.memory.heading_deviation_deg", memory.heading_deviation_rad, 0.1, 180.0,
-                  "standard deviation of a kept heading: the robot may have been turned while it was off"));
+  keys.push_back(not_for_results(
+      number_key("localization.memory.pose_period_s", memory.pose_period_s, "s", 0.1, 3600.0,
+                 "time between two writings of the pose beside map.store; twelve times as long for what has proven to "
+                 "stay")));
 }
 
 void add_dashboard(DashboardSettings& dashboard, Keys& keys) {
@@ -215,7 +187,6 @@ std::vector<SettingKey> keys_of(Settings& settings) {
       pose_key("localization.initial_pose", settings.initial_pose,
                "robot in the map at the first scan; null: where the run before left it, else found by itself"));
   add_localization_keys(settings.localizer, keys);
-  add_belief_keys(settings.localizer, keys);
   add_memory(settings.memory, keys);
   add_mapping_keys(settings.mapping, keys);
   add_navigation(settings.navigation, keys);
@@ -241,18 +212,11 @@ std::vector<Contradiction> contradictions_in(const Settings& settings) {
     for (const std::string& other : others) line += (&other == &others.front() ? " '" : " and '") + other + "'";
     found.push_back({key, std::move(line), others});
   };
-  const auto& localizer = settings.localizer;
-  expect_not(localizer.particles.min > localizer.particles.max, "localization.particles.min", "not exceed",
-             {"localization.particles.max"});
-  expect_not(localizer.fit.lost_below > localizer.fit.found_above, "localization.fit.lost_below", "not exceed",
-             {"localization.fit.found_above"});
-  expect_not(localizer.field.unknown_likelihood < localizer.field.random_share, "localization.field.unknown_likelihood",
-             "not lie below", {"localization.field.random_share"});
+  const auto& particles = settings.localizer.particles;
+  expect_not(particles.min > particles.max, "localization.particles.min", "not exceed", {"localization.particles.max"});
   const auto& wander = settings.navigation.wander;
   expect_not(wander.shortest_leg_s > wander.longest_leg_s, "navigation.wander.shortest_leg_s", "not exceed",
              {"navigation.wander.longest_leg_s"});
-  expect_not(wander.turn_away_m >= std::min(wander.slow_down_m, wander.go_on_m), "navigation.wander.turn_away_m",
-             "lie below", {"navigation.wander.slow_down_m", "navigation.wander.go_on_m"});
   if (auto contradiction = contradiction_in(settings.dashboard)) found.push_back(*std::move(contradiction));
   if (settings.dashboard.control && settings.dashboard.port != 0 && settings.control.socket.empty()) {
     found.push_back({"dashboard.control",

@@ -11,7 +11,6 @@ namespace deltamap::daemon {
 using Keys = std::vector<SettingKey>;
 
 void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys);
-void add_belief_keys(localization::LocalizerParams& localizer, Keys& keys);
 void add_mapping_keys(MappingSettings& settings, Keys& keys);
 
 }  // namespace deltamap::daemon

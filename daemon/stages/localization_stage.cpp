@@ -14,6 +14,7 @@ namespace {
 
 using Kind = Decision::Kind;
 
+constexpr double kStabilityPeriods = 12.0;            // of the pose, between two writings of what has proven to stay
 constexpr double kNoScan_s = 0.7;                     // without a scan: what an operator asks for is not done
 constexpr std::chrono::milliseconds kLookEvery{200};  // for what an operator asks while no message comes
 
@@ -273,7 +274,7 @@ void LocalizationStage::keep_now_and_then(Timestamp time) {
     keep_pose();
   }
   if (!stability_kept_) stability_kept_ = time;  // at the start there is nothing new
-  if (is_due(stability_kept_, time, memory_.stability_period_s)) {
+  if (is_due(stability_kept_, time, kStabilityPeriods * memory_.pose_period_s)) {
     stability_kept_ = time;
     keep_stability();
   }

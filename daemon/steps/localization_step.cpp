@@ -8,11 +8,14 @@
 namespace deltamap::daemon {
 namespace {
 
+/// How far the robot may have been pushed and turned while it was off.
+constexpr double kRememberedDeviationM = 0.5;
+constexpr double kRememberedDeviationRad = radians(20.0);
+
 std::optional<localization::particles::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
   if (settings.initial_pose) return localization::particles::InitialPose{*settings.initial_pose};
   if (!start.remembered) return std::nullopt;
-  return localization::particles::InitialPose{*start.remembered, settings.memory.position_deviation_m,
-                                              settings.memory.heading_deviation_rad, true};
+  return localization::particles::InitialPose{*start.remembered, kRememberedDeviationM, kRememberedDeviationRad, true};
 }
 
 }  // namespace

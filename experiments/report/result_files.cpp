@@ -122,6 +122,10 @@ std::string summary_json(const Results& results) {
     if (!figure.peers.empty()) json["peers"] = figure.peers;
     summary["figures"].push_back(std::move(json));
   }
+  summary["tables"] = Json::array();
+  for (const TextTable& table : results.report.tables) {
+    summary["tables"].push_back({{"title", table.title}, {"columns", table.columns}, {"rows", table.rows}});
+  }
   summary["met"] = all_met;
   return summary.dump(2) + '\n';
 }

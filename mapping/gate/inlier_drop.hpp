@@ -13,7 +13,7 @@ struct InlierDropParams {
   double usual_s = 10.0;              ///< over which the usual share of fitting beams is averaged, s; > 0
   double lately_s = 1.0;              ///< over which that of the last moment is, s; > 0
   double present_s = 0.35;            ///< over which the present one is, s; > 0
-  double most_drop = 0.2;             ///< of the share of beams; [0, 1] (mapping.gate.most_misfit)
+  double most_drop = 0.2;             ///< of the share of beams; [0, 1]
   double most_drop_both_ways = 0.1;   ///< of beams too short and of beams too long, each: what a thing that comes or
                                       ///< goes does not do; [0, 1]
   double least_at_once = 0.03;        ///< of both within a moment: two things in turn are no other view; [0, 1]

@@ -13,8 +13,8 @@
 namespace deltamap::mapping::gate {
 
 struct ProvisionalParams {
-  double way_m = 10.0;   ///< m; >= 0 (mapping.gate.provisional_m)
-  double time_s = 30.0;  ///< s; >= 0 (mapping.gate.provisional_s)
+  double way_m = 10.0;   ///< m; >= 0
+  double time_s = 30.0;  ///< s; >= 0
 };
 
 class ProvisionalWindow {

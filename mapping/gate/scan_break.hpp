@@ -16,9 +16,9 @@ namespace deltamap::mapping::gate {
 
 struct ScanBreakParams {
   double most = 0.2;                ///< of the beams that may suddenly be nearer or farther away, beyond what is usual;
-                                    ///< [0, 1] (mapping.gate.most_break)
+                                    ///< [0, 1]
   double each_way = 0.05;           ///< of them at least so many each way; a break that is larger than
-  double most_one_way = 0.3;        ///< is one whichever way; both [0, 1] (mapping.gate.most_break_one_way)
+  double most_one_way = 0.3;        ///< is one whichever way; both [0, 1]
   double least_m = 0.25;            ///< a smaller difference of range is none; > 0
   double wheels_rad_per_m = 0.05;   ///< that odometry may have turned unnoticed; >= 0
   double wheels_rad_per_rad = 0.1;  ///< likewise; >= 0

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Does every experiment and writes docs/results/experiments.md from what each leaves in its summary.json; what was
-measured and at which revision is kept in experiments.json beside it. Called by ./dev experiments.
+"""Does every experiment and writes docs/results/experiments.md, and ablation.md, from what each leaves in its summary.json;
+what was measured and at which revision is kept in experiments.json beside it. Called by ./dev experiments.
 
   experiments.py [--quick] [--only NAME]... [--seed N] [--jobs N]
       --quick: short drives, few seeds; writes into build/ alone
@@ -11,10 +11,11 @@ import argparse, json, os, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import paper_figures
-from measuring import DATA, ROOT, TOOL, processor, row_of_figure, run, table_lines, told
+from measuring import DATA, ROOT, TOOL, in_a_cell, processor, row_of_figure, run, table_lines, told
 
 OUT = ROOT / "build/experiments"
 OF_THE_LOCALIZER = {"hall", "stale-map", "verdict"}  # ./dev bench localization
+PAGES = {"ablation": "docs/results/ablation.md"}  # their tables fill a page of their own
 
 
 def experiments():
@@ -54,6 +55,30 @@ def markdown(parts):
     return "\n".join(lines)
 
 
+ABLATION = """# What each mechanism and each key is worth
+
+Written by `./dev experiments --only ablation` on %s: %s.
+
+A row changes one thing: a mechanism is switched off, or a key is set to half or twice its value. The same worlds are driven
+through as delivered. A cell tells the mean difference to that, its 95 %% interval (bootstrap over the worlds), and in how many
+worlds the change is better : worse; `0`: no world differs. Less is better of `error_rms_m`, `jumps`, `off_share` and
+`gate_shut_while_right`; more of `recall`, `precision` and `skill`. Bold: the interval leaves out 0. Of twenty cells that
+nothing moves, one is bold by chance.
+"""
+
+
+def page_of(summary):
+    """Figures and tables of one experiment, on a page of its own."""
+    made = "version %s, commit %s, settings %s: %s" % (
+        summary["version"], summary["commit"], summary["settings"]["fingerprint"], told(summary["settings"]))
+    lines = [ABLATION % (processor(), "worlds of `unseen` from seed %d; %s" % (summary["seed"], made))]
+    lines += table_lines([row_of_figure(figure) for figure in summary["figures"]])
+    for table in summary["tables"]:
+        lines += ["", "## " + table["title"], "", "| %s |" % " | ".join(table["columns"]), "|" + "---|" * len(table["columns"])]
+        lines += ["| %s |" % " | ".join(in_a_cell(cell) for cell in row) for row in table["rows"]]
+    return "\n".join(lines) + "\n"
+
+
 def done(name, measures_machine, arguments, folder):
     """Does one experiment, its progress on this terminal, and answers its summary."""
     command = [TOOL, "experiment", name, "--out", folder / name, "--seed", arguments.seed]
@@ -90,6 +115,10 @@ def main():
         if name not in (arguments.only or known):
             continue
         summary = done(name, measures_machine, arguments, folder)
+        if name in PAGES:
+            (folder / "ablation.md" if arguments.quick else ROOT / PAGES[name]).write_text(page_of(summary))
+            continue
+        summary.pop("tables", None)  # they are on the experiment's own page
         parts[name] = {"revision": at, "what": what, "summary": summary}
         parts = {one: parts[one] for one in known if one in parts}
         # At once: who interrupts a long run keeps what was done.

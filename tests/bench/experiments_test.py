@@ -74,6 +74,20 @@ class Writer(unittest.TestCase):
         self.assertFalse((self.root / "docs/results/experiments.md").exists())
         self.assertTrue((self.root / "build/quick/experiments.md").exists())
 
+    def test_gives_an_experiment_of_tables_a_page_of_its_own(self):
+        self.revision = "aaa1"
+        tables = {"version": "0.1.0", "commit": "ccc3", "settings": {"fingerprint": "00ff", "changed": {}},
+                  "tables": [{"title": "Off", "columns": ["change", "jumps"], "rows": [["off-x", "+1 [0, +2] 0:3"]]}]}
+        known = summary
+        self.measured["one"] = (0.04, True)
+        with mock.patch.dict(globals(), summary=lambda *what: {**known(*what), **tables}), \
+                mock.patch.object(experiments, "PAGES", {"two": "docs/results/two.md"}):
+            self.write()
+        page = (self.root / "docs/results/two.md").read_text()
+        self.assertIn("| off-x | +1 [0, +2] 0:3 |", page)
+        self.assertNotIn("## two", self.text())
+        self.assertNotIn("off-x", self.text())
+
     def test_refuses_a_name_that_there_is_not(self):
         self.revision = "aaa1"
         with mock.patch("sys.stderr", io.StringIO()) as errors:

@@ -162,7 +162,7 @@ class Robot:
         settings = {"robot.port": self.out / "sim/robot", "laser.port": self.out / "sim/laser", "map.file": self.out / "m0.yaml",
                     "map.store": self.out / "store.sqlite", "map.newest": self.out / "map.yaml", "map.retention.revisions": 10,
                     "recording.file": self.out / "bytes.pcapng", "control.socket": self.out / "ctl.sock", "mapping.persistence_s": 2,
-                    "localization.memory.pose_period_s": 0.2, "localization.memory.stability_period_s": 1,
+                    "localization.memory.pose_period_s": 0.1,
                     "localization.initial_pose": "null" if self.trials.runs else "[1,2,0]"}
         options = [part for key, value in settings.items() for part in ("--set", "%s=%s" % (key, value))]
         self.log = open(self.out / "daemon.log", "w")

@@ -17,8 +17,8 @@ write_first_map
 simulate --change-every 10
 mkdir "$disk/run"
 "$bin/deltamapd" "${on_the_world[@]}" --set map.store="$disk/store.sqlite" --set recording.file="$disk/bytes.pcapng" \
-  --set control.socket="$out/ctl.sock" --set localization.memory.pose_period_s=1 --set mapping.persistence_s=3 \
-  --set localization.memory.stability_period_s=5 --initial-pose 1,2,0 --out "$disk/run" 2>"$out/daemon.log" &
+  --set control.socket="$out/ctl.sock" --set localization.memory.pose_period_s=0.5 --set mapping.persistence_s=3 \
+  --initial-pose 1,2,0 --out "$disk/run" 2>"$out/daemon.log" &
 daemon=$!
 number() { ctl status --json | grep -o "\"$1\":[0-9]*" | head -n 1 | cut -d: -f2; }
 # reached WHAT N SECONDS: a count of the status

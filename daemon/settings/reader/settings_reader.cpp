@@ -50,8 +50,14 @@ std::string quoted(const std::string& text) { return "'" + shortened(text, kLong
 /// Walks YAML trees of one file or override and hands every leaf to its key.
 class Walk {
  public:
-  Walk(const std::vector<SettingKey>& keys, SettingPlace source, SettingsProblems& problems, ReadKeys& read)
-      : keys_{keys}, sections_{sections_of(keys)}, source_{std::move(source)}, problems_{problems}, read_{read} {}
+  Walk(const std::vector<SettingKey>& keys, const std::vector<std::string>& fixed, SettingPlace source,
+       SettingsProblems& problems, ReadKeys& read)
+      : keys_{keys},
+        fixed_{fixed},
+        sections_{sections_of(keys)},
+        source_{std::move(source)},
+        problems_{problems},
+        read_{read} {}
 
   /// What is read next begins at this line of the file, counted from 0.
   void go_to_line(std::size_t line) { first_line_ = static_cast<int>(line); }
@@ -99,7 +105,9 @@ class Walk {
     return path.empty() ? name : path + "." + name;
   }
   [[nodiscard]] bool is_section(const std::string& path) const {
-    return std::find(sections_.begin(), sections_.end(), path) != sections_.end();
+    const auto holds = [&](const std::string& name) { return name.starts_with(path + "."); };
+    return std::find(sections_.begin(), sections_.end(), path) != sections_.end() ||
+           std::any_of(fixed_.begin(), fixed_.end(), holds);
   }
 
   void read_entry(const std::string& path, const YAML::Node& key, const YAML::Node& node) {
@@ -148,6 +156,9 @@ class Walk {
   }
 
   void add_unknown(const std::string& path, const YAML::Node& key, bool has_keys_below) {
+    if (std::find(fixed_.begin(), fixed_.end(), path) != fixed_.end()) {
+      return tell(place_of(key, key), path, "no longer a setting: its value is fixed, remove the line");
+    }
     const UnknownKey unknown = unknown_key(keys_, path, has_keys_below);
     for (const std::string& meant : unknown.meant) doubt(meant);
     tell(place_of(key, key), path, unknown.rule + hint_of(path));
@@ -181,6 +192,7 @@ class Walk {
   }
 
   const std::vector<SettingKey>& keys_;
+  const std::vector<std::string>& fixed_;
   std::vector<std::string> sections_;
   SettingPlace source_;
   SettingsProblems& problems_;
@@ -279,7 +291,7 @@ class PartReader {
 
 void SettingsReader::read_file(const std::string& yaml, const std::string& name) {
   file_ = name;
-  Walk walk{keys_, {.name = name}, problems_, read_};
+  Walk walk{keys_, fixed_, {.name = name}, problems_, read_};
   const YamlText text = yaml_text(yaml);
   for (const TextProblem& one : text.problems) walk.add_text_problem(one.line, one.column, one.what);
   PartReader{text.lines, walk}.read("", 0, text.lines.size());
@@ -290,7 +302,7 @@ void SettingsReader::read_override(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) return problems_.add(place, "give key=value");
   const std::string value = text.substr(equals + 1);
-  Walk walk{keys_, place, problems_, read_};
+  Walk walk{keys_, fixed_, place, problems_, read_};
   // On a command line "key=" means empty text, not "nothing".
   const YamlText checked = yaml_text(value.empty() ? "\"\"" : value);
   for (const TextProblem& one : checked.problems) walk.add_text_problem(1, 1, one.what);

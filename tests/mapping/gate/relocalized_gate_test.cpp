@@ -60,7 +60,7 @@ double shut_after(std::uint64_t seed, const Pose2& wrong, int scans) {
   return rounds.seconds_until_open(4);
 }
 
-/// 20 s and 10 m (mapping.gate.confirm_s, .confirm_m), and the views that P(pose right) needs.
+/// 20 s and 10 m (WriteGateParams::confirm_s, confirm_m), and the views that P(pose right) needs.
 TEST(RelocalizedGate, IsOpenAgainWithinTheConfirmingTimeOfTheRightPose) {
   constexpr double kConfirmed_s = 45.0;
   for (const int scans : {5, 25, 100}) {
