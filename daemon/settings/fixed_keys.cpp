@@ -60,7 +60,7 @@ constexpr std::array<Section, 29> kFixed{{
     {"mapping.paper", "most_scans"},
     {"mapping.paper.update", "least_scans most_chi2"},
     {"navigation.safety", "reaction_s command_life_s odometry_life_s low_battery_s plausible_s"},
-    {"navigation.wander", "turn_away_m slow_down_m go_on_m shortest_leg_s longest_leg_s"},
+    {"navigation.wander", "turn_away_m slow_down_m go_on_m"},
 }};
 
 }  // namespace

@@ -123,7 +123,7 @@ constexpr std::array kOfMapping{
     Mechanism{"confirming", "write gate: a pose confirmed after it was wrong",
               [](Settings& s) {
                 auto& gate = s.mapping.store_scan.gate;
-                gate.confirm_s = gate.confirm_m = 0.0;
+                gate.confirm_s = gate.confirm_m = gate.confirm_followed_s = gate.confirm_followed_m = 0.0;
               }},
     Mechanism{"doubt-withdraws", "write gate: withdrawal after long doubt",
               [](Settings& s) { s.mapping.store_scan.gate.most_doubt_s = kNever; }},

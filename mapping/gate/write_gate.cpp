@@ -93,8 +93,12 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 void WriteGate::note_break(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
   const SeenBreak seen = scan_break_.observe(tracked);
+  if (is_confirming_) {
+    if (seen.is_large) held_s_ = held_m_ = 0.0;  // whoever was carried once may be carried again
+    return;
+  }
   const bool is_small = !seen.is_large && seen.share > params_.wary_break;
-  if (was_tracking_ && !is_confirming_ && (seen.is_large || is_small)) {
+  if (was_tracking_ && (seen.is_large || is_small)) {
     if (!broken_) inlier_drop_.remember();
     if (seen.is_large) {
       broken_ = Broken{time, 0.0, true};
@@ -104,7 +108,7 @@ void WriteGate::note_break(const TrackedScan& tracked) {
       broken_->explained += kApproached * seen.share;
     }
   }
-  if (!broken_ || is_confirming_) return;
+  if (!broken_) return;
   const double over_s = broken_->shuts ? std::max(params_.wary_s, params_.break_settles_s) : params_.wary_s;
   if (inlier_drop_.is_worse_than_remembered(broken_->explained)) {
     is_confirming_ = true;
@@ -129,9 +133,9 @@ bool WriteGate::fits_as_before_break(Timestamp time) const {
 }
 
 /// Has the pose held for long and far enough? Who hides the view for a moment only holds that up; a proof that the pose
-/// was wrong takes back all that has spoken for it.
+/// was wrong, and doubt that lasts, take back all that has spoken for it.
 bool WriteGate::holds(GateReason judgement, Timestamp time, double passed_s, double driven_m) {
-  if (proves_wrong(judgement)) {
+  if (proves_wrong(judgement) || doubted_for_s_ >= params_.most_doubt_s) {
     held_s_ = held_m_ = 0.0;
   } else if (judgement == GateReason::kOpen && fits_as_before_break(time)) {
     held_s_ += passed_s;

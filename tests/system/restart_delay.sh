@@ -37,5 +37,14 @@ ended core-dump
 delay_is 0
 ended signal
 delay_is 2
+for damaged in abc '3 4' x=5 08 12345678901234567890 '$(reboot)'; do
+  echo "$damaged" >"$out/run/failures"
+  echo "$damaged" >"$out/run/began"
+  delay_is 0
+  echo "$damaged" >"$out/run/began"
+  ended signal
+  ended signal
+  delay_is 2
+done
 "$helper" 2>"$out/told" && fail "no usage" || [[ $? == 2 ]] || fail "exit code"
-echo "restart_delay: 15 delays"
+echo "restart_delay: the delays are right"

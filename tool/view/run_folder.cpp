@@ -219,15 +219,18 @@ void read_changes(const fs::path& file, RunFolder& run) {
 daemon::Settings settings_in(const fs::path& report) {
   std::ifstream in(report);
   const Json json = Json::parse(in, nullptr, false);
-  std::vector<std::string> changed;
-  if (json.is_object() && json.contains("settings") && json["settings"].contains("changed")) {
-    for (const auto& [key, value] : json["settings"]["changed"].items()) changed.push_back(key + "=" + value.dump());
+  std::vector<std::string> known;
+  const auto parsed = [&] { return daemon::parse_settings("", report.string(), known); };
+  if (!json.is_object() || !json.contains("settings") || !json["settings"].contains("changed")) return {};
+  for (const auto& [key, value] : json["settings"]["changed"].items()) {
+    known.push_back(key + "=" + value.dump());
+    try {
+      (void)parsed();
+    } catch (const daemon::SettingsError&) {
+      known.pop_back();
+    }
   }
-  try {
-    return daemon::parse_settings("", report.string(), changed);
-  } catch (const daemon::SettingsError&) {
-    return {};
-  }
+  return parsed();
 }
 
 }  // namespace

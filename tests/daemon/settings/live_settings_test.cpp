@@ -101,7 +101,7 @@ TEST_F(LiveSettingsTest, WhatWasSetOnTheCommandLineStaysSet) {
 TEST(LiveKeys, AreThoseThatDecideNoResultAndNeverWhoDrives) {
   Settings settings;
   const std::vector<SettingKey> keys = keys_of(settings);
-  EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const SettingKey& key) { return key.is_live; }));
+  EXPECT_GT(std::count_if(keys.begin(), keys.end(), [](const SettingKey& key) { return key.is_live; }), 10);
   for (const SettingKey& key : keys) {
     if (!key.is_live) continue;
     EXPECT_FALSE(key.affects_result) << key.name << ": a replay would not know of the change";

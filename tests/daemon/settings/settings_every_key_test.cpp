@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/settings/fixed_keys.hpp"
 #include "daemon/settings/settings.hpp"
 #include "tests/support/settings_lines.hpp"
 
@@ -183,6 +184,14 @@ TEST(EveryKey, AllAtOnceAreToldByLine) {
                        ": needs a number (" + limits_of(key) + "), not 'far'");
   }
   EXPECT_EQ(errors_of(yaml), expected);
+}
+
+TEST(EveryKey, IsNoneOfThoseThatAreFixedNow) {
+  Settings settings;
+  const std::vector<std::string> fixed = fixed_keys();
+  for (const SettingKey& key : keys_of(settings)) {
+    EXPECT_EQ(std::count(fixed.begin(), fixed.end(), key.name), 0) << key.name;
+  }
 }
 
 }  // namespace

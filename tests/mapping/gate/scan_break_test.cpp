@@ -141,6 +141,22 @@ TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
   EXPECT_TRUE(gate.is_open());
 }
 
+TEST(WriteGate, ARobotThatIsCarriedWhileItsPoseIsConfirmedBeginsAnew) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  for (int i = 0; i < 120; ++i) gate.observe(aisle_scan(robot, 0.0));
+  TrackedScan disbelieved = aisle_scan(robot, 0.0);
+  disbelieved.estimate.belief.pose_right = 0.2;
+  gate.observe(disbelieved);
+  for (int i = 0; i < 75; ++i) gate.observe(aisle_scan(robot, 0.0));
+  for (int i = 0; i < 75; ++i) {
+    gate.observe(aisle_scan(robot, 2.5));
+    ASSERT_FALSE(gate.is_open()) << i;
+  }
+  for (int i = 0; i < 15; ++i) gate.observe(aisle_scan(robot, 2.5));
+  EXPECT_TRUE(gate.is_open());
+}
+
 /// Of 100 beams that the map expects to end somewhere.
 TrackedScan fitting(TrackedScan tracked, std::uint32_t fit, std::uint32_t short_of) {
   tracked.estimate.belief.elsewhere = {

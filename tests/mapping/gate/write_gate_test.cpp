@@ -22,10 +22,6 @@ void drive(StraightDrive& robot, WriteGate& gate, double duration_s) {
   for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) gate.observe(robot.next());
 }
 
-void drive(StraightDrive& robot, ProvisionalWindow& window, double duration_s, bool counts = true) {
-  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) window.observe(robot.next(), counts);
-}
-
 template <typename Change>
 GateReason reason_after(Change change) {
   StraightDrive robot;
@@ -162,6 +158,23 @@ TEST(WriteGate, ADoubtForAMomentHoldsUpAConfirmationAndAProofBeginsItAnew) {
   EXPECT_FALSE(gate.is_open());
 }
 
+TEST(WriteGate, DoubtThatLastsBeginsAConfirmationAnew) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  disbelieve(robot, gate);
+  drive(robot, gate, 7.7);
+  for (int i = 0; i < 120; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.pose_right = 0.6;
+    gate.observe(tracked);
+  }
+  drive(robot, gate, 7.7);
+  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+  drive(robot, gate, 0.6);
+  EXPECT_TRUE(gate.is_open());
+}
+
 TEST(WriteGate, SearchingAtTheStartProvesNothing) {
   StraightDrive robot;
   WriteGate gate{{}};
@@ -268,71 +281,6 @@ TEST(WriteGate, BelievesNoMisfitOfAFewBeams) {
     gate.observe(tracked);
   }
   EXPECT_TRUE(gate.is_open());
-}
-
-TEST(PoseJump, SeesACorrectionThatCreepsInOverASecond) {
-  StraightDrive robot;
-  PoseJump jump{{}};
-  for (int i = 0; i < 50; ++i) EXPECT_FALSE(jump.observe(robot.next()));
-  bool jumped = false;
-  for (int i = 0; i < 10; ++i) {
-    robot.map_from_odom.y += 0.06;
-    jumped = jump.observe(robot.next()) || jumped;
-  }
-  EXPECT_TRUE(jumped);
-}
-
-TEST(PoseJump, LetsASpreadPoseMoveAndASlowDriftPass) {
-  StraightDrive robot;
-  PoseJump jump{{}};
-  for (int i = 0; i < 600; ++i) {
-    robot.map_from_odom.y += 0.004;  // 4 cm a second, as bad wheels may
-    EXPECT_FALSE(jump.observe(robot.next()));
-  }
-  TrackedScan spread = robot.next();
-  spread.estimate.covariance *= 400.0;  // 0.4 m
-  spread.estimate.map_from_robot.y += 0.9;
-  EXPECT_FALSE(jump.observe(spread));
-}
-
-TEST(PoseJump, BeginsAnewWithTheOdometry) {
-  StraightDrive robot;
-  PoseJump jump{{}};
-  for (int i = 0; i < 50; ++i) (void)jump.observe(robot.next());
-  TrackedScan reset = robot.next();
-  reset.odom_from_robot = {};
-  reset.odometry_epoch = 1;
-  EXPECT_FALSE(jump.observe(reset));
-}
-
-TEST(ProvisionalWindow, NeedsBothWayAndTime) {
-  StraightDrive robot;
-  ProvisionalWindow window{{.way_m = 10.0, .time_s = 30.0}};
-  drive(robot, window, 19.0);  // 9.5 m
-  EXPECT_FALSE(window.settled());
-  drive(robot, window, 41.0);  // 30 m: time is what takes longer
-  ASSERT_TRUE(window.settled());
-  EXPECT_NEAR(seconds(robot.now() - *window.settled()), 30.0, 0.3);
-}
-
-TEST(ProvisionalWindow, TimeAloneSettlesNothing) {
-  StraightDrive robot;
-  ProvisionalWindow window{{.way_m = 10.0, .time_s = 30.0}};
-  drive(robot, window, 60.0);
-  const Timestamp stopped = robot.now();
-  robot.speed_m_per_s = 0.0;
-  drive(robot, window, 3600.0);
-  ASSERT_TRUE(window.settled());
-  EXPECT_NEAR(seconds(stopped - *window.settled()), 20.0, 0.5) << "what was written 10 m before it stopped";
-}
-
-TEST(ProvisionalWindow, WhatPassesInDoubtDoesNotCount) {
-  StraightDrive robot;
-  ProvisionalWindow window{{.way_m = 10.0, .time_s = 30.0}};
-  drive(robot, window, 60.0);
-  const Timestamp settled = *window.settled();
-  drive(robot, window, 60.0, false);
-  EXPECT_EQ(window.settled(), settled);
 }
 
 class Sets : public testing::Test {
