@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tool/view/run_folder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 
 namespace deltamap::tool {
@@ -219,18 +221,19 @@ void read_changes(const fs::path& file, RunFolder& run) {
 daemon::Settings settings_in(const fs::path& report) {
   std::ifstream in(report);
   const Json json = Json::parse(in, nullptr, false);
-  std::vector<std::string> known;
-  const auto parsed = [&] { return daemon::parse_settings("", report.string(), known); };
   if (!json.is_object() || !json.contains("settings") || !json["settings"].contains("changed")) return {};
+  daemon::Settings as_delivered;
+  const std::vector<daemon::SettingKey> keys = daemon::keys_of(as_delivered);
+  std::vector<std::string> changed;
   for (const auto& [key, value] : json["settings"]["changed"].items()) {
-    known.push_back(key + "=" + value.dump());
-    try {
-      (void)parsed();
-    } catch (const daemon::SettingsError&) {
-      known.pop_back();
-    }
+    const auto is_it = [&name = key](const daemon::SettingKey& known) { return known.name == name; };
+    if (std::any_of(keys.begin(), keys.end(), is_it)) changed.push_back(key + "=" + value.dump());
   }
-  return parsed();
+  try {
+    return daemon::parse_settings("", report.string(), changed);
+  } catch (const daemon::SettingsError&) {
+    return {};
+  }
 }
 
 }  // namespace
