@@ -4,9 +4,11 @@
 what was measured and at which revision is kept in experiments.json beside it. Called by ./dev experiments.
 
   experiments.py [--quick] [--only NAME]... [--seed N] [--jobs N]
+  experiments.py --page FOLDER
       --quick: short drives, few seeds; writes into build/ alone
       --only: does these anew and keeps what is known of the others
-      --jobs: drives at once; experiments that measure the machine do one"""
+      --jobs: drives at once; experiments that measure the machine do one
+      --page: only writes the page of an ablation that `deltamap experiment ablation --out FOLDER` has done"""
 import argparse, json, os, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -57,7 +59,7 @@ def markdown(parts):
 
 ABLATION = """# What each mechanism and each key is worth
 
-Written by `./dev experiments --only ablation` on %s: %s.
+Written by `./dev experiments`, or from what `deltamap experiment ablation` has left in its folder, on %s: %s.
 
 A row changes one thing: a mechanism is switched off, or a key is set to half or twice its value. The same worlds are driven
 through as delivered. A cell tells the mean difference to that, its 95 %% interval (bootstrap over the worlds), and in how many
@@ -100,7 +102,11 @@ def main():
     parser.add_argument("--only", action="append")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int)
+    parser.add_argument("--page", type=pathlib.Path, metavar="FOLDER")
     arguments = parser.parse_args()
+    if arguments.page:
+        (ROOT / PAGES["ablation"]).write_text(page_of(json.loads((arguments.page / "summary.json").read_text())))
+        return
     known = experiments()
     unknown = sorted(set(arguments.only or []) - set(known))
     if unknown:
