@@ -6,7 +6,7 @@
 
 #include "core/text_of_file.hpp"
 #include "daemon/settings/fingerprint.hpp"
-#include "daemon/settings/fixed_keys.hpp"
+#include "daemon/settings/former_keys.hpp"
 #include "daemon/settings/reader/settings_reader.hpp"
 #include "daemon/settings/settings_reading.hpp"
 
@@ -17,7 +17,7 @@ SettingsReading reading_of(const std::string& yaml, const std::string& name,
                            const std::vector<std::string>& overrides) {
   SettingsReading reading;
   const std::vector<SettingKey> keys = keys_of(reading.settings);
-  SettingsReader reader{keys, fixed_keys()};
+  SettingsReader reader{keys, former_keys()};
   reader.read_file(yaml, name);
   for (const std::string& text : overrides) reader.read_override(text);
   for (const Contradiction& wrong : contradictions_in(reading.settings)) {

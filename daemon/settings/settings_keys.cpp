@@ -175,14 +175,14 @@ std::vector<SettingKey> keys_of(Settings& settings) {
       with_symbol(text_key("map.file", settings.map.file, "first map: map_server YAML with its PGM"), "M_0")));
   keys.push_back(not_for_results(with_symbol(
       text_key("map.store", settings.map.store, "SQLite file of all map revisions; empty: they are not kept"), "M_k")));
+  keys.push_back(not_for_results(
+      text_key("map.newest", settings.map.newest,
+               "YAML, with its PGM, of the newest revision for other programs, replaced in one step; empty: none")));
   keys.push_back(
       not_for_results(whole_key("map.retention.revisions", settings.map.retention.revisions, "", 0, 1'000'000'000,
                                 "how many of the newest revisions stay one by one; 0: no such rule")));
   keys.push_back(not_for_results(number_key("map.retention.days", settings.map.retention.days, "days", 0.0, 36500.0,
                                             "age up to which revisions stay one by one; 0: no such rule")));
-  keys.push_back(not_for_results(
-      text_key("map.newest", settings.map.newest,
-               "YAML, with its PGM, of the newest revision for other programs, replaced in one step; empty: none")));
   keys.push_back(
       pose_key("localization.initial_pose", settings.initial_pose,
                "robot in the map at the first scan; null: where the run before left it, else found by itself"));

@@ -20,8 +20,6 @@ void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(with_symbol(number_key(at + "kld_quantile", particles.kld_quantile, "", 0.1, 5.0,
                                         "quantile of the normal distribution: how surely the bound of kld_error holds"),
                              "z_(1-δ)"));
-  keys.push_back(whole_key("localization.beams", localizer.beams, "", 0, 1000,
-                           "beams of a scan that are weighed, evenly chosen among the valid ones; 0: all"));
   auto& update = localizer.update;
   keys.push_back(number_key("localization.update.distance_m", update.distance_m, "m", 0.0, 10.0,
                             "distance driven until a scan is weighed again"));
@@ -80,14 +78,16 @@ void add_belief(localization::LocalizerParams& localizer, Keys& keys) {
                             "a turn: one view may look like another"));
   keys.push_back(whole_key("localization.global.candidates_a_scan", localizer.global.candidates_a_scan, "", 100,
                            100000000, "poses of the whole map looked at in one scan while the pose is unknown"));
-  keys.push_back(number_key("localization.kidnapping_prior", localizer.rivals.elsewhere_prior, "", 1e-30, 1.0,
-                            "odds of any pose hypothesis elsewhere against the believed one, before any scan: how "
-                            "rarely the robot is kidnapped"));
 }
 
 }  // namespace
 
 void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys) {
+  keys.push_back(whole_key("localization.beams", localizer.beams, "", 0, 1000,
+                           "beams of a scan that are weighed, evenly chosen among the valid ones; 0: all"));
+  keys.push_back(number_key("localization.kidnapping_prior", localizer.rivals.elsewhere_prior, "", 1e-30, 1.0,
+                            "odds of any pose hypothesis elsewhere against the believed one, before any scan: how "
+                            "rarely the robot is kidnapped"));
   add_particles(localizer, keys);
   add_wheels(localizer, keys);
   add_sensor(localizer, keys);

@@ -23,9 +23,9 @@ constexpr int kWorlds = 12;
 constexpr int kQuickWorlds = 1;
 constexpr double kMinutes = 5.0;
 constexpr double kQuickMinutes = 1.0;
-constexpr std::size_t kQuickStep = 10;  // one change of so many
+constexpr std::size_t kQuickStep = 10;                 // one change of so many
 constexpr const char* kCarriedPlace = "changed.yaml";  // a hall that is half out of date: what is wrong, map or pose?
-constexpr int kCarriedSeeds = 2;  // of each event
+constexpr int kCarriedSeeds = 2;                       // of each event
 
 constexpr const char* kDelivered = "delivered";
 constexpr double kSame = 1e-9;  // relative; closer values are equal
@@ -237,7 +237,9 @@ Report report_of(const std::vector<Outcome>& outcomes) {
 
 Experiment ablation_experiment() {
   return {.name = "ablation",
-          .what = "What each mechanism and each key is worth: switched off, halved or doubled, on unseen's worlds and carried elsewhere",
+          .what =
+              "What each mechanism and each key is worth: switched off, halved or doubled, on unseen's worlds and "
+              "carried elsewhere",
           .runs = runs_of,
           .report = report_of,
           .times = Experiment::Times::kThread};

@@ -50,10 +50,10 @@ std::string quoted(const std::string& text) { return "'" + shortened(text, kLong
 /// Walks YAML trees of one file or override and hands every leaf to its key.
 class Walk {
  public:
-  Walk(const std::vector<SettingKey>& keys, const std::vector<std::string>& fixed, SettingPlace source,
+  Walk(const std::vector<SettingKey>& keys, const std::map<std::string, std::string>& former, SettingPlace source,
        SettingsProblems& problems, ReadKeys& read)
       : keys_{keys},
-        fixed_{fixed},
+        former_{former},
         sections_{sections_of(keys)},
         source_{std::move(source)},
         problems_{problems},
@@ -105,9 +105,9 @@ class Walk {
     return path.empty() ? name : path + "." + name;
   }
   [[nodiscard]] bool is_section(const std::string& path) const {
-    const auto holds = [&](const std::string& name) { return name.starts_with(path + "."); };
+    const auto holds = [&](const auto& former) { return former.first.starts_with(path + "."); };
     return std::find(sections_.begin(), sections_.end(), path) != sections_.end() ||
-           std::any_of(fixed_.begin(), fixed_.end(), holds);
+           std::any_of(former_.begin(), former_.end(), holds);
   }
 
   void read_entry(const std::string& path, const YAML::Node& key, const YAML::Node& node) {
@@ -156,8 +156,11 @@ class Walk {
   }
 
   void add_unknown(const std::string& path, const YAML::Node& key, bool has_keys_below) {
-    if (std::find(fixed_.begin(), fixed_.end(), path) != fixed_.end()) {
-      return tell(place_of(key, key), path, "no longer a setting: its value is fixed, remove the line");
+    if (const auto former = former_.find(path); former != former_.end()) {
+      const std::string& new_name = former->second;
+      return tell(place_of(key, key), path,
+                  new_name.empty() ? "no longer a setting: its value is fixed, remove the line"
+                                   : "is now called " + quoted(new_name));
     }
     const UnknownKey unknown = unknown_key(keys_, path, has_keys_below);
     for (const std::string& meant : unknown.meant) doubt(meant);
@@ -192,7 +195,7 @@ class Walk {
   }
 
   const std::vector<SettingKey>& keys_;
-  const std::vector<std::string>& fixed_;
+  const std::map<std::string, std::string>& former_;
   std::vector<std::string> sections_;
   SettingPlace source_;
   SettingsProblems& problems_;
@@ -291,7 +294,7 @@ class PartReader {
 
 void SettingsReader::read_file(const std::string& yaml, const std::string& name) {
   file_ = name;
-  Walk walk{keys_, fixed_, {.name = name}, problems_, read_};
+  Walk walk{keys_, former_, {.name = name}, problems_, read_};
   const YamlText text = yaml_text(yaml);
   for (const TextProblem& one : text.problems) walk.add_text_problem(one.line, one.column, one.what);
   PartReader{text.lines, walk}.read("", 0, text.lines.size());
@@ -302,7 +305,7 @@ void SettingsReader::read_override(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) return problems_.add(place, "give key=value");
   const std::string value = text.substr(equals + 1);
-  Walk walk{keys_, fixed_, place, problems_, read_};
+  Walk walk{keys_, former_, place, problems_, read_};
   // On a command line "key=" means empty text, not "nothing".
   const YamlText checked = yaml_text(value.empty() ? "\"\"" : value);
   for (const TextProblem& one : checked.problems) walk.add_text_problem(1, 1, one.what);

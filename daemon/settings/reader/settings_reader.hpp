@@ -23,9 +23,10 @@ struct ReadKeys {
 
 class SettingsReader {
  public:
-  /// `keys` must outlive the reader; they are assigned to as values are read. `fixed`: names that were keys once.
-  SettingsReader(const std::vector<SettingKey>& keys, std::vector<std::string> fixed)
-      : keys_{keys}, fixed_{std::move(fixed)} {}
+  /// `keys` must outlive the reader; they are assigned to as values are read. `former`: names that were
+  /// keys once, each with its new name, empty where there is none.
+  SettingsReader(const std::vector<SettingKey>& keys, std::map<std::string, std::string> former)
+      : keys_{keys}, former_{std::move(former)} {}
 
   /// A whole file; mistakes in it begin with NAME:LINE:COLUMN, both from 1.
   void read_file(const std::string& yaml, const std::string& name);
@@ -42,7 +43,7 @@ class SettingsReader {
 
  private:
   const std::vector<SettingKey>& keys_;
-  std::vector<std::string> fixed_;
+  std::map<std::string, std::string> former_;
   std::string file_;
   int overrides_ = 0;
   SettingsProblems problems_;

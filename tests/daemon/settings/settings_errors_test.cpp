@@ -59,6 +59,11 @@ TEST(SettingsErrors, AKeyThatIsFixedNowIsToldAsSuch) {
                    "--set mapping.gate.hold_s=2: mapping.gate.hold_s" + fixed}));
 }
 
+TEST(SettingsErrors, ARenamedKeyIsToldItsNewName) {
+  EXPECT_EQ(errors_of("localization: {rivals: {elsewhere_prior: 0.1}}\n"),
+            Lines{"f:1:25: localization.rivals.elsewhere_prior: is now called 'localization.kidnapping_prior'"});
+}
+
 TEST(SettingsErrors, WhatIsLikeNothingGetsNoHint) {
   EXPECT_EQ(errors_of("<<: {seed: 1}"),
             Lines{"f:1:1: <<: unknown section (none is near: --print-config lists them all)"});

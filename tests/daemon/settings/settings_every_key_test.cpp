@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "daemon/settings/fixed_keys.hpp"
+#include "daemon/settings/former_keys.hpp"
 #include "daemon/settings/settings.hpp"
 #include "tests/support/settings_lines.hpp"
 
@@ -186,12 +187,16 @@ TEST(EveryKey, AllAtOnceAreToldByLine) {
   EXPECT_EQ(errors_of(yaml), expected);
 }
 
-TEST(EveryKey, IsNoneOfThoseThatAreFixedNow) {
+TEST(EveryKey, IsNoFormerOne) {
   Settings settings;
-  const std::vector<std::string> fixed = fixed_keys();
+  auto former = former_keys();
+  std::set<std::string> names;
   for (const SettingKey& key : keys_of(settings)) {
-    EXPECT_EQ(std::count(fixed.begin(), fixed.end(), key.name), 0) << key.name;
+    EXPECT_FALSE(former.contains(key.name)) << key.name;
+    names.insert(key.name);
   }
+  for (const auto& [name, new_name] : former)
+    EXPECT_TRUE(new_name.empty() || names.contains(new_name)) << name << " -> " << new_name;
 }
 
 }  // namespace

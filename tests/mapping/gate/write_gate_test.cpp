@@ -102,6 +102,14 @@ TEST(WriteGate, AWrongPoseIsToldOnceAndHasToHoldBeforeItOpensAgain) {
 }
 
 /// Shuts it by one scan at a pose that is rather wrong, followed all along.
+void doubt(StraightDrive& robot, WriteGate& gate, double duration_s) {
+  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.pose_right = 0.6;
+    gate.observe(tracked);
+  }
+}
+
 void disbelieve(StraightDrive& robot, WriteGate& gate) {
   TrackedScan tracked = robot.next();
   tracked.estimate.belief.pose_right = 0.2;
@@ -142,11 +150,7 @@ TEST(WriteGate, ADoubtForAMomentHoldsUpAConfirmationAndAProofBeginsItAnew) {
   drive(robot, gate, 10.0);
   disbelieve(robot, gate);
   drive(robot, gate, 5.0);
-  for (int i = 0; i < 20; ++i) {
-    TrackedScan tracked = robot.next();
-    tracked.estimate.belief.pose_right = 0.6;
-    gate.observe(tracked);
-  }
+  doubt(robot, gate, 2.0);
   drive(robot, gate, 2.7);
   EXPECT_FALSE(gate.is_open());
   drive(robot, gate, 0.6);
@@ -164,11 +168,7 @@ TEST(WriteGate, DoubtThatLastsBeginsAConfirmationAnew) {
   drive(robot, gate, 10.0);
   disbelieve(robot, gate);
   drive(robot, gate, 7.7);
-  for (int i = 0; i < 120; ++i) {
-    TrackedScan tracked = robot.next();
-    tracked.estimate.belief.pose_right = 0.6;
-    gate.observe(tracked);
-  }
+  doubt(robot, gate, 12.0);
   drive(robot, gate, 7.7);
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
   drive(robot, gate, 0.6);

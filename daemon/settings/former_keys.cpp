@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/settings/fixed_keys.hpp"
+#include "daemon/settings/former_keys.hpp"
 
 #include <array>
 #include <sstream>
@@ -63,13 +63,17 @@ constexpr std::array<Section, 29> kFixed{{
     {"navigation.wander", "turn_away_m slow_down_m go_on_m"},
 }};
 
+constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kRenamed{
+    {{"localization.fit.converged_after_m", "localization.global.converged_after_m"},
+     {"localization.rivals.elsewhere_prior", "localization.kidnapping_prior"}}};
+
 }  // namespace
 
-std::vector<std::string> fixed_keys() {
-  std::vector<std::string> keys;
+std::map<std::string, std::string> former_keys() {
+  std::map<std::string, std::string> keys{kRenamed.begin(), kRenamed.end()};
   for (const auto& [section, names] : kFixed) {
     std::istringstream words{std::string{names}};
-    for (std::string name; words >> name;) keys.push_back(std::string{section} + "." + name);
+    for (std::string name; words >> name;) keys.emplace(std::string{section} + "." + name, "");
   }
   return keys;
 }
