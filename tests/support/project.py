@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts that measure share: where project and real data lie, programs run, data unpacked."""
-import json, lzma, os, pathlib, platform, shutil, subprocess
+import argparse, datetime, json, lzma, os, pathlib, platform, shutil, subprocess, sys, time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("DELTAMAP_DATA", ROOT.parent / "shared" / "data"))
@@ -45,6 +45,24 @@ def write_section(file, title, lines):
 
 PLACES = {"robot.port", "laser.port", "map.file", "map.store", "map.newest", "control.socket", "poses.socket",
           "recording.file"}
+
+
+def measure_a_section(description, command, title, measure):
+    """The whole of a program that measures one section of a results page. `measure(seed, quick)` gives what comes below the
+    provenance, line by line, and whether everything asked for is met: that is the exit code. `command` is what an engineer types."""
+    options = argparse.ArgumentParser(description=description)
+    options.add_argument("--quick", action="store_true")
+    options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--out", type=pathlib.Path)
+    wanted = options.parse_args()
+    began = time.monotonic()
+    lines, is_met = measure(wanted.seed, wanted.quick)
+    lines = ["Written by `%s` (%s, %s, %.0f s)." % (command, provenance(), datetime.date.today(), time.monotonic() - began), ""] + lines
+    if wanted.out:
+        write_section(wanted.out, title, lines)
+    else:
+        print("\n".join(lines))
+    sys.exit(0 if is_met else 1)
 
 
 def told(settings):

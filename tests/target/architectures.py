@@ -4,7 +4,7 @@
 maps differ? A recorded live run in a room whose boxes come and go, and the real log `intel` where the data are there. Writes its
 section of docs/results/service.md. As root.
 usage: architectures.py [--quick] [--seed N] [--out FILE]    --quick: 30 s of the room alone"""
-import argparse, datetime, json, math, pathlib, sys, time
+import math, pathlib, sys, time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
@@ -71,9 +71,8 @@ def on_intel(seed):
     return compared(OUT / "intel/i386", OUT / "intel/amd64")
 
 
-def section(found, seed, seconds):
-    lines = ["Written by `./dev bench i386` (%s, %s, %.0f s)." % (project.provenance(), datetime.date.today(), seconds), "",
-             "The same bytes, seed (%d) and settings, replayed by the amd64 programs and by those of the i386 package. The C library computes" % seed,
+def section(found, seed):
+    lines = ["The same bytes, seed (%d) and settings, replayed by the amd64 programs and by those of the i386 package. The C library computes" % seed,
              "angles and exponentials with other last digits there; the sums of a scan's weights are whole numbers. Asked for: half of all poses within",
              "%g mm, 99 %% within %g mm, and at most %g %% of the known cells different." % (1000 * MOST_MEDIAN_M, 1000 * MOST_P99_M, 100 * MOST_CELLS), "",
              "| recording | scans | poses that are equal | median | 99 % | farthest | farthest turn | revisions, i386 and amd64 | cells that differ | |",
@@ -85,21 +84,13 @@ def section(found, seed, seconds):
     return lines
 
 
-def main():
-    options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--quick", action="store_true")
-    options.add_argument("--seed", type=int, default=1)
-    options.add_argument("--out", type=pathlib.Path)
-    wanted = options.parse_args()
-    began = time.monotonic()
-    drive_s = 30 if wanted.quick else 180
-    found = [("%d s in a room whose boxes come and go" % drive_s, on_the_room(wanted.seed, drive_s))]
-    if not wanted.quick and not missing_data():
-        found.append(("`intel`, 45 minutes of a real building, mapping on", on_intel(wanted.seed)))
-    lines = section(found, wanted.seed, time.monotonic() - began)
-    (project.write_section(wanted.out, TITLE, lines) if wanted.out else print("\n".join(lines)))
-    return 0 if all(is_met(f) for _, f in found) else 1
+def measure(seed, quick):
+    drive_s = 30 if quick else 180
+    found = [("%d s in a room whose boxes come and go" % drive_s, on_the_room(seed, drive_s))]
+    if not quick and not missing_data():
+        found.append(("`intel`, 45 minutes of a real building, mapping on", on_intel(seed)))
+    return section(found, seed), all(is_met(f) for _, f in found)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    project.measure_a_section(__doc__, "./dev bench i386", TITLE, measure)

@@ -5,7 +5,7 @@ recording on. callgrind counts the instructions of two live runs of different le
 A third run tells the peak of memory, and what the kernel adds. Writes its section of docs/results/service.md. As root, on a
 machine that has a quarter of a processor to spare.
 usage: atom.py [--quick] [--seed N] [--out FILE]    --quick: 20 s in place of 60"""
-import argparse, datetime, json, pathlib, re, sys, time
+import json, pathlib, re, sys, time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
@@ -64,26 +64,18 @@ def rows(f):
             row("peak of resident memory", "%.1f MB" % f["peak_mb"], "≤ %d MB" % MOST_MB, f["peak_mb"] <= MOST_MB)]
 
 
-def section(made, seed, seconds, took_s):
-    return ["Written by `./dev bench atom` (%s, %s, %.0f s)." % (project.provenance(), datetime.date.today(), took_s), "",
-            "The daemon of the i386 package, live for %d s (seed %d) behind a simulated robot that drives about in a room whose boxes come and go: 500 particles," % (seconds, seed),
+def section(made, seed, seconds):
+    return ["The daemon of the i386 package, live for %d s (seed %d) behind a simulated robot that drives about in a room whose boxes come and go: 500 particles," % (seconds, seed),
             "181 beams at 38400 baud, store and recording on. callgrind counts the instructions of all its threads, without the kernel's. An Atom N270 is taken for",
             "%.0f million a second: 1.6 GHz at one in two cycles; divisions and roots, which take it thirty to sixty cycles, count as one. Under callgrind this machine" % (ATOM_PER_S / 1e6),
             "may localize only a part of the scans; all that the daemon does is then multiplied by what is missing, also what no scan costs: an upper bound.", ""] + table_lines(made)
 
 
-def main():
-    options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--quick", action="store_true")
-    options.add_argument("--seed", type=int, default=1)
-    options.add_argument("--out", type=pathlib.Path)
-    wanted = options.parse_args()
-    began, seconds = time.monotonic(), 20 if wanted.quick else 60
-    made = rows(measure(wanted.seed, seconds))
-    lines = section(made, wanted.seed, seconds, time.monotonic() - began)
-    (project.write_section(wanted.out, TITLE, lines) if wanted.out else print("\n".join(lines)))
-    return 0 if all(r["met"] is not False for r in made) else 1
+def of_a_drive(seed, quick):
+    seconds = 20 if quick else 60
+    made = rows(measure(seed, seconds))
+    return section(made, seed, seconds), all(r["met"] is not False for r in made)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    project.measure_a_section(__doc__, "./dev bench atom", TITLE, of_a_drive)
