@@ -3,6 +3,7 @@
 // robot and life in it; what a choice is worth shows in the median and the tail of many seeds, never in one.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "experiments/mapping/unseen_drive.hpp"
@@ -17,6 +18,8 @@ constexpr int kSeeds = 60;
 constexpr int kQuickSeeds = 3;
 constexpr double kMinutes = 40.0;
 constexpr double kQuickMinutes = 6.0;
+constexpr std::size_t kShown = 6;  // of the worst seeds: trajectory and error
+constexpr double kChartEvery_s = 5.0;
 
 std::vector<SpreadAsked> asked() {
   return {{"error_rms_m", "m", Better::kLess, 0.01, 0.03, 0.10},
@@ -106,6 +109,37 @@ Chart chart_of(const std::string& what, const std::string& number, const std::ve
   return {what + ", seeds in order", "share of the seeds", what, {series}};
 }
 
+/// By RMSE of the pose, the worst first: those whose start was never found.
+std::vector<const Outcome*> worst_of(const std::vector<Outcome>& outcomes) {
+  const auto error_m = [](const Outcome& outcome) {
+    const double rms_m = outcome.number("error_rms_m");
+    return std::isnan(rms_m) ? std::numeric_limits<double>::infinity() : rms_m;
+  };
+  std::vector<const Outcome*> worst;
+  for (const Outcome& outcome : outcomes) worst.push_back(&outcome);
+  std::stable_sort(worst.begin(), worst.end(),
+                   [&](const Outcome* a, const Outcome* b) { return error_m(*a) > error_m(*b); });
+  worst.resize(std::min(worst.size(), kShown));
+  return worst;
+}
+
+Chart error_chart(const std::vector<const Outcome*>& worst) {
+  Chart chart{"Error of the pose in the worst seeds, m", "time, s", "error, m", {}};
+  for (const Outcome* outcome : worst) {
+    Series series{"seed " + outcome->label("seed"), {}};
+    const std::vector<double> time_s = outcome->scans.column("t_s");
+    const std::vector<double> error_m = outcome->scans.column("error_m");
+    double next_s = 0.0;
+    for (std::size_t i = 0; i < time_s.size(); ++i) {
+      if (time_s[i] < next_s) continue;
+      series.points.emplace_back(time_s[i], error_m[i]);
+      next_s = time_s[i] + kChartEvery_s;
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
 std::vector<Run> runs_of(const Options& options) {
   const auto seeds = static_cast<std::uint64_t>(options.repeats.value_or(options.quick ? kQuickSeeds : kSeeds));
   const double minutes = options.minutes.value_or(options.quick ? kQuickMinutes : kMinutes);
@@ -134,6 +168,12 @@ Report report_of(const std::vector<Outcome>& outcomes) {
   report.charts.push_back(chart_of("skill of the map", "skill", outcomes));
   report.charts.push_back(
       chart_of("gate shut while the pose is right, share of the time", "gate_shut_while_right", outcomes));
+  const std::vector<const Outcome*> worst = worst_of(outcomes);
+  report.charts.push_back(error_chart(worst));
+  for (const Outcome* outcome : worst) {
+    for (const Picture& picture : outcome->pictures)
+      report.pictures.push_back({"Seed " + outcome->label("seed") + ": " + picture.title, picture.svg});
+  }
   report.tables.push_back(failed_seeds(outcomes));
   report.tables.push_back(shut_while_right(outcomes));
   return report;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiments/report/svg_map.hpp"
 
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <cstdio>
 
 #include "mapping/merge/overlay_score.hpp"
 #include "mapping/registration/transformed_grid.hpp"
@@ -27,6 +30,22 @@ std::string path_of_runs(const GridGeometry& geometry, const std::string& colour
   return path + "\"/>";
 }
 
+/// To a tenth of a cell, and no point twice; as wide as a pen's line whatever the picture's size.
+std::string path_of(const Trajectory& trajectory, const GridGeometry& geometry) {
+  std::string path = "<path fill=\"none\" stroke=\"" + trajectory.colour +
+                     "\" stroke-width=\"1.2\" stroke-linejoin=\"round\" vector-effect=\"non-scaling-stroke\" d=\"";
+  std::string last;
+  for (const Point2& point : trajectory.points) {
+    const Point2 cells = (point - geometry.origin) / geometry.resolution_m;
+    std::array<char, 64> at{};
+    (void)std::snprintf(at.data(), at.size(), "%.1f %.1f", cells.x(), geometry.height - cells.y());
+    if (at.data() == last) continue;
+    path += (last.empty() ? "M" : "L") + std::string{at.data()};
+    last = at.data();
+  }
+  return path + "\"/>";
+}
+
 std::string opened_svg(const GridGeometry& frame) {
   return "<svg viewBox=\"0 0 " + number(frame.width) + " " + number(frame.height) +
          "\" style=\"max-width:34rem\" shape-rendering=\"crispEdges\">";
@@ -41,18 +60,21 @@ std::string paths_of_map(const OccupancyGrid& map) {
 
 std::string svg_of_map(const OccupancyGrid& map) { return opened_svg(map.geometry()) + paths_of_map(map) + "</svg>\n"; }
 
-std::string svg_of_difference(const OccupancyGrid& map, const OccupancyGrid& other) {
+std::string svg_of_difference(const OccupancyGrid& map, const OccupancyGrid& other,
+                              std::span<const Trajectory> trajectories) {
   assert(map.geometry() == other.geometry() && "both maps must have the same cells");
   const auto surface = [](bool in_map, bool in_other, const OccupancyGrid& one, const OccupancyGrid& two) {
     return [=, &one, &two](Cell cell) {
       return (one[cell] == CellState::kOccupied) == in_map && (two[cell] == CellState::kOccupied) == in_other;
     };
   };
-  return opened_svg(map.geometry()) +
-         path_of_runs(map.geometry(), "#eeeeee", [&](Cell cell) { return map[cell] == CellState::kFree; }) +
-         path_of_runs(map.geometry(), "#444444", surface(true, true, map, other)) +
-         path_of_runs(map.geometry(), "#1f5fa8", surface(true, false, map, other)) +
-         path_of_runs(map.geometry(), "#c4531c", surface(false, true, map, other)) + "</svg>\n";
+  std::string svg = opened_svg(map.geometry()) +
+                    path_of_runs(map.geometry(), "#eeeeee", [&](Cell cell) { return map[cell] == CellState::kFree; }) +
+                    path_of_runs(map.geometry(), "#444444", surface(true, true, map, other)) +
+                    path_of_runs(map.geometry(), "#1f5fa8", surface(true, false, map, other)) +
+                    path_of_runs(map.geometry(), "#c4531c", surface(false, true, map, other));
+  for (const Trajectory& trajectory : trajectories) svg += path_of(trajectory, map.geometry());
+  return svg + "</svg>\n";
 }
 
 std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local, const Pose2& map_from_local) {

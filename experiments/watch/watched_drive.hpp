@@ -22,7 +22,7 @@ struct WatchedRun {
   bool knows_start = true;
 };
 
-/// Its numbers, and the label "cause"; a row of its scan table for every second.
+/// Its numbers, and the label "cause"; a row of its scan table for every second, and a picture of its two trajectories.
 [[nodiscard]] Outcome watched_drive(const WatchedRun& run);
 
 }  // namespace deltamap::experiments

@@ -7,7 +7,6 @@
 
 #include "experiments/drive/room_changes.hpp"
 #include "experiments/registry.hpp"
-#include "experiments/report/svg_map.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace deltamap::experiments {
@@ -128,19 +127,6 @@ TEST(RoomChanges, TakeBoxesOutOfOneObstacleAndPutThemBackToWhereTheyWere) {
     EXPECT_LT(distance_between(std::get<simulation::Box>(changes.boxes().front().shape).centre, box.shape),
               kOneObstacle_m);
   }
-}
-
-TEST(MapPicture, TellsTheSurfacesOfTwoMapsApart) {
-  OccupancyGrid one{GridGeometry{3, 1, 0.1, {0.0, 0.0}}};
-  OccupancyGrid other = one;
-  one.set({0, 0}, CellState::kOccupied);
-  one.set({1, 0}, CellState::kOccupied);
-  other.set({1, 0}, CellState::kOccupied);
-  other.set({2, 0}, CellState::kOccupied);
-  const std::string svg = svg_of_difference(one, other);
-  EXPECT_NE(svg.find("<path fill=\"#1f5fa8\" d=\"M0 0h1v1h-1z\"/>"), std::string::npos) << svg;
-  EXPECT_NE(svg.find("<path fill=\"#444444\" d=\"M1 0h1v1h-1z\"/>"), std::string::npos) << svg;
-  EXPECT_NE(svg.find("<path fill=\"#c4531c\" d=\"M2 0h1v1h-1z\"/>"), std::string::npos) << svg;
 }
 
 }  // namespace

@@ -180,6 +180,9 @@ TEST(Unseen, LeavesALineForEverySeedWithItsKindAndItsFigures) {
                              "cells_written_astray", "wall_drift_m", "found_after_s", "odometry_lag_s"}) {
     EXPECT_NE(table.find(column), std::string::npos) << column;
   }
+  const std::string page = content_of(folder.path() / "index.html");
+  EXPECT_NE(page.find("Error of the pose in the worst seeds"), std::string::npos);
+  EXPECT_NE(page.find("<figcaption>Seed 1: robot green, believed magenta"), std::string::npos);
 }
 
 TEST(Unseen, NeverUpdatesTheMapWhereMappingIsSwitchedOff) {
