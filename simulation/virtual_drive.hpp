@@ -122,7 +122,7 @@ class VirtualDrive {
   std::optional<Forklift> forklift_;
   std::optional<Creep> creep_;
   std::vector<Change> unseen_;  // from before the first scan
-  std::uint64_t many_ = 0;      // calls of change_many
+  std::size_t many_ = 0;        // calls of change_many
   Timestamp now_;
   Timestamp next_odometry_;
   Timestamp next_change_;
