@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/particles/particle_filter.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -13,6 +14,15 @@ namespace deltamap::localization::particles {
 namespace {
 
 constexpr std::uint32_t kOneInSlips = 16;  // particles that are drawn as if the wheels had slipped
+
+/// L of L Lᵀ = covariance.
+Eigen::Matrix3d root_of(const PoseCovariance& covariance) {
+  constexpr double kNearlyNothing = 1e-12;  // a direction may be known exactly
+  return Eigen::LLT<Eigen::Matrix3d>{covariance + kNearlyNothing * Eigen::Matrix3d::Identity()}.matrixL();
+}
+
+/// Of a normal kernel for so many samples of three dimensions, against their standard deviation.
+double kernel_width(std::size_t samples) { return std::pow(0.8 / static_cast<double>(samples), 1.0 / 7.0); }
 
 Pose2 drawn_slip(const motion::MotionModelParams& model, double share, Random& random) {
   return {random.normal(share * model.slip_m), random.normal(share * motion::kSlipSideways * model.slip_m),
@@ -27,15 +37,25 @@ ParticleFilter::ParticleFilter(const ParticleFilterParams& params, std::uint64_t
   params_.max = std::max(params_.min, params_.max);
 }
 
-void ParticleFilter::start_around(const Pose2& map_from_robot, double position_deviation_m,
-                                  double heading_deviation_rad) {
+Pose2 ParticleFilter::beside(const Pose2& map_from_robot, const Eigen::Matrix3d& root_of_covariance) {
+  const double along = random_.normal(1.0);
+  const double across = random_.normal(1.0);
+  const double turned = random_.normal(1.0);
+  const Eigen::Vector3d off = root_of_covariance * Eigen::Vector3d{along, across, turned};
+  return {map_from_robot.x + off.x(), map_from_robot.y + off.y(), wrapped_angle(map_from_robot.theta + off.z())};
+}
+
+void ParticleFilter::start_around(const Pose2& map_from_robot, const PoseCovariance& covariance, std::size_t count) {
   first_slip_.reset();
-  particles_.resize_uniform(static_cast<std::size_t>(params_.min));
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const double x_m = map_from_robot.x + random_.normal(position_deviation_m);
-    const double y_m = map_from_robot.y + random_.normal(position_deviation_m);
-    particles_.set_pose(i, {x_m, y_m, wrapped_angle(map_from_robot.theta + random_.normal(heading_deviation_rad))});
-  }
+  particles_.resize_uniform(count);
+  const Eigen::Matrix3d root = root_of(covariance);
+  for (std::size_t i = 0; i < count; ++i) particles_.set_pose(i, beside(map_from_robot, root));
+}
+
+void ParticleFilter::draw_smoothed(const PoseCovariance& covariance, std::size_t count) {
+  const Eigen::Matrix3d root = kernel_width(particles_.size()) * root_of(covariance);
+  draw(count);
+  for (std::size_t i = 0; i < count; ++i) particles_.set_pose(i, beside(particles_.pose(i), root));
 }
 
 void ParticleFilter::start_at(std::span<const Pose2> map_from_robot) {

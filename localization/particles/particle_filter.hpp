@@ -31,12 +31,17 @@ class ParticleFilter {
  public:
   ParticleFilter(const ParticleFilterParams& params, std::uint64_t seed);
 
-  /// Around one pose, normally distributed.
-  void start_around(const Pose2& map_from_robot, double position_deviation_m, double heading_deviation_rad);
+  /// Around one pose, normally distributed: `count` particles. `covariance`: x, y and heading in the map frame.
+  void start_around(const Pose2& map_from_robot, const PoseCovariance& covariance, std::size_t count);
   /// Exactly there, all equally likely.
   void start_at(std::span<const Pose2> map_from_robot);
 
   void move(const Pose2& motion, double unknown_s, const motion::MotionModelParams& model);
+
+  /// Draws `count` anew by the weights and moves each by a normal kernel: few particles that lie far apart stand for
+  /// all poses between them (Musso, Oudjane and Le Gland, "Improving Regularised Particle Filters", 2001, Eq. 12.2.7,
+  /// whose width is Silverman's). `covariance`: of the particles, x, y and heading in the map frame.
+  void draw_smoothed(const PoseCovariance& covariance, std::size_t count);
 
   /// Accumulates the scan into the weights, by segments. Answers each particle's misfit, the sum over all ends
   /// (weighing.hpp); valid until the next call. `ends` must not be empty.
@@ -62,6 +67,7 @@ class ParticleFilter {
  private:
   [[nodiscard]] std::size_t best() const;
   void draw(std::size_t count);
+  [[nodiscard]] Pose2 beside(const Pose2& map_from_robot, const Eigen::Matrix3d& root_of_covariance);
   void let_some_slip(const motion::MotionModelParams& model);
   void normalize_weights();
 

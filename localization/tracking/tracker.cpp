@@ -57,7 +57,14 @@ PoseCovariance Tracker::unknown_mount(double heading_rad) const {
 }
 
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {
-  filter_.start_around(pose.map_from_robot, pose.position_deviation_m, pose.heading_deviation_rad);
+  const double position_m2 = pose.position_deviation_m * pose.position_deviation_m;
+  const double heading_rad2 = pose.heading_deviation_rad * pose.heading_deviation_rad;
+  const PoseCovariance spread = motion::covariance_along(0.0, position_m2, position_m2, heading_rad2);
+  return start_around({pose.map_from_robot, spread}, static_cast<std::size_t>(params_.particles.min));
+}
+
+sensor::RefinedPose Tracker::start_around(const sensor::RefinedPose& pose, std::size_t particles) {
+  filter_.start_around(pose.map_from_robot, pose.covariance, particles);
   best_ = clusters_.best(filter_.particles());
   drawn_anew_ = false;
   pose_filter_.forget();
@@ -66,6 +73,12 @@ sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {
   last_update_.reset();
   has_driven_blind_ = false;
   return {best_.map_from_robot, best_.covariance};
+}
+
+/// The scan is read at particles alone: where they lie farther apart than it can guide them, the best of few is the
+/// best of a wrong place.
+std::size_t Tracker::particles_for(const PoseCovariance& spread) const {
+  return static_cast<std::size_t>(SurfaceTracker::is_one_place(spread) ? params_.particles.min : params_.particles.max);
 }
 
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose, const motion::ScanInstant& now) {
@@ -112,13 +125,14 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
 /// The particles take over from the surfaces, as unsure as these were, or where they were sure and have failed, by as
 /// much as a slip.
 void Tracker::go_on_from(const sensor::RefinedPose& believed, const motion::ScanInstant& now) {
-  const PoseCovariance& spread = believed.covariance;
-  const double deviation_m = std::sqrt(std::max(0.0, std::max(spread(0, 0), spread(1, 1))));
-  const double deviation_rad = std::sqrt(std::max(0.0, spread(2, 2)));
-  const double slipped = SurfaceTracker::is_one_place(spread) ? 1.0 : 0.0;
-  (void)start_around({believed.map_from_robot, std::max(slipped * params_.motion.slip_m, deviation_m),
-                      std::max(slipped * params_.motion.slip_rad, deviation_rad)},
-                     now);
+  const double slip_m2 = params_.motion.slip_m * params_.motion.slip_m;
+  const double slip_rad2 = params_.motion.slip_rad * params_.motion.slip_rad;
+  const std::size_t particles = particles_for(believed.covariance);
+  sensor::RefinedPose from = believed;
+  if (SurfaceTracker::is_one_place(from.covariance))
+    from.covariance = motion::covariance_along(0.0, slip_m2, slip_m2, slip_rad2);
+  (void)start_around(from, particles);
+  last_update_ = now;
 }
 
 void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
@@ -155,6 +169,7 @@ bool Tracker::update_due(const motion::MotionSince& since) const {
 /// Moves and weighs the particles; they may be drawn anew afterwards.
 Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
+  if (sees && has_driven_blind_) fill_in();
   if (last_update_) filter_.move(since.motion, since.unknown_s, pose_filter_.particle_motion());
   last_update_ = seen.now;
   has_driven_blind_ = false;
@@ -175,6 +190,12 @@ Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& sin
   answer.believed = slid(seen, answer.believed);
   draw_anew_if_needed();
   return answer;
+}
+
+/// A drive without scans has drawn the particles apart.
+void Tracker::fill_in() {
+  const PoseCovariance spread = clusters_.best(filter_.particles()).covariance;
+  if (!SurfaceTracker::is_one_place(spread)) filter_.draw_smoothed(spread, particles_for(spread));
 }
 
 /// Between updates: the particles stay, the answer follows the wheels and the scan.

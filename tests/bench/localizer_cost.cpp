@@ -76,7 +76,9 @@ void weigh(const Job& job) {
   constexpr int kParticles = 500;
   constexpr int kRounds = 100;
   localization::particles::ParticleFilter filter{{.min = kParticles, .max = kParticles}, 1};
-  filter.start_around(HallLaps::start(), 0.1, radians(3.0));
+  const double heading_rad2 = radians(3.0) * radians(3.0);
+  filter.start_around(HallLaps::start(), localization::motion::covariance_along(0.0, 0.01, 0.01, heading_rad2),
+                      kParticles);
   std::int64_t sum = 0;
   const int rounds = job.repetitions == 1 ? 1 : kRounds;
   const double taken_s = median_s(job.repetitions, [&] {

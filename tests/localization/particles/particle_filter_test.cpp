@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <vector>
 
 #include "tests/support/cast_ends.hpp"
@@ -19,9 +20,51 @@ OccupancyGrid room() {
   return map;
 }
 
-TEST(ParticleFilter, StartsAroundAPoseWithTheFewestParticles) {
+PoseCovariance spread(double position_deviation_m, double heading_deviation_rad) {
+  const double position_m2 = position_deviation_m * position_deviation_m;
+  return motion::covariance_along(0.0, position_m2, position_m2, heading_deviation_rad * heading_deviation_rad);
+}
+
+/// Of particles with equal weights.
+PoseCovariance covariance_of(const ParticleSet& particles, const Pose2& mean) {
+  PoseCovariance sum = PoseCovariance::Zero();
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Eigen::Vector3d off{particles.x_m[i] - mean.x, particles.y_m[i] - mean.y,
+                              wrapped_angle(particles.heading_rad[i] - mean.theta)};
+    sum += off * off.transpose();
+  }
+  return sum / static_cast<double>(particles.size());
+}
+
+TEST(ParticleFilter, StartsAsACovarianceHasIt) {
+  ParticleFilter filter{{}, 1};
+  PoseCovariance aslant = spread(0.5, 0.05);
+  aslant(1, 2) = aslant(2, 1) = 0.9 * 0.5 * 0.05;  // a robot that has turned too far is off to the left
+  aslant(0, 0) = 0.0;                              // and knows exactly how far it has come
+  filter.start_around({2.0, 1.0, 0.3}, aslant, 4000);
+  const PoseCovariance found = covariance_of(filter.particles(), {2.0, 1.0, 0.3});
+  EXPECT_NEAR(found(0, 0), 0.0, 1e-9);
+  EXPECT_NEAR(found(1, 1), 0.25, 0.02);
+  EXPECT_NEAR(found(1, 2) / std::sqrt(found(1, 1) * found(2, 2)), 0.9, 0.02);
+}
+
+TEST(ParticleFilter, ADrawThatIsSmoothedFillsWhatLiesBetweenTheParticles) {
+  ParticleFilter filter{{}, 1};
+  const Pose2 around{2.0, 1.0, -3.1};
+  filter.start_around(around, spread(1.0, 0.1), 200);
+  const PoseCovariance before = covariance_of(filter.particles(), around);
+  filter.draw_smoothed(before, 5000);
+  const PoseCovariance after = covariance_of(filter.particles(), around);
+  EXPECT_EQ(filter.particles().size(), 5000u);
+  EXPECT_GT(after(0, 0), before(0, 0));
+  EXPECT_LT(after(0, 0), 1.4 * before(0, 0)) << "the kernel is narrow beside the particles";
+  const std::set<double> different{filter.particles().x_m.begin(), filter.particles().x_m.end()};
+  EXPECT_GT(different.size(), 4900u) << "no copies";
+}
+
+TEST(ParticleFilter, StartsAroundAPose) {
   ParticleFilter filter{{.min = 4000, .max = 5000}, 1};
-  filter.start_around({2.0, 1.0, 3.1}, 0.2, 0.1);
+  filter.start_around({2.0, 1.0, 3.1}, spread(0.2, 0.1), 4000);
   const ParticleSet& particles = filter.particles();
   ASSERT_EQ(particles.size(), 4000u);
   EXPECT_NEAR(std::accumulate(particles.x_m.begin(), particles.x_m.end(), 0.0) / 4000.0, 2.0, 0.02);
@@ -33,7 +76,7 @@ TEST(ParticleFilter, AccumulatesWeightsUntilItResamples) {
   const OccupancyGrid map = room();
   const sensor::LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 300, .max = 300, .resample_below = 0.0, .evidence_beams = 5.0}, 1};
-  filter.start_around({2.0, 2.0, 0.5}, 0.2, 0.1);
+  filter.start_around({2.0, 2.0, 0.5}, spread(0.2, 0.1), 300);
   const motion::BeamEnds ends = test::cast_ends(map, {2.0, 2.0, 0.5});
   double last = filter.n_eff();
   for (int i = 0; i < 4; ++i) {
@@ -50,7 +93,7 @@ TEST(ParticleFilter, ResamplesToEqualWeightsAndAsManyAsTheCellsCallFor) {
   const OccupancyGrid map = room();
   const sensor::LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 100, .max = 2000, .resample_below = 1.0}, 1};
-  filter.start_around({2.0, 2.0, 0.5}, 0.2, 0.1);
+  filter.start_around({2.0, 2.0, 0.5}, spread(0.2, 0.1), 100);
   (void)filter.weigh(field, test::cast_ends(map, {2.0, 2.0, 0.5}));
   EXPECT_TRUE(filter.resample_if_needed(60));
   EXPECT_GT(filter.particles().size(), 800u);
@@ -73,7 +116,7 @@ TEST(ParticleFilter, BelievesAProposedSlipThatFitsFarBetterThanWhatTheWheelsTell
   const motion::BeamEnds ends = test::cast_ends(map, truth);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     ParticleFilter filter{{.min = 500, .max = 500, .evidence_beams = 60.0}, seed};
-    filter.start_around({1.8, 2.0, 0.6}, 0.005, 0.002);
+    filter.start_around({1.8, 2.0, 0.6}, spread(0.005, 0.002), 500);
     filter.move({}, 0.0, {});
     filter.propose_slips(std::vector<Pose2>{{1.7, 2.0, 0.7}, truth});
     (void)filter.weigh(field, ends);
@@ -89,7 +132,7 @@ TEST(ParticleFilter, HasNotSlippedWhereTheWheelsAreRightOrSlipsAreNeverBelieved)
   const motion::BeamEnds ends = test::cast_ends(map, truth);
   const auto has_slipped = [&](const Pose2& start, const motion::MotionModelParams& motion) {
     ParticleFilter filter{{.min = 500, .max = 500, .evidence_beams = 60.0}, 1};
-    filter.start_around(start, 0.005, 0.002);
+    filter.start_around(start, spread(0.005, 0.002), 500);
     filter.move({}, 0.0, motion);
     filter.propose_slips(std::vector<Pose2>{truth});
     (void)filter.weigh(field, ends);
@@ -104,7 +147,7 @@ TEST(ParticleFilter, KeepsTheBestWhereTheChosenAreSpread) {
   const OccupancyGrid map = room();
   const sensor::LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 500, .max = 500, .evidence_beams = 60.0}, 1};
-  filter.start_around({1.9, 2.0, 0.56}, 0.1, 0.05);
+  filter.start_around({1.9, 2.0, 0.56}, spread(0.1, 0.05), 500);
   (void)filter.weigh(field, test::cast_ends(map, {2.0, 2.0, 0.5}));
   const Pose2 best = filter.particles().pose(heaviest(filter));
   filter.spread_chosen({}, 0.1);
@@ -124,7 +167,8 @@ TEST(ParticleFilter, CountsAScanTheSameWhateverItsNumberOfBeams) {
   }
   ParticleFilter once_filter{{.min = 200, .max = 200, .evidence_beams = 15.0}, 1};
   ParticleFilter twice_filter{{.min = 200, .max = 200, .evidence_beams = 15.0}, 1};
-  for (ParticleFilter* filter : {&once_filter, &twice_filter}) filter->start_around({2.0, 2.0, 0.5}, 0.2, 0.1);
+  for (ParticleFilter* filter : {&once_filter, &twice_filter})
+    filter->start_around({2.0, 2.0, 0.5}, spread(0.2, 0.1), 200);
   (void)once_filter.weigh(field, all);
   (void)twice_filter.weigh(field, twice);
   EXPECT_NEAR(once_filter.n_eff(), twice_filter.n_eff(), 1e-3);  // the bound is in whole steps
@@ -154,7 +198,7 @@ TEST(ParticleFilter, KeepsAStandingRobotsParticlesApart) {
   const OccupancyGrid map = room();
   const sensor::LikelihoodField field{map, {}};
   ParticleFilter filter{{.min = 300, .max = 300}, 1};
-  filter.start_around({2.0, 2.0, 0.5}, 0.1, 0.05);
+  filter.start_around({2.0, 2.0, 0.5}, spread(0.1, 0.05), 300);
   const motion::BeamEnds ends = test::cast_ends(map, {2.0, 2.0, 0.5});
   for (int i = 0; i < 300; ++i) {
     filter.move({}, 0.0, {});
