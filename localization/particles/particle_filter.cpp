@@ -17,8 +17,11 @@ constexpr std::uint32_t kOneInSlips = 16;  // particles that are drawn as if the
 
 /// L of L Lᵀ = covariance.
 Eigen::Matrix3d root_of(const PoseCovariance& covariance) {
-  constexpr double kNearlyNothing = 1e-12;  // a direction may be known exactly
-  return Eigen::LLT<Eigen::Matrix3d>{covariance + kNearlyNothing * Eigen::Matrix3d::Identity()}.matrixL();
+  constexpr double kNearlyNothing = 1e-12;
+  Eigen::LLT<Eigen::Matrix3d> factors{covariance};
+  // A direction is known exactly.
+  if (factors.info() != Eigen::Success) factors.compute(covariance + kNearlyNothing * Eigen::Matrix3d::Identity());
+  return factors.matrixL();
 }
 
 /// Of a normal kernel for so many samples of three dimensions, against their standard deviation.

@@ -20,6 +20,8 @@ constexpr int kLeastOpaqueCells = 10;  // of a surface
 constexpr int kDrawnAheadPasses = 8;
 constexpr int kDrawnAheadReach = 3;       // cells
 constexpr double kDrawnAheadShare = 0.1;  // of the beams, and of the hits behind
+constexpr int kRemnantReach = 2;          // cells from what has been freed
+constexpr int kRemnantCells = 6;          // larger groups are none
 constexpr int kSurfaceCells = 17;         // smaller groups are small objects
 
 /// The cells around the verdicts, and what they may become.
@@ -151,6 +153,26 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
   return draft;
 }
 
+/// A few cells that are left of what has been freed around them go too, unless something was met there.
+[[nodiscard]] MapDraft without_remnants(MapDraft draft, const RayCounts& counts, const DoubtMask& mask,
+                                        int least_passes) {
+  const auto is_remnant = [&](Cell cell) {
+    return draft.map().at(cell) == CellState::kOccupied && mask.may_be_removed(cell) && counts.box().contains(cell) &&
+           counts[cell].hits == 0 && counts[cell].passes >= least_passes &&
+           group_size(draft.map(), cell, kRemnantCells) < kRemnantCells;
+  };
+  for (const CellChange& change : draft.changes()) {
+    if (change.after != CellState::kFree || change.before != CellState::kOccupied) continue;
+    for (int row = -kRemnantReach; row <= kRemnantReach; ++row) {
+      for (int column = -kRemnantReach; column <= kRemnantReach; ++column) {
+        const Cell cell{change.cell.column + column, change.cell.row + row};
+        if (is_remnant(cell)) draft.set(cell, CellState::kFree);
+      }
+    }
+  }
+  return draft;
+}
+
 /// Eq. 11 of the map and the local map that the counts are: occupied where enough of the beams ended.
 registration::Acceptance acceptance(const RayCounts& counts, const OccupancyGrid& map, double occupied_hit_share) {
   registration::Acceptance cells;
@@ -195,6 +217,7 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
                             [&](Cell cell) { return mask.may_be_added(cell); },
                             {params.longest_m, params.face_slant, params.free_passes});
   draft = without_small_groups(std::move(draft), params.least_speck_cells);
+  draft = without_remnants(std::move(draft), counts, mask, params.free_passes);
   draft = without_enclosed_free_space(std::move(draft), placement.scans, params.most_hidden_m2);
   update.changes = draft.changes();
   update.acceptance = acceptance(counts, draft.map(), params.occupied_hit_share).value();
