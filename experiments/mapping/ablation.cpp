@@ -169,8 +169,8 @@ Run carried_of(const AblationChange& change, PoseEvent event, std::uint64_t seed
   const auto work = [=] {
     GateRun run{place, delivered, event, seed};
     change.apply(run.settings);
-    run.after_s = 60.0 * minutes - std::min(run.before_s, 30.0 * minutes);
-    run.before_s = 60.0 * minutes - run.after_s;
+    run.before_s = std::min(run.before_s, 30.0 * minutes);
+    run.after_s = 60.0 * minutes - run.before_s;
     const Outcome drive = outcome_of(run);
     return in_one_shape(change, which, minutes,
                         {{"carried_wrong_s", drive.number("wrong_s")},

@@ -75,12 +75,6 @@ sensor::RefinedPose Tracker::start_around(const sensor::RefinedPose& pose, std::
   return {best_.map_from_robot, best_.covariance};
 }
 
-/// The scan is read at particles alone: where they lie farther apart than it can guide them, the best of few is the
-/// best of a wrong place.
-std::size_t Tracker::particles_for(const PoseCovariance& spread) const {
-  return static_cast<std::size_t>(SurfaceTracker::is_one_place(spread) ? params_.particles.min : params_.particles.max);
-}
-
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose, const motion::ScanInstant& now) {
   sensor::RefinedPose believed = start_around(pose);
   last_update_ = now;
@@ -123,15 +117,14 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
 }
 
 /// The particles take over from the surfaces, as unsure as these were, or where they were sure and have failed, by as
-/// much as a slip.
+/// much as a slip. A scan guides a particle over decimetres: where they may be farther off, few would settle on
+/// whatever fits nearest.
 void Tracker::go_on_from(const sensor::RefinedPose& believed, const motion::ScanInstant& now) {
-  const double slip_m2 = params_.motion.slip_m * params_.motion.slip_m;
-  const double slip_rad2 = params_.motion.slip_rad * params_.motion.slip_rad;
-  const std::size_t particles = particles_for(believed.covariance);
-  sensor::RefinedPose from = believed;
-  if (SurfaceTracker::is_one_place(from.covariance))
-    from.covariance = motion::covariance_along(0.0, slip_m2, slip_m2, slip_rad2);
-  (void)start_around(from, particles);
+  if (SurfaceTracker::is_one_place(believed.covariance)) {
+    (void)start_around({believed.map_from_robot, params_.motion.slip_m, params_.motion.slip_rad}, now);
+    return;
+  }
+  (void)start_around(believed, static_cast<std::size_t>(params_.particles.max));
   last_update_ = now;
 }
 
@@ -192,10 +185,11 @@ Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& sin
   return answer;
 }
 
-/// A drive without scans has drawn the particles apart.
+/// A drive without scans has drawn the particles apart: as many as go_on_from() begins with.
 void Tracker::fill_in() {
   const PoseCovariance spread = clusters_.best(filter_.particles()).covariance;
-  if (!SurfaceTracker::is_one_place(spread)) filter_.draw_smoothed(spread, particles_for(spread));
+  if (!SurfaceTracker::is_one_place(spread))
+    filter_.draw_smoothed(spread, static_cast<std::size_t>(params_.particles.max));
 }
 
 /// Between updates: the particles stay, the answer follows the wheels and the scan.

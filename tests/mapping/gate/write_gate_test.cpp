@@ -101,7 +101,7 @@ TEST(WriteGate, AWrongPoseIsToldOnceAndHasToHoldBeforeItOpensAgain) {
   EXPECT_EQ(shut.size(), 2u);
 }
 
-/// Shuts it by one scan at a pose that is rather wrong, followed all along.
+/// Shuts it for so long without a proof.
 void doubt(StraightDrive& robot, WriteGate& gate, double duration_s) {
   for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
     TrackedScan tracked = robot.next();
@@ -110,6 +110,7 @@ void doubt(StraightDrive& robot, WriteGate& gate, double duration_s) {
   }
 }
 
+/// Shuts it by one scan at a pose that is rather wrong, followed all along.
 void disbelieve(StraightDrive& robot, WriteGate& gate) {
   TrackedScan tracked = robot.next();
   tracked.estimate.belief.pose_right = 0.2;
