@@ -53,7 +53,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
       }
       break;
     case LocalizerState::kTracking:
-      if (has_failed(scan.beaten)) enter(LocalizerState::kLost);
+      if (wrong_s_ > params_.lost_by_verdict_s || misfit_s_ >= params_.lost_after_s) enter(LocalizerState::kLost);
       beaten_ = scan.beaten;
       break;
     case LocalizerState::kLost:
@@ -65,14 +65,6 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
       break;
   }
   return state_;
-}
-
-bool FitMonitor::has_failed(bool beaten) const {
-  if (wrong_s_ > params_.lost_by_verdict_s) return true;
-  // Long waits: a stretch of a stale map fits another place by chance for some seconds.
-  if (beaten && misfit_s_ >= params_.lost_after_s) return true;
-  if (beaten && distrusted_s_ >= params_.distrusted_after_s) return true;
-  return misfit_s_ >= params_.lost_nowhere_after_s;
 }
 
 bool FitMonitor::suspicious() const {

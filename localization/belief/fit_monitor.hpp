@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state machine of the localizer: global, tracking or lost. A changed map makes scans fit worse for long, so a bad
-// fit alone does not make the robot lost. It is lost where the pose fits badly and another hypothesis fits clearly
-// better, where proven tiles speak against the pose, or where nothing has fitted anywhere for very long. Only a lost
-// robot that has driven on searches the whole map anew.
+// fit alone does not make the robot lost. It is lost where proven tiles speak against the pose, or where the pose has
+// not fitted for very long. Only a lost robot that has driven on searches the whole map anew.
 #pragma once
 
 #include "core/angle.hpp"
@@ -18,11 +17,9 @@ struct FitParams {
   double memory_s = 3.0;                 ///< time constant of the fit's running mean, s; > 0
   double lost_below = 0.4;               ///< mean fit that counts as misfit; 0..1
   double found_above = 0.6;              ///< mean fit that counts as found again; lost_below..1
-  double lost_after_s = 40.0;            ///< unbroken misfit, another hypothesis fitting better, until lost, s; > 0
-  double lost_nowhere_after_s = 90.0;    ///< likewise where no other hypothesis fits better, s; > 0
+  double lost_after_s = 90.0;            ///< unbroken misfit until lost, s; > 0: for so long a stale map may not fit
   double suspicious_below = 0.85;        ///< mean fit that is a reason to look elsewhere too; 0..1
   double lost_by_verdict_s = 1.5;        ///< unbroken verdict "wrong" until lost, s; >= 0
-  double distrusted_after_s = 100.0;     ///< likewise distrust, s; > 0
   double distrust = 0.1;                 ///< P(pose right) by all beams, proven or not; 0..0.5
   double search_after_s = 10.0;          ///< lost until the whole map is searched, s; >= 0
   double search_after_m = 2.0;           ///< driven while lost until then, m; >= 0: someone may stand in the way
@@ -58,7 +55,6 @@ class FitMonitor {
 
  private:
   [[nodiscard]] bool converged(const particles::ParticleCluster& best) const;
-  [[nodiscard]] bool has_failed(bool beaten) const;
   void enter(LocalizerState state);
   void count(const Observation& scan);
 

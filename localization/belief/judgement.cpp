@@ -8,15 +8,14 @@ namespace deltamap::localization::belief {
 namespace {
 
 PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
-  if (report.followed == 0) return {.searching = !report.own_known, .beaten = false, .unique = false};
+  if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
   if (report.own_known) {
     const hypotheses::ReportedHypothesis& other = report.others.front();
     const bool kidnapped = report.kidnapped_share > other.share;
     return {.believed = report.own_share,
             .best_other = std::max(other.share, report.kidnapped_share),  // one of them may be watched, not listed
             .map_from_other = kidnapped ? report.map_from_kidnapped : other.map_from_robot,
-            .beaten = report.beaten,
-            .unique = report.unique};
+            .beaten = report.beaten};
   }
   const hypotheses::ReportedHypothesis& second = report.others[1];
   return {.believed = report.others.front().share,

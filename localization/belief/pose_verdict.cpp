@@ -17,16 +17,12 @@ constexpr double kMapSteepness = 22.0;  // log-odds a unit of the share of beams
 double probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
 
-double telling(const Support& support, const PoseVerdictParams& params) {
-  return support.fit + params.short_weight * support.short_of + support.beyond;
-}
-
 /// Share of the beams that hold the pose in a direction; nothing where too few tell of it.
 std::optional<double> hold_along(const Support& stable, const Support& elsewhere, const PoseVerdictParams& params) {
   const double others = params.unproven_weight;
   if (stable.expected() + others * elsewhere.expected() < params.least_beams) return std::nullopt;
   return (stable.fit + others * elsewhere.fit + 0.5 * kBeamsOfDoubt) /
-         (telling(stable, params) + others * telling(elsewhere, params) + kBeamsOfDoubt);
+         (stable.expected() + others * elsewhere.expected() + kBeamsOfDoubt);
 }
 
 /// Do proven tiles tell of the pose in both directions?
@@ -71,9 +67,6 @@ void PoseJudge::start(double pose_right, bool found) {
   found_ = found;
   right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
   proof_ = 0.0;
-  views_ = 0.0;
-  unique_views_ = 0.0;
-  suspicion_views_ = 0.0;
   any_view_ = false;
   last_hold_.reset();
   belief_ = {};
@@ -82,7 +75,6 @@ void PoseJudge::start(double pose_right, bool found) {
 
 double PoseJudge::novelty(const Passed& passed, std::optional<double> hold) {
   const bool other = hold && last_hold_ && std::abs(*hold - *last_hold_) > kOtherView;
-  if (other && *hold < *last_hold_) suspicion_views_ = params_.views_of_suspicion;
   last_hold_ = hold;
   if (other || !any_view_) return 1.0;
   return std::min(
@@ -101,9 +93,6 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   const double still_right = probability(right_log_odds_) * (1.0 - fresh * params_.lost_in_a_view);
   right_log_odds_ = log_odds(std::clamp(still_right, params_.least_wrong, 1.0 - params_.least_wrong));
   if (weakest) right_log_odds_ += fresh * told_by(weakest->evidence);
-  views_ += fresh;
-  suspicion_views_ = std::max(0.0, suspicion_views_ - fresh);
-  unique_views_ = shares.unique ? unique_views_ + fresh : 0.0;
   judge_map(view, fresh);
   proof_ = proven ? 1.0 : proof_ * std::exp(-fresh / params_.proof_memory_views);
   decide(shares);
@@ -127,16 +116,15 @@ void PoseJudge::judge_map(const ViewTally& view, double fresh) {
 
 void PoseJudge::decide(const Shares& shares) {
   trust_ = probability(right_log_odds_) * shares.believed;
-  const bool unseasoned = (found_ && views_ < params_.views_after_search) || suspicion_views_ > 0.0;
-  const auto limit = [&](double proof) { return 1.0 - (1.0 - proof) * (1.0 - params_.unproven_limit); };
-  belief_.pose_right = std::clamp(trust_, 1.0 - limit(proof_), limit(unseasoned ? 0.0 : proof_));
+  const double limit = 1.0 - (1.0 - proof_) * (1.0 - params_.unproven_limit);
+  belief_.pose_right = std::clamp(trust_, 1.0 - limit, limit);
   const double wrong_if_right = probability(kMapSteepness * (misfit_share_ - params_.changed_above));
   belief_.map_wrong = belief_.pose_right * wrong_if_right + 0.5 * (1.0 - belief_.pose_right);
   if (shares.searching) {
     belief_.verdict = PoseVerdict::kUndecided;
     return;
   }
-  const bool right = belief_.pose_right >= params_.right_above && unique_views_ >= params_.unique_for_views;
+  const bool right = belief_.pose_right >= params_.right_above;
   const bool wrong = belief_.pose_right <= params_.wrong_below && shares.beaten;
   belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
 }

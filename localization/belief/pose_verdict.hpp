@@ -14,21 +14,17 @@
 namespace deltamap::localization::belief {
 
 struct PoseVerdictParams {
-  double view_m = 0.5;              ///< a view is new after so much driving, m; > 0
-  double view_rad = radians(20.0);  ///< or turning, rad; > 0
-  double view_s = 5.0;              ///< or waiting, s; > 0
-  double short_weight = 0.7;     ///< of a beam that something stands in front of, against one that goes through; 0..1
-  double least_beams = 3.0;      ///< that must tell of a direction before it counts; > 0
-  double unproven_weight = 0.5;  ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
+  double view_m = 0.5;               ///< a view is new after so much driving, m; > 0
+  double view_rad = radians(20.0);   ///< or turning, rad; > 0
+  double view_s = 5.0;               ///< or waiting, s; > 0
+  double least_beams = 3.0;          ///< that must tell of a direction before it counts; > 0
+  double unproven_weight = 0.5;      ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
   double doubt_after_search = 0.35;  ///< taken from what a view says for a place that was found by its fit; >= 0
-  double views_after_search = 6.0;   ///< new views before such a place can be called right; >= 0
-  double views_of_suspicion = 6.0;   ///< likewise after a hold that fell from one scan to the next; >= 0
   double lost_in_a_view = 0.002;     ///< P(the pose has become wrong since the last new view); 0..0.1
   double least_wrong = 0.0005;       ///< P(wrong) that no evidence ever undercuts; 0..0.1
   double right_above = 0.9;          ///< P(pose right) from which the verdict is right; 0.5..1
   double wrong_below = 0.1;          ///< P(pose right) below which the verdict is wrong; 0..0.5
   double unproven_limit = 0.85;      ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
-  double unique_for_views = 4.0;     ///< so long no other hypothesis may explain the scans before it is right; >= 0
   double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles held the pose; > 0
   double changed_above = 0.1;        ///< share of beams off the map from which it is rather wrong than right; 0..1
 };
@@ -53,7 +49,6 @@ class PoseJudge {
     Pose2 map_from_other{};
     bool searching = false;  ///< no place is believed yet: `believed` is the best one's
     bool beaten = true;      ///< another hypothesis explains the recent scans clearly better
-    bool unique = true;      ///< no other hypothesis explains them about as well
   };
   void observe(const ViewTally& view, const Passed& passed, const Shares& shares);
 
@@ -71,11 +66,8 @@ class PoseJudge {
   double right_log_odds_ = 0.0;
   double trust_ = 0.5;
   bool found_ = false;
-  double views_ = 0.0;            ///< new ones since the start
-  double suspicion_views_ = 0.0;  ///< left
-  double unique_views_ = 0.0;     ///< in which no other place explained the scans
-  double proof_ = 0.0;            ///< 1 where proven tiles are in view; fades
-  double misfit_share_ = 0.0;     ///< running mean over the last views
+  double proof_ = 0.0;         ///< 1 where proven tiles are in view; fades
+  double misfit_share_ = 0.0;  ///< running mean over the last views
   bool any_view_ = false;
   std::optional<double> last_hold_;
   Belief belief_;

@@ -39,7 +39,7 @@ double share_around(const HypothesisBank& bank, const Pose2& pose, double turn_r
 
 HypothesisReport report_on(const HypothesisBank& bank, const HypothesisBank& watched, const ReportRules& rules) {
   HypothesisReport report;
-  report.own_known = report.unique = bank.believing();
+  report.own_known = bank.believing();
   report.followed = bank.hypotheses().size();
   double squared_shares = 0.0;
   for (const PoseHypothesis& hypothesis : bank.hypotheses()) squared_shares += hypothesis.share * hypothesis.share;
@@ -55,7 +55,6 @@ HypothesisReport report_on(const HypothesisBank& bank, const HypothesisBank& wat
   report.own_share = own.share;
   for (const PoseHypothesis& hypothesis : bank.others()) {
     const double ahead = hypothesis.log_evidence - own.log_evidence;
-    report.unique &= ahead <= -rules.equal_within;
     if (ahead <= rules.beats_by || hypothesis.followed_m < rules.wins_after_m) continue;
     report.beaten = true;
     report.beaten_for_m = std::max(report.beaten_for_m, hypothesis.followed_m);

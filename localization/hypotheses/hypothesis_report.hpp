@@ -34,7 +34,6 @@ struct HypothesisReport {
   Pose2 map_from_kidnapped;      ///< that hypothesis; of no meaning where its share is 0
   bool beaten = false;           ///< one of them explains the recent scans clearly better than the believed pose
   double beaten_for_m = 0.0;     ///< so long the hypotheses that do have been followed; 0: none does
-  bool unique = false;           ///< no hypothesis that is followed explains these about as well
 };
 
 /// The limits that the report is drawn by.
@@ -44,7 +43,6 @@ struct ReportRules {
   double carried_prior = 0.003;  ///< odds that the robot has just been carried to a pose that fits from then on; 0..1
   double beats_by = 12.0;        ///< log evidence of clearly better, proven tiles counted in; > 0
   double wins_after_m = 1.0;     ///< driven since such a hypothesis was found, m; >= 0
-  double equal_within = 4.0;     ///< log evidence of about as well; > 0
 };
 
 /// `watched`: aliases of the believed pose, of which only is told whether the robot may have been carried to one.

@@ -304,8 +304,7 @@ void HypothesisTracker::write_report() {
                        .nearby_rad = params_.nearby_rad,
                        .carried_prior = params_.carried_prior,
                        .beats_by = params_.beats_by + held_by_,
-                       .wins_after_m = params_.wins_after_m,
-                       .equal_within = params_.equal_within});
+                       .wins_after_m = params_.wins_after_m});
 }
 
 }  // namespace deltamap::localization::hypotheses

@@ -37,7 +37,6 @@ struct HypothesisTrackerParams {
   double beats_by = 12.0;        ///< log evidence of clearly better, whatever the odds before; > 0
   double held_by = 16.0;         ///< more log evidence against a pose that proven tiles support; >= 0
   double most_ahead = 10.0;      ///< log evidence that a hypothesis may be found with ahead of the believed one; >= 0
-  double equal_within = 4.0;     ///< log evidence of about as well; > 0
   int refined_a_scan = 4;        ///< hypotheses that are slid to their best fit at a scan while tracking; >= 0
   double block_m = 0.25;         ///< side of the coarse field's blocks, m; > 0
   int headings = 96;             ///< of the lattice of poses; > 0

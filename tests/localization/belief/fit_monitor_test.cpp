@@ -37,18 +37,18 @@ TEST(FitMonitor, TakesAMuchChangedViewForNoLoss) {
   EXPECT_EQ(after(monitor, 5.0, 0.9), LocalizerState::kTracking);
 }
 
-TEST(FitMonitor, IsLostAfterALongStrongMisfitAndSearchesOnlyAfterDrivingOn) {
+TEST(FitMonitor, IsLostAfterALongMisfitAndSearchesOnlyAfterDrivingOn) {
   FitMonitor monitor = tracking();
   EXPECT_EQ(after(monitor, 95.0, 0.15, 0.4, false), LocalizerState::kLost);
   EXPECT_EQ(after(monitor, 60.0, 0.15, 0.0, false), LocalizerState::kLost);
   EXPECT_EQ(after(monitor, 20.0, 0.15, 0.4, false), LocalizerState::kGlobal);
 }
 
-TEST(FitMonitor, BlamesTheMapForAMisfitThatNoOtherPlaceExplainsBetter) {
+TEST(FitMonitor, BlamesTheMapForAMisfitOfAMinute) {
   FitMonitor monitor = tracking();
   EXPECT_EQ(after(monitor, 60.0, 0.15, 0.4, false), LocalizerState::kTracking);
   EXPECT_TRUE(monitor.suspicious()) << "looks elsewhere all the same";
-  EXPECT_NE(after(monitor, 60.0, 0.15, 0.4, false), LocalizerState::kTracking) << "nothing fits anywhere";
+  EXPECT_NE(after(monitor, 60.0, 0.15, 0.4, false), LocalizerState::kTracking) << "nothing has fitted for long";
 }
 
 TEST(FitMonitor, TracksAgainWhereTheViewFitsAgain) {
@@ -108,17 +108,6 @@ TEST(FitMonitor, IsLostWhereTheVerdictStaysWrongHoweverWellMostBeamsFit) {
   EXPECT_EQ(monitor.observe(wrong, certain()), LocalizerState::kTracking) << "one view is not enough";
   LocalizerState state{};
   for (int i = 0; i < 10; ++i) state = monitor.observe(wrong, certain());
-  EXPECT_EQ(state, LocalizerState::kLost);
-}
-
-TEST(FitMonitor, IsLostAfterLongDistrustThatNothingProvenConfirms) {
-  FitMonitor monitor = tracking();
-  const FitMonitor::Observation odd{
-      .passed_s = 0.2, .driven_m = 0.1, .turned_rad = 0.0, .fit = 0.7, .trust = 0.05, .beaten = true};
-  LocalizerState state{};
-  for (int i = 0; i < 100; ++i) state = monitor.observe(odd, certain());
-  EXPECT_EQ(state, LocalizerState::kTracking);
-  for (int i = 0; i < 420 && state == LocalizerState::kTracking; ++i) state = monitor.observe(odd, certain());
   EXPECT_EQ(state, LocalizerState::kLost);
 }
 
