@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "drivers/lms200/measurement.hpp"
-#include "simulation/chance.hpp"
-#include "simulation/sonar_ring.hpp"
+#include "simulation/robot/sonar_ring.hpp"
+#include "simulation/world/chance.hpp"
 
 namespace deltamap::simulation {
 namespace {

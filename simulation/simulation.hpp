@@ -12,9 +12,9 @@
 #include "core/time.hpp"
 #include "simulation/devices/virtual_lms200.hpp"
 #include "simulation/devices/virtual_pioneer.hpp"
-#include "simulation/motion_history.hpp"
-#include "simulation/scenario.hpp"
-#include "simulation/truth.hpp"
+#include "simulation/robot/motion_history.hpp"
+#include "simulation/scenario/scenario.hpp"
+#include "simulation/scenario/truth.hpp"
 
 namespace deltamap::simulation {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "drivers/lms200/measurement.hpp"
-#include "simulation/chance.hpp"
-#include "simulation/changed_hall.hpp"
+#include "simulation/changes/changed_hall.hpp"
+#include "simulation/world/chance.hpp"
 
 namespace deltamap::simulation {
 namespace {

@@ -11,13 +11,13 @@
 
 #include "core/messages.hpp"
 #include "drivers/lms200/variant.hpp"
-#include "simulation/creep.hpp"
-#include "simulation/forklift.hpp"
-#include "simulation/movers.hpp"
-#include "simulation/range_finder.hpp"
-#include "simulation/route_pilot.hpp"
-#include "simulation/scenario.hpp"
-#include "simulation/slips.hpp"
+#include "simulation/changes/creep.hpp"
+#include "simulation/changes/forklift.hpp"
+#include "simulation/movers/movers.hpp"
+#include "simulation/robot/range_finder.hpp"
+#include "simulation/robot/route_pilot.hpp"
+#include "simulation/robot/slips.hpp"
+#include "simulation/scenario/scenario.hpp"
 
 namespace deltamap::simulation {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "simulation/scenario.hpp"
+#include "simulation/scenario/scenario.hpp"
 
 namespace deltamap::tool {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/grid_file.hpp"
-#include "simulation/start_map.hpp"
+#include "simulation/scenario/start_map.hpp"
 #include "tool/live_simulation.hpp"
 #include "tool/scenario_place.hpp"
 #include "tool/subcommands.hpp"

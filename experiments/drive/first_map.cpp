@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiments/drive/first_map.hpp"
 
-#include "simulation/start_map.hpp"
+#include "simulation/scenario/start_map.hpp"
 
 namespace deltamap::experiments {
 

@@ -7,7 +7,7 @@
 
 #include "core/occupancy_grid.hpp"
 #include "experiments/experiment.hpp"
-#include "simulation/scenario.hpp"
+#include "simulation/scenario/scenario.hpp"
 
 namespace deltamap::experiments {
 

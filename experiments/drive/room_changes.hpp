@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "simulation/change.hpp"
-#include "simulation/scenario.hpp"
+#include "simulation/changes/change.hpp"
+#include "simulation/scenario/scenario.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::experiments {

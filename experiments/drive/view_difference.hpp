@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/pose2.hpp"
-#include "simulation/ray_caster.hpp"
+#include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::experiments {
 

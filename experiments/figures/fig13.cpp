@@ -11,8 +11,8 @@
 #include "experiments/report/svg_map.hpp"
 #include "experiments/watch/mapping_run.hpp"
 #include "experiments/watch/mapping_watch.hpp"
+#include "simulation/scenario/start_map.hpp"
 #include "simulation/score/map_score.hpp"
-#include "simulation/start_map.hpp"
 
 namespace deltamap::experiments {
 namespace {

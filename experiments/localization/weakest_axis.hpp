@@ -2,7 +2,7 @@
 // Along which direction a scan tells least about where it was taken: in a corridor, along it.
 #pragma once
 
-#include "simulation/ray_caster.hpp"
+#include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::experiments {
 

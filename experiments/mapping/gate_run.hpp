@@ -8,7 +8,7 @@
 #include "daemon/settings/settings.hpp"
 #include "experiments/drive/pose_event.hpp"
 #include "experiments/experiment.hpp"
-#include "simulation/scenario.hpp"
+#include "simulation/scenario/scenario.hpp"
 
 namespace deltamap::experiments {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "experiments/verdict/map_distances.hpp"
-#include "simulation/ray_caster.hpp"
+#include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::experiments {
 

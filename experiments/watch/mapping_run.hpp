@@ -6,7 +6,7 @@
 
 #include "daemon/settings/settings.hpp"
 #include "experiments/experiment.hpp"
-#include "simulation/scenario.hpp"
+#include "simulation/scenario/scenario.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::experiments {

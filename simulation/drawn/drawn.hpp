@@ -2,7 +2,7 @@
 // A world that a seed has drawn, and a robot that drives about in it.
 #pragma once
 
-#include "simulation/scenario.hpp"
+#include "simulation/scenario/scenario.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::simulation::drawn {

@@ -6,7 +6,7 @@
 
 #include "core/angle.hpp"
 #include "core/grid_ray.hpp"
-#include "simulation/start_map.hpp"
+#include "simulation/scenario/start_map.hpp"
 
 namespace deltamap::simulation::drawn {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "simulation/world.hpp"
+#include "simulation/world/world.hpp"
 
 namespace deltamap::simulation::drawn {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "simulation/standing_room.hpp"
+#include "simulation/world/standing_room.hpp"
 
 namespace deltamap::simulation::drawn {
 namespace {

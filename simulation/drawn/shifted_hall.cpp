@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "simulation/chance.hpp"
-#include "simulation/standing_room.hpp"
+#include "simulation/world/chance.hpp"
+#include "simulation/world/standing_room.hpp"
 
 namespace deltamap::simulation::drawn {
 namespace {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/angle.hpp"
-#include "simulation/chance.hpp"
 #include "simulation/drawn/layout_builder.hpp"
+#include "simulation/world/chance.hpp"
 
 namespace deltamap::simulation::drawn {
 namespace {

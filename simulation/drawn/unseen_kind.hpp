@@ -8,7 +8,7 @@
 
 #include "drivers/lms200/variant.hpp"
 #include "simulation/drawn/layout.hpp"
-#include "simulation/robot.hpp"
+#include "simulation/robot/robot.hpp"
 #include "simulation/virtual_drive.hpp"
 
 namespace deltamap::simulation::drawn {

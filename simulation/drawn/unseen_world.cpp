@@ -6,12 +6,12 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "simulation/chance.hpp"
-#include "simulation/changed_hall.hpp"
+#include "simulation/changes/changed_hall.hpp"
 #include "simulation/drawn/first_drive.hpp"
 #include "simulation/drawn/layout_builder.hpp"
-#include "simulation/passages.hpp"
-#include "simulation/start_map.hpp"
+#include "simulation/scenario/start_map.hpp"
+#include "simulation/world/chance.hpp"
+#include "simulation/world/passages.hpp"
 
 namespace deltamap::simulation::drawn {
 namespace {

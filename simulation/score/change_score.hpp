@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
-#include "simulation/scenario.hpp"
-#include "simulation/truth.hpp"
+#include "simulation/scenario/scenario.hpp"
+#include "simulation/scenario/truth.hpp"
 
 namespace deltamap::simulation::score {
 

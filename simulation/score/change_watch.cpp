@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/near_occupied.hpp"
-#include "simulation/start_map.hpp"
-#include "simulation/surface_optics.hpp"
+#include "simulation/robot/surface_optics.hpp"
+#include "simulation/scenario/start_map.hpp"
 
 namespace deltamap::simulation::score {
 namespace {

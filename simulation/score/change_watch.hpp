@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "simulation/movers.hpp"
-#include "simulation/scenario.hpp"
+#include "simulation/movers/movers.hpp"
+#include "simulation/scenario/scenario.hpp"
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/standing.hpp"
 #include "simulation/score/witness.hpp"

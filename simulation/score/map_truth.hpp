@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "simulation/scenario.hpp"
+#include "simulation/scenario/scenario.hpp"
 #include "simulation/score/map_score.hpp"
 #include "simulation/score/witness.hpp"
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
-#include "simulation/scenario.hpp"
-#include "simulation/truth.hpp"
+#include "simulation/scenario/scenario.hpp"
+#include "simulation/scenario/truth.hpp"
 
 namespace deltamap::simulation::score {
 

@@ -7,7 +7,7 @@
 
 #include "core/pose2.hpp"
 #include "core/time.hpp"
-#include "simulation/truth.hpp"
+#include "simulation/scenario/truth.hpp"
 
 namespace deltamap::simulation::score {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
-#include "simulation/ray_caster.hpp"
+#include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::simulation::score {
 

@@ -193,13 +193,13 @@ TEST(Layering, FindsACircleOfThreeRooms) {
 TEST(Layering, RefusesArrowsThatAreNotDrawn) {
   EXPECT_FALSE(is_allowed("localization/localizer.cpp", "mapping/map_update.hpp"));
   EXPECT_FALSE(is_allowed("core/channel.hpp", "drivers/session.hpp"));
-  EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "simulation/world.hpp"));
+  EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "simulation/world/world.hpp"));
   EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "tool/run_tool.hpp"));
   EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "drivers/carmen/carmen_log.hpp"));
   EXPECT_FALSE(is_allowed("experiments/registry.cpp", "tool/run_tool.hpp"));
   EXPECT_FALSE(is_allowed("drivers/pioneer/session.cpp", "drivers/port/serial_port.hpp"));
   EXPECT_FALSE(is_allowed("simulation/devices/virtual_pioneer.cpp", "drivers/port/serial_port.hpp"));
-  EXPECT_TRUE(is_allowed("tool/sim.cpp", "simulation/world.hpp"));
+  EXPECT_TRUE(is_allowed("tool/sim.cpp", "simulation/world/world.hpp"));
   EXPECT_TRUE(is_allowed("tool/experiment.cpp", "experiments/registry.hpp"));
   EXPECT_TRUE(is_allowed("simulation/devices/virtual_pioneer.cpp", "drivers/pioneer/packet.hpp"));
 }

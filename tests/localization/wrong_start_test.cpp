@@ -7,7 +7,7 @@
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "simulation/start_map.hpp"
+#include "simulation/scenario/start_map.hpp"
 #include "simulation/virtual_drive.hpp"
 #include "tests/support/source_tree.hpp"
 

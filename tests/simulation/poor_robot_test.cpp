@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/angle.hpp"
-#include "simulation/passages.hpp"
 #include "simulation/virtual_drive.hpp"
+#include "simulation/world/passages.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace deltamap::simulation {

@@ -2,7 +2,7 @@
 // A room of 6 m by 4 m with one block of 1 m by 1 m, and a robot in its corner.
 #pragma once
 
-#include "simulation/scenario.hpp"
+#include "simulation/scenario/scenario.hpp"
 
 namespace deltamap::test {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulation/start_map.hpp"
+#include "simulation/scenario/start_map.hpp"
 
 namespace deltamap::experiments {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "experiments/watch/override_map.hpp"
-#include "simulation/scenario.hpp"
-#include "simulation/start_map.hpp"
+#include "simulation/scenario/scenario.hpp"
+#include "simulation/scenario/start_map.hpp"
 #include "tests/support/block_room.hpp"
 #include "tests/support/cast_scan.hpp"
 #include "tests/support/drawn_scan.hpp"

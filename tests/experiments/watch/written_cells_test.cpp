@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What counts as written wrongly: right is what stands, or does not stand, within the cell that a map's face may be off.
+// What counts as written wrongly: right is what stands, or does not stand, within the cell that a map's face may be
+// off.
 #include "experiments/watch/written_cells.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "simulation/scenario/start_map.hpp"
 #include "simulation/score/change_watch.hpp"
-#include "simulation/start_map.hpp"
 #include "tests/support/block_room.hpp"
 
 namespace deltamap::experiments {

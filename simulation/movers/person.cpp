@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/movers/person.hpp"
+
+#include <algorithm>
+
+namespace deltamap::simulation {
+namespace {
+
+constexpr double kRoomToRobot_m = 0.5;     // between bodies
+constexpr double kRoomToSurface_m = 0.15;  // between body and surface
+constexpr double kPatience_s = 4.0;        // before turning back
+
+}  // namespace
+
+Person::Person(PersonParams params, Random random)
+    : params_{std::move(params)},
+      random_{random},
+      beat_{params_.path, params_.closed},
+      position_{params_.path.front()} {
+  phase_left_s_ = random_.uniform(params_.walk_least_s, params_.walk_most_s);
+}
+
+void Person::move(double dt_s, const RayCaster& world, const Circle& robot, std::span<const Segment> leaves) {
+  phase_left_s_ -= dt_s;
+  if (phase_left_s_ <= 0.0) {
+    standing_ = !standing_;
+    phase_left_s_ = standing_ ? random_.uniform(params_.stand_least_s, params_.stand_most_s)
+                              : random_.uniform(params_.walk_least_s, params_.walk_most_s);
+  }
+  velocity_ = Point2{0.0, 0.0};
+  if (standing_) return;
+
+  const double step_m = params_.speed_m_per_s * dt_s;
+  const Point2 way = beat_.aim() - position_;
+  if (way.norm() <= step_m) {
+    beat_.reach();
+    blocked_s_ = 0.0;
+    return;
+  }
+  const Point2 direction = way.normalized();
+  const Point2 next = position_ + step_m * direction;
+  if (is_blocked(next, direction, world, robot, leaves)) {
+    blocked_s_ += dt_s;
+    if (blocked_s_ > kPatience_s) {
+      blocked_s_ = 0.0;
+      beat_.turn_back();
+    }
+    return;
+  }
+  blocked_s_ = 0.0;
+  velocity_ = params_.speed_m_per_s * direction;
+  position_ = next;
+}
+
+bool Person::is_blocked(const Point2& next, const Point2& direction, const RayCaster& world, const Circle& robot,
+                        std::span<const Segment> leaves) const {
+  const Point2 to_robot = robot.centre - next;
+  if (to_robot.norm() < params_.radius_m + robot.radius_m + kRoomToRobot_m && to_robot.dot(direction) > 0.0)
+    return true;
+  const auto closes_in = [&](const Segment& leaf) {
+    const double gap_m = distance_between(next, leaf);
+    return gap_m < params_.radius_m + kRoomToSurface_m && gap_m < distance_between(position_, leaf);
+  };
+  if (std::any_of(leaves.begin(), leaves.end(), closes_in)) return true;
+  const auto nearest = world.nearest_surface(next, params_.radius_m + kRoomToSurface_m);
+  return nearest && nearest->direction.dot(direction) > 0.0;
+}
+
+}  // namespace deltamap::simulation

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/movers/person.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap::simulation {
+namespace {
+
+constexpr double kStep_s = 0.005;
+const Circle kFarAway{{100, 100}, 0.25};
+
+World hall() { return {{{1, ObjectKind::kWall, Polyline{{{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}}}}}}; }
+
+TEST(Person, WalksStopsAndWalksOnAlongThePath) {
+  Person person{{.path = {{2, 2}, {18, 2}}}, Random{1}};
+  const RayCaster world{hall()};
+  int starts = 0;
+  int stops = 0;
+  bool walking = true;
+  double farthest = 0.0;
+  for (int i = 0; i < 60'000; ++i) {  // 300 s
+    const Point2 before = person.body().centre;
+    person.move(kStep_s, world, kFarAway);
+    const bool moved = (person.body().centre - before).norm() > 1e-9;
+    if (moved && !walking) ++starts;
+    if (!moved && walking) ++stops;
+    walking = moved;
+    farthest = std::max(farthest, person.body().centre.x());
+    ASSERT_NEAR(person.body().centre.y(), 2.0, 1e-9);
+  }
+  EXPECT_GT(stops, 5);
+  EXPECT_GT(starts, 5);
+  EXPECT_GT(farthest, 17.5);
+}
+
+TEST(Person, WaitsForTheRobotAndTurnsBackAtABlockedWay) {
+  Person person{{.path = {{2, 10}, {18, 10}}, .walk_least_s = 1e5, .walk_most_s = 1e5}, Random{1}};
+  const RayCaster world{hall()};
+  const Circle robot{{8, 10}, 0.25};
+  double farthest = 0.0;
+  for (int i = 0; i < 2400; ++i) {  // 12 s: 5 to get there, 4 of patience, then back
+    person.move(kStep_s, world, robot);
+    farthest = std::max(farthest, person.body().centre.x());
+  }
+  EXPECT_LT(farthest, 8.0 - 0.25 - 0.2 - 0.49);
+  EXPECT_GT(farthest, 6.5);
+  EXPECT_LT(person.body().centre.x(), farthest - 1.0);
+}
+
+TEST(Person, DoesNotWalkIntoAContainerThatStandsInTheWay) {
+  Person person{{.path = {{2, 10}, {18, 10}}, .walk_least_s = 1e5, .walk_most_s = 1e5}, Random{1}};
+  const RayCaster world{hall().with({2, ObjectKind::kContainer, Box{{10, 10}, 2, 2, 0}})};
+  for (int i = 0; i < 20'000; ++i) {
+    person.move(kStep_s, world, kFarAway);
+    ASSERT_LT(person.body().centre.x(), 9.0 - 0.2);
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::simulation
