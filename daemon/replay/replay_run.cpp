@@ -136,8 +136,8 @@ void Replay::take(Scan&& scan) {
     trajectory_.write(tum_line({tracked.scan.time, tracked.estimate.map_from_robot}));
     localization_log_.write(csv_line(row));
   }
-  if (job_.watch.scan) job_.watch.scan(tracked, row, cost_s);
   if (job_.settings.mapping.enabled && !is_paused_) look_for_changes(tracked);
+  if (job_.watch.scan) job_.watch.scan({tracked, row, cost_s, run_.localization().particles(), run_.store_scan()});
 }
 
 /// What the operator did is an input as the bytes are: obeyed whatever becomes of the journal.

@@ -13,13 +13,23 @@
 #include "daemon/outputs/localization_log.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
+#include "localization/particles/particle_set.hpp"
+#include "mapping/store_scan.hpp"
 
 namespace deltamap::daemon {
 
+/// A scan that was localized, and what is known when it has been looked at. Valid during the call alone.
+struct ReplayedScan {
+  const TrackedScan& tracked;
+  const LocalizationRow& row;
+  double cost_s = 0.0;                                              ///< CPU seconds of its localization
+  const localization::particles::ParticleSet* particles = nullptr;  ///< null: the pose does not rest on any
+  const mapping::StoreScan& awareness;
+};
+
 /// What others may look at while a replay goes on; empty: nobody looks. Called in the replay's thread.
 struct ReplayWatch {
-  /// Every scan that was localized, what is known of it, and the CPU seconds that it cost.
-  std::function<void(const TrackedScan&, const LocalizationRow&, double)> scan{};
+  std::function<void(const ReplayedScan&)> scan{};
   std::function<void(const MapRevision*, const ChangeNote&)> change{};  ///< the revision may be null: refused
 };
 

@@ -32,21 +32,41 @@ MomentFile::MomentFile(const std::filesystem::path& folder) : folder_{folder}, d
 
 MomentFile::~MomentFile() { ::close(descriptor_); }
 
-void MomentFile::add(Timestamp time, const std::vector<std::string>& messages) {
+MomentFile::Place MomentFile::written(const std::vector<std::string>& messages) {
   std::string bytes;
   for (const std::string& message : messages) {
     daemon::dashboard::append_number(bytes, static_cast<std::uint32_t>(message.size()));
     bytes += message;
   }
-  const std::scoped_lock lock{mutex_};
-  for (std::size_t written = 0; written < bytes.size();) {
-    const ssize_t n =
-        ::pwrite(descriptor_, bytes.data() + written, bytes.size() - written, static_cast<off_t>(end_ + written));
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(end_ + done));
     if (n <= 0) fail(folder_, "cannot hold the scans of the run");
-    written += static_cast<std::size_t>(n);
+    done += static_cast<std::size_t>(n);
   }
-  moments_.push_back({time, end_, static_cast<std::uint32_t>(bytes.size())});
+  const Place place{end_, static_cast<std::uint32_t>(bytes.size())};
   end_ += bytes.size();
+  return place;
+}
+
+void MomentFile::add(Timestamp time, const std::vector<std::string>& messages) {
+  const std::scoped_lock lock{mutex_};
+  moments_.push_back({time, written(messages), lasting_});
+}
+
+void MomentFile::add_lasting(const std::vector<std::string>& messages) {
+  const std::scoped_lock lock{mutex_};
+  lasting_ = written(messages);
+}
+
+void MomentFile::append(const Place& place, std::string& bytes) const {
+  const std::size_t before = bytes.size();
+  bytes.resize(before + place.size);
+  for (std::size_t done = 0; done < place.size;) {
+    const ssize_t n =
+        ::pread(descriptor_, bytes.data() + before + done, place.size - done, static_cast<off_t>(place.begin + done));
+    if (n <= 0) fail(folder_, "cannot be read");
+    done += static_cast<std::size_t>(n);
+  }
 }
 
 std::optional<std::string> MomentFile::at(Timestamp time) const {
@@ -55,13 +75,9 @@ std::optional<std::string> MomentFile::at(Timestamp time) const {
   auto found = std::upper_bound(moments_.begin(), moments_.end(), time,
                                 [](Timestamp wanted, const Moment& moment) { return wanted < moment.time; });
   if (found != moments_.begin()) --found;
-  std::string bytes(found->size, '\0');
-  for (std::size_t read = 0; read < bytes.size();) {
-    const ssize_t n =
-        ::pread(descriptor_, bytes.data() + read, bytes.size() - read, static_cast<off_t>(found->begin + read));
-    if (n <= 0) fail(folder_, "cannot be read");
-    read += static_cast<std::size_t>(n);
-  }
+  std::string bytes;
+  append(found->own, bytes);
+  append(found->lasting, bytes);
   return bytes;
 }
 

@@ -24,9 +24,11 @@ class MomentFile {
 
   /// The messages of one scan; times never step back. Throws std::system_error naming the folder: it is full.
   void add(Timestamp time, const std::vector<std::string>& messages);
+  /// Messages that belong to every scan from the next one on, in place of those before. Throws likewise.
+  void add_lasting(const std::vector<std::string>& messages);
 
-  /// The messages of the newest scan that is not younger than `time`, else of the first one: each after the number of
-  /// its bytes as `u32`, little-endian. Nothing where there is no scan.
+  /// The messages of the newest scan that is not younger than `time`, else of the first one, and those that last: each
+  /// after the number of its bytes as `u32`, little-endian. Nothing where there is no scan.
   [[nodiscard]] std::optional<std::string> at(Timestamp time) const;
 
   struct Span {
@@ -36,16 +38,22 @@ class MomentFile {
   [[nodiscard]] Span span() const;
 
  private:
-  struct Moment {
-    Timestamp time;
+  struct Place {
     std::uint64_t begin = 0;
     std::uint32_t size = 0;
   };
+  struct Moment {
+    Timestamp time;
+    Place own, lasting;
+  };
+  [[nodiscard]] Place written(const std::vector<std::string>& messages);
+  void append(const Place& place, std::string& bytes) const;
 
   std::filesystem::path folder_;
   int descriptor_;
   mutable std::mutex mutex_;
   std::vector<Moment> moments_;
+  Place lasting_;
   std::uint64_t end_ = 0;
 };
 

@@ -94,10 +94,9 @@ void view_folder(const ViewOptions& options) {
   if (fs::exists(folder / "map_store.sqlite")) run.store = folder / "map_store.sqlite";
   ViewDesk desk{std::move(run), options.port};
   serve(desk, [&read](ViewDesk& to, const std::atomic<bool>& stops) -> std::optional<std::string> {
-    const TrackedScan no_beams;
     for (const daemon::ChangeNote& change : read.changes) to.show(nullptr, change);
     for (std::size_t i = 0; i < read.rows.size() && !stops; ++i) {
-      to.show(no_beams, read.rows[i], std::numeric_limits<double>::quiet_NaN());
+      to.show(read.rows[i]);
       to.tell_progress(static_cast<double>(i) / static_cast<double>(read.rows.size()));
     }
     return stops ? std::nullopt : std::optional{read.notes.empty() ? "" : read.notes.front()};
@@ -129,7 +128,7 @@ void view_recording(ViewOptions& options) {
                  .first_revision = start.revision,
                  .store = job.out / "map_store.sqlite"},
                 options.port};
-  job.watch.scan = [&desk](const auto& tracked, const auto& row, double cost_s) { desk.show(tracked, row, cost_s); };
+  job.watch.scan = [&desk](const daemon::ReplayedScan& scan) { desk.show(scan); };
   job.watch.change = [&desk](const MapRevision* revision, const daemon::ChangeNote& note) {
     desk.show(revision, note);
   };

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "daemon/live/page_answers.hpp"
 #include "daemon/live/pose_line.hpp"
 #include "drivers/port/port_clock.hpp"
+#include "localization/particles/particle_sample.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -22,6 +24,8 @@ constexpr daemon::LiveBoard::Kept kWholeRun{.samples = 7 * 86'400, .changes = 20
 constexpr double kTellPeriod_s = 0.99;    // the page takes longer silence for a lost connection
 constexpr Duration kRounding{1'000'000};  // of a time as text
 constexpr double kMostUnix_s = 9e9;
+constexpr double kLastingPeriod_s = 1.0;
+constexpr std::size_t kParticlesKept = 64;  // of each scan: a day has a million scans
 constexpr const char* kJson = "application/json";
 
 /// "time=1764000000.25"
@@ -53,13 +57,33 @@ ViewDesk::ViewDesk(ViewedRun run, std::uint16_t port)
       run_.settings, daemon::RunName{run_.kind, run_.name, run_.first_revision, !run_.store.empty()}));
 }
 
-void ViewDesk::show(const TrackedScan& tracked, const daemon::LocalizationRow& row, double latency_s) {
-  board_.show(tracked, row, latency_s);
-  const daemon::LiveScan scan{
-      .number = row.number, .row = row, .latency_s = latency_s, .beams = daemon::beams_of(tracked), .particles = {}};
-  std::vector<std::string> messages{daemon::pose_line({row, latency_s, std::nullopt})};
-  if (!scan.beams.empty()) messages.push_back(daemon::scan_message(scan));
-  moments_.add(row.time, messages);
+void ViewDesk::show(const daemon::LocalizationRow& row) {
+  constexpr double kUnknown_s = std::numeric_limits<double>::quiet_NaN();
+  board_.show({}, row, kUnknown_s);
+  moments_.add(row.time, {daemon::pose_line({row, kUnknown_s, std::nullopt})});
+}
+
+void ViewDesk::show(const daemon::ReplayedScan& replayed) {
+  const auto& [tracked, row, cost_s, particles, awareness] = replayed;
+  board_.show(tracked, row, cost_s);
+  daemon::LiveScan scan{
+      .number = row.number, .row = row, .latency_s = cost_s, .beams = daemon::beams_of(tracked), .particles = {}};
+  if (particles != nullptr) scan.particles = localization::particles::sampled_poses(*particles, kParticlesKept);
+  keep_lasting(row.time, awareness);
+  moments_.add(row.time, {daemon::pose_line({row, cost_s, std::nullopt}), daemon::scan_message(scan),
+                          daemon::particles_message(scan)});
+}
+
+/// What is not map yet, and the scans that are kept for it: once a second at most, as a live page has them.
+void ViewDesk::keep_lasting(Timestamp now, const mapping::StoreScan& awareness) {
+  const double passed_s = seconds(now - lasting_kept_);
+  if (passed_s >= 0.0 && passed_s < kLastingPeriod_s) return;
+  mapping::StoredScans stored = awareness.stored();
+  if (stored == stored_ && awareness.transients() == transients_) return;
+  lasting_kept_ = now;
+  stored_ = std::move(stored);
+  transients_ = awareness.transients();
+  moments_.add_lasting({daemon::stored_message(stored_), daemon::transient_message(transients_.get())});
 }
 
 void ViewDesk::show(const MapRevision* revision, const daemon::ChangeNote& note) { board_.show(revision, note); }

@@ -13,6 +13,7 @@
 #include "daemon/live/live_board.hpp"
 #include "daemon/live/live_stream.hpp"
 #include "daemon/live/page_history.hpp"
+#include "daemon/replay/replay_run.hpp"
 #include "daemon/settings/settings.hpp"
 #include "tool/view/moment_file.hpp"
 
@@ -34,8 +35,10 @@ class ViewDesk {
   /// port.
   ViewDesk(ViewedRun run, std::uint16_t port);
 
-  // The thread that reads the run. Both throw std::system_error where there is no room.
-  void show(const TrackedScan& tracked, const daemon::LocalizationRow& row, double latency_s);
+  // The thread that reads the run. All throw std::system_error where there is no room.
+  void show(const daemon::ReplayedScan& scan);
+  /// Of a scan no more than its line of the log.
+  void show(const daemon::LocalizationRow& row);
   void show(const MapRevision* revision, const daemon::ChangeNote& note);
   /// How much has been read, 0 to 1.
   void tell_progress(double done);
@@ -49,6 +52,7 @@ class ViewDesk {
   [[nodiscard]] std::string url() const { return "http://" + server_.place() + "/"; }
 
  private:
+  void keep_lasting(Timestamp now, const mapping::StoreScan& awareness);
   [[nodiscard]] daemon::dashboard::Answer answer(const daemon::dashboard::Request& request);
   [[nodiscard]] daemon::dashboard::Answer moment(const std::string& query) const;
   [[nodiscard]] daemon::dashboard::Answer revision(const std::string& path);
@@ -59,6 +63,9 @@ class ViewDesk {
   daemon::LiveBoard board_;
   daemon::PageHistory history_;
   MomentFile moments_;
+  std::shared_ptr<const TransientObstacles> transients_;  // that the newest moment shows, as the next
+  mapping::StoredScans stored_;
+  Timestamp lasting_kept_;
   daemon::LiveNews news_;
   Timestamp told_;
   mutable std::mutex mutex_;  // of what the two threads share below

@@ -52,6 +52,21 @@ TEST(MomentFile, FindsTheNewestScanThatIsNotYounger) {
   EXPECT_EQ(moments.span().to, second(18));
 }
 
+TEST(MomentFile, WhatLastsBelongsToEveryScanFromThereOn) {
+  MomentFile moments{fs::temp_directory_path()};
+  moments.add(second(1), {"pose 1"});
+  moments.add_lasting({"two kept", "three kept"});
+  moments.add(second(2), {"pose 2"});
+  moments.add(second(3), {"pose 3"});
+  moments.add_lasting({});
+  moments.add(second(4), {"pose 4"});
+  const auto at = [&](int time) { return messages_in(moments.at(second(time)).value()); };
+  EXPECT_EQ(at(1), (std::vector<std::string>{"pose 1"}));
+  EXPECT_EQ(at(2), (std::vector<std::string>{"pose 2", "two kept", "three kept"}));
+  EXPECT_EQ(at(3), (std::vector<std::string>{"pose 3", "two kept", "three kept"}));
+  EXPECT_EQ(at(4), (std::vector<std::string>{"pose 4"}));
+}
+
 TEST(MomentFile, AFolderThatIsNotThereIsNamed) {
   try {
     const MomentFile moments{"/no/such/folder"};
@@ -91,7 +106,7 @@ class ViewTest : public test::PipelineFixture {
            .revision = static_cast<std::uint32_t>(report_.changes.accepted()),
            .store = run() / "map_store.sqlite"});
     for (const daemon::ChangeNote& change : read.changes) desk_->show(nullptr, change);
-    for (const daemon::LocalizationRow& row : read.rows) desk_->show(TrackedScan{}, row, 0.0);
+    for (const daemon::LocalizationRow& row : read.rows) desk_->show(row);
     desk_->tell_complete("");
   }
   [[nodiscard]] std::uint16_t port() const {
@@ -146,7 +161,7 @@ TEST_F(ViewTest, AMomentHoldsThePoseOfItsTime) {
   EXPECT_EQ(pose["scan"], wanted.number);
   EXPECT_EQ(pose["x_m"], wanted.map_from_robot.x);
   EXPECT_EQ(pose["gate"], nullptr);
-  EXPECT_EQ(pose["latency_ms"], 0.0);
+  EXPECT_TRUE(pose["latency_ms"].is_null()) << "no log holds it";
   for (const char* bad : {"/api/moment", "/api/moment?time=", "/api/moment?time=soon", "/api/moment?time=nan",
                           "/api/moment?time=1e300", "/api/moment?at=5"}) {
     EXPECT_EQ(got(bad).status, 400) << bad;
@@ -210,18 +225,27 @@ TEST_F(ViewTest, AReplayIsWatchedScanByScanAndComesToTheSameFiles) {
   job.settings = settings_;
   job.out = folder_.path() / "watched";
   serve({.kind = "recording", .map = std::make_shared<const OccupancyGrid>(read_grid(job.map))});
-  job.watch.scan = [this](const TrackedScan& tracked, const daemon::LocalizationRow& row, double cost_s) {
-    desk_->show(tracked, row, cost_s);
-  };
+  job.watch.scan = [this](const daemon::ReplayedScan& scan) { desk_->show(scan); };
   job.watch.change = [this](const MapRevision* revision, const daemon::ChangeNote& note) {
     desk_->show(revision, note);
   };
   (void)daemon::run_replay(job, [](double) { return true; });
   expect_same_files("run", "watched");
   const auto messages = messages_in(got("/api/moment?time=9000000000").body);
-  ASSERT_EQ(messages.size(), 2U);
+  ASSERT_EQ(messages.size(), 5U);
   EXPECT_EQ(test::u32_at(messages[1], 0), 3U) << "a scan, as /live sends it";
   EXPECT_GT(test::u32_at(messages[1], 4), 100U) << "of so many beams";
+  EXPECT_EQ(test::u32_at(messages[2], 0), 4U) << "particles";
+  EXPECT_EQ(test::u32_at(messages[3], 0), 5U) << "scans kept for the map";
+  EXPECT_EQ(Json::parse(messages[4])["type"], "transient");
+  std::uint32_t most_stored = 0;
+  const std::vector<daemon::LocalizationRow> rows = read_run_folder(run()).rows;
+  for (std::size_t i = 0; i < rows.size(); i += 5) {
+    const std::string time = std::to_string(unix_seconds(rows[i].time));
+    const auto of_then = messages_in(got("/api/moment?time=" + time).body);
+    if (of_then.size() == 5) most_stored = std::max(most_stored, test::u32_at(of_then[3], 4));
+  }
+  EXPECT_GT(most_stored, 0U) << "at some time of the run";
   EXPECT_EQ(Json::parse(got("/api/history").body)["revision"], report_.changes.accepted());
 }
 
