@@ -105,6 +105,14 @@ class ViewTest(unittest.TestCase):
                 return hits / (scan.ends.length / 2)""")
             self.assertGreater(on_obstacles, 0.6, "the scan lies on the map of its time")
             browser.screenshot(PICTURES / "view-recording.png")
+            kept = []
+            for share in range(0, 21):
+                self.scrub(browser, share / 20)
+                kept.append(browser.run("const { particles, stored, transient } = window.deltamap.model; return [particles.length, stored.length, transient !== null]"))
+            self.assertGreater(kept[0][0], 10, "the first pose rests on particles")
+            self.assertGreater(max(scans for _, scans, _ in kept), 0, "scans of a Δ-phase")
+            self.assertTrue(all(transient for *_, transient in kept))
+            self.scrub(browser, 0.5)
             browser.run("document.querySelector('#changes button:last-child').click()")
             browser.wait("window.deltamap.model.delta")
             browser.screenshot(PICTURES / "view-change.png")

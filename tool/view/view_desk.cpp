@@ -77,9 +77,10 @@ void ViewDesk::show(const daemon::ReplayedScan& replayed) {
 /// What is not map yet, and the scans that are kept for it: once a second at most, as a live page has them.
 void ViewDesk::keep_lasting(Timestamp now, const mapping::StoreScan& awareness) {
   const double passed_s = seconds(now - lasting_kept_);
-  if (passed_s >= 0.0 && passed_s < kLastingPeriod_s) return;
+  const bool is_first = moments_.span().scans == 0;
+  if (!is_first && passed_s >= 0.0 && passed_s < kLastingPeriod_s) return;
   mapping::StoredScans stored = awareness.stored();
-  if (stored == stored_ && awareness.transients() == transients_) return;
+  if (!is_first && stored == stored_ && awareness.transients() == transients_) return;
   lasting_kept_ = now;
   stored_ = std::move(stored);
   transients_ = awareness.transients();
