@@ -301,7 +301,7 @@ Pose2 Localizer::State::continuous_odom_at(const motion::ScanInstant& now) const
 Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& believed) const {
   return {.time = time,
           .map_from_robot = believed.map_from_robot,
-          .covariance = believed.covariance + tracker.unknown_mount(believed.map_from_robot.theta),
+          .covariance = believed.covariance + tracker.not_counted_in(believed),
           .state = monitor.state(),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(

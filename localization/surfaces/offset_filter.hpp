@@ -50,6 +50,9 @@ class OffsetFilter {
                                       const Pose2& pose);
 
   [[nodiscard]] sensor::RefinedPose believed() const { return state_.pose(); }
+  /// What the surfaces of the last metres cannot tell of the position, for each lies anywhere in the cells that it is
+  /// drawn with, and does so whenever it is seen again: no visit makes the pose surer than that.
+  [[nodiscard]] Eigen::Matrix2d unknown_of_cells() const;
   [[nodiscard]] motion::DriveCalibration calibration() const { return state_.calibration(); }
   [[nodiscard]] bool is_sound() const { return state_.is_sound(); }
 

@@ -79,10 +79,9 @@ std::vector<std::size_t> bodies_of(std::span<const SurfaceSwitch> switches, cons
 
 /// Moment matching: the two cases, weighed, as one Gaussian; less the cavity that is what the switch adds. Where it
 /// would take precision away the switch says nothing.
-/// `share`: of what a surface that holds tells, for pieces of one face were drawn with the same error.
-void match(SurfaceSwitch& of, const Cavity& cavity, OffsetState& state, Eigen::Index at, double share) {
+void match(SurfaceSwitch& of, const Cavity& cavity, OffsetState& state, Eigen::Index at) {
   const Eigen::Matrix2d known = cavity.covariance.inverse();
-  const Eigen::Matrix2d hold = (share * precision_of_holding(of.surface)).asDiagonal();
+  const Eigen::Matrix2d hold = (of.share * precision_of_holding(of.surface)).asDiagonal();
   const Eigen::Matrix2d covariance_held = (known + hold).inverse();
   const Eigen::Vector2d mean_held = covariance_held * (known * cavity.mean + hold * Eigen::Vector2d{of.usual_m, 0.0});
   const double w = of.holds;
@@ -112,7 +111,10 @@ void settle(std::vector<SurfaceSwitch>& switches, OffsetState& state) {
   const std::vector<std::size_t> body = bodies_of(switches, state);
   std::vector<Cavity> cavities(switches.size());
   const auto look = [&](std::size_t i) { cavities[i] = cavity_of(switches[i], state, OffsetState::offset_of(i)); };
-  for (std::size_t i = 0; i < switches.size(); ++i) look(i);
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    look(i);
+    switches[i].share = 1.0 / static_cast<double>(std::count(body.begin(), body.end(), body[i]));
+  }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t i = 0; i < switches.size(); ++i) {
       look(i);
@@ -125,8 +127,7 @@ void settle(std::vector<SurfaceSwitch>& switches, OffsetState& state) {
       }
       const double odds = log_odds(switches[speaker], cavities[speaker]);
       switches[i].holds = 1.0 / (1.0 + std::exp(-std::clamp(odds, -kSurestOdds, kSurestOdds)));
-      const auto pieces = static_cast<double>(std::count(body.begin(), body.end(), body[i]));
-      match(switches[i], cavities[i], state, OffsetState::offset_of(i), 1.0 / pieces);
+      match(switches[i], cavities[i], state, OffsetState::offset_of(i));
     }
   }
 }

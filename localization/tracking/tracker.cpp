@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/tracking/tracker.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -49,11 +50,19 @@ void Tracker::restore(const motion::DriveCalibration& learned) {
   if (surfaces_) surfaces_->restore(learned);
 }
 
-PoseCovariance Tracker::unknown_mount(double heading_rad) const {
-  if (!surfaces_ || surfaces_->leads()) return PoseCovariance::Zero();
+PoseCovariance Tracker::not_counted_in(const sensor::RefinedPose& believed) const {
+  PoseCovariance more = PoseCovariance::Zero();
+  if (!surfaces_) return more;
+  if (surfaces_->leads()) {
+    const Eigen::Matrix2d beyond = surfaces_->unknown_of_cells() - believed.covariance.topLeftCorner<2, 2>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{beyond};
+    more.topLeftCorner<2, 2>() =
+        axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+    return more;
+  }
   const Pose2 deviations = surfaces_->calibration().mount_deviations;
-  return motion::covariance_along(heading_rad, deviations.x * deviations.x, deviations.y * deviations.y,
-                                  deviations.theta * deviations.theta);
+  return motion::covariance_along(believed.map_from_robot.theta, deviations.x * deviations.x,
+                                  deviations.y * deviations.y, deviations.theta * deviations.theta);
 }
 
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {

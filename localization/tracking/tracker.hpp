@@ -78,9 +78,9 @@ class Tracker {
   [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;
   /// Before the first scan: what an earlier run has learned.
   void restore(const motion::DriveCalibration& learned);
-  /// What the particles cannot know of the pose, because the laser's mount is not known better; nothing while the
-  /// surfaces lead, who count it in.
-  [[nodiscard]] PoseCovariance unknown_mount(double heading_rad) const;
+  /// What the believed pose's covariance does not count in: of the particles what is not known of the laser's mount, of
+  /// the surfaces what the map's cells leave open beyond it.
+  [[nodiscard]] PoseCovariance not_counted_in(const sensor::RefinedPose& believed) const;
   /// Surfaces that stand where the map has them fix the pose; never while the particles lead.
   [[nodiscard]] bool is_fixed_by_surfaces() const;
 

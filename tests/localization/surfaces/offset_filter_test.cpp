@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <memory>
 
@@ -224,6 +225,30 @@ TEST(OffsetFilter, FindsTheErrorOfTheMount) {
   EXPECT_NEAR(round.filter().calibration().mount_error.y, -0.01, 0.01);
   EXPECT_NEAR(round.filter().calibration().mount_error.theta, radians(0.5), radians(0.15));
   EXPECT_LT(distance_between(round.filter().believed().map_from_robot, round.truth()), 0.03);
+}
+
+TEST(OffsetFilter, KnowsWhatCellsLeaveOpenHoweverOftenTheyAreSeen) {
+  const double of_a_wall_m2 = std::pow(0.29 * test::map_of(test::containers_in_order()).resolution_m(), 2);
+  Round round{{}};
+  EXPECT_TRUE(round.filter().unknown_of_cells().isZero()) << "nothing is followed yet";
+  round.drive(8);
+  const Eigen::Matrix2d after_two_rounds = round.filter().unknown_of_cells();
+  round.drive(16);
+  const Eigen::Matrix2d after_six = round.filter().unknown_of_cells();
+  for (const Eigen::Matrix2d& unknown : {after_two_rounds, after_six}) {
+    const Eigen::Vector2d variances = unknown.selfadjointView<Eigen::Lower>().eigenvalues();
+    EXPECT_GT(variances.minCoeff(), of_a_wall_m2 / 32.0) << "as many surfaces as are followed at most";
+    EXPECT_LE(variances.maxCoeff(), 1.001 * of_a_wall_m2) << "one is enough to tell of a direction";
+  }
+  EXPECT_NEAR(after_six.trace(), after_two_rounds.trace(), 0.5 * after_two_rounds.trace());
+}
+
+TEST(SurfaceTracker, TellsNoPoseSurerThanTheCellsOfTheMap) {
+  Drive drive{test::containers_in_order(), true};
+  for (int i = 0; i < 40; ++i) drive.go(0.0, radians(90.0));
+  const double of_a_wall_m = 0.29 * test::map_of(test::containers_in_order()).resolution_m();
+  EXPECT_GT(std::sqrt(drive.estimate().covariance(0, 0)), of_a_wall_m / 4.0) << "ten turns at one place";
+  EXPECT_GT(std::sqrt(drive.estimate().covariance(1, 1)), of_a_wall_m / 4.0);
 }
 
 }  // namespace
