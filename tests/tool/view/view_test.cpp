@@ -40,7 +40,8 @@ TEST(MomentFile, FindsTheNewestScanThatIsNotYounger) {
   MomentFile moments{fs::temp_directory_path()};
   EXPECT_FALSE(moments.at(second(1)));
   EXPECT_EQ(moments.span().scans, 0U);
-  for (int i = 10; i < 20; i += 2) moments.add(second(i), {"pose " + std::to_string(i), std::string(i, '\0')});
+  for (int i = 10; i < 20; i += 2)
+    moments.add(second(i), {"pose " + std::to_string(i), std::string(static_cast<std::size_t>(i), '\0')});
   const auto pose_at = [&](int time) { return messages_in(moments.at(second(time)).value()).front(); };
   EXPECT_EQ(pose_at(14), "pose 14");
   EXPECT_EQ(pose_at(15), "pose 14");
