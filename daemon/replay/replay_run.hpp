@@ -27,7 +27,8 @@ struct ReplayedScan {
   const mapping::StoreScan& awareness;
 };
 
-/// What others may look at while a replay goes on; empty: nobody looks. Called in the replay's thread.
+/// What others may look at while a replay goes on; empty: nobody looks. Called in the replay's thread; of one scan the
+/// changes first.
 struct ReplayWatch {
   std::function<void(const ReplayedScan&)> scan{};
   std::function<void(const MapRevision*, const ChangeNote&)> change{};  ///< the revision may be null: refused

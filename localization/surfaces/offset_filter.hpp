@@ -51,7 +51,7 @@ class OffsetFilter {
 
   [[nodiscard]] sensor::RefinedPose believed() const { return state_.pose(); }
   /// What the surfaces of the last metres cannot tell of the position, for each lies anywhere in the cells that it is
-  /// drawn with, and does so whenever it is seen again: no visit makes the pose surer than that.
+  /// drawn with, and does so whenever it is seen again. The filter itself does not count it.
   [[nodiscard]] Eigen::Matrix2d unknown_of_cells() const;
   [[nodiscard]] motion::DriveCalibration calibration() const { return state_.calibration(); }
   [[nodiscard]] bool is_sound() const { return state_.is_sound(); }

@@ -79,9 +79,9 @@ void ViewDesk::keep_lasting(Timestamp now, const mapping::StoreScan& awareness) 
   const double passed_s = seconds(now - lasting_kept_);
   const bool is_first = moments_.span().scans == 0;
   if (!is_first && passed_s >= 0.0 && passed_s < kLastingPeriod_s) return;
+  lasting_kept_ = now;
   mapping::StoredScans stored = awareness.stored();
   if (!is_first && stored == stored_ && awareness.transients() == transients_) return;
-  lasting_kept_ = now;
   stored_ = std::move(stored);
   transients_ = awareness.transients();
   moments_.add_lasting({daemon::stored_message(stored_), daemon::transient_message(transients_.get())});
