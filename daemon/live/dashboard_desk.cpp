@@ -23,8 +23,6 @@ constexpr double kStoredPeriod_s = 0.99;
 constexpr double kStatusPeriod_s = 0.99;  // likewise: once a second
 constexpr const char* kJson = "application/json";
 
-bool is_due(Timestamp last, Timestamp now, double period_s) { return now < last || seconds(now - last) >= period_s; }
-
 }  // namespace
 
 DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry,

@@ -61,8 +61,7 @@ LiveBoard::LiveBoard(std::shared_ptr<const OccupancyGrid> map, std::uint32_t rev
 void LiveBoard::show(const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
                      const localization::particles::ParticleSet* particles) {
   ++scans_seen_;
-  const double passed_s = seconds(row.time - last_sample_);
-  const bool is_sampled = passed_s >= kSamplePeriod_s || passed_s < 0.0;
+  const bool is_sampled = is_due(last_sample_, row.time, kSamplePeriod_s);
   const bool is_watched = this->is_watched();
   if (!is_sampled && !is_watched) return;
   std::vector<Pose2> sample;

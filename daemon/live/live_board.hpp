@@ -23,6 +23,11 @@
 
 namespace deltamap::daemon {
 
+/// Is it time again for what is done once a period? Also where the clock has fallen back.
+[[nodiscard]] inline bool is_due(Timestamp last, Timestamp now, double period_s) {
+  return now < last || seconds(now - last) >= period_s;
+}
+
 /// Where a beam ended, in the robot's frame at the scan's time, cm.
 struct LiveBeam {
   std::int16_t x_cm = 0;

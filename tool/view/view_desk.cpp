@@ -76,9 +76,8 @@ void ViewDesk::show(const daemon::ReplayedScan& replayed) {
 
 /// What is not map yet, and the scans that are kept for it: once a second at most, as a live page has them.
 void ViewDesk::keep_lasting(Timestamp now, const mapping::StoreScan& awareness) {
-  const double passed_s = seconds(now - lasting_kept_);
-  const bool is_first = moments_.span().scans == 0;
-  if (!is_first && passed_s >= 0.0 && passed_s < kLastingPeriod_s) return;
+  const bool is_first = !lasting_kept_;
+  if (!is_first && !daemon::is_due(*lasting_kept_, now, kLastingPeriod_s)) return;
   lasting_kept_ = now;
   mapping::StoredScans stored = awareness.stored();
   if (!is_first && stored == stored_ && awareness.transients() == transients_) return;
@@ -149,7 +148,7 @@ std::string ViewDesk::run_message() const {
 
 void ViewDesk::refresh() {
   const Timestamp now = drivers::port::port_clock_now();
-  if (news_.run.number != 0 && now >= told_ && seconds(now - told_) < kTellPeriod_s) return;
+  if (news_.run.number != 0 && !daemon::is_due(told_, now, kTellPeriod_s)) return;
   told_ = now;
   news_.run.set(run_message());
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "daemon/dashboard/server.hpp"
@@ -65,7 +66,7 @@ class ViewDesk {
   MomentFile moments_;
   std::shared_ptr<const TransientObstacles> transients_;  // that the newest moment shows, as the next
   mapping::StoredScans stored_;
-  Timestamp lasting_kept_;
+  std::optional<Timestamp> lasting_kept_;
   daemon::LiveNews news_;
   Timestamp told_;
   mutable std::mutex mutex_;  // of what the two threads share below
