@@ -14,7 +14,7 @@ static_assert(static_cast<int>(CellState::kFree) == 0 && static_cast<int>(CellSt
 
 static_assert(std::endian::native == std::endian::little, "the first cell is the lowest byte of a word");
 
-constexpr std::size_t kTogether = 8;  // cells of one word: most hold nothing occupied
+constexpr std::size_t kCellsOfAWord = 8;  // most hold nothing occupied
 constexpr std::uint64_t kLowBits = 0x0101010101010101ULL;
 
 std::uint64_t word_at(const CellState* cells) {
@@ -46,7 +46,7 @@ std::vector<Cell> contour_cells(const OccupancyGrid& map, const CellBox& box) {
       if (is_contour(map, cell)) contour.push_back(cell);
     };
     std::size_t next = 0;
-    for (; next + kTogether <= cells.size(); next += kTogether) {
+    for (; next + kCellsOfAWord <= cells.size(); next += kCellsOfAWord) {
       for (std::uint64_t left = word_at(&cells[next]) & kLowBits; left != 0; left &= left - 1) {
         look_at(next + static_cast<std::size_t>(std::countr_zero(left)) / 8);
       }

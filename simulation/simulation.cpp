@@ -18,7 +18,7 @@ constexpr Duration kTruthEvery = std::chrono::milliseconds{100};
 constexpr Duration kForkliftPatience = std::chrono::seconds{1};  // until it looks again where nothing could be done
 
 /// Each has its own chance, so that a change to one does not touch what befalls the others.
-enum class Stream : std::uint64_t {
+enum class LiveChance : std::uint64_t {
   kRobot,
   kLaser,
   kForklift,
@@ -60,22 +60,22 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
     : scenario_{scenario},
       world_{scenario.world},
       surfaces_{scenario.world},
-      body_{scenario.robot.body, scenario.robot.map_from_start, random_for(params.seed, Stream::kRobot)},
-      range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
-      movers_{{scenario.people, scenario.actors, scenario.doors}, chance_of_movers<Stream>(params.seed)},
-      pioneer_{pioneer_setup(scenario.robot), random_for(params.seed, Stream::kPioneer)},
-      lms200_{lms200_setup(scenario.laser), params.start, random_for(params.seed, Stream::kLms200)},
+      body_{scenario.robot.body, scenario.robot.map_from_start, random_for(params.seed, LiveChance::kRobot)},
+      range_finder_{scenario.laser.optics, random_for(params.seed, LiveChance::kLaser)},
+      movers_{{scenario.people, scenario.actors, scenario.doors}, chance_of_movers<LiveChance>(params.seed)},
+      pioneer_{pioneer_setup(scenario.robot), random_for(params.seed, LiveChance::kPioneer)},
+      lms200_{lms200_setup(scenario.laser), params.start, random_for(params.seed, LiveChance::kLms200)},
       now_{params.start},
       next_truth_{params.start} {
   if (scenario.forklift) {
     forklift_.emplace(*scenario.forklift, scenario.slots, scenario.world, scenario.robot.map_from_start.position(),
-                      random_for(params.seed, Stream::kForklift));
+                      random_for(params.seed, LiveChance::kForklift));
     change_every_ = duration_from_seconds(params.change_every_s.value_or(scenario.forklift->change_every_s));
     next_change_ = params.start + change_every_;
   }
   if (scenario.changed_at_start) {
     ChangedHall hall = changed_start(*scenario.changed_at_start, scenario.slots, world_, robot_body(),
-                                     movers_.bodies().obstacles(), random_for(params.seed, Stream::kChangedStart));
+                                     movers_.bodies().obstacles(), random_for(params.seed, LiveChance::kChangedStart));
     take_place(hall.changes, params.start);
     for (const Change& change : hall.changes) {
       if (forklift_) forklift_->learn(change);
@@ -83,7 +83,7 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
   }
   if (scenario.creep) {
     creep_.emplace(*scenario.creep, world_, scenario.robot.map_from_start.position(),
-                   random_for(params.seed, Stream::kCreep));
+                   random_for(params.seed, LiveChance::kCreep));
     next_push_ = params.start + duration_from_seconds(scenario.creep->every_s);
   }
   history_.add({params.start, body_.state().map_from_robot, {}, movers_.bodies()});

@@ -24,7 +24,7 @@ constexpr double kHeadingUnit_rad = 0.001534;     // A6
 constexpr double kLongestInMillimetres_m = 32.0;  // B4
 
 /// Each has its own chance, so that a change to one does not touch what befalls the others.
-enum class Stream : std::uint64_t {
+enum class DriveChance : std::uint64_t {
   kRobot,
   kLaser,
   kForklift,
@@ -77,25 +77,25 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
       params_{params},
       world_{scenario.world},
       surfaces_{scenario.world},
-      body_{scenario.robot.body, scenario_.robot.map_from_start, random_for(params.seed, Stream::kRobot)},
-      range_finder_{scenario.laser.optics, random_for(params.seed, Stream::kLaser)},
+      body_{scenario.robot.body, scenario_.robot.map_from_start, random_for(params.seed, DriveChance::kRobot)},
+      range_finder_{scenario.laser.optics, random_for(params.seed, DriveChance::kLaser)},
       pilot_{params.route, scenario.world, scenario_.robot.map_from_start.position(),
-             random_for(params.seed, Stream::kPilot)},
-      movers_{movers_of(scenario, params.people), chance_of_movers<Stream>(params.seed)},
+             random_for(params.seed, DriveChance::kPilot)},
+      movers_{movers_of(scenario, params.people), chance_of_movers<DriveChance>(params.seed)},
       now_{kStart},
       next_odometry_{kStart},
       next_change_{kStart},
       next_push_{kStart},
       next_thought_{kStart},
-      gap_chance_{random_for(params.seed, Stream::kGaps)},
-      sight_chance_{random_for(params.seed, Stream::kSight)},
+      gap_chance_{random_for(params.seed, DriveChance::kGaps)},
+      sight_chance_{random_for(params.seed, DriveChance::kSight)},
       fan_{sweep_of(params.fan)},
       sweep_s_{duration_s(params.fan)} {
-  if (params.slips) slips_.emplace(*params.slips, random_for(params.seed, Stream::kSlips));
+  if (params.slips) slips_.emplace(*params.slips, random_for(params.seed, DriveChance::kSlips));
   if (params.gaps) next_gap_ = kStart + duration_from_seconds(exponential(params.gaps->every_s, gap_chance_));
   if (params.forklift) {
     forklift_.emplace(*params.forklift, scenario.slots, scenario.world, scenario_.robot.map_from_start.position(),
-                      random_for(params.seed, Stream::kForklift));
+                      random_for(params.seed, DriveChance::kForklift));
     next_change_ = kStart + duration_from_seconds(params.forklift->change_every_s);
   }
   const auto& start = params.changed_at_start ? params.changed_at_start : scenario.changed_at_start;
@@ -106,14 +106,14 @@ VirtualDrive::VirtualDrive(const Scenario& scenario, const VirtualDriveParams& p
   }
   if (params.creep) {
     creep_.emplace(*params.creep, world_, scenario_.robot.map_from_start.position(),
-                   random_for(params.seed, Stream::kCreep));
+                   random_for(params.seed, DriveChance::kCreep));
     next_push_ = kStart + duration_from_seconds(params.creep->every_s);
   }
 }
 
 void VirtualDrive::begin_changed(const ChangedStartParams& start) {
   ChangedHall hall = changed_start(start, scenario_.slots, world_, robot_body(), movers_.bodies().obstacles(),
-                                   random_for(params_.seed, Stream::kChangedStart));
+                                   random_for(params_.seed, DriveChance::kChangedStart));
   world_ = std::move(hall.world);
   unseen_ = std::move(hall.changes);
   for (const Change& change : unseen_) {
@@ -291,7 +291,7 @@ void VirtualDrive::see_changes() {
 
 std::vector<Change> VirtualDrive::change_many(double share, const ForkliftParams& params) {
   ChangedHall hall = changed_hall({.share = share}, params, scenario_.slots, scenario_.world, world_, robot_body(),
-                                  movers_.bodies().obstacles(), random_for(params_.seed, Stream::kMany, many_++));
+                                  movers_.bodies().obstacles(), random_for(params_.seed, DriveChance::kMany, many_++));
   world_ = std::move(hall.world);
   see_changes();
   return hall.changes;

@@ -11,24 +11,23 @@ namespace deltamap::daemon::dashboard {
 namespace {
 
 namespace asio = boost::asio;
-using tcp = asio::ip::tcp;
 
 /// One that somebody else has opened, systemd for example.
-tcp::acceptor inherited(asio::io_context& loop, int descriptor) {
+asio::ip::tcp::acceptor inherited(asio::io_context& loop, int descriptor) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   const bool is_socket = ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0;
   if (!is_socket || (address.ss_family != AF_INET && address.ss_family != AF_INET6)) {
     throw std::runtime_error("the socket that was handed over is none of TCP");
   }
-  return {loop, address.ss_family == AF_INET ? tcp::v4() : tcp::v6(), descriptor};
+  return {loop, address.ss_family == AF_INET ? asio::ip::tcp::v4() : asio::ip::tcp::v6(), descriptor};
 }
 
-tcp::acceptor listening_at(asio::io_context& loop, const std::string& address, std::uint16_t port) {
+asio::ip::tcp::acceptor listening_at(asio::io_context& loop, const std::string& address, std::uint16_t port) {
   try {
-    const tcp::endpoint endpoint{asio::ip::make_address(address), port};
-    tcp::acceptor acceptor{loop, endpoint.protocol()};
-    acceptor.set_option(tcp::acceptor::reuse_address(true));
+    const asio::ip::tcp::endpoint endpoint{asio::ip::make_address(address), port};
+    asio::ip::tcp::acceptor acceptor{loop, endpoint.protocol()};
+    acceptor.set_option(asio::ip::tcp::acceptor::reuse_address(true));
     acceptor.bind(endpoint);
     acceptor.listen();
     return acceptor;
@@ -39,15 +38,15 @@ tcp::acceptor listening_at(asio::io_context& loop, const std::string& address, s
 
 }  // namespace
 
-std::string place_of(const tcp::endpoint& endpoint) {
+std::string place_of(const asio::ip::tcp::endpoint& endpoint) {
   const std::string address = endpoint.address().to_string();
   return (endpoint.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port());
 }
 
-tcp::acceptor listening_socket(asio::io_context& loop, const Server::Options& options) {
-  tcp::acceptor acceptor =
+asio::ip::tcp::acceptor listening_socket(asio::io_context& loop, const Server::Options& options) {
+  asio::ip::tcp::acceptor acceptor =
       options.descriptor >= 0 ? inherited(loop, options.descriptor) : listening_at(loop, options.address, options.port);
-  const tcp::endpoint place = acceptor.local_endpoint();
+  const asio::ip::tcp::endpoint place = acceptor.local_endpoint();
   if (options.guard.token.empty() && !place.address().is_loopback()) {
     throw std::runtime_error(place_of(place) + ": leads beyond this machine, and no token is asked for");
   }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using drivers::pioneer::DriveSwitch;
 using Json = nlohmann::ordered_json;
 
-constexpr std::uintmax_t kLargestFile = 4096 + 256;  // the longest path, and the switch
+constexpr std::uintmax_t kLargestDriveFile = 4096 + 256;  // the longest path, and the switch
 constexpr std::chrono::seconds kTryAgainAfter{1};
 constexpr const char* kSwitchKey = "drive";
 constexpr const char* kPortKey = "robot_port";
@@ -64,7 +64,7 @@ KeptDriveAnswer read_kept_drive(const DrivePlace& place) {
   std::error_code error;
   const auto status = fs::symlink_status(place.file, error);
   if (place.file.empty() || status.type() == fs::file_type::not_found) return {};
-  const Json json = Json::parse(kept_text(place.file, kLargestFile), nullptr, false);
+  const Json json = Json::parse(kept_text(place.file, kLargestDriveFile), nullptr, false);
   const auto name = text_in(json, kSwitchKey);
   const auto value = name ? drivers::pioneer::drive_switch_named(*name) : std::nullopt;
   const auto port = text_in(json, kPortKey);

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uintmax_t kLargestFile = 4096;
+constexpr std::uintmax_t kLargestPoseFile = 4096;
 
 std::optional<double> number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -91,7 +91,7 @@ KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t f
     answer.why_not = file.string() + ": " + why;
     return answer;
   };
-  const std::string text = kept_text(file, kLargestFile);
+  const std::string text = kept_text(file, kLargestPoseFile);
   const Json json = Json::parse(text, nullptr, false);
   const auto pose = pose_in(json, first_map);
   if (!pose) return refused("holds no pose");

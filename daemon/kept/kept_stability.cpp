@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uintmax_t kLargestFile = 256u << 20u;
+constexpr std::uintmax_t kLargestStabilityFile = 256u << 20u;
 
 std::string_view as_text(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -68,7 +68,7 @@ KeptStabilityAnswer read_kept_stability(const std::filesystem::path& file, std::
   KeptStabilityAnswer answer;
   std::error_code error;
   if (!std::filesystem::exists(std::filesystem::status(file, error))) return answer;
-  const std::string text = kept_text(file, kLargestFile);
+  const std::string text = kept_text(file, kLargestStabilityFile);
   answer.kept = kept_in(text);
   if (!answer.kept) {
     answer.why_not = file.string() + ": holds nothing about stability, or is damaged";

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder_of(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
+fs::path absolute_folder_of(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
 
 std::string user_name() {
   std::array<char, 4096> names{};
@@ -25,13 +25,13 @@ std::string user_name() {
 
 void make_folder_of(const fs::path& file) {
   std::error_code told_by_whoever_opens_the_file;
-  if (!file.empty()) fs::create_directories(folder_of(file), told_by_whoever_opens_the_file);
+  if (!file.empty()) fs::create_directories(absolute_folder_of(file), told_by_whoever_opens_the_file);
 }
 
 }  // namespace
 
 std::string why_no_folder_for(const fs::path& file) {
-  fs::path folder = folder_of(file);
+  fs::path folder = absolute_folder_of(file);
   std::error_code error;
   fs::file_status status = fs::status(folder, error);
   // Up to what can be seen: what lies below is not there yet, or hidden by a folder that may not be entered.
@@ -50,7 +50,7 @@ void require_store_folder(const Settings& settings, const std::string& config) {
   const std::string why = why_no_folder_for(settings.map.store);
   if (why.empty()) return;
   throw SettingsError(config + ": 'map.store': " + why + ": give this user the folder (sudo install -d -o " +
-                      user_name() + " " + folder_of(settings.map.store).string() +
+                      user_name() + " " + absolute_folder_of(settings.map.store).string() +
                       ") or another file (--set map.store=FILE)");
 }
 

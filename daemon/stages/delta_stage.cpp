@@ -8,9 +8,7 @@
 namespace deltamap::daemon {
 namespace {
 
-using Kind = Decision::Kind;
-
-constexpr std::chrono::seconds kLookEvery{1};
+constexpr std::chrono::seconds kLookAgainAfter{1};
 
 bool is_set(const MapWork& work) { return std::holds_alternative<ScanSet>(work); }
 
@@ -22,7 +20,7 @@ DeltaStage::DeltaStage(const Settings& settings, Wiring wiring)
 void DeltaStage::run() {
   while (!wiring_.work.is_drained()) {
     pulse_.beat();
-    const auto work = wiring_.work.receive_within(kLookEvery);
+    const auto work = wiring_.work.receive_within(kLookAgainAfter);
     if (!work) continue;
     offer_waiting();
     if (const auto* order = std::get_if<MapOrder>(&*work)) {
@@ -45,7 +43,7 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
   if (const auto& order = store_scan_.withdrawal()) hand_over(*order);
   if (set) {
     wiring_.telemetry.phases_closed.add(1);
-    note({Kind::kPhaseClosed, tracked.scan.number, set->phase});
+    note({Decision::Kind::kPhaseClosed, tracked.scan.number, set->phase});
     hand_over(std::move(*set));
   }
   if (wiring_.shows_scans()) show_scans();
@@ -90,7 +88,7 @@ void DeltaStage::hand_over(MapWork work) {
   const auto* set = std::get_if<ScanSet>(&work);
   if (set != nullptr && std::any_of(waiting_.begin(), waiting_.end(), is_set)) {
     wiring_.telemetry.sets_lost.add(1);
-    note({Kind::kSetLost, 0, set->phase});
+    note({Decision::Kind::kSetLost, 0, set->phase});
     return;
   }
   waiting_.push_back(std::move(work));

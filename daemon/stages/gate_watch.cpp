@@ -7,7 +7,7 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr double kLong_s = 60.0;
+constexpr double kShutForLong_s = 60.0;
 
 std::string text_of(double time_s) { return std::to_string(std::lround(time_s)) + " s"; }
 
@@ -19,7 +19,7 @@ std::string GateWatch::observe(const mapping::Awareness& awareness) {
     return "map is written again: the gate was shut for " + text_of(shut_for_s_);
   }
   shut_for_s_ = awareness.gate_shut_for_s;
-  if (said_ || shut_for_s_ < kLong_s) return {};
+  if (said_ || shut_for_s_ < kShutForLong_s) return {};
   said_ = true;
   return "map is not written: the gate is shut for " + text_of(shut_for_s_) +
          " reason=" + std::string(name_of(awareness.gate));

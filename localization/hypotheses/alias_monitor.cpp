@@ -9,11 +9,10 @@
 namespace deltamap::localization::hypotheses {
 namespace {
 
-constexpr std::size_t kKept = 8;
 constexpr int kRightAngles = 4;
-constexpr double kMetAfterM = 1.0;          // a hypothesis that has been followed for so long is an alias
-constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that an alias may fit worse by
-constexpr double kBeforeItIsSlid = 0.3;     // the same before it is slid to its best fit
+constexpr double kMetAfterM = 1.0;  // a hypothesis that has been followed for so long is an alias
+constexpr double kBeforeItIsSlid =
+    0.3;  // mean ln p(z) that an alias may fit worse by before it is slid to its best fit
 
 }  // namespace
 
@@ -21,7 +20,7 @@ AliasMonitor::AliasMonitor(const HypothesisBankParams& bank, const Effort& effor
     : effort_{effort},
       bank_{bank},
       aliases_{static_cast<std::size_t>(std::max(0, effort.images))},
-      lattice_{kRightAngles, kKept} {}
+      lattice_{kRightAngles} {}
 
 void AliasMonitor::predict(const Pose2& motion) {
   bank_.predict(motion);

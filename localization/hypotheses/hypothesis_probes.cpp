@@ -7,13 +7,7 @@
 #include "localization/sensor/weighing.hpp"
 
 namespace deltamap::localization::hypotheses {
-namespace {
-
-constexpr std::size_t kKept = 8;
-
-}  // namespace
-
-HypothesisProbes::HypothesisProbes(int headings, std::uint64_t seed) : lattice_{headings, kKept}, random_{seed} {}
+HypothesisProbes::HypothesisProbes(int headings, std::uint64_t seed) : lattice_{headings}, random_{seed} {}
 
 void HypothesisProbes::look(const sensor::CoarseField& coarse, const motion::BeamEnds& ends, std::size_t count) {
   (void)lattice_.look(coarse, ends, count);

@@ -9,9 +9,8 @@
 namespace deltamap::localization::hypotheses {
 namespace {
 
-constexpr double kFitsNearlyAsWell = 0.15;  // mean ln p(z) that a newcomer may fit worse by
-constexpr double kOverlooked = -2.0;        // log odds of a hypothesis that earlier looks did not find
-constexpr double kFarthestBehind = 6.0;     // log evidence: the stack may hold scans from before a slip
+constexpr double kOverlooked = -2.0;     // log odds of a hypothesis that earlier looks did not find
+constexpr double kFarthestBehind = 6.0;  // log evidence: the stack may hold scans from before a slip
 
 }  // namespace
 

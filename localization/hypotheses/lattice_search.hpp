@@ -19,14 +19,19 @@ struct Candidate {
   std::uint32_t beams = 0;   ///< that the misfit is of
 };
 
+/// Mean ln p(z) that a newcomer may fit worse by than the believed pose.
+inline constexpr double kFitsNearlyAsWell = 0.15;
+
 /// May the scan fit so well (mean ln p(z)) about there? Few poses, slid to their best, fit much better than their
 /// block.
 [[nodiscard]] bool may_reach(const Candidate& candidate, double fit);
 
 class LatticeSearch {
  public:
+  static constexpr std::size_t kFew = 8;  ///< enough where one newcomer is taken at a time
+
   /// `most` are kept of each look; > 0.
-  LatticeSearch(int headings, std::size_t most);
+  explicit LatticeSearch(int headings, std::size_t most = kFew);
 
   /// Forgets what was found, not where it stopped.
   void clear();

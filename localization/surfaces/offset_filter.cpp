@@ -13,7 +13,6 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kStrange = 16.0;          // squared deviations: not where it was expected
 constexpr double kSlipOdds = 7.0;          // nats against one: a slip in 200 m, keyframes of 0.2 m
 constexpr double kHalfAxleM = 0.17;        // between a wheel and the robot's centre
 constexpr double kDoubtsAgainM = 1.0;      // driven between two looks for a slip that lies behind

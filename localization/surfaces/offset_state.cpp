@@ -10,7 +10,6 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kStrange = 16.0;  // squared deviations: no measurement of this pose
 constexpr Eigen::Index kLearned = OffsetState::kFixed - OffsetState::kPose;
 using Learned = Eigen::Vector<double, kLearned>;
 

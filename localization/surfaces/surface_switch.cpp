@@ -14,7 +14,7 @@ constexpr int kSweeps = 3;
 constexpr double kDamping = 0.7;   // share of a change that is made at once
 constexpr double kSettled = 1e-3;  // a smaller change, as a share, is none
 constexpr double kSurestOdds = 30.0;
-constexpr double kAlikeM = 0.05;  // between their offsets
+constexpr double kSameOffsetM = 0.05;  // between their offsets
 
 /// An offset and turn as they would be known without the surface's own switch.
 struct Cavity {
@@ -60,7 +60,7 @@ bool stand_off_alike(const OffsetState& state, std::size_t a, std::size_t b) {
   const Eigen::Index k = OffsetState::offset_of(b);
   const auto& c = state.covariance();
   const double deviation_m = std::sqrt(std::max(0.0, c(i, i) + c(k, k) - 2.0 * c(i, k)));
-  return std::abs(state.mean()[i] - state.mean()[k]) < kAlikeM + 2.0 * deviation_m;
+  return std::abs(state.mean()[i] - state.mean()[k]) < kSameOffsetM + 2.0 * deviation_m;
 }
 
 /// For each surface the number of its body.

@@ -24,8 +24,8 @@ constexpr double kUnsureRad = 0.004;
 constexpr double kSuddenly = 0.1;  // share of ends that the map ceases to explain: the wheels may have slipped
 // How far a pose that the particles have found is off, besides what they say: cells, and a map drawn a little wrong.
 const PoseCovariance kOfAPose = Eigen::Vector3d{9e-4, 9e-4, 2.5e-5}.asDiagonal();
-constexpr double kStrangest = 25.0;    // squared deviations: a slip is no measure of how the wheels usually do
-constexpr double kLongestStepM = 0.5;  // of one correction
+constexpr double kMostSurprise = 25.0;  // squared deviations: a slip is no measure of how the wheels usually do
+constexpr double kLongestStepM = 0.5;   // of one correction
 
 /// Along an axis in which the particles are less sure than a scan would make them they tell what the wheels have told.
 PoseCovariance unobserved_along(const PoseCovariance& spread) {
@@ -167,7 +167,7 @@ void SurfaceTracker::learn_noise(const sensor::RefinedPose& before, const sensor
   const Eigen::Vector3d correction = difference(before.map_from_robot, after.map_from_robot);
   const auto surprise = [&](Eigen::Index i) {
     const double gained = std::max(1e-6, before.covariance(i, i) - after.covariance(i, i));
-    return std::min(kStrangest, correction[i] * correction[i] / gained);
+    return std::min(kMostSurprise, correction[i] * correction[i] / gained);
   };
   surprise_m_ += kNewest * (0.5 * (surprise(0) + surprise(1)) - surprise_m_);
   surprise_rad_ += kNewest * (surprise(2) - surprise_rad_);

@@ -10,8 +10,6 @@
 namespace deltamap::mapping::grid_registration {
 namespace {
 
-constexpr int kLeastPaired = 20;
-
 /// The nearest side of a cell beyond which the map has the other state.
 struct Border {
   float distance_cells = 1.0F;  // 1: none on the half of the cell that was asked for

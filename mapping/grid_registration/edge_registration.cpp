@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t kBits = 64;        // of a word
 constexpr std::uint64_t kThree = 0b111;  // cells in a row: an edge and those beside it
-constexpr int kLeastPaired = 20;
 
 MotionEquations motion_equations(const OccupancyGrid& map, std::span<const EdgeCell> edges,
                                  const merge::CellMotion& motion, double lever_cells) {

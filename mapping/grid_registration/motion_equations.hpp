@@ -10,6 +10,8 @@
 
 namespace deltamap::mapping::grid_registration {
 
+inline constexpr int kLeastPaired = 20;  ///< cells that a motion can be told from
+
 struct MotionEquations {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();

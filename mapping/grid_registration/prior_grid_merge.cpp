@@ -18,9 +18,9 @@ namespace {
 constexpr std::size_t kPlacingContour = 2000;  // cells of the local contour nearest its middle that place it: no more
                                                // of the map is prepared than they can reach
 constexpr std::size_t kContourPoints = 250;    // of these, to be brought onto the map's
-constexpr std::size_t kRoughEdgeCells = 2500;  // to come near, before more of them count
+constexpr std::size_t kFewEdgeCells = 2500;    // to come near, before more of them count
 constexpr double kRoughlySettled_cells = 0.02;
-constexpr double kRivalCost = 15.0;             // above the best answer's: Eq. 11 is asked
+constexpr double kRivalAnswerCost = 15.0;       // above the best answer's: Eq. 11 is asked
 constexpr double kLeastLead = 0.01;             // in Eq. 11 along the edges, over the second best
 constexpr double kNearlySettled_cells = 0.03;   // well inside the reach of the last search
 constexpr std::size_t kMostEdgeContour = 1750;  // whose cells and neighbours count at the end
@@ -56,7 +56,7 @@ Choice chosen(const std::vector<PriorAnswer>& answers, const PriorMergeParams& p
   if (answers.empty()) return {};
   std::vector<const PriorAnswer*> rivals;
   for (const PriorAnswer& answer : answers) {
-    const bool is_rival = answer.cost < answers.front().cost + kRivalCost;
+    const bool is_rival = answer.cost < answers.front().cost + kRivalAnswerCost;
     if (is_rival && refusal_of(answer, params) == merge::MergeRefusal::kNone) rivals.push_back(&answer);
   }
   if (rivals.empty()) return {refusal_of(answers.front(), params), &answers.front()};
@@ -88,7 +88,7 @@ PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local, con
   const std::vector<PriorAnswer> answers =
       prior_answers(map, points, {map_from_local_guess * middle_in_local, covariance}, params);
   const std::vector<EdgeCell> edges = edge_cells(local, merge::thinned_to(contour, kMostEdgeContour), middle);
-  const std::vector<EdgeCell> few_edges = merge::thinned_to(edges, kRoughEdgeCells);
+  const std::vector<EdgeCell> few_edges = merge::thinned_to(edges, kFewEdgeCells);
   const auto near = [&](const PriorAnswer& answer) {
     const Pose2 rough = answer.map_from_guess * map_from_local_guess;
     return edge_registration(map, few_edges, merge::cell_motion(rough, map.geometry(), middle_in_local),

@@ -9,7 +9,7 @@
 namespace deltamap::mapping::registration {
 namespace {
 
-constexpr std::array<Cell, 8> kAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}};
+constexpr std::array<Cell, 8> kCellsAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}};
 
 double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -43,7 +43,7 @@ ContourScore contour_score(const OccupancyGrid& one, const OccupancyGrid& other)
     for (int row = 0; row < geometry.height; ++row) {
       const Cell cell{column, row};
       if (one[cell] != CellState::kOccupied || other[cell] == CellState::kOccupied) continue;
-      for (const Cell& step : kAround) {
+      for (const Cell& step : kCellsAround) {
         const Cell beside{column + step.column, row + step.row};
         if (!geometry.contains(beside) || left[beside] == 0) continue;
         left.set(beside, 0);

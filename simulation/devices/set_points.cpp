@@ -10,7 +10,6 @@ namespace {
 using drivers::pioneer::Command;
 using drivers::pioneer::CommandNumber;
 
-constexpr double kHalfTrack_m = 0.1786;                  // A7
 constexpr double kVel2Unit_m_per_s = 0.02;               // A7: Vel2Divisor 20
 constexpr double kEmergencyDeceleration_m_per_s2 = 2.0;  // TRANSACCTOP of the delivered robot
 constexpr double kArrived_m = 0.002;

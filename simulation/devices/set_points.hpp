@@ -11,6 +11,8 @@
 
 namespace deltamap::simulation::devices {
 
+inline constexpr double kHalfTrack_m = 0.1786;  ///< between a wheel and the robot's centre (A7)
+
 /// What the wheels' encoders and the body's sensors tell the controller.
 struct WheelMotion {
   Pose2 odom_from_robot;

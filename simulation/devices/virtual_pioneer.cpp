@@ -18,7 +18,6 @@ using pioneer::CommandNumber;
 
 constexpr double kSonarCycle_s = 0.04;  // A5: SONARCYCLE as delivered
 constexpr double kSonarReach_m = 5.0;
-constexpr double kHalfTrack_m = 0.1786;       // A7
 constexpr double kTicksPerMetre = 128'000.0;  // A10: TICKSMM 128
 constexpr std::uint16_t kFifteenBits = 0x7FFF;
 constexpr int kBumperSegments = 5;  // front and rear each

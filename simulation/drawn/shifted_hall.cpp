@@ -22,7 +22,7 @@ constexpr int kCrowd = 12;
 constexpr std::size_t kClutterBoxes = 60;
 constexpr double kBeside_m = 0.2;  // clutter stands no farther from a container or a wall
 
-enum class Stream : std::uint64_t { kPlace, kPeople, kClutter };
+enum class HallChance : std::uint64_t { kPlace, kPeople, kClutter };
 
 /// Along the middle of aisle 0 to kBlocks.
 double aisle_m(std::uint32_t aisle) { return 0.5 * kAisle_m + aisle * kPitch_m; }
@@ -89,14 +89,14 @@ std::vector<Change> clutter(const Scenario& scenario, Random random) {
 Drawn shifted_hall(const ShiftedHallParams& params, std::uint64_t seed) {
   Drawn drawn;
   Scenario& scenario = drawn.scenario;
-  Random place = random_for(seed, Stream::kPlace);
+  Random place = random_for(seed, HallChance::kPlace);
   build(scenario);
   const Point2 start = crossing(place);
   scenario.robot.map_from_start = {start.x(), start.y(), place.uniform(-std::numbers::pi, std::numbers::pi)};
   scenario.robot.body = with_wheel_errors(scenario.robot.body, kWheels);
   scenario.robot.body.wheel_noise_m_per_sqrt_m *= params.wheel_noise_times;
   scenario.laser.optics.range_noise_m = 0.01;
-  Random people = random_for(seed, Stream::kPeople);
+  Random people = random_for(seed, HallChance::kPeople);
   for (int i = 0; i < (params.crowd ? kCrowd : kWalkers); ++i) scenario.people.push_back(walker(people));
 
   VirtualDriveParams& drive = drawn.drive;
@@ -109,7 +109,7 @@ Drawn shifted_hall(const ShiftedHallParams& params, std::uint64_t seed) {
                                   .largest_turn_rad = params.largest_turn_rad,
                                   .lanes_kept = 0.6};
   if (params.slips) drive.slips = SlipParams{};
-  if (params.crowd) drive.changes_at_start = clutter(scenario, random_for(seed, Stream::kClutter));
+  if (params.crowd) drive.changes_at_start = clutter(scenario, random_for(seed, HallChance::kClutter));
   return drawn;
 }
 

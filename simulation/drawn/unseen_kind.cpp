@@ -20,7 +20,7 @@ constexpr std::array<drivers::lms200::ScanVariant, 5> kFans{{{180, 100}, {180, 5
 constexpr std::array kRanges_m{8.0, 32.0, 80.0};
 
 /// Each group has its own chance, so that another number in one leaves the others as they were.
-enum class Stream : std::uint64_t { kMap, kLaser, kRobot, kLife, kLayout };
+enum class KindChance : std::uint64_t { kMap, kLaser, kRobot, kLife, kLayout };
 
 template <typename Items>
 auto one_of(const Items& items, Random& random) {
@@ -33,7 +33,7 @@ bool with_chance(double share, Random& random) { return random.uniform() < share
 LayoutKind layout_of(std::uint64_t seed) {
   std::array<std::uint32_t, kLayoutKinds> order{};
   std::iota(order.begin(), order.end(), 0U);
-  Random random = random_for(seed / kLayoutKinds, Stream::kLayout);
+  Random random = random_for(seed / kLayoutKinds, KindChance::kLayout);
   for (std::uint32_t left = kLayoutKinds; left > 1; --left) std::swap(order[left - 1], order[random.index_below(left)]);
   return static_cast<LayoutKind>(order[static_cast<std::size_t>(seed % kLayoutKinds)]);
 }
@@ -90,10 +90,10 @@ void draw_life(UnseenKind& kind, Random random) {
 UnseenKind unseen_kind(std::uint64_t seed) {
   UnseenKind kind;
   kind.layout = layout_of(seed);
-  draw_map(kind, random_for(seed, Stream::kMap));
-  draw_laser(kind, random_for(seed, Stream::kLaser));
-  draw_robot(kind, random_for(seed, Stream::kRobot));
-  draw_life(kind, random_for(seed, Stream::kLife));
+  draw_map(kind, random_for(seed, KindChance::kMap));
+  draw_laser(kind, random_for(seed, KindChance::kLaser));
+  draw_robot(kind, random_for(seed, KindChance::kRobot));
+  draw_life(kind, random_for(seed, KindChance::kLife));
   return kind;
 }
 

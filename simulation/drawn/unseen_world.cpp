@@ -23,7 +23,7 @@ constexpr double kLanesKept = 0.85;      // of the floor
 constexpr int kStarts = 400;             // places that are tried for the largest floor; corridors are a small part
 constexpr int kPathTries = 200;
 
-enum class Stream : std::uint64_t { kLayout, kStart, kPeople, kOutdated, kFirstDrive };
+enum class WorldChance : std::uint64_t { kLayout, kStart, kPeople, kOutdated, kFirstDrive };
 
 Point2 anywhere_in(const Bounds& bounds, Random& random) {
   const double x = random.uniform(bounds.low.x(), bounds.high.x());
@@ -132,17 +132,17 @@ VirtualDriveParams drive_of(const UnseenKind& kind, double passage_m, std::uint6
 UnseenWorld unseen_world(const UnseenKind& kind, std::uint64_t seed) {
   UnseenWorld unseen;
   Scenario& scenario = unseen.drawn.scenario;
-  const Layout layout = drawn_layout(kind.layout, kind.range_m, random_for(seed, Stream::kLayout));
+  const Layout layout = drawn_layout(kind.layout, kind.range_m, random_for(seed, WorldChance::kLayout));
   scenario.world = layout.world;
   scenario.slots = layout.slots;
-  Random start = random_for(seed, Stream::kStart);
+  Random start = random_for(seed, WorldChance::kStart);
   const FloorPlaces places{main_floor(layout.world, 0.5 * layout.passage_m, start)};
   const Point2 place = places.any(start);
   scenario.robot.map_from_start = {place.x(), place.y(), start.uniform(-std::numbers::pi, std::numbers::pi)};
   scenario.robot.body = with_wheel_errors(scenario.robot.body, kind.wheels);
   scenario.robot.body.wheel_noise_m_per_sqrt_m = kind.wheel_noise_m_per_sqrt_m;
   scenario.laser.optics.range_noise_m = kind.range_noise_m;
-  add_people(kind.people, places, scenario, random_for(seed, Stream::kPeople));
+  add_people(kind.people, places, scenario, random_for(seed, WorldChance::kPeople));
 
   VirtualDriveParams& drive = unseen.drawn.drive;
   drive = drive_of(kind, layout.passage_m, seed);
@@ -152,12 +152,12 @@ UnseenWorld unseen_world(const UnseenKind& kind, std::uint64_t seed) {
   if (kind.outdated_share > 0.0) {
     const Circle robot{place, scenario.robot.body.radius_m};
     drive.changes_at_start = changed_hall({.share = kind.outdated_share}, *drive.forklift, layout.slots, layout.world,
-                                          layout.world, robot, {}, random_for(seed, Stream::kOutdated))
+                                          layout.world, robot, {}, random_for(seed, WorldChance::kOutdated))
                                  .changes;
   }
-  unseen.first_map = kind.from_first_drive
-                         ? map_of_first_drive(unseen.drawn, kind.resolution_m, random_for(seed, Stream::kFirstDrive))
-                         : start_map(scenario, kind.resolution_m);
+  unseen.first_map = kind.from_first_drive ? map_of_first_drive(unseen.drawn, kind.resolution_m,
+                                                                random_for(seed, WorldChance::kFirstDrive))
+                                           : start_map(scenario, kind.resolution_m);
   return unseen;
 }
 

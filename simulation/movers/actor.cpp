@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/movers/manners.hpp"
+
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kRoomToRobot_m = 0.5;     // between bodies
-constexpr double kRoomToOthers_m = 0.3;    // between bodies
-constexpr double kRoomToSurface_m = 0.15;  // between body and surface
-constexpr double kStopRoom_m = 2.0;        // from the robot: nearer it does not stop, nor come in by the gate
-constexpr double kPatience_s = 4.0;        // before turning back
+constexpr double kRoomToOthers_m = 0.3;  // between bodies
+constexpr double kStopRoom_m = 2.0;      // from the robot: nearer it does not stop, nor come in by the gate
 constexpr double kTurnRate_rad_per_s = 1.2;
 
 double gap_between(std::span<const Circle> cover, const Circle& other) {

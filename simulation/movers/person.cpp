@@ -3,14 +3,9 @@
 
 #include <algorithm>
 
+#include "simulation/movers/manners.hpp"
+
 namespace deltamap::simulation {
-namespace {
-
-constexpr double kRoomToRobot_m = 0.5;     // between bodies
-constexpr double kRoomToSurface_m = 0.15;  // between body and surface
-constexpr double kPatience_s = 4.0;        // before turning back
-
-}  // namespace
 
 Person::Person(PersonParams params, Random random)
     : params_{std::move(params)},

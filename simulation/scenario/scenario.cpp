@@ -16,8 +16,6 @@
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kSmallest_m = 0.01;
-
 template <typename Number, std::size_t kCount>
 void expect_one_of(const YamlSection& section, const std::string& key, Number value,
                    const std::array<Number, kCount>& allowed, const std::string& list) {

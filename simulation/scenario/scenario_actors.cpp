@@ -9,7 +9,6 @@ namespace deltamap::simulation {
 namespace {
 
 constexpr double kLargest_m = 1000.0;  // of any length in a scenario
-constexpr double kSmallest_m = 0.01;
 
 std::vector<ChangeKind> kinds_of(YamlSection& section, const std::vector<ChangeKind>& otherwise) {
   if (!section.has("changes")) return otherwise;

@@ -8,7 +8,6 @@
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kSmallest_m = 0.01;
 constexpr double kRackPost_m = 0.08;  // across a pallet rack's upright
 
 Point2 point_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1]}; }

@@ -14,6 +14,8 @@ class Node;
 
 namespace deltamap::simulation {
 
+inline constexpr double kSmallest_m = 0.01;  ///< of a length that must not be zero
+
 class YamlSection {
  public:
   /// `key` names the section in messages.

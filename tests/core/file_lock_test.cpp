@@ -13,7 +13,7 @@
 namespace deltamap {
 namespace {
 
-std::string refusal(const std::filesystem::path& file) {
+std::string refused_lock(const std::filesystem::path& file) {
   try {
     (void)lock_of_file(file);
   } catch (const FileInUse& error) {
@@ -27,10 +27,10 @@ TEST(FileLock, NamesTheProgramThatHoldsIt) {
   const auto file = folder.path() / "store.sqlite";
   {
     const auto lock = lock_of_file(file);
-    EXPECT_EQ(refusal(file), file.string() + ": is in use by " + program_invocation_short_name + " (pid " +
-                                 std::to_string(getpid()) + ")");
+    EXPECT_EQ(refused_lock(file), file.string() + ": is in use by " + program_invocation_short_name + " (pid " +
+                                      std::to_string(getpid()) + ")");
   }
-  EXPECT_EQ(refusal(file), "");
+  EXPECT_EQ(refused_lock(file), "");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "a lock that was let go leaves nothing behind";
 }
 
@@ -47,11 +47,11 @@ TEST(FileLock, OfAProgramThatWasKilledIsFree) {
   }
   char byte = 0;
   ASSERT_EQ(read(ready[0], &byte, 1), 1);
-  EXPECT_NE(refusal(file).find("(pid " + std::to_string(child) + ")"), std::string::npos) << refusal(file);
+  EXPECT_NE(refused_lock(file).find("(pid " + std::to_string(child) + ")"), std::string::npos) << refused_lock(file);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   ASSERT_TRUE(std::filesystem::exists(file.string() + ".lock")) << "what a kill leaves behind";
-  EXPECT_EQ(refusal(file), "");
+  EXPECT_EQ(refused_lock(file), "");
 }
 
 TEST(FileLock, OfAFolderIsOneForAllInIt) {
@@ -68,7 +68,7 @@ TEST(FileLock, OfAnotherUserIsRespectedThroughAFileThatMayOnlyBeRead) {
   std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
   std::filesystem::permissions(lock_file, std::filesystem::perms{0444});
   const test::NotRoot another_user;
-  EXPECT_NE(refusal(file).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << refusal(file);
+  EXPECT_NE(refused_lock(file).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << refused_lock(file);
 }
 
 TEST(FileLock, IsThatOfTheFileBehindALink) {
@@ -80,8 +80,8 @@ TEST(FileLock, IsThatOfTheFileBehindALink) {
   for (const bool exists : {false, true}) {
     if (exists) (void)folder.write("store.sqlite", "");
     const auto lock = lock_of_file(file);
-    EXPECT_NE(refusal(folder.path() / "link"), "") << exists;
-    EXPECT_NE(refusal(folder.path() / "links/link"), "") << exists;
+    EXPECT_NE(refused_lock(folder.path() / "link"), "") << exists;
+    EXPECT_NE(refused_lock(folder.path() / "links/link"), "") << exists;
   }
 }
 
@@ -93,7 +93,7 @@ TEST(FileLock, LeftByAnotherUserIsReplacedByOneThatNamesItsHolder) {
   std::filesystem::permissions(file.string() + ".lock", std::filesystem::perms{0444});
   const test::NotRoot another_user;
   const auto lock = lock_of_file(file);
-  EXPECT_NE(refusal(file).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << refusal(file);
+  EXPECT_NE(refused_lock(file).find("(pid " + std::to_string(getpid()) + ")"), std::string::npos) << refused_lock(file);
 }
 
 TEST(FileLock, ThatMayNotEvenBeReadIsAnError) {

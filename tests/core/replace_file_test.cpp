@@ -12,6 +12,7 @@
 
 #include "tests/support/full_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace {
 
@@ -37,12 +38,7 @@ namespace deltamap {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
+using test::content_of;
 
 TEST(ReplaceFile, SyncsTheContentBeforeTheNameAndTheFolderAfterIt) {
   const test::TemporaryFolder folder;

@@ -17,6 +17,7 @@
 #include "experiments/report/result_files.hpp"
 #include "experiments/report/svg_chart.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 #include "tests/support/tool_run.hpp"
 
 namespace deltamap::experiments {
@@ -24,17 +25,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using test::content_of;
 using test::run_deltamap;
 using test::ToolRun;
 
 ToolRun experiment(const std::string& name, const fs::path& out, std::vector<std::string> more = {}) {
   if (name == "ablation") more.emplace_back("--quick");  // a hundred rows that differ in one setting each
   return test::run_experiment(name, out.string(), "0.1", more);
-}
-
-std::string content_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {

@@ -23,7 +23,7 @@ constexpr double kHullM = 0.26;
 constexpr double kMaxRangeM = 8.0;
 
 /// Where the robot was at each scan.
-struct Drive {
+struct Course {
   std::vector<Pose2> poses;
   double nearest_m = 1e9;  // to an occupied cell ahead, over all scans
   int stops = 0;           // that safety had to order for an obstacle
@@ -51,12 +51,12 @@ Scan seen(const OccupancyGrid& grid, const Pose2& map_from_robot, Timestamp time
   return scan;
 }
 
-Drive driven(const OccupancyGrid& grid, Pose2 pose, double for_s, std::uint64_t seed,
-             const SafetyParams& safety_params = {}) {
+Course driven(const OccupancyGrid& grid, Pose2 pose, double for_s, std::uint64_t seed,
+              const SafetyParams& safety_params = {}) {
   Wander wander{{}, seed};
   Safety safety{safety_params};
   safety.set_stopping_behaviour({.watchdog_s = 2.0});
-  Drive drive;
+  Course drive;
   Timestamp now = timestamp_from_ns(5'000'000'000);
   Odometry odometry;
   odometry.motors_enabled = true;
@@ -101,7 +101,7 @@ OccupancyGrid hall() {
   return test::drawn_grid(lines, 0.5);
 }
 
-std::set<std::pair<int, int>> tiles_visited(const Drive& drive) {
+std::set<std::pair<int, int>> tiles_visited(const Course& drive) {
   std::set<std::pair<int, int>> tiles;
   for (const Pose2& pose : drive.poses) {
     tiles.emplace(static_cast<int>((pose.x - 0.5) / 5.0), static_cast<int>((pose.y - 0.5) / 5.0));
@@ -112,7 +112,7 @@ std::set<std::pair<int, int>> tiles_visited(const Drive& drive) {
 TEST(Wander, VisitsTheWholeHallWithoutTouchingAnything) {
   const OccupancyGrid grid = hall();
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const Drive drive = driven(grid, {3.0, 3.0, 0.3}, 1500.0, seed);
+    const Course drive = driven(grid, {3.0, 3.0, 0.3}, 1500.0, seed);
     EXPECT_GE(tiles_visited(drive).size(), 30u) << seed;  // of 33 corridor tiles of 5 m
     EXPECT_GT(drive.nearest_m, kHullM) << seed;
     EXPECT_FALSE(drive.reversed);
@@ -122,7 +122,7 @@ TEST(Wander, VisitsTheWholeHallWithoutTouchingAnything) {
 
 TEST(Wander, GoesStraightAtFullSpeedWhereItIsClear) {
   const OccupancyGrid grid = hall();
-  const Drive drive = driven(grid, {2.0, 3.0, 0.0}, 5.0, 1);
+  const Course drive = driven(grid, {2.0, 3.0, 0.0}, 5.0, 1);
   EXPECT_NEAR(distance_between({2.0, 3.0, 0.0}, drive.poses.back()), 0.5 * 5.0, 0.1);
   EXPECT_NEAR(drive.poses.back().y, 3.0, 0.1);
 }
@@ -136,7 +136,7 @@ TEST(Wander, GetsOutOfADeadEnd) {
                         "####################"},
                        0.5);
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
-    const Drive drive = driven(grid, {8.5, 2.25, 0.0}, 90.0, seed);  // faces the end of the pocket on the right
+    const Course drive = driven(grid, {8.5, 2.25, 0.0}, 90.0, seed);  // faces the end of the pocket on the right
     bool came_out = false;
     for (const Pose2& pose : drive.poses) came_out = came_out || pose.x < 5.0;
     EXPECT_TRUE(came_out) << seed;
@@ -150,15 +150,15 @@ TEST(Wander, TurnsTowardsTheSideThatIsOpen) {
                                                "#..........#########", "#..........#########", "####################"},
                                               0.5);
   // Before a wall, another one close on the right.
-  const Drive drive = driven(grid, {4.75, 1.1, 0.0}, 3.0, 1);
+  const Course drive = driven(grid, {4.75, 1.1, 0.0}, 3.0, 1);
   EXPECT_GT(drive.poses.back().theta, 0.3);
 }
 
 TEST(Wander, DrivesTheSameWayAgainFromTheSameSeed) {
   const OccupancyGrid grid = hall();
-  const Drive one = driven(grid, {3.0, 3.0, 0.3}, 120.0, 9);
-  const Drive two = driven(grid, {3.0, 3.0, 0.3}, 120.0, 9);
-  const Drive other = driven(grid, {3.0, 3.0, 0.3}, 120.0, 10);
+  const Course one = driven(grid, {3.0, 3.0, 0.3}, 120.0, 9);
+  const Course two = driven(grid, {3.0, 3.0, 0.3}, 120.0, 9);
+  const Course other = driven(grid, {3.0, 3.0, 0.3}, 120.0, 10);
   EXPECT_EQ(one.poses, two.poses);
   EXPECT_NE(one.poses, other.poses);
 }

@@ -12,10 +12,10 @@
 namespace deltamap::simulation {
 namespace {
 
-Scenario hall() { return read_scenario(test::source_path("config/scenarios/hall.yaml")); }
+Scenario delivered_hall() { return read_scenario(test::source_path("config/scenarios/hall.yaml")); }
 
-Scenario exact_hall() {
-  Scenario scenario = hall();
+Scenario hall_of_exact_laser() {
+  Scenario scenario = delivered_hall();
   scenario.laser.optics.range_noise_m = 0.0;
   scenario.laser.optics.dropout_share = 0.0;
   scenario.laser.optics.mixed_share = 0.0;
@@ -41,19 +41,19 @@ TEST(VirtualDrive, GivesTheSameMessagesForTheSameSeed) {
   VirtualDriveParams params;
   params.seed = 7;
   params.forklift = ForkliftParams{.change_every_s = 5.0};
-  VirtualDrive one{hall(), params};
-  VirtualDrive other{hall(), params};
+  VirtualDrive one{delivered_hall(), params};
+  VirtualDrive other{delivered_hall(), params};
   for (int scan = 0; scan < 300; ++scan) ASSERT_TRUE(same(one.next(), other.next())) << "scan " << scan;
 }
 
 TEST(VirtualDrive, GivesOtherMessagesForAnotherSeed) {
-  VirtualDrive one{hall(), {.seed = 1}};
-  VirtualDrive other{hall(), {.seed = 2}};
+  VirtualDrive one{delivered_hall(), {.seed = 1}};
+  VirtualDrive other{delivered_hall(), {.seed = 2}};
   EXPECT_FALSE(same(one.next(), other.next()));
 }
 
 TEST(VirtualDrive, MeasuresFromWhereItTrulyIs) {
-  VirtualDrive drive{exact_hall(), {.max_range_m = 80.0}};
+  VirtualDrive drive{hall_of_exact_laser(), {.max_range_m = 80.0}};
   for (int scan = 0; scan < 400; ++scan) {
     const RayCaster surfaces{drive.world()};
     const DriveStep step = drive.next();
@@ -75,7 +75,7 @@ TEST(VirtualDrive, MeasuresFromWhereItTrulyIs) {
 }
 
 TEST(VirtualDrive, CallsWhatLiesFartherBeyondMaximum) {
-  VirtualDrive drive{exact_hall(), {.max_range_m = 8.0}};
+  VirtualDrive drive{hall_of_exact_laser(), {.max_range_m = 8.0}};
   const DriveStep step = drive.next();  // in the corner (2.5, 2.5), looking along a corridor of 35 m
   EXPECT_EQ(step.scan.beams[90].kind, BeamKind::kBeyondMaximum);
   EXPECT_EQ(step.scan.beams[0].kind, BeamKind::kRange);
@@ -83,7 +83,7 @@ TEST(VirtualDrive, CallsWhatLiesFartherBeyondMaximum) {
 }
 
 TEST(VirtualDrive, ComesAboutTheWholeHallWithoutTouchingAnything) {
-  VirtualDrive drive{hall(), {.seed = 3}};
+  VirtualDrive drive{delivered_hall(), {.seed = 3}};
   std::array<bool, 4> quarters{};
   int stalled = 0;
   double driven_m = 0.0;
@@ -124,7 +124,7 @@ TEST(VirtualDrive, GetsAlongWithPeopleAndAForkLift) {
 }
 
 TEST(VirtualDrive, DoesNotTellOdometryOfAKidnap) {
-  VirtualDrive drive{hall(), {.seed = 4}};
+  VirtualDrive drive{delivered_hall(), {.seed = 4}};
   for (int scan = 0; scan < 100; ++scan) (void)drive.next();
   const Pose2 before = odometry_after(drive);
   const Pose2 true_before = drive.map_from_robot();
@@ -136,7 +136,7 @@ TEST(VirtualDrive, DoesNotTellOdometryOfAKidnap) {
 }
 
 TEST(VirtualDrive, LetsTheBodySlipUnderSilentWheelsAndTheWheelsSpinUnderAStandingBody) {
-  VirtualDrive drive{hall(), {.seed = 5}};
+  VirtualDrive drive{delivered_hall(), {.seed = 5}};
   const Pose2 odometry_before = odometry_after(drive);
   const Pose2 before = drive.map_from_robot();
   drive.slip({0.4, 0.1, 0.1});
@@ -152,23 +152,23 @@ TEST(VirtualDrive, LetsTheBodySlipUnderSilentWheelsAndTheWheelsSpinUnderAStandin
 TEST(VirtualDrive, ShowsPeopleInTheScans) {
   VirtualDriveParams params;
   params.people.push_back({.path = {{4.5, 2.5}, {6.0, 2.5}}, .walk_least_s = 100.0, .walk_most_s = 200.0});
-  VirtualDrive with{exact_hall(), params};
+  VirtualDrive with{hall_of_exact_laser(), params};
   EXPECT_NEAR(with.next().scan.beams[90].range_m, 2.0 - 0.2 - 0.021, 0.02);
 }
 
 TEST(VirtualDrive, ShowsAChangeInTheNextScan) {
-  VirtualDrive drive{exact_hall(), {}};
+  VirtualDrive drive{hall_of_exact_laser(), {}};
   EXPECT_GT(drive.next().scan.beams[90].range_m, 30.0);
   drive.change({ChangeKind::kAdded, 999, Box{{10.0, 2.5}, 1.0, 1.0, 0.0}, std::nullopt});
   EXPECT_NEAR(drive.next().scan.beams[90].range_m, 9.5 - 2.521, 0.1);
 }
 
 TEST(VirtualDrive, ChangesTheWantedShareOfTheSlotsAtOnce) {
-  VirtualDrive drive{hall(), {.seed = 6}};
+  VirtualDrive drive{delivered_hall(), {.seed = 6}};
   ForkliftParams forklift;
   forklift.kinds = {ChangeKind::kRemoved, ChangeKind::kAdded, ChangeKind::kShifted};
   forklift.least_filled = 0.3;
-  const Scenario before = hall();
+  const Scenario before = delivered_hall();
   EXPECT_GE(drive.change_many(0.5, forklift).size(), 32u);
   const auto stands_at = [&](const Box& slot) {
     return std::any_of(drive.world().objects.begin(), drive.world().objects.end(), [&](const Object& object) {
@@ -183,7 +183,7 @@ TEST(VirtualDrive, ChangesTheWantedShareOfTheSlotsAtOnce) {
 TEST(VirtualDrive, GoesItsRoundAgainAndAgain) {
   VirtualDriveParams params;
   params.route.round = {{10.0, 2.5}, {2.5, 2.5}};
-  VirtualDrive drive{hall(), params};
+  VirtualDrive drive{delivered_hall(), params};
   constexpr double kNear_m = 0.8;
   std::vector<std::size_t> visited;
   for (int scan = 0; scan < 900; ++scan) {
@@ -198,7 +198,7 @@ TEST(VirtualDrive, GoesItsRoundAgainAndAgain) {
 }
 
 TEST(VirtualDrive, DrivesWhatItIsHeldTo) {
-  VirtualDrive drive{hall(), {}};
+  VirtualDrive drive{delivered_hall(), {}};
   drive.hold({.turn_rate_rad_per_s = 0.5});
   double turned_rad = 0.0;
   double heading_rad = drive.map_from_robot().theta;
@@ -208,7 +208,7 @@ TEST(VirtualDrive, DrivesWhatItIsHeldTo) {
     heading_rad = drive.map_from_robot().theta;
   }
   EXPECT_NEAR(turned_rad, 0.5 * 100 * VirtualDriveParams{}.scan_period_s, 0.3);
-  EXPECT_NEAR((drive.map_from_robot().position() - hall().robot.map_from_start.position()).norm(), 0.0, 0.05);
+  EXPECT_NEAR((drive.map_from_robot().position() - delivered_hall().robot.map_from_start.position()).norm(), 0.0, 0.05);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kRow_px = 24;
 constexpr int kMargin_px = 10;
-constexpr int kSign_px = 22;  // room for a sign, with the gap behind it
-constexpr int kGap_px = 18;   // between keys
+constexpr int kSign_px = 22;    // room for a sign, with the gap behind it
+constexpr int kKeyGap_px = 18;  // between keys
 
 void draw_sign(Canvas& canvas, const Key& key, int left, int middle) {
   const Pixel at{left + 7.0, double(middle)};
@@ -67,7 +67,7 @@ double scale_length_m(double pixels_per_m, double most_px) {
 
 Legend drawn_legend(const std::vector<Key>& keys, double pixels_per_m, int width) {
   Canvas canvas{width, kRow_px * (2 + static_cast<int>(keys.size())), kPaper};
-  int x = draw_scale(canvas, pixels_per_m) + 2 * kGap_px;
+  int x = draw_scale(canvas, pixels_per_m) + 2 * kKeyGap_px;
   int row = 0;
   for (const Key& key : keys) {
     const int room = kSign_px + Canvas::text_width(key.text);
@@ -78,7 +78,7 @@ Legend drawn_legend(const std::vector<Key>& keys, double pixels_per_m, int width
     const int middle = row * kRow_px + kRow_px / 2;
     draw_sign(canvas, key, x, middle);
     canvas.draw_text(key.text, x + kSign_px, middle + 5);
-    x += room + kGap_px;
+    x += room + kKeyGap_px;
   }
   return {std::move(canvas), (row + 1) * kRow_px + 6};
 }

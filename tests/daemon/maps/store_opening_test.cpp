@@ -15,18 +15,15 @@
 #include "tests/support/full_disk.hpp"
 #include "tests/support/not_root.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
+using test::content_of;
+
 namespace fs = std::filesystem;
 using mapping::store::MapStore;
-
-std::string content_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 class StoreOpening : public testing::Test {
  protected:

@@ -20,7 +20,7 @@ using drivers::pioneer::DriveSwitch;
 using simulation::Simulation;
 using Daemon = test::DrivingDaemon<Simulation>;
 
-constexpr Timestamp kStart = timestamp_from_ns(1'700'000'000'000'000'000);
+constexpr Timestamp kTrialStart = timestamp_from_ns(1'700'000'000'000'000'000);
 constexpr std::uint64_t kShards = 8;
 
 simulation::Scenario room() {
@@ -41,10 +41,10 @@ Daemon::Params params(const std::filesystem::path& folder, std::uint64_t seed) {
 }
 
 /// A drive whose daemon has been told to drive.
-struct Drive {
-  explicit Drive(std::uint64_t seed)
+struct TrialDrive {
+  explicit TrialDrive(std::uint64_t seed)
       : random{seed},
-        simulation{room(), {seed, kStart, std::nullopt}},
+        simulation{room(), {seed, kTrialStart, std::nullopt}},
         daemon{simulation, params(folder.path(), seed)} {
     daemon.start();
     daemon.run(6.0 + random.uniform());
@@ -62,7 +62,7 @@ struct Drive {
 /// What people have said, by what they saw: the measure of the daemon's own notion.
 class Persons {
  public:
-  explicit Persons(Drive& drive) : drive_{drive} {}
+  explicit Persons(TrialDrive& drive) : drive_{drive} {}
 
   void press_motors() {
     auto& robot = drive_.simulation.robot();
@@ -135,7 +135,7 @@ class Persons {
     ++offs;
   }
 
-  Drive& drive_;
+  TrialDrive& drive_;
   bool button_off_ = false;
   bool operator_off_ = false;
   bool stands_ = false;
@@ -148,7 +148,7 @@ class Persons {
   Pose2 last_;
 };
 
-void random_event(Drive& drive, Persons& persons) {
+void random_event(TrialDrive& drive, Persons& persons) {
   const auto pass = [&](double least, double most) {
     drive.daemon.run(drive.between(least, most), [&] { persons.watch(); });
   };
@@ -203,7 +203,7 @@ TEST_P(RandomSequences, NeverMoveARobotThatAPersonHasSwitchedOff) {
   int unknowable = 0;
   int drove = 0;
   for (std::uint64_t seed = 1 + GetParam(); seed <= 200; seed += kShards) {
-    Drive drive{seed};
+    TrialDrive drive{seed};
     Persons persons{drive};
     const Pose2 start = drive.simulation.map_from_robot();
     for (int event = 0; event < 16; ++event) {
@@ -226,7 +226,7 @@ TEST_P(RandomSequences, NeverMoveARobotThatAPersonHasSwitchedOff) {
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSequences, testing::Range(std::uint64_t{0}, kShards));
 
 TEST(StopsThatWaitForAPerson, WaitForOneAfterARestartAsWell) {
-  Drive drive{3001};
+  TrialDrive drive{3001};
   Daemon& daemon = drive.daemon;
   auto& robot = drive.simulation.robot();
   const auto drives = [&] {
@@ -274,7 +274,7 @@ TEST_P(RandomKills, LeaveTheRobotStandingBeforeItTouchesAnythingAndItIsSoonBack)
   int trials = 0;
   int touched = 0;
   for (std::uint64_t seed = 1 + GetParam(); seed <= 200; seed += kShards) {
-    Drive drive{1000 + seed};
+    TrialDrive drive{1000 + seed};
     const Pose2 killed_at = drive.simulation.map_from_robot();
     drive.daemon.kill();
     double travel_m = 0.0;
@@ -315,7 +315,7 @@ TEST(PulledCables, AreForgottenWithinThreeSecondsInNinetyFiveOfAHundred) {
   double longest_s = 0.0;
   std::vector<double> times_s;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Drive drive{2000 + seed};
+    TrialDrive drive{2000 + seed};
     for (int pull = 0; pull < 5; ++pull) {
       const bool adapter = drive.random.uniform() < 0.5;
       adapter ? drive.daemon.pull_adapter(true) : drive.daemon.cut_line(true);

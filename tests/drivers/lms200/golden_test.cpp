@@ -14,7 +14,7 @@ namespace {
 using tests::bytes_from_hex;
 using tests::hex_of;
 
-std::vector<Telegram> telegrams_of(Sender sender, const std::string& hex) {
+std::vector<Telegram> telegrams_in(Sender sender, const std::string& hex) {
   TelegramDecoder decoder{sender, 38400};
   auto telegrams = decoder.decode(bytes_from_hex(hex), Timestamp{});
   for (Telegram& telegram : decoder.finish()) telegrams.push_back(std::move(telegram));
@@ -33,7 +33,7 @@ TEST(LmsGolden, RequestsDecodeAndEncodeToTheirBytes) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   for (const auto& vector : golden["lms_host"]) {
     const std::string hex = vector["hex"];
-    const auto telegrams = telegrams_of(Sender::kHost, hex);
+    const auto telegrams = telegrams_in(Sender::kHost, hex);
     ASSERT_EQ(telegrams.size(), 1u) << vector["name"];
     const Telegram& t = telegrams[0];
     EXPECT_EQ(hex_of(t.data), vector["fields"]["data"]) << vector["name"];
@@ -77,7 +77,7 @@ TEST(LmsGolden, RepliesDecodeAndEncodeToTheirBytes) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   for (const auto& vector : golden["lms_device"]) {
     const std::string hex = vector["hex"];
-    const auto telegrams = telegrams_of(Sender::kDevice, hex);
+    const auto telegrams = telegrams_in(Sender::kDevice, hex);
     ASSERT_EQ(telegrams.size(), 1u) << vector["name"];
     const Telegram& t = telegrams[0];
     if (t.kind == Telegram::Kind::kAck) continue;
@@ -89,7 +89,7 @@ TEST(LmsGolden, RepliesDecodeAndEncodeToTheirBytes) {
 TEST(LmsGolden, RepliesMeanWhatTheySay) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   const auto& replies = golden["lms_device"];
-  const auto telegram = [&](std::size_t i) { return telegrams_of(Sender::kDevice, replies[i]["hex"]).at(0); };
+  const auto telegram = [&](std::size_t i) { return telegrams_in(Sender::kDevice, replies[i]["hex"]).at(0); };
   EXPECT_EQ(mode_was_switched(telegram(0)), true);
   EXPECT_EQ(telegram(1).command, response::kRefused);
   EXPECT_EQ(hex_of(type_reply("LMS200;301063;V02.10 ")), replies[2]["hex"]);
@@ -107,7 +107,7 @@ TEST(LmsGolden, ScansDecodeToTheirRangesAndEncodeToTheirBytes) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   for (const auto& vector : golden["lms_scan_decode"]) {
     const std::string hex = vector["hex"];
-    const auto telegrams = telegrams_of(Sender::kDevice, hex);
+    const auto telegrams = telegrams_in(Sender::kDevice, hex);
     ASSERT_EQ(telegrams.size(), 1u) << vector["name"];
     const auto measurement = decoded_measurement(telegrams[0]);
     ASSERT_TRUE(measurement) << vector["name"];
@@ -143,7 +143,7 @@ TEST(LmsGolden, NegativeFramesDecodeToNothing) {
     if (!vector.contains("hex")) continue;
     const std::string hex = vector["hex"];
     const bool is_from_device = hex.starts_with("0280");
-    const auto telegrams = telegrams_of(is_from_device ? Sender::kDevice : Sender::kHost, hex);
+    const auto telegrams = telegrams_in(is_from_device ? Sender::kDevice : Sender::kHost, hex);
     if (vector["name"] == "STX inside data") {
       ASSERT_EQ(telegrams.size(), 1u);
       EXPECT_EQ(decoded_measurement(telegrams[0])->words, (std::vector<std::uint16_t>{0x8002, 0x0280, 0x0280}));

@@ -15,7 +15,7 @@ namespace {
 
 using tests::bytes_from_hex;
 using tests::hex_of;
-using Kind = ValueSelection::Kind;
+using Selected = ValueSelection::Kind;
 
 Telegram decoded(Sender sender, const std::vector<std::uint8_t>& frame) {
   TelegramDecoder decoder{sender, 38400};
@@ -33,15 +33,15 @@ Measurement measurement_of(std::size_t words, Random& random) {
 }
 
 TEST(ValueSelection, ComesBackFromItsRequests) {
-  const std::vector<ValueSelection> selections{{Kind::kAll, 1, {}},
-                                               {Kind::kSmallest, 1, {}},
-                                               {Kind::kEverySecond, 1, {}},
-                                               {Kind::kPartial, 1, {}},
-                                               {Kind::kEveryTwentieth, 1, {}},
-                                               {Kind::kMean, 250, {}},
-                                               {Kind::kSubRange, 1, {{1, 181}}},
-                                               {Kind::kMeanSubRange, 5, {{90, 270}}},
-                                               {Kind::kWithReflectivity, 1, {{1, 10}, {20, 30}, {40, 41}}}};
+  const std::vector<ValueSelection> selections{{Selected::kAll, 1, {}},
+                                               {Selected::kSmallest, 1, {}},
+                                               {Selected::kEverySecond, 1, {}},
+                                               {Selected::kPartial, 1, {}},
+                                               {Selected::kEveryTwentieth, 1, {}},
+                                               {Selected::kMean, 250, {}},
+                                               {Selected::kSubRange, 1, {{1, 181}}},
+                                               {Selected::kMeanSubRange, 5, {{90, 270}}},
+                                               {Selected::kWithReflectivity, 1, {{1, 10}, {20, 30}, {40, 41}}}};
   for (const ValueSelection& selection : selections) {
     for (const bool as_stream : {false, true}) {
       EXPECT_EQ(requested_selection(decoded(Sender::kHost, selection_request(selection, as_stream))), selection);
@@ -54,14 +54,14 @@ TEST(ValueSelection, HasTheBytesThatOtherHostsSend) {
     const Telegram request = decoded(Sender::kHost, selection_request(selection, as_stream));
     return hex_of(std::vector<std::uint8_t>{request.command}) + hex_of(request.data);
   };
-  EXPECT_EQ(data_of({Kind::kSubRange, 1, {{1, 181}}}, true), "20270100b500") << "Player at 1 degree";
-  EXPECT_EQ(data_of({Kind::kMean, 10, {}}, true), "20260a");
-  EXPECT_EQ(data_of({Kind::kMeanSubRange, 10, {{1, 361}}}, true), "20280a01006901");
-  EXPECT_EQ(data_of({Kind::kPartial, 1, {}}, true), "202a");
-  EXPECT_EQ(data_of({Kind::kPartial, 1, {}}, false), "3008");
-  EXPECT_EQ(data_of({Kind::kMean, 10, {}}, false), "360a");
-  EXPECT_EQ(data_of({Kind::kSubRange, 1, {{1, 181}}}, false), "370100b500");
-  EXPECT_EQ(data_of({Kind::kMeanSubRange, 10, {{1, 361}}}, false), "3f0a01006901");
+  EXPECT_EQ(data_of({Selected::kSubRange, 1, {{1, 181}}}, true), "20270100b500") << "Player at 1 degree";
+  EXPECT_EQ(data_of({Selected::kMean, 10, {}}, true), "20260a");
+  EXPECT_EQ(data_of({Selected::kMeanSubRange, 10, {{1, 361}}}, true), "20280a01006901");
+  EXPECT_EQ(data_of({Selected::kPartial, 1, {}}, true), "202a");
+  EXPECT_EQ(data_of({Selected::kPartial, 1, {}}, false), "3008");
+  EXPECT_EQ(data_of({Selected::kMean, 10, {}}, false), "360a");
+  EXPECT_EQ(data_of({Selected::kSubRange, 1, {{1, 181}}}, false), "370100b500");
+  EXPECT_EQ(data_of({Selected::kMeanSubRange, 10, {{1, 361}}}, false), "3f0a01006901");
 }
 
 TEST(ValueSelection, IsRefusedWhereTheDataAreNotAsListed) {

@@ -18,7 +18,7 @@
 namespace deltamap::drivers::pioneer {
 namespace {
 
-struct TestedSession : PioneerSession {
+struct AskedSession : PioneerSession {
   using PioneerSession::PioneerSession;
   using Messages = std::vector<Odometry>;
   static const Messages& messages_of(const PioneerOutput& out) { return out.odometry; }
@@ -80,8 +80,8 @@ class Rig {
   }
 
   FakeRobot robot{9600};
-  TestedSession session{PioneerParams{}, SessionMode::kLive};
-  tests::Conversation<TestedSession, FakeRobot> line{session, robot};
+  AskedSession session{PioneerParams{}, SessionMode::kLive};
+  tests::Conversation<AskedSession, FakeRobot> line{session, robot};
 
  private:
   void begin() {
@@ -94,7 +94,7 @@ class Rig {
     began_ = true;
     line.failed.reset();
     try_again_at_.reset();
-    session = TestedSession{{.enable_motors = is_configured_, .drive_switch = kept_}, SessionMode::kLive};
+    session = AskedSession{{.enable_motors = is_configured_, .drive_switch = kept_}, SessionMode::kLive};
     line.start();
   }
 

@@ -17,7 +17,7 @@ namespace {
 using tests::bytes_from_hex;
 using tests::hex_of;
 
-std::vector<Packet> packets_of(const std::string& hex) {
+std::vector<Packet> packets_in(const std::string& hex) {
   PacketDecoder decoder{9600};
   auto packets = decoder.decode(bytes_from_hex(hex), Timestamp{});
   for (Packet& packet : decoder.finish()) packets.push_back(std::move(packet));
@@ -28,7 +28,7 @@ TEST(PioneerGolden, CommandsDecodeToTheirFieldsAndEncodeToTheirBytes) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   for (const auto& vector : golden["arcos_commands"]) {
     const std::string hex = vector["hex"];
-    const auto packets = packets_of(hex);
+    const auto packets = packets_in(hex);
     ASSERT_EQ(packets.size(), 1u) << vector["name"];
     const auto command = decoded_command(packets[0].data);
     ASSERT_TRUE(command) << vector["name"];
@@ -51,7 +51,7 @@ TEST(PioneerGolden, SipsDecodeToTheirFieldsAndEncodeToTheirBytes) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   for (const auto& vector : golden["arcos_sips"]) {
     const std::string hex = vector["hex"];
-    const auto packets = packets_of(hex);
+    const auto packets = packets_in(hex);
     ASSERT_EQ(packets.size(), 1u) << vector["name"];
     const auto sip = decoded_sip(packets[0].data);
     ASSERT_TRUE(sip) << vector["name"];
@@ -80,7 +80,7 @@ TEST(PioneerGolden, CapturedRepliesDecode) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   for (const auto& vector : golden["arcos_replies_captured"]) {
     const std::string hex = vector["hex"];
-    const auto packets = packets_of(hex);
+    const auto packets = packets_in(hex);
     ASSERT_EQ(packets.size(), 1u) << vector["name"];
     EXPECT_EQ(hex_of(encoded_packet(packets[0].data)), hex) << vector["name"];
     const auto& fields = vector.value("fields", nlohmann::json::object());
@@ -105,9 +105,9 @@ TEST(PioneerGolden, NegativeFramesDecodeToNothing) {
   for (const auto& vector : golden["arcos_negative"]) {
     const std::string hex = vector["hex"];
     const bool ends_well = hex.ends_with("fafb03000000");
-    EXPECT_EQ(packets_of(hex).size(), ends_well ? 1u : 0u) << vector["name"];
+    EXPECT_EQ(packets_in(hex).size(), ends_well ? 1u : 0u) << vector["name"];
     if (vector.contains("hex_full_valid_packet")) {
-      EXPECT_EQ(packets_of(vector["hex_full_valid_packet"]).size(), 1u) << vector["name"];
+      EXPECT_EQ(packets_in(vector["hex_full_valid_packet"]).size(), 1u) << vector["name"];
     }
   }
 }

@@ -10,10 +10,13 @@
 #include "experiments/seed_summary.hpp"
 #include "experiments/watch/pose_course.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 #include "tests/support/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {
+
+using test::content_of;
 
 constexpr double kScanEvery_s = 0.1;
 
@@ -156,11 +159,6 @@ TEST(SeedSummary, AsksTheWorstSeedAndLeavesOutWhatNobodyHasMeasured) {
   EXPECT_TRUE(figures[0].target->is_met_by(figures[0].value));
   EXPECT_FALSE(figures[1].target.has_value());
   EXPECT_FALSE(figures[2].target->is_met_by(figures[2].value));
-}
-
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 test::ToolRun unseen(const std::string& out, const std::vector<std::string>& more) {

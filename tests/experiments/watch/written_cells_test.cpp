@@ -17,7 +17,7 @@ namespace {
 namespace score = simulation::score;
 
 /// A map of a room, of which cells are written.
-class Room {
+class WrittenRoom {
  public:
   /// A column of three cells and what they become.
   void write(Cell lowest, CellState after, bool is_astray = false) {
@@ -53,7 +53,7 @@ class Room {
 };
 
 TEST(WrittenCells, AFaceDrawnACellBesideIsRightAndTwoCellsBesideIsWrong) {
-  Room room;
+  WrittenRoom room;
   room.write({room.face.column - 1, room.face.row}, CellState::kOccupied);
   EXPECT_EQ(room.number("precision"), 1.0);
   room.write({room.face.column - 2, room.face.row}, CellState::kOccupied);
@@ -62,13 +62,13 @@ TEST(WrittenCells, AFaceDrawnACellBesideIsRightAndTwoCellsBesideIsWrong) {
 }
 
 TEST(WrittenCells, AFaceThatIsFreedIsWronglyFreedUnlessItStandsACellBeside) {
-  Room torn;
+  WrittenRoom torn;
   for (int row = -1; row <= 3; ++row) torn.map.set({torn.face.column, torn.face.row + row}, CellState::kFree);
   for (int row = 0; row < 3; ++row) torn.map.set({torn.face.column, torn.face.row + row}, CellState::kOccupied);
   torn.write(torn.face, CellState::kFree);
   EXPECT_EQ(torn.number("precision"), 0.0);
   EXPECT_EQ(torn.number("cells_wrong"), 1.0);
-  Room moved;
+  WrittenRoom moved;
   for (int row = 0; row < 3; ++row) {
     moved.map.set({moved.face.column - 1, moved.face.row + row}, CellState::kOccupied);
   }
@@ -78,7 +78,7 @@ TEST(WrittenCells, AFaceThatIsFreedIsWronglyFreedUnlessItStandsACellBeside) {
 }
 
 TEST(WrittenCells, WhoStandsThereIsNotWrongAndWhoHasGoneIs) {
-  Room room;
+  WrittenRoom room;
   for (int row = 0; row < 3; ++row) {
     room.standing.set({room.floor.column, room.floor.row + row}, CellState::kOccupied);
   }
@@ -90,7 +90,7 @@ TEST(WrittenCells, WhoStandsThereIsNotWrongAndWhoHasGoneIs) {
 }
 
 TEST(WrittenCells, WhatIsTakenBackIsNeitherDrawnAstrayNorAThing) {
-  Room room;
+  WrittenRoom room;
   room.write(room.floor, CellState::kOccupied, true);
   EXPECT_EQ(room.number("cells_written_astray"), 3.0);
   room.withdraw(room.floor, CellState::kFree);

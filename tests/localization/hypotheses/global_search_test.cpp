@@ -19,7 +19,7 @@ motion::BeamEnds seen_from(const Pose2& truth, std::uint64_t seed) {
   return motion::scoring_ends(scan, motion::deskewed(scan, {}), 60);
 }
 
-bool near(const Pose2& a, const Pose2& b) {
+bool very_near(const Pose2& a, const Pose2& b) {
   return distance_between(a, b) < 0.1 && std::abs(turn_between(a.theta, b.theta)) < radians(3.0);
 }
 
@@ -149,7 +149,7 @@ TEST(GlobalSearch, FindsTheRobotFromManyHypothesesInItsFirstLook) {
     bool seen = false;
     for (int scan = 0; scan < 20 && search.under_way(); ++scan) {
       for (const Pose2& hypothesis : search.look(coarse, field, {ends, ends}, {}))
-        seen = seen || near(hypothesis, truth);
+        seen = seen || very_near(hypothesis, truth);
     }
     found += seen ? 1 : 0;
     ++tried;
@@ -170,7 +170,7 @@ TEST(GlobalSearch, CarriesWhatItFoundAlongWithTheWheels) {
   for (; scans < 40 && search.under_way(); ++scans) {
     const motion::BeamEnds seen = seen_from(truth, 1);
     for (const Pose2& hypothesis : search.look(coarse, field, {seen, seen}, joined)) {
-      found = found || near(hypothesis, truth);
+      found = found || very_near(hypothesis, truth);
     }
     const Pose2 motion{0.03, 0.0, 0.02};
     truth = truth * motion;

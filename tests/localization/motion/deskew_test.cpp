@@ -10,7 +10,7 @@ namespace deltamap::localization::motion {
 namespace {
 
 using std::numbers::pi;
-constexpr float kSame = 1e-5F;
+constexpr float kSameInFloat = 1e-5F;
 
 Scan four_beams() {
   Scan scan;
@@ -27,24 +27,24 @@ Scan four_beams() {
 TEST(Deskew, PlacesTheEndsOfAStandingRobotByTheMount) {
   const auto rays = deskewed(four_beams(), {});
   ASSERT_EQ(rays.size(), 4u);
-  EXPECT_NEAR(rays[0].origin.x(), 0.2F, kSame);
-  EXPECT_NEAR(rays[0].end.x(), 0.2F, kSame);
-  EXPECT_NEAR(rays[0].end.y(), -1.0F, kSame);
-  EXPECT_NEAR(rays[3].end.y(), 4.0F, kSame);
+  EXPECT_NEAR(rays[0].origin.x(), 0.2F, kSameInFloat);
+  EXPECT_NEAR(rays[0].end.x(), 0.2F, kSameInFloat);
+  EXPECT_NEAR(rays[0].end.y(), -1.0F, kSameInFloat);
+  EXPECT_NEAR(rays[3].end.y(), 4.0F, kSameInFloat);
 }
 
 TEST(Deskew, GivesABeamWithoutRangeNoLength) {
   const auto rays = deskewed(four_beams(), {.speed_m_per_s = 1.0});
   EXPECT_EQ(rays[2].origin, rays[2].end);
-  EXPECT_NEAR(rays[2].origin.x(), 0.4F, kSame);
+  EXPECT_NEAR(rays[2].origin.x(), 0.4F, kSameInFloat);
 }
 
 TEST(Deskew, PutsEachBeamWhereTheRobotWasThen) {
   const auto rays = deskewed(four_beams(), {.speed_m_per_s = 1.0, .turn_rate_rad_per_s = 1.0});
   const Pose2 then{0.3 * std::cos(0.15), 0.3 * std::sin(0.15), 0.3};
   const Point2 end = then * Point2{0.2, 4.0};
-  EXPECT_NEAR(rays[3].end.x(), static_cast<float>(end.x()), kSame);
-  EXPECT_NEAR(rays[3].end.y(), static_cast<float>(end.y()), kSame);
+  EXPECT_NEAR(rays[3].end.x(), static_cast<float>(end.x()), kSameInFloat);
+  EXPECT_NEAR(rays[3].end.y(), static_cast<float>(end.y()), kSameInFloat);
 }
 
 TEST(ScoringEnds, TakesOnlyValidRanges) {

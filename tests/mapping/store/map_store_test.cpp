@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <functional>
 
 #include "core/random.hpp"
 #include "mapping/store/taken_back.hpp"
 #include "tests/support/drawn_grid.hpp"
+#include "tests/support/stored_maps.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
@@ -19,23 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-OccupancyGrid first_map() { return OccupancyGrid{{40, 30, 0.1, {-1.0, -2.0}}, CellState::kFree}; }
-
-/// The map with some cells of its own for each number.
-MapRevision revision_after(const OccupancyGrid& before, std::uint32_t number) {
-  OccupancyGrid after = before;
-  Random random{number};
-  for (int i = 0; i < 5; ++i) {
-    const Cell cell{static_cast<int>(random.index_below(40)), static_cast<int>(random.index_below(30))};
-    after.set(cell, static_cast<CellState>(random.index_below(3)));
-  }
-  MapRevision revision;
-  revision.number = number;
-  revision.time = timestamp_from_ns(std::int64_t{number} * 1'000'000'000);
-  revision.changes = changes_between(before, after);
-  revision.map = std::make_shared<const OccupancyGrid>(std::move(after));
-  return revision;
-}
+using test::complaint;
+using test::first_map;
+using test::revision_after;
 
 /// Appends revisions up to `last` and returns every map.
 std::vector<OccupancyGrid> fill(MapStore& store, std::uint32_t last) {
@@ -46,15 +32,6 @@ std::vector<OccupancyGrid> fill(MapStore& store, std::uint32_t last) {
     maps.push_back(*revision.map);
   }
   return maps;
-}
-
-std::string complaint(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
 }
 
 void run_sql(const fs::path& file, const std::string& sql) {

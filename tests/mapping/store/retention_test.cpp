@@ -8,11 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <functional>
 #include <numeric>
 
-#include "core/random.hpp"
 #include "mapping/store/map_store.hpp"
+#include "tests/support/stored_maps.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
@@ -20,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-OccupancyGrid first_map() { return OccupancyGrid{{40, 30, 0.1, {-1.0, -2.0}}, CellState::kFree}; }
+using test::complaint;
+using test::first_map;
 
 Timestamp day(double days) {
   return timestamp_from_ns(1'700'000'000'000'000'000) + duration_from_seconds(86400 * days);
@@ -42,19 +42,10 @@ class Retained : public testing::Test {
   /// Some cells of its own for each revision.
   void append(MapStore& store, Timestamp time) {
     const std::uint32_t number = store.newest() + 1;
-    OccupancyGrid after = maps.back();
-    Random random{number};
-    for (int i = 0; i < 5; ++i) {
-      const Cell cell{static_cast<int>(random.index_below(40)), static_cast<int>(random.index_below(30))};
-      after.set(cell, static_cast<CellState>(random.index_below(3)));
-    }
-    MapRevision revision;
-    revision.number = number;
+    MapRevision revision = test::revision_after(maps.back(), number);
     revision.time = time;
-    revision.changes = changes_between(maps.back(), after);
-    revision.map = std::make_shared<const OccupancyGrid>(after);
     store.append(revision, {number, 0.97, "evidence"});
-    maps.push_back(std::move(after));
+    maps.push_back(*revision.map);
   }
   /// One a day.
   void fill(MapStore& store, std::uint32_t last) {
@@ -167,15 +158,6 @@ TEST_F(Retained, IsWhatHasAName) {
   store.set_name(30, "");
   EXPECT_EQ(store.history()[1].name, "");
   EXPECT_EQ(sound_numbers(), with({0, 30, 64, 128}, from_to(192, 200)));
-}
-
-std::string complaint(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST_F(Retained, RefusesNamesThatAreNone) {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include "core/random.hpp"
 #include "mapping/store/map_store.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/stored_maps.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
@@ -15,26 +15,12 @@ constexpr std::uint32_t kSide = 200;             // cells
 constexpr int kChangedCells = 300;               // a revision: about 1 kB of history
 constexpr std::int64_t kSlack_bytes = 64 << 10;  // of statements and buffers that come and go
 
-MapRevision revision_after(const OccupancyGrid& before, std::uint32_t number) {
-  OccupancyGrid after = before;
-  Random random{number};
-  for (int i = 0; i < kChangedCells; ++i) {
-    const Cell cell{static_cast<int>(random.index_below(kSide)), static_cast<int>(random.index_below(kSide))};
-    after.set(cell, static_cast<CellState>(random.index_below(3)));
-  }
-  MapRevision revision;
-  revision.number = number;
-  revision.changes = changes_between(before, after);
-  revision.map = std::make_shared<const OccupancyGrid>(std::move(after));
-  return revision;
-}
-
 class GrowingStore {
  public:
   /// Bytes that SQLite holds once the history has so many revisions.
   std::int64_t bytes_held_after(std::uint32_t revisions) {
     while (store_.newest() < revisions) {
-      const MapRevision revision = revision_after(*map_, store_.newest() + 1);
+      const MapRevision revision = test::revision_after(*map_, store_.newest() + 1, kChangedCells);
       store_.append(revision, {1, 0.97, "evidence"});
       map_ = revision.map;
     }

@@ -15,12 +15,12 @@ namespace {
 
 namespace lms200 = drivers::lms200;
 
-constexpr Timestamp kStart = timestamp_from_ns(1'000'000'000'000);
+constexpr Timestamp kPowerOn = timestamp_from_ns(1'000'000'000'000);
 
-class Rig {
+class Lms200Rig {
  public:
-  explicit Rig(const Lms200Setup& setup = {})
-      : laser{setup, kStart, Random{1}}, host_baud{setup.baud}, decoder_{lms200::Sender::kDevice, setup.baud} {}
+  explicit Lms200Rig(const Lms200Setup& setup = {})
+      : laser{setup, kPowerOn, Random{1}}, host_baud{setup.baud}, decoder_{lms200::Sender::kDevice, setup.baud} {}
 
   /// Looks at the line whenever a burst is whole, and at least every 5 ms.
   std::vector<lms200::Telegram> pass(double seconds) {
@@ -52,7 +52,7 @@ class Rig {
 
   VirtualLms200 laser;
   unsigned host_baud;
-  Timestamp now = kStart + std::chrono::seconds{1};
+  Timestamp now = kPowerOn + std::chrono::seconds{1};
   float range_m = 5.0F;
   BeamKind kind = BeamKind::kRange;
   std::vector<SweepRequest> sweeps;
@@ -64,11 +64,11 @@ class Rig {
 using Kind = lms200::Telegram::Kind;
 
 TEST(VirtualLms200, AcknowledgesThenAnswersTheStatus) {
-  Rig rig;
+  Lms200Rig rig;
   const auto answers = rig.ask(lms200::status_request());
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(answers[0].kind, Kind::kAck);
-  EXPECT_LE(answers[0].received - (kStart + std::chrono::seconds{1}), std::chrono::milliseconds{60}) << "B1";
+  EXPECT_LE(answers[0].received - (kPowerOn + std::chrono::seconds{1}), std::chrono::milliseconds{60}) << "B1";
   const auto status = lms200::decoded_status(answers[1]);
   ASSERT_TRUE(status);
   EXPECT_EQ(status->resolution_centideg, 50);
@@ -76,7 +76,7 @@ TEST(VirtualLms200, AcknowledgesThenAnswersTheStatus) {
 }
 
 TEST(VirtualLms200, RefusesADamagedTelegramWithNakAndIgnoresOtherAddresses) {
-  Rig rig;
+  Lms200Rig rig;
   auto damaged = lms200::status_request();
   damaged.back() ^= 0x01;
   const auto answers = rig.ask(damaged);
@@ -86,7 +86,7 @@ TEST(VirtualLms200, RefusesADamagedTelegramWithNakAndIgnoresOtherAddresses) {
 }
 
 TEST(VirtualLms200, AnswersNothingReadableAtAnotherBaud) {
-  Rig rig;
+  Lms200Rig rig;
   for (const unsigned baud : {19200u, 38400u, 500000u}) {
     rig.set_host_baud(baud);
     for (int i = 0; i < 5; ++i) {
@@ -96,7 +96,7 @@ TEST(VirtualLms200, AnswersNothingReadableAtAnotherBaud) {
 }
 
 TEST(VirtualLms200, ChangesItsBaudAfterTheAnswerAtTheOldOne) {
-  Rig rig;
+  Lms200Rig rig;
   const auto answers = rig.ask(lms200::baud_request(500000));
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_TRUE(lms200::mode_was_switched(answers[1]).value_or(false));
@@ -118,7 +118,7 @@ TEST_P(ScanRate, FollowsFromTheBaudAsInTableB7) {
   Lms200Setup setup;
   setup.baud = baud;
   setup.variant = variant;
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   rig.stream();
   (void)rig.pass(5.0);
   ASSERT_GE(rig.sweeps.size(), 4u);
@@ -139,7 +139,7 @@ TEST(VirtualLms200, LetsTheReceiverFindTheTimeOfTheFirstBeam) {
   for (const unsigned baud : {9600u, 38400u, 500000u}) {
     Lms200Setup setup;
     setup.baud = baud;
-    Rig rig{setup};
+    Lms200Rig rig{setup};
     rig.stream();
     std::size_t scans = 0;
     const std::size_t skipped = rig.sweeps.size();
@@ -161,7 +161,7 @@ TEST(VirtualLms200, LetsTheReceiverFindTheTimeOfTheFirstBeam) {
 TEST(VirtualLms200, TellsRangesInItsUnitAndCodesWhereThereAreNone) {
   Lms200Setup setup;
   setup.baud = 500000;
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   rig.range_m = 5.126F;
   rig.stream();
   auto measurement = lms200::decoded_measurement(rig.pass(0.1).at(0));
@@ -177,7 +177,7 @@ TEST(VirtualLms200, TellsRangesInItsUnitAndCodesWhereThereAreNone) {
 }
 
 TEST(VirtualLms200, WritesItsConfigurationOnlyInInstallationMode) {
-  Rig rig;
+  Lms200Rig rig;
   lms200::Configuration wanted = rig.laser.configuration();
   wanted.set_units(lms200::Units::kMillimetre);
   wanted.set_measuring_mode(0x06);
@@ -196,7 +196,7 @@ TEST(VirtualLms200, WritesItsConfigurationOnlyInInstallationMode) {
 }
 
 TEST(VirtualLms200, TakesPossibleVariantsAndRefusesOthers) {
-  Rig rig;
+  Lms200Rig rig;
   auto reply = lms200::decoded_variant_reply(rig.ask(lms200::variant_request({100, 25})).at(1));
   ASSERT_TRUE(reply);
   EXPECT_TRUE(reply->accepted);
@@ -207,7 +207,7 @@ TEST(VirtualLms200, TakesPossibleVariantsAndRefusesOthers) {
 }
 
 TEST(VirtualLms200, InterruptsItsOutputForARequestAndStopsTheStream) {
-  Rig rig;
+  Lms200Rig rig;
   rig.stream();
   (void)rig.pass(1.1);  // in the middle of a scan at 9600
   rig.discard_input();
@@ -219,7 +219,7 @@ TEST(VirtualLms200, InterruptsItsOutputForARequestAndStopsTheStream) {
 }
 
 TEST(VirtualLms200, DropsATelegramWhoseHostPausedInTheMiddle) {
-  Rig rig;
+  Lms200Rig rig;
   const auto request = lms200::status_request();
   rig.laser.receive(std::span{request}.first(4), 9600, rig.now);
   (void)rig.pass(0.2);
@@ -227,14 +227,14 @@ TEST(VirtualLms200, DropsATelegramWhoseHostPausedInTheMiddle) {
 }
 
 TEST(VirtualLms200, SendsOneScanOnRequest) {
-  Rig rig;
+  Lms200Rig rig;
   const auto answers = rig.ask(lms200::scan_request(), 2.0);
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_TRUE(lms200::decoded_measurement(answers[1]));
 }
 
 /// The data of the one answer after the ACK.
-lms200::Telegram answer_of(Rig& rig, const std::vector<std::uint8_t>& request, double seconds = 2.0) {
+lms200::Telegram answer_of(Lms200Rig& rig, const std::vector<std::uint8_t>& request, double seconds = 2.0) {
   const auto answers = rig.ask(request, seconds);
   EXPECT_EQ(answers.size(), 2u);
   return answers.size() == 2 ? answers[1] : lms200::Telegram{};
@@ -244,7 +244,7 @@ TEST(VirtualLms200, SendsTheSelectedValuesOnRequest) {
   Lms200Setup setup;
   setup.baud = 38400;
   setup.variant = {180, 100};
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   using Selection = lms200::ValueSelection;
   const auto words = [&](Selection::Kind kind) {
     const auto measurement =
@@ -277,7 +277,7 @@ TEST(VirtualLms200, SendsTheSelectedValuesOnRequest) {
 TEST(VirtualLms200, TakesTheMeanOverConsecutiveScans) {
   Lms200Setup setup;
   setup.baud = 38400;
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   (void)rig.ask(lms200::selection_request({lms200::ValueSelection::Kind::kMean, 8, {}}, true), 3.0);
   ASSERT_GE(rig.sweeps.size(), 16u);
   for (std::size_t i = 1; i < 8; ++i) {
@@ -290,7 +290,7 @@ TEST(VirtualLms200, StreamsWhatPlayerReadsAtOneDegree) {
   Lms200Setup setup;
   setup.baud = 38400;
   setup.variant = {180, 100};
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   const auto answers =
       rig.ask(lms200::selection_request({lms200::ValueSelection::Kind::kSubRange, 1, {{1, 181}}}, true), 2.0);
   ASSERT_GE(answers.size(), 10u);
@@ -309,7 +309,7 @@ TEST(VirtualLms200, StreamsWhatPlayerReadsAtOneDegree) {
 TEST(VirtualLms200, StreamsTheFourRastersOfAnInterlacedScan) {
   Lms200Setup setup;
   setup.baud = 500000;
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   const auto answers = rig.ask(lms200::selection_request({lms200::ValueSelection::Kind::kPartial, 1, {}}, true), 1.0);
   ASSERT_GE(answers.size(), 60u) << "every turn (B7)";
   for (std::size_t i = 2; i < answers.size(); ++i) {
@@ -327,7 +327,7 @@ TEST(VirtualLms200, StreamsTheFourRastersOfAnInterlacedScan) {
 TEST(VirtualLms200, StreamsRangesWithReflectivity) {
   Lms200Setup setup;
   setup.baud = 500000;
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   const std::vector<lms200::ValueRange> asked{{1, 50}, {100, 180}};
   const auto answers =
       rig.ask(lms200::selection_request({lms200::ValueSelection::Kind::kWithReflectivity, 1, asked}, true), 0.5);
@@ -343,7 +343,7 @@ TEST(VirtualLms200, RefusesSelectionsThatItsVariantDoesNotHave) {
   Lms200Setup setup;
   setup.baud = 38400;
   setup.variant = {180, 100};
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   const lms200::ValueSelection too_far{lms200::ValueSelection::Kind::kSubRange, 1, {{1, 182}}};
   for (const bool as_stream : {true, false}) {
     EXPECT_EQ(answer_of(rig, lms200::selection_request(too_far, as_stream)).command, lms200::response::kRefused);
@@ -354,7 +354,7 @@ TEST(VirtualLms200, RefusesSelectionsThatItsVariantDoesNotHave) {
 TEST(VirtualLms200, AnswersCountersConfiguration2AndPermanentBaudInFull) {
   Lms200Setup setup;
   setup.baud = 38400;
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   const auto size_of = [&](const std::vector<std::uint8_t>& request) { return answer_of(rig, request).data.size(); };
   EXPECT_EQ(size_of(lms200::encoded_request(0x35, {})), 4u);
   EXPECT_EQ(size_of(lms200::encoded_request(0x7B, {})), 84u);
@@ -368,7 +368,7 @@ TEST(VirtualLms200, AnswersCountersConfiguration2AndPermanentBaudInFull) {
 TEST(VirtualLms200, AnnouncesItselfAt9600AfterAPowerCut) {
   Lms200Setup setup;
   setup.baud = 38400;
-  Rig rig{setup};
+  Lms200Rig rig{setup};
   rig.stream();
   rig.laser.cut_power(rig.now);
   rig.set_host_baud(9600);
@@ -380,7 +380,7 @@ TEST(VirtualLms200, AnnouncesItselfAt9600AfterAPowerCut) {
 }
 
 TEST(VirtualLms200, KeepsAPermanentBaudOverAPowerCut) {
-  Rig rig;
+  Lms200Rig rig;
   (void)rig.ask(lms200::permanent_baud_request(true));
   (void)rig.ask(lms200::baud_request(38400));
   rig.laser.cut_power(rig.now);
@@ -389,7 +389,7 @@ TEST(VirtualLms200, KeepsAPermanentBaudOverAPowerCut) {
 }
 
 TEST(VirtualLms200, RefusesWhatItCannotDoWith92) {
-  Rig rig;
+  Lms200Rig rig;
   EXPECT_EQ(rig.ask(lms200::encoded_request(0x55, {})).at(1).command, lms200::response::kRefused);
 }
 

@@ -13,12 +13,12 @@ namespace pioneer = drivers::pioneer;
 using pioneer::Command;
 using pioneer::CommandNumber;
 
-constexpr Timestamp kStart = timestamp_from_ns(1'000'000'000'000);
+constexpr Timestamp kFirstMoment = timestamp_from_ns(1'000'000'000'000);
 
 /// A host at one speed, and time that passes in steps of 5 ms.
-class Rig {
+class PioneerRig {
  public:
-  explicit Rig(PioneerSetup setup = {}) : robot{setup, Random{1}}, host_baud{setup.baud}, decoder_{setup.baud} {}
+  explicit PioneerRig(PioneerSetup setup = {}) : robot{setup, Random{1}}, host_baud{setup.baud}, decoder_{setup.baud} {}
 
   void send(const Command& command) { robot.receive(pioneer::encoded_command(command), host_baud, now); }
   std::vector<pioneer::Packet> pass(double seconds) {
@@ -49,7 +49,7 @@ class Rig {
 
   VirtualPioneer robot;
   unsigned host_baud;
-  Timestamp now = kStart;
+  Timestamp now = kFirstMoment;
   WheelMotion motion;
 
  private:
@@ -57,7 +57,7 @@ class Rig {
 };
 
 TEST(VirtualPioneer, EchoesEachSyncAndNamesItself) {
-  Rig rig;
+  PioneerRig rig;
   rig.send({CommandNumber::kPulse, {}});
   EXPECT_EQ(rig.pass(0.1).at(0).type(), 0);
   rig.send({CommandNumber::kOpen, {}});
@@ -70,13 +70,13 @@ TEST(VirtualPioneer, EchoesEachSyncAndNamesItself) {
 }
 
 TEST(VirtualPioneer, DoesNotOpenWithoutSync) {
-  Rig rig;
+  PioneerRig rig;
   rig.send({CommandNumber::kOpen, 1});
   EXPECT_TRUE(rig.pass(0.5).empty());
 }
 
 TEST(VirtualPioneer, SendsASipEveryCycleWithMotorsOff) {
-  Rig rig{{.baud = 38400}};
+  PioneerRig rig{{.baud = 38400}};
   rig.connect();
   int sips = 0;
   for (const auto& packet : rig.pass(1.0)) {
@@ -88,7 +88,7 @@ TEST(VirtualPioneer, SendsASipEveryCycleWithMotorsOff) {
 }
 
 TEST(VirtualPioneer, AnswersSync0WithSipsWhereAnotherClientLeftItConnected) {
-  Rig rig;
+  PioneerRig rig;
   rig.connect();
   rig.send({CommandNumber::kPulse, {}});
   for (const auto& packet : rig.pass(0.5)) EXPECT_TRUE(pioneer::is_sip(packet.type()));
@@ -99,7 +99,7 @@ TEST(VirtualPioneer, AnswersSync0WithSipsWhereAnotherClientLeftItConnected) {
 }
 
 TEST(VirtualPioneer, WatchdogStopsItAndAnyPacketResumesTheOldSetPoints) {
-  Rig rig;
+  PioneerRig rig;
   rig.connect();
   rig.send({CommandNumber::kEnable, 1});
   rig.send({CommandNumber::kVel, 300});
@@ -117,7 +117,7 @@ TEST(VirtualPioneer, WatchdogStopsItAndAnyPacketResumesTheOldSetPoints) {
 }
 
 TEST(VirtualPioneer, KeepsToTheLimitsThatItWasGivenReportsThemAndForgetsThemAtClose) {
-  Rig rig;
+  PioneerRig rig;
   rig.connect();
   for (const Command& command : std::vector<Command>{{CommandNumber::kSetV, 400},
                                                      {CommandNumber::kSetRv, 50},
@@ -157,7 +157,7 @@ TEST(VirtualPioneer, KeepsToTheLimitsThatItWasGivenReportsThemAndForgetsThemAtCl
 }
 
 TEST(VirtualPioneer, TellsItsFaults) {
-  Rig rig;
+  PioneerRig rig;
   rig.connect();
   EXPECT_EQ(rig.next_sip()->fault_flags, 0);
   rig.robot.fail(0x0010);
@@ -165,7 +165,7 @@ TEST(VirtualPioneer, TellsItsFaults) {
 }
 
 TEST(VirtualPioneer, MovesOnlyWithMotorsEnabledAndTheStopButtonDisablesThem) {
-  Rig rig;
+  PioneerRig rig;
   rig.connect();
   rig.send({CommandNumber::kVel, 300});
   EXPECT_EQ(rig.robot.demand().speed_m_per_s, 0.0);
@@ -181,7 +181,7 @@ TEST(VirtualPioneer, MovesOnlyWithMotorsEnabledAndTheStopButtonDisablesThem) {
 }
 
 TEST(VirtualPioneer, ShowsEstall) {
-  Rig rig;
+  PioneerRig rig;
   rig.connect();
   rig.send({CommandNumber::kEnable, 1});
   rig.robot.begin_estall();
@@ -193,7 +193,7 @@ TEST(VirtualPioneer, ShowsEstall) {
 }
 
 TEST(VirtualPioneer, TellsItsPoseInFifteenBitsOfItsUnit) {
-  Rig rig{{.model = "p3dx"}};
+  PioneerRig rig{{.model = "p3dx"}};
   rig.motion.odom_from_robot = {20.0, -0.485, radians(-90)};
   rig.connect();
   const auto sip = rig.next_sip();
@@ -204,7 +204,7 @@ TEST(VirtualPioneer, TellsItsPoseInFifteenBitsOfItsUnit) {
 }
 
 TEST(VirtualPioneer, CountsFromItsLastSetO) {
-  Rig rig;
+  PioneerRig rig;
   rig.motion.odom_from_robot = {3.0, 4.0, radians(90)};
   rig.connect();
   rig.send({CommandNumber::kSetO, {}});
@@ -215,7 +215,7 @@ TEST(VirtualPioneer, CountsFromItsLastSetO) {
 }
 
 TEST(VirtualPioneer, TellsStallBumpersAndBattery) {
-  Rig rig{{.battery_v = 11.5, .has_bumpers = true}};
+  PioneerRig rig{{.battery_v = 11.5, .has_bumpers = true}};
   rig.connect();
   rig.motion.stalled = true;
   rig.motion.contact_bearing_rad = 0.0;
@@ -231,7 +231,7 @@ TEST(VirtualPioneer, TellsStallBumpersAndBattery) {
 }
 
 TEST(VirtualPioneer, IsDeafAndUnreadableAtAnotherBaudAndFollowsHostbaud) {
-  Rig rig;
+  PioneerRig rig;
   rig.host_baud = 38400;
   rig.send({CommandNumber::kPulse, {}});
   EXPECT_TRUE(rig.pass(0.5).empty());
@@ -250,7 +250,7 @@ TEST(VirtualPioneer, IsDeafAndUnreadableAtAnotherBaudAndFollowsHostbaud) {
 }
 
 TEST(VirtualPioneer, ForgetsEverythingAtAReset) {
-  Rig rig;
+  PioneerRig rig;
   rig.motion.odom_from_robot = {3.0, 0.0, 0.0};
   rig.connect();
   rig.send({CommandNumber::kEnable, 1});

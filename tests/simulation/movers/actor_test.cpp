@@ -10,10 +10,12 @@ namespace deltamap::simulation {
 namespace {
 
 constexpr double kStep_s = 0.05;
-const Circle kFarAway{{100, 100}, 0.25};
+const Circle kRobotFarAway{{100, 100}, 0.25};
 
 /// 20 x 20 m with an opening of 4 m in the left wall.
-World hall() { return {{{1, ObjectKind::kWall, Polyline{{{0, 8}, {0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 12}}}}}}; }
+World gated_hall() {
+  return {{{1, ObjectKind::kWall, Polyline{{{0, 8}, {0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 12}}}}}};
+}
 
 ActorParams to_and_fro() { return {.path = {{3, 10}, {17, 10}}}; }
 
@@ -30,11 +32,11 @@ struct Stops {
 
 Stops stops_of(const ActorParams& params, double seconds, std::uint64_t seed) {
   Actor actor{params, Random{seed}};
-  const RayCaster world{hall()};
+  const RayCaster world{gated_hall()};
   Stops stops;
   bool stood = false;
   for (double t = 0.0; t < seconds; t += kStep_s) {
-    actor.move(kStep_s, {world, kFarAway, {}, {}});
+    actor.move(kStep_s, {world, kRobotFarAway, {}, {}});
     if (actor.is_standing() && !stood) {
       stops.lengths_s.push_back(0.0);
       stops.places_x.push_back(actor.box().centre.x());
@@ -79,13 +81,13 @@ TEST(Actor, LeavesByTheGateAndComesBack) {
   params.stop_most_s = 20.0;
   params.away_most_s = 60.0;
   Actor actor{params, Random{1}};
-  const RayCaster world{hall()};
+  const RayCaster world{gated_hall()};
   int left = 0;
   int came = 0;
   bool inside = true;
   for (double t = 0.0; t < 1500.0; t += kStep_s) {
     const double x = actor.box().centre.x();
-    actor.move(kStep_s, {world, kFarAway, {}, {}});
+    actor.move(kStep_s, {world, kRobotFarAway, {}, {}});
     if (inside && !actor.is_in_hall()) {
       ++left;
       EXPECT_LT(x, -2.5) << "it vanishes outside only";
@@ -105,8 +107,9 @@ TEST(Actor, StaysOutsideWhileTheRobotStandsAtTheGate) {
   params.stop_most_s = 6.0;
   params.away_most_s = 40.0;
   Actor actor{params, Random{1}};
-  const RayCaster world{hall()};
-  for (double t = 0.0; t < 300.0 && actor.is_in_hall(); t += kStep_s) actor.move(kStep_s, {world, kFarAway, {}, {}});
+  const RayCaster world{gated_hall()};
+  for (double t = 0.0; t < 300.0 && actor.is_in_hall(); t += kStep_s)
+    actor.move(kStep_s, {world, kRobotFarAway, {}, {}});
   ASSERT_FALSE(actor.is_in_hall());
   for (double t = 0.0; t < 200.0; t += kStep_s) {
     actor.move(kStep_s, {world, Circle{{-2, 10}, 0.25}, {}, {}});
@@ -117,7 +120,7 @@ TEST(Actor, StaysOutsideWhileTheRobotStandsAtTheGate) {
 TEST(Actor, NeitherRunsIntoTheRobotNorStopsBesideIt) {
   for (const ActorParams& params : {to_and_fro(), truck()}) {
     Actor actor{params, Random{2}};
-    const RayCaster world{hall()};
+    const RayCaster world{gated_hall()};
     const Circle robot{{10, 10.3}, 0.25};
     for (double t = 0.0; t < 3000.0; t += kStep_s) {
       actor.move(kStep_s, {world, robot, {}, {}});
@@ -129,15 +132,15 @@ TEST(Actor, NeitherRunsIntoTheRobotNorStopsBesideIt) {
 }
 
 TEST(Actor, TurnsBackBeforeOthersAndShutDoors) {
-  const RayCaster world{hall()};
+  const RayCaster world{gated_hall()};
   const std::vector<Circle> others{{{10, 10}, 0.2}};
   const std::vector<Segment> leaves{{{14, 9}, {14, 11}}};
   Actor before_another{truck(), Random{3}};
   Actor before_a_door{to_and_fro(), Random{3}};
   double farthest_x = 0.0;
   for (double t = 0.0; t < 3000.0; t += kStep_s) {
-    before_another.move(kStep_s, {world, kFarAway, others, {}});
-    before_a_door.move(kStep_s, {world, kFarAway, {}, leaves});
+    before_another.move(kStep_s, {world, kRobotFarAway, others, {}});
+    before_a_door.move(kStep_s, {world, kRobotFarAway, {}, leaves});
     ASSERT_LT(before_another.box().centre.x() + 1.2, 9.8);
     farthest_x = std::max(farthest_x, before_a_door.box().centre.x());
   }
@@ -146,14 +149,14 @@ TEST(Actor, TurnsBackBeforeOthersAndShutDoors) {
 }
 
 TEST(ForkLiftActor, BacksOutWhereItIsBlocked) {
-  const RayCaster world{hall()};
+  const RayCaster world{gated_hall()};
   const std::vector<Circle> others{{{10, 10}, 0.2}};
   Actor actor{truck(), Random{3}};
   double farthest_x = 0.0;
   double backed_m = 0.0;
   for (double t = 0.0; t < 600.0; t += kStep_s) {
     const double before_x = actor.box().centre.x();
-    actor.move(kStep_s, {world, kFarAway, others, {}});
+    actor.move(kStep_s, {world, kRobotFarAway, others, {}});
     farthest_x = std::max(farthest_x, before_x);
     backed_m += std::max(0.0, before_x - actor.box().centre.x());
     ASSERT_NEAR(actor.box().theta_rad, 0.0, 1e-9) << "it never turns";
@@ -170,7 +173,7 @@ TEST(ForkLiftActor, LooksWhereItGoesAndIsSeenAsABox) {
   EXPECT_NEAR(box.theta_rad, 0.0, 1e-12);
   Bodies bodies;
   bodies.add_truck(box);
-  const RayCaster world{hall()};
+  const RayCaster world{gated_hall()};
   const auto hit = world.cast({3, 5}, radians(90), 80.0, bodies.surfaces());
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->object, kMoverId);

@@ -12,8 +12,8 @@
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kStep_s = 0.05;
-constexpr double kExact_m = 1e-9;
+constexpr double kDoorStep_s = 0.05;
+constexpr double kSameLeaf_m = 1e-9;
 
 DoorParams sliding() { return {.closed = {{5, 2}, {5, 4}}}; }
 
@@ -26,12 +26,12 @@ DoorParams swinging() {
 TEST(Door, SwingsAboutItsHingeOrSlidesIntoTheWall) {
   const auto half_slid = leaf_of(sliding(), 0.5);
   ASSERT_TRUE(half_slid);
-  EXPECT_NEAR((half_slid->to - Point2(5, 3)).norm(), 0.0, kExact_m);
+  EXPECT_NEAR((half_slid->to - Point2(5, 3)).norm(), 0.0, kSameLeaf_m);
   EXPECT_FALSE(leaf_of(sliding(), 1.0));
   const auto swung = leaf_of(swinging(), 1.0);
   ASSERT_TRUE(swung);
-  EXPECT_NEAR((swung->to - Point2(3, 2)).norm(), 0.0, kExact_m);
-  EXPECT_NEAR((leaf_of(swinging(), 0.0)->to - Point2(5, 4)).norm(), 0.0, kExact_m);
+  EXPECT_NEAR((swung->to - Point2(3, 2)).norm(), 0.0, kSameLeaf_m);
+  EXPECT_NEAR((leaf_of(swinging(), 0.0)->to - Point2(5, 4)).norm(), 0.0, kSameLeaf_m);
 }
 
 TEST(Door, StandsOpenForItsShareOfTheTimeAndMovesAtEachPeriod) {
@@ -43,11 +43,11 @@ TEST(Door, StandsOpenForItsShareOfTheTimeAndMovesAtEachPeriod) {
     double open_s = 0.0;
     int openings = 0;
     constexpr double kLasts_s = 50'000.0;
-    for (double t = 0.0; t < kLasts_s; t += kStep_s) {
+    for (double t = 0.0; t < kLasts_s; t += kDoorStep_s) {
       const bool was_shut = door.is_shut();
-      door.move(kStep_s, {});
+      door.move(kDoorStep_s, {});
       openings += was_shut && !door.is_shut() ? 1 : 0;
-      open_s += door.is_shut() ? 0.0 : kStep_s;
+      open_s += door.is_shut() ? 0.0 : kDoorStep_s;
     }
     EXPECT_NEAR(open_s / kLasts_s, share, 0.06) << "its moving counts as open";
     EXPECT_NEAR(openings, 1000, 50);
@@ -60,7 +60,7 @@ TEST(Door, StaysAsItIsWhereItsShareIsNoneOrAll) {
     params.open_share = share;
     Door door{params, Random{1}};
     for (int i = 0; i < 20'000; ++i) {
-      door.move(kStep_s, {});
+      door.move(kDoorStep_s, {});
       ASSERT_EQ(door.is_shut(), share == 0.0);
     }
   }
@@ -71,9 +71,9 @@ TEST(Door, WaitsForWhoeverStandsInItsWay) {
     Door door{params, Random{1}};
     const Circle robot{{5, 3}, 0.25};
     while (door.is_shut() || (door.leaf() && distance_between(robot.centre, *door.leaf()) < 1.0))
-      door.move(kStep_s, {});
+      door.move(kDoorStep_s, {});
     for (int i = 0; i < 20'000; ++i) {
-      door.move(kStep_s, {&robot, 1});
+      door.move(kDoorStep_s, {&robot, 1});
       ASSERT_FALSE(door.is_shut());
       ASSERT_TRUE(!door.leaf() || distance_between(robot.centre, *door.leaf()) > robot.radius_m + 0.14);
     }
@@ -84,8 +84,8 @@ TEST(Door, IsMetByBeamsAndCoveredByBeadsToBumpInto) {
   Bodies bodies;
   bodies.add_leaf(sliding().closed);
   const RayCaster world{World{{{1, ObjectKind::kWall, Polyline{{{0, 0}, {10, 0}, {10, 6}, {0, 6}, {0, 0}}}}}}};
-  EXPECT_NEAR(world.cast({1, 3}, 0.0, 80.0, bodies.surfaces())->range_m, 4.0, kExact_m);
-  EXPECT_NEAR(world.cast({1, 5}, 0.0, 80.0, bodies.surfaces())->range_m, 9.0, kExact_m) << "beside it";
+  EXPECT_NEAR(world.cast({1, 3}, 0.0, 80.0, bodies.surfaces())->range_m, 4.0, kSameLeaf_m);
+  EXPECT_NEAR(world.cast({1, 5}, 0.0, 80.0, bodies.surfaces())->range_m, 9.0, kSameLeaf_m) << "beside it";
   EXPECT_TRUE(bodies.walkers().empty());
   EXPECT_EQ(bodies.leaves().size(), 1u);
   EXPECT_GT(bodies.obstacles().size(), 15u);

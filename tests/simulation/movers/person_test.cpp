@@ -6,21 +6,21 @@
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kStep_s = 0.005;
-const Circle kFarAway{{100, 100}, 0.25};
+constexpr double kPersonStep_s = 0.005;
+const Circle kNobodyNear{{100, 100}, 0.25};
 
-World hall() { return {{{1, ObjectKind::kWall, Polyline{{{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}}}}}}; }
+World walled_hall() { return {{{1, ObjectKind::kWall, Polyline{{{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}}}}}}; }
 
 TEST(Person, WalksStopsAndWalksOnAlongThePath) {
   Person person{{.path = {{2, 2}, {18, 2}}}, Random{1}};
-  const RayCaster world{hall()};
+  const RayCaster world{walled_hall()};
   int starts = 0;
   int stops = 0;
   bool walking = true;
   double farthest = 0.0;
   for (int i = 0; i < 60'000; ++i) {  // 300 s
     const Point2 before = person.body().centre;
-    person.move(kStep_s, world, kFarAway);
+    person.move(kPersonStep_s, world, kNobodyNear);
     const bool moved = (person.body().centre - before).norm() > 1e-9;
     if (moved && !walking) ++starts;
     if (!moved && walking) ++stops;
@@ -35,11 +35,11 @@ TEST(Person, WalksStopsAndWalksOnAlongThePath) {
 
 TEST(Person, WaitsForTheRobotAndTurnsBackAtABlockedWay) {
   Person person{{.path = {{2, 10}, {18, 10}}, .walk_least_s = 1e5, .walk_most_s = 1e5}, Random{1}};
-  const RayCaster world{hall()};
+  const RayCaster world{walled_hall()};
   const Circle robot{{8, 10}, 0.25};
   double farthest = 0.0;
   for (int i = 0; i < 2400; ++i) {  // 12 s: 5 to get there, 4 of patience, then back
-    person.move(kStep_s, world, robot);
+    person.move(kPersonStep_s, world, robot);
     farthest = std::max(farthest, person.body().centre.x());
   }
   EXPECT_LT(farthest, 8.0 - 0.25 - 0.2 - 0.49);
@@ -49,9 +49,9 @@ TEST(Person, WaitsForTheRobotAndTurnsBackAtABlockedWay) {
 
 TEST(Person, DoesNotWalkIntoAContainerThatStandsInTheWay) {
   Person person{{.path = {{2, 10}, {18, 10}}, .walk_least_s = 1e5, .walk_most_s = 1e5}, Random{1}};
-  const RayCaster world{hall().with({2, ObjectKind::kContainer, Box{{10, 10}, 2, 2, 0}})};
+  const RayCaster world{walled_hall().with({2, ObjectKind::kContainer, Box{{10, 10}, 2, 2, 0}})};
   for (int i = 0; i < 20'000; ++i) {
-    person.move(kStep_s, world, kFarAway);
+    person.move(kPersonStep_s, world, kNobodyNear);
     ASSERT_LT(person.body().centre.x(), 9.0 - 0.2);
   }
 }

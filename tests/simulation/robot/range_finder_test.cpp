@@ -14,7 +14,7 @@ const RayCaster& hall() {
   return caster;
 }
 
-RangeFinderParams perfect() {
+RangeFinderParams perfect_laser() {
   RangeFinderParams params;
   params.robot_from_laser = {};
   params.range_noise_m = params.dropout_share = params.mixed_share = 0.0;
@@ -33,14 +33,14 @@ Sweep same_beam(std::size_t count, double bearing_rad, double step_s) {
 }
 
 TEST(RangeFinder, CastsEachBeamFromWhereTheRobotIsAtThatMoment) {
-  RangeFinder laser{perfect(), Random{1}};
+  RangeFinder laser{perfect_laser(), Random{1}};
   const auto moving = [](double offset_s) -> Pose2 { return {10.0 - 2.0 * offset_s, 5.0, 0.0}; };
   const auto readings = laser.measure(same_beam(5, 0.0, 0.1), 80.0, hall(), moving, nobody);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(readings[i].range_m, 10.0 + 0.2 * static_cast<double>(i), 1e-9);
 }
 
 TEST(RangeFinder, MeasuresFromItsMount) {
-  RangeFinderParams params = perfect();
+  RangeFinderParams params = perfect_laser();
   params.robot_from_laser = {0.25, 0.0, 0.0};
   RangeFinder laser{params, Random{1}};
   const auto readings = laser.measure(
@@ -53,7 +53,7 @@ TEST(RangeFinder, MeasuresFromItsMount) {
 }
 
 TEST(RangeFinder, SaysBeyondMaximumWhereTheModeEnds) {
-  RangeFinder laser{perfect(), Random{1}};
+  RangeFinder laser{perfect_laser(), Random{1}};
   const auto readings = laser.measure(
       same_beam(1, 0.0, 0.0), 8.0, hall(),
       [](double) -> Pose2 {
@@ -64,7 +64,7 @@ TEST(RangeFinder, SaysBeyondMaximumWhereTheModeEnds) {
 }
 
 TEST(RangeFinder, HasTheNoiseAndTheDropoutsThatItWasGiven) {
-  RangeFinderParams params = perfect();
+  RangeFinderParams params = perfect_laser();
   params.range_noise_m = 0.02;
   params.dropout_share = 0.1;
   RangeFinder laser{params, Random{2}};
@@ -89,7 +89,7 @@ TEST(RangeFinder, HasTheNoiseAndTheDropoutsThatItWasGiven) {
 }
 
 TEST(RangeFinder, BlendsDepthsOnlyAtAnEdge) {
-  RangeFinderParams params = perfect();
+  RangeFinderParams params = perfect_laser();
   params.mixed_share = 1.0;
   RangeFinder laser{params, Random{3}};
   const auto at = [](double) -> Pose2 { return {10, 10.5, 0}; };  // level with the container's lower face, 1.5 m ahead

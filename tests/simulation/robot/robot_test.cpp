@@ -9,29 +9,29 @@
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kStep_s = 0.005;
+constexpr double kBodyStep_s = 0.005;
 
-RobotParams perfect() {
+RobotParams perfect_body() {
   RobotParams params;
   params.track_error = params.left_wheel_error = params.right_wheel_error = 0.0;
   params.wheel_noise_m_per_sqrt_m = params.slips_per_m = 0.0;
   return params;
 }
 
-const RayCaster& hall() {
+const RayCaster& empty_hall() {
   static const RayCaster caster{
       World{{{1, ObjectKind::kWall, Polyline{{{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}}}}}}};
   return caster;
 }
 
 void drive(Robot& robot, double speed, double turn_rate, double seconds, std::span<const Circle> people = {}) {
-  for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep_s)); ++i) {
-    robot.move({.speed_m_per_s = speed, .turn_rate_rad_per_s = turn_rate}, kStep_s, hall(), people);
+  for (int i = 0; i < static_cast<int>(std::lround(seconds / kBodyStep_s)); ++i) {
+    robot.move({.speed_m_per_s = speed, .turn_rate_rad_per_s = turn_rate}, kBodyStep_s, empty_hall(), people);
   }
 }
 
 TEST(Robot, TakesTheTimeThatItsAccelerationNeeds) {
-  Robot robot{perfect(), {10, 10, 0}, Random{1}};
+  Robot robot{perfect_body(), {10, 10, 0}, Random{1}};
   drive(robot, 0.6, 0.0, 1.0);
   EXPECT_NEAR(robot.state().speed_m_per_s, 0.3, 1e-9) << "0.3 m/s² for a second";
   drive(robot, 0.6, 0.0, 2.0);
@@ -41,7 +41,7 @@ TEST(Robot, TakesTheTimeThatItsAccelerationNeeds) {
 }
 
 TEST(Robot, DrivesACircleWithoutErrorsAndItsEncodersAgree) {
-  Robot robot{perfect(), {10, 5, 0}, Random{1}};
+  Robot robot{perfect_body(), {10, 5, 0}, Random{1}};
   drive(robot, 0.5, 0.25, 60.0);  // a radius of 2 m
   const Pose2 expected = Pose2{10, 5, 0} * robot.state().odom_from_robot;
   EXPECT_NEAR(distance_between(robot.state().map_from_robot, expected), 0.0, 1e-9);
@@ -51,7 +51,7 @@ TEST(Robot, DrivesACircleWithoutErrorsAndItsEncodersAgree) {
 }
 
 TEST(Robot, DriftsFromItsEncodersByItsWheelErrorsAndRepeatsFromItsSeed) {
-  RobotParams params = perfect();
+  RobotParams params = perfect_body();
   params.left_wheel_error = 0.02;
   Robot biased{params, {10, 10, 0}, Random{1}};
   drive(biased, 0.5, 0.0, 10.0);
@@ -68,7 +68,7 @@ TEST(Robot, DriftsFromItsEncodersByItsWheelErrorsAndRepeatsFromItsSeed) {
 }
 
 TEST(Robot, LosesTravelWhereAWheelSlips) {
-  RobotParams params = perfect();
+  RobotParams params = perfect_body();
   params.slips_per_m = 2.0;
   Robot robot{params, {2, 10, 0}, Random{9}};
   drive(robot, 0.5, 0.0, 20.0);
@@ -78,7 +78,7 @@ TEST(Robot, LosesTravelWhereAWheelSlips) {
 }
 
 TEST(Robot, StopsAtAWallStallsAndCanTurnAndLeave) {
-  Robot robot{perfect(), {18, 10, 0}, Random{1}};
+  Robot robot{perfect_body(), {18, 10, 0}, Random{1}};
   drive(robot, 0.5, 0.0, 10.0);
   EXPECT_NEAR(robot.state().map_from_robot.x, 20.0 - 0.25, 0.01);
   EXPECT_LE(robot.state().map_from_robot.x, 20.0 - 0.25 + 1e-9) << "never inside the wall";
@@ -95,7 +95,7 @@ TEST(Robot, StopsAtAWallStallsAndCanTurnAndLeave) {
 }
 
 TEST(Robot, DoesNotPushThroughPeople) {
-  Robot robot{perfect(), {5, 10, 0}, Random{1}};
+  Robot robot{perfect_body(), {5, 10, 0}, Random{1}};
   const std::vector<Circle> people{{{7, 10}, 0.2}};
   drive(robot, 0.5, 0.0, 10.0, people);
   EXPECT_LT(robot.state().map_from_robot.x, 7.0 - 0.45 + 1e-6);

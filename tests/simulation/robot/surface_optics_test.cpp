@@ -14,9 +14,9 @@ namespace deltamap::simulation {
 namespace {
 
 const Object kHall{1, ObjectKind::kWall, Polyline{{{0, 0}, {40, 0}, {40, 20}, {0, 20}, {0, 0}}}};
-constexpr double kExact_m = 1e-5;
+constexpr double kSameRange_m = 1e-5;
 
-RangeFinderParams perfect() {
+RangeFinderParams perfect_optics() {
   RangeFinderParams params;
   params.robot_from_laser = {};
   params.range_noise_m = params.dropout_share = params.mixed_share = 0.0;
@@ -37,17 +37,18 @@ World with_pane() { return {{kHall, {2, ObjectKind::kWall, Polyline{{{10, 0}, {1
 World with_pallet() { return {{kHall, {2, ObjectKind::kContainer, Box{{10, 10}, 1, 4, 0}, Material::kWrap}}}; }
 
 TEST(Glass, ReturnsABeamThatMeetsItAtARightAngleAndLetsAllElseThrough) {
-  const auto readings = measured(with_pane(), perfect(), {5, 10, 0}, {0.0, radians(3.5), radians(4.5), radians(30)});
-  EXPECT_NEAR(readings[0].range_m, 5.0, kExact_m);
-  EXPECT_NEAR(readings[1].range_m, 5.0 / std::cos(radians(3.5)), kExact_m);
-  EXPECT_NEAR(readings[2].range_m, 35.0 / std::cos(radians(4.5)), kExact_m) << "the wall behind it";
-  EXPECT_NEAR(readings[3].range_m, 10.0 / std::sin(radians(30)), kExact_m);
+  const auto readings =
+      measured(with_pane(), perfect_optics(), {5, 10, 0}, {0.0, radians(3.5), radians(4.5), radians(30)});
+  EXPECT_NEAR(readings[0].range_m, 5.0, kSameRange_m);
+  EXPECT_NEAR(readings[1].range_m, 5.0 / std::cos(radians(3.5)), kSameRange_m);
+  EXPECT_NEAR(readings[2].range_m, 35.0 / std::cos(radians(4.5)), kSameRange_m) << "the wall behind it";
+  EXPECT_NEAR(readings[3].range_m, 10.0 / std::sin(radians(30)), kSameRange_m);
 }
 
 TEST(Glass, ShowsNothingWhereNothingLiesBehindItInReach) {
   World world = with_pane();
   world.objects[0].shape = Polyline{{{0, 0}, {0, 20}}};
-  EXPECT_EQ(measured(world, perfect(), {5, 10, 0}, {radians(20)})[0].kind, BeamKind::kBeyondMaximum);
+  EXPECT_EQ(measured(world, perfect_optics(), {5, 10, 0}, {radians(20)})[0].kind, BeamKind::kBeyondMaximum);
 }
 
 TEST(Glass, StandsInTheFirstMapOrNotAsTheScenarioSaysAndHidesNoFloor) {
@@ -63,7 +64,7 @@ TEST(Glass, StandsInTheFirstMapOrNotAsTheScenarioSaysAndHidesNoFloor) {
 TEST(StretchWrap, SharesItsBeamsBetweenReturnedLostThroughDazzledAndShort) {
   constexpr std::size_t kBeams = 20'000;
   constexpr double kShareTolerance = 0.01;
-  RangeFinderParams params = perfect();
+  RangeFinderParams params = perfect_optics();
   params.surfaces = {.wrap_no_return_share = 0.2,
                      .wrap_through_share = 0.1,
                      .wrap_dazzle_share = 0.05,
@@ -74,9 +75,9 @@ TEST(StretchWrap, SharesItsBeamsBetweenReturnedLostThroughDazzledAndShort) {
     const bool is_range = reading.kind == BeamKind::kRange;
     if (reading.kind == BeamKind::kNotValid) share["lost"] += 1.0 / kBeams;
     if (reading.kind == BeamKind::kDazzled) share["dazzled"] += 1.0 / kBeams;
-    if (is_range && std::abs(reading.range_m - 4.5) < kExact_m) share["returned"] += 1.0 / kBeams;
-    if (is_range && std::abs(reading.range_m - 35.0) < kExact_m) share["through"] += 1.0 / kBeams;
-    if (is_range && reading.range_m >= 4.2 && reading.range_m < 4.5 - kExact_m) share["short"] += 1.0 / kBeams;
+    if (is_range && std::abs(reading.range_m - 4.5) < kSameRange_m) share["returned"] += 1.0 / kBeams;
+    if (is_range && std::abs(reading.range_m - 35.0) < kSameRange_m) share["through"] += 1.0 / kBeams;
+    if (is_range && reading.range_m >= 4.2 && reading.range_m < 4.5 - kSameRange_m) share["short"] += 1.0 / kBeams;
   }
   EXPECT_NEAR(share["lost"], 0.2, kShareTolerance);
   EXPECT_NEAR(share["through"], 0.1, kShareTolerance);
@@ -89,7 +90,7 @@ TEST(StretchWrap, GivesTheSameReadingsForTheSameSeedOnly) {
   const std::vector<double> bearings(200, 0.0);
   const auto ranges = [&](std::uint64_t seed) {
     std::vector<double> found;
-    for (const Reading& reading : measured(with_pallet(), perfect(), {5, 10, 0}, bearings, seed))
+    for (const Reading& reading : measured(with_pallet(), perfect_optics(), {5, 10, 0}, bearings, seed))
       found.push_back(reading.range_m);
     return found;
   };
@@ -108,7 +109,7 @@ double share_on_post(double distance_m) {
   std::vector<double> bearings;
   for (int i = 0; i < 500; ++i) bearings.push_back(radians(-0.25 + 0.001 * i));
   double share = 0.0;
-  for (const Reading& reading : measured(world, perfect(), {2, 10, 0}, bearings)) {
+  for (const Reading& reading : measured(world, perfect_optics(), {2, 10, 0}, bearings)) {
     if (std::abs(reading.range_m - distance_m + 0.04) < 0.05) share += 1.0 / 500.0;
   }
   return share;

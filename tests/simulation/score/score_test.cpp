@@ -19,7 +19,7 @@ const Box kRight{{8, 5}, 2, 2, 0};
 Timestamp after(double seconds) { return timestamp_from_ns(kStart_ns) + duration_from_seconds(seconds); }
 
 /// A room of 12 x 10 m with one container at the left; the robot stands below it and looks up.
-Scenario room() {
+Scenario room_with_one_container() {
   return parse_scenario(
       "walls:\n  - [[0, 0], [12, 0], [12, 10], [0, 10], [0, 0]]\n"
       "containers:\n  - [4, 5, 2, 2, 0]\nrobot:\n  start: [6, 1, 90]\n",
@@ -36,7 +36,7 @@ Truth standing_for(double seconds, std::vector<TruthChange> changes) {
 OccupancyGrid survey(const World& world) { return start_map(world, {6, 1}, 0.05); }
 
 struct Fixture {
-  Scenario scenario = room();
+  Scenario scenario = room_with_one_container();
   int id = scenario.world.objects.back().id;
   OccupancyGrid before = survey(scenario.world);
   Change removal{ChangeKind::kRemoved, id, kLeft, std::nullopt};
@@ -207,7 +207,7 @@ TEST(ChangeScore, SeesThroughGlassAndNotThroughAShutDoor) {
 }
 
 TEST(ChangeScore, CallsAStandingActorAndADoorNoGhosts) {
-  Scenario scenario = room();
+  Scenario scenario = room_with_one_container();
   scenario.doors.push_back({.closed = {{9, 0}, {9, 3}}});
   const OccupancyGrid before = survey(scenario.world);
   const Box forklift{{2, 2}, 2.4, 1.2, 0.0};

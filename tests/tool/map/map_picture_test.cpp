@@ -15,6 +15,7 @@
 #include "mapping/store/map_store.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 #include "tests/support/tool_run.hpp"
 #include "tool/picture/animated_png.hpp"
 #include "tool/picture/changed_places.hpp"
@@ -23,6 +24,8 @@
 
 namespace deltamap::tool {
 namespace {
+
+using test::content_of;
 
 using picture::drawn;
 using picture::Ink;
@@ -52,12 +55,6 @@ Raster decoded(const std::string& png) {
   Raster picture{image.width, image.height, std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
   EXPECT_NE(png_image_finish_read(&image, nullptr, picture.rgb.data(), 0, nullptr), 0) << image.message;
   return picture;
-}
-
-std::string content_of(const std::filesystem::path& file) {
-  std::ostringstream bytes;
-  bytes << std::ifstream(file, std::ios::binary).rdbuf();
-  return bytes.str();
 }
 
 OccupancyGrid room() {
