@@ -123,7 +123,8 @@ void print_keys(const MotionCalibration& found) {
   }
 }
 
-void print_text(const MotionCalibration& as_they_are, const MotionCalibration& corrected, const Drive& drive) {
+void print_calibration_text(const MotionCalibration& as_they_are, const MotionCalibration& corrected,
+                            const Drive& drive) {
   std::cout << std::setprecision(3) << "# " << drive.driven_m << " m and " << degrees(drive.turned_rad) / 360.0
             << " turns in " << drive.segments.size() << " segments, " << 100.0 * as_they_are.outlier_share
             << " % of them rather slips; the localizer's own error "
@@ -142,17 +143,18 @@ void print_text(const MotionCalibration& as_they_are, const MotionCalibration& c
   std::cout << '\n';
 }
 
-Json json_of(const Fitted& fitted, double unit = 1.0) {
+Json json_of_calibration(const Fitted& fitted, double unit = 1.0) {
   return {{"value", fitted.value / unit}, {"error", fitted.error / unit}};
 }
 
-void print_json(const MotionCalibration& as_they_are, const MotionCalibration& corrected, const Drive& drive) {
+void print_calibration_json(const MotionCalibration& as_they_are, const MotionCalibration& corrected,
+                            const Drive& drive) {
   Json motion;
   Json motion_corrected;
   for (const FittedKey& key : kKeys) {
-    motion[key.key] = json_of(as_they_are.of(key.source), key.unit);
+    motion[key.key] = json_of_calibration(as_they_are.of(key.source), key.unit);
     motion[key.key]["enough"] = !is_vague(as_they_are.of(key.source));
-    motion_corrected[key.key] = json_of(corrected.of(key.source), key.unit);
+    motion_corrected[key.key] = json_of_calibration(corrected.of(key.source), key.unit);
   }
   const Json all{{"cut", drive.cut ? Json(drive.cut->text) : Json(nullptr)},
                  {"segments", drive.segments.size()},
@@ -163,9 +165,9 @@ void print_json(const MotionCalibration& as_they_are, const MotionCalibration& c
                  {"estimate_heading_deg", degrees(as_they_are.of(MotionSource::kEstimateHeading).value)},
                  {"motion", motion},
                  {"systematic",
-                  {{"wheel_scale", json_of(corrected.wheel_scale)},
-                   {"turn_scale", json_of(corrected.turn_scale)},
-                   {"drift_deg_per_m", json_of(corrected.drift_rad_per_m, radians(1.0))},
+                  {{"wheel_scale", json_of_calibration(corrected.wheel_scale)},
+                   {"turn_scale", json_of_calibration(corrected.turn_scale)},
+                   {"drift_deg_per_m", json_of_calibration(corrected.drift_rad_per_m, radians(1.0))},
                    {"motion_if_corrected", motion_corrected}}}};
   std::cout << all.dump(2) << '\n';
 }
@@ -185,7 +187,7 @@ void require_enough(const Drive& drive, const std::string& recording) {
   }
 }
 
-void run(CalibrateOptions& options) {
+void run_calibration(CalibrateOptions& options) {
   if (!options.initial_pose.empty())
     options.overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
   const daemon::Settings settings = options.config.empty() ? daemon::parse_settings("", "defaults", options.overrides)
@@ -196,9 +198,9 @@ void run(CalibrateOptions& options) {
   const MotionCalibration as_they_are = localization::motion::fitted_motion(drive.segments, Systematic::kLeftIn);
   const MotionCalibration corrected = localization::motion::fitted_motion(drive.segments, Systematic::kTakenOut);
   if (options.as_json)
-    print_json(as_they_are, corrected, drive);
+    print_calibration_json(as_they_are, corrected, drive);
   else
-    print_text(as_they_are, corrected, drive);
+    print_calibration_text(as_they_are, corrected, drive);
 }
 
 }  // namespace
@@ -213,7 +215,7 @@ void add_calibrate_motion(CLI::App& calibrate) {
                       "X,Y,DEG of the robot in the map at the first scan; over the settings' pose");
   command->add_option("--set", options->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   command->add_flag("--json", options->as_json, "print the result as JSON");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_calibration(*options); });
 }
 
 }  // namespace deltamap::tool

@@ -51,7 +51,7 @@ void list_experiments() {
   }
 }
 
-void print(const experiments::Results& results) {
+void print_summary(const experiments::Results& results) {
   for (const experiments::Figure& figure : results.report.figures) {
     std::cout << std::left << std::setw(64) << figure.name << ' ' << std::setw(10) << experiments::text_of(figure.value)
               << ' ' << figure.unit;
@@ -69,7 +69,7 @@ void write(const experiments::Results& results, const ExperimentOptions& given) 
   (void)std::signal(SIGTERM, ended);
 }
 
-void run(const ExperimentOptions& given) {
+void run_experiment(const ExperimentOptions& given) {
   const experiments::Experiment chosen = experiment_named(given.name);
   experiments::Options options = given.options;
   const daemon::Settings settings = given.config.empty() ? daemon::parse_settings("", "--set", given.overrides)
@@ -95,7 +95,7 @@ void run(const ExperimentOptions& given) {
   if (given.as_json) {
     std::cout << experiments::summary_json(results);
   } else {
-    print(results);
+    print_summary(results);
   }
 }
 
@@ -137,7 +137,7 @@ void add_experiment(CLI::App& app) {
       },
       "name, 'times' where it measures the machine, and meaning of every experiment, separated by tabs");
   command.add_flag("--json", given->as_json, "print the summary as JSON");
-  command.callback([given] { run(*given); });
+  command.callback([given] { run_experiment(*given); });
 }
 
 }  // namespace deltamap::tool

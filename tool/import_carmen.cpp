@@ -95,7 +95,7 @@ std::string_view pose_source(const drivers::carmen::CarmenSurvey& survey) {
   return survey.odometry.empty() ? "none" : "ODOM lines";
 }
 
-void print_text(const CarmenImport& done, const std::string& recording) {
+void print_import_text(const CarmenImport& done, const std::string& recording) {
   const drivers::carmen::CarmenSurvey& survey = done.survey;
   const bool centimetres = survey.units == drivers::lms200::Units::kCentimetre;
   std::cout << recording << ": " << survey.scans << " scans as " << name_of(survey.variant) << " in "
@@ -110,7 +110,7 @@ void print_text(const CarmenImport& done, const std::string& recording) {
   if (done.gaps > 0) std::cout << done.gaps << " pauses of more than an hour are left without odometry\n";
 }
 
-void print_json(const CarmenImport& done, const std::string& recording) {
+void print_import_json(const CarmenImport& done, const std::string& recording) {
   const drivers::carmen::CarmenSurvey& survey = done.survey;
   nlohmann::ordered_json json{{"recording", recording},
                               {"scans", survey.scans},
@@ -182,7 +182,7 @@ void add_import_carmen(CLI::App& import) {
   command.callback([options] {
     const CarmenImport done = import_carmen(options->log, options->recording, options->no_return_m);
     if (done.survey.cut) std::cerr << "deltamap: warning: " << *done.survey.cut << '\n';
-    options->json ? print_json(done, options->recording) : print_text(done, options->recording);
+    options->json ? print_import_json(done, options->recording) : print_import_text(done, options->recording);
   });
 }
 

@@ -33,7 +33,7 @@ void print_summary(const daemon::RunReport& report) {
             << "; began with " << report.began << '\n';
 }
 
-void run(ReplayOptions& options) {
+void run_replay(ReplayOptions& options) {
   auto& overrides = options.overrides;
   if (!options.initial_pose.empty()) overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
   if (options.seed) overrides.push_back("seed=" + std::to_string(*options.seed));
@@ -78,7 +78,7 @@ void add_replay(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--set", options->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   command->add_flag("--json", options->as_json, "print the report as JSON");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_replay(*options); });
 }
 
 }  // namespace deltamap::tool

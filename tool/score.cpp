@@ -49,7 +49,7 @@ Tally tally(const score::ChangeScore& changes, bool appears) {
   return counted;
 }
 
-Json json_of(const score::ScoredChange& change, Timestamp start) {
+Json json_of_score(const score::ScoredChange& change, Timestamp start) {
   return {{"t_s", seconds(change.time - start)},
           {"kind", simulation::name_of(change.kind)},
           {"part", change.appears ? "appeared" : "gone"},
@@ -63,7 +63,7 @@ Json json_of(const score::ScoredChange& change, Timestamp start) {
           {"found", change.is_found}};
 }
 
-Json json_of(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes, Timestamp start) {
+Json json_of_score(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes, Timestamp start) {
   const Tally all{changes.eligible, changes.found};
   const auto json_of_tally = [](const Tally& t) {
     return Json{{"found", t.found}, {"eligible", t.eligible}, {"recall", t.recall()}};
@@ -80,11 +80,11 @@ Json json_of(const score::TrajectoryScore& trajectory, const score::ChangeScore&
   json["changes"]["gone"] = json_of_tally(tally(changes, false));
   json["ghosts"] = {{"m2", changes.ghosts_m2}, {"stale_m2", changes.stale_ghosts_m2}};
   json["each_change"] = Json::array();
-  for (const auto& change : changes.changes) json["each_change"].push_back(json_of(change, start));
+  for (const auto& change : changes.changes) json["each_change"].push_back(json_of_score(change, start));
   return json;
 }
 
-void print(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes) {
+void print_score(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes) {
   const Tally all{changes.eligible, changes.found};
   const Tally appeared = tally(changes, true);
   const Tally gone = tally(changes, false);
@@ -112,9 +112,9 @@ void run_score(const ScoreOptions& options) {
   const auto changes =
       score::change_score(scenario, truth, read_grid(options.start_map), read_grid(options.map), params);
   if (options.json) {
-    std::cout << json_of(trajectory, changes, truth.poses.front().time).dump(2) << '\n';
+    std::cout << json_of_score(trajectory, changes, truth.poses.front().time).dump(2) << '\n';
   } else {
-    print(trajectory, changes);
+    print_score(trajectory, changes);
   }
 }
 

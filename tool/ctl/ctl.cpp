@@ -76,7 +76,7 @@ double watch_period_of(const std::string& text) {
   return period_s;
 }
 
-void add_status(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
+void add_status_command(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
   CLI::App& status = *ctl.add_subcommand("status", "how it is");
   const CLI::Option* watch =
       status.add_option("--watch", options->watch, "a line a second, or each S seconds, until Ctrl-C")
@@ -123,7 +123,7 @@ void add_ctl(CLI::App& app) {
   CLI::App& ctl = *app.add_subcommand("ctl", "talk to the running daemon")->require_subcommand(1)->fallthrough();
   ctl.add_option("--socket", options->socket, "the daemon's control.socket (default: /run/deltamap/ctl.sock)");
   ctl.add_flag("--json", options->as_json, "print the daemon's reply");
-  add_status(ctl, options);
+  add_status_command(ctl, options);
   add_plain(ctl, options, "pause", Kind::kPause, "the map stays as it is; the localizer goes on");
   add_plain(ctl, options, "resume", Kind::kResume, "the map follows the world again");
   add_plain(ctl, options, "save", Kind::kSave, "write map and pose now");

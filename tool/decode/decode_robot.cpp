@@ -13,8 +13,6 @@ using namespace drivers::pioneer;
 
 constexpr unsigned kAnyBaud = 9600;  // times do not matter here
 
-std::int64_t whole(std::int64_t value) { return value; }
-
 /// Commands and replies share numbers (VEL2 and CONFIGpac, HOSTBAUD and SIP): a command is known by its length, which
 /// is exactly that of its one argument (protocols.md A3).
 bool has_form_of_command(std::span<const std::uint8_t> data) {

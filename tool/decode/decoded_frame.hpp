@@ -20,6 +20,8 @@ using FieldValue =
 /// In the order of the wire.
 using NamedFields = std::vector<std::pair<std::string, FieldValue>>;
 
+[[nodiscard]] inline std::int64_t whole(std::int64_t value) { return value; }
+
 struct DecodedFrame {
   std::string name;
   std::string from;      ///< "host", "robot", "laser" or "either"

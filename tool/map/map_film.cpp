@@ -22,7 +22,7 @@ using simulation::score::StampedPose;
 constexpr int kLastFrame_ms = 2500;  // so that the end can be looked at
 constexpr std::size_t kPathPoints = 400;
 
-struct Options {
+struct FilmOptions {
   std::string store;
   std::string png;
   std::string trajectory;
@@ -73,7 +73,7 @@ std::vector<Point2> path_to(const std::vector<StampedPose>& poses, std::size_t l
   return path;
 }
 
-void film(const Options& options) {
+void film(const FilmOptions& options) {
   const mapping::store::MapStore store{options.store};
   const std::vector<Step> steps = steps_of(store);
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);
@@ -108,7 +108,7 @@ void film(const Options& options) {
 }  // namespace
 
 void add_map_film(CLI::App& map) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FilmOptions>();
   CLI::App* command = map.add_subcommand("film", "draw a run as an animated PNG: the robot's way, and the map's");
   command->add_option("STORE", options->store, "map store (SQLite) of the run")->required();
   command->add_option("PNG", options->png, "picture to write")->required();

@@ -27,7 +27,7 @@ namespace {
 using mapping::store::MapStore;
 using mapping::store::StoredRevision;
 
-struct Options {
+struct HistoryOptions {
   std::string store;
   std::uint32_t number = 0;
   std::uint32_t other = 0;
@@ -79,7 +79,7 @@ Timestamp store_time(const MapStore& store, std::uint32_t number) {
   return {};
 }
 
-void list(const Options& options) {
+void list(const HistoryOptions& options) {
   const MapStore store{options.store};
   if (!options.json)
     std::printf("%6s  %-19s  %5s  %8s  %7s  %7s  %s\n", "k", "time (UTC)", "phase", "occupied", "freed", "accept.",
@@ -109,7 +109,7 @@ void list(const Options& options) {
   }
 }
 
-void write_revision(const Options& options) {
+void write_revision(const HistoryOptions& options) {
   write_grid(MapStore{options.store}.grid(options.number), options.out);
   if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
 }
@@ -122,13 +122,13 @@ nlohmann::json changes_as_json(const std::vector<CellChange>& changes) {
   return list;
 }
 
-void print(const std::vector<CellChange>& changes) {
+void print_lines(const std::vector<CellChange>& changes) {
   for (const CellChange& change : changes) {
     std::printf("%d %d %s %s\n", change.cell.column, change.cell.row, name_of(change.before), name_of(change.after));
   }
 }
 
-void compare(const Options& options) {
+void compare(const HistoryOptions& options) {
   const MapStore store{options.store};
   const OccupancyGrid before = store.grid(options.number);
   const OccupancyGrid after = store.grid(options.other);
@@ -146,12 +146,12 @@ void compare(const Options& options) {
   } else {
     std::printf("%zu cells differ: %zu became occupied, %zu free, %zu unknown; acceptance %.4f\n", changes.size(),
                 became[1], became[0], became[2], acceptance);
-    if (options.cells) print(changes);
+    if (options.cells) print_lines(changes);
   }
 }
 
 /// Left the place before Δ K, right after it.
-void draw_delta(const Options& options) {
+void draw_delta(const HistoryOptions& options) {
   constexpr double kAround_m = 3.0;
   const MapStore store{options.store};
   if (options.number == 0) throw std::runtime_error("revision 0 is the first map: it has changed nothing");
@@ -176,7 +176,7 @@ void draw_delta(const Options& options) {
   }
 }
 
-void roll_back(const Options& options) {
+void roll_back(const HistoryOptions& options) {
   const auto lock = lock_of_file(options.store);  // a daemon that writes there would lose its place
   MapStore store{options.store};
   const std::uint32_t number = store.roll_back(options.number, std::chrono::system_clock::now());
@@ -187,7 +187,7 @@ void roll_back(const Options& options) {
   }
 }
 
-void undo(const Options& options) {
+void undo(const HistoryOptions& options) {
   const auto lock = lock_of_file(options.store);
   MapStore store{options.store};
   const std::uint32_t number = store.undo(options.number, std::chrono::system_clock::now());
@@ -200,7 +200,7 @@ void undo(const Options& options) {
 }
 
 /// Without the store's lock: a daemon that writes there does not lose its place.
-void set_name(const Options& options) {
+void set_name(const HistoryOptions& options) {
   MapStore{options.store}.set_name(options.number, options.name);
   if (options.json) {
     std::cout << nlohmann::json{{"number", options.number}, {"name", options.name}}.dump() << '\n';
@@ -214,7 +214,7 @@ void set_name(const Options& options) {
 }  // namespace
 
 void add_map_history(CLI::App& map) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<HistoryOptions>();
   CLI::App* history =
       map.add_subcommand("history", "the revisions of a map: list, export, diff, picture, rollback, undo, name");
   history->require_subcommand(1);

@@ -25,7 +25,7 @@ namespace {
 constexpr double kPriorDeviation_m = 0.2;  // as for an initial pose
 constexpr double kPriorDeviation_deg = 5.0;
 
-struct Options {
+struct MergeOptions {
   std::string map;
   std::string local;
   std::string out;
@@ -40,7 +40,7 @@ struct Result {
   double seconds = 0.0;
 };
 
-Pose2 prior_pose(const Options& options) {
+Pose2 prior_pose(const MergeOptions& options) {
   return {options.prior[0], options.prior[1], wrapped_angle(radians(options.prior[2]))};
 }
 
@@ -72,7 +72,7 @@ Result merged_without_prior(const OccupancyGrid& map, const OccupancyGrid& local
   return {merged.map_from_local, merged.refusal, 0.0};
 }
 
-Result timed_merge(const OccupancyGrid& map, const OccupancyGrid& local, const Options& options) {
+Result timed_merge(const OccupancyGrid& map, const OccupancyGrid& local, const MergeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Result result = options.method == "prior" ? merged_with_prior(map, local, prior_pose(options))
                                             : merged_without_prior(map, local, options.method);
@@ -90,7 +90,7 @@ OccupancyGrid at_resolution(const OccupancyGrid& grid, double resolution_m) {
   return mapping::registration::transformed_grid(grid, {}, geometry);
 }
 
-void print_result(const Result& result, double acceptance, double agreement, const Options& options) {
+void print_result(const Result& result, double acceptance, double agreement, const MergeOptions& options) {
   const Pose2& pose = result.map_from_local;
   const std::string refusal{name_of(result.refusal)};
   if (options.as_json) {
@@ -111,7 +111,7 @@ void print_result(const Result& result, double acceptance, double agreement, con
               acceptance, agreement, refusal.c_str(), result.seconds);
 }
 
-void run(const Options& options) {
+void run_merge(const MergeOptions& options) {
   const OccupancyGrid map = read_grid(options.map);
   const OccupancyGrid local = at_resolution(read_grid(options.local), map.resolution_m());
   const Result result = timed_merge(map, local, options);
@@ -128,7 +128,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_map_merge(CLI::App& map) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   CLI::App* command = map.add_subcommand("merge", "find where B lies on A and lay its known cells over A");
   command->add_option("A", options->map, "map_server YAML")->required();
   command->add_option("B", options->local, "map_server YAML to lay over A")->required();
@@ -145,7 +145,7 @@ void add_map_merge(CLI::App& map) {
     if ((options->method == "prior") != (options->prior.size() == 3)) {
       throw CLI::ValidationError("--prior", "belongs to --method prior, and it to --prior X,Y,DEG");
     }
-    run(*options);
+    run_merge(*options);
   });
 }
 

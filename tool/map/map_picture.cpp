@@ -19,7 +19,7 @@ namespace {
 
 using picture::Scene;
 
-struct Options {
+struct PictureOptions {
   std::string map;
   std::string before;
   std::string png;
@@ -40,7 +40,7 @@ void add_path(Scene& scene, const std::string& tum_file) {
 }
 
 /// As /api/scan answers it. The robot is where it was taken.
-void add_scan(Scene& scene, const std::string& file) {
+void add_scan_of(Scene& scene, const std::string& file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error(file + ": cannot be read");
   try {
@@ -55,7 +55,7 @@ void add_scan(Scene& scene, const std::string& file) {
   }
 }
 
-void draw(const Options& options) {
+void draw(const PictureOptions& options) {
   const OccupancyGrid map = read_grid(options.map);
   const OccupancyGrid before = options.before.empty() ? OccupancyGrid{} : read_grid(options.before);
   Scene scene{.map = map};
@@ -63,7 +63,7 @@ void draw(const Options& options) {
   scene.title = options.title;
   scene.cell_pixels = options.scale;
   if (!options.trajectory.empty()) add_path(scene, options.trajectory);
-  if (!options.scan.empty()) add_scan(scene, options.scan);
+  if (!options.scan.empty()) add_scan_of(scene, options.scan);
   if (!options.pose.empty()) scene.robot = Pose2{options.pose[0], options.pose[1], radians(options.pose[2])};
   picture::Raster raster;
   try {
@@ -77,7 +77,7 @@ void draw(const Options& options) {
 }  // namespace
 
 void add_map_picture(CLI::App& map) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PictureOptions>();
   CLI::App* command = map.add_subcommand("picture", "draw a map as a PNG, with scale bar and legend");
   command->add_option("MAP", options->map, "map_server YAML")->required();
   command->add_option("PNG", options->png, "picture to write")->required();

@@ -18,7 +18,7 @@ namespace deltamap::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 [[noreturn]] void fail(const fs::path& file, int line, const std::string& why) {
   throw std::runtime_error(file.string() + ":" + std::to_string(line) + ": " + why);
@@ -35,7 +35,7 @@ Number number_in(std::string_view text) {
 }
 
 /// "1764000000.250000000", without the digits that a double would lose.
-Timestamp time_in(std::string_view text) {
+Timestamp time_of_line(std::string_view text) {
   constexpr std::size_t kDigits = 9;
   const std::size_t point = text.find('.');
   if (point == std::string_view::npos || text.size() - point - 1 != kDigits) {
@@ -82,7 +82,7 @@ Assign covariance_column(int i, int j) {
 const std::map<std::string, Assign, std::less<>>& columns() {
   using Row = daemon::LocalizationRow;
   static const std::map<std::string, Assign, std::less<>> known{
-      {"time", [](Row& row, std::string_view text) { row.time = time_in(text); }},
+      {"time", [](Row& row, std::string_view text) { row.time = time_of_line(text); }},
       {"number", count_column(&Row::number)},
       {"state", [](Row& row, std::string_view text) { row.state = named(text, kStates); }},
       {"x_m", number_column([](Row& row) -> double& { return row.map_from_robot.x; })},
