@@ -89,11 +89,6 @@ constexpr std::array kOfMapping{
               [](Settings& s) { s.mapping.update.evidence.most_hidden_m2 = 0.0; }},
     Mechanism{"small-groups", "small groups of new occupied cells left out",
               [](Settings& s) { s.mapping.update.evidence.least_speck_cells = 1; }},
-    Mechanism{"inlier-drop", "write gate: sudden drop of the inliers",
-              [](Settings& s) {
-                auto& drop = s.mapping.store_scan.gate.misfit;
-                drop.most_drop = drop.most_drop_both_ways = 1.0;
-              }},
     Mechanism{"scan-break", "write gate: break between scans",
               [](Settings& s) {
                 auto& scan_break = s.mapping.store_scan.gate.scan_break;
@@ -115,8 +110,6 @@ constexpr std::array kOfMapping{
                 auto& gate = s.mapping.store_scan.gate;
                 gate.confirm_s = gate.confirm_m = gate.confirm_followed_s = gate.confirm_followed_m = 0.0;
               }},
-    Mechanism{"doubt-withdraws", "write gate: withdrawal after long doubt",
-              [](Settings& s) { s.mapping.store_scan.gate.most_doubt_s = kNever; }},
     Mechanism{"held-sets", "finished sets that wait for a sign",
               [](Settings& s) { s.mapping.store_scan.gate.hold_s = 0.0; }},
     Mechanism{"held-by-share", "finished sets that wait while another hypothesis holds a share",

@@ -46,8 +46,7 @@ std::vector<std::string> all_whys_shut() {
   for (std::size_t i = 1; i < mapping::gate::kGateReasons; ++i) {
     const auto reason = static_cast<GateReason>(i);
     whys.push_back(why_shut(reason, GateReason::kOpen));
-    const bool begins = mapping::gate::proves_wrong(reason) || reason == GateReason::kInlierDrop;
-    if (begins) whys.push_back(why_shut(GateReason::kConfirming, reason));
+    if (mapping::gate::proves_wrong(reason)) whys.push_back(why_shut(GateReason::kConfirming, reason));
   }
   return whys;
 }

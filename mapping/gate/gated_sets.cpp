@@ -34,7 +34,7 @@ void GatedSets::withdraw(const TrackedScan& tracked) {
 bool GatedSets::waits_to_vote(const Estimate& estimate) const {
   const GateReason why = gate_.reason();
   return !lets_vote() && !gate_.is_distrusted() && estimate.belief.pose_right >= kSure &&
-         (why == GateReason::kInlierDrop || why == GateReason::kConfirming || why == GateReason::kOtherHypothesis);
+         (why == GateReason::kConfirming || why == GateReason::kOtherHypothesis);
 }
 
 void GatedSets::take(std::optional<ScanSet> set, const TrackedScan& tracked) {

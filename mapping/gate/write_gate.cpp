@@ -11,9 +11,6 @@ namespace {
 /// A thing in whose place the map is wrong takes up more of the view as the robot comes nearer.
 constexpr double kApproached = 1.5;
 
-/// Of the weight of other doubts. In aisles that look alike one is conceivable for a dozen seconds, and the pose right.
-constexpr double kDoubtOfOther = 0.5;
-
 /// The pose that is believed afterwards may lie anywhere.
 bool may_be_another(GateReason reason) { return reason == GateReason::kSearching || reason == GateReason::kLost; }
 
@@ -44,8 +41,6 @@ std::string_view name_of(GateReason reason) {
       return "confirming";
     case GateReason::kDoubtful:
       return "doubtful";
-    case GateReason::kInlierDrop:
-      return "misfit";
     case GateReason::kOtherHypothesis:
       return "rival";
     case GateReason::kSpread:
@@ -81,7 +76,6 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   if (jumped) return GateReason::kJumped;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
-  if (inlier_drop_.is_sudden()) return GateReason::kInlierDrop;
   if (estimate.belief.other_share > params_.most_rival_share) return GateReason::kOtherHypothesis;
   if (widest_deviation_m(estimate.covariance) > params_.most_deviation_m) return GateReason::kSpread;
   return GateReason::kOpen;
@@ -133,9 +127,9 @@ bool WriteGate::fits_as_before_break(Timestamp time) const {
 }
 
 /// Has the pose held for long and far enough? Who hides the view for a moment only holds that up; a proof that the pose
-/// was wrong, and doubt that lasts, take back all that has spoken for it.
+/// was wrong takes back all that has spoken for it.
 bool WriteGate::holds(GateReason judgement, Timestamp time, double passed_s, double driven_m) {
-  if (proves_wrong(judgement) || doubted_for_s_ >= params_.most_doubt_s) {
+  if (proves_wrong(judgement)) {
     held_s_ = held_m_ = 0.0;
   } else if (judgement == GateReason::kOpen && fits_as_before_break(time)) {
     held_s_ += passed_s;
@@ -152,21 +146,18 @@ void WriteGate::observe(const TrackedScan& tracked) {
   if (last_) {
     times_[static_cast<std::size_t>(reason_)] += passed_s;
     shut_for_s_ = is_open() ? 0.0 : shut_for_s_ + passed_s;
-    doubted_for_s_ += reason_ == GateReason::kOtherHypothesis ? kDoubtOfOther * passed_s : passed_s;
   }
   last_ = time;
   const double driven_m = driven_way_.since_last_m(tracked);
   const GateReason judgement = judged(tracked);
   note_break(tracked);
   const bool is_proof = proves_wrong(judgement);
-  if (judgement == GateReason::kOpen) doubted_for_s_ = 0.0;
-  const bool doubts_long = doubted_for_s_ >= params_.most_doubt_s;
-  has_proven_wrong_ = was_tracking_ && !is_distrusted_ && (is_proof || doubts_long);
+  has_proven_wrong_ = was_tracking_ && !is_distrusted_ && is_proof;
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
-  if (was_tracking_ && !is_confirming_ && (is_proof || inlier_drop_.is_both_ways())) {
+  if (was_tracking_ && !is_confirming_ && is_proof) {
     is_confirming_ = true;
-    confirms_after_ = GateReason::kInlierDrop;
+    confirms_after_ = judgement;
     // What has only made it wary is a thing that stays: as much as without it need not fit again.
     if (broken_ && !broken_->shuts) forget_break();
   }

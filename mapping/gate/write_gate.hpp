@@ -29,11 +29,10 @@ enum class GateReason : std::uint8_t {
   kDisbelieved,      ///< P(pose right) is so low that it is rather wrong
   kConfirming,       ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
   kDoubtful,         ///< P(pose right) is low
-  kInlierDrop,       ///< scans have suddenly stopped fitting: the world has changed in view, or the robot is elsewhere
   kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
   kSpread            ///< the best place is spread too wide
 };
-inline constexpr std::size_t kGateReasons = 11;
+inline constexpr std::size_t kGateReasons = 10;
 /// For status, report and log: "open", "searching", "lost", …
 [[nodiscard]] std::string_view name_of(GateReason reason);
 /// Does it say that the pose was wrong, and not only that it may be?
@@ -49,7 +48,6 @@ struct WriteGateParams {
   double confirm_m = 10.0;          ///< and so far the robot must have driven meanwhile; >= 0
   double confirm_followed_s = 8.0;  ///< the same where the pose was followed all along and something spoke against it,
   double confirm_followed_m = 4.0;  ///< which an alias cannot explain: seconds and metres; >= 0
-  double most_doubt_s = 10.0;       ///< shut for so long without a proof, what is provisional is withdrawn; > 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
   double hold_rival_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
   PoseJumpParams jump;
@@ -83,10 +81,10 @@ class WriteGate {
 
   [[nodiscard]] bool is_open() const { return reason_ == GateReason::kOpen; }
   [[nodiscard]] GateReason reason() const { return reason_; }
-  /// What the pose is being confirmed after: the proof that it was wrong, kInlierDrop after another view, kConfirming
-  /// after scans that broke off; kOpen where it is not.
+  /// What the pose is being confirmed after: the proof that it was wrong, kConfirming after scans that broke off; kOpen
+  /// where it is not.
   [[nodiscard]] GateReason confirms_after() const { return is_confirming_ ? confirms_after_ : GateReason::kOpen; }
-  /// Did this scan prove the pose wrong that was believed before it, or is it in doubt for too long?
+  /// Did this scan prove the pose wrong that was believed before it?
   [[nodiscard]] bool has_proven_wrong() const { return has_proven_wrong_; }
   /// Told that the pose was wrong, and not open since.
   [[nodiscard]] bool is_distrusted() const { return is_distrusted_; }
@@ -130,7 +128,6 @@ class WriteGate {
   std::optional<Timestamp> last_;
   GateTimes times_{};
   double shut_for_s_ = 0.0;
-  double doubted_for_s_ = 0.0;  // without a scan that speaks for the pose
 };
 
 }  // namespace deltamap::mapping::gate

@@ -4,7 +4,7 @@
 const GATE_WORDS = {
   searching: "the robot does not know where it is", lost: "the robot is lost", wrong: "the pose is called wrong",
   jumped: "the pose has jumped", disbelieved: "the pose is rather wrong", confirming: "the pose has to hold for a while first",
-  doubtful: "P(pose right) is low", misfit: "scans have suddenly stopped fitting", rival: "another place fits as well",
+  doubtful: "P(pose right) is low", rival: "another place fits as well",
   spread: "the pose is too uncertain",
 };
 const LEVELS = { tracking: "good", global: "warn", lost: "bad", right: "good", undecided: "warn", wrong: "bad" };

@@ -20,7 +20,7 @@ TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
   EXPECT_FALSE(misfit.is_worse_than_remembered(0.0));
 }
 
-TEST(InlierDropDetector, SeesAnotherViewAfterASilenceToo) {
+TEST(InlierDropDetector, SeesThatTheMapFitsWorseAfterASilenceToo) {
   StraightDrive robot;
   InlierDropDetector misfit{{}};
   for (int i = 0; i < 200; ++i) {
@@ -28,11 +28,13 @@ TEST(InlierDropDetector, SeesAnotherViewAfterASilenceToo) {
     tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 100};
     misfit.observe(tracked);
   }
+  misfit.remember();
   for (int i = 0; i < 50; ++i) (void)robot.next();
   TrackedScan tracked = robot.next();
   tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 60, .short_of = 20, .beyond = 20};
   misfit.observe(tracked);
-  EXPECT_TRUE(misfit.is_both_ways());
+  EXPECT_TRUE(misfit.is_worse_than_remembered(0.0));
+  EXPECT_FALSE(misfit.is_worse_than_remembered(0.3));
 }
 
 }  // namespace

@@ -163,19 +163,6 @@ TEST(WriteGate, ADoubtForAMomentHoldsUpAConfirmationAndAProofBeginsItAnew) {
   EXPECT_FALSE(gate.is_open());
 }
 
-TEST(WriteGate, DoubtThatLastsBeginsAConfirmationAnew) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
-  disbelieve(robot, gate);
-  drive(robot, gate, 7.7);
-  doubt(robot, gate, 12.0);
-  drive(robot, gate, 7.7);
-  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
-  drive(robot, gate, 0.6);
-  EXPECT_TRUE(gate.is_open());
-}
-
 TEST(WriteGate, SearchingAtTheStartProvesNothing) {
   StraightDrive robot;
   WriteGate gate{{}};
@@ -204,84 +191,20 @@ TEST(WriteGate, AStandingRobotConfirmsNothing) {
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
 }
 
-TEST(WriteGate, DoubtThatLastsIsToldOnce) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
-  int told = 0;
-  for (int i = 0; i < 300; ++i) {
-    TrackedScan tracked = robot.next();
-    tracked.estimate.belief.pose_right = 0.6;
-    gate.observe(tracked);
-    told += gate.has_proven_wrong() ? 1 : 0;
-    EXPECT_TRUE(told == 0 || i >= 95);
-  }
-  EXPECT_EQ(told, 1);
-  gate.observe(robot.next());
-  EXPECT_TRUE(gate.is_open());
-  EXPECT_EQ(gate.trusted_since(), robot.now());
-}
-
 /// Of 150 beams that the map expects to end somewhere.
 TrackedScan seeing(TrackedScan tracked, std::uint32_t short_of, std::uint32_t beyond) {
   tracked.estimate.belief.elsewhere = {150, 150 - short_of - beyond, short_of, beyond};
   return tracked;
 }
 
-TEST(WriteGate, ShutsWhileScansHaveSuddenlyStoppedFitting) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
-  for (int i = 0; i < 8; ++i) gate.observe(seeing(robot.next(), 60, 5));
-  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
-  EXPECT_FALSE(gate.has_proven_wrong());
-  for (int i = 0; i < 150; ++i) gate.observe(seeing(robot.next(), 60, 5));
-  EXPECT_TRUE(gate.is_open()) << "a thing has come and stays";
-}
-
-TEST(WriteGate, WaitsForProofWhereTheWholeViewHasBecomeAnother) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
-  for (int i = 0; i < 10; ++i) gate.observe(seeing(robot.next(), 40, 40));
-  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
-  for (int i = 0; i < 75; ++i) gate.observe(seeing(robot.next(), 5, 5));
-  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
-  EXPECT_EQ(gate.confirms_after(), GateReason::kInlierDrop);
-  for (int i = 0; i < 15; ++i) gate.observe(seeing(robot.next(), 5, 5));
-  EXPECT_TRUE(gate.is_open());
-  EXPECT_FALSE(gate.trusted_since()) << "nothing was proven";
-}
-
-TEST(WriteGate, TakesNoThingThatComesAndAnotherThatGoesAMomentLaterForAnotherView) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
-  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 0));
-  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 28, 34));
-  EXPECT_EQ(gate.reason(), GateReason::kInlierDrop);
-  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 0, 0));
-  EXPECT_TRUE(gate.is_open());
-}
-
-TEST(WriteGate, TakesNoCornerOfAHallThatIsOutOfDateForAnotherPlace) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 20, 20));
-  for (int i = 0; i < 20; ++i) gate.observe(seeing(robot.next(), 55, 55));
-  EXPECT_TRUE(gate.is_open());
-}
-
-TEST(WriteGate, BelievesNoMisfitOfAFewBeams) {
+TEST(WriteGate, StaysOpenWhereScansStopFittingAndNothingBreaksOff) {
   StraightDrive robot;
   WriteGate gate{{}};
   for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
   for (int i = 0; i < 20; ++i) {
-    TrackedScan tracked = robot.next();
-    tracked.estimate.belief.elsewhere = {20, 0, 10, 10};
-    gate.observe(tracked);
+    gate.observe(seeing(robot.next(), 60, 40));
+    EXPECT_TRUE(gate.is_open());
   }
-  EXPECT_TRUE(gate.is_open());
 }
 
 class Sets : public testing::Test {

@@ -47,18 +47,19 @@ TEST(WaitingScans, ForgetTheOldestWhereTheyAreTooMany) {
   EXPECT_NEAR(waiting.next({})->odom_from_robot.x, 0.05 * 16, 1e-9);
 }
 
-/// Drives past the hall's containers. After 12 s one goes, and the scans that show it fit badly for 4 s; from then on
-/// nothing is in view.
+/// Drives past the hall's containers. After 12 s one goes, and for 4 s another place fits as well; from then on nothing
+/// is in view.
 class GoneWhileShut {
  public:
-  void drive(double duration_s, const OccupancyGrid& world, bool fits, LocalizerState state) {
+  void drive(double duration_s, const OccupancyGrid& world, bool is_unique, LocalizerState state) {
     for (const double end_s = time_s_ + duration_s; time_s_ < end_s; time_s_ += 0.2) {
       const double way_m = std::fmod(0.4 * time_s_, 10.0);
       const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
       TrackedScan tracked = test::drawn_scan(world, map, pose, time_s_, random_);
       tracked.estimate.state = state;
       tracked.estimate.belief.pose_right = 0.95;
-      tracked.estimate.belief.stable = {100, fits ? 97U : 60U, fits ? 1U : 0U, fits ? 2U : 40U};
+      tracked.estimate.belief.stable = {100, 97, 1, 2};
+      tracked.estimate.belief.other_share = is_unique ? 0.0 : 0.3;
       const auto set = store_.observe(tracked);
       shut_s += store_.awareness().gate == gate::GateReason::kOpen ? 0.0 : 0.2;
       if (!set) continue;
