@@ -143,7 +143,7 @@ void print_calibration_text(const MotionCalibration& as_they_are, const MotionCa
   std::cout << '\n';
 }
 
-Json json_of_calibration(const Fitted& fitted, double unit = 1.0) {
+Json json_of_fitted(const Fitted& fitted, double unit = 1.0) {
   return {{"value", fitted.value / unit}, {"error", fitted.error / unit}};
 }
 
@@ -152,9 +152,9 @@ void print_calibration_json(const MotionCalibration& as_they_are, const MotionCa
   Json motion;
   Json motion_corrected;
   for (const FittedKey& key : kKeys) {
-    motion[key.key] = json_of_calibration(as_they_are.of(key.source), key.unit);
+    motion[key.key] = json_of_fitted(as_they_are.of(key.source), key.unit);
     motion[key.key]["enough"] = !is_vague(as_they_are.of(key.source));
-    motion_corrected[key.key] = json_of_calibration(corrected.of(key.source), key.unit);
+    motion_corrected[key.key] = json_of_fitted(corrected.of(key.source), key.unit);
   }
   const Json all{{"cut", drive.cut ? Json(drive.cut->text) : Json(nullptr)},
                  {"segments", drive.segments.size()},
@@ -165,9 +165,9 @@ void print_calibration_json(const MotionCalibration& as_they_are, const MotionCa
                  {"estimate_heading_deg", degrees(as_they_are.of(MotionSource::kEstimateHeading).value)},
                  {"motion", motion},
                  {"systematic",
-                  {{"wheel_scale", json_of_calibration(corrected.wheel_scale)},
-                   {"turn_scale", json_of_calibration(corrected.turn_scale)},
-                   {"drift_deg_per_m", json_of_calibration(corrected.drift_rad_per_m, radians(1.0))},
+                  {{"wheel_scale", json_of_fitted(corrected.wheel_scale)},
+                   {"turn_scale", json_of_fitted(corrected.turn_scale)},
+                   {"drift_deg_per_m", json_of_fitted(corrected.drift_rad_per_m, radians(1.0))},
                    {"motion_if_corrected", motion_corrected}}}};
   std::cout << all.dump(2) << '\n';
 }

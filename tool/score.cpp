@@ -49,7 +49,7 @@ Tally tally(const score::ChangeScore& changes, bool appears) {
   return counted;
 }
 
-Json json_of_score(const score::ScoredChange& change, Timestamp start) {
+Json json_of_change(const score::ScoredChange& change, Timestamp start) {
   return {{"t_s", seconds(change.time - start)},
           {"kind", simulation::name_of(change.kind)},
           {"part", change.appears ? "appeared" : "gone"},
@@ -80,7 +80,7 @@ Json json_of_score(const score::TrajectoryScore& trajectory, const score::Change
   json["changes"]["gone"] = json_of_tally(tally(changes, false));
   json["ghosts"] = {{"m2", changes.ghosts_m2}, {"stale_m2", changes.stale_ghosts_m2}};
   json["each_change"] = Json::array();
-  for (const auto& change : changes.changes) json["each_change"].push_back(json_of_score(change, start));
+  for (const auto& change : changes.changes) json["each_change"].push_back(json_of_change(change, start));
   return json;
 }
 

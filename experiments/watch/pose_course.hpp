@@ -14,8 +14,8 @@
 
 namespace deltamap::experiments {
 
-/// Why the map may not be written: "doubtful", "confirming after jumped", … A view that has become another one counts
-/// as "confirming after misfit", scans that broke off as "confirming".
+/// Why the map may not be written: "doubtful", "confirming after jumped", … After scans that broke off it is
+/// "confirming" alone.
 [[nodiscard]] std::vector<std::string> all_whys_shut();
 /// The number of a course: seconds in which that was so although the pose was right.
 [[nodiscard]] std::string shut_number(const std::string& why);

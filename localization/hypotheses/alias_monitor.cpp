@@ -10,9 +10,8 @@ namespace deltamap::localization::hypotheses {
 namespace {
 
 constexpr int kRightAngles = 4;
-constexpr double kMetAfterM = 1.0;  // a hypothesis that has been followed for so long is an alias
-constexpr double kBeforeItIsSlid =
-    0.3;  // mean ln p(z) that an alias may fit worse by before it is slid to its best fit
+constexpr double kMetAfterM = 1.0;       // a hypothesis that has been followed for so long is an alias
+constexpr double kBeforeItIsSlid = 0.3;  // kFitsNearlyAsWell before an alias is slid to its best fit
 
 }  // namespace
 

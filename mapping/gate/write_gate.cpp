@@ -126,7 +126,7 @@ bool WriteGate::fits_as_before_break(Timestamp time) const {
          !inlier_drop_.is_worse_than_remembered(0.0);
 }
 
-/// Has the pose held for long and far enough? Who hides the view for a moment only holds that up; a proof that the pose
+/// Has the pose held for long and far enough? A moment of doubt only holds that up; a proof that the pose
 /// was wrong takes back all that has spoken for it.
 bool WriteGate::holds(GateReason judgement, Timestamp time, double passed_s, double driven_m) {
   if (proves_wrong(judgement)) {

@@ -27,7 +27,7 @@ enum class GateReason : std::uint8_t {
   kWrong,            ///< it calls its own pose wrong
   kJumped,           ///< the estimate has moved otherwise than odometry, farther than its covariance explains
   kDisbelieved,      ///< P(pose right) is so low that it is rather wrong
-  kConfirming,       ///< the pose was wrong a moment ago, or the view another one, and has to hold for a while
+  kConfirming,       ///< the pose was wrong a moment ago, or scans broke off, and it has to hold for a while
   kDoubtful,         ///< P(pose right) is low
   kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
   kSpread            ///< the best place is spread too wide
@@ -51,7 +51,7 @@ struct WriteGateParams {
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
   double hold_rival_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
   PoseJumpParams jump;
-  InlierDropParams misfit;
+  InlierDropParams inlier_drop;
   ScanBreakParams scan_break;
   double break_settles_s = 1.0;  ///< after a large break it waits so long to see whether the map still fits; >= 0
   double wary_break = 0.08;      ///< of the beams: what breaks off less makes it not even wary; [0, 1]
@@ -72,7 +72,7 @@ class WriteGate {
   explicit WriteGate(const WriteGateParams& params)
       : params_{params},
         jump_{params.jump},
-        inlier_drop_{params.misfit},
+        inlier_drop_{params.inlier_drop},
         scan_break_{params.scan_break},
         provisional_{params.provisional} {}
 

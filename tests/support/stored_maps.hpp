@@ -2,6 +2,7 @@
 // A small first map, revisions that follow it, and what a store complains of.
 #pragma once
 
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <memory>

@@ -20,6 +20,7 @@ using FieldValue =
 /// In the order of the wire.
 using NamedFields = std::vector<std::pair<std::string, FieldValue>>;
 
+/// As a field holds it.
 [[nodiscard]] inline std::int64_t whole(std::int64_t value) { return value; }
 
 struct DecodedFrame {

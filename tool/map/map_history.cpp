@@ -122,7 +122,7 @@ nlohmann::json changes_as_json(const std::vector<CellChange>& changes) {
   return list;
 }
 
-void print_lines(const std::vector<CellChange>& changes) {
+void print_changes(const std::vector<CellChange>& changes) {
   for (const CellChange& change : changes) {
     std::printf("%d %d %s %s\n", change.cell.column, change.cell.row, name_of(change.before), name_of(change.after));
   }
@@ -146,7 +146,7 @@ void compare(const HistoryOptions& options) {
   } else {
     std::printf("%zu cells differ: %zu became occupied, %zu free, %zu unknown; acceptance %.4f\n", changes.size(),
                 became[1], became[0], became[2], acceptance);
-    if (options.cells) print_lines(changes);
+    if (options.cells) print_changes(changes);
   }
 }
 

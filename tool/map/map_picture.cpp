@@ -40,7 +40,7 @@ void add_path(Scene& scene, const std::string& tum_file) {
 }
 
 /// As /api/scan answers it. The robot is where it was taken.
-void add_scan_of(Scene& scene, const std::string& file) {
+void add_scan_from(Scene& scene, const std::string& file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error(file + ": cannot be read");
   try {
@@ -63,7 +63,7 @@ void draw(const PictureOptions& options) {
   scene.title = options.title;
   scene.cell_pixels = options.scale;
   if (!options.trajectory.empty()) add_path(scene, options.trajectory);
-  if (!options.scan.empty()) add_scan_of(scene, options.scan);
+  if (!options.scan.empty()) add_scan_from(scene, options.scan);
   if (!options.pose.empty()) scene.robot = Pose2{options.pose[0], options.pose[1], radians(options.pose[2])};
   picture::Raster raster;
   try {

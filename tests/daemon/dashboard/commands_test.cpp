@@ -18,7 +18,7 @@ namespace {
 using test::WebAnswer;
 using test::WebClient;
 
-const std::string kTokenOfCommands = "0123456789abcdef";
+const std::string kCommandToken = "0123456789abcdef";
 const std::string kBearer = "Authorization: Bearer 0123456789abcdef\r\n";
 
 /// Says back what it hears, and ends at the word "end".
@@ -42,7 +42,7 @@ class Echo final : public Dialog {
 class DashboardCommands : public testing::Test {
  protected:
   DashboardCommands() {
-    options_.guard = {.token = kTokenOfCommands, .takes_commands = true};
+    options_.guard = {.token = kCommandToken, .takes_commands = true};
     options_.answer = [](const Request&) { return Answer{.body = "read"}; };
     options_.open = [] { return std::unique_ptr<Stream>{}; };
     options_.command = [this](const Request& request, const Reply& reply) {

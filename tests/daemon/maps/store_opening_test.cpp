@@ -7,7 +7,7 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
-#include <sstream>
+#include <fstream>
 
 #include "core/random.hpp"
 #include "daemon/settings/start_error.hpp"

@@ -18,7 +18,7 @@
 namespace deltamap::drivers::pioneer {
 namespace {
 
-struct AskedSession : PioneerSession {
+struct PermissionSession : PioneerSession {
   using PioneerSession::PioneerSession;
   using Messages = std::vector<Odometry>;
   static const Messages& messages_of(const PioneerOutput& out) { return out.odometry; }
@@ -80,8 +80,8 @@ class Rig {
   }
 
   FakeRobot robot{9600};
-  AskedSession session{PioneerParams{}, SessionMode::kLive};
-  tests::Conversation<AskedSession, FakeRobot> line{session, robot};
+  PermissionSession session{PioneerParams{}, SessionMode::kLive};
+  tests::Conversation<PermissionSession, FakeRobot> line{session, robot};
 
  private:
   void begin() {
@@ -94,7 +94,7 @@ class Rig {
     began_ = true;
     line.failed.reset();
     try_again_at_.reset();
-    session = AskedSession{{.enable_motors = is_configured_, .drive_switch = kept_}, SessionMode::kLive};
+    session = PermissionSession{{.enable_motors = is_configured_, .drive_switch = kept_}, SessionMode::kLive};
     line.start();
   }
 

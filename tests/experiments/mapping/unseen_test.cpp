@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "experiments/seed_summary.hpp"
 #include "experiments/watch/pose_course.hpp"

@@ -10,31 +10,47 @@ namespace {
 
 TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
   StraightDrive robot;
-  InlierDropDetector misfit{{}};
-  misfit.remember();
+  InlierDropDetector inlier_drop{{}};
+  inlier_drop.remember();
   for (int i = 0; i < 50; ++i) {
     TrackedScan tracked = robot.next();
     tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 50, .short_of = 50};
-    misfit.observe(tracked);
+    inlier_drop.observe(tracked);
   }
-  EXPECT_FALSE(misfit.is_worse_than_remembered(0.0));
+  EXPECT_FALSE(inlier_drop.is_worse_than_remembered(0.0));
 }
 
 TEST(InlierDropDetector, SeesThatTheMapFitsWorseAfterASilenceToo) {
   StraightDrive robot;
-  InlierDropDetector misfit{{}};
+  InlierDropDetector inlier_drop{{}};
   for (int i = 0; i < 200; ++i) {
     TrackedScan tracked = robot.next();
     tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 100};
-    misfit.observe(tracked);
+    inlier_drop.observe(tracked);
   }
-  misfit.remember();
+  inlier_drop.remember();
   for (int i = 0; i < 50; ++i) (void)robot.next();
   TrackedScan tracked = robot.next();
   tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 60, .short_of = 20, .beyond = 20};
-  misfit.observe(tracked);
-  EXPECT_TRUE(misfit.is_worse_than_remembered(0.0));
-  EXPECT_FALSE(misfit.is_worse_than_remembered(0.3));
+  inlier_drop.observe(tracked);
+  EXPECT_TRUE(inlier_drop.is_worse_than_remembered(0.0));
+  EXPECT_FALSE(inlier_drop.is_worse_than_remembered(0.3));
+}
+
+TEST(InlierDropDetector, HearsNothingFromAFewBeams) {
+  StraightDrive robot;
+  InlierDropDetector inlier_drop{{}};
+  const auto observe = [&](std::uint32_t expected, std::uint32_t short_of) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.elsewhere = {.expected = expected, .fit = expected - short_of, .short_of = short_of};
+    inlier_drop.observe(tracked);
+  };
+  for (int i = 0; i < 200; ++i) observe(100, 0);
+  inlier_drop.remember();
+  for (int i = 0; i < 50; ++i) observe(29, 29);
+  EXPECT_FALSE(inlier_drop.is_worse_than_remembered(0.0));
+  for (int i = 0; i < 10; ++i) observe(30, 30);
+  EXPECT_TRUE(inlier_drop.is_worse_than_remembered(0.0));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include <filesystem>
 
-#include "core/random.hpp"
 #include "mapping/store/taken_back.hpp"
 #include "tests/support/drawn_grid.hpp"
 #include "tests/support/stored_maps.hpp"

@@ -14,7 +14,7 @@
 namespace deltamap::simulation {
 namespace {
 
-const Circle kOutside{{-100, -100}, 0.25};
+const Circle kRobotOutside{{-100, -100}, 0.25};
 constexpr double kSamePlace_m = 1e-9;
 
 Scenario hall() { return read_scenario(test::source_path("config/scenarios/hall.yaml")); }
@@ -30,7 +30,7 @@ TEST(Creep, PushesTheSameContainersInOneDirectionUntilTheirEnd) {
   World world = scenario.world;
   std::map<int, int> pushes;
   for (int turn = 0; turn < 25; ++turn) {
-    for (const Change& push : creep.pushes(world, kOutside, {})) {
+    for (const Change& push : creep.pushes(world, kRobotOutside, {})) {
       EXPECT_EQ(push.kind, ChangeKind::kCrept);
       EXPECT_NEAR((push.box.centre - push.from->centre).norm(), 0.05, kSamePlace_m);
       ++pushes[push.id];
@@ -49,7 +49,7 @@ TEST(Creep, PushesTheSameContainersInOneDirectionUntilTheirEnd) {
 TEST(Creep, GoesTheWayThatItIsGiven) {
   const Scenario scenario = hall();
   Creep creep = creep_in(scenario, {.containers = 5, .direction_rad = radians(90)});
-  const auto pushes = creep.pushes(scenario.world, kOutside, {});
+  const auto pushes = creep.pushes(scenario.world, kRobotOutside, {});
   ASSERT_EQ(pushes.size(), 5u);
   for (const Change& push : pushes) {
     EXPECT_NEAR(push.box.centre.x(), push.from->centre.x(), kSamePlace_m);
@@ -62,7 +62,7 @@ TEST(Creep, ChoosesOtherContainersForAnotherSeedAndTheSameForTheSame) {
   const auto first_ids = [&](std::uint64_t seed) {
     std::vector<int> ids;
     Creep creep = creep_in(scenario, {}, seed);
-    for (const Change& push : creep.pushes(scenario.world, kOutside, {})) ids.push_back(push.id);
+    for (const Change& push : creep.pushes(scenario.world, kRobotOutside, {})) ids.push_back(push.id);
     return ids;
   };
   EXPECT_EQ(first_ids(1), first_ids(1));
@@ -73,26 +73,26 @@ TEST(Creep, PutsAPushOffWhileTheRobotOrSomeoneStandsThere) {
   const Scenario scenario = hall();
   Creep creep = creep_in(scenario, {.containers = 1, .times = 2});
   Creep undisturbed = creep;
-  const Change push = undisturbed.pushes(scenario.world, kOutside, {}).at(0);
+  const Change push = undisturbed.pushes(scenario.world, kRobotOutside, {}).at(0);
   const Point2 onward = (push.box.centre - push.from->centre).normalized();
   const Circle beside{push.from->centre + (0.5 * push.from->width_m + 0.5) * onward, 0.25};
   EXPECT_TRUE(creep.pushes(scenario.world, beside, {}).empty());
   const std::vector<Circle> people{beside};
-  EXPECT_TRUE(creep.pushes(scenario.world, kOutside, people).empty());
-  EXPECT_EQ(creep.pushes(scenario.world, kOutside, {}).size(), 1u) << "later all the same";
+  EXPECT_TRUE(creep.pushes(scenario.world, kRobotOutside, people).empty());
+  EXPECT_EQ(creep.pushes(scenario.world, kRobotOutside, {}).size(), 1u) << "later all the same";
 }
 
 TEST(Creep, NeverPushesIntoAnotherContainer) {
   Scenario scenario = hall();
   Creep creep = creep_in(scenario, {.containers = 8});
   World world = scenario.world;
-  const Change first = creep.pushes(world, kOutside, {}).at(0);
+  const Change first = creep.pushes(world, kRobotOutside, {}).at(0);
   const Point2 onward = (first.box.centre - first.from->centre).normalized();
   const Box in_the_way{first.from->centre + (first.from->width_m + 0.02) * onward, first.from->width_m,
                        first.from->height_m, 0.0};
   world = world.with({999, ObjectKind::kContainer, in_the_way});
   for (int turn = 0; turn < 3; ++turn) {
-    for (const Change& push : creep.pushes(world, kOutside, {})) EXPECT_NE(push.id, first.id);
+    for (const Change& push : creep.pushes(world, kRobotOutside, {})) EXPECT_NE(push.id, first.id);
   }
 }
 

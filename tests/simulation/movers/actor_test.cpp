@@ -10,7 +10,7 @@ namespace deltamap::simulation {
 namespace {
 
 constexpr double kStep_s = 0.05;
-const Circle kRobotFarAway{{100, 100}, 0.25};
+const Circle kRobotFarOff{{100, 100}, 0.25};
 
 /// 20 x 20 m with an opening of 4 m in the left wall.
 World gated_hall() {
@@ -36,7 +36,7 @@ Stops stops_of(const ActorParams& params, double seconds, std::uint64_t seed) {
   Stops stops;
   bool stood = false;
   for (double t = 0.0; t < seconds; t += kStep_s) {
-    actor.move(kStep_s, {world, kRobotFarAway, {}, {}});
+    actor.move(kStep_s, {world, kRobotFarOff, {}, {}});
     if (actor.is_standing() && !stood) {
       stops.lengths_s.push_back(0.0);
       stops.places_x.push_back(actor.box().centre.x());
@@ -87,7 +87,7 @@ TEST(Actor, LeavesByTheGateAndComesBack) {
   bool inside = true;
   for (double t = 0.0; t < 1500.0; t += kStep_s) {
     const double x = actor.box().centre.x();
-    actor.move(kStep_s, {world, kRobotFarAway, {}, {}});
+    actor.move(kStep_s, {world, kRobotFarOff, {}, {}});
     if (inside && !actor.is_in_hall()) {
       ++left;
       EXPECT_LT(x, -2.5) << "it vanishes outside only";
@@ -109,7 +109,7 @@ TEST(Actor, StaysOutsideWhileTheRobotStandsAtTheGate) {
   Actor actor{params, Random{1}};
   const RayCaster world{gated_hall()};
   for (double t = 0.0; t < 300.0 && actor.is_in_hall(); t += kStep_s)
-    actor.move(kStep_s, {world, kRobotFarAway, {}, {}});
+    actor.move(kStep_s, {world, kRobotFarOff, {}, {}});
   ASSERT_FALSE(actor.is_in_hall());
   for (double t = 0.0; t < 200.0; t += kStep_s) {
     actor.move(kStep_s, {world, Circle{{-2, 10}, 0.25}, {}, {}});
@@ -139,8 +139,8 @@ TEST(Actor, TurnsBackBeforeOthersAndShutDoors) {
   Actor before_a_door{to_and_fro(), Random{3}};
   double farthest_x = 0.0;
   for (double t = 0.0; t < 3000.0; t += kStep_s) {
-    before_another.move(kStep_s, {world, kRobotFarAway, others, {}});
-    before_a_door.move(kStep_s, {world, kRobotFarAway, {}, leaves});
+    before_another.move(kStep_s, {world, kRobotFarOff, others, {}});
+    before_a_door.move(kStep_s, {world, kRobotFarOff, {}, leaves});
     ASSERT_LT(before_another.box().centre.x() + 1.2, 9.8);
     farthest_x = std::max(farthest_x, before_a_door.box().centre.x());
   }
@@ -156,7 +156,7 @@ TEST(ForkLiftActor, BacksOutWhereItIsBlocked) {
   double backed_m = 0.0;
   for (double t = 0.0; t < 600.0; t += kStep_s) {
     const double before_x = actor.box().centre.x();
-    actor.move(kStep_s, {world, kRobotFarAway, others, {}});
+    actor.move(kStep_s, {world, kRobotFarOff, others, {}});
     farthest_x = std::max(farthest_x, before_x);
     backed_m += std::max(0.0, before_x - actor.box().centre.x());
     ASSERT_NEAR(actor.box().theta_rad, 0.0, 1e-9) << "it never turns";

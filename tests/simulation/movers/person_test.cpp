@@ -7,7 +7,7 @@ namespace deltamap::simulation {
 namespace {
 
 constexpr double kPersonStep_s = 0.005;
-const Circle kNobodyNear{{100, 100}, 0.25};
+const Circle kFarRobot{{100, 100}, 0.25};
 
 World walled_hall() { return {{{1, ObjectKind::kWall, Polyline{{{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}}}}}}; }
 
@@ -20,7 +20,7 @@ TEST(Person, WalksStopsAndWalksOnAlongThePath) {
   double farthest = 0.0;
   for (int i = 0; i < 60'000; ++i) {  // 300 s
     const Point2 before = person.body().centre;
-    person.move(kPersonStep_s, world, kNobodyNear);
+    person.move(kPersonStep_s, world, kFarRobot);
     const bool moved = (person.body().centre - before).norm() > 1e-9;
     if (moved && !walking) ++starts;
     if (!moved && walking) ++stops;
@@ -51,7 +51,7 @@ TEST(Person, DoesNotWalkIntoAContainerThatStandsInTheWay) {
   Person person{{.path = {{2, 10}, {18, 10}}, .walk_least_s = 1e5, .walk_most_s = 1e5}, Random{1}};
   const RayCaster world{walled_hall().with({2, ObjectKind::kContainer, Box{{10, 10}, 2, 2, 0}})};
   for (int i = 0; i < 20'000; ++i) {
-    person.move(kPersonStep_s, world, kNobodyNear);
+    person.move(kPersonStep_s, world, kFarRobot);
     ASSERT_LT(person.body().centre.x(), 9.0 - 0.2);
   }
 }

@@ -6,8 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "core/grid_file.hpp"
