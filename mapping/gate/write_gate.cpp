@@ -126,8 +126,8 @@ bool WriteGate::fits_as_before_break(Timestamp time) const {
          !inlier_drop_.is_worse_than_remembered(0.0);
 }
 
-/// Has the pose held for long and far enough? A moment of doubt only holds that up; a proof that the pose
-/// was wrong takes back all that has spoken for it.
+/// Has the pose held for long and far enough? A moment of doubt only holds that up; a proof that the pose was wrong
+/// takes back all that has spoken for it.
 bool WriteGate::holds(GateReason judgement, Timestamp time, double passed_s, double driven_m) {
   if (proves_wrong(judgement)) {
     held_s_ = held_m_ = 0.0;
@@ -155,14 +155,13 @@ void WriteGate::observe(const TrackedScan& tracked) {
   has_proven_wrong_ = was_tracking_ && !is_distrusted_ && is_proof;
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
-  if (was_tracking_ && !is_confirming_ && is_proof) {
-    is_confirming_ = true;
-    confirms_after_ = judgement;
+  if (was_tracking_ && is_proof) {
     // What has only made it wary is a thing that stays: as much as without it need not fit again.
-    if (broken_ && !broken_->shuts) forget_break();
+    if (!is_confirming_ && broken_ && !broken_->shuts) forget_break();
+    // What a search has found remains found, whatever else speaks against it.
+    if (!is_confirming_ || !may_be_another(confirms_after_)) confirms_after_ = judgement;
+    is_confirming_ = true;
   }
-  // What a search has found remains found, whatever else speaks against it.
-  if (is_confirming_ && is_proof && !may_be_another(confirms_after_)) confirms_after_ = judgement;
   if (is_confirming_ && holds(judgement, time, passed_s, driven_m)) {
     is_confirming_ = false;
     held_s_ = held_m_ = 0.0;

@@ -13,7 +13,7 @@ namespace {
 
 using namespace drivers::lms200;
 
-constexpr unsigned kAnyLaserBaud = 38400;  // times do not matter here
+constexpr unsigned kAnyBaud = 38400;  // times do not matter here
 
 std::string text_of(const std::vector<std::uint8_t>& data) {
   std::string text;
@@ -159,7 +159,7 @@ bool add_request(const Telegram& telegram, NamedFields& fields) {
   return true;
 }
 
-DecodedFrame laser_frame_from(const Telegram& telegram, Sender sender, std::optional<std::uint8_t> measuring_mode) {
+DecodedFrame frame_from(const Telegram& telegram, Sender sender, std::optional<std::uint8_t> measuring_mode) {
   const bool is_from_laser = sender == Sender::kDevice;
   DecodedFrame frame;
   frame.from = is_from_laser ? "laser" : "host";
@@ -185,9 +185,9 @@ DecodedFrame laser_frame_from(const Telegram& telegram, Sender sender, std::opti
 
 DecodedStream stream_from(std::span<const std::uint8_t> bytes, Sender sender, std::optional<std::uint8_t> mode) {
   DecodedStream stream;
-  TelegramDecoder decoder{sender, kAnyLaserBaud};
+  TelegramDecoder decoder{sender, kAnyBaud};
   const auto take = [&](const std::vector<Telegram>& telegrams) {
-    for (const Telegram& telegram : telegrams) stream.frames.push_back(laser_frame_from(telegram, sender, mode));
+    for (const Telegram& telegram : telegrams) stream.frames.push_back(frame_from(telegram, sender, mode));
   };
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     take(decoder.decode(bytes.subspan(i, 1), timestamp_from_ns(static_cast<std::int64_t>(i))));

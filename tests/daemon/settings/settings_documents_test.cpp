@@ -5,25 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "daemon/settings/reader/nearest_key.hpp"
 #include "daemon/settings/settings_sections.hpp"
 #include "tests/support/source_tree.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 using Json = nlohmann::json;
 
-std::string content_of(const std::string& file) {
-  std::ostringstream text;
-  text << std::ifstream(test::source_path(file), std::ios::binary).rdbuf();
-  return text.str();
-}
+std::string document(const std::string& file) { return test::content_of(test::source_path(file)); }
 
 bool has_type(const Json& value, const std::string& type) {
   if (type == "integer") return value.is_number_integer();
@@ -121,11 +116,11 @@ std::size_t leaves_of(const Json& schema) {
 }
 
 TEST(SettingsDocuments, TheWrittenFilesAreWhatTheProgramWrites) {
-  EXPECT_EQ(content_of("config/default.yaml"), settings_as_yaml(Settings{}))
+  EXPECT_EQ(document("config/default.yaml"), settings_as_yaml(Settings{}))
       << "write it anew: deltamapd --config /dev/null --print-config > config/default.yaml";
-  EXPECT_EQ(content_of("config/deltamap.schema.json"), settings_schema())
+  EXPECT_EQ(document("config/deltamap.schema.json"), settings_schema())
       << "write it anew: deltamapd --print-schema > config/deltamap.schema.json";
-  EXPECT_EQ(content_of("docs/configuration.md"), settings_page())
+  EXPECT_EQ(document("docs/configuration.md"), settings_page())
       << "write it anew: deltamapd --print-configuration-md > docs/configuration.md";
 }
 

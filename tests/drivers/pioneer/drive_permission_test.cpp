@@ -5,24 +5,16 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <functional>
 #include <map>
-#include <sstream>
 
-#include "drivers/pioneer/session.hpp"
-#include "tests/drivers/pioneer/fake_robot.hpp"
+#include "tests/drivers/pioneer/session_fixture.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/source_tree.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {
-
-struct PermissionSession : PioneerSession {
-  using PioneerSession::PioneerSession;
-  using Messages = std::vector<Odometry>;
-  static const Messages& messages_of(const PioneerOutput& out) { return out.odometry; }
-};
 
 /// A daemon in small: a pilot that always wants to drive, a link that is opened again, a switch that is kept.
 class Rig {
@@ -80,8 +72,8 @@ class Rig {
   }
 
   FakeRobot robot{9600};
-  PermissionSession session{PioneerParams{}, SessionMode::kLive};
-  tests::Conversation<PermissionSession, FakeRobot> line{session, robot};
+  TestedSession session{PioneerParams{}, SessionMode::kLive};
+  tests::Conversation<TestedSession, FakeRobot> line{session, robot};
 
  private:
   void begin() {
@@ -94,7 +86,7 @@ class Rig {
     began_ = true;
     line.failed.reset();
     try_again_at_.reset();
-    session = PermissionSession{{.enable_motors = is_configured_, .drive_switch = kept_}, SessionMode::kLive};
+    session = TestedSession{{.enable_motors = is_configured_, .drive_switch = kept_}, SessionMode::kLive};
     line.start();
   }
 
@@ -171,11 +163,7 @@ std::string row_of(const State& state) {
   return row;
 }
 
-std::string document() {
-  std::ostringstream text;
-  text << std::ifstream(test::source_path("docs/decisions/who-may-drive.md")).rdbuf();
-  return text.str();
-}
+std::string document() { return test::content_of(test::source_path("docs/decisions/who-may-drive.md")); }
 
 class DrivePermissionTable : public testing::TestWithParam<std::size_t> {};
 

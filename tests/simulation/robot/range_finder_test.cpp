@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "tests/simulation/robot/perfect_laser.hpp"
+
 namespace deltamap::simulation {
 namespace {
 
@@ -12,13 +14,6 @@ const RayCaster& hall() {
   static const RayCaster caster{World{{{1, ObjectKind::kWall, Polyline{{{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}}}},
                                        {2, ObjectKind::kContainer, Box{{12, 11}, 1, 1, 0}}}}};
   return caster;
-}
-
-RangeFinderParams perfect_laser() {
-  RangeFinderParams params;
-  params.robot_from_laser = {};
-  params.range_noise_m = params.dropout_share = params.mixed_share = 0.0;
-  return params;
 }
 
 MovingSurfaces nobody(double) { return {}; }

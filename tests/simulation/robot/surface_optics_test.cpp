@@ -7,21 +7,14 @@
 #include <cmath>
 #include <map>
 
-#include "simulation/robot/range_finder.hpp"
 #include "simulation/scenario/start_map.hpp"
+#include "tests/simulation/robot/perfect_laser.hpp"
 
 namespace deltamap::simulation {
 namespace {
 
 const Object kHall{1, ObjectKind::kWall, Polyline{{{0, 0}, {40, 0}, {40, 20}, {0, 20}, {0, 0}}}};
 constexpr double kSameRange_m = 1e-5;
-
-RangeFinderParams perfect_optics() {
-  RangeFinderParams params;
-  params.robot_from_laser = {};
-  params.range_noise_m = params.dropout_share = params.mixed_share = 0.0;
-  return params;
-}
 
 std::vector<Reading> measured(const World& world, const RangeFinderParams& params, const Pose2& map_from_robot,
                               const std::vector<double>& bearings_rad, std::uint64_t seed = 1) {
@@ -38,7 +31,7 @@ World with_pallet() { return {{kHall, {2, ObjectKind::kContainer, Box{{10, 10}, 
 
 TEST(Glass, ReturnsABeamThatMeetsItAtARightAngleAndLetsAllElseThrough) {
   const auto readings =
-      measured(with_pane(), perfect_optics(), {5, 10, 0}, {0.0, radians(3.5), radians(4.5), radians(30)});
+      measured(with_pane(), perfect_laser(), {5, 10, 0}, {0.0, radians(3.5), radians(4.5), radians(30)});
   EXPECT_NEAR(readings[0].range_m, 5.0, kSameRange_m);
   EXPECT_NEAR(readings[1].range_m, 5.0 / std::cos(radians(3.5)), kSameRange_m);
   EXPECT_NEAR(readings[2].range_m, 35.0 / std::cos(radians(4.5)), kSameRange_m) << "the wall behind it";
@@ -48,7 +41,7 @@ TEST(Glass, ReturnsABeamThatMeetsItAtARightAngleAndLetsAllElseThrough) {
 TEST(Glass, ShowsNothingWhereNothingLiesBehindItInReach) {
   World world = with_pane();
   world.objects[0].shape = Polyline{{{0, 0}, {0, 20}}};
-  EXPECT_EQ(measured(world, perfect_optics(), {5, 10, 0}, {radians(20)})[0].kind, BeamKind::kBeyondMaximum);
+  EXPECT_EQ(measured(world, perfect_laser(), {5, 10, 0}, {radians(20)})[0].kind, BeamKind::kBeyondMaximum);
 }
 
 TEST(Glass, StandsInTheFirstMapOrNotAsTheScenarioSaysAndHidesNoFloor) {
@@ -64,7 +57,7 @@ TEST(Glass, StandsInTheFirstMapOrNotAsTheScenarioSaysAndHidesNoFloor) {
 TEST(StretchWrap, SharesItsBeamsBetweenReturnedLostThroughDazzledAndShort) {
   constexpr std::size_t kBeams = 20'000;
   constexpr double kShareTolerance = 0.01;
-  RangeFinderParams params = perfect_optics();
+  RangeFinderParams params = perfect_laser();
   params.surfaces = {.wrap_no_return_share = 0.2,
                      .wrap_through_share = 0.1,
                      .wrap_dazzle_share = 0.05,
@@ -90,7 +83,7 @@ TEST(StretchWrap, GivesTheSameReadingsForTheSameSeedOnly) {
   const std::vector<double> bearings(200, 0.0);
   const auto ranges = [&](std::uint64_t seed) {
     std::vector<double> found;
-    for (const Reading& reading : measured(with_pallet(), perfect_optics(), {5, 10, 0}, bearings, seed))
+    for (const Reading& reading : measured(with_pallet(), perfect_laser(), {5, 10, 0}, bearings, seed))
       found.push_back(reading.range_m);
     return found;
   };
@@ -109,7 +102,7 @@ double share_on_post(double distance_m) {
   std::vector<double> bearings;
   for (int i = 0; i < 500; ++i) bearings.push_back(radians(-0.25 + 0.001 * i));
   double share = 0.0;
-  for (const Reading& reading : measured(world, perfect_optics(), {2, 10, 0}, bearings)) {
+  for (const Reading& reading : measured(world, perfect_laser(), {2, 10, 0}, bearings)) {
     if (std::abs(reading.range_m - distance_m + 0.04) < 0.05) share += 1.0 / 500.0;
   }
   return share;
