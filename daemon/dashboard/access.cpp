@@ -17,6 +17,7 @@ namespace {
 constexpr std::string_view kCookie = "deltamap_token=";
 constexpr std::string_view kTokenQuery = "token=";
 constexpr std::string_view kBearer = "Bearer ";
+constexpr std::string_view kLocalhost = "localhost";
 
 std::optional<boost::asio::ip::address> address_of(std::string_view text) {
   boost::system::error_code error;
@@ -29,20 +30,29 @@ bool is_port(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// An IP address or "localhost", with any port: a tunnel may lead here from another one. A page of another site that
-/// lets its own name lead here ("DNS rebinding") comes with that name.
-bool is_no_foreign_name(std::string_view host) {
+/// The name in a Host field without brackets and port; nothing where it is neither an IP address nor "localhost". Any
+/// port will do: a tunnel may lead here from another one. A page of another site that lets its own name lead here
+/// ("DNS rebinding") comes with that name.
+std::optional<std::string_view> name_in(std::string_view host) {
   const bool is_bracketed = host.starts_with('[');
   const auto end = is_bracketed ? host.find(']') : host.find(':');
   const std::string_view name = host.substr(is_bracketed ? 1 : 0, is_bracketed ? end - 1 : end);
   std::string_view rest = end == std::string_view::npos ? std::string_view{} : host.substr(end);
-  if (is_bracketed && end == std::string_view::npos) return false;
+  if (is_bracketed && end == std::string_view::npos) return std::nullopt;
   if (is_bracketed) rest.remove_prefix(1);
-  if (!rest.empty() && (rest.front() != ':' || !is_port(rest.substr(1)))) return false;
-  if (!is_bracketed && name == "localhost") return true;
+  if (!rest.empty() && (rest.front() != ':' || !is_port(rest.substr(1)))) return std::nullopt;
+  if (!is_bracketed && name == kLocalhost) return name;
   const auto address = address_of(name);
-  return address && address->is_v6() == is_bracketed;
+  return address && address->is_v6() == is_bracketed ? std::optional{name} : std::nullopt;
 }
+
+/// Sent on this machine to this machine. A proxy that forwards from outside names the outer address.
+bool is_local(const Request& request) {
+  const auto name = name_in(request.host);
+  return request.is_from_loopback && name && (name == kLocalhost || is_loopback(std::string(*name)) == true);
+}
+
+bool commands(const Request& request) { return request.path == kCommandPath || request.path == kDrivePath; }
 
 std::string_view cookie_token(std::string_view cookies) {
   while (!cookies.empty()) {
@@ -82,7 +92,7 @@ std::optional<Answer> refusal_of_method(const Request& request) {
 
 /// Of what commands and drives, once the sender may read.
 std::optional<Answer> refusal_of_command(const Request& request, const Guard& guard) {
-  if (request.path != kCommandPath && request.path != kDrivePath) return std::nullopt;
+  if (!commands(request)) return std::nullopt;
   if (!guard.takes_commands) return refused(403, "no commands are taken here: 'dashboard.control' is off");
   if (request.path == kDrivePath) {
     return guard.token.empty() ? std::optional{refused(403, std::string(kDrivingNeedsToken))} : std::nullopt;
@@ -129,13 +139,14 @@ bool is_same_secret(std::string_view given, std::string_view secret) {
 
 std::optional<Answer> refusal_of(const Request& request, const Guard& guard) {
   if (auto refusal = refusal_of_method(request)) return refusal;
-  if (!is_no_foreign_name(request.host)) {
+  if (!name_in(request.host)) {
     return refused(421, "the Host of a request must be an IP address or localhost");
   }
   if (!request.origin.empty() && request.origin != "http://" + request.host) {
     return refused(403, "a page of another origin may not read this one");
   }
   if (guard.token.empty() || has_token(request, guard.token)) return refusal_of_command(request, guard);
+  if (is_local(request) && !commands(request)) return std::nullopt;
   Answer answer = refused(401, "a token is needed: open /?token=… once, or send Authorization: Bearer …");
   answer.headers.emplace_back("WWW-Authenticate", "Bearer");
   return answer;
@@ -143,7 +154,7 @@ std::optional<Answer> refusal_of(const Request& request, const Guard& guard) {
 
 std::optional<Answer> entry_of(const Request& request, const std::string& token) {
   const std::string_view query = request.query;
-  if (request.method != "GET" || !is_no_foreign_name(request.host)) return std::nullopt;
+  if (request.method != "GET" || !name_in(request.host)) return std::nullopt;
   if (token.empty() || request.path != "/" || !query.starts_with(kTokenQuery)) return std::nullopt;
   if (!is_same_secret(query.substr(kTokenQuery.size()), token)) return std::nullopt;
   Answer answer{.status = 303, .body = ""};

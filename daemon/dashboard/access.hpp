@@ -39,8 +39,9 @@ struct Guard {
 };
 
 /// Why a request is not answered: another method than its path takes, a host that is a name (DNS rebinding), an origin
-/// of another site, no or a wrong token; a command where none is taken, or not as JSON (a form of another site cannot
-/// send that); driving where there is no token at all. Nothing: it may be answered.
+/// of another site, no or a wrong token (reading needs none from loopback, at a Host of loopback); a command where none
+/// is taken, or not as JSON (a form of another site cannot send that); driving where there is no token at all. Nothing:
+/// it may be answered.
 [[nodiscard]] std::optional<Answer> refusal_of(const Request& request, const Guard& guard);
 
 /// The answer to /?token=…: keeps the right token in a cookie and leads to the page. Nothing for any other request.

@@ -46,6 +46,15 @@ inline Request request_of(const HttpRequest& request) {
           .content_type = field(http::field::content_type)};
 }
 
+/// Also as IPv6 writes an address of IPv4.
+inline bool is_from_loopback(const tcp::socket& socket) {
+  error_code error;
+  const asio::ip::address address = socket.remote_endpoint(error).address();
+  if (error) return false;
+  if (address.is_v4() || !address.to_v6().is_v4_mapped()) return address.is_loopback();
+  return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
+}
+
 inline bool is_bad_http(const error_code& error) {
   return error.category() == make_error_code(http::error::bad_method).category() &&
          error != http::error::end_of_stream && error != http::error::partial_message;
@@ -76,7 +85,8 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     if (error || host_.is_ending) return host_.end(this);
     const bool has_body = parser_->chunked() || parser_->content_length().value_or(0) > 0;
     const HttpRequest& received = parser_->get();
-    const Request request = request_of(received);
+    Request request = request_of(received);
+    request.is_from_loopback = is_from_loopback(stream_.socket());
     const unsigned version = received.version();
     const Guard& guard = host_.options.guard;
     if (const auto entry = entry_of(request, guard.token)) return say(*entry, version, false);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sends damaged HTTP and WebSocket input to the live page's server, over real sockets, built with the sanitizers:
 //   page_fuzz [--seconds S] [--seed N] [--case N] [--state FILE]
-// A case is made from seed and number alone. Beside the sanitizers, three things must hold: whoever has no token is
-// never let in, whatever comes back is HTTP, and the next good request is answered. Prints one JSON line; exit code 1
+// A case is made from seed and number alone. Beside the sanitizers, three things must hold: whoever has no token never
+// commands and never drives, whatever comes back is HTTP, and the next good request is answered. Prints one JSON line; exit code 1
 // where one does not hold. FILE holds the number of the newest case, for whoever looks after a crash; --case plays it
 // alone.
 #include <netinet/in.h>
@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -35,6 +36,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kToken = "of-the-fuzzer-0123456789";
 constexpr int kPatience_ms = 8;  // for an answer; most damaged requests have none
+constexpr int kDrivePatience_ms = 50;
+constexpr const char* kTaken = "taken";  // the first word to whoever drives
 constexpr int kGoodPatience_ms = 20'000;
 
 struct Options {
@@ -66,6 +69,8 @@ class Page {
     thread_.join();
   }
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
+  /// A command was taken of somebody without the token.
+  [[nodiscard]] bool is_broken_into() const { return is_broken_into_; }
 
  private:
   dashboard::Server::Options options() {
@@ -73,7 +78,8 @@ class Page {
     options.guard = {.token = kToken, .takes_commands = true};
     options.answer = [](const dashboard::Request& request) { return dashboard::Answer{.body = request.path}; };
     options.open = [] { return std::make_unique<Few>(); };
-    options.command = [](const dashboard::Request& request, dashboard::Reply reply) {
+    options.command = [this](const dashboard::Request& request, dashboard::Reply reply) {
+      if (request.authorization.find(kToken) == std::string::npos) is_broken_into_ = true;
       const auto read = control::request_of_line(request.body);
       reply({.status = read.request ? 200U : 409U,
              .body = read.request ? control::line_of(*read.request) : control::error_line(read.refused)});
@@ -89,6 +95,7 @@ class Page {
     return options;
   }
   Telemetry telemetry_;
+  std::atomic<bool> is_broken_into_ = false;
   std::uint64_t drivers_ = 0;
   dashboard::Server server_;
   std::thread thread_;
@@ -207,9 +214,10 @@ class Fuzzer {
     const bool is_http = answer.empty() || (answer.starts_with("HTTP/1.") && answer.size() > 12);
     const std::string status = answer.empty() ? "none" : is_http ? answer.substr(9, 3) : "no HTTP";
     ++answers_[status];
-    const bool is_let_in = status.front() == '2' || status == "101";
-    // A mutation cannot guess the token; only its owner may be let in.
-    return is_http && (has_token || !is_let_in);
+    // A mutation cannot guess the token. Reading from this machine needs none.
+    const bool drives = !has_token && status == "101" &&
+                        client.received(kDrivePatience_ms, kTaken).find(kTaken) != std::string::npos;
+    return is_http && !drives && !page_.is_broken_into();
   }
 
   /// A good request is answered, after all that came before.

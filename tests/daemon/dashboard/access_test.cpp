@@ -138,7 +138,36 @@ TEST(DashboardAccess, OtherOriginsAreRefused) {
   }
 }
 
-TEST(DashboardAccess, TheTokenIsAskedForEverywhere) {
+TEST(DashboardAccess, ReadingOnThisMachineNeedsNoTokenAndCommandingDoes) {
+  for (const char* host : {"127.0.0.1:8484", "localhost", "127.3.2.1", "[::1]:9000"}) {
+    Request request = good_request();
+    request.host = host;
+    EXPECT_EQ(status_of(request, kToken), 401u) << "from another machine";
+    request.is_from_loopback = true;
+    EXPECT_EQ(status_of(request, kToken), 200u) << host;
+    request.path = "/live";
+    EXPECT_EQ(status_of(request, kToken), 200u) << host;
+    request.path = "/drive";
+    EXPECT_EQ(status_of_command(request, kToken), 401u) << host;
+    request.origin = "http://evil.example";
+    request.path = "/live";
+    EXPECT_EQ(status_of(request, kToken), 403u) << host;
+  }
+  Request command = good_command();
+  command.is_from_loopback = true;
+  EXPECT_EQ(status_of_command(command, kToken), 401u);
+}
+
+TEST(DashboardAccess, ReadingByAnAddressBeyondThisMachineNeedsTheTokenFromAnywhere) {
+  for (const char* host : {"192.168.1.7:8484", "0.0.0.0", "[fe80::1]"}) {
+    Request request = good_request();
+    request.host = host;
+    request.is_from_loopback = true;
+    EXPECT_EQ(status_of(request, kToken), 401u) << host;
+  }
+}
+
+TEST(DashboardAccess, TheTokenIsAskedForEverywhereElse) {
   Request request = good_request();
   EXPECT_EQ(status_of(request, kToken), 401u);
   for (const std::string& wrong :

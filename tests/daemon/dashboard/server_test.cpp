@@ -142,14 +142,22 @@ TEST_F(DashboardServer, RefusesLongHeaders) {
   EXPECT_EQ(got("/" + std::string(9000, 'x')).status, 431);
 }
 
-TEST_F(DashboardServer, AsksForTheTokenOnEveryPath) {
+TEST_F(DashboardServer, ReadingFromThisMachineNeedsNoTokenAndByAnotherAddressItDoes) {
   options_.guard.token = "0123456789abcdef";
   start();
-  EXPECT_EQ(got("/").status, 401);
-  EXPECT_EQ(got("/api/status", "Authorization: Bearer 0123456789abcdeX\r\n").status, 401);
-  EXPECT_EQ(WebClient{port()}.upgraded().status, 401);
-  EXPECT_EQ(got("/?token=0123456789abcdeX").status, 401);
-  EXPECT_EQ(got("/", "Authorization: Bearer 0123456789abcdef\r\n").status, 200);
+  EXPECT_EQ(got("/").status, 200);
+  EXPECT_EQ(WebClient{port()}.upgraded().status, 101);
+  const auto by_another_address = [this](const std::string& target, const std::string& headers = "") {
+    WebClient client{port()};
+    (void)client.send("GET " + target + " HTTP/1.1\r\nHost: 192.168.1.7:8484\r\n" + headers + "\r\n");
+    return client.answer().status;
+  };
+  for (const char* path : {"/", "/page/main.js", "/api/status", "/api/map.png", "/metrics", "/live"}) {
+    EXPECT_EQ(by_another_address(path), 401) << path;
+  }
+  EXPECT_EQ(by_another_address("/api/status", "Authorization: Bearer 0123456789abcdeX\r\n"), 401);
+  EXPECT_EQ(by_another_address("/?token=0123456789abcdeX"), 401);
+  EXPECT_EQ(by_another_address("/", "Authorization: Bearer 0123456789abcdef\r\n"), 200);
   const WebAnswer entry = got("/?token=0123456789abcdef");
   EXPECT_EQ(entry.status, 303);
   const std::string cookie = entry.headers.at("Set-Cookie").substr(0, entry.headers.at("Set-Cookie").find(';'));
