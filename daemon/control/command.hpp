@@ -29,6 +29,7 @@ struct CommandOutcome {
   std::uint64_t ticket = 0;
   bool done = true;
   std::string message;  ///< one line: what was done, or why it could not be
+  bool doubt = false;   ///< it was done, and a person should look at the message again
 };
 
 }  // namespace deltamap::daemon::control

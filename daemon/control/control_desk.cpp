@@ -122,7 +122,7 @@ void ControlDesk::tell(const CommandOutcome& outcome) {
     const auto found = waiting_.find(outcome.ticket);
     if (found == waiting_.end()) return;
     wiring_.log("ctl: " + control::words_of(found->second.request) + ": " + outcome.message);
-    found->second.reply(outcome.done ? done_line(outcome.message) : error_line(outcome.message));
+    found->second.reply(outcome.done ? done_line(outcome.message, outcome.doubt) : error_line(outcome.message));
     waiting_.erase(found);
   });
 }

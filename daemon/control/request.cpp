@@ -128,10 +128,11 @@ std::string line_of(const Request& request) {
   return json.dump();
 }
 
-std::string done_line(std::string_view message) {
+std::string done_line(std::string_view message, bool doubt) {
   Json json;
   json["ok"] = true;
   json["message"] = message;
+  if (doubt) json["doubt"] = true;
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

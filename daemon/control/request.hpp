@@ -47,8 +47,8 @@ struct RequestAnswer {
 
 // Lines without their line end.
 [[nodiscard]] std::string line_of(const Request& request);
-/// {"ok":true,"message":…}
-[[nodiscard]] std::string done_line(std::string_view message);
+/// {"ok":true,"message":…}, and "doubt":true where a person should look at it again.
+[[nodiscard]] std::string done_line(std::string_view message, bool doubt = false);
 /// {"ok":false,"error":…}
 [[nodiscard]] std::string error_line(std::string_view error);
 

@@ -24,10 +24,12 @@ std::string percent(double share) { return std::to_string(std::lround(100.0 * sh
 
 }  // namespace
 
+bool is_in_doubt(std::optional<double> fit) { return fit.value_or(0.0) < kFits; }
+
 std::string fit_words(std::optional<double> fit) {
   if (!fit) return "no beam came back, so that nothing tells whether it fits";
   const std::string share = percent(*fit) + " of its beams fit";
-  return *fit >= kFits ? share : "only " + share + ": is it the right place, and the right map?";
+  return is_in_doubt(fit) ? "only " + share + ": is it the right place, and the right map?" : share;
 }
 
 LogLine refused_start_line() {

@@ -12,8 +12,12 @@
 
 namespace deltamap::daemon {
 
-/// "93 % of its beams fit", and what to look at where few do. `fit`: nothing where no beam came back.
+// `fit`: share of the beams that the map explains; nothing where no beam came back.
+
+/// "93 % of its beams fit", and what to look at where few do.
 [[nodiscard]] std::string fit_words(std::optional<double> fit);
+/// So few fit that the pose may be wrong, or none can tell.
+[[nodiscard]] bool is_in_doubt(std::optional<double> fit);
 
 /// Of a start pose that is not near free floor (localization/particles/start_pose.hpp).
 [[nodiscard]] LogLine refused_start_line();

@@ -199,7 +199,8 @@ void LocalizationStage::relocalize(const control::Command& command, const Scan& 
 void LocalizationStage::answer_relocalize(std::uint32_t scan) {
   if (!relocalized_) return;
   wiring_.answer({*relocalized_, true,
-                  "the robot starts there with scan " + std::to_string(scan) + ": " + fit_words(step_.fit())});
+                  "the robot starts there with scan " + std::to_string(scan) + ": " + fit_words(step_.fit()),
+                  is_in_doubt(step_.fit())});
   relocalized_.reset();
 }
 

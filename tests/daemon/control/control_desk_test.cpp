@@ -281,16 +281,17 @@ TEST_F(ControlDeskTest, WithoutScansWhatIsNotDoneIsToldWithinASecondAndSaveSaves
 TEST_F(ControlDeskTest, APoseIsAnsweredWithHowWellItFits) {
   (void)run_live(3ms, [&](const Pipeline& pipeline) {
     ASSERT_TRUE(reached_scan(20));
-    const auto message_at = [&](double off_m) {
+    const auto message_at = [&](double off_m, bool doubt) {
       const double driven_s = kDrive_s * static_cast<double>(pipeline.telemetry().scans.value()) / 422.0;
       const Json reply = asked({Request::Kind::kRelocalize, test::pose_on_drive(driven_s) * Pose2{off_m, 0.0, 0.0}});
       EXPECT_EQ(reply["ok"], true) << reply;
+      EXPECT_EQ(reply.value("doubt", false), doubt) << reply;
       return reply.value("message", "");
     };
-    const std::string right = message_at(0.0);
+    const std::string right = message_at(0.0, false);
     EXPECT_NE(right.find(" % of its beams fit"), std::string::npos) << right;
     EXPECT_EQ(right.find("only"), std::string::npos) << right;
-    const std::string wrong = message_at(-1.5);
+    const std::string wrong = message_at(-1.5, true);
     EXPECT_NE(wrong.find("is it the right place, and the right map?"), std::string::npos) << wrong;
     EXPECT_GT(status()["fit"], 0.0);
   });

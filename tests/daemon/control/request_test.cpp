@@ -73,6 +73,7 @@ TEST(Request, WhatIsWrongIsSaidInOneLine) {
 
 TEST(Request, ARepliedTextIsOneLineOfJsonWhateverItHolds) {
   EXPECT_EQ(done_line("a \"map\""), R"({"ok":true,"message":"a \"map\""})");
+  EXPECT_EQ(done_line("only 6 %", true), R"({"ok":true,"message":"only 6 %","doubt":true})");
   EXPECT_EQ(error_line("two\nlines"), R"({"ok":false,"error":"two\nlines"})");
   EXPECT_EQ(error_line("\xFF").find('\xFF'), std::string::npos);
 }

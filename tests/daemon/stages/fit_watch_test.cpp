@@ -88,5 +88,11 @@ TEST(FitWatch, TheFitIsPutIntoWords) {
   EXPECT_EQ(fit_words(std::nullopt), "no beam came back, so that nothing tells whether it fits");
 }
 
+TEST(FitWatch, APoseThatFewOrNoBeamsFitIsInDoubt) {
+  EXPECT_FALSE(is_in_doubt(0.93));
+  EXPECT_TRUE(is_in_doubt(0.12));
+  EXPECT_TRUE(is_in_doubt(std::nullopt));
+}
+
 }  // namespace
 }  // namespace deltamap::daemon
