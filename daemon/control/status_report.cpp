@@ -131,6 +131,8 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                                       : navigation::name_of(settings.navigation.mode);
   json["drive_switch"] = drivers::pioneer::name_of(static_cast<drivers::pioneer::DriveSwitch>(t.drive_switch.value()));
   json["stopped_by"] = navigation::name_of(static_cast<navigation::StopReason>(t.stop_reason.value()));
+  json["told"] = {{"speed_m_per_s", t.told_speed_m_per_s.value()},
+                  {"turn_rate_rad_per_s", t.told_turn_rate_rad_per_s.value()}};
   json["battery_v"] = t.battery_v.value();
   json["latency_ms"] = t.latency_s.value() * 1e3;
   json["since_start_s"] = since_start_s;

@@ -160,6 +160,8 @@ struct IoStage::State {
     const navigation::AllowedMotion motion = safety.allowed(now);
     wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(motion.stop));
     if (const auto line = stop_log.line(motion.stop)) wiring.log(*line);
+    wiring.telemetry.told_speed_m_per_s.set(motion.brake_hard ? 0.0 : motion.speed_m_per_s);
+    wiring.telemetry.told_turn_rate_rad_per_s.set(motion.brake_hard ? 0.0 : motion.turn_rate_rad_per_s);
     if (motion.brake_hard) return robot.handle(robot.session().emergency_stop(now));
     robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
   }

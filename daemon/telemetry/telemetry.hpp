@@ -70,6 +70,7 @@ struct Telemetry {
   Gauge<bool> drives;                ///< the pilot's commands are listened to
   Gauge<bool> by_hand;               ///< a person's are, and the pilot's are not
   Gauge<std::uint8_t> drive_switch;  ///< drivers::pioneer::DriveSwitch: what a person said last
+  Gauge<double> told_speed_m_per_s, told_turn_rate_rad_per_s;  ///< what the robot was told last
   Gauge<double> battery_v;
   Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason
   Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
