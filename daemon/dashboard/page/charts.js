@@ -3,8 +3,9 @@
 // fits what is shown.
 
 import { dots_per_px, ink_of, once_a_frame } from "./canvas.js";
+import { clock } from "./time_text.js";
 
-const LEFT = 40, RIGHT = 6, TOP = 6, BOTTOM = 16; // px around the plot
+const LEFT = 46, RIGHT = 6, TOP = 6, BOTTOM = 16; // px around the plot
 const GAP_S = 5;  // a line is not joined over a longer silence
 const SPANS = [["1 min", 60], ["10 min", 600], ["1 h", 3600]];
 const MOST_POINTS = 3000; // of a line; of more, every second, third, … is drawn
@@ -12,15 +13,15 @@ const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 2] };
 
 const line = (column, label, ink, dash = "solid") => ({ column, label, ink, dash });
 const CHARTS = [
-  { title: "Belief", lines: [line("pose_right", "P(pose right)", "--blue"), line("map_wrong", "P(map wrong)", "--red", "dashed")], low: 0, high: 1, threshold: "pose_right" },
+  { title: "Belief", lines: [line("pose_right", "P(pose right)", "--blue"), line("map_wrong", "P(map wrong)", "--red", "dashed")], threshold: "pose_right" },
   { title: "Weight", lines: [line("w_avg", "w_avg", "--sky"), line("w_fast", "w_fast", "--red", "dashed"), line("w_slow", "w_slow", "--text", "dotted")] },
   { title: "Divergence ratio", lines: [line("r_d", "r_d", "--blue")], threshold: "r_d" },
-  { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")], low: 0 },
-  { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")], low: 0 },
-  { title: "Latency", lines: [line("latency_ms", "ms", "--pink")], low: 0 },
-  { title: "Processor, % of one", low: 0, lines: [line("cpu_localization", "pose", "--blue"), line("cpu_delta", "Δ", "--red", "dashed"), line("cpu_map", "map", "--green"),
+  { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")] },
+  { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")] },
+  { title: "Latency", lines: [line("latency_ms", "ms", "--pink")] },
+  { title: "Processor, % of one", lines: [line("cpu_localization", "pose", "--blue"), line("cpu_delta", "Δ", "--red", "dashed"), line("cpu_map", "map", "--green"),
     line("cpu_io", "ports", "--text", "dotted"), line("cpu_recorder", "disk", "--pink", "dashed"), line("cpu_page", "page", "--orange", "dotted")] },
-  { title: "Memory", lines: [line("memory_mib", "MiB", "--blue")], low: 0 },
+  { title: "Memory", lines: [line("memory_mib", "MiB", "--blue")] },
   { title: "Wheels go beyond their count, %", lines: [line("wheel_distance", "distance", "--blue"), line("wheel_turn", "turn", "--red", "dashed")] },
 ];
 
@@ -30,9 +31,16 @@ export function step_for(span, most) {
   return [1, 2, 5, 10].map((n) => n * power).find((step) => span / step <= most + 1e-9);
 }
 
-/// The axis from `low` to `high` with round ends.
+const NEAR_ZERO = 0.3; // of the largest: an axis from 0 wastes little
+
+/// The axis of values from `low` to `high`, with round ends. The same rule as that of the reports (experiments/report/svg_chart.cpp).
 export function axis_for(low, high, most = 4) {
-  if (!(high > low)) [low, high] = [low - (Math.abs(low) || 1) * 0.1, high + (Math.abs(high) || 1) * 0.1];
+  if (low >= 0 && low <= NEAR_ZERO * high) low = 0;
+  if (high <= 0 && high >= NEAR_ZERO * low) high = 0;
+  if (!(high > low)) {
+    const around = low === 0 ? 0.5 : 0.1 * Math.abs(low);
+    [low, high] = [low - around, high + around];
+  }
   const step = step_for(high - low, most);
   return { low: Math.floor(low / step + 1e-9) * step, high: Math.ceil(high / step - 1e-9) * step, step };
 }
@@ -44,7 +52,6 @@ export const short = (value) => {
 };
 
 const tick_text = (value, step) => value.toFixed(Math.max(0, Math.min(6, -Math.floor(Math.log10(step) + 1e-9))));
-const clock = (time) => new Date(1000 * time).toLocaleTimeString([], { hour12: false });
 
 class Chart {
   constructor(host, kind, on_hover, on_pick) {
@@ -86,7 +93,7 @@ class Chart {
   }
 
   value_axis(samples, threshold) {
-    let low = this.kind.low ?? Infinity, high = this.kind.high ?? -Infinity;
+    let low = Infinity, high = -Infinity;
     for (const sample of samples) {
       for (const { column } of this.kind.lines) {
         if (!Number.isFinite(sample[column])) continue;
@@ -95,7 +102,7 @@ class Chart {
       }
     }
     if (threshold != null) [low, high] = [Math.min(low, threshold), Math.max(high, threshold)];
-    return low === Infinity || high === -Infinity ? axis_for(0, 1) : axis_for(low, high);
+    return low > high ? axis_for(0, 1) : axis_for(low, high);
   }
 
   draw(samples, from, to, threshold, instant, every) {

@@ -3,7 +3,8 @@
 
 const PATIENCE_MS = 5000;
 
-/// {ok: true, message} or {ok: false, error}; never throws.
+/// {ok: true, message} with `doubt` where one should look again, or {ok: false, error} with `is_locked` where the token is
+/// missing; never throws.
 export async function command(request) {
   try {
     const answer = await fetch("/api/command", {
@@ -12,7 +13,7 @@ export async function command(request) {
     });
     const text = await answer.text();
     if (answer.headers.get("Content-Type") === "application/json") return JSON.parse(text);
-    return { ok: false, error: text.trim() || `answer ${answer.status}` };
+    return { ok: false, error: text.trim() || `answer ${answer.status}`, is_locked: answer.status === 401 };
   } catch (error) {
     return { ok: false, error: error.name === "TimeoutError" ? "no answer from the daemon" : "the daemon cannot be reached" };
   }
@@ -76,7 +77,7 @@ export class TaskRow {
   async run(request, doing) {
     this.tell(doing, "wait", 60000);
     const answer = await command(request);
-    if (answer.ok) this.tell(answer.message || "done", "good");
+    if (answer.ok) this.tell(answer.message || "done", answer.doubt ? "warn" : "good", answer.doubt ? 20000 : 8000);
     else this.tell(answer.error, "bad", 20000);
     return answer;
   }

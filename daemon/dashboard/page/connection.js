@@ -97,9 +97,13 @@ export class Connection {
     this.pause_ms = Math.min(2 * this.pause_ms, LONGEST_PAUSE_MS);
   }
 
-  /// A link that is silent has died, whatever the browser thinks.
+  /// A link that is silent has died, whatever the browser thinks: its close would wait for the other side.
   look() {
-    if (this.socket && !document.hidden && Date.now() - this.last > SILENCE_MS) this.socket.close();
+    const silent = this.socket;
+    if (!silent || document.hidden || Date.now() - this.last <= SILENCE_MS) return;
+    silent.onmessage = silent.onclose = null;
+    silent.close();
+    this.lose();
   }
 
   take(data) {

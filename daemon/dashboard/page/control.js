@@ -4,6 +4,7 @@
 import { command, TaskRow } from "./commands.js";
 import { HandDrive } from "./drive.js";
 import { Relocalize } from "./relocalize.js";
+import { ask_token, is_locked } from "./token.js";
 
 const by_id = (id) => document.getElementById(id);
 
@@ -18,16 +19,24 @@ export class Control {
     by_id("stop").addEventListener("click", () => this.stop());
     by_id("save").addEventListener("click", () => this.row.run({ command: "save" }, "saving …"));
     by_id("pause").addEventListener("click", () => this.pause());
+    by_id("record").addEventListener("click", () => this.record());
+    by_id("unlock").addEventListener("click", () => ask_token(this.row));
     by_id("relocalize").addEventListener("click", () => (this.relocalize.is_on ? this.relocalize.end() : this.relocalize.begin()));
     by_id("wander").addEventListener("click", () => this.wander());
     by_id("drive").addEventListener("click", () => this.drive());
   }
 
   /// `allowed`: null, or {drive}.
-  allow(allowed) {
+  async allow(allowed) {
     by_id("controls").hidden = !allowed;
     by_id("drive").hidden = by_id("wander").hidden = !allowed?.drive;
-    this.is_allowed = Boolean(allowed);
+    this.set_locked(Boolean(allowed) && await is_locked());
+  }
+
+  /// Buttons that would all be refused are not there.
+  set_locked(is_locked) {
+    by_id("unlock").hidden = !is_locked;
+    by_id("controls").classList.toggle("locked", is_locked);
   }
 
   link(link) {
@@ -39,6 +48,9 @@ export class Control {
     this.mapping = status.mapping;
     by_id("pause").textContent = status.mapping === "paused" ? "Resume mapping" : "Pause mapping";
     by_id("pause").disabled = status.mapping !== "paused" && status.mapping !== "on";
+    by_id("record").hidden = !status.recording;
+    this.records = Boolean(status.recording?.goes_on);
+    by_id("record").textContent = this.records ? "Stop recording" : "Record";
     by_id("stop").dataset.drives = String(status.drive !== "off");
   }
 
@@ -60,6 +72,11 @@ export class Control {
   async pause() {
     const to = this.mapping === "paused" ? "resume" : "pause";
     await this.row.run({ command: to }, `${to} …`);
+  }
+
+  async record() {
+    const mode = this.records ? "stop" : "start";
+    await this.row.run({ command: "record", mode }, `${mode === "stop" ? "stopping" : "starting"} the recording …`);
   }
 
   wander() {

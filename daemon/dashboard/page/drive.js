@@ -3,19 +3,23 @@
 // second; whatever keeps the answer from it (a lost connection, a closed or hidden tab) makes the robot stand.
 
 const SPEED_M_PER_S = 0.25, TURN_RAD_PER_S = 0.7;
+const STICK_PX = 42;     // drag for full speed
+const DEAD_SHARE = 0.12; // of it that is no wish
 const SILENCE_MS = 1000; // of the daemon
 const KEYS = { ArrowUp: "ahead", KeyW: "ahead", ArrowLeft: "left", KeyA: "left", ArrowRight: "right", KeyD: "right" }; // by place
 
 export class HandDrive {
-  /// `on_end(why)` when it is over, by whom ever; `pad` holds a button for each of ahead, left, right (data-go).
+  /// `on_end(why)` when it is over, by whom ever; `pad` holds a button for each of ahead, left, right (data-go) and the stick, which is dragged.
   constructor(pad, on_end) {
     this.pad = pad;
     this.on_end = on_end;
     this.held = new Set();
+    this.pull = null;  // of the stick: {pointer, from, turn, speed}, shares of the full ones
     this.socket = null;
     document.addEventListener("keydown", (event) => this.take_key(event, true), true);
     document.addEventListener("keyup", (event) => this.take_key(event, false), true);
     for (const button of pad.querySelectorAll("[data-go]")) this.take_button(button);
+    this.take_stick(pad.querySelector("#stick"));
     addEventListener("blur", () => this.release());
     document.addEventListener("visibilitychange", () => { if (document.hidden) this.end("the tab was hidden"); });
     addEventListener("pagehide", () => this.end("the page was left"));
@@ -55,9 +59,10 @@ export class HandDrive {
   /// Nothing is piled up: what cannot leave now would come too late.
   speak() {
     if (this.beat === null || this.socket?.readyState !== WebSocket.OPEN || this.socket.bufferedAmount > 0) return;
-    const turn = (this.held.has("left") ? 1 : 0) - (this.held.has("right") ? 1 : 0);
-    this.socket.send(JSON.stringify({ beat: this.beat, speed_m_per_s: this.held.has("ahead") ? SPEED_M_PER_S : 0,
-                                      turn_rate_rad_per_s: turn * TURN_RAD_PER_S }));
+    const keys = (this.held.has("left") ? 1 : 0) - (this.held.has("right") ? 1 : 0);
+    const turn = Math.max(-1, Math.min(1, keys + (this.pull?.turn ?? 0)));
+    const speed = this.held.has("ahead") ? 1 : this.pull?.speed ?? 0;
+    this.socket.send(JSON.stringify({ beat: this.beat, speed_m_per_s: speed * SPEED_M_PER_S, turn_rate_rad_per_s: turn * TURN_RAD_PER_S }));
   }
 
   hold(way, is_held) {
@@ -69,6 +74,18 @@ export class HandDrive {
 
   release() {
     for (const way of [...this.held]) this.hold(way, false);
+    this.set_pull(null);
+  }
+
+  /// A pull that begins or ends is told at once, what it becomes in between with the next beat: a mouse moves more often
+  /// than the daemon listens to.
+  set_pull(pull) {
+    const is_news = Boolean(pull) !== Boolean(this.pull);
+    this.pull = pull;
+    const stick = this.pad.querySelector("#stick");
+    stick.classList.toggle("held", Boolean(pull));
+    stick.firstElementChild.style.transform = pull ? `translate(${-pull.turn * STICK_PX}px, ${-pull.speed * STICK_PX}px)` : "";
+    if (is_news) this.speak();
   }
 
   end(why) {
@@ -95,6 +112,29 @@ export class HandDrive {
     event.preventDefault();
     event.stopPropagation(); // the map does not move as well
     this.hold(way, is_down);
+  }
+
+  /// Across is turning, up is speed; there is no reverse.
+  take_stick(stick) {
+    const share = (px) => {
+      const size = Math.min(1, Math.abs(px) / STICK_PX);
+      return size < DEAD_SHARE ? 0 : Math.sign(px) * size;
+    };
+    stick.addEventListener("pointerdown", (event) => {
+      if (this.pull) return;
+      event.preventDefault();
+      stick.setPointerCapture(event.pointerId);
+      this.set_pull({ pointer: event.pointerId, from: [event.clientX, event.clientY], turn: 0, speed: 0 });
+    });
+    stick.addEventListener("pointermove", (event) => {
+      if (this.pull?.pointer !== event.pointerId) return;
+      const [x, y] = this.pull.from;
+      this.set_pull({ ...this.pull, turn: -share(event.clientX - x) || 0, speed: Math.max(0, share(y - event.clientY)) });
+    });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      stick.addEventListener(end, (event) => { if (this.pull?.pointer === event.pointerId) this.set_pull(null); });
+    }
+    stick.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
   take_button(button) {

@@ -3,6 +3,8 @@
 
 import { cells_of } from "./connection.js";
 
+const NOTHING = "no cells: nothing to show";
+
 const by_id = (id) => document.getElementById(id);
 const whole = (number) => number.toLocaleString("en");
 
@@ -27,7 +29,7 @@ function words_of(number, changes) {
   if (number === 0) return "the first map";
   const count = (state) => changes.filter(([, , , after]) => after === state).length;
   const parts = [[count(1), "occupied"], [count(0), "free"], [count(2), "forgotten"]];
-  return parts.filter(([cells]) => cells).map(([cells, kind]) => `${whole(cells)} ${kind}`).join(", ") || "no cells";
+  return parts.filter(([cells]) => cells).map(([cells, kind]) => `${whole(cells)} ${kind}`).join(", ") || NOTHING;
 }
 
 export class History {
@@ -48,15 +50,16 @@ export class History {
   }
 
   get is_open() { return this.number !== null; }
-  get newest() { return this.model.status?.newest_revision ?? this.model.revision ?? 0; }
+  get newest() { return Math.max(this.model.status?.newest_revision ?? 0, this.model.revision ?? 0); }
   get oldest() { return this.model.run?.first_revision ?? 0; }
 
   allow_undo(is_allowed) { this.undo.hidden = !is_allowed; }
 
-  /// A newer revision may have come.
+  /// A newer revision may have come, by an undo too.
   update() {
     this.slider.min = this.oldest;
     this.slider.max = this.newest;
+    if (this.is_open) this.tell();
     by_id("history").disabled = !this.model.status && !this.model.run?.has_history;
   }
 
@@ -65,24 +68,25 @@ export class History {
     const asked = ++this.asked;
     this.number = number;
     this.model.is_before = false;
+    this.words = "…";
     this.update();
     this.slider.value = number;
     by_id("history-bar").hidden = false;
     by_id("history").setAttribute("aria-pressed", "true");
-    this.tell(`M${number} of M${this.newest}: …`);
     try {
       const wanted = [number, Math.max(this.oldest, number - 1)].map((k) => fetched(`/api/revision/${k}/cells`).then((answer) => answer.arrayBuffer()));
       const [after, before, changes] = await Promise.all([...wanted, fetched(`/api/revision/${number}/changes`).then((answer) => answer.json())]);
       if (asked !== this.asked) return;
       this.maps = [after, before].map((buffer) => this.view.tiles_of(boxes_in(buffer)));
       this.model.delta = changes.cells;
-      this.tell(`M${number} of M${this.newest}: ${words_of(number, changes.cells)}`);
+      this.words = words_of(number, changes.cells);
     } catch (error) {
       if (asked !== this.asked) return;
       this.maps = null;
       this.model.delta = null;
-      this.tell(`M${number}: ${error.message}`);
+      this.words = error.message;
     }
+    this.tell();
     this.put();
   }
 
@@ -99,7 +103,10 @@ export class History {
     this.view.draw_soon();
   }
 
-  tell(text) { by_id("history-text").textContent = text; }
+  tell() {
+    const text = `M${this.number} of M${this.newest}: ${this.words}`, host = by_id("history-text");
+    if (host.textContent !== text) host.textContent = text;
+  }
 
   close() {
     ++this.asked;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn over the map: one layer a kind of thing, each with its sign in the legend, and a scale bar.
 
+import { beam_words, FITS, NOT_KNOWN, SHORT, THROUGH } from "./beams.js";
 import { draw_particles, draw_stored, draw_way, sign_particles, sign_stored, sign_way } from "./belief_layers.js";
 import { circle, ink_of } from "./canvas.js";
-import { FREE, OCCUPIED } from "./map_view.js";
 
-const REACH_M = 0.15;  // a beam that ends so close to an occupied cell agrees with the map
+const OLD_INK = "--soft";  // of what is no longer known to be so
 const JUMP_M = 2;      // the path is not joined over such a step
 const SIGMAS = 2;      // of the covariance ellipse
 const ROBOT_M = 0.25;  // radius
@@ -63,27 +63,45 @@ export function placed_ends(scan, { x, y, heading }) {
   return ends;
 }
 
-/// Null where there is no beam.
-export function share_on_obstacles(view, ends) {
-  let fitting = 0;
-  for (let i = 0; i < ends.length; i += 2) if (view.state_near(ends[i], ends[i + 1], REACH_M) === OCCUPIED) ++fitting;
-  return ends.length ? fitting / (ends.length / 2) : null;
+// By what a beam says: a full square, a full disc, a cross, a ring.
+const BEAM_SIGNS = {
+  [FITS]: ["--green", (c, x, y, size) => c.fillRect(x - size / 2, y - size / 2, size, size)],
+  [SHORT]: ["--orange", (c, x, y, size) => { circle(c, x, y, 0.6 * size); c.fill(); }],
+  [THROUGH]: ["--blue", (c, x, y, size) => {
+    const arm = 0.7 * size;
+    c.beginPath();
+    for (const side of [-1, 1]) { c.moveTo(x - arm, y - side * arm); c.lineTo(x + arm, y + side * arm); }
+    c.stroke();
+  }],
+  [NOT_KNOWN]: ["--pink", (c, x, y, size) => { circle(c, x, y, 0.55 * size); c.stroke(); }],
+};
+
+function sign_beam(context, word) {
+  const [ink, draw] = BEAM_SIGNS[word];
+  context.fillStyle = context.strokeStyle = ink_of(ink);
+  context.lineWidth = 1.75;
+  draw(context, 11, 7, 7);
+}
+
+/// The words of a scan's beams, found once and kept until a cell of the map changes.
+function words_of(view, scan) {
+  if (scan.map_version !== view.version) {
+    scan.words = beam_words(view, scan, scan.ends);
+    scan.map_version = view.version;
+  }
+  return scan.words;
 }
 
 function draw_scan(context, view, model) {
-  if (model.scan && !model.wish) draw_ends(context, view, model.scan.ends);
+  if (model.scan && !model.wish) draw_ends(context, view, model.scan.ends, words_of(view, model.scan), model.is_old);
 }
 
-function draw_ends(context, view, ends) {
-  const colours = [ink_of("--green"), ink_of("--orange"), ink_of("--pink")];
+function draw_ends(context, view, ends, words, is_old = false) {
   const size = Math.max(3, Math.min(7, 0.07 * view.scale));
-  for (let i = 0; i < ends.length; i += 2) {
-    const x = ends[i], y = ends[i + 1];
-    const state = view.state_near(x, y, REACH_M);
-    const [px, py] = view.to_screen(x, y);
-    context.fillStyle = colours[state === OCCUPIED ? 0 : state === FREE ? 1 : 2];
-    if (state === OCCUPIED) context.fillRect(px - size / 2, py - size / 2, size, size);
-    else { circle(context, px, py, 0.6 * size); context.fill(); }
+  context.lineWidth = 1.5;
+  for (const [word, [ink, draw]] of Object.entries(BEAM_SIGNS)) {
+    context.fillStyle = context.strokeStyle = ink_of(is_old ? OLD_INK : ink);
+    words.forEach((own, i) => { if (own === Number(word)) draw(context, ...view.to_screen(ends[2 * i], ends[2 * i + 1]), size); });
   }
 }
 
@@ -186,14 +204,15 @@ function draw_robot(context, view, model) {
   const { long, short, angle } = ellipse_of(pose.covariance, SIGMAS);
   context.beginPath();
   context.ellipse(x, y, Math.max(1, long * view.scale), Math.max(1, short * view.scale), -angle, 0, 2 * Math.PI);
+  const ink = ink_of(model.is_old ? OLD_INK : "--blue");
   context.globalAlpha = 0.25;
-  context.fillStyle = ink_of("--blue");
+  context.fillStyle = ink;
   context.fill();
   context.globalAlpha = 1;
-  context.strokeStyle = ink_of("--blue");
+  context.strokeStyle = ink;
   context.lineWidth = 1.5;
   context.stroke();
-  robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--blue"));
+  robot_sign(context, x, y, pose.heading_rad, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink);
 }
 
 const LEAST_CELL_PX = 3;
@@ -231,7 +250,7 @@ export function fill_delta_legend(host) {
 /// Where a person is about to say that the robot is. No layer: it cannot be switched off.
 export function draw_wish(context, view, { wish }) {
   if (!wish) return;
-  draw_ends(context, view, wish.ends);
+  draw_ends(context, view, wish.ends, wish.words);
   const [x, y] = view.to_screen(wish.x, wish.y);
   const length = 60, [cos, sin] = [Math.cos(wish.heading), Math.sin(wish.heading)];
   context.strokeStyle = ink_of("--accent");
@@ -255,13 +274,12 @@ export const LAYERS = [
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
   { id: "stored", label: "scans kept for the map", is_of_now: true, draw: draw_stored,
     keys: [["of the running Δ-phase", (c) => sign_stored(c, false)], ["of a set that waits", (c) => sign_stored(c, true)]] },
-  { id: "scan", label: "scan: beam ends", is_of_now: true, draw: draw_scan,
-    keys: [["on the map's obstacles", (c) => { c.fillStyle = ink_of("--green"); c.fillRect(8, 4, 6, 6); }],
-           ["where the map is free", (c) => { c.fillStyle = ink_of("--orange"); circle(c, 11, 7, 4); c.fill(); }],
-           ["where it is unknown", (c) => { c.fillStyle = ink_of("--pink"); circle(c, 11, 7, 4); c.fill(); }]] },
-  { id: "hypothesis", label: "other hypothesis", is_of_now: true, draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
-  { id: "particles", label: "particles, a few for all", is_of_now: true, draw: draw_particles, sign: sign_particles },
-  { id: "way", label: "where the pilot drives", is_of_now: true, draw: draw_way, sign: sign_way },
+  { id: "scan", label: "scan: what its beams say", is_of_now: true, draw: draw_scan,
+    keys: [["fits the map", FITS], ["short: something new stands there", SHORT], ["through what the map has: gone", THROUGH], ["where the map is unknown", NOT_KNOWN]]
+      .map(([text, word]) => [text, (c) => sign_beam(c, word)]) },
+  { id: "hypothesis", label: "other hypothesis", is_of_now: true, is_gone_when_old: true, draw: draw_hypothesis, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--pink")) },
+  { id: "particles", label: "particles, a few for all", is_of_now: true, is_gone_when_old: true, draw: draw_particles, sign: sign_particles },
+  { id: "way", label: "where the pilot drives", is_of_now: true, is_gone_when_old: true, draw: draw_way, sign: sign_way },
   { id: "robot", label: `robot, ${SIGMAS} σ`, is_of_now: true, draw: draw_robot, sign: (c) => robot_sign(c, 11, 7, 0, 6, ink_of("--blue")) },
 ];
 

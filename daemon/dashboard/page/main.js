@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joins the live stream, the map, the charts and the panels.
 
+import { add_changes, clear_changes, mark_picked } from "./changes.js";
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
 import { Control } from "./control.js";
 import { History } from "./history.js";
 import { draw_delta, draw_scale_bar, draw_wish, fill_delta_legend, fill_legend, has_place, LAYERS } from "./layers.js";
 import { MapView } from "./map_view.js";
-import { add_changes, clear_changes, mark_picked, show_link, show_pose, show_run, show_status } from "./panels.js";
+import { show_link, show_pose, show_run, show_status } from "./panels.js";
 import { Run } from "./run.js";
 
 const MOST_SAMPLES = 3600;
 const NARROW_PX = 1280; // the legend would cover the map
+const OLD_MS = 2000;    // a pose that has come so long ago is no longer shown as the present one
 
 const by_id = (id) => document.getElementById(id);
-const model = { samples: [], changes: [], pose: null, scan: null, particles: [], stored: [], transient: null, status: null, picked: null, wish: null, delta: null, run: null, until: null };
+const model = { samples: [], changes: [], pose: null, is_old: false, scan: null, particles: [], stored: [], transient: null, status: null, picked: null, wish: null, delta: null, run: null, until: null };
 const shown = new Set(LAYERS.map((layer) => layer.id));
 
 // --- dark and light: as the system, until a person says otherwise ---
@@ -25,12 +27,27 @@ function apply_theme() {
 }
 apply_theme();
 
+function is_drawn(layer) {
+  const is_past = history.is_open && view.past;
+  return shown.has(layer.id) && !(is_past && layer.is_of_now) && !(model.is_old && layer.is_gone_when_old);
+}
+
+/// What lies over the map: tools above, questions and the pad below.
+function covered() {
+  const map = by_id("map").getBoundingClientRect();
+  const boxes = ["map-tools", "map-foot", "pad"].map((id) => by_id(id).getBoundingClientRect());
+  const [tools, ...below] = boxes.map((box) => (box.height ? box : null));
+  return { top: tools ? tools.bottom - map.top : 0, bottom: Math.max(0, ...below.map((box) => (box ? map.bottom - box.top : 0))) };
+}
+
 const view = new MapView(by_id("map"), (context) => {
-  for (const layer of LAYERS) if (shown.has(layer.id) && !(history.is_open && view.past && layer.is_of_now)) layer.draw(context, view, model);
+  for (const layer of LAYERS) if (is_drawn(layer)) layer.draw(context, view, model);
   draw_delta(context, view, model);
   draw_wish(context, view, model);
   draw_scale_bar(context, view);
-});
+}, covered);
+const cover = new ResizeObserver(() => view.take_cover());
+for (const id of ["map-tools", "map-foot", "pad"]) cover.observe(by_id(id));
 const charts = new Charts(by_id("charts"), by_id("spans"), by_id("charts-instant"));
 
 function take_theme() {
@@ -66,10 +83,13 @@ function pick(change, button) {
   if (!model.picked || !change.accepted) history.close();
   else history.show(change.revision);
   if (!model.picked) return view.draw_soon();
-  if (!has_place(change)) return view.draw_soon();
+  if (!has_place(change)) {
+    if (!change.accepted) control.row.tell("It was refused before any cell was changed: nothing to show.");
+    return view.draw_soon();
+  }
   view.set_follow(false);
   const [left, bottom, right, top] = change.box_m;
-  view.scale = Math.max(view.scale, Math.min(40, 0.4 * view.width / Math.max(1, right - left, top - bottom)));
+  view.scale = Math.max(view.scale, Math.min(40, 0.4 * Math.min(view.width, view.free_rows().high) / Math.max(1, right - left, top - bottom)));
   view.show((left + right) / 2, (bottom + top) / 2);
 }
 
@@ -87,6 +107,18 @@ function note(text) {
   by_id("map-note").hidden = !text;
   by_id("map-note").textContent = text;
 }
+
+let pose_came = 0;
+
+/// A robot that is silent is not where it was. The past of a run is never old.
+function look_at_age() {
+  const is_old = !run.is_open && model.pose !== null && Date.now() - pose_came > OLD_MS;
+  if (is_old === model.is_old) return;
+  model.is_old = is_old;
+  show_pose(model.pose, is_old);
+  view.draw_soon();
+}
+setInterval(look_at_age, 500);
 
 const on = {
   link(link) {
@@ -114,10 +146,13 @@ const on = {
   cells(box) {
     model.revision = box.revision;
     view.set_cells(box);
+    history.update();
   },
   pose(pose) {
     model.pose = pose;
-    show_pose(pose);
+    pose_came = Date.now();
+    look_at_age();
+    show_pose(pose, false);
     if (view.follows) view.show(pose.x_m, pose.y_m);
     if (run.told) show_run(model.run, run.told, pose, view.frame);
     view.draw_soon();

@@ -5,6 +5,8 @@ import { dots_per_px, ink_of, once_a_frame } from "./canvas.js";
 
 const SIDE = 256; // cells of a tile
 export const FREE = 0, OCCUPIED = 1, UNKNOWN = 2;
+const LEAST_FREE_PX = 60;  // of the canvas are used whatever covers it
+const EDGE_PX = 16;
 const LEAST_SCALE = 0.5, MOST_SCALE = 400; // pixels a metre
 
 function rgb(name) {
@@ -13,7 +15,9 @@ function rgb(name) {
 }
 
 export class MapView {
-  constructor(canvas, draw_over) {
+  /// `covered`: {top, bottom}, the pixels of the canvas that lie under something else.
+  constructor(canvas, draw_over, covered = () => ({ top: 0, bottom: 0 })) {
+    this.covered = covered;
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
     this.draw_over = draw_over;
@@ -22,9 +26,11 @@ export class MapView {
     this.tiles = new Map();
     this.past = null; // tiles of an older revision, shown in their place
     this.judged = null; // tiles that beams are held against, where that is not the newest map
+    this.version = 0;   // of the cells: another number where any may have changed
     this.centre = { x: 0, y: 0 };
     this.scale = 20;
     this.is_fitted = true; // until a person moves the view
+    this.aim = null;       // the place that is shown in the middle, until then
     this.follows = false;
     this.on_follow = () => {};
     this.hand = null;    // takes one pointer and keys instead: press, drag, release, key
@@ -82,6 +88,13 @@ export class MapView {
       tile.states.set(box.states.subarray(row * box.width, (row + 1) * box.width), to);
     }
     this.paint(tile);
+    ++this.version;
+  }
+
+  /// Beams are held against these tiles; null: against the newest map.
+  judge_by(tiles) {
+    this.judged = tiles;
+    ++this.version;
   }
 
   grow_known(box) {
@@ -112,13 +125,22 @@ export class MapView {
     this.draw_soon();
   }
 
-  state_of(column, row) {
-    const tile = (this.judged ?? this.tiles).get(`${Math.floor(column / SIDE)},${Math.floor(row / SIDE)}`);
-    return tile ? tile.states[(row - tile.row) * SIDE + column - tile.column] : UNKNOWN;
+  /// A function of column and row that beams are held against. It remembers the last tile: neighbours come one after another.
+  states() {
+    const tiles = this.judged ?? this.tiles;
+    let tile_column = NaN, tile_row = NaN, tile;
+    return (column, row) => {
+      const across = Math.floor(column / SIDE), up = Math.floor(row / SIDE);
+      if (across !== tile_column || up !== tile_row) {
+        [tile_column, tile_row] = [across, up];
+        tile = tiles.get(`${across},${up}`);
+      }
+      return tile ? tile.states[(row - tile.row) * SIDE + column - tile.column] : UNKNOWN;
+    };
   }
 
   /// What the map has at a point: OCCUPIED also where an occupied cell lies within `reach_m`.
-  state_near(x, y, reach_m) {
+  state_near(x, y, reach_m, state_of = this.states()) {
     if (!this.frame) return UNKNOWN;
     const cell_m = this.frame.resolution_m;
     const column = Math.floor((x - this.frame.origin_m[0]) / cell_m);
@@ -126,10 +148,10 @@ export class MapView {
     const reach = Math.ceil(reach_m / cell_m);
     for (let r = row - reach; r <= row + reach; ++r) {
       for (let c = column - reach; c <= column + reach; ++c) {
-        if (this.state_of(c, r) === OCCUPIED) return OCCUPIED;
+        if (state_of(c, r) === OCCUPIED) return OCCUPIED;
       }
     }
-    return this.state_of(column, row);
+    return state_of(column, row);
   }
 
   // --- what is shown ---
@@ -141,20 +163,33 @@ export class MapView {
     return { x: this.centre.x + (px - this.width / 2) / this.scale, y: this.centre.y - (py - this.height / 2) / this.scale };
   }
 
+  /// The rows of the canvas that can be seen.
+  free_rows() {
+    const { top, bottom } = this.covered();
+    const last = Math.max(this.height - bottom, Math.min(this.height, top + LEAST_FREE_PX));
+    const first = Math.max(0, Math.min(top, last - LEAST_FREE_PX));
+    return { first, last, high: last - first, middle: (first + last) / 2 };
+  }
+
   fit() {
     if (!this.known || !this.frame || !this.width) return;
-    const { resolution_m: m, origin_m: [x, y] } = this.frame;
+    const { resolution_m: m, origin_m: [x, y] } = this.frame, rows = this.free_rows();
     const wide = (this.known.high_x - this.known.low_x) * m, high = (this.known.high_y - this.known.low_y) * m;
-    this.centre = { x: x + (this.known.low_x + this.known.high_x) * m / 2, y: y + (this.known.low_y + this.known.high_y) * m / 2 };
-    this.scale = Math.min(MOST_SCALE, 0.96 * Math.min(this.width / wide, this.height / high));
+    this.scale = Math.min(MOST_SCALE, 0.96 * Math.min(this.width / wide, rows.high / high));
+    this.put_in_middle({ x: x + (this.known.low_x + this.known.high_x) * m / 2, y: y + (this.known.low_y + this.known.high_y) * m / 2 });
     this.is_fitted = true;
+    this.aim = null;
     this.set_follow(false);
     this.draw_soon();
   }
 
+  put_in_middle({ x, y }) {
+    this.centre = { x, y: y + (this.free_rows().middle - this.height / 2) / this.scale };
+  }
+
   move_by(dx_px, dy_px) {
     this.centre = { x: this.centre.x - dx_px / this.scale, y: this.centre.y + dy_px / this.scale };
-    this.is_fitted = false;
+    this.is_moved();
     this.set_follow(false);
     this.draw_soon();
   }
@@ -165,14 +200,35 @@ export class MapView {
     this.scale = Math.min(MOST_SCALE, Math.max(LEAST_SCALE, this.scale * factor));
     const moved = this.to_map(px, py);
     this.centre = { x: this.centre.x + held.x - moved.x, y: this.centre.y + held.y - moved.y };
-    this.is_fitted = false;
+    this.is_moved();
     this.draw_soon();
   }
 
-  show(x, y) {
-    this.centre = { x, y };
+  is_moved() {
     this.is_fitted = false;
+    this.aim = null;
+  }
+
+  show(x, y) {
+    this.is_fitted = false;
+    this.aim = { x, y };
+    this.put_in_middle(this.aim);
     this.draw_soon();
+  }
+
+  /// Moves the map as little as it takes until the place can be seen.
+  reveal(x, y) {
+    const [px, py] = this.to_screen(x, y), rows = this.free_rows();
+    const into = (at, low, high) => Math.min(Math.max(at, low), high) - at;
+    const right = into(px, EDGE_PX, this.width - EDGE_PX), down = into(py, rows.first + EDGE_PX, rows.last - EDGE_PX);
+    if (right || down) this.move_by(right, down);
+  }
+
+  /// What covers the canvas has grown or shrunk. Nothing moves under a hand.
+  take_cover() {
+    if (this.handed !== null || this.pointers.size) return;
+    if (this.is_fitted) this.fit();
+    else if (this.aim) this.show(this.aim.x, this.aim.y);
   }
 
   set_follow(follows) {
@@ -255,7 +311,7 @@ export class MapView {
     this.canvas.width = Math.round(clientWidth * dots);
     this.canvas.height = Math.round(clientHeight * dots);
     this.dots = dots;
-    if (this.is_fitted) this.fit();
+    this.take_cover();
     this.draw();
   }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The status, the badges and the list of changes.
+// The status and the badges.
+
+import { clock, date_and_clock } from "./time_text.js";
 
 const GATE_WORDS = {
   searching: "the robot does not know where it is", lost: "the robot is lost", wrong: "the pose is called wrong",
@@ -19,10 +21,11 @@ function duration(time_s) {
   return `${Math.floor(s / 3600)} h ${Math.floor((s % 3600) / 60)} min`;
 }
 
-function badge(id, text, level) {
+function badge(id, text, level, title = "") {
   const host = document.getElementById(id);
   if (host.textContent !== text) host.textContent = text;
   host.dataset.level = level;
+  host.title = title;
 }
 
 const KINDS = { recording: "recording", folder: "finished run", map: "map" };
@@ -34,11 +37,19 @@ export function show_link(link, run) {
   document.body.dataset.link = link;
 }
 
-export function show_pose(pose) {
+/// `is_old`: no newer pose has come for a while.
+export function show_pose(pose, is_old) {
+  const since = `no pose since ${clock(pose.time)}`;
+  if (is_old) {
+    badge("badge-state", `was ${pose.state}`, "none", since);
+    badge("badge-verdict", `pose was ${pose.verdict}`, "none", since);
+    return badge("badge-gate", "–", "none", since);
+  }
   badge("badge-state", pose.state, LEVELS[pose.state] ?? "none");
   badge("badge-verdict", `pose ${pose.verdict}`, LEVELS[pose.verdict] ?? "none");
   if (!pose.gate) return badge("badge-gate", "–", "none");
-  badge("badge-gate", pose.gate.open ? "gate open" : `gate shut: ${pose.gate.reason}`, pose.gate.open ? "good" : "warn");
+  if (pose.gate.open) return badge("badge-gate", "gate open", "good", "the map may be written");
+  badge("badge-gate", `gate shut: ${pose.gate.reason}`, "warn", `the map is not written: ${GATE_WORDS[pose.gate.reason] ?? pose.gate.reason}`);
 }
 
 function share_bar(share) {
@@ -79,7 +90,7 @@ function rows_of({ status, resident_bytes }, rate) {
     ["Ports", `robot ${status.ports.robot}, laser ${status.ports.laser}`],
     ["Driving", status.drive === "off" ? "off" : `${status.drive}` + (status.stopped_by === "none" ? "" : `; stands: ${status.stopped_by}`)],
     ["Battery", status.battery_v > 0 ? `${status.battery_v.toFixed(1)} V` : "–"],
-    ["Memory", `${(resident_bytes / 1048576).toFixed(1)} MB`],
+    ["Memory", `${(resident_bytes / 1048576).toFixed(1)} MiB`],
     ["Runs for", duration(status.since_start_s)],
   ];
 }
@@ -97,7 +108,7 @@ function rows_of_run(run, told, pose, frame) {
   if (told.from === null || !pose) return rows;
   const deviation = Math.sqrt(Math.max(pose.covariance.xx_m2, pose.covariance.yy_m2));
   return [...rows,
-    ["Began", new Date(1000 * told.from).toLocaleString([], { hour12: false })],
+    ["Began", date_and_clock(told.from)],
     ["Length", `${duration(told.to - told.from)}, ${whole(told.scans)} scans`],
     ["Shown", `scan ${whole(pose.scan)}, pose on M${pose.revision}`],
     ["P(pose right)", share_bar(pose.pose_right)],
@@ -128,54 +139,4 @@ function show_rows(rows) {
     }));
   }
   rows.forEach(([, value], i) => host.children[2 * i + 1].replaceChildren(...(Array.isArray(value) ? value : [value])));
-}
-
-function words_of(change) {
-  if (!change.accepted) return `refused: ${change.reason}`;
-  const parts = [[change.added, "occupied"], [change.freed, "free"], [change.forgotten, "forgotten"]];
-  const cells = parts.filter(([count]) => count).map(([count, kind]) => `${whole(count)} ${kind}`).join(", ");
-  return (change.reason ? `${change.reason}: ` : "") + (cells || "no cells");
-}
-
-function item_of(change, on_pick) {
-  const item = document.createElement("li");
-  const button = document.createElement("button");
-  button.type = "button";
-  button.setAttribute("aria-pressed", "false");
-  const title = document.createElement("b");
-  title.textContent = change.accepted ? `M${change.revision}` : "–";
-  const what = document.createElement("span");
-  what.className = "what";
-  what.textContent = words_of(change);
-  const time = document.createElement("time");
-  time.textContent = new Date(1000 * change.time).toLocaleTimeString([], { hour12: false });
-  const why = document.createElement("span");
-  why.className = "why";
-  why.textContent = change.withdraws ? `takes back ${change.withdraws.map((number) => `M${number}`).join(", ")}`
-    : `Δ-phase ${change.phase}, ${change.scans} scans, acceptance ${change.acceptance.toFixed(2)}`;
-  button.append(title, what, time, why);
-  button.addEventListener("click", () => on_pick(change, button));
-  item.append(button);
-  return item;
-}
-
-/// Adds changes on top: newest first.
-export function add_changes(changes, all, on_pick) {
-  const host = document.getElementById("changes");
-  host.querySelector(".hint")?.remove();
-  host.prepend(...[...changes].reverse().map((change) => item_of(change, on_pick)));
-  const refused = all.filter((change) => !change.accepted).length;
-  document.getElementById("changes-count").textContent = `${all.length - refused} accepted, ${refused} refused`;
-}
-
-export function clear_changes() {
-  const hint = document.createElement("li");
-  hint.className = "hint";
-  hint.textContent = "None yet in this run.";
-  document.getElementById("changes").replaceChildren(hint);
-  document.getElementById("changes-count").textContent = "";
-}
-
-export function mark_picked(button) {
-  for (const other of document.querySelectorAll("#changes button")) other.setAttribute("aria-pressed", String(other === button));
 }

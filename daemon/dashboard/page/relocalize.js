@@ -2,7 +2,8 @@
 // Says where the robot is: pressed on the map where it stands, dragged to where it looks; the newest scan is drawn from
 // there all the while. By keys: arrows shift it, comma and full stop turn it, Enter confirms.
 
-import { placed_ends, share_on_obstacles } from "./layers.js";
+import { beam_words, share_that_fits } from "./beams.js";
+import { placed_ends } from "./layers.js";
 
 const LEAST_DRAG_PX = 8; // below, the heading stays
 const STEP_M = 0.1, STEP_RAD = Math.PI / 36;
@@ -38,7 +39,8 @@ export class Relocalize {
   }
 
   set_wish(wish) {
-    this.model.wish = { ...wish, ends: placed_ends(this.model.scan, wish) };
+    const ends = placed_ends(this.model.scan, wish);
+    this.model.wish = { ...wish, ends, words: beam_words(this.view, wish, ends) };
     this.tell();
     this.view.draw_soon();
   }
@@ -47,8 +49,8 @@ export class Relocalize {
   update() { if (this.model.wish) this.set_wish(this.model.wish); }
 
   tell() {
-    const share = share_on_obstacles(this.view, this.model.wish.ends);
-    const fit = share === null ? "no scan yet" : `${Math.round(100 * share)} % of the beam ends on obstacles`;
+    const share = share_that_fits(this.model.wish.words);
+    const fit = share === null ? "no scan yet" : `${Math.round(100 * share)} % of the beams fit the map`;
     const text = `${words_of(this.model.wish)}: ${fit}`;
     if (this.has_asked) return this.row.set_text(text);
     this.row.ask(text, [["Relocalize here", () => this.confirm()]], () => this.end());
@@ -72,7 +74,7 @@ export class Relocalize {
     if (Math.hypot(px.x - from.x, px.y - from.y) < LEAST_DRAG_PX) return;
     this.set_wish({ x, y, heading: Math.atan2(point.y - y, point.x - x) });
   }
-  release() {}
+  release() { if (this.model.wish) this.view.reveal(this.model.wish.x, this.model.wish.y); }
 
   /// Whether the key was for this.
   key(name) {
@@ -85,6 +87,7 @@ export class Relocalize {
       const pose = this.model.pose, centre = this.view.centre;
       const from = this.model.wish ?? (pose ? { x: pose.x_m, y: pose.y_m, heading: pose.heading_rad } : { ...centre, heading: 0 });
       this.set_wish({ x: from.x + step[0], y: from.y + step[1], heading: from.heading + step[2] });
+      this.release();
     }
     return true;
   }

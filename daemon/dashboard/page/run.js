@@ -3,13 +3,13 @@
 // messages that a live page would have had then; the map as the revision that the pose was computed on.
 
 import { boxes_in, fetched } from "./history.js";
+import { clock } from "./time_text.js";
 
 const STEP_S = 0.1;
 const FRAME_S = 0.1;    // between two moments while it plays
 const MOST_MAPS = 24;   // revisions that are kept
 
 const by_id = (id) => document.getElementById(id);
-const clock = (time) => new Date(1000 * time).toLocaleTimeString([], { hour12: false });
 const minutes = (time_s) => `${Math.floor(time_s / 60)}:${String(Math.floor(time_s % 60)).padStart(2, "0")}`;
 
 /// Messages that stand one after another, each after the number of its bytes, as the live stream would have brought them.
@@ -50,7 +50,7 @@ export class Run {
     this.model.until = this.told = this.wanted = null;
     this.follows_end = true;
     this.maps.clear();
-    this.view.judged = null;
+    this.view.judge_by(null);
     by_id("run-bar").hidden = true;
   }
 
@@ -108,7 +108,7 @@ export class Run {
   /// The map that the pose was computed on, unless a person looks at another one.
   async put_map(is_free = !this.model.delta) {
     const number = this.model.pose.revision;
-    this.view.judged = number === this.told.revision ? null : await this.map_of(number);
+    this.view.judge_by(number === this.told.revision ? null : await this.map_of(number));
     if (is_free) this.view.past = this.view.judged;
     this.view.draw_soon();
   }

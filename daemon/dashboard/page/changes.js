@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The list of changes of the map, newest first. Refused ones are there when a person asks for them.
+
+import { has_place } from "./layers.js";
+import { clock } from "./time_text.js";
+
+const by_id = (id) => document.getElementById(id);
+const whole = (number) => Math.round(number).toLocaleString("en");
+
+function words_of(change) {
+  if (!change.accepted) return `refused: ${change.reason}`;
+  const parts = [[change.added, "occupied"], [change.freed, "free"], [change.forgotten, "forgotten"]];
+  const cells = parts.filter(([count]) => count).map(([count, kind]) => `${whole(count)} ${kind}`).join(", ");
+  return (change.reason ? `${change.reason}: ` : "") + (cells || "no cells");
+}
+
+function origin_of(change) {
+  const whose = change.operator ? "by an operator" : `Δ-phase ${change.phase}, ${change.scans} scans, acceptance ${change.acceptance.toFixed(2)}`;
+  return change.withdraws ? `takes back ${change.withdraws.map((number) => `M${number}`).join(", ")}` : whose;
+}
+
+function place_of(change) {
+  if (!has_place(change)) return "";
+  const [left, bottom, right, top] = change.box_m;
+  return `at ${((left + right) / 2).toFixed(1)}, ${((bottom + top) / 2).toFixed(1)} m; `;
+}
+
+function item_of(change, on_pick) {
+  const item = document.createElement("li");
+  item.dataset.time = change.time;
+  item.classList.toggle("refused", !change.accepted);
+  const button = document.createElement("button");
+  button.type = "button";
+  button.setAttribute("aria-pressed", "false");
+  const title = document.createElement("b");
+  title.textContent = change.accepted ? `M${change.revision}` : "–";
+  const what = document.createElement("span");
+  what.className = "what";
+  what.textContent = words_of(change);
+  const time = document.createElement("time");
+  time.textContent = clock(change.time);
+  const why = document.createElement("span");
+  why.className = "why";
+  why.textContent = place_of(change) + origin_of(change);
+  button.append(title, what, time, why);
+  button.addEventListener("click", () => on_pick(change, button));
+  item.append(button);
+  return item;
+}
+
+/// Each before the first one that is not younger than it.
+export function add_changes(changes, all, on_pick) {
+  const host = by_id("changes");
+  for (const change of changes) {
+    const older = [...host.children].find((item) => Number(item.dataset.time ?? -Infinity) <= change.time);
+    host.insertBefore(item_of(change, on_pick), older ?? null);
+  }
+  const refused = all.filter((change) => !change.accepted).length;
+  by_id("changes-hint").hidden = refused < all.length;
+  by_id("changes-count").textContent = `${all.length - refused} accepted, ${refused} refused`;
+}
+
+export function clear_changes() {
+  for (const item of document.querySelectorAll("#changes li:not(#changes-hint)")) item.remove();
+  by_id("changes-hint").hidden = false;
+  by_id("changes-count").textContent = "";
+}
+
+export function mark_picked(button) {
+  for (const other of document.querySelectorAll("#changes button")) other.setAttribute("aria-pressed", String(other === button));
+}
+
+by_id("changes-refused").addEventListener("change", (event) => by_id("changes").classList.toggle("with-refused", event.target.checked));
