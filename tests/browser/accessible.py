@@ -45,6 +45,13 @@ for (const one of all) {
   if (one.tabIndex > 0) wrong.push(`an order of its own: ${one.outerHTML.slice(0, 60)}`);
   if (one.closest("[aria-hidden=true]") && one.tabIndex >= 0 && one.matches("button, input, a, [tabindex]")) wrong.push(`focus on what is hidden: ${one.id}`);
 }
+const OPERABLE = "button:not(:disabled), input:not(:disabled), select, summary, a[href], [tabindex='0']";
+for (const one of document.body.querySelectorAll("*")) {
+  const { overflowX, overflowY } = getComputedStyle(one), scrolls = (overflow, size, room) => ["auto", "scroll"].includes(overflow) && size > room + 1;
+  const does = scrolls(overflowY, one.scrollHeight, one.clientHeight) || scrolls(overflowX, one.scrollWidth, one.clientWidth);
+  const has_focusable = one.tabIndex >= 0 || [...one.querySelectorAll(OPERABLE)].some((inner) => inner.checkVisibility());
+  if (does && one.checkVisibility() && !has_focusable) wrong.push(`scrollable-region-focusable: ${one.id || one.outerHTML.slice(0, 60)}`);
+}
 if (!document.documentElement.lang) wrong.push("no language");
 if (!document.title) wrong.push("no title");
 if (document.querySelectorAll("h1").length !== 1) wrong.push("not one h1");

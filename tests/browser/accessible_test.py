@@ -36,14 +36,15 @@ class PageForAll(PageCase):
         browser = self.open()
         browser.run("""document.querySelector("#fit").textContent = ""; document.querySelector("#fit").removeAttribute("aria-label");
                        document.querySelector("#status-title").style.color = "#dddddd"; document.querySelector("#status-title").style.background = "#ffffff";
-                       document.querySelector("#save").id = "pause"; document.querySelector("#zoom-in").style.cssText = "min-width:0;width:9px;padding:0" """)
+                       document.querySelector("#save").id = "pause"; document.querySelector("#zoom-in").style.cssText = "min-width:0;width:9px;padding:0";
+                       document.querySelector("#status-section").removeAttribute("tabindex"); document.querySelector("#status-section").style.height = "60px" """)
         found = "\n".join(accessible.findings(browser))
-        for what in ("no name: button", "contrast 1.", "id twice: pause", "small to touch, 9"):
+        for what in ("no name: button", "contrast 1.", "id twice: pause", "small to touch, 9", "scrollable-region-focusable: status-section"):
             self.assertIn(what, found)
 
     def test_the_keyboard_reaches_and_uses_everything(self):
         browser = self.open()
-        browser.wait("document.querySelectorAll('#changes button').length > 0", 120)
+        browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 0", 120)
         stops = accessible.walk(browser)
         self.assertGreaterEqual(len(stops) + 2, browser.run(accessible.CAN_TAKE_FOCUS))  # a change may have come meanwhile
         self.assertEqual([stop for stop in stops if not stop["is_seen"]], [])
@@ -52,7 +53,7 @@ class PageForAll(PageCase):
             browser.press("#layers-box summary", ENTER)
         browser.press("#layer-scan", SPACE)
         self.assertFalse(browser.run("return document.querySelector('#layer-scan').checked"))
-        browser.press("#changes button", ENTER)
+        browser.press("#changes li:not(.refused) button", ENTER)
         self.assertIsNotNone(browser.run("return window.deltamap.model.picked"))
         before = browser.run("return document.documentElement.dataset.theme")
         browser.press("#theme", ENTER)

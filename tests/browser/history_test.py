@@ -20,12 +20,13 @@ const state = (column, row) => {
   return tile ? tile.states[(row - tile.row) * side + column - tile.column] : 2;
 };
 return [2, 3].map((at) => model.delta.filter((cell) => state(cell[0], cell[1]) === cell[at]).length).concat(model.delta.length);"""
+OF_LIVE = OF_DELTA.replace("view.past.get", "view.tiles.get")  # in the newest map
 
 
 class HistoryTest(PageCase):
     """One robot for all, which has changed its map."""
 
-    ready = (SHOWS_MAP, "window.deltamap.model.status && document.querySelectorAll('#changes button').length > 2")
+    ready = (SHOWS_MAP, "window.deltamap.model.status && document.querySelectorAll('#changes li:not(.refused) button').length > 2")
 
     @classmethod
     def setUpClass(cls):
@@ -76,19 +77,41 @@ class HistoryTest(PageCase):
         self.assertEqual(browser.run(COUNTS), live)
         self.assertEqual(browser.errors(), [])
 
-    def test_undo_asks_first_and_shows_what_the_daemon_says(self):
+    def test_undo_asks_first_and_brings_the_cells_back(self):
+        newest = self.daemon.status()["newest_revision"]
         browser = self.open()
-        self.pick(browser, 1)
+        self.pick(browser, newest)
+        cells, (before, after, _) = browser.run("return window.deltamap.model.delta"), browser.run(OF_LIVE)
+        self.assertEqual((before, after), (0, len(cells)), "mapping is paused: the newest map is as that change left it")
         browser.run("""window.sent = [];
             const real = window.fetch;
             window.fetch = (address, options) => { if (address === "/api/command") window.sent.push(options.body); return real(address, options); };""")
-        browser.run("document.querySelector('#history-undo').click()")
+        self.click(browser, "#history-undo")
         browser.wait("!document.querySelector('#task').hidden")
         self.assertEqual(browser.run("return window.sent"), [])
-        browser.run("document.querySelector('.task-buttons button').click()")
-        browser.wait("['good', 'bad'].includes(document.querySelector('#task').dataset.level)")
-        self.assertEqual([json.loads(body) for body in browser.run("return window.sent")], [{"command": "undo", "revision": 1}])
-        self.assertGreater(len(browser.run("return document.querySelector('.task-text').textContent")), 5)
+        self.choose(browser, f"Undo M{newest}")
+        browser.wait("document.querySelector('#task').dataset.level === 'good'")
+        self.assertEqual([json.loads(body) for body in browser.run("return window.sent")], [{"command": "undo", "revision": newest}])
+        browser.wait(f"{TEXT}.startsWith('M{newest} of M{newest + 1}: ')", 5)
+        self.assertEqual(browser.run(OF_LIVE), [len(cells), 0, len(cells)])
+        browser.wait(f"document.querySelector('#changes button b').textContent === 'M{newest + 1}'")
+        self.assertIn("by an operator", browser.run("return document.querySelector('#changes .why').textContent"))
+        self.assertEqual(browser.errors(), [])
+
+    def test_refused_changes_are_folded_away(self):
+        browser = self.open()
+        refused = dict(time=1, phase=4, scans=9, accepted=False, revision=None, added=0, freed=0, forgotten=0, box_m=[0, 0, 0, 0], acceptance=0.2, reason="of this test")
+        browser.run("window.deltamap.connection.on.changes({ changes: [arguments[0]] })", refused)
+        times = browser.run("return [...document.querySelectorAll('#changes li[data-time]')].map((one) => Number(one.dataset.time))")
+        self.assertEqual(times, sorted(times, reverse=True))
+        seen = "[...document.querySelectorAll('#changes li')].filter((one) => one.checkVisibility() && one.textContent.includes('of this test')).length"
+        self.assertEqual(browser.run(f"return {seen}"), 0)
+        self.assertNotIn(" 0 refused", browser.run("return document.querySelector('#changes-count').textContent"))
+        self.click(browser, "#changes-refused")
+        self.assertEqual(browser.run(f"return {seen}"), 1)
+        browser.run("[...document.querySelectorAll('#changes button')].find((one) => one.textContent.includes('of this test')).click()")
+        browser.wait("document.querySelector('.task-text').textContent.includes('nothing to show')")
+        self.assertEqual(browser.errors(), [])
 
     def test_fits_a_phone_and_a_netbook(self):
         for width, height, mobile in ((390, 844, True), (1024, 600, False)):
@@ -100,6 +123,13 @@ class HistoryTest(PageCase):
                     return [...document.querySelectorAll("#map-foot *")].filter((one) => one.getBoundingClientRect().right > map.right
                       || one.getBoundingClientRect().bottom > map.bottom).map((one) => one.id)""")
                 self.assertEqual(wide, [])
+                middle = "(([left, bottom, right, top]) => [(left + right) / 2, (bottom + top) / 2])(model.picked.box_m)"
+                self.expect_in_sight(browser, middle)
+                self.click(browser, "#history-undo")
+                browser.wait("!document.querySelector('#task').hidden")
+                self.expect_in_sight(browser, middle)
+                browser.screenshot(PICTURES / f"undo-{width}.png")
+                self.choose(browser, "Cancel")
                 browser.screenshot(PICTURES / f"history-{width}.png")
 
     def test_machines_read_maps_and_scan(self):

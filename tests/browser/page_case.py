@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the live page share: one robot for all tests of a class, and a browser for each."""
 
+import time
 import unittest
 
 from running_daemon import ROOT, RunningDaemon
@@ -25,6 +26,27 @@ class PageCase(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         cls.daemon.__exit__()
+
+    def click(self, browser, selector):
+        browser.run("document.querySelector(arguments[0]).click()", selector)
+
+    def choose(self, browser, label):
+        """One of the answers to a question over the map."""
+        browser.wait(f"[...document.querySelectorAll('.task-buttons button')].some((one) => one.textContent === '{label}')")
+        browser.run("[...document.querySelectorAll('.task-buttons button')].find((one) => one.textContent === arguments[0]).click()", label)
+
+    def until(self, condition, patience_s=10):
+        give_up_at = time.monotonic() + patience_s
+        while not condition():
+            self.assertLess(time.monotonic(), give_up_at)
+            time.sleep(0.05)
+
+    def expect_in_sight(self, browser, what):
+        """A place of the map, [x, y] of an expression: nothing covers it."""
+        browser.wait(f"""(() => {{
+            const {{ view, model }} = window.deltamap, box = view.canvas.getBoundingClientRect(), [x, y] = view.to_screen(...{what});
+            return document.elementFromPoint(box.left + x, box.top + y) === view.canvas;
+        }})()""", 3)
 
     def open(self, width=1280, height=800, mobile=False, dark=False):
         browser = Browser(width, height, dark, mobile)

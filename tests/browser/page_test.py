@@ -3,10 +3,14 @@
 """The live page in Chromium, with a simulated robot behind it: ./dev test browser. Screenshots go to build/browser."""
 
 import json
+import os
+import shutil
+import signal
 import time
 import unittest
 
 from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
+from running_daemon import ROOT
 from webdriver import Browser
 
 IS_LIVE = 'document.body.dataset.link === "live"'
@@ -66,23 +70,64 @@ class PageTest(PageCase):
                     browser.screenshot(PICTURES / f"{name}-{'dark' if dark else 'light'}.png", whole=mobile)
                     self.expect_calm(browser)
 
-    def test_a_container_that_changes_in_the_hall_changes_on_the_page(self):
+    def test_a_container_that_is_taken_away_in_the_hall_goes_away_on_the_page(self):
         browser = self.open(1440, 900)
         browser.wait(SHOWS_MAP)
         first = {}
-        give_up_at = time.monotonic() + 240
+        give_up_at = time.monotonic() + 300
         while time.monotonic() < give_up_at:
             for change in self.daemon.changes():
-                if change["kind"] not in ("removed", "added"):
+                if change["kind"] != "removed":
                     continue
                 now = browser.run(FREE_SHARE, change["box"][:4])
                 before = first.setdefault(json.dumps(change), now)
-                if abs(now - before) > 0.3:
-                    browser.wait("document.querySelectorAll('#changes button').length > 0")
+                if now - before > 0.3:
+                    browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 0")
                     browser.screenshot(PICTURES / "changed.png")
                     return self.expect_calm(browser)
             time.sleep(0.3)
-        self.fail("no container has changed on the page in four minutes")
+        self.fail("no container that was taken away has gone on the page in five minutes")
+
+    def test_pausing_stops_revisions_while_containers_change(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        newest = lambda: self.daemon.status()["newest_revision"]
+        before = newest()
+        self.until(lambda: newest() > before, 120)  # they come, as long as nobody pauses
+        self.click(browser, "#pause")
+        self.until(lambda: self.daemon.status()["mapping"] == "paused")
+        time.sleep(1)  # what was on its way
+        paused, changed, scans = newest(), len(self.daemon.changes()), self.daemon.status()["localized"]
+        self.until(lambda: len(self.daemon.changes()) >= changed + 2, 35)
+        self.assertEqual(newest(), paused)
+        self.assertGreater(self.daemon.status()["localized"], scans + 50)
+        self.click(browser, "#pause")
+        self.until(lambda: newest() > paused, 120)
+        self.expect_calm(browser)
+
+    def test_a_daemon_that_freezes_is_told_within_seconds(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        self.daemon.daemon.send_signal(signal.SIGSTOP)
+        try:
+            browser.wait('document.body.dataset.link === "lost" && document.querySelector("#badge-link").textContent === "no connection"', 7)
+        finally:
+            self.daemon.daemon.send_signal(signal.SIGCONT)
+        browser.wait(IS_LIVE, 20)
+        self.assertEqual([line for line in browser.errors() if "WebSocket" not in line], [])
+
+    def test_a_robot_that_is_silent_is_shown_as_it_was(self):
+        browser = self.open()
+        browser.wait(SHOWS_MAP)
+        self.daemon.simulator.send_signal(signal.SIGSTOP)
+        try:
+            browser.wait('window.deltamap.model.is_old && document.querySelector("#badge-state").textContent.startsWith("was ")', 6)
+            self.assertEqual(browser.run("return document.querySelector('#badge-state').dataset.level"), "none")
+            browser.screenshot(PICTURES / "old.png")
+        finally:
+            self.daemon.simulator.send_signal(signal.SIGCONT)
+        browser.wait("!window.deltamap.model.is_old", 20)
+        self.expect_calm(browser)
 
     def test_the_connection_drops_and_comes_back(self):
         browser = self.open()
@@ -117,11 +162,27 @@ class PageTest(PageCase):
         self.assertEqual(browser.run('return document.querySelector("#follow").getAttribute("aria-pressed")'), "true")
         self.expect_calm(browser)
 
+    def test_fingers_move_and_pinch_the_map(self):
+        browser = self.open(390, 844, True)
+        browser.wait(SHOWS_MAP)
+        x, y = browser.run("const box = document.querySelector('#map').getBoundingClientRect(); return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]")
+        now = lambda: browser.run("const { view } = window.deltamap; return [view.centre.x, view.centre.y, view.scale]")
+        before = now()
+        browser.hand({0: (x, y)}, {0: "down"}, {0: (x + 60, y)}, {0: "up"}, kind="touch")
+        moved = now()
+        self.assertAlmostEqual(moved[0], before[0] - 60 / before[2], delta=0.1)
+        self.assertEqual(moved[2], before[2])
+        browser.hand({0: (x - 30, y), 1: (x + 30, y)}, {0: "down", 1: "down"}, {0: (x - 60, y), 1: (x + 60, y)}, {0: "up", 1: "up"}, kind="touch")
+        self.assertAlmostEqual(now()[2] / moved[2], 2, delta=0.1)
+        self.assertEqual(browser.run("return window.deltamap.view.pointers.size"), 0)
+        self.expect_calm(browser)
+
     def test_a_picked_change_is_ringed_and_layers_switch(self):
         browser = self.open()
         browser.wait(SHOWS_MAP)
-        browser.wait("document.querySelectorAll('#changes button').length > 0", 90)
-        browser.run("document.querySelector('#changes button').click()")
+        browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 1", 90)
+        browser.run("[...document.querySelectorAll('#changes li:not(.refused) button')].at(-1).click()")
+        self.assertIn(" m; ", browser.run("return document.querySelector('#changes [aria-pressed=true] .why').textContent"), "its place")
         self.assertIsNotNone(browser.run("return window.deltamap.model.picked"))
         pressed = "return [...document.querySelectorAll('#changes button')].filter((one) => one.getAttribute('aria-pressed') === 'true').length"
         self.assertEqual(browser.run(pressed), 1)  # a newer change may lie above it by now
@@ -144,6 +205,18 @@ class PageTest(PageCase):
         browser.wait(SHOWS_MAP)
         foreign = browser.run("return performance.getEntriesByType('resource').map((one) => one.name).filter((name) => !name.startsWith(location.origin))")
         self.assertEqual([name for name in foreign if not name.startswith("data:")], [])
+
+
+    def test_the_picture_of_the_readme(self):
+        """build/browser/live.png; with DELTAMAP_WRITE_PICTURES=1 it is docs/images/live.png as well:
+        DELTAMAP_WRITE_PICTURES=1 ./dev test browser page_test.PageTest.test_the_picture_of_the_readme"""
+        browser = self.open(1440, 900)
+        browser.wait(SHOWS_MAP)
+        browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 2 && window.deltamap.model.samples.length > 60", 180)
+        browser.screenshot(PICTURES / "live.png")
+        if os.environ.get("DELTAMAP_WRITE_PICTURES"):
+            shutil.copyfile(PICTURES / "live.png", ROOT / "docs/images/live.png")
+        self.expect_calm(browser)
 
 
 if __name__ == "__main__":

@@ -21,9 +21,11 @@ def free_port():
 
 
 class RunningDaemon:
-    """Simulator and daemon, until the `with` block ends. `port` 0: without a page. `token`: asked of every viewer. `settings`: more of them."""
+    """Simulator and daemon, until the `with` block ends. `port` 0: without a page. `token`: asked of every viewer. `settings`: more of them.
+    `places`: settings that name a file in the daemon's folder."""
 
-    def __init__(self, port=None, change_every_s=15, token=None, settings=None):
+    def __init__(self, port=None, change_every_s=15, token=None, settings=None, places=None):
+        self.places = places or {}
         self.settings = settings or {}
         self.port = free_port() if port is None else port
         self.url = f"http://127.0.0.1:{self.port}/"
@@ -63,7 +65,7 @@ class RunningDaemon:
             time.sleep(0.05)
 
     def start(self):
-        places = {"robot.port": "robot", "laser.port": "laser", "map.file": "m0.yaml", "map.store": "store.sqlite", "control.socket": "ctl.sock"}
+        places = {"robot.port": "robot", "laser.port": "laser", "map.file": "m0.yaml", "map.store": "store.sqlite", "control.socket": "ctl.sock", **self.places}
         command = [BIN / "deltamapd", "--config", ROOT / "config/simulation.yaml", "--set", f"dashboard.port={self.port}"]
         if self.token:
             places["dashboard.token_file"] = "token"

@@ -117,6 +117,19 @@ class Browser:
         self._call("POST", f"/session/{self.session}/actions",
                    {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}]})
 
+    def hand(self, *strokes, kind="mouse"):
+        """What pointers do, stroke by stroke: {finger: (x, y)} goes there, {finger: "down"}, {finger: "up"}. What is down stays down for the next call."""
+        def action(stroke):
+            if stroke is None:
+                return {"type": "pause", "duration": 0}
+            if isinstance(stroke, str):
+                return {"type": "pointerDown" if stroke == "down" else "pointerUp", "button": 0}
+            return {"type": "pointerMove", "duration": 60, "x": stroke[0], "y": stroke[1]}
+        fingers = sorted({finger for stroke in strokes for finger in stroke})
+        self._call("POST", f"/session/{self.session}/actions",
+                   {"actions": [{"type": "pointer", "id": f"{kind}{finger}", "parameters": {"pointerType": kind},
+                                 "actions": [action(stroke.get(finger)) for stroke in strokes]} for finger in fingers]})
+
     def move(self, point):
         actions = [{"type": "pointerMove", "duration": 0, "x": point[0], "y": point[1]}]
         self._call("POST", f"/session/{self.session}/actions",
