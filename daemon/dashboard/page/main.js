@@ -32,12 +32,11 @@ function is_drawn(layer) {
   return shown.has(layer.id) && !(is_past && layer.is_of_now) && !(model.is_old && layer.is_gone_when_old);
 }
 
-/// What lies over the map: tools above, questions and the pad below.
+/// What lies over the map: tools above, questions below, and the pad where it is no mere corner.
 function covered() {
-  const map = by_id("map").getBoundingClientRect();
-  const boxes = ["map-tools", "map-foot", "pad"].map((id) => by_id(id).getBoundingClientRect());
-  const [tools, ...below] = boxes.map((box) => (box.height ? box : null));
-  return { top: tools ? tools.bottom - map.top : 0, bottom: Math.max(0, ...below.map((box) => (box ? map.bottom - box.top : 0))) };
+  const [map, tools, foot, pad] = ["map", "map-tools", "map-foot", "pad"].map((id) => by_id(id).getBoundingClientRect());
+  const below = [foot, ...(pad.width > map.width / 2 ? [pad] : [])].filter((box) => box.height);
+  return { top: tools.bottom - map.top, bottom: Math.max(0, ...below.map((box) => map.bottom - box.top)) };
 }
 
 const view = new MapView(by_id("map"), (context) => {
