@@ -21,7 +21,7 @@ struct Request {
   std::string cookie{};
   std::string authorization{};
   std::string content_type{};
-  std::string body{};  ///< of a command, else empty
+  std::string body{};             ///< of a command, else empty
   bool is_from_loopback = false;  ///< the sender's address
 };
 

@@ -2,9 +2,9 @@
 // Sends damaged HTTP and WebSocket input to the live page's server, over real sockets, built with the sanitizers:
 //   page_fuzz [--seconds S] [--seed N] [--case N] [--state FILE]
 // A case is made from seed and number alone. Beside the sanitizers, three things must hold: whoever has no token never
-// commands and never drives, whatever comes back is HTTP, and the next good request is answered. Prints one JSON line; exit code 1
-// where one does not hold. FILE holds the number of the newest case, for whoever looks after a crash; --case plays it
-// alone.
+// commands and never drives, whatever comes back is HTTP, and the next good request is answered. Prints one JSON line;
+// exit code 1 where one does not hold. FILE holds the number of the newest case, for whoever looks after a crash;
+// --case plays it alone.
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/resource.h>
@@ -215,8 +215,8 @@ class Fuzzer {
     const std::string status = answer.empty() ? "none" : is_http ? answer.substr(9, 3) : "no HTTP";
     ++answers_[status];
     // A mutation cannot guess the token. Reading from this machine needs none.
-    const bool drives = !has_token && status == "101" &&
-                        client.received(kDrivePatience_ms, kTaken).find(kTaken) != std::string::npos;
+    const bool drives =
+        !has_token && status == "101" && client.received(kDrivePatience_ms, kTaken).find(kTaken) != std::string::npos;
     return is_http && !drives && !page_.is_broken_into();
   }
 

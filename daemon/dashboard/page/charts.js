@@ -33,7 +33,7 @@ export function step_for(span, most) {
 
 const NEAR_ZERO = 0.3; // of the largest: an axis from 0 wastes little
 
-/// The axis of values from `low` to `high`, with round ends. The same rule as that of the reports (experiments/report/svg_chart.cpp).
+/// The axis of values from `low` to `high`, with round ends, by the rule of the reports (axis_for in experiments/report/svg_chart.cpp).
 export function axis_for(low, high, most = 4) {
   if (low >= 0 && low <= NEAR_ZERO * high) low = 0;
   if (high <= 0 && high >= NEAR_ZERO * low) high = 0;
