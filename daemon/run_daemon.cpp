@@ -29,6 +29,7 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/settings/settings_documents.hpp"
+#include "daemon/settings/settings_reading.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/system/service.hpp"
@@ -216,7 +217,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   Pipeline::Options options;
   options.live = std::make_shared<LiveSettings>(settings, [line] {
     require_plain_file(line.config);
-    return read_settings(line.config, line.overrides);
+    return read_settings_of_a_run(line.config, line.overrides);
   });
   const OccupancyGrid first = first_map(settings, line, console);
   options.first_map = grid_hash(first);
@@ -265,9 +266,11 @@ int run_daemon(int argc, const char* const* argv) {
   try {
     if (!line.initial_pose.empty()) line.overrides.push_back("localization.initial_pose=[" + line.initial_pose + "]");
     if (line.check_only) return check(line);
-    const Settings settings = read_settings(line.config, line.overrides);
-    if (line.print_only) std::cout << settings_as_yaml(settings);
-    return line.print_only ? 0 : run_pipeline(settings, line);
+    if (line.print_only) {
+      std::cout << settings_as_yaml(read_settings(line.config, line.overrides));
+      return 0;
+    }
+    return run_pipeline(read_settings_of_a_run(line.config, line.overrides), line);
   } catch (const SettingsError& error) {
     tell(error.lines());
     return 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // map.newest: the newest revision as a map_server map, for other programs: written at the start and with every
-// revision, each file replaced in one step. Never the first map itself.
+// revision, each file replaced in one step. Never the first map itself: run_contradictions.hpp.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,7 @@
 namespace deltamap::daemon {
 
 /// Looks at the place of map.newest. Empty, or why it cannot be written now (a read-only file system). Throws
-/// StartError where only a person can mend it: no name of a description, the first map or its picture would be
-/// overwritten, this user may not.
+/// StartError where only a person can mend it: no name of a description, or this user may not.
 [[nodiscard]] std::string judged_newest_place(const MapSettings& map);
 
 /// For this run alone; nothing where map.newest is empty, or there can be no lock. Throws FileInUse, and StartError as

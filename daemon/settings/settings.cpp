@@ -2,27 +2,33 @@
 #include "daemon/settings/settings.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 
 #include "core/text_of_file.hpp"
 #include "daemon/settings/fingerprint.hpp"
 #include "daemon/settings/former_keys.hpp"
 #include "daemon/settings/reader/settings_reader.hpp"
+#include "daemon/settings/run_contradictions.hpp"
 #include "daemon/settings/settings_reading.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
-SettingsReading reading_of(const std::string& yaml, const std::string& name,
-                           const std::vector<std::string>& overrides) {
+enum class Use : std::uint8_t { kAny, kRun };
+
+SettingsReading reading_of(const std::string& yaml, const std::string& name, const std::vector<std::string>& overrides,
+                           Use use) {
   SettingsReading reading;
   const std::vector<SettingKey> keys = keys_of(reading.settings);
   SettingsReader reader{keys, former_keys()};
   reader.read_file(yaml, name);
   for (const std::string& text : overrides) reader.read_override(text);
-  for (const Contradiction& wrong : contradictions_in(reading.settings)) {
-    reader.add_contradiction(wrong.key, wrong.what, wrong.others);
-  }
+  const auto add = [&](const std::vector<Contradiction>& contradictions) {
+    for (const Contradiction& wrong : contradictions) reader.add_contradiction(wrong.key, wrong.what, wrong.others);
+  };
+  add(contradictions_in(reading.settings));
+  if (use == Use::kRun) add(contradictions_in_a_run(reading.settings, name));
   reading.problems = reader.problems();
   for (const auto& [key, place] : reader.read().places) reading.given.insert(key);
   reading.doubtful = reader.read().doubtful;
@@ -38,12 +44,15 @@ std::string text_of_settings(const std::filesystem::path& file) {
   }
 }
 
+Settings sound_settings(SettingsReading reading) {
+  if (!reading.problems.empty()) throw SettingsError(std::move(reading.problems));
+  return std::move(reading.settings);
+}
+
 }  // namespace
 
 Settings parse_settings(const std::string& yaml, const std::string& name, const std::vector<std::string>& overrides) {
-  SettingsReading reading = reading_of(yaml, name, overrides);
-  if (!reading.problems.empty()) throw SettingsError(std::move(reading.problems));
-  return std::move(reading.settings);
+  return sound_settings(reading_of(yaml, name, overrides, Use::kAny));
 }
 
 Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -51,7 +60,11 @@ Settings read_settings(const std::filesystem::path& file, const std::vector<std:
 }
 
 SettingsReading look_at_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return reading_of(text_of_settings(file), file.string(), overrides);
+  return reading_of(text_of_settings(file), file.string(), overrides, Use::kRun);
+}
+
+Settings read_settings_of_a_run(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return sound_settings(look_at_settings(file, overrides));
 }
 
 std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings) {

@@ -223,8 +223,6 @@ std::vector<Contradiction> contradictions_in(const Settings& settings) {
                      "needs 'control.socket': one desk takes all commands",
                      {"control.socket", "dashboard.port"}});
   }
-  expect_not(!settings.poses.socket.empty() && settings.poses.socket == settings.control.socket, "poses.socket",
-             "differ from", {"control.socket"});
   return found;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings as far as they could be read, beside all mistakes: for --check-config, which looks at the rest all the same.
+// Settings of a run of the daemon, which has ports and outputs (run_contradictions.hpp): as far as they could be read,
+// beside all mistakes, for --check-config, which looks at the rest all the same; or without a mistake.
 #pragma once
 
 #include <filesystem>
@@ -27,5 +28,8 @@ struct SettingsReading {
 /// Throws SettingsError only where the file itself cannot be read.
 [[nodiscard]] SettingsReading look_at_settings(const std::filesystem::path& file,
                                                const std::vector<std::string>& overrides);
+/// Throws SettingsError with all mistakes.
+[[nodiscard]] Settings read_settings_of_a_run(const std::filesystem::path& file,
+                                              const std::vector<std::string>& overrides);
 
 }  // namespace deltamap::daemon

@@ -17,7 +17,7 @@ clean_up() {
 
 as_other=()
 ((EUID != 0)) || as_other=(setpriv --reuid=65534 --regid=65534 --clear-groups)
-plain=("${on_the_world[@]}" --set robot.port="$out/none" --set laser.port="$out/none"
+plain=("${on_the_world[@]}" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser"
   --set map.store= --set recording.file= --set control.socket=)
 # A sound store with its first map, to copy.
 timeout -s TERM 2 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/sound.sqlite" 2>/dev/null || true

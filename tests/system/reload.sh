@@ -10,7 +10,7 @@ cp config/simulation.yaml "$out/robot.yaml"
 plain=("${on_the_world[@]}")
 plain[1]=$out/robot.yaml
 
-setsid "$bin/deltamapd" "${plain[@]}" --set robot.port="$out/none" --set laser.port="$out/none" --set map.store= --set recording.file= \
+setsid "$bin/deltamapd" "${plain[@]}" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser" --set map.store= --set recording.file= \
   --set control.socket="$out/ctl.sock" 2>"$out/daemon.log" &
 daemon=$!
 for _ in $(seq 100); do ctl status >/dev/null 2>&1 && break; sleep 0.1; done

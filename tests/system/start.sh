@@ -7,7 +7,7 @@ set -euo pipefail
 bin=$1
 source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 write_first_map
-plain=("${on_the_world[@]}" --set robot.port="$out/none" --set laser.port="$out/none"
+plain=("${on_the_world[@]}" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser"
   --set map.store= --set recording.file= --set control.socket=)
 # Root may all: what is forbidden is tried as another user.
 as_other=()

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// map.newest: the newest revision for other programs, and never the first map. What the store's retention does while
-// the daemon runs.
+// map.newest: the newest revision for other programs. What the store's retention does while the daemon runs.
 #include "daemon/maps/newest_map.hpp"
 
 #include "core/file_lock.hpp"
@@ -10,7 +9,6 @@
 #include "mapping/store/map_store.hpp"
 #include "tests/support/full_disk.hpp"
 #include "tests/support/saving_fixture.hpp"
-#include "tests/support/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -106,19 +104,8 @@ TEST_F(NewestMap, OfAnotherSizeNeverLiesBesideTheOldDescription) {
   EXPECT_EQ(files, 2u) << "drafts are left";
 }
 
-TEST_F(NewestMap, NeverOverwritesTheFirstMap) {
-  write_grid(map_of(1), folder.path() / "site.yaml");
-  fs::rename(folder.path() / "site.pgm", folder.path() / "hall.pgm");
-  std::string text = test::content_of(folder.path() / "site.yaml");
-  text.replace(text.find("site.pgm"), 8, "hall.pgm");
-  (void)folder.write("site.yaml", text);
-  fs::create_symlink(folder.path() / "site.yaml", folder.path() / "link.yaml");
+TEST_F(NewestMap, IsNamedByItsDescriptionInAFolderThatIsThere) {
   EXPECT_EQ(refusal(settings()), "");
-  for (const char* name : {"site.yaml", "hall.yaml", "link.yaml", "none/../site.yaml"}) {
-    MapSettings map = settings();
-    map.newest = folder.path() / name;
-    EXPECT_NE(refusal(map).find("'map.newest' would overwrite the first map"), std::string::npos) << name;
-  }
   for (const char* name : {"map.pgm", "map", "maps/"}) {
     MapSettings map = settings();
     map.newest = name;

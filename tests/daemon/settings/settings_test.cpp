@@ -134,12 +134,6 @@ TEST(Settings, ValuesThatContradictEachOtherAreRefused) {
             "robot.yaml:1:33: localization.particles.min: must not exceed 'localization.particles.max'");
 }
 
-TEST(Settings, TheSocketOfPosesIsNotThatOfCommands) {
-  EXPECT_EQ(error_of("control: {socket: s}\nposes: {socket: s}"),
-            "robot.yaml:2:17: poses.socket: must differ from 'control.socket'");
-  EXPECT_EQ(error_of("control: {socket: s}\nposes: {socket: p}"), "no error");
-}
-
 TEST(Settings, TheLivePageLeavesThisMachineOnlyWithAToken) {
   EXPECT_EQ(error_of("dashboard: {address: 0.0.0.0, port: 8484}"),
             "robot.yaml:1:22: dashboard.address: leads beyond this machine: that needs 'dashboard.token_file'");

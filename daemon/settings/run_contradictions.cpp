@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/settings/run_contradictions.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "core/file_lock.hpp"
+#include "core/grid_file.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NamedFile {
+  std::string key;   ///< empty: the settings file, which no key names
+  std::string name;  ///< "'map.store'"
+  fs::path file;
+  bool is_written = true;
+};
+
+/// Where it cannot be looked at, its name stands for it.
+fs::path behind(const fs::path& file) {
+  try {
+    return file_behind(file);
+  } catch (const std::system_error&) {
+    return fs::absolute(file).lexically_normal();
+  }
+}
+
+bool is_same(const fs::path& one, const fs::path& other) {
+  std::error_code not_both_are_there;
+  return fs::equivalent(one, other, not_both_are_there) || behind(one) == behind(other);
+}
+
+/// The picture that the description names. A daemon that reads its settings again must not wait for a pipe.
+fs::path image_of(const fs::path& yaml) {
+  constexpr std::uintmax_t kLargest = 1'000'000;
+  std::error_code error;
+  if (fs::is_regular_file(yaml, error) && fs::file_size(yaml, error) <= kLargest) {
+    try {
+      return picture_of(yaml);
+    } catch (const std::runtime_error&) {  // whoever reads the map says why
+    }
+  }
+  return fs::path(yaml).replace_extension(".pgm");
+}
+
+/// What is only read comes first: an output that is in its place is the one that is told.
+std::vector<NamedFile> files_of(const Settings& settings, const std::string& file) {
+  std::vector<NamedFile> files{{"", "this settings file", file, false}};
+  const auto add = [&](const std::string& key, const std::string& named, bool is_written) {
+    if (!named.empty()) files.push_back({key, "'" + key + "'", named, is_written});
+  };
+  const auto add_map = [&](const std::string& key, const std::string& yaml, bool is_written) {
+    add(key, yaml, is_written);
+    if (!yaml.empty()) {
+      const fs::path image = is_written ? fs::path(yaml).replace_extension(".pgm") : image_of(yaml);
+      files.push_back({key, "the image of '" + key + "'", image, is_written});
+    }
+  };
+  add_map("map.file", settings.map.file, false);
+  add("dashboard.token_file", settings.dashboard.token_file, false);
+  add("map.store", settings.map.store, true);
+  add_map("map.newest", settings.map.newest, true);
+  add("control.socket", settings.control.socket, true);
+  add("poses.socket", settings.poses.socket, true);
+  add("recording.file", settings.recording.file, true);
+  return files;
+}
+
+void add_file_contradictions(const Settings& settings, const std::string& file, std::vector<Contradiction>& found) {
+  const std::vector<NamedFile> files = files_of(settings, file);
+  for (std::size_t late = 0; late < files.size(); ++late) {
+    for (std::size_t early = 0; early < late && files[late].is_written; ++early) {
+      const NamedFile& one = files[late];
+      const NamedFile& other = files[early];
+      const bool is_told = !found.empty() && found.back().key == one.key;
+      if (is_told || one.key == other.key || !is_same(one.file, other.file)) continue;
+      const std::string subject = one.name.starts_with('\'') ? "" : "its image ";
+      std::vector<std::string> others;
+      if (!other.key.empty()) others.push_back(other.key);
+      found.push_back({one.key, subject + "must not be the same file as " + other.name, std::move(others)});
+    }
+  }
+}
+
+void add_port_contradictions(const Settings& settings, std::vector<Contradiction>& found) {
+  const std::string& robot = settings.robot.port;
+  const std::string& laser = settings.laser.port;
+  if (robot.empty()) found.push_back({"robot.port", "must name a serial device", {}});
+  if (laser.empty()) found.push_back({"laser.port", "must name a serial device", {}});
+  if (!robot.empty() && !laser.empty() && is_same(robot, laser))
+    found.push_back({"laser.port", "must not be the same device as 'robot.port'", {"robot.port"}});
+}
+
+}  // namespace
+
+std::vector<Contradiction> contradictions_in_a_run(const Settings& settings, const std::string& file) {
+  std::vector<Contradiction> found;
+  add_port_contradictions(settings, found);
+  add_file_contradictions(settings, file, found);
+  return found;
+}
+
+}  // namespace deltamap::daemon
