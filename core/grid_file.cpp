@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/grid_file.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -17,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/grid_description.hpp"
 #include "core/grid_file_facts.hpp"
 #include "core/replace_file.hpp"
 #include "core/shortest_text.hpp"
@@ -26,19 +24,8 @@
 namespace deltamap {
 namespace {
 
-constexpr double kFinest_m = 0.001;  // sides of a cell
-constexpr double kCoarsest_m = 100.0;
 constexpr int kTogether = Tiled<CellState>::kSide;  // pixels
 constexpr int kMaxSide = 32767;                     // cells; 16-bit indices suffice everywhere
-
-struct MapKeys {
-  std::string image;
-  double resolution_m = 0.0;
-  Point2 origin{0.0, 0.0};
-  bool negate = false;
-  double occupied_threshold = 0.65;
-  double free_threshold = 0.196;
-};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
   throw std::runtime_error(file.string() + ": " + why);
@@ -50,79 +37,6 @@ std::ifstream open_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file, std::strerror(errno));
   return in;
-}
-
-std::string read_bytes(const std::filesystem::path& file) {
-  std::ifstream in = open_file(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Whoever gives the picture, or another file that is no text, is told so before YAML makes a riddle of it.
-void require_description(const std::filesystem::path& file, const std::string& text) {
-  if (is_carmen_map(file, text)) refuse(file, "is a CARMEN map; give a map_server map (YAML and PGM)");
-  std::filesystem::path yaml = file;
-  yaml.replace_extension(".yaml");
-  std::error_code ignored;
-  const bool is_beside = yaml != file && std::filesystem::exists(yaml, ignored);
-  const std::string beside = is_beside ? ", " + yaml.string() : std::string{};
-  if (text.starts_with("P5") || text.starts_with("P2")) {
-    refuse(file, "is the picture of a map; give its description (YAML)" + beside);
-  }
-  const auto binary = std::find_if(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
-  });
-  if (binary != text.end()) {
-    refuse(file, "byte " + std::to_string(binary - text.begin()) + ": is no text; give a map's description (YAML)");
-  }
-}
-
-double number(const YAML::Node& map, const std::string& key, const std::filesystem::path& file) {
-  const YAML::Node node = map[key];
-  if (!node) refuse(file, "key '" + key + "' is missing");
-  try {
-    const auto value = node.as<double>();
-    if (std::isfinite(value)) return value;
-  } catch (const YAML::Exception&) {  // told below, with the line
-  }
-  refuse(file, "line " + std::to_string(node.Mark().line + 1) + ": '" + key + "' is not a number");
-}
-
-MapKeys parse_keys(const std::filesystem::path& file) {
-  YAML::Node map;
-  const std::string text = read_bytes(file);
-  require_description(file, text);
-  try {
-    map = YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    refuse(file, "line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
-  }
-  if (!map.IsMap()) refuse(file, "line 1: not a map description (expected 'image', 'resolution', 'origin')");
-  MapKeys keys;
-  if (!map["image"] || !map["image"].IsScalar()) refuse(file, "key 'image' is missing");
-  keys.image = map["image"].as<std::string>();
-  keys.resolution_m = number(map, "resolution", file);
-  if (!(keys.resolution_m > 0.0)) refuse(file, "'resolution' must be positive");
-  if (keys.resolution_m < kFinest_m || keys.resolution_m > kCoarsest_m)
-    refuse(file, "'resolution' must be 0.001 to 100 m");
-  const YAML::Node origin = map["origin"];
-  if (!origin || !origin.IsSequence() || origin.size() < 2) refuse(file, "'origin' must be [x, y, yaw]");
-  std::array<double, 3> values{};
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, origin.size()); ++i) {
-    try {
-      values[i] = origin[i].as<double>();
-    } catch (const YAML::Exception&) {
-      refuse(file, "line " + std::to_string(origin.Mark().line + 1) + ": 'origin' must hold numbers");
-    }
-  }
-  if (!std::isfinite(values[0]) || !std::isfinite(values[1])) refuse(file, "'origin' must be finite");
-  if (values[2] != 0.0)
-    refuse(file, "a rotated origin (yaw " + std::to_string(values[2]) + ") is not supported; turn the image");
-  keys.origin = {values[0], values[1]};
-  if (map["negate"]) keys.negate = number(map, "negate", file) != 0.0;
-  if (map["occupied_thresh"]) keys.occupied_threshold = number(map, "occupied_thresh", file);
-  if (map["free_thresh"]) keys.free_threshold = number(map, "free_thresh", file);
-  if (map["mode"] && map["mode"].as<std::string>("") != "trinary") refuse(file, "only 'mode: trinary' is supported");
-  return keys;
 }
 
 /// A binary PGM, read from its beginning: the header, numbers separated by white space and comments, then rows of
@@ -173,14 +87,14 @@ class PgmReader {
   std::size_t at_ = 2;
 };
 
-CellState state_of(double darkness, const MapKeys& keys) {
+CellState state_of(double darkness, const GridDescription& keys) {
   if (darkness > keys.occupied_threshold) return CellState::kOccupied;
   return darkness < keys.free_threshold ? CellState::kFree : CellState::kUnknown;
 }
 
 using CellStates = std::array<CellState, 256>;
 
-CellStates cell_states(int brightest, const MapKeys& keys) {
+CellStates cell_states(int brightest, const GridDescription& keys) {
   CellStates states{};
   for (int shade = 0; shade < 256; ++shade) {
     const double light = static_cast<double>(std::min(shade, brightest)) / brightest;
@@ -197,7 +111,7 @@ bool is_of_one_shade(std::string_view pixels) {
 class MapFiles {
  public:
   explicit MapFiles(const std::filesystem::path& yaml_file)
-      : keys_{parse_keys(yaml_file)},
+      : keys_{read_grid_description(yaml_file)},
         image_{yaml_file.parent_path() / keys_.image},  // an absolute image path stands for itself
         pgm_{image_} {
     const int width = pgm_.next_number(kMaxSide);
@@ -209,7 +123,7 @@ class MapFiles {
   MapFiles(const MapFiles&) = delete;
   MapFiles& operator=(const MapFiles&) = delete;
 
-  [[nodiscard]] const MapKeys& keys() const { return keys_; }
+  [[nodiscard]] const GridDescription& keys() const { return keys_; }
   [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }
   [[nodiscard]] CellStates states() const { return cell_states(brightest_, keys_); }
 
@@ -231,7 +145,7 @@ class MapFiles {
   }
 
  private:
-  MapKeys keys_;
+  GridDescription keys_;
   std::filesystem::path image_;
   PgmReader pgm_;
   int brightest_ = 255;
@@ -283,7 +197,7 @@ class PgmWriter {
 }  // namespace
 
 std::filesystem::path picture_of(const std::filesystem::path& yaml_file) {
-  return yaml_file.parent_path() / parse_keys(yaml_file).image;
+  return yaml_file.parent_path() / read_grid_description(yaml_file).image;
 }
 
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {

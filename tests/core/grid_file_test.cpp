@@ -124,6 +124,26 @@ TEST(GridFile, NamesFileAndPlaceOfWhatItCannotRead) {
             std::string::npos);
 }
 
+TEST(GridFile, NamesLineAndKeyOfAWrongDescription) {
+  const test::TemporaryFolder folder;
+  const auto told = [&](const std::string& text) {
+    const auto file = folder.write("m.yaml", text);
+    const std::string why = refusal(file);
+    EXPECT_EQ(why.find(file.string() + ": "), 0u) << why;
+    return why.substr(std::min(why.size(), file.string().size() + 2));
+  };
+  const std::string image = "image: m.pgm\n";
+  EXPECT_EQ(told(image + "resolution: 0.1\n"), "key 'origin' is missing");
+  EXPECT_EQ(told(image + "resolution: 0.1\norigin: 3\n"), "line 3: 'origin' must be [x, y, yaw]");
+  EXPECT_EQ(told(image + image + kKeys), "line 2: 'image' is given twice");
+  EXPECT_EQ(told("image: \"m.pgm\nresolution: 0.1\n"), "line 1: not YAML: a quote is not closed");
+  EXPECT_EQ(told(image + "origin: [0, 0, 0\n"), "line 2: not YAML: a '[' is not closed");
+  EXPECT_EQ(told("image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0]\noccupied_thresh: 65\n"),
+            "line 4: 'occupied_thresh' must be 0 to 1, not 65 (percent?)");
+  EXPECT_EQ(told("image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nfree_thresh: -1\n"),
+            "line 4: 'free_thresh' must be 0 to 1, not -1");
+}
+
 TEST(GridFile, LeavesNothingBehindWhereItCannotWrite) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(replace_file(folder.path() / "missing" / "file", "x"), std::runtime_error);
