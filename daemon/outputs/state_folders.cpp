@@ -49,9 +49,14 @@ void require_store_folder(const Settings& settings, const std::string& config) {
   if (settings.map.store.empty() || fs::exists(settings.map.store, ignored)) return;
   const std::string why = why_no_folder_for(settings.map.store);
   if (why.empty()) return;
-  throw SettingsError(config + ": 'map.store': " + why + ": give this user the folder (sudo install -d -o " +
-                      user_name() + " " + absolute_folder_of(settings.map.store).string() +
-                      ") or another file (--set map.store=FILE)");
+  const fs::path folder = absolute_folder_of(settings.map.store);
+  // Of a folder that is there, the same command would take owner and mode away from whoever has it.
+  const bool is_missing = fs::status(folder, ignored).type() == fs::file_type::not_found;
+  throw SettingsError(
+      config + ": 'map.store': " + why + ": give this user " +
+      (is_missing ? "the folder (sudo install -d -o " + user_name() + " " + folder.string() + ") or another file"
+                  : "a folder of its own (sudo install -d -o " + user_name() + " FOLDER) and name a file in it") +
+      " (--set map.store=FILE)");
 }
 
 void make_state_folders(const Settings& settings, const std::string& config) {

@@ -33,6 +33,9 @@ expect 2 "is no folder" --set map.store="$out/file/store.sqlite"
 expect 2 "is a directory" --set map.store="$out"
 expect 2 "is no folder" --set recording.file="$out/file/bytes.pcapng"
 expect 2 "map.fiel" --set map.fiel=x
+expect 2 "map.store: must not be the same file as 'map.file'" --set map.store="$out/m0.yaml"
+expect 2 "recording.file: must not be the same file as the image of 'map.file'" --set recording.file="$out/m0.pgm"
+[[ -s $out/m0.yaml && -s $out/m0.pgm ]] || fail "the first map was displaced"
 expect 2 "m0.pgm: is the picture of a map; give its description (YAML), $out/m0.yaml" --set map.file="$out/m0.pgm"
 
 as=("${as_other[@]}")
@@ -43,6 +46,8 @@ chmod 555 "$out/mine"
 expect 2 "forbidden/m0.yaml: Permission denied" --set map.file="$out/forbidden/m0.yaml"
 expect 2 "forbidden/run: cannot be made: $out/forbidden cannot be written to (Permission denied)" --out "$out/forbidden/run"
 expect 2 "'map.store': $out/mine cannot be written to (Permission denied)" --set map.store="$out/mine/new/store.sqlite"
+expect 2 "give this user the folder (sudo install -d -o [a-zA-Z]* $out/mine/new) or" --set map.store="$out/mine/new/store.sqlite"
+expect 2 "give this user a folder of its own (sudo install -d -o [a-zA-Z]* FOLDER) and" --set map.store="$out/mine/store.sqlite"
 expect 2 "forbidden/bytes.pcapng: cannot be looked at: Permission denied" --set recording.file="$out/forbidden/bytes.pcapng"
 expect 2 "bytes.pcapng: cannot be written: $out/mine cannot be written to (Permission denied)" --set recording.file="$out/mine/new/bytes.pcapng"
 as=()
@@ -79,4 +84,4 @@ daemon=
 grep -q "warning map store set aside as $out/store.sqlite.set-aside-1: " "$out/second.log" || fail "no warning"
 [[ $(stat -c %s "$out/store.sqlite.set-aside-1") == 20000 ]] || fail "the damaged store was not kept"
 [[ ! -e $out/run/.lock && ! -e $out/store.sqlite.lock && ! -e $out/bytes.pcapng.lock ]] || fail "locks are left behind"
-echo "start: 14 mistakes end with exit code 2, 4 conflicts with 1"
+echo "start: 18 mistakes end with exit code 2, 4 conflicts with 1"
