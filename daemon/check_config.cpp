@@ -30,6 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 using Level = Finding::Level;
 
+constexpr const char* kRuntimeFolder = "/run/deltamap";  // of systemd/deltamap.service
+
 Finding settings_finding(const Settings& settings, const std::string& config) {
   return {Level::kOk, "settings",
           config + ": " + std::to_string(changed_settings(settings).size()) + " not as delivered, fingerprint " +
@@ -53,6 +55,9 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
         {Level::kOk, "map", settings.map.file + ": " + size_text(map.grid.geometry()) + ": " + cells_text(map.grid)});
     for (std::string& warning : map.warnings) findings.push_back({Level::kWarning, "map", std::move(warning)});
     findings.push_back({Level::kOk, "memory", memory_text(settings.map.file, memory_limit())});
+    const auto unit = unit_memory();
+    if (std::string why = unit ? why_not_as_service(settings.map.file, *unit) : ""; !why.empty())
+      findings.push_back({Level::kWarning, "memory", std::move(why)});
     return std::move(map.grid);
   } catch (const std::exception& error) {
     findings.push_back({Level::kError, "map", error.what()});
@@ -153,9 +158,12 @@ Finding place_finding(const std::string& about, const std::string& name, const f
   }
 }
 
-/// A daemon that cannot be commanded still does its work.
+/// A daemon that cannot be commanded still does its work. The unit makes its folder below /run at each start
+/// (RuntimeDirectory), which nobody but root could.
 Finding socket_finding(const std::string& about, const fs::path& socket) {
   std::error_code ignored;
+  if (socket.parent_path() == kRuntimeFolder && !fs::exists(kRuntimeFolder, ignored))
+    return {Level::kOk, about, socket.string() + ": as a service; the unit makes " + kRuntimeFolder};
   std::string why = why_no_folder_for(socket);
   const fs::file_status status = fs::symlink_status(socket, ignored);
   if (fs::exists(status) && !fs::is_socket(status)) why = "a file that is no socket is in the way";

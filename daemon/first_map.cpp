@@ -34,8 +34,10 @@ std::string judged_size(const std::filesystem::path& file, const GridGeometry& g
   const std::string needs =
       file.string() + ": " + size_text(geometry) + " need about " + megabytes(needed) + " of memory, and there are ";
   if (!fits(needed, limit.most_bytes)) {
-    throw std::runtime_error(needs + megabytes(static_cast<double>(limit.most_bytes)) + " (" + limit.most_of +
-                             "): crop the map, make its cells larger, or give it more memory");
+    const std::string why = needs + megabytes(static_cast<double>(limit.most_bytes)) + " (" + limit.most_of +
+                            "): crop the map, make its cells larger, or give it more memory";
+    if (limit.may_rise) throw MemoryShortage(why);
+    throw std::runtime_error(why);
   }
   if (fits(needed, limit.high_bytes)) return {};
   return needs + megabytes(static_cast<double>(limit.high_bytes)) + " (" + limit.high_of + "): it will be slow";
@@ -61,7 +63,18 @@ FirstMap read_first_map(const std::filesystem::path& file, const MemoryLimit& li
     throw std::runtime_error(file.string() + ": has no free cell, nowhere could a robot be" +
                              (is_swapped ? ": are 'occupied_thresh' and 'free_thresh' swapped?" : ""));
   }
+  if (count_of(map.grid, CellState::kOccupied) == 0) {
+    map.warnings.push_back(file.string() + ": has no occupied cell, no beam can tell where the robot is");
+  }
   return map;
+}
+
+std::string why_not_as_service(const std::filesystem::path& file, const UnitMemory& unit) {
+  const double needed = bytes_needed(shown_cells(file));
+  if (needed <= static_cast<double>(unit.most_bytes)) return {};
+  return file.string() + ": needs about " + megabytes(needed) + " of memory, and the service may have " +
+         megabytes(static_cast<double>(unit.most_bytes)) + " (" + unit.of +
+         "): it would not start as a service; raise MemoryMax and MemoryHigh (sudo systemctl edit deltamap)";
 }
 
 std::string memory_text(const std::filesystem::path& file, const MemoryLimit& limit) {

@@ -3,13 +3,20 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
 #include "daemon/system/memory_limit.hpp"
+#include "daemon/system/unit_memory.hpp"
 
 namespace deltamap::daemon {
+
+/// The map does not fit into what is free on the machine now.
+struct MemoryShortage : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct FirstMap {
   OccupancyGrid grid;
@@ -17,8 +24,13 @@ struct FirstMap {
 };
 
 /// Throws std::runtime_error with one line that names the file: as read_grid() does, where the map needs more memory
-/// than there may be (before its pixels are kept, with both figures), or where it has no free cell.
+/// than there may be (before its pixels are kept, with both figures; MemoryShortage where it may fit another time), or
+/// where it has no free cell.
 [[nodiscard]] FirstMap read_first_map(const std::filesystem::path& file, const MemoryLimit& limit);
+
+/// Empty, or one line that names the file, where a run on that map does not fit into the service. Reads the picture row
+/// by row; throws as read_grid() does.
+[[nodiscard]] std::string why_not_as_service(const std::filesystem::path& file, const UnitMemory& unit);
 
 /// What a run on that map needs and what there may be: "about 27 MB of 128 MB (MemoryMax of /x), slow from 96 MB
 /// (MemoryHigh of /x)". Reads the picture row by row; throws as read_grid() does.

@@ -141,6 +141,8 @@ OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Conso
     FirstMap map = read_first_map(settings.map.file, memory_limit());
     for (const std::string& warning : map.warnings) console.log(LogLevel::kWarn, warning);
     return std::move(map.grid);
+  } catch (const MemoryShortage&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throw StartError(error.what());
   }

@@ -34,23 +34,28 @@ std::optional<std::uint64_t> available_bytes(const fs::path& root) {
   return std::nullopt;
 }
 
-void lower(std::uint64_t& bytes, std::string& of, const std::optional<std::uint64_t>& found, const std::string& whose) {
-  if (!found || *found >= bytes) return;
+/// Whether it has.
+bool lower(std::uint64_t& bytes, std::string& of, const std::optional<std::uint64_t>& found, const std::string& whose) {
+  if (!found || *found >= bytes) return false;
   bytes = *found;
   of = whose;
+  return true;
 }
 
 }  // namespace
 
 MemoryLimit memory_limit(const fs::path& root) {
   MemoryLimit limit;
-  lower(limit.most_bytes, limit.most_of, available_bytes(root), "free on this machine");
+  limit.may_rise = lower(limit.most_bytes, limit.most_of, available_bytes(root), "free on this machine");
   const auto own = cgroup_of_this(root);
   if (!own) return limit;
   for (fs::path group = *own;; group = group.parent_path()) {
     const fs::path folder = root / "sys/fs/cgroup" / group.relative_path();
-    lower(limit.most_bytes, limit.most_of, number_in(folder / "memory.max"), "MemoryMax of " + group.string());
-    lower(limit.high_bytes, limit.high_of, number_in(folder / "memory.high"), "MemoryHigh of " + group.string());
+    const std::string name = group.string();
+    if (lower(limit.most_bytes, limit.most_of, number_in(folder / "memory.max"), "MemoryMax of " + name)) {
+      limit.may_rise = false;
+    }
+    (void)lower(limit.high_bytes, limit.high_of, number_in(folder / "memory.high"), "MemoryHigh of " + name);
     if (!group.has_relative_path()) return limit;
   }
 }

@@ -11,6 +11,7 @@ namespace deltamap::daemon {
 struct MemoryLimit {
   std::uint64_t most_bytes = UINT64_MAX;  ///< beyond, it is ended
   std::string most_of{};                  ///< who says so: "MemoryMax of /system.slice/deltamap.service"
+  bool may_rise = false;                  ///< most_bytes is what is free now: another time it may be more
   std::uint64_t high_bytes = UINT64_MAX;  ///< beyond, it is slowed down
   std::string high_of{};                  ///< who says so
 };

@@ -139,6 +139,13 @@ TEST_F(CheckConfig, AStoreWhoseFolderCannotBeIsAnErrorWithTheCure) {
   EXPECT_THROW(make_state_folders(settings_, "robot.yaml"), SettingsError);
 }
 
+TEST_F(CheckConfig, TheUnitMakesTheFolderOfItsSockets) {
+  if (fs::exists("/run/deltamap")) GTEST_SKIP() << "it is there";
+  settings_.control.socket = "/run/deltamap/ctl.sock";
+  EXPECT_EQ(finding("control").level, Level::kOk);
+  EXPECT_EQ(finding("control").text, "/run/deltamap/ctl.sock: as a service; the unit makes /run/deltamap");
+}
+
 TEST_F(CheckConfig, AnOutFolderThatHoldsTheMapIsAnError) {
   settings_.map.file = folder_.path() / "map.yaml";
   write_grid(first_, settings_.map.file);

@@ -8,7 +8,9 @@
 
 #include "core/grid_file.hpp"
 #include "core/grid_file_facts.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -17,12 +19,13 @@ namespace fs = std::filesystem;
 
 class FirstMapTest : public testing::Test {
  protected:
-  /// All unknown but for free floor in the corner.
+  /// All unknown but for free floor in the corner, with one post on it.
   [[nodiscard]] OccupancyGrid map_of(int side, int free_side, double resolution_m = 0.05) const {
     OccupancyGrid grid{{side, side, resolution_m, {0.0, 0.0}}};
     for (int row = 0; row < free_side; ++row) {
       for (int column = 0; column < free_side; ++column) grid.set({column, row}, CellState::kFree);
     }
+    if (free_side > 0) grid.set({0, 0}, CellState::kOccupied);
     return grid;
   }
   [[nodiscard]] std::string complaint(const MemoryLimit& limit = {}) const {
@@ -107,10 +110,45 @@ TEST_F(FirstMapTest, SwappedThresholdsAreWarnedOf) {
 TEST_F(FirstMapTest, OneWithoutFloorIsRefusedByName) {
   write_grid(map_of(100, 0), file_);
   EXPECT_EQ(complaint(), file_.string() + ": has no free cell, nowhere could a robot be");
-  write(file_, "image: hall.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: -1\nfree_thresh: 0.65\n");
+  write(file_, "image: hall.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0\nfree_thresh: 0.65\n");
   EXPECT_EQ(complaint(),
             file_.string() +
                 ": has no free cell, nowhere could a robot be: are 'occupied_thresh' and 'free_thresh' swapped?");
+}
+
+TEST_F(FirstMapTest, OneWithoutWallsIsWarnedOf) {
+  write_grid(OccupancyGrid{{100, 100, 0.05, {0.0, 0.0}}, CellState::kFree}, file_);
+  EXPECT_EQ(read_first_map(file_, {}).warnings,
+            std::vector{file_.string() + ": has no occupied cell, no beam can tell where the robot is"});
+}
+
+TEST_F(FirstMapTest, WhatTheMachineHasTooLittleOfNowMayBeThereLater) {
+  write_grid(map_of(1000, 960), file_);
+  const MemoryLimit machine{.most_bytes = 20'000'000, .most_of = "free on this machine", .may_rise = true};
+  EXPECT_THROW((void)read_first_map(file_, machine), MemoryShortage);
+  MemoryLimit unit = machine;
+  unit.may_rise = false;
+  try {
+    (void)read_first_map(file_, unit);
+  } catch (const MemoryShortage&) {
+    FAIL() << "a unit's limit stays";
+  } catch (const std::runtime_error&) {
+  }
+}
+
+TEST_F(FirstMapTest, OneThatTheServiceHasNoMemoryForIsToldOutsideOfItToo) {
+  write_grid(map_of(1000, 960), file_);
+  EXPECT_EQ(why_not_as_service(file_, {28'000'000, "MemoryMax of x"}), "");
+  EXPECT_EQ(why_not_as_service(file_, {20'000'000, "MemoryMax of x"}),
+            file_.string() +
+                ": needs about 27 MB of memory, and the service may have 20 MB (MemoryMax of x): it would not start as "
+                "a service; raise MemoryMax and MemoryHigh (sudo systemctl edit deltamap)");
+  EXPECT_EQ(unit_memory_of("LoadState=loaded\nMemoryMax=200000000\n")->most_bytes, 200'000'000u);
+  EXPECT_FALSE(unit_memory_of("LoadState=loaded\nMemoryMax=infinity\n"));
+  EXPECT_FALSE(unit_memory_of("LoadState=loaded\nMemoryMax=18446744073709551615\n"));
+  const std::string unit = test::content_of(test::source_path("systemd/deltamap.service"));
+  EXPECT_NE(unit.find("\nMemoryMax=" + std::to_string(unit_memory_of("")->most_bytes >> 20) + "M\n"), std::string::npos)
+      << "what is told without a unit is what is delivered";
 }
 
 TEST_F(FirstMapTest, ACutOrEmptyPictureIsRefusedBeforeAnythingElse) {
@@ -127,6 +165,7 @@ TEST_F(FirstMapTest, TheLimitIsTheLowestOfMachineServiceAndWhatItLiesIn) {
   write(root / "proc/meminfo", "MemTotal:  2000000 kB\nMemAvailable:   1000000 kB\n");
   EXPECT_EQ(memory_limit(root).most_bytes, 1'024'000'000u);
   EXPECT_EQ(memory_limit(root).most_of, "free on this machine");
+  EXPECT_TRUE(memory_limit(root).may_rise);
   write(root / "proc/self/cgroup", "1:name=systemd:/\n0::/system.slice/deltamap.service\n");
   write(root / "sys/fs/cgroup/system.slice/deltamap.service/memory.max", "max\n");
   write(root / "sys/fs/cgroup/system.slice/deltamap.service/memory.high", "96000000\n");
@@ -134,6 +173,7 @@ TEST_F(FirstMapTest, TheLimitIsTheLowestOfMachineServiceAndWhatItLiesIn) {
   const MemoryLimit limit = memory_limit(root);
   EXPECT_EQ(limit.most_bytes, 128'000'000u);
   EXPECT_EQ(limit.most_of, "MemoryMax of /system.slice");
+  EXPECT_FALSE(limit.may_rise);
   EXPECT_EQ(limit.high_bytes, 96'000'000u);
   EXPECT_EQ(limit.high_of, "MemoryHigh of /system.slice/deltamap.service");
 }

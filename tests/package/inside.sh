@@ -77,6 +77,9 @@ holds "an unknown scenario is refused" test "$code" = 1
 holds "and the known ones are named" grep -q "^deltamap: hill: .*/usr/share/deltamap/scenarios has .*demo.*hall" sim.log
 runuser -u deltamap -- deltamapd --config /etc/deltamap/deltamap.yaml --check-config >check.log || fail "$(cat check.log)"
 holds "drive is off" grep -q '^ok *drive *off: it never moves the robot' check.log
+holds "the unit makes the folder of the socket" grep -q '^ok *control .*the unit makes /run/deltamap' check.log
+holds "devices are all that is missing" fails grep -qE '^warning *[^rl ]' check.log
+# As the unit does at each start.
 install -d -o deltamap -g deltamap -m 755 /run/deltamap
 runuser -u deltamap -- deltamapd --config /etc/deltamap/deltamap.yaml 2>daemon.log &
 for _ in $(seq 100); do [[ -S /run/deltamap/ctl.sock ]] && break; sleep 0.1; done
