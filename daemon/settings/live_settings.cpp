@@ -41,7 +41,7 @@ LiveSettings::Outcome LiveSettings::reload(const std::function<bool(const Settin
   try {
     merged = with_live_keys_of(read_(), in_force_);
   } catch (const SettingsError& error) {
-    lines = {"the settings stay as they are: the file has mistakes"};
+    lines = {"the settings stay as they are: the file cannot be taken"};
     lines.insert(lines.end(), error.lines().begin(), error.lines().end());
     return {false, lines};
   }

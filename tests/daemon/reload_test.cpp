@@ -63,7 +63,7 @@ TEST_F(ReloadTest, OfAFileWithAMistakeIsRefusedAndTheRobotDrivesOnAsBefore) {
     mistake_ = "robot.yaml:1:1: sede: unknown key";
     const Json reply = asked({Request::Kind::kReload, {}});
     EXPECT_EQ(reply["ok"], false);
-    EXPECT_EQ(reply["error"], "the settings stay as they are: the file has mistakes\n" + mistake_);
+    EXPECT_EQ(reply["error"], "the settings stay as they are: the file cannot be taken\n" + mistake_);
     EXPECT_EQ(exit_code({"reload"}), 1);
     const std::size_t from = ports.commands().size();
     EXPECT_TRUE(comes_true([&] { return fastest_sent(ports, from) > 10; }));

@@ -42,7 +42,7 @@ logs "reload: taken: navigation.safety.margin_m: 0.21 (before "
 reloads 0 "the settings are as they were"
 
 printf 'seed: x\nlazer: {port: a}\nnavigation: {safety: {margin_m: 0.5}}\n' >"$out/robot.yaml"
-reloads 1 "the settings stay as they are: the file has mistakes"
+reloads 1 "the settings stay as they are: the file cannot be taken"
 grep -qF "robot.yaml:1:7: seed: needs a whole number" "$out/reload.log" || fail "the first mistake is not told"
 grep -qF "robot.yaml:2:1: lazer: unknown section (nearest section laser)" "$out/reload.log" || fail "nor the second"
 kill -s HUP "$daemon"

@@ -29,6 +29,14 @@ std::string rounded(double value) {
   return {buffer, static_cast<std::size_t>(length)};
 }
 
+/// A whole number that no field could hold.
+bool is_longer_than_any(const SettingValue& value) {
+  if (value.kind != SettingValue::Kind::kScalar || value.quoted) return false;
+  const std::string& text = value.items.front();
+  const std::size_t digits = text.find_first_not_of("+-");
+  return digits <= 1 && text.find_first_not_of("0123456789", digits) == std::string::npos;
+}
+
 std::optional<double> number_in(const SettingValue& value) {
   if (value.kind != SettingValue::Kind::kScalar || value.quoted) return std::nullopt;
   const auto number = parsed<double>(value.items.front());
@@ -187,6 +195,9 @@ SettingKey whole_key(std::string name, std::function<std::int64_t()> read, std::
     const auto number = value.kind == SettingValue::Kind::kScalar && !value.quoted
                             ? parsed<std::int64_t>(value.items.front())
                             : std::nullopt;
+    if (!number && is_longer_than_any(value)) {
+      return "a whole number in its range (" + std::to_string(low) + " to " + std::to_string(high) + ")";
+    }
     if (!number) return "a whole number (" + limits + ")";
     if (*number < low || *number > high) return "a whole number in its range (" + limits + ")";
     write(*number);

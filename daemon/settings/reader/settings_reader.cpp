@@ -149,10 +149,21 @@ class Walk {
       }
     }
     read_.places[key.name] = place_of(node, named);
-    if (const auto needed = key.assign(value)) {
-      const std::string found = node.IsScalar() ? quoted(node.Scalar()) : node.IsNull() ? "nothing" : "a list";
-      add(key.name, node, named, "needs " + *needed + ", not " + found);
+    if (const auto needed = key.assign(value))
+      add(key.name, node, named, "needs " + *needed + ", not " + found(key, value));
+  }
+
+  /// What stands where `key` needs something else.
+  static std::string found(const SettingKey& key, const SettingValue& value) {
+    using Type = SettingKey::Type;
+    if (value.kind == SettingValue::Kind::kNull) return "nothing";
+    if (value.kind == SettingValue::Kind::kList) {
+      if (key.type != Type::kPose) return "a list";
+      if (value.items.size() != 3) return "a list of " + std::to_string(value.items.size());
+      return quoted("[" + value.items[0] + ", " + value.items[1] + ", " + value.items[2] + "]");
     }
+    const bool quotes_matter = value.quoted && key.type != Type::kText && key.type != Type::kWord;
+    return quoted(value.items.front()) + (quotes_matter ? " in quotes" : "");
   }
 
   void add_unknown(const std::string& path, const YAML::Node& key, bool has_keys_below) {
@@ -255,12 +266,22 @@ class PartReader {
       for (const LineRange& part : parts) read(path, part.first, part.last);
     }
     if (is_uneven || parts.empty() || (parts.size() == 1 && !read_below(path, parts.front()))) {
-      walk_.go_to_line(first);
-      walk_.add_text_problem(error->mark.line + 1, error->mark.column + 1, meaning_of(error->msg));
+      add(*error, first, last);
     }
   }
 
  private:
+  /// What is missing at the end is missing behind the last line that says something.
+  void add(const YAML::Exception& error, std::size_t first, std::size_t last) {
+    std::size_t end = last;
+    while (end > first + 1 && !lines_[end - 1].has_content) --end;
+    const std::size_t line = first + static_cast<std::size_t>(std::max(error.mark.line, 0));
+    const bool is_behind = line >= end;
+    walk_.go_to_line(is_behind ? end - 1 : line);
+    const int column = is_behind ? static_cast<int>(lines_[end - 1].text.size()) : error.mark.column;
+    walk_.add_text_problem(1, column + 1, meaning_of(error.msg));
+  }
+
   std::optional<YAML::Exception> read_together(const std::string& path, std::size_t first, std::size_t last) {
     try {
       const YAML::Node tree = only_tree_of(text_of(lines_, first, last));

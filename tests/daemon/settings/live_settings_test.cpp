@@ -66,7 +66,7 @@ TEST_F(LiveSettingsTest, AFileWithMistakesChangesNothingAndAllOfThemAreTold) {
   const auto outcome = live.reload(take_);
   EXPECT_FALSE(outcome.done);
   ASSERT_EQ(outcome.lines.size(), 3u);
-  EXPECT_EQ(outcome.lines[0], "the settings stay as they are: the file has mistakes");
+  EXPECT_EQ(outcome.lines[0], "the settings stay as they are: the file cannot be taken");
   EXPECT_NE(outcome.lines[1].find("f.yaml:1:1: sed: unknown key"), std::string::npos);
   EXPECT_NE(outcome.lines[2].find("f.yaml:2:55: navigation.safety.hidden_width_m: needs"), std::string::npos);
   EXPECT_TRUE(taken_.empty());

@@ -137,6 +137,8 @@ TEST(SettingsErrors, WhatIsNoYamlIsToldInTheWordsOfTheFile) {
             Lines{"f:2:14: not YAML: a backslash in double quotes: write it twice, or use single quotes"});
   EXPECT_EQ(errors_of("laser: {port: a\nseed: 1\n").size(), 1u);
   EXPECT_NE(errors_of("laser: {port: a\nseed: 1\n").front().find("a '{' is not closed"), std::string::npos);
+  EXPECT_EQ(errors_of("localization:\n  initial_pose: [1, 2\n\n# the end\n"),
+            Lines{"f:2:22: not YAML: a '[' is not closed"});
   EXPECT_EQ(errors_of("laser:\n  port: a\n baud: 9600\n"),
             Lines{"f:3:2: not YAML: this belongs to no key: look at the indentation of this line and of those above"});
   EXPECT_EQ(errors_of("map:\n  file: |\n    a\n"),

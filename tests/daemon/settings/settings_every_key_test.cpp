@@ -63,7 +63,7 @@ std::vector<BadValue> of_the_wrong_type(const SettingKey& key) {
   const auto word = [&bad](const std::string& text) { bad.push_back({text, "'" + text + "'"}); };
   if (key.type != Type::kText) {
     word("nonsense");
-    bad.push_back({"\"1\"", "'1'"});
+    bad.push_back({"\"1\"", key.type == Type::kWord ? "'1'" : "'1' in quotes"});
     word("2026-11-23");
   }
   if (key.type != Type::kText && key.type != Type::kNumber && key.type != Type::kWhole) word("1.25");
@@ -71,7 +71,7 @@ std::vector<BadValue> of_the_wrong_type(const SettingKey& key) {
     for (const char* text : {"true", "0x10", "1,5", ".inf", ".nan", "1e", "--1", "+-1", "1 m"}) word(text);
   }
   if (key.type == Type::kWhole) word("1.5");
-  if (key.type == Type::kPose) bad.push_back({"[1, 2]", "a list"});
+  if (key.type == Type::kPose) bad.push_back({"[1, 2]", "a list of 2"});
   if (key.type != Type::kPose) bad.push_back({"[1, 2, 3]", "a list"});
   return bad;
 }

@@ -74,11 +74,19 @@ TEST(Settings, AnIllTypedValueIsNamedWithWhatTheKeyNeeds) {
   EXPECT_EQ(error_of("laser:\n  max_range_m: far"),
             "robot.yaml:2:16: laser.max_range_m: needs a number (m, 0 to 90), not 'far'");
   EXPECT_EQ(error_of("seed: 1.5"), "robot.yaml:1:7: seed: needs a whole number (from 0), not '1.5'");
-  EXPECT_EQ(error_of("seed: \"1\""), "robot.yaml:1:7: seed: needs a whole number (from 0), not '1'");
+  EXPECT_EQ(error_of("seed: \"1\""), "robot.yaml:1:7: seed: needs a whole number (from 0), not '1' in quotes");
+  EXPECT_EQ(error_of("robot: {sonar: \"true\"}"),
+            "robot.yaml:1:16: robot.sonar: needs true or false, not 'true' in quotes");
+  EXPECT_EQ(error_of("seed: 12345678901234567890123"),
+            "robot.yaml:1:7: seed: needs a whole number in its range (0 to 9223372036854775807), not "
+            "'12345678901234567890123'");
   EXPECT_EQ(error_of("robot: {sonar: yes}"), "robot.yaml:1:16: robot.sonar: needs true or false, not 'yes'");
   EXPECT_EQ(error_of("laser: {units: inch}"), "robot.yaml:1:16: laser.units: needs one of cm | mm, not 'inch'");
   EXPECT_EQ(error_of("localization: {initial_pose: [1, 2]}"),
-            "robot.yaml:1:30: localization.initial_pose: needs [x m, y m, heading degrees] or null, not a list");
+            "robot.yaml:1:30: localization.initial_pose: needs [x m, y m, heading degrees] or null, not a list of 2");
+  EXPECT_EQ(
+      error_of("localization: {initial_pose: [1, 2, north]}"),
+      "robot.yaml:1:30: localization.initial_pose: needs [x m, y m, heading degrees] or null, not '[1, 2, north]'");
   EXPECT_EQ(error_of("laser: {port: [a]}"), "robot.yaml:1:15: laser.port: needs text (\"\" for none), not a list");
   EXPECT_EQ(error_of("laser: {max_range_m: .nan}"),
             "robot.yaml:1:22: laser.max_range_m: needs a number (m, 0 to 90), not '.nan'");
