@@ -5,12 +5,26 @@
 #include <exception>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
+#include "daemon/control/request.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/version.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
+namespace {
+
+/// Whoever reads the replies of the daemon as JSON reads what has kept them away the same way.
+void tell_in_json(int argc, const char* const* argv, const std::string& error) {
+  const auto is = [&](int at, std::string_view word) { return argv[at] == word; };
+  bool is_asked = false;
+  for (int at = 2; at < argc && is(1, "ctl"); ++at) is_asked = is_asked || is(at, "--json");
+  if (is_asked) std::cout << daemon::control::error_line(error) << std::endl;
+}
+
+}  // namespace
 
 int run_tool(int argc, const char* const* argv) {
   CLI::App app{"deltamap: keeps a robot localized in a map that follows the world", "deltamap"};
@@ -39,11 +53,14 @@ int run_tool(int argc, const char* const* argv) {
     app.parse(argc, argv);
     if (!std::cout.flush()) throw std::runtime_error("standard output: cannot be written");
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    const int code = app.exit(error) == 0 ? 0 : 2;
+    if (code != 0) tell_in_json(argc, argv, error.what());
+    return code;
   } catch (const daemon::SettingsError& error) {
     for (const std::string& problem : error.lines()) std::cerr << "deltamap: " << problem << '\n';
     return 2;
   } catch (const std::exception& error) {
+    tell_in_json(argc, argv, error.what());
     std::cerr << "deltamap: " << error.what() << '\n';
     return 1;
   }

@@ -13,7 +13,8 @@
 namespace deltamap::daemon::control {
 namespace {
 
-constexpr timeval kPatience{10, 0};  // longer than the daemon's own
+constexpr timeval kPatience{1,
+                            500'000};  // half a second more than the daemon's own, which answers whatever it is about
 
 struct Descriptor {
   int number = -1;
@@ -38,6 +39,7 @@ class Connection {
       (void)::setsockopt(descriptor_.number, SOL_SOCKET, patience, &kPatience, sizeof kPatience);
     }
     if (::connect(descriptor_.number, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
+    if (errno == EAGAIN) refuse("the daemon does not answer");
     if (errno == EACCES) refuse("forbidden (Permission denied): join the group of that socket");
     refuse(std::string("no daemon listens there (") + std::strerror(errno) + ")");
   }
@@ -57,7 +59,8 @@ class Connection {
     for (;;) {
       const ssize_t n = ::recv(descriptor_.number, bytes, sizeof bytes, 0);
       if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) refuse("the daemon gave no reply");
+      if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) refuse("the daemon does not answer");
+      if (n <= 0) refuse("the daemon hung up without a reply");
       text.append(bytes, static_cast<std::size_t>(n));
       if (const auto end = text.find('\n'); end != std::string::npos) return text.substr(0, end);
     }

@@ -50,10 +50,10 @@ Pose2 pose_of(const std::string& text) {
 
 void ask(const CtlOptions& options, const Request& request) {
   const DaemonReply reply = reply_to(request, options.socket);
-  if (options.as_json) std::cout << reply.line << '\n';
   if (!reply.ok) throw std::runtime_error(reply.words);
-  if (options.as_json) return;
-  if (request.kind == Kind::kStatus)
+  if (options.as_json)
+    std::cout << reply.line << '\n';
+  else if (request.kind == Kind::kStatus)
     std::cout << status_table(reply.line);
   else
     std::cout << reply.words << '\n';
@@ -122,7 +122,7 @@ void add_ctl(CLI::App& app) {
   auto options = std::make_shared<CtlOptions>();
   CLI::App& ctl = *app.add_subcommand("ctl", "talk to the running daemon")->require_subcommand(1)->fallthrough();
   ctl.add_option("--socket", options->socket, "the daemon's control.socket (default: /run/deltamap/ctl.sock)");
-  ctl.add_flag("--json", options->as_json, "print the daemon's reply");
+  ctl.add_flag("--json", options->as_json, "print the daemon's reply, or what has kept it away, as JSON");
   add_status_command(ctl, options);
   add_plain(ctl, options, "pause", Kind::kPause, "the map stays as it is; the localizer goes on");
   add_plain(ctl, options, "resume", Kind::kResume, "the map follows the world again");
