@@ -13,7 +13,6 @@ constexpr std::array<std::string_view, 5> kEachForItself{
     "ctl: ", "map changed: ", "map unchanged: ", "reload: ", "pose proved wrong: "};
 
 bool stands_for_itself(const LeveledLine& line) {
-  if (line.level == LogLevel::kError) return true;
   return std::any_of(kEachForItself.begin(), kEachForItself.end(),
                      [&](std::string_view begin) { return line.text.starts_with(begin); });
 }

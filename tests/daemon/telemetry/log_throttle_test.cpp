@@ -63,8 +63,15 @@ TEST(LogThrottle, HoldsNothingBackThatStandsForItself) {
     LogThrottle throttle;
     for (int i = 0; i < 5; ++i) EXPECT_TRUE(throttle.take({LogLevel::kInfo, line}, at(i))) << line;
   }
+}
+
+TEST(LogThrottle, WritesAnErrorAtOnceAndThenOnceAMinuteWithTheCount) {
   LogThrottle throttle;
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(throttle.take({LogLevel::kError, "map: disk image is malformed"}, at(i)));
+  const LeveledLine stuck{LogLevel::kError, "watchdog is not fed: stage=map does not move"};
+  EXPECT_EQ(throttle.take(stuck, at(0)), stuck);
+  for (int second = 1; second < 60; ++second) EXPECT_FALSE(throttle.take(stuck, at(second)));
+  EXPECT_EQ(throttle.due(at(60)),
+            (Lines{{LogLevel::kError, stuck.text + " (1 s ago; such lines since the last: 59)"}}));
 }
 
 TEST(LogThrottle, OfAMonthIsNoLargerThanOfAMinute) {
