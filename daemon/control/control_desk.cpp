@@ -60,18 +60,21 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
     case Request::Kind::kLogLevel:
       return reply(with_log_level(request.log_level));
     case Request::Kind::kRelocalize:
-      if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position())))
-        return reply(error_line("that pose lies outside the map"));
+      if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position()))) {
+        return refuse(request, "that pose lies outside the map", reply);
+      }
       return command(Command::Kind::kRelocalize, request, std::move(reply));
   }
 }
 
+/// What was logged before gets its outcome.
+void ControlDesk::refuse(const Request& request, const std::string& why, const control::Server::Reply& reply) {
+  wiring_.log("ctl: " + control::words_of(request) + ": " + why);
+  reply(error_line(why));
+}
+
 double ControlDesk::silence_s() {
-  const std::int64_t now_ns = unix_ns(drivers::port::port_clock_now());
-  if (const std::int64_t asked_ns = asked_ns_; asked_ns != 0) return seconds(Duration{now_ns - asked_ns});
-  asked_ns_ = now_ns;
-  server_.post([this] { asked_ns_ = 0; });
-  return 0.0;
+  return pulse_.silence_s([this](auto work) { server_.post(std::move(work)); });
 }
 
 void ControlDesk::ask(std::string line, control::Server::Reply reply) {
@@ -84,7 +87,7 @@ void ControlDesk::ask(std::string line, control::Server::Reply reply) {
 
 void ControlDesk::drive(bool may_drive, const Request& request, control::Server::Reply reply) {
   if (may_drive && settings_.navigation.mode != navigation::DriveMode::kWander) {
-    return reply(error_line("'navigation.mode' is not wander: this daemon never drives"));
+    return refuse(request, "'navigation.mode' is not wander: this daemon never drives", reply);
   }
   const std::uint64_t ticket = next_ticket_++;
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
@@ -93,7 +96,7 @@ void ControlDesk::drive(bool may_drive, const Request& request, control::Server:
 
 void ControlDesk::record(bool goes_on, const Request& request, control::Server::Reply reply) {
   const std::uint64_t ticket = next_ticket_++;
-  if (!wiring_.record(goes_on, ticket)) return reply(error_line("the disk is too slow: try again"));
+  if (!wiring_.record(goes_on, ticket)) return refuse(request, "the disk is too slow: try again", reply);
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
 }
 
@@ -112,7 +115,7 @@ std::string ControlDesk::with_log_level(LogLevel level) const {
 void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
   const std::uint64_t ticket = next_ticket_++;
   if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, request.revision, ticket})) {
-    return reply(error_line("too many commands wait already"));
+    return refuse(request, "too many commands wait already", reply);
   }
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
 }

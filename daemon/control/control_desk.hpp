@@ -3,7 +3,6 @@
 // sent to the localization thread, which takes it before its next scan; who drives is the io thread's.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -17,6 +16,7 @@
 #include "daemon/control/server.hpp"
 #include "daemon/settings/live_settings.hpp"
 #include "daemon/settings/settings.hpp"
+#include "daemon/telemetry/loop_pulse.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 
 namespace deltamap::daemon::control {
@@ -53,6 +53,7 @@ class ControlDesk {
     control::Server::Reply reply;
   };
   void answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply);
+  void refuse(const control::Request& request, const std::string& why, const control::Server::Reply& reply);
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
   void record(bool goes_on, const control::Request& request, control::Server::Reply reply);
   [[nodiscard]] std::string reloaded() const;
@@ -64,8 +65,8 @@ class ControlDesk {
   Timestamp began_;
   std::uint64_t next_ticket_ = 1;
   std::map<std::uint64_t, Waiting> waiting_;  // by ticket
-  std::atomic<std::int64_t> asked_ns_{0};     // Unix; 0: the control thread has answered whoever watches
-  control::Server server_;                    // last: its handler uses the others
+  LoopPulse pulse_;
+  control::Server server_;  // last: its handler uses the others
 };
 
 /// Null where the settings name no socket, or it cannot be had: a daemon that cannot be commanded still does its work,

@@ -5,11 +5,13 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "core/channel.hpp"
 #include "daemon/live/pose_line.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/sockets/line_stream.hpp"
+#include "daemon/telemetry/loop_pulse.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 
 namespace deltamap::daemon {
@@ -25,6 +27,10 @@ class PoseStream {
   /// The thread's work, until stop().
   void run() { lines_.run(); }
   void stop() { lines_.stop(); }
+  /// Any one thread, now and then: for how long the stream's thread owes an answer.
+  [[nodiscard]] double silence_s() {
+    return pulse_.silence_s([this](auto work) { lines_.post(std::move(work)); });
+  }
 
  private:
   [[nodiscard]] std::optional<mapping::gate::GateReason> gate() const;
@@ -32,6 +38,7 @@ class PoseStream {
   bool mapping_enabled_;
   const Telemetry& telemetry_;
   Channel<PoseNews> news_{64};
+  LoopPulse pulse_;
   sockets::LineStream lines_;  // last: it takes from the channel
 };
 

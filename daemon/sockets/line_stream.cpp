@@ -178,4 +178,6 @@ void LineStream::stop() {
   asio::post(state_->loop, [this] { state_->close(); });
 }
 
+void LineStream::post(std::function<void()> work) { asio::post(state_->loop, std::move(work)); }
+
 }  // namespace deltamap::daemon::sockets

@@ -43,6 +43,8 @@ class LineStream {
   void run();
   /// Any thread.
   void stop();
+  /// Any thread: done in the stream's thread.
+  void post(std::function<void()> work);
 
  private:
   struct State;

@@ -44,7 +44,7 @@ def main():
         world = ROOT / "config/scenarios/demo.yaml"
         subprocess.run([bin_folder / "deltamap", "sim", "--world", world, "--write-map", place / "m0.yaml"], check=True, capture_output=True)
         port = free_port()
-        own = {"robot.port": place / "none", "laser.port": place / "none", "map.file": place / "m0.yaml", "map.store": place / "store.sqlite",
+        own = {"robot.port": place / "no_robot", "laser.port": place / "no_laser", "map.file": place / "m0.yaml", "map.store": place / "store.sqlite",
                "control.socket": place / "ctl.sock", "dashboard.port": port}
         command = [bin_folder / "deltamapd", "--config", ROOT / "config/simulation.yaml"]
         for key, value in own.items():

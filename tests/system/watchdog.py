@@ -5,7 +5,7 @@ name the stage, and both must end when the thread goes on. usage: watchdog.py FO
 import concurrent.futures, ctypes, os, pathlib, re, signal, socket, subprocess, sys, tempfile, time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-STUCK_S = {"io": 10, "localization": 10, "delta": 10, "control": 10, "map": 100, "recorder": 100}
+STUCK_S = {"io": 10, "localization": 10, "delta": 10, "control": 10, "poses": 10, "map": 100, "recorder": 100}
 SLACK_S = 4.0      # a look a second, and a machine that has other things to do
 STARVED_S = 16.0   # WatchdogSec of the unit, and a second
 SEIZE, INTERRUPT, DETACH, ALL_CHILDREN = 0x4206, 0x4207, 17, 0x40000000
@@ -23,8 +23,8 @@ class Daemon:
         self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.notify.bind(str(folder / "notify"))
         self.log = folder / "daemon.log"
-        settings = {"robot.port": folder / "none", "laser.port": folder / "none", "map.file": first_map, "map.store": folder / "store.sqlite",
-                    "recording.file": folder / "bytes.pcapng", "control.socket": folder / "ctl.sock"}
+        settings = {"robot.port": folder / "no_robot", "laser.port": folder / "no_laser", "map.file": first_map, "map.store": folder / "store.sqlite",
+                    "recording.file": folder / "bytes.pcapng", "control.socket": folder / "ctl.sock", "poses.socket": folder / "poses.sock"}
         options = [part for key, value in settings.items() for part in ("--set", "%s=%s" % (key, value))]
         environment = dict(os.environ, NOTIFY_SOCKET=str(folder / "notify"), WATCHDOG_USEC="15000000")
         environment.pop("WATCHDOG_PID", None)
