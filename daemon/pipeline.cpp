@@ -2,6 +2,7 @@
 #include "daemon/pipeline.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/channel.hpp"
 #include "core/file_lock.hpp"
@@ -81,6 +82,7 @@ struct Pipeline::State {
   void write_report(const RunReport& report) const;
 
   double wall_began_s = 0.0;
+  std::atomic<bool> has_poses_ended{false};  // it has failed, which ends nothing else
   std::unique_ptr<Stage> io_thread, localization_thread, delta_thread, map_thread, recorder_thread, control_thread,
       page_thread, poses_thread;
   bool ended = false;
@@ -128,6 +130,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
           .recorder = recorder.from_io(),
           .telemetry = telemetry,
           .log = options.log,
+          .warn = options.warn,
           .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}},
       localization{settings,
                    options.start,
@@ -155,6 +158,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
              .recorder = recorder.from_awareness(),
              .telemetry = telemetry,
              .log = options.log,
+             .warn = options.warn,
              .show = [this](const auto& newest) { return page && page->board().show(newest); },
              .shows_scans = [this] { return page && page->board().is_watched(); },
              .show_scans = [this](mapping::StoredScans stored) { page->board().show(std::move(stored)); }}},
@@ -201,7 +205,10 @@ Pipeline::State::State(const Settings& given, Options wanted)
                  recorder_thread.get(), page_thread.get()});
   }
   if (poses) {
-    const auto without_poses = [this](const std::string& why) { options.warn("no stream of poses any more: " + why); };
+    const auto without_poses = [this](const std::string& why) {
+      has_poses_ended = true;
+      options.warn("no stream of poses any more: " + why);
+    };
     poses_thread = std::make_unique<Stage>(
         Stage::Options{"poses", 0}, [this] { poses->run(); }, without_poses);
   }
@@ -302,7 +309,8 @@ Pipeline::Silence Pipeline::longest_silence() const {
   return std::max({Silence{"io", s.io.silence_s()}, Silence{"localization", s.localization.pulse().silence_s()},
                    Silence{"delta", s.delta.pulse().silence_s()}, Silence{"map", s.map.pulse().silence_s() / kPatience},
                    Silence{"recorder", s.recorder.pulse().silence_s() / kPatience},
-                   Silence{"control", s.control ? s.control->silence_s() : 0.0}},
+                   Silence{"control", s.control ? s.control->silence_s() : 0.0},
+                   Silence{"poses", s.poses && !s.has_poses_ended ? s.poses->silence_s() : 0.0}},
                   [](const Silence& one, const Silence& other) { return one.silence_s < other.silence_s; });
 }
 

@@ -78,8 +78,8 @@ void DeltaStage::offer_transients() {
 void DeltaStage::tell_of_gate() {
   const mapping::Awareness& awareness = store_scan_.awareness();
   wiring_.telemetry.gate.set(awareness.gate, awareness.gate_times);
-  const std::string line = gate_watch_.observe(awareness);
-  if (!line.empty()) wiring_.log(line);
+  const LogLine line = gate_watch_.observe(awareness);
+  if (!line.text.empty()) (line.is_warning ? wiring_.warn : wiring_.log)(line.text);
 }
 
 /// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an

@@ -28,7 +28,9 @@ class DeltaStage {
     Channel<std::shared_ptr<const TransientObstacles>>& transients;
     RecorderInput& recorder;
     Telemetry& telemetry;
-    std::function<void(const std::string&)> log;  ///< a short line
+    // A short line each; warn: the map is not written.
+    std::function<void(const std::string&)> log;
+    std::function<void(const std::string&)> warn;
     /// For the live page. False: refused, it is shown again at the next scan.
     std::function<bool(const std::shared_ptr<const TransientObstacles>&)> show;
     std::function<bool()> shows_scans;                     ///< for the live page: somebody looks at the next

@@ -31,10 +31,12 @@ class DeviceLink {
  public:
   struct Hooks {
     PortOpener open;
-    drivers::port::RecordSink record;             ///< every chunk and note
-    std::function<void(Output&)> on_messages;     ///< what the session decoded
-    std::function<void()> on_lost;                ///< the port has failed or could not be opened
-    std::function<void(const std::string&)> log;  ///< a short line
+    drivers::port::RecordSink record;          ///< every chunk and note
+    std::function<void(Output&)> on_messages;  ///< what the session decoded
+    std::function<void()> on_lost;             ///< the port has failed or could not be opened
+    // A short line each.
+    std::function<void(const std::string&)> log;
+    std::function<void(const std::string&)> warn;  ///< the device is gone, or cannot be had
   };
 
   DeviceLink(boost::asio::io_context& loop, drivers::port::PortId id, Session session, Hooks hooks)
@@ -153,7 +155,7 @@ class DeviceLink {
     if (closed_) return;
     hooks_.on_lost();
     const auto pause = reconnect_.failed(reason, drivers::port::port_clock_now());
-    if (pause.log) log(*pause.log);
+    if (pause.log) hooks_.warn(named(*pause.log));
     retry_timer_.expires_after(std::max(Duration{0}, pause.try_again_at - drivers::port::port_clock_now()));
     retry_timer_.async_wait([this](const boost::system::error_code& error) {
       if (error || closed_) return;
@@ -162,10 +164,12 @@ class DeviceLink {
     });
   }
 
+  void log(const std::string& line) { hooks_.log(named(line)); }
+
   // Sessions name their device at the beginning of most lines.
-  void log(const std::string& line) {
+  [[nodiscard]] std::string named(const std::string& line) const {
     const std::string name{name_of(id_)};
-    hooks_.log(line.starts_with(name + " ") ? line : name + ": " + line);
+    return line.starts_with(name + " ") ? line : name + ": " + line;
   }
 
   boost::asio::io_context& loop_;

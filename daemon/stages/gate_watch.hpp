@@ -2,16 +2,15 @@
 // Says in the log when the write gate has been shut for a minute, and when it is open again after that.
 #pragma once
 
-#include <string>
-
+#include "daemon/telemetry/log_line.hpp"
 #include "mapping/store_scan.hpp"
 
 namespace deltamap::daemon {
 
 class GateWatch {
  public:
-  /// After each scan: a line for the log, empty where there is nothing to say.
-  [[nodiscard]] std::string observe(const mapping::Awareness& awareness);
+  /// After each scan: a line for the log, a warning that the gate is shut; empty where there is nothing to say.
+  [[nodiscard]] LogLine observe(const mapping::Awareness& awareness);
 
  private:
   bool said_ = false;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/stages/io_stage.hpp"
 
-#include <atomic>
 #include <boost/asio/post.hpp>
 #include <chrono>
 
 #include "daemon/kept/kept_drive.hpp"
+#include "daemon/telemetry/loop_pulse.hpp"
 #include "daemon/telemetry/stop_log.hpp"
 
 namespace deltamap::daemon {
@@ -62,13 +62,13 @@ struct IoStage::State {
               PortId::kRobot,
               PioneerSession{robot_params(settings, kept), wiring.mode},
               {opener(settings), recorder(), [this](PioneerOutput& out) { take(out); },
-               [this] { wiring.telemetry.robot_up.set(false); }, wiring.log}},
+               [this] { wiring.telemetry.robot_up.set(false); }, wiring.log, wiring.warn}},
         laser{loop,
               PortId::kLaser,
               Lms200Session{settings.laser.session, wiring.mode},
               {opener(settings), recorder(), [this](Lms200Output& out) { take(out); },
-               [this] { wiring.telemetry.laser_up.set(false); }, wiring.log}} {
-    if (drives && !kept.why_unknown().empty()) wiring.log(kept.why_unknown());
+               [this] { wiring.telemetry.laser_up.set(false); }, wiring.log, wiring.warn}} {
+    if (drives && !kept.why_unknown().empty()) wiring.warn(kept.why_unknown());
     obey_permission();
   }
 
@@ -82,6 +82,9 @@ struct IoStage::State {
     };
   }
 
+  /// A session whose port is gone still holds what it knew.
+  [[nodiscard]] bool robot_is_connected() const { return robot.is_open() && robot.session().is_connected(); }
+
   void take(PioneerOutput& out) {
     Telemetry& telemetry = wiring.telemetry;
     if (!out.odometry.empty()) robot_heard_at = drivers::port::port_clock_now();
@@ -94,7 +97,7 @@ struct IoStage::State {
       telemetry.odometry_lost.add(1);
       note({Decision::Kind::kOdometryLost, 0, number});
     }
-    const bool up = robot.session().is_connected();
+    const bool up = robot_is_connected();
     if (up && !telemetry.robot_up.value()) robot.tell_connected();
     telemetry.robot_up.set(up);
     obey_permission();
@@ -114,7 +117,7 @@ struct IoStage::State {
                            ? drivers::pioneer::DriveSwitch::kOffByOperator
                            : switch_to_keep(robot.session().permission().drive_switch(), safety.waits_for());
     const std::string line = kept.keep(value, drivers::port::port_clock_now());
-    if (!line.empty()) wiring.log(line);
+    if (!line.empty()) (kept.why_not_kept().empty() ? wiring.log : wiring.warn)(line);
   }
 
   void take(Lms200Output& out) {
@@ -128,7 +131,7 @@ struct IoStage::State {
       telemetry.scans_lost.add(1);
       note({Decision::Kind::kScanLost, number, 0});
     }
-    const bool up = laser.session().is_streaming();
+    const bool up = laser.is_open() && laser.session().is_streaming();
     if (up && !telemetry.laser_up.value()) {
       laser.tell_connected();
       safety.set_nominal_scan_period(laser.session().nominal_period_s());
@@ -151,7 +154,7 @@ struct IoStage::State {
   }
 
   void send_allowed_motion() {
-    if (!robot.is_open() || !robot.session().is_connected()) return;
+    if (!robot_is_connected()) return;
     const Timestamp now = drivers::port::port_clock_now();
     if (in_hand_of != 0 && seconds(now - hand_moved) > kHandLife_s) safety.release();
     const auto limits = robot.session().stopping_limits();
@@ -159,7 +162,9 @@ struct IoStage::State {
         {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
     const navigation::AllowedMotion motion = safety.allowed(now);
     wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(motion.stop));
-    if (const auto line = stop_log.line(motion.stop)) wiring.log(*line);
+    if (const LogLine line = stop_log.line(motion.stop); !line.text.empty()) {
+      (line.is_warning ? wiring.warn : wiring.log)(line.text);
+    }
     wiring.telemetry.told_speed_m_per_s.set(motion.brake_hard ? 0.0 : motion.speed_m_per_s);
     wiring.telemetry.told_turn_rate_rad_per_s.set(motion.brake_hard ? 0.0 : motion.turn_rate_rad_per_s);
     if (motion.brake_hard) return robot.handle(robot.session().emergency_stop(now));
@@ -226,7 +231,7 @@ struct IoStage::State {
   }
 
   [[nodiscard]] std::string when_it_drives() const {
-    if (!robot.session().is_connected()) return "wanders once the robot is connected";
+    if (!robot_is_connected()) return "wanders once the robot is connected";
     if (!robot.session().stopping_limits().watchdog_s) return "wanders once the robot has told its watchdog";
     return "wanders from the next scan on";
   }
@@ -234,7 +239,7 @@ struct IoStage::State {
   control::CommandOutcome switch_off(std::uint64_t ticket, Timestamp now) {
     robot.handle(robot.session().switch_drive(false, now));
     if (drives) send_allowed_motion();
-    const bool is_told = !drives || (robot.session().is_connected() && now - robot_heard_at < kRobotSilence);
+    const bool is_told = !drives || (robot_is_connected() && now - robot_heard_at < kRobotSilence);
     const std::string told = is_told
                                  ? "the robot is told to stand"
                                  : "the robot cannot be told now: what moves goes on until its watchdog; press STOP";
@@ -264,7 +269,7 @@ struct IoStage::State {
   }
 
   asio::io_context loop{1};
-  std::atomic<std::int64_t> asked_ns{0};  // port clock; 0: the loop owes no answer
+  LoopPulse pulse;
   Wiring wiring;
   bool drives;                   // by the settings
   std::uint64_t in_hand_of = 0;  // nobody else's commands are listened to; 0: in nobody's
@@ -325,13 +330,7 @@ void IoStage::set_safety(const navigation::SafetyParams& params) {
 }
 
 double IoStage::silence_s() const {
-  const std::int64_t now_ns = unix_ns(drivers::port::port_clock_now());
-  if (const std::int64_t asked_ns = state_->asked_ns; asked_ns != 0) {
-    return seconds(Duration{now_ns - asked_ns});
-  }
-  state_->asked_ns = now_ns;
-  asio::post(state_->loop, [state = state_.get()] { state->asked_ns = 0; });
-  return 0.0;
+  return state_->pulse.silence_s([this](auto work) { asio::post(state_->loop, std::move(work)); });
 }
 
 std::map<std::string, std::uint64_t> IoStage::counts() const {

@@ -24,7 +24,9 @@ class IoStage {
     Channel<SensorMessage>& sensors;
     RecorderInput& recorder;
     Telemetry& telemetry;
+    // A short line each; warn: something is degraded, or needs a person.
     std::function<void(const std::string&)> log;
+    std::function<void(const std::string&)> warn;
     std::function<void(const control::CommandOutcome&)> answer{};  ///< to an operator who said who drives; may be empty
   };
   IoStage(const Settings& settings, Wiring wiring);

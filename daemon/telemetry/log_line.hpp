@@ -9,6 +9,7 @@ namespace deltamap::daemon {
 struct LogLine {
   std::string text;         ///< empty: nothing to say
   bool is_warning = false;  ///< what is degraded, or needs a person
+  friend bool operator==(const LogLine&, const LogLine&) = default;
 };
 
 }  // namespace deltamap::daemon

@@ -3,27 +3,28 @@
 // times a second, it answers once.
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "daemon/telemetry/log_line.hpp"
 #include "navigation/stop_reason.hpp"
 
 namespace deltamap::daemon {
 
 class StopLog {
  public:
-  /// The line that is due now that this is the reason.
-  [[nodiscard]] std::optional<std::string> line(navigation::StopReason reason) {
+  /// The line that is due now that this is the reason; a warning where driving ends.
+  [[nodiscard]] LogLine line(navigation::StopReason reason) {
     using navigation::StopReason;
     const bool drives = reason == StopReason::kNone || reason == StopReason::kObstacle;
     if (drives && told_ != StopReason::kNone) {
       told_ = StopReason::kNone;
-      return "driving goes on";
+      return {"driving goes on"};
     }
-    if (!is_told(reason) || reason == told_) return std::nullopt;
+    if (!is_told(reason) || reason == told_) return {};
     told_ = reason;
-    return "driving stops: " + std::string(name_of(reason)) +
-           (waits_for_person(reason) ? "; waits until it is over and a person says drive" : "; until it is over");
+    const char* until =
+        waits_for_person(reason) ? "; waits until it is over and a person says drive" : "; until it is over";
+    return {"driving stops: " + std::string(name_of(reason)) + until, true};
   }
 
  private:

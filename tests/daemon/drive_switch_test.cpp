@@ -79,6 +79,17 @@ TEST_F(DriveTest, ARobotThatDoesNotTellItsWatchdogIsRefused) {
       prepare);
 }
 
+TEST_F(DriveTest, AWordToAMissingRobotDoesNotMakeItPresent) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  run([&](test::SimulatedPorts& ports) {
+    ASSERT_TRUE(comes_true([&] { return status()["ports"]["robot"] == "up"; }));
+    ports.unplug_robot();
+    ASSERT_TRUE(comes_true([&] { return status()["ports"]["robot"] == "down"; }));
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["message"], "wanders once the robot is connected");
+    EXPECT_EQ(status()["ports"]["robot"], "down");
+  });
+}
+
 TEST_F(DriveTest, ARefusedWanderDoesNotSwitchOn) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   settings_.navigation.safety.low_battery_s = 0.2;

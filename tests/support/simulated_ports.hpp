@@ -37,10 +37,13 @@ class SimulatedPorts {
       timer_.emplace(loop);
       tick();
     }
+    if (id == PortId::kRobot && is_robot_unplugged_) return {nullptr, "robot is missing"};
     return {std::make_unique<Port>(*this, id, baud), ""};
   }
   /// The robot tells a battery of 10 V from now on. Any thread.
   void drain_battery() { is_drained_ = true; }
+  /// The robot's port hangs up, and is missing from now on. Any thread.
+  void unplug_robot() { is_robot_unplugged_ = true; }
   /// Whether the robot hears what it is asked about its configuration. Any thread.
   void hear_config(bool hears) { hears_config_ = hears; }
   /// In the io thread's last moments, or after it: nothing comes any more.
@@ -110,6 +113,10 @@ class SimulatedPorts {
         const drivers::pioneer::Command fake{drivers::pioneer::CommandNumber::kBatTest, 100};
         simulation_.send_to_robot(drivers::pioneer::encoded_command(fake), baud(PortId::kRobot));
       }
+      if (const auto hang_up = handlers(PortId::kRobot).on_closed; hang_up && is_robot_unplugged_) {
+        handlers(PortId::kRobot) = {};
+        hang_up("the device hung up");
+      }
       for (const PortId id : {PortId::kRobot, PortId::kLaser}) {
         if (!handlers(id).on_bytes) continue;
         const auto bytes = fetch(id);
@@ -122,6 +129,7 @@ class SimulatedPorts {
 
   simulation::Simulation simulation_;
   std::atomic<bool> is_drained_ = false;
+  std::atomic<bool> is_robot_unplugged_ = false;
   std::atomic<bool> hears_config_ = true;
   std::optional<boost::asio::steady_timer> timer_;
   drivers::port::PortHandlers handlers_[2];

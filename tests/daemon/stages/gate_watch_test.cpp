@@ -15,19 +15,19 @@ mapping::Awareness shut(double for_s) {
 
 TEST(GateWatch, SpeaksOnceAfterAMinuteAndWhenItIsOpenAgain) {
   GateWatch watch;
-  EXPECT_EQ(watch.observe({}), "");
-  EXPECT_EQ(watch.observe(shut(59.0)), "");
-  EXPECT_EQ(watch.observe(shut(60.0)), "map is not written: the gate is shut for 60 s reason=rival");
-  EXPECT_EQ(watch.observe(shut(90.0)), "");
-  EXPECT_EQ(watch.observe({}), "map is written again: the gate was shut for 90 s");
-  EXPECT_EQ(watch.observe({}), "");
+  EXPECT_EQ(watch.observe({}), LogLine{});
+  EXPECT_EQ(watch.observe(shut(59.0)), LogLine{});
+  EXPECT_EQ(watch.observe(shut(60.0)), (LogLine{"map is not written: the gate is shut for 60 s reason=rival", true}));
+  EXPECT_EQ(watch.observe(shut(90.0)), LogLine{});
+  EXPECT_EQ(watch.observe({}), LogLine{"map is written again: the gate was shut for 90 s"});
+  EXPECT_EQ(watch.observe({}), LogLine{});
 }
 
 TEST(GateWatch, KeepsSilentAboutMoments) {
   GateWatch watch;
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(watch.observe(shut(2.0)), "");
-    EXPECT_EQ(watch.observe({}), "");
+    EXPECT_EQ(watch.observe(shut(2.0)), LogLine{});
+    EXPECT_EQ(watch.observe({}), LogLine{});
   }
 }
 

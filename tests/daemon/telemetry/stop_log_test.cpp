@@ -10,29 +10,30 @@ using navigation::StopReason;
 
 TEST(StopLog, TellsOnceThatDrivingStopsAndOnceThatItGoesOn) {
   StopLog log;
-  EXPECT_EQ(log.line(StopReason::kNone), std::nullopt);
-  EXPECT_EQ(log.line(StopReason::kBumper), "driving stops: bumper; waits until it is over and a person says drive");
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(log.line(StopReason::kBumper), std::nullopt);
-  EXPECT_EQ(log.line(StopReason::kNone), "driving goes on");
-  EXPECT_EQ(log.line(StopReason::kNone), std::nullopt);
-  EXPECT_EQ(log.line(StopReason::kLost), "driving stops: lost; until it is over");
+  EXPECT_EQ(log.line(StopReason::kNone), LogLine{});
+  EXPECT_EQ(log.line(StopReason::kBumper),
+            (LogLine{"driving stops: bumper; waits until it is over and a person says drive", true}));
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(log.line(StopReason::kBumper), LogLine{});
+  EXPECT_EQ(log.line(StopReason::kNone), LogLine{"driving goes on"});
+  EXPECT_EQ(log.line(StopReason::kNone), LogLine{});
+  EXPECT_EQ(log.line(StopReason::kLost), (LogLine{"driving stops: lost; until it is over", true}));
 }
 
 TEST(StopLog, TellsEachReasonThatFollowsAnother) {
   StopLog log;
-  EXPECT_TRUE(log.line(StopReason::kLost).has_value());
-  EXPECT_TRUE(log.line(StopReason::kLowBattery).has_value());
+  EXPECT_NE(log.line(StopReason::kLost), LogLine{});
+  EXPECT_NE(log.line(StopReason::kLowBattery), LogLine{});
 }
 
 TEST(StopLog, IsNotStirredByWhatDrivingBringsWithIt) {
   StopLog log;
   for (const StopReason reason : {StopReason::kNoCommand, StopReason::kObstacle, StopReason::kCommandExpired,
                                   StopReason::kMotorsOff, StopReason::kStopButton, StopReason::kNone}) {
-    EXPECT_EQ(log.line(reason), std::nullopt) << name_of(reason);
+    EXPECT_EQ(log.line(reason), LogLine{}) << name_of(reason);
   }
-  EXPECT_TRUE(log.line(StopReason::kPoseUnknown).has_value());
-  EXPECT_EQ(log.line(StopReason::kCommandExpired), std::nullopt);
-  EXPECT_EQ(log.line(StopReason::kPoseUnknown), std::nullopt) << "still the same";
+  EXPECT_NE(log.line(StopReason::kPoseUnknown), LogLine{});
+  EXPECT_EQ(log.line(StopReason::kCommandExpired), LogLine{});
+  EXPECT_EQ(log.line(StopReason::kPoseUnknown), LogLine{}) << "still the same";
 }
 
 }  // namespace
