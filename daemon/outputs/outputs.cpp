@@ -80,6 +80,7 @@ std::string json_text(const RunReport& report, const Settings& settings) {
   json["latency_ms"] = {{"of", report.latency_of},
                         {"p50", milliseconds(report.latency.quantile_s(0.5))},
                         {"p99", milliseconds(report.latency.quantile_s(0.99))},
+                        {"p999", milliseconds(report.latency.quantile_s(0.999))},
                         {"max", milliseconds(report.latency.max_s())}};
   if (!report.journal.empty()) {
     json["journal"] = {

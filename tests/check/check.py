@@ -135,8 +135,8 @@ def check_demo(table, seeds, seconds):
         table.add(on, "localization error, median, m", round(error["median_m"], 4), "≤ 0.06", error["median_m"] <= 0.06)
         table.add(on, "localization error, worst, m", round(error["max_m"], 3), "≤ 0.5", error["max_m"] <= 0.5)
         report = json.loads((folder / "run/report.json").read_text())
-        p99 = report["latency_ms"]["p99"]
-        table.add(on + ", one CPU, %d map updates" % len(report["revisions"]), "last byte → pose, 99 %, ms", round(p99, 2), "≤ 20", p99 <= 20)
+        p999 = report["latency_ms"]["p999"]
+        table.add(on + ", one CPU, %d map updates" % len(report["revisions"]), "last byte → pose, 99.9 %, ms", round(p999, 2), "≤ 20", p999 <= 20)
         again = OUT / ("demo-%d-replayed" % seed)
         run(BIN / "deltamap", "replay", folder / "recording.pcapng", "--map", folder / "m0.yaml", "--config", "config/simulation.yaml",
             "--out", again, "--seed", seed)

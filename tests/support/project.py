@@ -57,6 +57,7 @@ def measure_a_section(description, command, title, measure):
     wanted = options.parse_args()
     began = time.monotonic()
     lines, is_met = measure(wanted.seed, wanted.quick)
+    command += " --quick" if wanted.quick else ""
     lines = ["Written by `%s` (%s, %s, %.0f s)." % (command, provenance(), datetime.date.today(), time.monotonic() - began), ""] + lines
     if wanted.out:
         write_section(wanted.out, title, lines)
