@@ -92,7 +92,8 @@ void add_port_contradictions(const Settings& settings, std::vector<Contradiction
   const std::string& laser = settings.laser.port;
   if (robot.empty()) found.push_back({"robot.port", "must name a serial device", {}});
   if (laser.empty()) found.push_back({"laser.port", "must name a serial device", {}});
-  if (!robot.empty() && !laser.empty() && is_same(robot, laser))
+  std::error_code error;
+  if (fs::exists(robot, error) && is_same(robot, laser))
     found.push_back({"laser.port", "must not be the same device as 'robot.port'", {"robot.port"}});
 }
 
