@@ -43,6 +43,7 @@ TrackedScan Localizer::observe(Scan scan) {
   if (state.params.follow_surfaces) state.faced = surfaces::faced_ends(scan, tracked.rays, std::move(state.faced));
   state.velocity = velocity;
   state.note_oddities(now);
+  state.leave_out_unmapped(scan.robot_from_laser.position(), now);
   const sensor::RefinedPose believed = state.believed(now);
   state.judge(scan, tracked.rays, now, believed);
 

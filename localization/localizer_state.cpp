@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "localization/sensor/mapped_beams.hpp"
+#include "localization/sensor/straight_walk.hpp"
 #include "localization/sensor/weighing.hpp"
 
 namespace deltamap::localization {
@@ -17,6 +19,8 @@ constexpr double kTrustInNothing = 0.1;  // and before there is any
 
 constexpr double kScansLagS = 0.5;    // a scan is at most so much older than the newest report of the wheels
 constexpr double kScansCeaseS = 5.0;  // without a scan: the particles go along with the wheels, step by step
+
+constexpr double kBlindlyM = 1.0;  // deviation up to which the wheels alone may carry a pose
 
 constexpr double kClearlyBetter = 0.15;  // share of the ends that one place explains beyond another
 
@@ -139,6 +143,34 @@ void Localizer::State::note_oddities(const motion::ScanInstant& now) {
   check_pose();
 }
 
+void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const motion::ScanInstant& now) {
+  const std::optional<Pose2> expected = expected_pose(now);
+  if (!expected || searches() || best.covariance.topLeftCorner<2, 2>().trace() > kBlindlyM * kBlindlyM) return;
+  has_gone_through |= meets_obstacle(last_believed->position(), expected->position());
+  has_gone_through &= sensor::explained_share(field, ends, *expected) < params.fit.found_above;
+  if (has_gone_through) return;
+  const sensor::MappedBeams mapped{*map, field, {*expected, best.covariance}, robot_from_laser};
+  std::size_t kept = 0;
+  while (kept < ends.size() && mapped.tells({ends.x_m[kept], ends.y_m[kept]})) ++kept;
+  if (kept == ends.size()) return;
+  kept = 0;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (!mapped.tells_everywhere({ends.x_m[i], ends.y_m[i]})) continue;
+    ends.x_m[kept] = ends.x_m[i];
+    ends.y_m[kept] = ends.y_m[i];
+    ++kept;
+  }
+  ends.x_m.resize(kept);
+  ends.y_m.resize(kept);
+  std::erase_if(faced, [&](const surfaces::FacedEnd& end) { return !mapped.tells_everywhere(end.at); });
+}
+
+bool Localizer::State::meets_obstacle(const Point2& from, const Point2& to) const {
+  const double way_m = (to - from).norm();
+  if (way_m == 0.0) return false;
+  return sensor::first_met(*map, from, (to - from) / way_m, 0.0, way_m).what == CellState::kOccupied;
+}
+
 sensor::RefinedPose Localizer::State::believed(const motion::ScanInstant& now) {
   return searches() ? search(now) : track(now);
 }
@@ -203,10 +235,10 @@ std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, d
 }
 
 const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstant& now) {
-  const bool knows = params.temporary.weighing && transients && !transients->standing.empty() && last_believed;
-  if (!knows || ends.size() == 0) return ends;
-  const Pose2 expected = *last_believed * motion_between(last_odom, continuous_odom_at(now));
-  ends_beside_transients = sensor::lasting_ends(ends, *transients, expected, std::move(ends_beside_transients));
+  const bool knows = params.temporary.weighing && transients && !transients->standing.empty();
+  const std::optional<Pose2> expected = expected_pose(now);
+  if (!knows || !expected || ends.size() == 0) return ends;
+  ends_beside_transients = sensor::lasting_ends(ends, *transients, *expected, std::move(ends_beside_transients));
   const double left = static_cast<double>(ends_beside_transients.size());
   return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_transients : ends;
 }
@@ -296,6 +328,11 @@ void Localizer::State::enter(LocalizerState after, LocalizerState before, const 
 
 Pose2 Localizer::State::continuous_odom_at(const motion::ScanInstant& now) const {
   return now.odometry ? now.odometry->continuous_odom_from_robot : last_odom;
+}
+
+std::optional<Pose2> Localizer::State::expected_pose(const motion::ScanInstant& now) const {
+  if (!last_believed) return std::nullopt;
+  return *last_believed * motion_between(last_odom, continuous_odom_at(now));
 }
 
 Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& believed) const {

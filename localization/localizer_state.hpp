@@ -35,6 +35,7 @@ struct Localizer::State {
   motion::BodyVelocity velocity;                         ///< at the scan
   std::shared_ptr<const TransientObstacles> transients;  ///< that stand or are gone for now; may be null
   motion::BeamEnds ends_beside_transients;
+  bool has_gone_through = false;       ///< the believed pose, through an obstacle of the map, and has not fitted since
   std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
   std::optional<Timestamp> last_scan;
   std::optional<std::uint32_t> last_epoch;
@@ -68,6 +69,9 @@ struct Localizer::State {
   // One scan, in this order.
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
   void note_oddities(const motion::ScanInstant& now);
+  /// While a pose is believed: beams that the map says nothing about there. A robot drives through no wall: a pose that
+  /// does is held against all beams.
+  void leave_out_unmapped(const Point2& robot_from_laser, const motion::ScanInstant& now);
   sensor::RefinedPose believed(const motion::ScanInstant& now);
   void judge(const Scan& scan, std::span<const RayInRobot> rays, const motion::ScanInstant& now,
              const sensor::RefinedPose& believed);
@@ -89,6 +93,8 @@ struct Localizer::State {
   [[nodiscard]] Belief belief() const;
   /// No pose is believed, nor one being checked.
   [[nodiscard]] bool searches() const;
+  /// Is an obstacle of the map the first thing on the straight way that is not free?
+  [[nodiscard]] bool meets_obstacle(const Point2& from, const Point2& to) const;
   /// The epoch of the odometry is another one than at the last scan.
   [[nodiscard]] bool has_jumped(const motion::ScanInstant& now) const;
   /// Do the wheels tell what has been driven since the last scan?
@@ -98,6 +104,8 @@ struct Localizer::State {
   /// The monitor has changed its mind.
   void enter(LocalizerState after, LocalizerState before, const Pose2& believed, const motion::ScanInstant& now);
   [[nodiscard]] Pose2 continuous_odom_at(const motion::ScanInstant& now) const;
+  /// The pose believed at the last scan, moved on by odometry.
+  [[nodiscard]] std::optional<Pose2> expected_pose(const motion::ScanInstant& now) const;
 };
 
 }  // namespace deltamap::localization

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <optional>
 
-#include "localization/belief/straight_walk.hpp"
+#include "localization/sensor/straight_walk.hpp"
 
 namespace deltamap::localization::belief {
 namespace {
 
-constexpr double kOutOfTheLaserM = 0.1;  // nothing so near the laser is an obstacle of the map
+using sensor::first_met;
+using sensor::kOutOfTheLaserM;
+using sensor::Met;
 
 /// How far aside a beam may lie from where the pose puts it.
 struct Aside {

@@ -178,7 +178,10 @@ bool is_contour(const OccupancyGrid& map, Cell cell) {
 }
 
 LikelihoodField::LikelihoodField(const OccupancyGrid& map, const LikelihoodFieldParams& params)
-    : geometry_{map.geometry()}, params_{params}, hit_deviation_m_{hit_deviation_on(map.geometry(), params)} {
+    : geometry_{map.geometry()},
+      params_{params},
+      hit_deviation_m_{hit_deviation_on(map.geometry(), params)},
+      even_steps_{static_cast<std::uint8_t>(-std::log(2.0 * params.random_share) / kStep)} {
   const StepTable table = step_table(geometry_, params);
   distance_of_steps_m_ = distances_of_steps(table, geometry_.resolution_m);
   bytes_.assign(4, table.unknown);  // the border of nothing

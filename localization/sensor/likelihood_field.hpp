@@ -42,6 +42,9 @@ class LikelihoodField {
   /// Steps of -ln p(z) for a beam that ends in the cell; outside the map as in unknown space.
   [[nodiscard]] std::uint8_t steps_at(Cell cell) const;
 
+  /// Fewer steps: a contour explains the end rather than chance, p(hit | d) > 1/2.
+  [[nodiscard]] std::uint8_t even_steps() const { return even_steps_; }
+
   /// The same bytes for kernels, as far as they may differ from those of unknown space: row by row with a border of one
   /// unknown cell on each side. The window's first cell is at (column 1, row 1). Neither the window nor its origin
   /// depends on how much unknown space lies around what the map shows.
@@ -76,6 +79,7 @@ class LikelihoodField {
   GridGeometry geometry_;
   LikelihoodFieldParams params_;
   double hit_deviation_m_;
+  std::uint8_t even_steps_;
   std::array<float, 256> distance_of_steps_m_;
   CellBox window_;  // whole blocks of the frame
   Point2 window_origin_{0.0, 0.0};

@@ -111,8 +111,7 @@ SegmentedMisfit segmented_misfit(const LikelihoodField& field, const motion::Bea
 
 double explained_share(const LikelihoodField& field, const motion::BeamEnds& ends, const Pose2& map_from_robot) {
   if (ends.size() == 0) return 0.0;
-  const double even_likelihood = 2.0 * field.params().random_share;  // half hit, half chance
-  const auto even_steps = static_cast<std::uint8_t>(-std::log(even_likelihood) / LikelihoodField::kStep);
+  const std::uint8_t even_steps = field.even_steps();
   int explained = 0;
   for_each_byte(field, ends, map_from_robot, [&](std::uint8_t steps) { explained += steps < even_steps ? 1 : 0; });
   return explained / static_cast<double>(ends.size());

@@ -69,11 +69,18 @@ sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {
   const double position_m2 = pose.position_deviation_m * pose.position_deviation_m;
   const double heading_rad2 = pose.heading_deviation_rad * pose.heading_deviation_rad;
   const PoseCovariance spread = motion::covariance_along(0.0, position_m2, position_m2, heading_rad2);
-  return start_around({pose.map_from_robot, spread}, static_cast<std::size_t>(params_.particles.min));
+  return start_around({pose.map_from_robot, spread});
 }
 
-sensor::RefinedPose Tracker::start_around(const sensor::RefinedPose& pose, std::size_t particles) {
-  filter_.start_around(pose.map_from_robot, pose.covariance, particles);
+/// A scan guides a particle over decimetres: where the robot may be farther off, few would settle on whatever fits
+/// nearest.
+std::size_t Tracker::particles_for(const PoseCovariance& spread) const {
+  const bool one_place = SurfaceTracker::is_one_place(spread);
+  return static_cast<std::size_t>(one_place ? params_.particles.min : params_.particles.max);
+}
+
+sensor::RefinedPose Tracker::start_around(const sensor::RefinedPose& pose) {
+  filter_.start_around(pose.map_from_robot, pose.covariance, particles_for(pose.covariance));
   best_ = clusters_.best(filter_.particles());
   drawn_anew_ = false;
   pose_filter_.forget();
@@ -109,13 +116,15 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
   return answer;
 }
 
-/// The particles rest. Where surfaces cease to lead, they begin anew around the pose, at this very scan.
+/// The particles rest. Where surfaces cease to lead, they begin anew around the pose, as unsure as it is, at this very
+/// scan.
 Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   Answer answer;
   answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field, seen.ends});
   const Pose2& pose = answer.believed.map_from_robot;
   if (!surfaces_->leads()) {
-    go_on_from(answer.believed, seen.now);
+    (void)start_around(answer.believed);
+    last_update_ = seen.now;
     return update(seen, {});
   }
   answer.n_eff = static_cast<double>(particle_count());
@@ -123,18 +132,6 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   best_ = {pose, answer.believed.covariance, 1.0};
   last_update_ = seen.now;
   return answer;
-}
-
-/// The particles take over from the surfaces, as unsure as these were, or where they were sure and have failed, by as
-/// much as a slip. A scan guides a particle over decimetres: where they may be farther off, few would settle on
-/// whatever fits nearest.
-void Tracker::go_on_from(const sensor::RefinedPose& believed, const motion::ScanInstant& now) {
-  if (SurfaceTracker::is_one_place(believed.covariance)) {
-    (void)start_around({believed.map_from_robot, params_.motion.slip_m, params_.motion.slip_rad}, now);
-    return;
-  }
-  (void)start_around(believed, static_cast<std::size_t>(params_.particles.max));
-  last_update_ = now;
 }
 
 void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
@@ -194,11 +191,10 @@ Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& sin
   return answer;
 }
 
-/// A drive without scans has drawn the particles apart: as many as go_on_from() begins with.
+/// A drive without scans has drawn the particles apart.
 void Tracker::fill_in() {
   const PoseCovariance spread = clusters_.best(filter_.particles()).covariance;
-  if (!SurfaceTracker::is_one_place(spread))
-    filter_.draw_smoothed(spread, static_cast<std::size_t>(params_.particles.max));
+  if (!SurfaceTracker::is_one_place(spread)) filter_.draw_smoothed(spread, particles_for(spread));
 }
 
 /// Between updates: the particles stay, the answer follows the wheels and the scan.

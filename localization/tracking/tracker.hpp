@@ -95,8 +95,8 @@ class Tracker {
   void fill_in();
   Answer follow(const Seen& seen, const motion::MotionSince& since);
   Answer led_by_surfaces(const Seen& seen);
-  sensor::RefinedPose start_around(const sensor::RefinedPose& pose, std::size_t particles);
-  void go_on_from(const sensor::RefinedPose& believed, const motion::ScanInstant& now);
+  sensor::RefinedPose start_around(const sensor::RefinedPose& pose);
+  [[nodiscard]] std::size_t particles_for(const PoseCovariance& spread) const;
   void let_surfaces_lead(const Seen& seen, Answer& answer);
   [[nodiscard]] bool update_due(const motion::MotionSince& since) const;
   [[nodiscard]] std::span<const Pose2> slips(const Seen& seen);

@@ -30,7 +30,7 @@ enum class GateReason : std::uint8_t {
   kConfirming,       ///< the pose was wrong a moment ago, or scans broke off, and it has to hold for a while
   kDoubtful,         ///< P(pose right) is low
   kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
-  kSpread            ///< the best place is spread too wide
+  kSpread            ///< the pose is spread too wide, or nothing in view holds it
 };
 inline constexpr std::size_t kGateReasons = 10;
 /// For status, report and log: "open", "searching", "lost", …
@@ -39,13 +39,15 @@ inline constexpr std::size_t kGateReasons = 10;
 [[nodiscard]] bool proves_wrong(GateReason reason);
 
 struct WriteGateParams {
-  bool enabled = true;              ///< false: everything is written, as the paper does (mapping.gate.enabled)
-  double least_pose_right = 0.83;   ///< P(pose right) below which it is shut; [0, 1]
-  double disbelieved_below = 0.3;   ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
-  double most_rival_share = 0.05;   ///< of the belief, that another pose hypothesis may hold; [0, 1]
-  double most_deviation_m = 0.3;    ///< σ of the position along its worst axis; > 0
-  double confirm_s = 20.0;          ///< so long a pose that a search has found must hold, for it may be an alias; >= 0
-  double confirm_m = 10.0;          ///< and so far the robot must have driven meanwhile; >= 0
+  bool enabled = true;             ///< false: everything is written, as the paper does (mapping.gate.enabled)
+  double least_pose_right = 0.83;  ///< P(pose right) below which it is shut; [0, 1]
+  double disbelieved_below = 0.3;  ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
+  double most_rival_share = 0.05;  ///< of the belief, that another pose hypothesis may hold; [0, 1]
+  double most_deviation_m = 0.3;   ///< σ of the position along its worst axis; > 0
+  std::uint32_t least_expected =
+      3;                    ///< beams that the map expects something of: fewer, and only the wheels hold the pose
+  double confirm_s = 20.0;  ///< so long a pose that a search has found must hold, for it may be an alias; >= 0
+  double confirm_m = 10.0;  ///< and so far the robot must have driven meanwhile; >= 0
   double confirm_followed_s = 8.0;  ///< the same where the pose was followed all along and something spoke against it,
   double confirm_followed_m = 4.0;  ///< which an alias cannot explain: seconds and metres; >= 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0

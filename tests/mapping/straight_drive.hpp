@@ -23,6 +23,7 @@ class StraightDrive {
     tracked.estimate.covariance = PoseCovariance{Eigen::Vector3d{4e-4, 4e-4, 1e-4}.asDiagonal()};
     tracked.estimate.state = LocalizerState::kTracking;
     tracked.estimate.belief.pose_right = 0.9;
+    tracked.estimate.belief.elsewhere = {.expected = 60, .fit = 60};
     return tracked;
   }
   [[nodiscard]] static Timestamp at(double time_s) { return timestamp_from_ns(0) + duration_from_seconds(time_s); }

@@ -63,6 +63,7 @@ inline TrackedScan drawn_scan(const OccupancyGrid& world, std::shared_ptr<const 
   estimate.n_eff = 400.0;
   estimate.w_avg = 0.5;
   estimate.belief.pose_right = 0.95;
+  estimate.belief.elsewhere = {.expected = 60, .fit = 60};
   estimate.map = std::move(map);
   tracked.odom_from_robot = true_pose;
   return tracked;

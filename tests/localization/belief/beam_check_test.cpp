@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "localization/belief/straight_walk.hpp"
 #include "localization/belief/view_tally.hpp"
 #include "localization/motion/deskew.hpp"
+#include "localization/sensor/straight_walk.hpp"
 #include "tests/support/drawn_flat.hpp"
 #include "tests/support/drawn_grid.hpp"
 
@@ -81,12 +81,12 @@ TEST(BeamCheck, SaysNothingFromInsideAnObstacleOrOutsideTheMap) {
 
 TEST(StraightWalk, MeetsTheFirstCellThatIsNotFreeAndNothingBeyondTheEnd) {
   const OccupancyGrid map = test::drawn_grid({"......#.", "....... "});
-  EXPECT_EQ(first_met(map, {0.5, 1.5}, {1.0, 0.0}, 0.0, 7.0).what, CellState::kOccupied);
-  EXPECT_EQ(first_met(map, {0.5, 1.5}, {1.0, 0.0}, 0.0, 7.0).cell, (Cell{6, 1}));
-  EXPECT_EQ(first_met(map, {0.5, 1.5}, {1.0, 0.0}, 0.0, 5.4).what, CellState::kFree);
-  EXPECT_EQ(first_met(map, {0.5, 0.5}, {1.0, 0.0}, 0.0, 7.0).what, CellState::kUnknown);
-  EXPECT_EQ(first_met(map, {0.5, 0.5}, {-1.0, 0.0}, 0.0, 7.0).what, CellState::kUnknown) << "left the map";
-  EXPECT_EQ(first_met(map, {0.5, 0.5}, {-1.0, 0.0}, 3.0, 7.0).what, CellState::kUnknown) << "begins outside";
+  EXPECT_EQ(sensor::first_met(map, {0.5, 1.5}, {1.0, 0.0}, 0.0, 7.0).what, CellState::kOccupied);
+  EXPECT_EQ(sensor::first_met(map, {0.5, 1.5}, {1.0, 0.0}, 0.0, 7.0).cell, (Cell{6, 1}));
+  EXPECT_EQ(sensor::first_met(map, {0.5, 1.5}, {1.0, 0.0}, 0.0, 5.4).what, CellState::kFree);
+  EXPECT_EQ(sensor::first_met(map, {0.5, 0.5}, {1.0, 0.0}, 0.0, 7.0).what, CellState::kUnknown);
+  EXPECT_EQ(sensor::first_met(map, {0.5, 0.5}, {-1.0, 0.0}, 0.0, 7.0).what, CellState::kUnknown) << "left the map";
+  EXPECT_EQ(sensor::first_met(map, {0.5, 0.5}, {-1.0, 0.0}, 3.0, 7.0).what, CellState::kUnknown) << "begins outside";
 }
 
 TEST(ViewTally, KeepsTheTwoDirectionsApart) {

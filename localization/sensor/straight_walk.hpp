@@ -5,7 +5,9 @@
 
 #include "core/occupancy_grid.hpp"
 
-namespace deltamap::localization::belief {
+namespace deltamap::localization::sensor {
+
+inline constexpr double kOutOfTheLaserM = 0.1;  ///< nothing so near the laser is an obstacle of the map
 
 struct Met {
   CellState what = CellState::kFree;  ///< free: nothing up to the end; outside the map everything is unknown
@@ -16,4 +18,4 @@ struct Met {
 [[nodiscard]] Met first_met(const OccupancyGrid& map, const Point2& from, const Point2& along, double after_m,
                             double until_m);
 
-}  // namespace deltamap::localization::belief
+}  // namespace deltamap::localization::sensor

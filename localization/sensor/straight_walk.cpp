@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/belief/straight_walk.hpp"
+#include "localization/sensor/straight_walk.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-namespace deltamap::localization::belief {
+namespace deltamap::localization::sensor {
 namespace {
 
 constexpr int kSide = Tiled<CellState>::kSide;
@@ -80,4 +80,4 @@ Met first_met(const OccupancyGrid& map, const Point2& from, const Point2& along,
   return {*at, cell};
 }
 
-}  // namespace deltamap::localization::belief
+}  // namespace deltamap::localization::sensor
