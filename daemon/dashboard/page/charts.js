@@ -32,8 +32,10 @@ export function step_for(span, most) {
 }
 
 const NEAR_ZERO = 0.3; // of the largest: an axis from 0 wastes little
+const LEAST_SPAN = 0.02; // of the value
 
-/// The axis of values from `low` to `high`, with round ends, by the rule of the reports (axis_for in experiments/report/svg_chart.cpp).
+/// The axis of values from `low` to `high`, with round ends, by the rule of the reports (axis_for in experiments/report/svg_chart.cpp); besides,
+/// noise fills no chart.
 export function axis_for(low, high, most = 4) {
   if (low >= 0 && low <= NEAR_ZERO * high) low = 0;
   if (high <= 0 && high >= NEAR_ZERO * low) high = 0;
@@ -41,6 +43,8 @@ export function axis_for(low, high, most = 4) {
     const around = low === 0 ? 0.5 : 0.1 * Math.abs(low);
     [low, high] = [low - around, high + around];
   }
+  const wanting = LEAST_SPAN * Math.max(Math.abs(low), Math.abs(high)) - (high - low);
+  if (wanting > 0) [low, high] = [low - wanting / 2, high + wanting / 2];
   const step = step_for(high - low, most);
   return { low: Math.floor(low / step + 1e-9) * step, high: Math.ceil(high / step - 1e-9) * step, step };
 }
