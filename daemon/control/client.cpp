@@ -13,8 +13,7 @@
 namespace deltamap::daemon::control {
 namespace {
 
-constexpr timeval kPatience{1,
-                            500'000};  // half a second more than the daemon's own, which answers whatever it is about
+constexpr timeval kPatience{3, 0};  // the daemon's own is a second; this machine may be busy, too
 
 struct Descriptor {
   int number = -1;
