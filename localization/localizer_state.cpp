@@ -63,6 +63,7 @@ void Localizer::State::start_at(const particles::InitialPose& given) {
 }
 
 void Localizer::State::start_tracking() {
+  forget_expected();
   given_up.reset();
   monitor.start(LocalizerState::kTracking);
   judgement.start(kTrustAtStart);
@@ -70,12 +71,14 @@ void Localizer::State::start_tracking() {
 }
 
 void Localizer::State::check_pose() {
+  forget_expected();
   monitor.start(LocalizerState::kGlobal);
   judgement.start(kTrustInASearch);
   check.start();
 }
 
 void Localizer::State::start_anywhere() {
+  forget_expected();
   given_up.reset();
   ++counts.searches;
   check.end();

@@ -79,6 +79,11 @@ struct Localizer::State {
 
   // What these are made of.
   void start_tracking();
+  /// The next scan is not read by the pose that was believed before.
+  void forget_expected() {
+    last_believed.reset();
+    has_gone_through = false;
+  }
   /// The best place that has come to mind leads, until it is believed; at first, what has been given up: the place that
   /// has beaten it may be the image of one that nobody has looked at yet.
   sensor::RefinedPose search(const motion::ScanInstant& now);

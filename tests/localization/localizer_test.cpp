@@ -175,6 +175,27 @@ TEST(Localizer, ComesBackIntoASmallRoomFromWhereTheMapKnowsNothing) {
   EXPECT_LT(distance_between(believed, truth), 0.1);
 }
 
+TEST(Localizer, ReadsTheFirstScanOfARelocalizationByTheNewPose) {
+  const OccupancyGrid world = test::symmetric_hall();
+  OccupancyGrid map = world;
+  test::fill_box(map, {6.0, -1.0}, {13.0, 6.0}, CellState::kUnknown);
+  Localizer localizer{small(), std::make_shared<const OccupancyGrid>(map), particles::InitialPose{{10.0, 1.0, 0.0}}, 1};
+  Random random{3};
+  Odometry odometry;
+  odometry.time = timestamp_from_ns(1'700'000'000'000'000'000);
+  const test::CastScanner near{.max_range_m = 4.0};
+  for (int i = 0; i < 5; ++i) {
+    odometry.time += duration_from_seconds(kScanPeriodS);
+    localizer.observe(odometry);
+    (void)localizer.observe(test::cast_scan(world, {10.0, 1.0, 0.0}, odometry.time, near, random));
+  }
+  localizer.relocalize(particles::InitialPose{{1.0, 1.0, 0.0}});
+  odometry.time += duration_from_seconds(kScanPeriodS);
+  localizer.observe(odometry);
+  (void)localizer.observe(test::cast_scan(world, {1.0, 1.0, 0.0}, odometry.time, near, random));
+  EXPECT_GT(localizer.fit().value_or(0.0), 0.9);
+}
+
 TEST(Localizer, FindsItsPlaceAboutAStartThatMayBeFarOff) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Drive drive{test::drawn_flat()};

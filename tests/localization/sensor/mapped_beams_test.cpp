@@ -24,7 +24,7 @@ class MappedBeamsTest : public testing::Test {
 
 TEST_F(MappedBeamsTest, TellWhereTheyEndAtAnObstacleOrInFreeSpace) {
   EXPECT_TRUE(tells({7.4, 1.5}));
-  EXPECT_TRUE(tells({4.5, 1.5}));
+  EXPECT_TRUE(tells({4.5, 2.5}));
 }
 
 TEST_F(MappedBeamsTest, TellWhereTheyGoThroughAnObstacleIntoWhatTheMapDoesNotKnow) { EXPECT_TRUE(tells({10.5, 1.5})); }
