@@ -52,6 +52,7 @@ Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const Occu
       hypotheses{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfHypotheses} {}
 
 void Localizer::State::start_at(const particles::InitialPose& given) {
+  was_found = false;
   const particles::Start start = particles::usable_start(*map, given);
   counts.poses_in_obstacle += start.kind == particles::StartKind::kCheck && !given.remembered ? 1 : 0;
   counts.poses_refused += start.kind == particles::StartKind::kAnywhere ? 1 : 0;
@@ -92,7 +93,10 @@ sensor::RefinedPose Localizer::State::believe_in(const Pose2& hypothesis, const 
   const particles::InitialPose around{hypothesis, params.fit.converged_m / 2.0, params.fit.converged_rad / 2.0};
   sensor::RefinedPose believed = tracker.start_around(around, now);
   start_tracking();
-  if (!hypotheses.is_near_believed(hypothesis)) judgement.start(kTrustInASearch, true);
+  if (!hypotheses.is_near_believed(hypothesis)) {
+    judgement.start(kTrustInASearch, true);
+    was_found = true;
+  }
   hypotheses.start_believing_in(hypothesis);
   return believed;
 }
@@ -148,7 +152,8 @@ void Localizer::State::note_oddities(const motion::ScanInstant& now) {
 
 void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const motion::ScanInstant& now) {
   const std::optional<Pose2> expected = expected_pose(now);
-  if (!expected || searches() || best.covariance.topLeftCorner<2, 2>().trace() > kBlindlyM * kBlindlyM) return;
+  if (!expected || searches() || was_found || best.covariance.topLeftCorner<2, 2>().trace() > kBlindlyM * kBlindlyM)
+    return;
   has_gone_through |= meets_obstacle(last_believed->position(), expected->position());
   has_gone_through &= sensor::explained_share(field, ends, *expected) < params.fit.found_above;
   if (has_gone_through) return;

@@ -35,6 +35,7 @@ struct Localizer::State {
   motion::BodyVelocity velocity;                         ///< at the scan
   std::shared_ptr<const TransientObstacles> transients;  ///< that stand or are gone for now; may be null
   motion::BeamEnds ends_beside_transients;
+  bool was_found = false;              ///< the believed pose, by a search: that it fits is all that speaks for it
   bool has_gone_through = false;       ///< the believed pose, through an obstacle of the map, and has not fitted since
   std::optional<Pose2> last_believed;  ///< at the last scan, while a pose was tracked
   std::optional<Timestamp> last_scan;
@@ -69,8 +70,8 @@ struct Localizer::State {
   // One scan, in this order.
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
   void note_oddities(const motion::ScanInstant& now);
-  /// While a pose is believed: beams that the map says nothing about there. A robot drives through no wall: a pose that
-  /// does is held against all beams.
+  /// While a given pose is believed: beams that the map says nothing about there. A robot drives through no wall: a
+  /// pose that does is held against all beams.
   void leave_out_unmapped(const Point2& robot_from_laser, const motion::ScanInstant& now);
   sensor::RefinedPose believed(const motion::ScanInstant& now);
   void judge(const Scan& scan, std::span<const RayInRobot> rays, const motion::ScanInstant& now,
