@@ -154,8 +154,8 @@ void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const 
   const std::optional<Pose2> expected = expected_pose(now);
   if (!expected || searches() || was_found || best.covariance.topLeftCorner<2, 2>().trace() > kBlindlyM * kBlindlyM)
     return;
-  has_gone_through |= meets_obstacle(last_believed->position(), expected->position());
-  has_gone_through &= sensor::explained_share(field, ends, *expected) < params.fit.found_above;
+  has_gone_through = has_gone_through || meets_obstacle(last_believed->position(), expected->position());
+  has_gone_through = has_gone_through && sensor::explained_share(field, ends, *expected) < params.fit.found_above;
   if (has_gone_through) return;
   const sensor::MappedBeams mapped{*map, field, {*expected, best.covariance}, robot_from_laser};
   std::size_t kept = 0;

@@ -13,7 +13,6 @@
 #include "tests/support/cast_scan.hpp"
 #include "tests/support/drawn_flat.hpp"
 #include "tests/support/drawn_grid.hpp"
-#include "tests/support/symmetric_hall.hpp"
 
 namespace deltamap::localization {
 namespace {
@@ -118,84 +117,6 @@ TEST(Localizer, FillsInEverythingThatTheOthersJudgeBy) {
   EXPECT_GT(tracked.estimate.covariance.determinant(), 0.0);
 }
 
-/// Along the lower side of a hall whose quarters look alike, there and back; the laser sees 4 m.
-TEST(Localizer, IsNotLostInAQuarterThatTheMapDoesNotKnow) {
-  const OccupancyGrid world = test::symmetric_hall();
-  OccupancyGrid map = world;
-  test::fill_box(map, {6.0, -1.0}, {13.0, 6.0}, CellState::kUnknown);
-  Pose2 truth{1.0, 1.0, 0.0};
-  Pose2 believed;
-  Localizer localizer{small(), std::make_shared<const OccupancyGrid>(map), particles::InitialPose{truth}, 1};
-  Random random{3};
-  Odometry odometry;
-  odometry.time = timestamp_from_ns(1'700'000'000'000'000'000);
-  for (int i = 0; i < 230; ++i) {
-    const bool turns = i >= 100 && i < 130;
-    const Pose2 motion = turns ? Pose2{0.0, 0.0, std::numbers::pi / 30.0} : Pose2{0.1, 0.0, 0.0};
-    truth = truth * motion;
-    odometry.time += duration_from_seconds(kScanPeriodS);
-    odometry.odom_from_robot = odometry.odom_from_robot * motion;
-    localizer.observe(odometry);
-    const TrackedScan tracked =
-        localizer.observe(test::cast_scan(world, truth, odometry.time, {.max_range_m = 4.0}, random));
-    ASSERT_EQ(tracked.estimate.state, LocalizerState::kTracking) << i;
-    believed = tracked.estimate.map_from_robot;
-    ASSERT_LT(distance_between(believed, truth), 0.3) << i;
-  }
-  EXPECT_LT(distance_between(believed, truth), 0.1);
-}
-
-/// Out of a room of 4 × 4 m into a corridor that nobody has mapped, and back, on wheels that count and turn too much.
-TEST(Localizer, ComesBackIntoASmallRoomFromWhereTheMapKnowsNothing) {
-  OccupancyGrid world{{420, 140, 0.05, {-1.0, -1.0}}};
-  test::fill_box(world, {-0.2, -0.2}, {4.2, 4.2}, CellState::kOccupied);
-  test::fill_box(world, {0.0, 0.0}, {4.0, 4.0}, CellState::kFree);
-  test::fill_box(world, {0.0, 2.8}, {0.8, 4.0}, CellState::kOccupied);
-  OccupancyGrid map = world;
-  test::fill_box(world, {4.0, 0.8}, {18.2, 3.2}, CellState::kOccupied);
-  test::fill_box(world, {4.0, 1.0}, {18.0, 3.0}, CellState::kFree);
-  test::fill_box(map, {4.0, 1.0}, {4.2, 3.0}, CellState::kFree);
-  Pose2 truth{1.0, 2.0, 0.0};
-  Localizer localizer{small(), std::make_shared<const OccupancyGrid>(map), particles::InitialPose{truth}, 1};
-  Random random{9};
-  Odometry odometry;
-  odometry.time = timestamp_from_ns(1'700'000'000'000'000'000);
-  Pose2 believed;
-  for (int i = 0; i < 310; ++i) {
-    const bool turns = i >= 140 && i < 170;
-    const Pose2 motion = turns ? Pose2{0.0, 0.0, std::numbers::pi / 30.0} : Pose2{0.1, 0.0, 0.0};
-    truth = truth * motion;
-    odometry.time += duration_from_seconds(kScanPeriodS);
-    odometry.odom_from_robot =
-        odometry.odom_from_robot * Pose2{1.02 * motion.x, 0.0, 1.02 * motion.theta + 0.01 * motion.x};
-    localizer.observe(odometry);
-    const Scan scan = test::cast_scan(world, truth, odometry.time, {.max_range_m = 8.0}, random);
-    believed = localizer.observe(scan).estimate.map_from_robot;
-  }
-  EXPECT_LT(distance_between(believed, truth), 0.1);
-}
-
-TEST(Localizer, ReadsTheFirstScanOfARelocalizationByTheNewPose) {
-  const OccupancyGrid world = test::symmetric_hall();
-  OccupancyGrid map = world;
-  test::fill_box(map, {6.0, -1.0}, {13.0, 6.0}, CellState::kUnknown);
-  Localizer localizer{small(), std::make_shared<const OccupancyGrid>(map), particles::InitialPose{{10.0, 1.0, 0.0}}, 1};
-  Random random{3};
-  Odometry odometry;
-  odometry.time = timestamp_from_ns(1'700'000'000'000'000'000);
-  const test::CastScanner near{.max_range_m = 4.0};
-  for (int i = 0; i < 5; ++i) {
-    odometry.time += duration_from_seconds(kScanPeriodS);
-    localizer.observe(odometry);
-    (void)localizer.observe(test::cast_scan(world, {10.0, 1.0, 0.0}, odometry.time, near, random));
-  }
-  localizer.relocalize(particles::InitialPose{{1.0, 1.0, 0.0}});
-  odometry.time += duration_from_seconds(kScanPeriodS);
-  localizer.observe(odometry);
-  (void)localizer.observe(test::cast_scan(world, {1.0, 1.0, 0.0}, odometry.time, near, random));
-  EXPECT_GT(localizer.fit().value_or(0.0), 0.9);
-}
-
 TEST(Localizer, FindsItsPlaceAboutAStartThatMayBeFarOff) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Drive drive{test::drawn_flat()};
@@ -204,33 +125,6 @@ TEST(Localizer, FindsItsPlaceAboutAStartThatMayBeFarOff) {
     Pose2 believed;
     for (int i = 0; i < 5; ++i) believed = drive.next(localizer).estimate.map_from_robot;
     EXPECT_LT(distance_between(believed, drive.truth()), 0.15) << seed;
-  }
-}
-
-/// From a corner into the middle of a hall, where only a post stands that the map does not have; the laser sees 4 m.
-TEST(Localizer, StaysAsSureAsTheWheelsWhereTheSurfacesLeaveTheView) {
-  OccupancyGrid map{{500, 500, 0.05, {-0.5, -0.5}}};
-  test::fill_box(map, {-0.2, -0.2}, {24.2, 24.2}, CellState::kOccupied);
-  test::fill_box(map, {0.0, 0.0}, {24.0, 24.0}, CellState::kFree);
-  OccupancyGrid world = map;
-  test::fill_box(world, {8.0, 9.0}, {8.3, 9.3}, CellState::kOccupied);
-  Pose2 truth{2.0, 2.0, radians(45.0)};
-  Localizer localizer{small(), std::make_shared<const OccupancyGrid>(map), particles::InitialPose{truth}, 1};
-  Random random{5};
-  Odometry odometry;
-  odometry.time = timestamp_from_ns(1'700'000'000'000'000'000);
-  double before_m = 0.0;
-  for (int i = 0; i < 100; ++i) {
-    truth = truth * Pose2{0.08, 0.0, i < 20 ? 0.0 : 0.002};
-    odometry.time += duration_from_seconds(kScanPeriodS);
-    odometry.odom_from_robot = odometry.odom_from_robot * Pose2{0.08, 0.0, i < 20 ? 0.0 : 0.002};
-    localizer.observe(odometry);
-    const Scan scan = test::cast_scan(world, truth, odometry.time, {.max_range_m = 4.0}, random);
-    const Estimate estimate = localizer.observe(scan).estimate;
-    const double sigma_m = std::sqrt(estimate.covariance(0, 0));
-    ASSERT_TRUE(i < 10 || sigma_m < before_m + 0.05) << i;
-    before_m = sigma_m;
-    ASSERT_LT(distance_between(estimate.map_from_robot, truth), 0.25) << i;
   }
 }
 
