@@ -75,7 +75,11 @@ class Chart {
       value.style.setProperty("--dash", dash);
       return value;
     });
-    this.caption.append(title, ...this.values);
+    this.threshold = document.createElement("span");
+    this.threshold.style.setProperty("--ink", "var(--soft)");
+    this.threshold.style.setProperty("--dash", "dotted");
+    this.threshold.hidden = true;
+    this.caption.append(title, ...this.values, this.threshold);
     this.canvas.addEventListener("pointermove", (event) => on_hover(this.time_at(event.offsetX)));
     this.canvas.addEventListener("click", (event) => on_pick(this.time_at(event.offsetX)));
     this.canvas.addEventListener("pointerleave", () => on_hover(null));
@@ -189,6 +193,8 @@ class Chart {
     this.kind.lines.forEach(({ column, label }, i) => {
       this.values[i].textContent = `${label} ${sample ? short(sample[column]) : "–"}`;
     });
+    this.threshold.hidden = threshold == null;
+    this.threshold.textContent = threshold == null ? "" : `threshold ${short(threshold)}`;
     const told = this.values.map((value) => value.textContent).join(", ");
     this.canvas.setAttribute("aria-label", `${this.kind.title}: ${told}` + (threshold != null ? `, threshold ${short(threshold)}` : ""));
   }
