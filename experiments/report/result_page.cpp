@@ -74,6 +74,14 @@ std::string table_html(const TextTable& table) {
   return "<h2>" + escaped(table.title) + "</h2>\n" + table_of(table.title, table.columns, rows);
 }
 
+/// The picture with its title for those who hear the page.
+std::string named(const Picture& picture) {
+  std::string svg = picture.svg;
+  const std::string begin = "<svg ";
+  if (svg.starts_with(begin)) svg.insert(begin.size(), "role=\"img\" aria-label=\"" + escaped(picture.title) + "\" ");
+  return svg;
+}
+
 std::string file_of(std::span<const daemon::dashboard::PageFile> files, std::string_view name) {
   const auto file = std::find_if(files.begin(), files.end(), [&](const auto& one) { return one.name == name; });
   return std::string{file == files.end() ? std::string_view{} : file->content};
@@ -118,9 +126,8 @@ std::string page_html(const Results& results) {
   for (const TextTable& table : report.tables) html += table_html(table);
   if (!report.pictures.empty()) html += "<h2>Pictures</h2>\n<div class=\"charts\">\n";
   for (const Picture& picture : report.pictures) {
-    html += "<figure class=\"picture\"><figcaption>" + escaped(picture.title) +
-            "</figcaption>\n<div role=\"img\" aria-label=\"" + escaped(picture.title) + "\">" + picture.svg +
-            "</div></figure>\n";
+    html += "<figure class=\"picture\"><figcaption>" + escaped(picture.title) + "</figcaption>\n" + named(picture) +
+            "</figure>\n";
   }
   if (!report.pictures.empty()) html += "</div>\n";
   return html + "</main></body></html>\n";
