@@ -74,6 +74,7 @@ std::vector<Certainty> certainties_of_runs(std::size_t runs, const FiguresOfRuns
   const std::vector<std::vector<double>> answers = resampled(runs, figures_of);
   for (std::size_t figure = 0; figure < certainties.size(); ++figure) {
     std::vector<double> values;
+    values.reserve(answers.size());
     for (const std::vector<double>& answer : answers) values.push_back(answer[figure]);
     values = known(std::move(values));
     certainties[figure].low = quantile(values, kOutside);

@@ -49,6 +49,7 @@ PooledRuns::PooledRuns(std::vector<const Outcome*> runs, const std::function<Num
   all_.numbers = numbers_of(rows_of(runs_));
   certainties_ = certainties_of_runs(runs_.size(), [&](const std::vector<std::size_t>& drawn) {
     std::vector<const Outcome*> chosen;
+    chosen.reserve(drawn.size());
     for (const std::size_t run : drawn) chosen.push_back(runs_[run]);
     return values_of(numbers_of(rows_of(chosen)));
   });

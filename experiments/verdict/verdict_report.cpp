@@ -83,6 +83,7 @@ template <typename Of>
 Certainty certainty_of(const VerdictPart& part, Of&& of) {
   const auto figure = [&](const std::vector<std::size_t>& drawn) {
     std::vector<const Outcome*> chosen;
+    chosen.reserve(drawn.size());
     for (const std::size_t run : drawn) chosen.push_back(part.chosen()[run]);
     return std::vector<double>{of(VerdictPart{std::move(chosen)})};
   };
