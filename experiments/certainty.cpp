@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/random.hpp"
 #include "experiments/scan_table.hpp"
@@ -37,6 +38,22 @@ Certainty by_bootstrap(const std::vector<double>& given, Statistic&& statistic) 
   return certainty;
 }
 
+/// The figures of each resample. Few runs are drawn alike again and again: then what is known is taken.
+std::vector<std::vector<double>> resampled(std::size_t runs, const FiguresOfRuns& figures_of) {
+  Random random{kSeed};
+  std::map<std::vector<std::size_t>, std::vector<double>> known_of;
+  std::vector<std::vector<double>> answers;
+  std::vector<std::size_t> drawn(runs);
+  for (int i = 0; i < kResamples; ++i) {
+    for (std::size_t& run : drawn) run = random.index_below(static_cast<std::uint32_t>(runs));
+    std::sort(drawn.begin(), drawn.end());
+    auto found = known_of.find(drawn);
+    if (found == known_of.end()) found = known_of.emplace(drawn, figures_of(drawn)).first;
+    answers.push_back(found->second);
+  }
+  return answers;
+}
+
 }  // namespace
 
 Certainty certainty_of_mean(const std::vector<double>& values) { return by_bootstrap(values, mean_of); }
@@ -47,6 +64,23 @@ Certainty certainty_of_quantile(const std::vector<double>& values, double share)
 
 Certainty certainty_of_root_mean_square(const std::vector<double>& values) {
   return by_bootstrap(values, root_mean_square);
+}
+
+std::vector<Certainty> certainties_of_runs(std::size_t runs, const FiguresOfRuns& figures_of) {
+  std::vector<std::size_t> each(runs);
+  for (std::size_t i = 0; i < runs; ++i) each[i] = i;
+  std::vector<Certainty> certainties(figures_of(each).size(), Certainty{.runs = runs});
+  if (runs < kLeastRuns) return certainties;
+  const std::vector<std::vector<double>> answers = resampled(runs, figures_of);
+  for (std::size_t figure = 0; figure < certainties.size(); ++figure) {
+    std::vector<double> values;
+    values.reserve(answers.size());
+    for (const std::vector<double>& answer : answers) values.push_back(answer[figure]);
+    values = known(std::move(values));
+    certainties[figure].low = quantile(values, kOutside);
+    certainties[figure].high = quantile(values, 1.0 - kOutside);
+  }
+  return certainties;
 }
 
 Certainty certainty_of_extreme(const std::vector<double>& values) { return {.runs = known(values).size()}; }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -21,7 +22,12 @@ struct Certainty {
 [[nodiscard]] Certainty certainty_of_mean(const std::vector<double>& values);
 [[nodiscard]] Certainty certainty_of_quantile(const std::vector<double>& values, double share);
 [[nodiscard]] Certainty certainty_of_root_mean_square(const std::vector<double>& values);
-/// Of the least or the most of all: resampling says nothing of what lies beyond.
+/// Of a figure that is made of whole runs in any other way (scans of all runs together, shares of runs): `figures_of`
+/// answers the figures that the named runs would give, one run named as often as it was drawn, in order; a certainty
+/// for each comes back. Resamples whose figure is NaN say nothing.
+using FiguresOfRuns = std::function<std::vector<double>(const std::vector<std::size_t>& drawn)>;
+[[nodiscard]] std::vector<Certainty> certainties_of_runs(std::size_t runs, const FiguresOfRuns& figures_of);
+/// Of the least or the most of all, and of a count: resampling says nothing of what lies beyond.
 [[nodiscard]] Certainty certainty_of_extreme(const std::vector<double>& values);
 
 }  // namespace deltamap::experiments

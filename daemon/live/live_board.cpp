@@ -97,7 +97,7 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   set(LiveSample::kNEff, row.n_eff);
   set(LiveSample::kPoseRight, row.belief.pose_right);
   set(LiveSample::kMapWrong, row.belief.map_wrong);
-  set(LiveSample::kScansPerSecond, is_first || passed_s <= 0.0 ? 0.0 : scans / passed_s);
+  set(LiveSample::kScansPerSecond, passed_s > 0.0 ? scans / passed_s : LiveFigures::kUnknown);
   set(LiveSample::kLatency, 1e3 * latency_s);
   add_figures(sample, passed_s);
   last_sample_ = row.time;
@@ -105,13 +105,15 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   if (!is_first) samples_.add(sample);  // the first has no rate yet
 }
 
-/// CPU since the sample before: the stages' clocks run in real time, a live run's scans too.
+/// CPU since the sample before: the stages' clocks run in real time, a live run's scans too. Where the scans' time has
+/// gone back, no rate is known.
 void LiveBoard::add_figures(LiveSample& sample, double passed_s) {
   constexpr double kBytesPerMiB = 1024.0 * 1024.0;
   const LiveFigures now = figures_();
   for (std::size_t i = 0; i < now.cpu_s.size(); ++i) {
     const double used_s = now.cpu_s[i] - figures_at_sample_.cpu_s[i];
-    sample.values[LiveSample::kCpuIo + i] = static_cast<float>(100.0 * used_s / passed_s);
+    const double share = passed_s > 0.0 ? used_s / passed_s : LiveFigures::kUnknown;
+    sample.values[LiveSample::kCpuIo + i] = static_cast<float>(100.0 * share);
   }
   sample.values[LiveSample::kMemory] = static_cast<float>(now.resident_bytes / kBytesPerMiB);
   sample.values[LiveSample::kWheelDistance] = static_cast<float>(100.0 * now.wheel_distance);

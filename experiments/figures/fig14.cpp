@@ -9,6 +9,7 @@
 #include "daemon/system/used_memory.hpp"
 #include "experiments/drive/first_map.hpp"
 #include "experiments/drive/mapping_drive.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/mapping_run.hpp"
 
@@ -165,22 +166,39 @@ std::vector<Run> runs_of(const Options& options) {
   return runs;
 }
 
-double mean_number(const std::vector<Outcome>& outcomes, const std::string& method, const std::string& number) {
-  std::vector<double> values;
-  for (const Outcome& outcome : outcomes) {
-    const bool counts = outcome.label("method") == method && !std::isnan(outcome.number(number));
-    if (counts) values.push_back(outcome.number(number));
-  }
+using Values = std::vector<double>;
+
+/// A number of each run of the method.
+Values numbers(const std::vector<Outcome>& outcomes, const std::string& method, const std::string& number) {
+  Values values;
+  for (const Outcome* run : runs_with(outcomes, {{"method", method}})) values.push_back(run->number(number));
+  return values;
+}
+
+Values scaled(Values values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+Values difference(Values values, const Values& others) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= others[i];
+  return values;
+}
+
+/// What is known of it: runs without it say nothing.
+double mean_of_known(Values values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
   return mean_of(values);
 }
 
 void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std::string& method) {
-  const auto of = [&](const std::string& number) { return mean_number(outcomes, method, number); };
+  const auto of = [&](const std::string& number) { return numbers(outcomes, method, number); };
   const double scan_ms = 1e3 * simulation::VirtualDriveParams{}.scan_period_s;
   const bool ours = method == "evidence";
-  const auto add = [&](const std::string& what, double value, const std::string& unit, const std::string& peers = "",
-                       std::optional<Target> target = std::nullopt) {
-    report.figures.push_back({method + ": " + what, value, unit, ours ? target : std::nullopt, peers});
+  const auto add = [&](const std::string& what, const Values& values, const std::string& unit,
+                       const std::string& peers = "", std::optional<Target> target = std::nullopt) {
+    report.figures.push_back({method + ": " + what, mean_of_known(values), unit, ours ? target : std::nullopt, peers,
+                              certainty_of_mean(values)});
   };
   add("scans inside Δ-phases", of("inside"), "");
   for (const std::string where : {"outside", "inside"}) {
@@ -188,7 +206,7 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
         where == "inside" ? "paper: peaks of an Atom of 1.6 GHz, no number" : "paper: low");
     add("CPU a scan " + where + ", 99 % within", of(where + "_p99_ms"), "ms");
     add("CPU a scan " + where + ", peak", of(where + "_peak_ms"), "ms");
-    add("of one processor " + where, 100.0 * of(where + "_mean_ms") / scan_ms, "%");
+    add("of one processor " + where, scaled(of(where + "_mean_ms"), 100.0 / scan_ms), "%");
     add("awareness and map update a scan " + where + ", mean", of(where + "_mapping_mean_ms"), "ms");
   }
   add("localizer a scan, mean", of("localizer_mean_ms"), "ms");
@@ -198,8 +216,9 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
   add("CPU a map update, peak", of("update_peak_ms"), "ms");
   add("resident memory, simulator and all, peak", of("peak_mb"), "MB", "paper: 92 MB for a short time",
       Target{.most = 30.0});
-  add("resident memory, grown by since before the drive, peak", of("peak_mb") - of("before_mb"), "MB");
-  add("resident memory, grown by in the second half", of("end_mb") - of("half_way_mb"), "MB", "", Target{.most = 1.0});
+  add("resident memory, grown by since before the drive, peak", difference(of("peak_mb"), of("before_mb")), "MB");
+  add("resident memory, grown by in the second half", difference(of("end_mb"), of("half_way_mb")), "MB", "",
+      Target{.most = 1.0});
 }
 
 Chart chart_of(const std::vector<Outcome>& outcomes, const std::string& title, const std::string& y,
@@ -221,7 +240,7 @@ Chart chart_of(const std::vector<Outcome>& outcomes, const std::string& title, c
 Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string method : {"evidence", "paper"}) {
-    if (!std::isnan(mean_number(outcomes, method, "scans"))) add_figures(report, outcomes, method);
+    if (!runs_with(outcomes, {{"method", method}}).empty()) add_figures(report, outcomes, method);
   }
   report.charts.push_back(chart_of(outcomes, "CPU a scan inside and outside Δ-phases", "mean of a minute, ms",
                                    {{"outside_mean_ms", ", outside"}, {"inside_mean_ms", ", inside"}}));

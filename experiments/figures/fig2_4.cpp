@@ -10,6 +10,7 @@
 #include "experiments/drive/localizer_variants.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/drive/view_difference.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
 #include "mapping/store_scan.hpp"
 
@@ -172,46 +173,84 @@ Pooled pooled_scans(const std::vector<Outcome>& outcomes, const std::string& wor
   return pooled;
 }
 
-std::vector<double> numbers(const std::vector<Outcome>& outcomes, const std::string& world, const char* name) {
-  std::vector<double> values;
-  for (const Outcome& outcome : outcomes) {
-    if (outcome.label("world") == world && std::isfinite(outcome.number(name))) values.push_back(outcome.number(name));
+/// Figures of the runs in one world: means over them, and what is the most or the least of all.
+class World {
+ public:
+  World(const std::vector<Outcome>& outcomes, const std::string& world, std::string where)
+      : runs_{runs_with(outcomes, {{"world", world}})}, where_{std::move(where)} {}
+
+  [[nodiscard]] Figure mean(const std::string& what, const char* number, const std::string& peers = "") const {
+    const std::vector<double> values = all(number);
+    return {where_ + what, mean_of(values), "", {}, peers, certainty_of_mean(values)};
   }
-  return values;
+  [[nodiscard]] Figure extreme(const std::string& what, const char* number, double rank,
+                               const std::string& peers) const {
+    const std::vector<double> values = all(number);
+    return {where_ + what, quantile(values, rank), "", {}, peers, certainty_of_extreme(values)};
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> all(const char* number) const {
+    std::vector<double> values;
+    for (const Outcome* run : runs_) {
+      if (std::isfinite(run->number(number))) values.push_back(run->number(number));
+    }
+    return values;
+  }
+  std::vector<const Outcome*> runs_;
+  std::string where_;
+};
+
+/// What the scans of all seeds tell together. A seed's two worlds are one run.
+std::vector<double> shares_in_view(const std::vector<Outcome>& outcomes) {
+  const Pooled still = pooled_scans(outcomes, "still");
+  const Pooled changed = pooled_scans(outcomes, "changed");
+  return {share_above(changed.r_d_in_view, 0.0),
+          share_above(changed.r_d_in_view, quantile(still.r_d, 1.0 - kFalseAlarms)),
+          share_above(changed.speaking_in_view, quantile(still.speaking_beams, 1.0 - kFalseAlarms))};
+}
+
+std::vector<Certainty> certainties_in_view(const std::vector<Outcome>& outcomes) {
+  std::vector<std::vector<Outcome>> by_seed;
+  for (const Outcome* run : runs_with(outcomes, {{"world", "changed"}})) {
+    by_seed.emplace_back();
+    for (const Outcome* one : runs_with(outcomes, {{"seed", run->label("seed")}})) by_seed.back().push_back(*one);
+  }
+  return certainties_of_runs(by_seed.size(), [&](const std::vector<std::size_t>& drawn) {
+    std::vector<Outcome> chosen;
+    for (const std::size_t seed : drawn) chosen.insert(chosen.end(), by_seed[seed].begin(), by_seed[seed].end());
+    return shares_in_view(chosen);
+  });
 }
 
 std::vector<Figure> figures_of(const std::vector<Outcome>& outcomes) {
-  const auto mean = [&](const std::string& world, const char* name) { return mean_of(numbers(outcomes, world, name)); };
-  const auto extreme = [&](const std::string& world, const char* name, double rank) {
-    return quantile(numbers(outcomes, world, name), rank);
-  };
-  const Pooled still = pooled_scans(outcomes, "still");
-  const Pooled changed = pooled_scans(outcomes, "changed");
-  const double r_d_limit = quantile(still.r_d, 1.0 - kFalseAlarms);
-  const double beams_limit = quantile(still.speaking_beams, 1.0 - kFalseAlarms);
+  const World still{outcomes, "still", "no change: "};
+  const World changed{outcomes, "changed", "change: "};
+  const std::vector<double> shares = shares_in_view(outcomes);
+  const std::vector<Certainty> certainties = certainties_in_view(outcomes);
   return {
-      {"no change: scans with r_d > 0", mean("still", "positive_r_d"), "", {}, "paper: none (Fig. 3)"},
-      {"no change: largest r_d", extreme("still", "most_r_d", 1.0), "", {}, "paper: below 0, drawn as 0 (Fig. 3)"},
-      {"no change: w_avg, median", mean("still", "median_w_avg"), ""},
-      {"no change: least w_avg", extreme("still", "least_w_avg", 0.0), "", {}, "paper: steady (Fig. 2a)"},
-      {"no change: Δ-phases begun in a lap", mean("still", "phases"), "", {}, "paper: 0"},
-      {"no change: scans stored in a lap", mean("still", "stored_scans"), ""},
-      {"change: scans with a change in view", mean("changed", "in_view"), ""},
-      {"change: scans with r_d > 0", mean("changed", "positive_r_d"), ""},
-      {"change: scans with r_d > 0 with the change in view",
-       share_above(changed.r_d_in_view, 0.0),
+      still.mean("scans with r_d > 0", "positive_r_d", "paper: none (Fig. 3)"),
+      still.extreme("largest r_d", "most_r_d", 1.0, "paper: below 0, drawn as 0 (Fig. 3)"),
+      still.mean("w_avg, median", "median_w_avg"),
+      still.extreme("least w_avg", "least_w_avg", 0.0, "paper: steady (Fig. 2a)"),
+      still.mean("Δ-phases begun in a lap", "phases", "paper: 0"),
+      still.mean("scans stored in a lap", "stored_scans"),
+      changed.mean("scans with a change in view", "in_view"),
+      changed.mean("scans with r_d > 0", "positive_r_d"),
+      {"change: scans with r_d > 0 with the change in view", shares[0], "", {}, "paper: all (Fig. 4)", certainties[0]},
+      changed.mean("scans with r_d > 0 with none in view", "positive_elsewhere", "paper: none"),
+      changed.extreme("largest r_d", "most_r_d", 1.0, "paper: above 0 (Fig. 4)"),
+      changed.mean("w_avg, median with the change in view", "median_w_avg_in_view"),
+      changed.extreme("least w_avg", "least_w_avg", 0.0, "paper: sudden falls (Fig. 2b)"),
+      changed.mean("Δ-phases begun in a lap", "phases"),
+      changed.mean("scans stored in a lap", "stored_scans"),
+      {"scans with a change in view that r_d tells, 2 % false alarms", shares[1], "", {}, "", certainties[1]},
+      {"scans with the change in view that beams tell (evidence), no more false alarms",
+       shares[2],
        "",
        {},
-       "paper: all (Fig. 4)"},
-      {"change: scans with r_d > 0 with none in view", mean("changed", "positive_elsewhere"), "", {}, "paper: none"},
-      {"change: largest r_d", extreme("changed", "most_r_d", 1.0), "", {}, "paper: above 0 (Fig. 4)"},
-      {"change: w_avg, median with the change in view", mean("changed", "median_w_avg_in_view"), ""},
-      {"change: least w_avg", extreme("changed", "least_w_avg", 0.0), "", {}, "paper: sudden falls (Fig. 2b)"},
-      {"change: Δ-phases begun in a lap", mean("changed", "phases"), ""},
-      {"change: scans stored in a lap", mean("changed", "stored_scans"), ""},
-      {"scans with a change in view that r_d tells, 2 % false alarms", share_above(changed.r_d_in_view, r_d_limit), ""},
-      {"scans with the change in view that beams tell (evidence), no more false alarms",
-       share_above(changed.speaking_in_view, beams_limit), ""}};
+       "",
+       certainties[2]}};
 }
 
 Series drawn(const ScanTable& scans, const std::string& column, const std::string& name, double least) {

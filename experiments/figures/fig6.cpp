@@ -9,6 +9,7 @@
 #include "experiments/drive/lived_in.hpp"
 #include "experiments/drive/localizer_variants.hpp"
 #include "experiments/drive/mapping_drive.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
 #include "mapping/paper/delta_phase.hpp"
 
@@ -108,31 +109,15 @@ std::vector<Run> runs_of(const Options& options) {
   return runs;
 }
 
-/// The scans of all seeds on one path.
-Outcome pooled(const std::vector<Outcome>& outcomes, const std::string& variant, const std::string& path) {
-  Outcome all;
-  all.scans = empty_table();
-  for (const Outcome& outcome : outcomes) {
-    if (outcome.label("localizer") != variant || outcome.label("path") != path) continue;
-    for (std::size_t row = 0; row < outcome.scans.rows(); ++row) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < outcome.scans.columns().size(); ++i) values.push_back(outcome.scans.at(row, i));
-      all.scans.add(values);
-    }
-  }
-  all.numbers = numbers_of(all.scans);
-  return all;
-}
-
-void add_figures(Report& report, const std::string& variant, const Path& path, const Outcome& all) {
+void add_figures(Report& report, const std::string& variant, const Path& path, const PooledRuns& all) {
   const std::string where = variant + ", " + path.name + ": ";
-  report.figures.push_back({where + "N_eff / particles", all.number("n_eff_share"), "", {}, path.published});
-  report.figures.push_back({where + "rejected by the gate", all.number("rejected"), ""});
+  report.figures.push_back(all.figure(where + "N_eff / particles", "n_eff_share", "", {}, path.published));
+  report.figures.push_back(all.figure(where + "rejected by the gate", "rejected"));
   if (std::string{path.name} != kWinding) return;
   for (const std::string part : {"turning", "straight"}) {
     const std::string of_scans = where + (part == "turning" ? "in turns" : "between turns");
-    report.figures.push_back({of_scans + ", N_eff / particles", all.number(part + "_n_eff_share"), ""});
-    report.figures.push_back({of_scans + ", rejected by the gate", all.number(part + "_rejected"), ""});
+    report.figures.push_back(all.figure(of_scans + ", N_eff / particles", part + "_n_eff_share"));
+    report.figures.push_back(all.figure(of_scans + ", rejected by the gate", part + "_rejected"));
   }
 }
 
@@ -142,15 +127,14 @@ Report report_of(const std::vector<Outcome>& outcomes) {
   for (const std::string variant : {"500x60", "delivered"}) {
     Chart chart{"Figure 6, " + variant, "time, s", "N_eff / particles", {}};
     for (const Path& path : paths()) {
-      const Outcome all = pooled(outcomes, variant, path.name);
-      if (all.scans.rows() == 0) continue;  // not asked for
+      const PooledRuns all{runs_with(outcomes, {{"localizer", variant}, {"path", path.name}}), numbers_of};
+      if (all.empty()) continue;  // not asked for
       add_figures(report, variant, path, all);
-      for (const Outcome& outcome : outcomes) {
-        if (outcome.label("localizer") != variant || outcome.label("path") != path.name) continue;
-        if (outcome.label("seed") != first_seed) continue;
+      for (const Outcome* outcome : all.runs()) {
+        if (outcome->label("seed") != first_seed) continue;
         Series series{path.name, {}};
-        const std::vector<double> time_s = outcome.scans.column("t_s");
-        const std::vector<double> share = outcome.scans.column("n_eff_share");
+        const std::vector<double> time_s = outcome->scans.column("t_s");
+        const std::vector<double> share = outcome->scans.column("n_eff_share");
         for (std::size_t i = 0; i < share.size(); ++i) series.points.emplace_back(time_s[i], share[i]);
         chart.series.push_back(std::move(series));
       }

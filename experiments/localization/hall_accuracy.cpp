@@ -8,7 +8,9 @@
 #include "experiments/drive/localizer_variants.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/localization/weakest_axis.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
+#include "experiments/report/svg_map.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -83,36 +85,27 @@ std::vector<std::pair<std::string, double>> numbers_of(const ScanTable& scans) {
           {"particles", mean_of(scans.column("particles"))}};
 }
 
-ScanTable joined(const std::vector<Outcome>& outcomes, const std::string& setting, const std::string& range) {
-  ScanTable all = empty_table();
-  for (const Outcome& outcome : outcomes) {
-    if (outcome.label("setting") != setting || outcome.label("range_m") != range) continue;
-    for (std::size_t row = 0; row < outcome.scans.rows(); ++row) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < outcome.scans.columns().size(); ++i) values.push_back(outcome.scans.at(row, i));
-      all.add(values);
-    }
-  }
-  return all;
-}
-
 Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& setting, double range_m,
                std::uint64_t seed, double minutes) {
   simulation::VirtualDriveParams drive;
   drive.seed = seed;
   drive.max_range_m = range_m;
-  MappingDrive pair{scenario, drive, localizer_alone(setting.params), {first_map(scenario)}};
+  const auto map = first_map(scenario);
+  MappingDrive pair{scenario, drive, localizer_alone(setting.params), {map}};
   Outcome outcome;
   outcome.scans = empty_table();
+  TrajectoryPair paths;
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
     const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     const Pose2 map_from_laser = scan.map_from_robot * scenario.laser.optics.robot_from_laser;
     outcome.scans.add(
         row_of(scan, weakest_axis(pair.drive().world(), pair.drive().surfaces(), map_from_laser, range_m)));
+    paths.add(passed_s, scan.map_from_robot.position(), scan.estimate.map_from_robot.position());
   }
   outcome.labels = {{"setting", setting.name}, {"range_m", text_of(range_m)}, {"seed", std::to_string(seed)}};
   outcome.numbers = numbers_of(outcome.scans);
+  outcome.pictures = {{"robot green, believed magenta", svg_of_trajectories(*map, paths)}};
   return outcome;
 }
 
@@ -131,12 +124,12 @@ std::vector<Run> runs_of(const Options& options) {
   return runs;
 }
 
-void add_figures(Report& report, const std::string& setting, const std::string& range, const Outcome& all) {
+void add_figures(Report& report, const std::string& setting, const std::string& range, const PooledRuns& all) {
   const std::string where = setting + ", " + range + " m: ";
   const bool far = range == "80";
   const auto add = [&](const std::string& what, const std::string& number, const std::string& unit,
                        std::optional<Target> target, const std::string& peers = "") {
-    report.figures.push_back({where + what, all.number(number), unit, target, peers});
+    report.figures.push_back(all.figure(where + what, number, unit, target, peers));
   };
   add("RMSE", "rmse_m", "m", far ? std::optional{Target{.most = 0.02}} : std::nullopt,
       far ? "nav2 LF-prob 0.031, MRPT 0.039, iris_lama 0.045" : "MRPT 0.083, nav2 0.144, iris_lama 2.0");
@@ -172,18 +165,15 @@ Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const std::string setting : {"500x60", "delivered"}) {
     for (const std::string range : {"80", "8"}) {
-      const ScanTable scans = joined(outcomes, setting, range);
-      if (scans.rows() == 0) continue;  // not asked for
-      Outcome all;
-      all.numbers = numbers_of(scans);
+      const PooledRuns all{runs_with(outcomes, {{"setting", setting}, {"range_m", range}}), numbers_of};
+      if (all.empty()) continue;  // not asked for
       add_figures(report, setting, range, all);
       const std::string title = std::string{setting}.append(", ").append(range).append(" m");
       Chart chart{title, "time, s", "error of position, m", {}};
-      for (const Outcome& outcome : outcomes) {
-        if (outcome.label("setting") != setting || outcome.label("range_m") != range) continue;
-        chart.series.push_back(errors_over_time(outcome, "seed " + outcome.label("seed")));
-      }
+      for (const Outcome* outcome : all.runs())
+        chart.series.push_back(errors_over_time(*outcome, "seed " + outcome->label("seed")));
       report.charts.push_back(std::move(chart));
+      add_pictures(report, title, *all.runs().front());
     }
   }
   return report;

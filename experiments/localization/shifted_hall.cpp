@@ -7,6 +7,7 @@
 
 #include "core/angle.hpp"
 #include "experiments/drive/first_map.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/watch/watched_drive.hpp"
 
@@ -90,6 +91,7 @@ Report report_of(const std::vector<Outcome>& outcomes) {
       errors.series.push_back(error_series(outcome));
     }
     if (rms_m.empty()) continue;  // not asked for
+    add_pictures(report, kind.name, *runs_with(outcomes, {{"kind", kind.name}}).front());
     report.figures.push_back({kind.name + ": RMSE of the worst drive", quantile(rms_m, 1.0), "m", kind.rms_m, "",
                               certainty_of_extreme(rms_m)});
     report.figures.push_back({kind.name + ": RMSE, mean", mean_of(rms_m), "m", {}, "", certainty_of_mean(rms_m)});

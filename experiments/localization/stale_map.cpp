@@ -6,7 +6,9 @@
 #include "experiments/drive/first_map.hpp"
 #include "experiments/drive/localizer_variants.hpp"
 #include "experiments/drive/mapping_drive.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
+#include "experiments/report/svg_map.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -45,14 +47,17 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   drive.seed = seed;
   drive.max_range_m = range_m;
   drive.forklift = scenario.forklift;
-  MappingDrive pair{scenario, drive, localizer_alone(variant.params), {first_map(scenario)}};
+  const auto map = first_map(scenario);
+  MappingDrive pair{scenario, drive, localizer_alone(variant.params), {map}};
   Outcome outcome;
   outcome.scans = empty_table();
+  TrajectoryPair paths;
   std::size_t changes = 0;
   for (double passed_s = 0.0; passed_s < 60.0 * minutes;) {
     const Mapped scan = pair.next();
     passed_s = scan.passed_s;
     changes += scan.changes.size();
+    paths.add(passed_s, scan.map_from_robot.position(), scan.estimate.map_from_robot.position());
     const PoseError error = error_of(scan);
     const Estimate& estimate = scan.estimate;
     outcome.scans.add({scan.passed_s, scan.map_from_robot.x, scan.map_from_robot.y, scan.map_from_robot.theta,
@@ -63,6 +68,7 @@ Outcome follow(const simulation::Scenario& scenario, const LocalizerVariant& var
   outcome.labels = {{"localizer", variant.name}, {"range_m", text_of(range_m)}, {"seed", std::to_string(seed)}};
   outcome.numbers = numbers_of(outcome.scans);
   outcome.numbers.emplace_back("changes", static_cast<double>(changes));
+  outcome.pictures = {{"robot green, believed magenta, the map that nobody changes", svg_of_trajectories(*map, paths)}};
   return outcome;
 }
 
@@ -165,6 +171,7 @@ Report report_of(const std::vector<Outcome>& outcomes) {
       }
       report.charts.push_back(std::move(errors));
       report.charts.push_back(std::move(belief));
+      add_pictures(report, title, *pooled.outcomes().front());
     }
   }
   return report;

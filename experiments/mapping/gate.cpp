@@ -66,10 +66,36 @@ class Kind {
     return sum(number) / static_cast<double>(chosen_.size());
   }
   [[nodiscard]] const std::vector<const Outcome*>& outcomes() const { return chosen_; }
+  /// Of all runs together: without an interval.
+  [[nodiscard]] Figure sum_figure(const std::string& name, const std::string& number,
+                                  const std::optional<Target>& target = {}) const {
+    return {name, sum(number), "", target, "", Certainty{.runs = chosen_.size()}};
+  }
+  [[nodiscard]] Figure mean_figure(const std::string& name, const std::string& number,
+                                   const std::optional<Target>& target = {}) const {
+    std::vector<double> values;
+    for (const Outcome* outcome : chosen_) values.push_back(outcome->number(number));
+    return {name, mean_of(values), "", target, "", certainty_of_mean(values)};
+  }
 
  private:
   std::vector<const Outcome*> chosen_;
 };
+
+/// Of the sum over one kind's runs by that over another's, seed by seed.
+Certainty certainty_of_ratio(const Kind& kind, const Kind& other, const std::string& number) {
+  if (kind.outcomes().size() != other.outcomes().size()) return {.runs = kind.outcomes().size()};
+  const auto ratio = [&](const std::vector<std::size_t>& drawn) {
+    double above = 0.0;
+    double below = 0.0;
+    for (const std::size_t run : drawn) {
+      above += kind.outcomes()[run]->number(number);
+      below += other.outcomes()[run]->number(number);
+    }
+    return std::vector<double>{above / below};
+  };
+  return certainties_of_runs(kind.outcomes().size(), ratio).front();
+}
 
 /// Why it was shut, the longest first left to the reader: every reason that was.
 std::vector<std::vector<std::string>> reasons_of(const Kind& kind, const std::string& where, const std::string& when) {
@@ -122,25 +148,29 @@ Report report_of(const std::vector<Outcome>& outcomes) {
     const Kind gated{outcomes, place, "", "gated"};
     const Kind open{outcomes, place, "", "open"};
     if (gated.empty() || open.empty()) continue;
-    report.figures.push_back({place + ": cells written while the pose was off by more than 0.3 m",
-                              gated.sum("cells_astray"), "", Target{.most = 0.0}});
-    report.figures.push_back({place + ": cells written while off by more than 0.3 m that are there 60 s later",
-                              gated.sum("cells_astray_that_stood"), "", Target{.most = 0.0}});
-    report.figures.push_back({place + ": cells drawn from scans taken so far off", gated.sum("cells_drawn_astray"), "",
-                              Target{.most = 0.0}});
-    report.figures.push_back({place + ": cells written while the pose was off by more than 0.3 m, without the gate",
-                              open.sum("cells_astray"), ""});
-    report.figures.push_back(
-        {place + ": cells written while off by more than 0.3 m that are there 60 s later, without the gate",
-         open.sum("cells_astray_that_stood"), ""});
+    const auto add_sum = [&](const Kind& kind, const std::string& what, const char* number,
+                             const std::optional<Target>& target = {}) {
+      report.figures.push_back(kind.sum_figure(std::string{place}.append(": ").append(what), number, target));
+    };
+    const std::string astray = "cells written while the pose was off by more than 0.3 m";
+    const std::string stood = "cells written while off by more than 0.3 m that are there 60 s later";
+    add_sum(gated, astray, "cells_astray", Target{.most = 0.0});
+    add_sum(gated, stood, "cells_astray_that_stood", Target{.most = 0.0});
+    add_sum(gated, "cells drawn from scans taken so far off", "cells_drawn_astray", Target{.most = 0.0});
+    add_sum(open, astray + ", without the gate", "cells_astray");
+    add_sum(open, stood + ", without the gate", "cells_astray_that_stood");
     const Kind quiet{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "gated"};
     if (quiet.empty()) continue;
     const Kind quiet_open{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "open"};
-    report.figures.push_back({place + ": share of the time shut while nothing befalls the robot",
-                              quiet.mean("shut_after"), "", Target{.most = 0.02}});
+    report.figures.push_back(quiet.mean_figure(place + ": share of the time shut while nothing befalls the robot",
+                                               "shut_after", Target{.most = 0.02}));
     if (quiet_open.empty()) continue;
     report.figures.push_back({place + ": cells written while nothing befalls it, of those without the gate",
-                              quiet.sum("cells") / quiet_open.sum("cells"), ""});
+                              quiet.sum("cells") / quiet_open.sum("cells"),
+                              "",
+                              {},
+                              "",
+                              certainty_of_ratio(quiet, quiet_open, "cells")});
   }
   report.tables = {std::move(table), std::move(reasons)};
   return report;

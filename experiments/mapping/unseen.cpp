@@ -156,7 +156,7 @@ Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   const auto count = [&](const std::string& name, const auto& holds, const std::optional<Target>& target = {}) {
     const auto found = std::count_if(outcomes.begin(), outcomes.end(), holds);
-    report.figures.push_back({name, static_cast<double>(found), "", target});
+    report.figures.push_back({name, static_cast<double>(found), "", target, "", Certainty{.runs = outcomes.size()}});
   };
   count(
       "seeds off by more than 0.5 m for more than 5 s",

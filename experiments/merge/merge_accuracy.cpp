@@ -123,25 +123,26 @@ std::vector<Run> runs_of(const Options& options) {
 }
 
 void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std::string& prior, double most_ms) {
-  const ScanTable merges = merges_of(outcomes, {{"prior", prior}});
-  if (merges.rows() == 0) return;  // not asked for
-  const Outcome all = together(merges);
+  const PooledRuns all = pooled_merges(outcomes, {{"prior", prior}});
+  if (all.empty()) return;  // not asked for
   const std::string what = prior + (prior == "with" ? " prior: " : " a prior: ");
   const auto add = [&](const std::string& name, const char* number, const char* unit, std::optional<Target> target,
                        const std::string& peers = "") {
-    report.figures.push_back({what + name, all.number(number), unit, target, peers});
+    report.figures.push_back(all.figure(what + name, number, unit, target, peers));
   };
-  add("transforms", "transforms", "", std::nullopt);
+  report.figures.push_back(all.figure_of_extreme(what + "transforms", "transforms"));
   add("mean acceptance", "acceptance", "", std::nullopt, prior == "with" ? "prototype 0.9994" : "");
   add("surface agreement, mean", "agreement", "", std::nullopt);
   add("acceptance short of the true pose's own, mean", "short_of_truth", "", Target{.most = 0.0003});
-  add("acceptance short of the true pose's own, worst", "most_short_of_truth", "", Target{.most = 0.001});
+  report.figures.push_back(all.figure_of_extreme(what + "acceptance short of the true pose's own, worst",
+                                                 "most_short_of_truth", "", Target{.most = 0.001}));
   add("off, mean", "off_cells", "cells", Target{.most = 0.1});
   add("off, 99 % within", "off_cells_p99", "cells", std::nullopt);
-  add("off, mean", "turn_error_deg", "deg", std::nullopt);
+  add("off in heading, mean", "turn_error_deg", "deg", std::nullopt);
   add("refused", "refused", "", std::nullopt);
   report.figures.push_back({what + "wrong and not refused, of 10 000",
-                            1e4 * all.number("wrong_not_refused") / all.number("transforms"), "", Target{.most = 1.0}});
+                            1e4 * all.number("wrong_not_refused") / all.number("transforms"), "", Target{.most = 1.0},
+                            "", Certainty{.runs = all.runs().size()}});
   add("CPU time, mean", "mean_ms", "ms", Target{.most = most_ms}, prior == "with" ? "prototype 2.2" : "prototype 22");
   add("CPU time, 99 % within", "p99_ms", "ms", std::nullopt);
 }

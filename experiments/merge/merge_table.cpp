@@ -76,6 +76,11 @@ std::vector<std::pair<std::string, double>> merge_numbers(const ScanTable& merge
           {"p99_ms", quantile(taken_ms, 0.99)}};
 }
 
+PooledRuns pooled_merges(const std::vector<Outcome>& outcomes,
+                         const std::vector<std::pair<std::string, std::string>>& labels) {
+  return {runs_with(outcomes, labels), merge_numbers};
+}
+
 Outcome together(const ScanTable& merges) {
   Outcome all;
   all.numbers = merge_numbers(merges);

@@ -8,6 +8,7 @@
 
 #include "experiments/experiment.hpp"
 #include "experiments/merge/merge_places.hpp"
+#include "experiments/pooled_runs.hpp"
 
 namespace deltamap::experiments {
 
@@ -20,6 +21,10 @@ void add_merge(ScanTable& merges, double true_turn_deg, const MergeMeasure& meas
 
 /// By how much the acceptance of each merge that was not refused falls short of the true pose's own.
 [[nodiscard]] std::vector<double> shortfalls(const ScanTable& merges);
+
+/// The numbers of the merges of all outcomes with these labels, and how sure they are.
+[[nodiscard]] PooledRuns pooled_merges(const std::vector<Outcome>& outcomes,
+                                       const std::vector<std::pair<std::string, std::string>>& labels);
 
 /// The numbers of these merges, as one outcome.
 [[nodiscard]] Outcome together(const ScanTable& merges);

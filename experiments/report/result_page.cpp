@@ -51,19 +51,16 @@ std::string figures_html(const Report& report) {
   std::string rows;
   for (const Figure& figure : report.figures) {
     const std::string unit = std::isnan(figure.value) || figure.unit.empty() ? "" : " " + figure.unit;
-    rows += "<tr>" + cell(figure.name) + cell(short_text(figure.value) + unit, "td", "number");
+    // Whether it is met stands in front: a narrow screen shows it without scrolling.
+    const char* met = !figure.target ? "" : figure.target->is_met_by(figure.value) ? "met" : "missed";
+    rows += "<tr>" + cell(figure.name) + cell(met, "td", figure.target ? met : nullptr) +
+            cell(short_text(figure.value) + unit, "td", "number");
     if (has_runs) rows += certainty_cells(figure);
-    if (figure.target) {
-      const bool met = figure.target->is_met_by(figure.value);
-      rows += cell(text_of_target(*figure.target), "td", "number") +
-              cell(met ? "met" : "missed", "td", met ? "met" : "missed");
-    } else {
-      rows += cell("") + cell("");
-    }
+    rows += figure.target ? cell(text_of_target(*figure.target), "td", "number") : cell("");
     rows += cell(shortened(figure.peers), "td", figure.peers.empty() ? nullptr : "others") + "</tr>\n";
   }
-  std::vector<std::string> columns{"figure", "measured", "95 % interval", "runs", "target", "met", "others"};
-  if (!has_runs) columns.erase(columns.begin() + 2, columns.begin() + 4);
+  std::vector<std::string> columns{"figure", "met", "measured", "95 % interval", "runs", "target", "others"};
+  if (!has_runs) columns.erase(columns.begin() + 3, columns.begin() + 5);
   return table_of("Figures", columns, rows);
 }
 
@@ -75,6 +72,14 @@ std::string table_html(const TextTable& table) {
     rows += "</tr>\n";
   }
   return "<h2>" + escaped(table.title) + "</h2>\n" + table_of(table.title, table.columns, rows);
+}
+
+/// The picture with its title for those who hear the page.
+std::string named(const Picture& picture) {
+  std::string svg = picture.svg;
+  const std::string begin = "<svg ";
+  if (svg.starts_with(begin)) svg.insert(begin.size(), "role=\"img\" aria-label=\"" + escaped(picture.title) + "\" ");
+  return svg;
 }
 
 std::string file_of(std::span<const daemon::dashboard::PageFile> files, std::string_view name) {
@@ -110,8 +115,9 @@ std::string page_html(const Results& results) {
   std::string html = head_html(results.name);
   html += "<body>\n<header><h1>" + escaped(results.name) +
           "</h1><button id=\"theme\" type=\"button\" aria-label=\"Dark or light\">◐</button></header>\n<main>\n";
-  html += "<p>" + escaped(results.what) + ". " + std::to_string(results.runs.size()) + " runs from seed " +
-          std::to_string(results.seed) + (results.quick ? ", quick" : "") + ".</p>\n";
+  html += "<p>" + escaped(results.what) + ". " + std::to_string(results.runs.size()) +
+          (results.runs.size() == 1 ? " run from seed " : " runs from seed ") + std::to_string(results.seed) +
+          (results.quick ? ", quick" : "") + ".</p>\n";
   html += "<p class=\"from\">" + escaped(provenance_text(results.settings)) + "</p>\n";
   html += "<h2>Figures</h2>\n" + figures_html(report);
   if (!report.charts.empty()) html += "<h2>Charts</h2>\n<div class=\"charts\">\n";
@@ -120,7 +126,7 @@ std::string page_html(const Results& results) {
   for (const TextTable& table : report.tables) html += table_html(table);
   if (!report.pictures.empty()) html += "<h2>Pictures</h2>\n<div class=\"charts\">\n";
   for (const Picture& picture : report.pictures) {
-    html += "<figure class=\"picture\"><figcaption>" + escaped(picture.title) + "</figcaption>\n" + picture.svg +
+    html += "<figure class=\"picture\"><figcaption>" + escaped(picture.title) + "</figcaption>\n" + named(picture) +
             "</figure>\n";
   }
   if (!report.pictures.empty()) html += "</div>\n";

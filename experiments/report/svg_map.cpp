@@ -12,6 +12,8 @@
 namespace deltamap::experiments {
 namespace {
 
+constexpr double kTrajectoryEvery_s = 0.5;
+
 std::string number(int value) { return std::to_string(value); }
 
 /// One path of horizontal runs; row 0 is at the bottom.
@@ -75,6 +77,17 @@ std::string svg_of_difference(const OccupancyGrid& map, const OccupancyGrid& oth
                     path_of_runs(map.geometry(), "#c4531c", surface(false, true, map, other));
   for (const Trajectory& trajectory : trajectories) svg += path_of(trajectory, map.geometry());
   return svg + "</svg>\n";
+}
+
+void TrajectoryPair::add(double time_s, const Point2& truth, const Point2& believed) {
+  if (time_s < next_s_) return;
+  next_s_ = time_s + kTrajectoryEvery_s;
+  both_[0].points.push_back(truth);
+  both_[1].points.push_back(believed);
+}
+
+std::string svg_of_trajectories(const OccupancyGrid& map, const TrajectoryPair& paths) {
+  return svg_of_difference(map, map, paths.both());
 }
 
 std::string svg_of_merge(const OccupancyGrid& map, const OccupancyGrid& local, const Pose2& map_from_local) {

@@ -2,6 +2,7 @@
 // Maps as SVG text, one laid over another.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,20 @@ struct Trajectory {
   std::vector<Point2> points;  ///< map frame, m
   std::string colour;          ///< of CSS
 };
+
+/// Where a robot was and where it was believed to be, twice a second.
+class TrajectoryPair {
+ public:
+  void add(double time_s, const Point2& truth, const Point2& believed);
+  [[nodiscard]] std::span<const Trajectory> both() const { return both_; }
+
+ private:
+  std::array<Trajectory, 2> both_{Trajectory{{}, "#0b7a75"}, Trajectory{{}, "#a3218e"}};
+  double next_s_ = 0.0;
+};
+
+/// The map with both drawn over it, the believed one on top.
+[[nodiscard]] std::string svg_of_trajectories(const OccupancyGrid& map, const TrajectoryPair& paths);
 
 /// Two maps of one geometry: floor of the map light, surfaces that both have dark, those of the map alone blue, those
 /// of the other alone orange. Trajectories are drawn over them, the last one on top.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "experiments/experiment.hpp"
@@ -22,6 +23,9 @@ class VerdictPart {
       if (belongs(outcome)) chosen_.push_back(&outcome);
     }
   }
+
+  explicit VerdictPart(std::vector<const Outcome*> chosen) : chosen_{std::move(chosen)} {}
+  [[nodiscard]] const std::vector<const Outcome*>& chosen() const { return chosen_; }
 
   // Counts of runs.
   [[nodiscard]] double runs() const { return static_cast<double>(chosen_.size()); }

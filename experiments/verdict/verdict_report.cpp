@@ -2,8 +2,11 @@
 #include "experiments/verdict/verdict_report.hpp"
 
 #include <cmath>
+#include <functional>
 #include <string>
+#include <utility>
 
+#include "experiments/pooled_runs.hpp"
 #include "experiments/verdict/verdict_part.hpp"
 #include "experiments/verdict/verdict_run.hpp"
 
@@ -16,15 +19,12 @@ double share_of(double part, double whole) { return whole > 0.0 ? part / whole :
 
 std::string of(double part, double whole) { return text_of(part) + " of " + text_of(whole); }
 
-/// Over all runs of a part: the tiles that its robots had learned before. NaN where there are none.
-double mean_tiles(const std::vector<Outcome>& outcomes, const std::string& place, double range_m) {
+/// Of each run of a part: the tiles that its robot had learned before.
+std::vector<double> proven_tiles(const std::vector<Outcome>& outcomes, const std::string& place, double range_m) {
   std::vector<double> tiles;
-  for (const Outcome& outcome : outcomes) {
-    if (outcome.label("place") == place && outcome.label("range_m") == text_of(range_m)) {
-      tiles.push_back(outcome.number("proven_tiles"));
-    }
-  }
-  return mean_of(tiles);
+  for (const Outcome* run : runs_with(outcomes, {{"place", place}, {"range_m", text_of(range_m)}}))
+    tiles.push_back(run->number("proven_tiles"));
+  return tiles;
 }
 
 TextTable table_of(const std::vector<Outcome>& outcomes, const std::string& place) {
@@ -78,47 +78,106 @@ TextTable table_of(const Reliability& reliability, const std::string& title) {
   return table;
 }
 
+/// How sure a figure is that is made of the runs of a part.
+template <typename Of>
+Certainty certainty_of(const VerdictPart& part, Of&& of) {
+  const auto figure = [&](const std::vector<std::size_t>& drawn) {
+    std::vector<const Outcome*> chosen;
+    chosen.reserve(drawn.size());
+    for (const std::size_t run : drawn) chosen.push_back(part.chosen()[run]);
+    return std::vector<double>{of(VerdictPart{std::move(chosen)})};
+  };
+  return certainties_of_runs(part.chosen().size(), figure).front();
+}
+
+/// The Brier score of all scans, by the sums of each run.
+Figure brier_figure(const std::string& name, const VerdictPart& part,
+                    const std::function<Reliability(const ScanTable&)>& reliability_of) {
+  std::vector<Reliability> runs;
+  for (const Outcome* run : part.chosen()) runs.push_back(reliability_of(run->scans));
+  const auto brier = [&](const std::vector<std::size_t>& drawn) {
+    Reliability all;
+    for (const std::size_t run : drawn) {
+      all.squared += runs[run].squared;
+      all.scans += runs[run].scans;
+    }
+    return std::vector<double>{all.brier()};
+  };
+  std::vector<std::size_t> each;
+  for (std::size_t run = 0; run < runs.size(); ++run) each.push_back(run);
+  return {name, brier(each).front(), "", {}, "", certainties_of_runs(runs.size(), brier).front()};
+}
+
+/// Adds figures of one part to a report, with their certainty.
+class FiguresOf {
+ public:
+  FiguresOf(Report& report, std::string where, const VerdictPart& part)
+      : report_{report}, where_{std::move(where)}, part_{part} {}
+
+  template <typename Of>
+  void add(const std::string& what, Of&& of, const std::optional<Target>& target = {}, const std::string& unit = "") {
+    report_.figures.push_back({where_ + what, of(part_), unit, target, "", certainty_of(part_, of)});
+  }
+  /// A count, or what is a bound itself.
+  void add_plain(const std::string& what, double value) {
+    report_.figures.push_back({where_ + what, value, "", {}, "", Certainty{.runs = part_.chosen().size()}});
+  }
+  void add_brier(const std::string& what, const std::function<Reliability(const ScanTable&)>& reliability_of) {
+    report_.figures.push_back(brier_figure(where_ + what, part_, reliability_of));
+  }
+
+ private:
+  Report& report_;
+  std::string where_;
+  const VerdictPart& part_;
+};
+
+double wrong_called_right(const VerdictPart& part) { return share_of(part.wrong_called_right(), part.once_wrong()); }
+double recovered(const VerdictPart& part) { return share_of(part.recovered_in(kRecovery_s), part.once_wrong()); }
+
 void add_figures(Report& report, const std::string& place, const VerdictPart& part) {
   const double wrong = part.once_wrong();
   const double right = part.runs() - wrong;
-  const auto add = [&](const std::string& what, double value, const std::string& unit, std::optional<Target> target) {
-    report.figures.push_back({place + ": " + what, value, unit, target});
-  };
-  add("wrong poses called right for more than 5 s", share_of(part.wrong_called_right(), wrong), "",
-      Target{.most = 0.01});
-  add("wrong poses called right for more than 5 s, 95 % upper bound", wilson_upper(part.wrong_called_right(), wrong),
-      "", std::nullopt);
-  add("right poses called lost", share_of(part.right_called_lost(), right), "", Target{.most = 0.02});
-  add("right poses called lost, 95 % upper bound", wilson_upper(part.right_called_lost(), right), "", std::nullopt);
-  add("Brier score of P(pose right)", part.pose().brier(), "", std::nullopt);
-  add("Brier score of P(map wrong)", part.map().brier(), "", std::nullopt);
-  add("wrong poses recovered within 30 s of driving", share_of(part.recovered_in(kRecovery_s), wrong), "",
-      std::nullopt);
-  add("wrong poses recovered at all", share_of(part.recovered_in(HUGE_VAL), wrong), "", std::nullopt);
-  add("wrong poses right again, and called so, within 30 s of driving",
-      share_of(part.called_right_again_in(kRecovery_s), wrong), "", std::nullopt);
-  add("half of the wrong poses recovered after driving", part.recovery_quantile_s(0.5), "s", std::nullopt);
-  add("ambiguous runs", part.ambiguous(), "", std::nullopt);
-  add("runs once wrong", wrong, "", std::nullopt);
-  add("runs never wrong", right, "", std::nullopt);
-  add("time called right in runs never wrong", part.called_right_when_right(), "", std::nullopt);
+  FiguresOf figures{report, place + ": ", part};
+  figures.add("wrong poses called right for more than 5 s", wrong_called_right, Target{.most = 0.01});
+  figures.add_plain("wrong poses called right for more than 5 s, 95 % upper bound",
+                    wilson_upper(part.wrong_called_right(), wrong));
+  figures.add(
+      "right poses called lost",
+      [](const VerdictPart& p) { return share_of(p.right_called_lost(), p.runs() - p.once_wrong()); },
+      Target{.most = 0.02});
+  figures.add_plain("right poses called lost, 95 % upper bound", wilson_upper(part.right_called_lost(), right));
+  figures.add_brier("Brier score of P(pose right)", [](const ScanTable& scans) { return pose_reliability(scans); });
+  figures.add_brier("Brier score of P(map wrong)", [](const ScanTable& scans) { return map_reliability(scans); });
+  figures.add("wrong poses recovered within 30 s of driving", recovered);
+  figures.add("wrong poses recovered at all",
+              [](const VerdictPart& p) { return share_of(p.recovered_in(HUGE_VAL), p.once_wrong()); });
+  figures.add("wrong poses right again, and called so, within 30 s of driving",
+              [](const VerdictPart& p) { return share_of(p.called_right_again_in(kRecovery_s), p.once_wrong()); });
+  figures.add(
+      "half of the wrong poses recovered after driving",
+      [](const VerdictPart& p) { return p.recovery_quantile_s(0.5); }, {}, "s");
+  figures.add_plain("ambiguous runs", part.ambiguous());
+  figures.add_plain("runs once wrong", wrong);
+  figures.add_plain("runs never wrong", right);
+  figures.add("time called right in runs never wrong",
+              [](const VerdictPart& p) { return p.called_right_when_right(); });
 }
 
 /// What is asked for depends on whether anyone could know the place; of all places together.
 void add_ambiguity(Report& report, const std::vector<Outcome>& outcomes) {
   const VerdictPart clear{outcomes, [](const Outcome& outcome) { return !is_ambiguous(outcome); }};
   const VerdictPart ambiguous{outcomes, is_ambiguous};
-  const auto add = [&](const std::string& what, double value, std::optional<Target> target) {
-    report.figures.push_back({what, value, "", target});
-  };
-  add("unambiguous places: wrong poses recovered within 30 s of driving",
-      share_of(clear.recovered_in(kRecovery_s), clear.once_wrong()), Target{.least = 0.95});
-  add("unambiguous places: wrong poses recovered within 30 s of driving from when the path is unambiguous",
-      share_of(clear.recovered_in_after_unique(kRecovery_s), clear.once_wrong()), std::nullopt);
-  add("unambiguous places: runs once wrong", clear.once_wrong(), std::nullopt);
-  add("ambiguous places: wrong poses never called right for more than 5 s",
-      1.0 - share_of(ambiguous.wrong_called_right(), ambiguous.once_wrong()), Target{.least = 0.99});
-  add("ambiguous places: runs once wrong", ambiguous.once_wrong(), std::nullopt);
+  FiguresOf of_clear{report, "unambiguous places: ", clear};
+  of_clear.add("wrong poses recovered within 30 s of driving", recovered, Target{.least = 0.95});
+  of_clear.add("wrong poses recovered within 30 s of driving from when the path is unambiguous",
+               [](const VerdictPart& p) { return share_of(p.recovered_in_after_unique(kRecovery_s), p.once_wrong()); });
+  of_clear.add_plain("runs once wrong", clear.once_wrong());
+  FiguresOf of_ambiguous{report, "ambiguous places: ", ambiguous};
+  of_ambiguous.add(
+      "wrong poses never called right for more than 5 s",
+      [](const VerdictPart& p) { return 1.0 - wrong_called_right(p); }, Target{.least = 0.99});
+  of_ambiguous.add_plain("runs once wrong", ambiguous.once_wrong());
 }
 
 }  // namespace
@@ -134,11 +193,17 @@ Report verdict_report(const std::vector<Outcome>& outcomes) {
                                            outcome.label("event") == name_of(PoseEvent::kNothing);
                                   }};
     add_figures(report, place, part);
-    report.figures.push_back({place + ": undisturbed runs whose pose became wrong",
-                              share_of(undisturbed.once_wrong(), undisturbed.runs()), ""});
+    FiguresOf{report, place + ": ", undisturbed}.add(
+        "undisturbed runs whose pose became wrong",
+        [](const VerdictPart& p) { return share_of(p.once_wrong(), p.runs()); });
     for (const double range_m : kVerdictRanges_m) {
+      const std::vector<double> tiles = proven_tiles(outcomes, place, range_m);
       report.figures.push_back({place + ": tiles proven when lived in, " + text_of(range_m) + " m",
-                                mean_tiles(outcomes, place, range_m), ""});
+                                mean_of(tiles),
+                                "",
+                                {},
+                                "",
+                                certainty_of_mean(tiles)});
     }
     report.tables.push_back(table_of(outcomes, place));
     const Reliability pose = part.pose();

@@ -108,7 +108,7 @@ Outcome watched_drive(const WatchedRun& run) {
   Outcome outcome;
   outcome.scans = ScanTable{{"t_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state", "gate",
                              "pose_right", "changed_in_view"}};
-  std::array trajectories{Trajectory{{}, "#0b7a75"}, Trajectory{{}, "#a3218e"}};  // true, believed
+  TrajectoryPair paths;
   double changed_share = 0.0;
   double next_row_s = 0.0;
   for (double passed_s = 0.0; passed_s < 60.0 * run.minutes;) {
@@ -121,15 +121,14 @@ Outcome watched_drive(const WatchedRun& run) {
     if (!writes_row) continue;
     next_row_s = passed_s + kRowEvery_s;
     const Pose2& truth = scan.map_from_robot;
-    trajectories[0].points.push_back(truth.position());
-    trajectories[1].points.push_back(scan.estimate.map_from_robot.position());
+    paths.add(passed_s, truth.position(), scan.estimate.map_from_robot.position());
     outcome.scans.add({passed_s, truth.x, truth.y, truth.theta, distance_between(truth, scan.estimate.map_from_robot),
                        turn_between(truth.theta, scan.estimate.map_from_robot.theta),
                        static_cast<double>(scan.estimate.state), static_cast<double>(scan.awareness.gate),
                        scan.estimate.belief.pose_right, changed_share});
   }
   outcome.pictures = {{"robot green, believed magenta; the map at the end, blue: only there, orange: only in the truth",
-                       svg_of_difference(drive.map(), watch ? watch->truth() : drive.map(), trajectories)}};
+                       svg_of_difference(drive.map(), watch ? watch->truth() : drive.map(), paths.both())}};
   outcome.labels = {{"cause", course.cause()}};
   outcome.numbers = course.numbers();
   for (auto& number : map_numbers(watch, drive.map())) outcome.numbers.push_back(std::move(number));

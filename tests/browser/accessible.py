@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What WCAG 2.2 (A, AA) asks of a page that a program can tell: names and roles as a screen reader hears them, contrast, ids, order, size of
-what is touched. Debian has no axe; these are its serious rules that concern pages without foreign content."""
+what is touched. Debian has no axe; these are its serious rules that concern pages without foreign content. Who has axe-core names its axe.min.js in
+$DELTAMAP_AXE: then it judges as well, and nothing that it calls serious or critical may be found."""
+import os
+import pathlib
 
 INTERACTIVE = {"button", "link", "checkbox", "slider", "combobox", "textbox", "radio", "switch", "tab", "menuitem", "spinbutton", "DisclosureTriangle"}
 NAMED = INTERACTIVE | {"image", "img", "region", "group", "toolbar", "dialog", "navigation"}
@@ -72,6 +75,20 @@ return [...document.querySelectorAll("body *")].filter((one) => !one.parentEleme
   .map((one) => one.tagName + "#" + one.id);"""
 
 
+AXE = """
+return axe.run(document, { resultTypes: ["violations"] }).then(({ violations, passes }) => ({
+  passed: passes.length,
+  serious: violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(({ id, nodes }) => `axe: ${id}: ${nodes[0].html.slice(0, 80)}`),
+}));"""
+
+
+def found_by_axe(browser):
+    if not (file := os.environ.get("DELTAMAP_AXE")):
+        return []
+    told = browser.run(pathlib.Path(file).read_text() + AXE)
+    return told["serious"] + ([] if told["passed"] else ["axe passed nothing: it sees nothing"])
+
+
 def findings(browser):
     """What is wrong, as lines; empty where nothing is."""
     found = []
@@ -86,7 +103,7 @@ def findings(browser):
     contrast = browser.run(CONTRASTS)
     if contrast["seen"] < 5:
         found.append("no text was seen: the check sees nothing")
-    return found + [f"contrast {line}" for line in contrast["poor"]] + browser.run(STRUCTURE)
+    return found + [f"contrast {line}" for line in contrast["poor"]] + browser.run(STRUCTURE) + found_by_axe(browser)
 
 
 # Where the focus is, and whether one sees it.

@@ -103,6 +103,11 @@ class PageForAll(PageCase):
         self.daemon.ctl("drive", "wander")
 
 
+# The words "met" and "missed" that a reader finds only by scrolling a table sideways.
+MET_OUT_OF_SIGHT = """return [...document.querySelectorAll(".met, .missed")].map((cell) => [cell.textContent, cell.getBoundingClientRect().right,
+    cell.closest(".wide").getBoundingClientRect().right]).filter(([, right, edge]) => right > edge)"""
+
+
 class ReportForAll(unittest.TestCase):
     """A report of an experiment, opened as a file."""
 
@@ -110,7 +115,7 @@ class ReportForAll(unittest.TestCase):
     def setUpClass(cls):
         PICTURES.mkdir(parents=True, exist_ok=True)
         cls.folder = tempfile.TemporaryDirectory(prefix="deltamap-report-")
-        subprocess.run([BIN / "deltamap", "experiment", "hall", "--out", cls.folder.name, "--minutes", "0.5", "--repeats", "2", "--jobs", "1",
+        subprocess.run([BIN / "deltamap", "experiment", "hall", "--out", cls.folder.name, "--minutes", "0.5", "--repeats", "5", "--jobs", "1",
                         "--scenarios", ROOT / "config/scenarios"], check=True, capture_output=True, cwd=ROOT)
         cls.url = (pathlib.Path(cls.folder.name) / "index.html").as_uri()
 
@@ -133,6 +138,7 @@ class ReportForAll(unittest.TestCase):
                     self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
                     self.assertEqual(browser.run(accessible.STICKS_OUT), [])
                     self.assertEqual(accessible.findings(browser), [])
+                    self.assertEqual(browser.run(MET_OUT_OF_SIGHT), [])
                     least = browser.run("return Math.min(...[...document.querySelectorAll('svg text')].map((one) => one.getBoundingClientRect().height))")
                     self.assertGreater(least, 9)
                     browser.screenshot(PICTURES / f"report-{name}-{'dark' if dark else 'light'}.png", whole=True)
@@ -178,6 +184,7 @@ class ReportForAll(unittest.TestCase):
             browser.open(file.as_uri())
             self.assertIn("intel <on> ref_intel", browser.run("return document.querySelector('td').textContent"))
             self.assertEqual(browser.run("return [...document.querySelectorAll('.missed')].length"), 1)
+            self.assertEqual(browser.run(MET_OUT_OF_SIGHT), [])
             self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
             self.assertEqual(accessible.findings(browser), [])
             self.assertEqual(browser.errors(), [])

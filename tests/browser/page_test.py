@@ -198,6 +198,16 @@ class PageTest(PageCase):
                                return [Math.round(box.left + box.width * 0.8), Math.round(box.top + 20)]""")
         browser.move(place)
         browser.wait('document.querySelector("#charts-instant").textContent.startsWith("at ")')
+        # Every line tells its value of the same instant.
+        told, there = browser.run("""const { charts } = window.deltamap;
+            const shown = (chart) => chart.values.map((value) => Number(value.textContent.split(" ").at(-1)));
+            return [charts.charts.map(shown), charts.charts.map((chart) => chart.kind.lines.map(({ column }) => charts.instant[column]))]""")
+        self.assertEqual(len(told), 9)
+        for chart, of_sample in zip(told, there):
+            for value, wanted in zip(chart, of_sample):
+                if wanted is not None and value is not None:
+                    self.assertAlmostEqual(value, wanted, delta=max(0.006, 0.006 * abs(wanted)))
+        self.assertIn("threshold", browser.run('return document.querySelector("#charts canvas").getAttribute("aria-label")'))
         self.expect_calm(browser)
 
     def test_nothing_is_asked_of_anybody_else(self):

@@ -72,6 +72,11 @@ class RulesTest(unittest.TestCase):
             self.assertAlmostEqual(axis(low, high)[0], least, 6, (low, high))
             self.assertAlmostEqual(axis(low, high)[1], most, 6, (low, high))
 
+    def test_cells_are_counted_in_the_same_words_everywhere(self):
+        texts = self.browser.run("""return import("/page/cell_text.js").then(({ cell_text }) =>
+            [{ occupied: 1024, forgotten: 3 }, { free: 1 }, {}].map(cell_text))""")
+        self.assertEqual(texts, ["1,024 occupied, 3 forgotten", "1 free", ""])
+
     def test_times_are_written_the_same_in_every_language(self):
         texts = self.browser.run("""return import("/page/time_text.js").then(({ clock, date_and_clock }) => {
             const time = new Date(2026, 0, 5, 0, 7, 9) / 1000;

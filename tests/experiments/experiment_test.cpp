@@ -11,6 +11,7 @@
 
 #include "daemon/telemetry/version.hpp"
 #include "experiments/localization/weakest_axis.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/report/result_files.hpp"
 #include "experiments/report/svg_chart.hpp"
@@ -52,7 +53,15 @@ TEST(Experiment, EachLeavesATableASummaryAndAPage) {
     EXPECT_EQ(summary["experiment"], known.name);
     EXPECT_GT(summary["runs"], 0);
     EXPECT_GE(summary["figures"].size(), 3u) << known.name;
-    for (const auto& figure : summary["figures"]) EXPECT_EQ(figure.contains("target"), figure.contains("met"));
+    std::vector<std::string> names;
+    for (const auto& figure : summary["figures"]) {
+      EXPECT_EQ(figure.contains("target"), figure.contains("met"));
+      // What ablation tells first is how it was done.
+      EXPECT_TRUE(figure.contains("runs") || known.name == "ablation") << known.name << ": " << figure["name"];
+      names.push_back(figure["name"]);
+    }
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end()) << known.name << ": a name for two figures";
     const std::string page = content_of(folder.path() / "index.html");
     EXPECT_NE(page.find("<svg"), std::string::npos);
     EXPECT_EQ(page.find("src="), std::string::npos) << "a page stands alone";
@@ -262,6 +271,42 @@ TEST(Certainty, HoldsTheMeanOfRunsThatScatter) {
   EXPECT_FALSE(experiments::certainty_of_mean({1.0, 2.0, 3.0, 4.0}).has_interval()) << "too few";
   EXPECT_FALSE(experiments::certainty_of_extreme(values).has_interval());
   EXPECT_EQ(experiments::certainty_of_extreme(values).runs, 40u);
+}
+
+/// A run whose scans have these values in one column.
+experiments::Outcome run_of(const std::string& place, std::initializer_list<double> values) {
+  experiments::Outcome run{{{"place", place}}, {}, experiments::ScanTable{{"error_m"}}};
+  for (const double value : values) run.scans.add({value});
+  return run;
+}
+
+experiments::PooledRuns::Numbers mean_and_p90(const experiments::ScanTable& scans) {
+  const std::vector<double> error_m = scans.column("error_m");
+  return {{"mean_m", experiments::mean_of(error_m)}, {"p90_m", experiments::quantile(error_m, 0.9)}};
+}
+
+TEST(PooledRuns, DrawWholeRunsAgain) {
+  std::vector<experiments::Outcome> outcomes;
+  for (int i = 0; i < 8; ++i) outcomes.push_back(run_of("hall", {1.0 + i % 2, 1.0 + i % 2, 1.0 + i % 2}));
+  outcomes.push_back(run_of("depot", {100.0}));
+  const experiments::PooledRuns runs{experiments::runs_with(outcomes, {{"place", "hall"}}), mean_and_p90};
+  const experiments::Figure mean = runs.figure("error", "mean_m", "m");
+  EXPECT_EQ(mean.value, 1.5);
+  ASSERT_TRUE(mean.certainty);
+  EXPECT_EQ(mean.certainty->runs, 8u) << "not 24: the scans of a run are like each other";
+  EXPECT_NEAR(mean.certainty->low, 1.5 - 1.96 * 0.5 / std::sqrt(8.0), 0.05);
+  EXPECT_NEAR(mean.certainty->high, 1.5 + 1.96 * 0.5 / std::sqrt(8.0), 0.05);
+  EXPECT_EQ(runs.figure("error, nine of ten within", "p90_m").value, 2.0);
+  EXPECT_FALSE(runs.figure_of_extreme("error, most", "p90_m").certainty->has_interval());
+  EXPECT_TRUE(experiments::PooledRuns(experiments::runs_with(outcomes, {{"place", "yard"}}), mean_and_p90).empty());
+}
+
+TEST(PooledRuns, FewRunsAreCountedAndHaveNoInterval) {
+  const std::vector<experiments::Outcome> outcomes{run_of("hall", {1.0, 3.0})};
+  const experiments::Figure mean =
+      experiments::PooledRuns{experiments::runs_with(outcomes, {}), mean_and_p90}.figure("error", "mean_m");
+  EXPECT_EQ(mean.certainty->runs, 1u);
+  EXPECT_FALSE(mean.certainty->has_interval());
 }
 
 TEST(Experiment, PageTellsIntervalAndRunsBesideAFigure) {

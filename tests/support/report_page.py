@@ -13,10 +13,11 @@ def cell(text, kind="td", style=""):
 
 
 def report_page(title, lines, columns, rows):
-    """`lines`: paragraphs above the table. A row's last entry is True (met) or False (missed)."""
+    """`lines`: paragraphs above the table. A row's last entry is True (met) or False (missed); it stands behind the first, where a narrow screen shows it."""
+    columns = [columns[0], columns[-1], *columns[1:-1]]
     style = "".join((ROOT / name).read_text() for name in LOOK)
-    body = "".join("<tr>%s%s</tr>\n" % ("".join(map(cell, row[:-1])), cell("met" if row[-1] else "missed", "td", "met" if row[-1] else "missed"))
-                   for row in rows)
+    word = lambda row: "met" if row[-1] else "missed"
+    body = "".join("<tr>%s%s%s</tr>\n" % (cell(row[0]), cell(word(row), "td", word(row)), "".join(map(cell, row[1:-1]))) for row in rows)
     return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
             '<meta name="color-scheme" content="light dark"><link rel="icon" href="data:,">\n<title>%s</title>\n<style>\n%s</style>\n<script>\n%s</script></head>\n'
             '<body>\n<header><h1>%s</h1><button id="theme" type="button" aria-label="Dark or light">◐</button></header>\n<main>\n%s'

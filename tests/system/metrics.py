@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a daemon tells Prometheus, held against Prometheus's own checker (promtool, of Debian's package prometheus).
-usage: metrics.py FOLDER-OF-PROGRAMS; exit code 77 where there is no promtool"""
+"""What a daemon tells Prometheus, held against Prometheus's own checker (promtool, of Debian's package prometheus, which
+./dev test fetches into build/tools). usage: metrics.py FOLDER-OF-PROGRAMS; exit code 77 where there is no promtool"""
 
+import os
 import pathlib
 import shutil
 import socket
@@ -35,7 +36,7 @@ def read_metrics(port, daemon):
 
 def main():
     bin_folder = pathlib.Path(sys.argv[1])
-    promtool = shutil.which("promtool")
+    promtool = shutil.which("promtool", path=f"{os.environ['PATH']}:{ROOT / 'build/tools'}")
     if promtool is None:
         print("SKIPPED: there is no promtool (Debian's package prometheus): nobody has checked /metrics", file=sys.stderr)
         raise SystemExit(77)

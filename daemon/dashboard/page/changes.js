@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The list of changes of the map, newest first. Refused ones are there when a person asks for them.
 
+import { cell_text } from "./cell_text.js";
 import { has_place } from "./layers.js";
 import { clock } from "./time_text.js";
 
 const by_id = (id) => document.getElementById(id);
-const whole = (number) => Math.round(number).toLocaleString("en");
 
 function words_of(change) {
   if (!change.accepted) return `refused: ${change.reason}`;
-  const parts = [[change.added, "occupied"], [change.freed, "free"], [change.forgotten, "forgotten"]];
-  const cells = parts.filter(([count]) => count).map(([count, kind]) => `${whole(count)} ${kind}`).join(", ");
+  const cells = cell_text({ occupied: change.added, free: change.freed, forgotten: change.forgotten });
   return (change.reason ? `${change.reason}: ` : "") + (cells || "no cells");
 }
 

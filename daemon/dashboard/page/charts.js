@@ -13,9 +13,9 @@ const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 2] };
 
 const line = (column, label, ink, dash = "solid") => ({ column, label, ink, dash });
 const CHARTS = [
-  { title: "Belief", lines: [line("pose_right", "P(pose right)", "--blue"), line("map_wrong", "P(map wrong)", "--red", "dashed")], threshold: "pose_right" },
+  { title: "Belief", lines: [line("pose_right", "P(pose right)", "--blue"), line("map_wrong", "P(map wrong)", "--red", "dashed")], threshold: "pose_right", beyond: "written from" },
   { title: "Weight", lines: [line("w_avg", "w_avg", "--sky"), line("w_fast", "w_fast", "--red", "dashed"), line("w_slow", "w_slow", "--text", "dotted")] },
-  { title: "Divergence ratio", lines: [line("r_d", "r_d", "--blue")], threshold: "r_d" },
+  { title: "Divergence ratio", lines: [line("r_d", "r_d", "--blue")], threshold: "r_d", beyond: "stored above" },
   { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")] },
   { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")] },
   { title: "Latency", lines: [line("latency_ms", "ms", "--pink")] },
@@ -122,7 +122,7 @@ class Chart {
     const x_of = (time) => LEFT + (time - from) / (to - from) * (width - LEFT - RIGHT);
     const y_of = (value) => TOP + (axis.high - value) / (axis.high - axis.low) * (height - TOP - BOTTOM);
     this.draw_axes(context, axis, x_of, y_of, width, height);
-    if (threshold != null) this.draw_threshold(context, y_of(threshold), width);
+    if (threshold != null) this.draw_threshold(context, y_of(threshold), width, `${this.kind.beyond} ${short(threshold)}`);
     for (const kind of this.kind.lines) this.draw_line(context, samples, kind, x_of, y_of, every);
     if (instant) this.draw_instant(context, x_of(instant.time), height);
     this.tell(instant ?? samples.at(-1), threshold);
@@ -150,7 +150,8 @@ class Chart {
     context.fillText(clock(this.to), width - RIGHT, height - 3);
   }
 
-  draw_threshold(context, y, width) {
+  /// What it decides stands below the line, or above it where there is no room.
+  draw_threshold(context, y, width, words) {
     context.strokeStyle = ink_of("--soft");
     context.setLineDash([1, 3]);
     context.lineWidth = 1.5;
@@ -159,6 +160,9 @@ class Chart {
     context.lineTo(width - RIGHT, y);
     context.stroke();
     context.setLineDash([]);
+    context.fillStyle = ink_of("--soft");
+    context.textAlign = "left";
+    context.fillText(words, LEFT + 4, y + 14 < this.canvas.clientHeight - BOTTOM ? y + 12 : y - 5);
   }
 
   draw_line(context, samples, { column, ink, dash }, x_of, y_of, every) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // M_0 … M_K on the map: a slider walks through them, the cells of a Δ are marked, and a Δ can be undone.
 
+import { cell_text } from "./cell_text.js";
 import { cells_of } from "./connection.js";
 
 const NOTHING = "no cells: nothing to show";
 
 const by_id = (id) => document.getElementById(id);
-const whole = (number) => number.toLocaleString("en");
 
 export async function fetched(address) {
   const answer = await fetch(address, { signal: AbortSignal.timeout(10000) });
@@ -28,8 +28,7 @@ export function boxes_in(buffer) {
 function words_of(number, changes) {
   if (number === 0) return "the first map";
   const count = (state) => changes.filter(([, , , after]) => after === state).length;
-  const parts = [[count(1), "occupied"], [count(0), "free"], [count(2), "forgotten"]];
-  return parts.filter(([cells]) => cells).map(([cells, kind]) => `${whole(cells)} ${kind}`).join(", ") || NOTHING;
+  return cell_text({ occupied: count(1), free: count(0), forgotten: count(2) }) || NOTHING;
 }
 
 export class History {

@@ -204,6 +204,23 @@ TEST_F(LiveBoardTest, WhatTheStagesHaveUsedSinceTheSampleBeforeIsAShareOfAProces
   }
 }
 
+TEST_F(LiveBoardTest, WhereTheScansTimeHasGoneBackNoRateIsKnown) {
+  double used_s = 10.0;
+  board_.set_figures([&used_s] {
+    LiveFigures figures;
+    figures.cpu_s[1] = used_s += 0.25;
+    return figures;
+  });
+  show_scans(40, 45);
+  show_scans(0, 5);
+  const auto past = board_.samples_from(0, 100);
+  ASSERT_EQ(past.items.size(), 3u);
+  EXPECT_FLOAT_EQ(past.items[0].values[LiveSample::kCpuLocalization], 25.0F);
+  EXPECT_TRUE(std::isnan(past.items[1].values[LiveSample::kCpuLocalization]));
+  EXPECT_TRUE(std::isnan(past.items[1].values[LiveSample::kScansPerSecond]));
+  EXPECT_FLOAT_EQ(past.items[2].values[LiveSample::kCpuLocalization], 25.0F);
+}
+
 TEST_F(LiveBoardTest, ThePastIsAnHourAndNoMore) {
   show_scans(0, 4 * static_cast<int>(LiveBoard::kSamplesKept) + 41);
   const auto past = board_.samples_from(0, 2 * LiveBoard::kSamplesKept);
