@@ -158,18 +158,11 @@ void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const 
   has_gone_through = has_gone_through && sensor::explained_share(field, ends, *expected) < params.fit.found_above;
   if (has_gone_through) return;
   const sensor::MappedBeams mapped{*map, field, {*expected, best.covariance}, robot_from_laser};
-  std::size_t kept = 0;
-  while (kept < ends.size() && mapped.tells({ends.x_m[kept], ends.y_m[kept]})) ++kept;
-  if (kept == ends.size()) return;
-  kept = 0;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (!mapped.tells_everywhere({ends.x_m[i], ends.y_m[i]})) continue;
-    ends.x_m[kept] = ends.x_m[i];
-    ends.y_m[kept] = ends.y_m[i];
-    ++kept;
-  }
-  ends.x_m.resize(kept);
-  ends.y_m.resize(kept);
+  std::size_t telling = 0;
+  while (telling < ends.size() && mapped.tells({ends.x_m[telling], ends.y_m[telling]})) ++telling;
+  if (telling == ends.size()) return;
+  motion::keep_ends(
+      ends, [&](const Point2& end) { return mapped.tells_everywhere(end); }, ends);
   std::erase_if(faced, [&](const surfaces::FacedEnd& end) { return !mapped.tells_everywhere(end.at); });
 }
 

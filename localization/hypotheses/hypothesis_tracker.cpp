@@ -134,15 +134,10 @@ void HypothesisTracker::thin(const Seen& seen) {
 
 /// All where only few are near.
 void HypothesisTracker::keep_near_ends() {
-  constexpr float kNear_m = 10.0F;  // half a step of the lattice's headings turns an end by a block there
+  constexpr double kNear_m = 10.0;  // half a step of the lattice's headings turns an end by a block there
   constexpr std::size_t kEnough = 12;
-  near_ends_.x_m.clear();
-  near_ends_.y_m.clear();
-  for (std::size_t i = 0; i < ends_.size(); ++i) {
-    if (std::hypot(ends_.x_m[i], ends_.y_m[i]) > kNear_m) continue;
-    near_ends_.x_m.push_back(ends_.x_m[i]);
-    near_ends_.y_m.push_back(ends_.y_m[i]);
-  }
+  motion::keep_ends(
+      ends_, [](const Point2& end) { return end.norm() <= kNear_m; }, near_ends_);
   if (near_ends_.size() < kEnough) near_ends_ = ends_;
 }
 
