@@ -15,7 +15,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kScanPeriodS = 0.2;
+using test::kScanPeriodS;
 
 /// A robot that begins at a pose that the localizer is given, and is moved from scan to scan.
 class Walk {
