@@ -99,8 +99,12 @@ constexpr std::array kOfMapping{
               }},
     Mechanism{"other-share", "write gate: share of another pose hypothesis",
               [](Settings& s) { s.mapping.store_scan.gate.most_rival_share = 1.0; }},
-    Mechanism{"pose-deviation", "write gate: deviation of the pose",
-              [](Settings& s) { s.mapping.store_scan.gate.most_deviation_m = kNever; }},
+    Mechanism{"spread", "write gate: a pose that is spread wide or that nothing in view holds",
+              [](Settings& s) {
+                auto& gate = s.mapping.store_scan.gate;
+                gate.most_deviation_m = kNever;
+                gate.least_expected = 0;
+              }},
     Mechanism{"confirming", "write gate: a pose confirmed after it was wrong",
               [](Settings& s) {
                 auto& gate = s.mapping.store_scan.gate;
