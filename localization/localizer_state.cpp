@@ -158,18 +158,11 @@ void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const 
   has_gone_through = has_gone_through && sensor::explained_share(field, ends, *expected) < params.fit.found_above;
   if (has_gone_through) return;
   const sensor::MappedBeams mapped{*map, field, {*expected, best.covariance}, robot_from_laser};
-  std::size_t kept = 0;
-  while (kept < ends.size() && mapped.tells({ends.x_m[kept], ends.y_m[kept]})) ++kept;
-  if (kept == ends.size()) return;
-  kept = 0;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (!mapped.tells_everywhere({ends.x_m[i], ends.y_m[i]})) continue;
-    ends.x_m[kept] = ends.x_m[i];
-    ends.y_m[kept] = ends.y_m[i];
-    ++kept;
-  }
-  ends.x_m.resize(kept);
-  ends.y_m.resize(kept);
+  std::size_t telling = 0;
+  while (telling < ends.size() && mapped.tells({ends.x_m[telling], ends.y_m[telling]})) ++telling;
+  if (telling == ends.size()) return;
+  motion::keep_ends(
+      ends, [&](const Point2& end) { return mapped.tells_everywhere(end); }, ends);
   std::erase_if(faced, [&](const surfaces::FacedEnd& end) { return !mapped.tells_everywhere(end.at); });
 }
 
@@ -211,7 +204,6 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
       field, {.ends = ends,
               .continuous_odom_from_robot = continuous_odom_at(now),
               .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
-              .stable_support = stable_support.share(),
               .unknown_s = tracked.unknown_s});
   if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.others.front().map_from_robot;
@@ -287,11 +279,6 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
                                             .hypotheses = hypotheses.report(),
                                             .transients = params.temporary.belief ? transients.get() : nullptr});
-  if (before == LocalizerState::kTracking) {
-    stable_support.observe(judged.stable);
-  } else {
-    stable_support.forget();
-  }
   if (blind) return;
   seen.verdict = judged.verdict;
   seen.trust = judgement.trust();

@@ -37,8 +37,6 @@ constexpr std::array kOfLocalization{
     Mechanism{"refined-hypotheses", "refinement of other pose hypotheses while tracking",
               [](Settings& s) { s.localizer.rivals.refined_a_scan = 0; }},
     Mechanism{"aliases", "memory of aliases", [](Settings& s) { s.localizer.rivals.images = 0; }},
-    Mechanism{"support", "support of the believed pose by proven tiles",
-              [](Settings& s) { s.localizer.rivals.held_by = 0.0; }},
     Mechanism{"kidnapped-share", "write gate: odds of having just been kidnapped",
               [](Settings& s) { s.localizer.rivals.carried_prior = 0.0; }},
     Mechanism{"suspicious-search", "search of the whole map beside a believed pose",
@@ -94,8 +92,6 @@ constexpr std::array kOfMapping{
                 auto& scan_break = s.mapping.store_scan.gate.scan_break;
                 scan_break.most = scan_break.most_one_way = 1.0;
               }},
-    Mechanism{"wary-break", "write gate: worse fit after a small break",
-              [](Settings& s) { s.mapping.store_scan.gate.wary_break = 1.0; }},
     Mechanism{"pose-jump", "write gate: jump of the pose off odometry",
               [](Settings& s) {
                 auto& jump = s.mapping.store_scan.gate.jump;
@@ -103,8 +99,12 @@ constexpr std::array kOfMapping{
               }},
     Mechanism{"other-share", "write gate: share of another pose hypothesis",
               [](Settings& s) { s.mapping.store_scan.gate.most_rival_share = 1.0; }},
-    Mechanism{"pose-deviation", "write gate: deviation of the pose",
-              [](Settings& s) { s.mapping.store_scan.gate.most_deviation_m = kNever; }},
+    Mechanism{"spread", "write gate: a pose that is spread wide or that nothing in view holds",
+              [](Settings& s) {
+                auto& gate = s.mapping.store_scan.gate;
+                gate.most_deviation_m = kNever;
+                gate.least_expected = 0;
+              }},
     Mechanism{"confirming", "write gate: a pose confirmed after it was wrong",
               [](Settings& s) {
                 auto& gate = s.mapping.store_scan.gate;

@@ -62,7 +62,6 @@ bool HypothesisTracker::has_jumped(const Pose2& map_from_believed) const {
 void HypothesisTracker::start_believing_in(const Pose2& found) {
   believing_ = true;
   forget_kidnapping();
-  bank_.set_believed_prior(0.0);
   if (!is_near_believed(found)) {
     elsewhere_prior_ = params_.prior_after_search;
     stack_.clear();  // its scans are from before the robot was carried off
@@ -134,15 +133,10 @@ void HypothesisTracker::thin(const Seen& seen) {
 
 /// All where only few are near.
 void HypothesisTracker::keep_near_ends() {
-  constexpr float kNear_m = 10.0F;  // half a step of the lattice's headings turns an end by a block there
+  constexpr double kNear_m = 10.0;  // half a step of the lattice's headings turns an end by a block there
   constexpr std::size_t kEnough = 12;
-  near_ends_.x_m.clear();
-  near_ends_.y_m.clear();
-  for (std::size_t i = 0; i < ends_.size(); ++i) {
-    if (std::hypot(ends_.x_m[i], ends_.y_m[i]) > kNear_m) continue;
-    near_ends_.x_m.push_back(ends_.x_m[i]);
-    near_ends_.y_m.push_back(ends_.y_m[i]);
-  }
+  motion::keep_ends(
+      ends_, [](const Point2& end) { return end.norm() <= kNear_m; }, near_ends_);
   if (near_ends_.size() < kEnough) near_ends_ = ends_;
 }
 
@@ -157,8 +151,6 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
     bank_.believe(*seen.map_from_believed);
   }
   if (believing_) last_believed_ = seen.map_from_believed;
-  held_by_ = believing_ ? params_.held_by * seen.stable_support : 0.0;
-  bank_.set_believed_prior(held_by_);
   thin(seen);
   if (ends_.size() == 0) return report_;
 
@@ -302,7 +294,7 @@ void HypothesisTracker::write_report() {
                       {.nearby_m = params_.nearby_m,
                        .nearby_rad = params_.nearby_rad,
                        .carried_prior = params_.carried_prior,
-                       .beats_by = params_.beats_by + held_by_,
+                       .beats_by = params_.beats_by,
                        .wins_after_m = params_.wins_after_m});
 }
 

@@ -21,6 +21,22 @@ struct BeamEnds {
   [[nodiscard]] std::size_t size() const { return x_m.size(); }
 };
 
+/// Those of `ends` for which `is_kept(end)` holds, in their order; `kept` may be `ends` itself.
+template <typename IsKept>
+void keep_ends(const BeamEnds& ends, IsKept is_kept, BeamEnds& kept) {
+  kept.x_m.resize(ends.size());
+  kept.y_m.resize(ends.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (!is_kept(Point2{ends.x_m[i], ends.y_m[i]})) continue;
+    kept.x_m[count] = ends.x_m[i];
+    kept.y_m[count] = ends.y_m[i];
+    ++count;
+  }
+  kept.x_m.resize(count);
+  kept.y_m.resize(count);
+}
+
 /// Only beams with a valid range score; of these `beams` are taken evenly (0 = all). Reuses the memory of `ends`.
 [[nodiscard]] BeamEnds scoring_ends(const Scan& scan, const std::vector<RayInRobot>& rays, int beams,
                                     BeamEnds ends = {});

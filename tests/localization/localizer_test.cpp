@@ -17,7 +17,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kScanPeriodS = 0.2;
+using test::kScanPeriodS;
 
 /// A robot that drives to and fro along a lane of constant y, with odometry that drifts.
 class Drive {

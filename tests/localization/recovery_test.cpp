@@ -14,7 +14,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kScanPeriodS = 0.2;
+using test::kScanPeriodS;
 
 Odometry at_rest() {
   Odometry odometry;

@@ -15,7 +15,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kScanPeriodS = 0.2;
+using test::kScanPeriodS;
 
 /// A robot that begins at a pose that the localizer is given, and is moved from scan to scan.
 class Walk {
@@ -110,6 +110,42 @@ TEST(UnmappedSpace, IsForgottenWhereTheRobotIsRelocalized) {
   walk.localizer().relocalize(particles::InitialPose{elsewhere});
   (void)walk.next({});
   EXPECT_GT(walk.localizer().fit().value_or(0.0), 0.9);
+}
+
+/// The wheels turn at a wall, and no scan comes meanwhile: the pose that they tell of lies behind the wall, where the
+/// map knows nothing, and all beams would be left out.
+TEST(UnmappedSpace, IsNoExcuseForAPoseThatHasGoneThroughAWall) {
+  OccupancyGrid map{{200, 200, 0.05, {-1.0, -1.0}}};
+  test::fill_box(map, {-0.2, -0.2}, {4.2, 4.2}, CellState::kOccupied);
+  test::fill_box(map, {0.0, 0.0}, {4.0, 4.0}, CellState::kFree);
+  test::fill_box(map, {2.8, 0.0}, {3.2, 0.6}, CellState::kOccupied);
+  Walk walk{map, map, {3.4, 2.0, 0.0}, 8.0, 7};
+  for (int i = 0; i < 10; ++i) (void)walk.next({});
+  (void)walk.next({}, {2.0, 0.0, 0.0});
+  EXPECT_TRUE(walk.localizer().fit().has_value());
+}
+
+/// Along a corridor of which the map shows the first metres alone, until the wheels may be off by metres.
+TEST(UnmappedSpace, IsLeftOutOnlyWhileTheWheelsTellWhereTheRobotIs) {
+  OccupancyGrid world{{4200, 100, 0.05, {-1.0, -1.0}}};
+  test::fill_box(world, {-0.2, -0.2}, {206.0, 3.2}, CellState::kOccupied);
+  test::fill_box(world, {0.0, 0.0}, {205.0, 3.0}, CellState::kFree);
+  OccupancyGrid map = world;
+  test::fill_box(map, {6.0, -1.0}, {208.0, 4.0}, CellState::kUnknown);
+  Walk walk{world, map, {1.0, 1.5, 0.0}, 4.0, 11};
+  int blind = 0;
+  double sigma_m = 0.0;
+  bool is_held = false;
+  for (int i = 0; i < 200 && !is_held; ++i) {
+    const Estimate estimate = walk.next({0.2, 0.0, 0.0});
+    ASSERT_EQ(estimate.state, LocalizerState::kTracking) << i;
+    is_held = walk.truth().x > 10.0 && walk.localizer().fit().has_value();
+    ASSERT_TRUE(!is_held || sigma_m > 0.8) << i;
+    blind += walk.truth().x > 10.0 && !is_held ? 1 : 0;
+    sigma_m = std::sqrt(estimate.covariance.topLeftCorner<2, 2>().trace());
+  }
+  EXPECT_TRUE(is_held);
+  EXPECT_GT(blind, 2);
 }
 
 /// From a corner into the middle of a hall, where only a post stands that the map does not have; the laser sees 4 m.

@@ -69,5 +69,17 @@ TEST(ScoringEnds, TakesAsManyAsAskedEvenly) {
   }
 }
 
+TEST(KeepEnds, KeepsOrderAndMayWriteIntoWhatItReads) {
+  BeamEnds ends{{1.0F, -2.0F, 3.0F, -4.0F}, {5.0F, 6.0F, 7.0F, 8.0F}};
+  const auto is_ahead = [](const Point2& end) { return end.x() > 0.0; };
+  BeamEnds others{{9.0F}, {9.0F}};
+  keep_ends(ends, is_ahead, others);
+  EXPECT_EQ(others.x_m, (std::vector<float>{1.0F, 3.0F}));
+  EXPECT_EQ(others.y_m, (std::vector<float>{5.0F, 7.0F}));
+  keep_ends(ends, is_ahead, ends);
+  EXPECT_EQ(ends.x_m, others.x_m);
+  EXPECT_EQ(ends.y_m, others.y_m);
+}
+
 }  // namespace
 }  // namespace deltamap::localization::motion

@@ -39,5 +39,25 @@ TEST_F(MappedBeamsTest, TellOnlyOfObstaclesWhereTheRobotHasLeftTheKnownMap) {
   EXPECT_TRUE(from({7.6, 1.5}, {9.5, 1.5}));
 }
 
+/// Ends in free space, 0.3 and 0.6 m before what the map does not know.
+TEST(MappedBeams, TellEverywhereOnlyWhereEveryPoseWithinTheDoubtIsTold) {
+  const OccupancyGrid map = test::drawn_grid(
+      {"########    ", "#......     ", "#......     ", "#......     ", "#......     ", "#......     ", "########    "});
+  const LikelihoodField field{map, {.hit_deviation_m = 0.1}};
+  PoseCovariance doubtful = PoseCovariance::Zero();
+  doubtful(0, 0) = doubtful(1, 1) = 0.04;
+  const Pose2 robot{1.5, 3.5, 0.0};
+  const MappedBeams sure{map, field, {robot, PoseCovariance::Zero()}, {0.0, 0.0}};
+  const MappedBeams unsure{map, field, {robot, doubtful}, {0.0, 0.0}};
+  const MappedBeams lost{map, field, {robot, 100.0 * doubtful}, {0.0, 0.0}};
+  const Point2 near{5.2, 0.0};  // at x = 6.7 of 7 m that are known
+  const Point2 before{4.9, 0.0};
+  EXPECT_TRUE(sure.tells_everywhere(near));
+  EXPECT_TRUE(unsure.tells(near));
+  EXPECT_FALSE(unsure.tells_everywhere(near));
+  EXPECT_TRUE(unsure.tells_everywhere(before));
+  EXPECT_TRUE(lost.tells_everywhere(before)) << "half a metre at most";
+}
+
 }  // namespace
 }  // namespace deltamap::localization::sensor
