@@ -5,7 +5,7 @@ maps differ? A recorded live run in a room whose boxes come and go, and the real
 amd64 with itself, its start a last digit of a double aside: what the smallest other input makes of the same program. Writes its section
 of docs/results/service.md. As root.
 usage: architectures.py [--quick] [--seed N] [--out FILE]    --quick: 30 s of the room alone"""
-import csv, math, pathlib, sys, time
+import csv, json, math, pathlib, sys, time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
@@ -63,7 +63,7 @@ def compared(ours, theirs):
     off_m = [math.hypot(a[1] - b[1], a[2] - b[2]) for a, b in zip(poses, others)]
     off_deg = [abs(math.degrees(math.remainder(a[3] - b[3], 2 * math.pi))) for a, b in zip(poses, others)]
     one, other = cells(ours / "map.pgm"), cells(theirs / "map.pgm")
-    revisions = [len((folder / "changes.jsonl").read_text().splitlines()) for folder in (ours, theirs)]
+    revisions = [sum(json.loads(line)["accepted"] for line in (folder / "changes.jsonl").read_text().splitlines()) for folder in (ours, theirs)]
     known = sum(cell != 205 for cell in one)  # 205: what map_server writes for unknown
     return {"scans": len(poses), "median_m": quantile(off_m, 0.5), "p99_m": quantile(off_m, 0.99), "most_m": max(off_m), "most_deg": max(off_deg),
             "same": sum(m == 0 for m in off_m), "known": known, "cells": sum(a != b for a, b in zip(one, other)) + abs(len(one) - len(other)), "revisions": revisions}
