@@ -5,7 +5,7 @@ recording on. callgrind counts the instructions of two live runs of different le
 A third run tells the peak of memory, and what the kernel adds. Two more have one processor for all of its threads and tell how soon
 scans are answered. Last, its pipeline runs for seven hours of virtual time and tells whether it grows. Writes its section of
 docs/results/service.md. As root, on a machine that has a quarter of a processor to spare.
-usage: atom.py [--quick] [--seed N] [--out FILE]    --quick: 20 s in place of 60 and of 300, half an hour in place of seven"""
+usage: atom.py [--quick] [--seed N] [--out FILE]    --quick: 20 s in place of 60 and of 240, half an hour in place of seven"""
 import csv, json, pathlib, re, subprocess, sys, time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -120,7 +120,7 @@ def section(made, seed, seconds, latency_s):
 
 
 def of_a_drive(seed, quick):
-    seconds, latency_s, hours = (20, 20, 0.5) if quick else (60, 300, VIRTUAL_H)
+    seconds, latency_s, hours = (20, 20, 0.5) if quick else (60, 240, VIRTUAL_H)
     made = rows(measure(seed, seconds)) + latency_rows(seed, latency_s) + [memory_row(seed, hours)]
     return section(made, seed, seconds, latency_s), all(r["met"] is not False for r in made)
 
