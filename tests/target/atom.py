@@ -4,7 +4,7 @@
 recording on. callgrind counts the instructions of two live runs of different length; their difference is what a second costs.
 A third run tells the peak of memory, and what the kernel adds. Two more have one processor for all of its threads and tell how soon
 scans are answered. Writes its section of docs/results/service.md. As root, on a machine that has a quarter of a processor to spare.
-usage: atom.py [--quick] [--seed N] [--out FILE]    --quick: 20 s in place of 60 and of 240"""
+usage: atom.py [--quick] [--seed N] [--out FILE]    --quick: 20 s in place of 60 and of 150"""
 import json, pathlib, re, sys, time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -90,7 +90,7 @@ def section(made, seed, seconds, latency_s):
 
 
 def of_a_drive(seed, quick):
-    seconds, latency_s = (20, 20) if quick else (60, 240)
+    seconds, latency_s = (20, 20) if quick else (60, 150)
     made = rows(measure(seed, seconds)) + latency_rows(seed, latency_s)
     return section(made, seed, seconds, latency_s), all(r["met"] is not False for r in made)
 
