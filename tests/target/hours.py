@@ -17,18 +17,19 @@ TITLE = "Seven hours of the pipeline"
 
 
 def run(seed, hours):
-    """The figures by name, and [(hours, heap in MB, resident MB)] on the way."""
+    """The figures by name, what was warned of, and [(hours, heap in MB, resident MB)] on the way."""
     command = program("i386", "deltamap") + ["experiment", "endurance", "--only", "pipeline", "--minutes", 60 * hours, "--seed", seed, "--jobs", 1, "--scans", "--out", OUT]
     done = subprocess.run([str(part) for part in command], cwd=ROOT, capture_output=True, text=True)
     tables = list(OUT.glob("scans/pipeline*.csv"))
     if len(tables) != 1:
         raise SystemExit("hours: the pipeline told nothing of its memory:\n%s" % done.stderr[-2000:])
+    told = [line.split("pipeline: ", 1)[1] for line in done.stderr.splitlines() if "pipeline: " in line]
     figures = {figure["name"]: figure for figure in json.loads((OUT / "summary.json").read_text())["figures"]}
     with open(tables[0]) as table:
-        return figures, [(float(line["t_s"]) / 3600, float(line["heap_mb"]), float(line["resident_mb"])) for line in csv.DictReader(table)]
+        return figures, told, [(float(line["t_s"]) / 3600, float(line["heap_mb"]), float(line["resident_mb"])) for line in csv.DictReader(table)]
 
 
-def rows(figures, course):
+def rows(figures, told, course):
     def of(name):
         return next(figure for full, figure in figures.items() if name in full)
 
@@ -40,7 +41,7 @@ def rows(figures, course):
         made.append(row("growth of the heap from the fourth hour to the last", "%.2f MB" % growth["value"], "≤ %g MB" % growth["target"]["most"], growth["met"]))
     made.append(row("revisions", "%.0f" % of("revisions")["value"]))
     warnings = of("warnings")
-    return made + [row("warnings of what was degraded", "%.0f" % warnings["value"], "0", warnings["value"] == 0)]
+    return made + [row("warnings of what was degraded", "; ".join(["%.0f" % warnings["value"]] + told), "0", warnings["value"] == 0)]
 
 
 def section(made, course):
@@ -51,8 +52,8 @@ def section(made, course):
 
 
 def of_hours(seed, quick):
-    figures, course = run(seed, 0.5 if quick else 7)
-    made = rows(figures, course)
+    figures, told, course = run(seed, 0.5 if quick else 7)
+    made = rows(figures, told, course)
     return section(made, course), all(r["met"] is not False for r in made)
 
 
