@@ -85,8 +85,8 @@ def section(made, seed, seconds, latency_s):
             "%.0f million a second: 1.6 GHz at one in two cycles; divisions and roots, which take it thirty to sixty cycles, count as one. Under callgrind this machine" % (ATOM_PER_S / 1e6),
             "may localize only a part of the scans; all that the daemon does is then multiplied by what is missing, also what no scan costs: an upper bound.", "",
             "The answers: the same daemon for %d s with all its threads on one processor, from a scan's last byte to its pose; the simulator has the others. Once" % latency_s,
-            "more with a process on that processor that computes without a pause, at the daemon's own priority: as if a map update never ended. Load: processes that",
-            "wanted to run in the last minute of it, on all processors of this machine, these included.", ""] + table_lines(made)
+            "more with a process on that processor that computes without a pause, at the daemon's own priority: as if a map update never ended. Both go before what else",
+            "this machine does (nice -15). Load: processes that wanted to run in the last minute of it, on all processors of this machine, these included.", ""] + table_lines(made)
 
 
 def of_a_drive(seed, quick):
