@@ -22,7 +22,7 @@ SCANS_PER_S = 9.4   # what 38400 baud carry
 LEAST_SCANS_PER_S = 2.0
 SLOWER = 8          # an N270's core than this machine's, in the same i386 code: 6 to 13 by published benchmarks
 STARTED_S = 10      # of a run: reading the map and finding the pose are no load that lasts
-CALLGRIND = ("valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null")
+CALLGRIND = (*one_core.BEFORE_OTHERS, "valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null")
 
 
 def counted(seed, seconds):
