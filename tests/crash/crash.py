@@ -273,8 +273,8 @@ def table(done, is_quick):
 TITLE = "Crashes and failing disks"
 
 
-def section(done, is_quick, seconds):
-    head = ["Written by `./dev bench crash%s` (%s, %s, %.0f s)." % (" --quick" if is_quick else "", project.provenance(), datetime.date.today(), seconds), "",
+def section(done, build, is_quick, seconds):
+    head = ["Written by `./dev bench crash%s` (%s, %s, %.0f s)." % (" --quick" if is_quick else "", project.provenance(build), datetime.date.today(), seconds), "",
             "The first three rows run what the daemon's map thread runs (store with retention, `map.newest`, the files of `--out`, kept pose) without a pause, each",
             "trial on what the one before has left. After each trial every revision in the store is restored and held against its content, and so are `map.yaml` and `map.pgm`.",
             "The last row runs the daemon itself, %d at once, each behind a robot of its own, and kills it up to 30 s after its start, %d times on the same maps." % (ROBOTS, A_ROBOT),
@@ -299,7 +299,7 @@ def main():
         for name, result in results:
             done.append(result.result())
             print("%s: %d trials, %d failures, %s" % (name, done[-1].runs, done[-1].failures, dict(done[-1].faults) or "nothing lost"), flush=True)
-    lines = section(done, wanted.quick, time.monotonic() - began)
+    lines = section(done, wanted.build.resolve(), wanted.quick, time.monotonic() - began)
     (project.write_section(wanted.out, TITLE, lines) if wanted.out else print("\n".join(lines)))
     told = [line for trials in done for line in trials.told]
     if wanted.only in (None, "power") and not notices_a_lying_disk(wanted.build.resolve(), wanted.seed):
