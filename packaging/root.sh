@@ -63,6 +63,7 @@ in_root() {
     root=$1 binds=$2; shift 2
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
+    mount -t sysfs -o ro sysfs "$root/sys"  # what kind of device a number is
     while IFS= read -r bound; do
       [[ -z $bound ]] || { mkdir -p "$root$bound"; mount --bind "$bound" "$root$bound"; }
     done <<<"$binds"

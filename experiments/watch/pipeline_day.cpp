@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <iostream>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
@@ -129,6 +130,7 @@ PipelineDay pipeline_day(const MappingRun& run, std::function<void(const MemoryS
   std::mutex warning;
   options.warn = [&](const std::string& line) {
     const std::lock_guard lock{warning};
+    std::clog << "pipeline: " << line << std::endl;
     day.warnings.push_back(line);
   };
   options.open = [&](boost::asio::io_context& loop, drivers::port::PortId id, unsigned) {

@@ -14,7 +14,9 @@ FAILING = 60        # of a run on a failing disk
 A_FOLDER = 25       # trials in one folder: what one has left is what the next begins on
 RATES = (0.005, 0.02, 0.1, 0.4, 1.0)  # calls that fail; 1: a disk that is full from the start
 FAULTS = ("lost", "torn", "not started", "set aside")
-SIZES = {"kills": (1000, 75), "power": (1000, 75), "failing": (1000, 50), "daemon": (40, 2)}  # whole, quick
+A_ROBOT = 25        # trials of one robot and its maps
+ROBOTS = 10         # at once: they mostly wait
+SIZES = {"kills": (1000, 75), "power": (1000, 75), "failing": (1000, 50), "daemon": (1000, 2)}  # whole, quick
 
 
 class Trials:
@@ -186,11 +188,14 @@ class Robot:
         self.trials.runs += 1
         self.start()
         if not self.is_up(30):
-            self.trials.fault("not started", "trial %d" % self.trials.runs, "; ".join(self.lines()[-3:]))
+            self.trials.fault("not started", self.where(), "; ".join(self.lines()[-3:]))
         time.sleep(self.random.uniform(0.0, 30.0))
         self.daemon.kill()
         self.daemon.wait()
         self.judge()
+
+    def where(self):
+        return "seed %d, trial %d" % (self.trials.seed, self.trials.runs)
 
     def judge(self):
         """A revision is safe when the next one is told of: the map thread does one after the other."""
@@ -198,7 +203,7 @@ class Robot:
         made = [int(number) for number in re.findall(r"map changed: revision=(\d+)", text)]
         begun = [int(number) for number in re.findall(r"goes on with revision=(\d+)", text)]
         self.trials.revisions += len(made)
-        where = "trial %d" % self.trials.runs
+        where = self.where()
         if "set aside" in text or "damaged revisions" in text:
             self.trials.fault("set aside", where, text[-300:])
         if begun and begun[0] < self.safe:
@@ -224,8 +229,8 @@ class Robot:
                 process.wait()
 
 
-def daemon_trials(build, seed, count):
-    trials = Trials("daemon", "the real daemon is killed, robot and laser simulated", seed)
+def one_robot(build, name, meant, seed, count):
+    trials = Trials(name, meant, seed)
     with tempfile.TemporaryDirectory() as folder:
         robot = Robot(build, pathlib.Path(folder), trials, seed)
         try:
@@ -233,6 +238,15 @@ def daemon_trials(build, seed, count):
                 robot.trial()
         finally:
             robot.end()
+    return trials
+
+
+def daemon_trials(build, seed, count):
+    trials = Trials("daemon", "the real daemon is killed, robot and laser simulated", "%d to %d" % (seed, seed + (count - 1) // A_ROBOT))
+    sizes = [min(A_ROBOT, count - begin) for begin in range(0, count, A_ROBOT)]
+    with concurrent.futures.ThreadPoolExecutor(ROBOTS) as pool:
+        for done in pool.map(lambda job: one_robot(build, trials.name, trials.meant, seed + job[0], job[1]), enumerate(sizes)):
+            trials.add(done)
     return trials
 
 
@@ -259,10 +273,11 @@ def table(done, is_quick):
 TITLE = "Crashes and failing disks"
 
 
-def section(done, is_quick, seconds):
-    head = ["Written by `./dev bench crash%s` (%s, %s, %.0f s)." % (" --quick" if is_quick else "", project.provenance(), datetime.date.today(), seconds), "",
+def section(done, build, is_quick, seconds):
+    head = ["Written by `./dev bench crash%s` (%s, %s, %.0f s)." % (" --quick" if is_quick else "", project.provenance(build), datetime.date.today(), seconds), "",
             "The first three rows run what the daemon's map thread runs (store with retention, `map.newest`, the files of `--out`, kept pose) without a pause, each",
             "trial on what the one before has left. After each trial every revision in the store is restored and held against its content, and so are `map.yaml` and `map.pgm`.",
+            "The last row runs the daemon itself, %d at once, each behind a robot of its own, and kills it up to 30 s after its start, %d times on the same maps." % (ROBOTS, A_ROBOT),
             "*Lost*: something that was reported as written is not there. *Torn*: a map or revision is neither the old nor the new one. *Not started*: a",
             "start needs a person. *Set aside*: the store was called damaged.", ""]
     return head + table(done, is_quick)
@@ -277,11 +292,14 @@ def main():
     options.add_argument("--out", type=pathlib.Path)
     wanted = options.parse_args()
     began, done = time.monotonic(), []
-    for name, run in parts(wanted.build.resolve(), wanted.seed, wanted.quick):
-        if wanted.only in (None, name):
-            done.append(run())
+    chosen = [(name, run) for name, run in parts(wanted.build.resolve(), wanted.seed, wanted.quick) if wanted.only in (None, name)]
+    with concurrent.futures.ThreadPoolExecutor(1) as aside, concurrent.futures.ThreadPoolExecutor(1) as pool:
+        # The daemons mostly wait for their moment: beside the others.
+        results = [(name, (aside if name == "daemon" else pool).submit(run)) for name, run in chosen]
+        for name, result in results:
+            done.append(result.result())
             print("%s: %d trials, %d failures, %s" % (name, done[-1].runs, done[-1].failures, dict(done[-1].faults) or "nothing lost"), flush=True)
-    lines = section(done, wanted.quick, time.monotonic() - began)
+    lines = section(done, wanted.build.resolve(), wanted.quick, time.monotonic() - began)
     (project.write_section(wanted.out, TITLE, lines) if wanted.out else print("\n".join(lines)))
     told = [line for trials in done for line in trials.told]
     if wanted.only in (None, "power") and not notices_a_lying_disk(wanted.build.resolve(), wanted.seed):

@@ -15,7 +15,9 @@ class Mutation {
  public:
   explicit Mutation(std::uint64_t seed) : random_{seed} {}
 
-  [[nodiscard]] std::size_t below(std::size_t count) { return count == 0 ? 0 : random_() % count; }
+  [[nodiscard]] std::size_t below(std::size_t count) {
+    return count == 0 ? 0 : static_cast<std::size_t>(random_() % count);
+  }
   [[nodiscard]] bool happens(unsigned in) { return below(in) == 0; }
   template <typename Items>
   [[nodiscard]] const auto& one_of(const Items& items) {

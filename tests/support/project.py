@@ -13,9 +13,9 @@ def run(*command):
     return done.stdout
 
 
-def version():
+def version(build=ROOT / "build/release"):
     """"0.1.0 (commit fc42533, GCC 12.2.0, 64 bit)": of the programs that are measured."""
-    return run(ROOT / "build/release/bin/deltamap", "--version").strip().removeprefix("deltamap ")
+    return run(build / "bin/deltamap", "--version").strip().removeprefix("deltamap ")
 
 
 def processor():
@@ -25,9 +25,9 @@ def processor():
     return platform.machine()
 
 
-def provenance():
+def provenance(build=ROOT / "build/release"):
     """What stands at the head of a table: which programs were measured, and on what."""
-    return "deltamap %s on %s, %d processors" % (version(), processor(), os.cpu_count())
+    return "deltamap %s on %s, %d processors" % (version(build), processor(), os.cpu_count())
 
 
 def write_section(file, title, lines):

@@ -22,17 +22,19 @@ def program(architecture, name, under=()):
 
 
 class LiveRun:
-    def __init__(self, folder, architecture, seed, under=()):
+    """`under`: what the daemon runs under; `beside`: what the simulator runs under; `options`: more of the daemon's."""
+
+    def __init__(self, folder, architecture, seed, under=(), beside=(), options=()):
         self.folder, self.tool, self.processes = folder, AMD64 / "deltamap", []
         shutil.rmtree(folder, ignore_errors=True)
         (folder / "ports").mkdir(parents=True)
         self.recording, self.first_map, self.log = folder / "bytes.pcapng", folder / "m0.yaml", folder / "daemon.log"
         subprocess.run([self.tool, "sim", "--world", WORLD, "--write-map", self.first_map], check=True)
-        self.start([self.tool, "sim", "--world", WORLD, "--links", folder / "ports", "--seed", seed, "--change-every", 10], folder / "sim.log")
+        self.start([*beside, self.tool, "sim", "--world", WORLD, "--links", folder / "ports", "--seed", seed, "--change-every", 10], folder / "sim.log")
         self.wait_for("robot and laser", lambda: (folder / "ports/laser").exists() and (folder / "ports/robot").exists())
         places = {"robot.port": folder / "ports/robot", "laser.port": folder / "ports/laser", "map.file": self.first_map, "map.store": folder / "store.sqlite",
                   "map.newest": folder / "map.yaml", "recording.file": self.recording, "control.socket": folder / "ctl.sock"}
-        self.daemon = self.start(program(architecture, "deltamapd", under) + ["--config", ROOT / "config/simulation.yaml", "--initial-pose", START]
+        self.daemon = self.start(program(architecture, "deltamapd", under) + ["--config", ROOT / "config/simulation.yaml", "--initial-pose", START, *options]
                                  + [part for key, value in {**places, **SETTINGS}.items() for part in ("--set", "%s=%s" % (key, value))], self.log)
         self.wait_for("the robot to drive", lambda: self.ctl("drive", "wander").returncode == 0)
 

@@ -58,7 +58,8 @@ class Trial:
 
     def off_m(self):
         """How far the pose is from where the simulator has the robot."""
-        truth = json.loads((self.folder / "truth.jsonl").read_text().rsplit("\n", 2)[-2])["pose"]
+        lines = (self.folder / "truth.jsonl").read_text().split("\n")[-20:-1]  # whole ones; changes are told among the poses
+        truth = [told["pose"] for told in map(json.loads, lines) if "pose" in told][-1]
         pose = self.status().get("pose", {})
         return math.hypot(pose.get("x_m", 99) - truth[0], pose.get("y_m", 99) - truth[1])
 
@@ -99,7 +100,8 @@ class Trial:
     def track(self):
         self.check("both ports answer", self.comes(lambda: set(self.status().get("ports", {"": ""}).values()) == {"up"}, 90) is not None)
         code, output = self.target.sh("deltamap ctl relocalize 1,2,0")
-        self.check("tracks once a person has said where it stands", code == 0 and self.comes(lambda: self.status().get("state") == "tracking", 60) is not None, "" if code == 0 else output)
+        is_taken = code == 0 or "not answered yet" in output  # a slow machine does it all the same
+        self.check("tracks once a person has said where it stands", is_taken and self.comes(lambda: self.status().get("state") == "tracking", 60) is not None, "" if code == 0 else output)
         self.check("drives about when a person says so", self.target.sh("deltamap ctl drive wander")[0] == 0)
         before, began = self.status().get("localized", 0), time.monotonic()
         time.sleep(20)
@@ -127,7 +129,7 @@ class Trial:
 
     def run_out_of_memory(self):
         pid = self.unit("MainPID")
-        self.sh("systemctl set-property --runtime deltamap MemoryHigh=infinity MemoryMax=6M")
+        self.sh("systemctl set-property --runtime deltamap MemoryHigh=infinity MemoryMax=2M")  # less than its heap: what is mapped from files can be dropped
         self.comes(lambda: self.unit("MainPID") != pid, 60)
         self.sh("systemctl set-property --runtime deltamap MemoryHigh=96M MemoryMax=128M")
         self.comes_back("ended by the memory limit, and back", pid, "oom-kill", 180)

@@ -127,6 +127,8 @@ void add_ctl(CLI::App& app) {
   add_plain(ctl, options, "pause", Kind::kPause, "the map stays as it is; the localizer goes on");
   add_plain(ctl, options, "resume", Kind::kResume, "the map follows the world again");
   add_plain(ctl, options, "save", Kind::kSave, "write map and pose now");
+  CLI::App& map = *ctl.add_subcommand("map", "map save: the same as save")->require_subcommand(1);
+  add_plain(map, options, "save", Kind::kSave, "write map and pose now");
   add_plain(ctl, options, "reload", Kind::kReload, "read the settings file again: take what can change, name the rest");
   add_map_order(ctl, options, "undo", Kind::kUndo, "take revision K back and keep what came later");
   add_map_order(ctl, options, "rollback", Kind::kRollBack, "make the map what revision K was; nothing is lost");

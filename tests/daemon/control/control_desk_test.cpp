@@ -143,7 +143,7 @@ TEST_F(ControlDeskTest, WhatAWrongPoseHasWrittenIsWithdrawnAndAReplayDoesTheSame
 }
 
 TEST_F(ControlDeskTest, WhileMappingIsPausedTheMapStaysAsItIs) {
-  const RunReport live = run_live(2ms, [&](const Pipeline&) {
+  const RunReport live = run_live(4ms, [&](const Pipeline&) {
     ASSERT_TRUE(reached_scan(0));
     EXPECT_EQ(exit_code({"pause"}), 0);
   });

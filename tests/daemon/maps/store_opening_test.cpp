@@ -108,7 +108,7 @@ TEST_F(StoreOpening, AStoreThatWasCutIsSetAsideAndAMapInItGoesOn) {
 
 TEST_F(StoreOpening, FlippedBytesCostAtMostWhatTheyHit) {
   fill();
-  const auto size = fs::file_size(file);
+  const auto size = static_cast<std::size_t>(fs::file_size(file));
   overwrite(size - 4096, std::string(4096, '\x5A'));
   EXPECT_GE(expect_set_aside(), 64u);
 }

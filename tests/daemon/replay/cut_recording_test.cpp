@@ -131,7 +131,7 @@ TEST_F(CutRecording, DISABLED_AThousandWholeReplaysOfCuts) {
 
 TEST_F(CutRecording, InsideItsHeaderIsRefusedInOneLine) {
   record(1.0);
-  for (const std::size_t kept : {5ul, 27ul, ends_[0], ends_[1] + 9, ends_[2] - 1}) {
+  for (const std::size_t kept : {std::size_t{5}, std::size_t{27}, ends_[0], ends_[1] + 9, ends_[2] - 1}) {
     for (const char* tail : {"", "garbage that is longer than the head of a block"}) {
       try {
         (void)replay(folder_.write("cut.pcapng", whole_.substr(0, kept) + tail), "out");

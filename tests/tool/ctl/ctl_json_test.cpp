@@ -32,6 +32,15 @@ TEST(CtlJson, WithoutADaemonTheErrorIsJson) {
   }
 }
 
+TEST(CtlJson, MapSaveAsksWhatSaveAsks) {
+  const test::TemporaryFolder folder;
+  const std::string socket = folder.path() / "ctl.sock";
+  const auto run = test::run_deltamap({"ctl", "--socket", socket, "map", "save", "--json"});
+  EXPECT_EQ(run.exit_code, 1) << "the usage is right, the daemon is missing";
+  EXPECT_EQ(error_of(run), socket + ": no daemon listens there (No such file or directory)");
+  EXPECT_EQ(test::run_deltamap({"ctl", "map"}).exit_code, 2) << "map alone asks nothing";
+}
+
 TEST(CtlJson, WrongUsageIsJson) {
   for (const std::vector<std::string>& words : {std::vector<std::string>{"ctl", "--json"},
                                                 {"ctl", "--json", "fly"},
