@@ -24,6 +24,12 @@ def load():
     return os.getloadavg()[0]
 
 
+def end(process):
+    if process:
+        process.kill()
+        process.wait()
+
+
 def answered(folder, seed, seconds, beside_a_busy_one):
     """Of a live run of the i386 daemon: scans, map updates and quantiles of the time to an answer."""
     busy = subprocess.Popen([*BEFORE_OTHERS, "taskset", "-c", str(CORE), *BUSY]) if beside_a_busy_one else None
@@ -31,10 +37,9 @@ def answered(folder, seed, seconds, beside_a_busy_one):
         with LiveRun(folder, "i386", seed, under=(*BEFORE_OTHERS, "taskset", "-c", str(CORE)), beside=("taskset", "-c", others()), options=("--out", folder / "run")) as run:
             time.sleep(seconds)
             had_load = load()
+            end(busy)  # before the daemon stops: what is left of a map update is done then, and may take longer beside it than an end is waited for
     finally:
-        if busy:
-            busy.kill()
-            busy.wait()
+        end(busy)
     report = json.loads((folder / "run/report.json").read_text())
     return {"scans": report["localized"], "updates": report["revisions_total"] + sum(report["refusals"].values()), "load": had_load,
             "drops": sum(report["drops"].values()), **{name: report["latency_ms"][name] for name in ("p50", "p99", "p999", "max")}}
