@@ -204,6 +204,7 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
       field, {.ends = ends,
               .continuous_odom_from_robot = continuous_odom_at(now),
               .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
+              .stable_support = stable_support.share(),
               .unknown_s = tracked.unknown_s});
   if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.others.front().map_from_robot;
@@ -279,6 +280,11 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                                             .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
                                             .hypotheses = hypotheses.report(),
                                             .transients = params.temporary.belief ? transients.get() : nullptr});
+  if (before == LocalizerState::kTracking) {
+    stable_support.observe(judged.stable);
+  } else {
+    stable_support.forget();
+  }
   if (blind) return;
   seen.verdict = judged.verdict;
   seen.trust = judgement.trust();

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "localization/belief/stable_support.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 
@@ -51,6 +52,7 @@ struct Localizer::State {
   double w_avg = 1.0;                ///< of that; before any scan nothing speaks against the pose
   std::optional<double> newest_fit;  ///< explained_share() of the newest scan at the estimate
   double n_eff = 0.0;                ///< of the particles, or of a search's places
+  belief::StableSupport stable_support;
 
   // How a pose comes to be believed, and ceases to be.
   void start_at(const particles::InitialPose& given);

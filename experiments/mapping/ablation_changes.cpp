@@ -37,6 +37,8 @@ constexpr std::array kOfLocalization{
     Mechanism{"refined-hypotheses", "refinement of other pose hypotheses while tracking",
               [](Settings& s) { s.localizer.rivals.refined_a_scan = 0; }},
     Mechanism{"aliases", "memory of aliases", [](Settings& s) { s.localizer.rivals.images = 0; }},
+    Mechanism{"support", "support of the believed pose by proven tiles",
+              [](Settings& s) { s.localizer.rivals.held_by = 0.0; }},
     Mechanism{"kidnapped-share", "write gate: odds of having just been kidnapped",
               [](Settings& s) { s.localizer.rivals.carried_prior = 0.0; }},
     Mechanism{"suspicious-search", "search of the whole map beside a believed pose",
@@ -92,6 +94,8 @@ constexpr std::array kOfMapping{
                 auto& scan_break = s.mapping.store_scan.gate.scan_break;
                 scan_break.most = scan_break.most_one_way = 1.0;
               }},
+    Mechanism{"wary-break", "write gate: worse fit after a small break",
+              [](Settings& s) { s.mapping.store_scan.gate.wary_break = 1.0; }},
     Mechanism{"pose-jump", "write gate: jump of the pose off odometry",
               [](Settings& s) {
                 auto& jump = s.mapping.store_scan.gate.jump;

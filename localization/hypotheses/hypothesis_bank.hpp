@@ -92,6 +92,10 @@ class HypothesisBank {
   void set_priors(PriorOf&& log_prior_of) {
     for (PoseHypothesis& hypothesis : hypotheses_) hypothesis.log_prior = log_prior_of(hypothesis.map_from_robot);
   }
+  /// Log odds of the believed one, before any scan.
+  void set_believed_prior(double log_prior) {
+    if (believing_ && !hypotheses_.empty()) hypotheses_.front().log_prior = log_prior;
+  }
   /// What speaks for other poses since the robot may have been carried there spoke against a pose that is believed no
   /// longer.
   void forget_kidnapping();

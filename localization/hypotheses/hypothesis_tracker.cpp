@@ -62,6 +62,7 @@ bool HypothesisTracker::has_jumped(const Pose2& map_from_believed) const {
 void HypothesisTracker::start_believing_in(const Pose2& found) {
   believing_ = true;
   forget_kidnapping();
+  bank_.set_believed_prior(0.0);
   if (!is_near_believed(found)) {
     elsewhere_prior_ = params_.prior_after_search;
     stack_.clear();  // its scans are from before the robot was carried off
@@ -151,6 +152,8 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
     bank_.believe(*seen.map_from_believed);
   }
   if (believing_) last_believed_ = seen.map_from_believed;
+  held_by_ = believing_ ? params_.held_by * seen.stable_support : 0.0;
+  bank_.set_believed_prior(held_by_);
   thin(seen);
   if (ends_.size() == 0) return report_;
 
@@ -294,7 +297,7 @@ void HypothesisTracker::write_report() {
                       {.nearby_m = params_.nearby_m,
                        .nearby_rad = params_.nearby_rad,
                        .carried_prior = params_.carried_prior,
-                       .beats_by = params_.beats_by,
+                       .beats_by = params_.beats_by + held_by_,
                        .wins_after_m = params_.wins_after_m});
 }
 

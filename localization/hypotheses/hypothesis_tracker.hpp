@@ -35,6 +35,7 @@ struct HypothesisTrackerParams {
   double winning_share = 0.98;   ///< of the belief at which another hypothesis is believed instead; 0.5..1
   double wins_after_m = 1.0;     ///< driven since it was found before another hypothesis may win, m; >= 0
   double beats_by = 12.0;        ///< log evidence of clearly better, whatever the odds before; > 0
+  double held_by = 16.0;         ///< more log evidence against a pose that proven tiles support; >= 0
   double most_ahead = 10.0;      ///< log evidence that a hypothesis may be found with ahead of the believed one; >= 0
   int refined_a_scan = 4;        ///< hypotheses that are slid to their best fit at a scan while tracking; >= 0
   double block_m = 0.25;         ///< side of the coarse field's blocks, m; > 0
@@ -66,6 +67,7 @@ class HypothesisTracker {
     const motion::BeamEnds& ends;              ///< robot frame; may be empty
     Pose2 continuous_odom_from_robot;          ///< by odometry (OdometryAt)
     std::optional<Pose2> map_from_believed{};  ///< where the robot is believed to be, if anywhere
+    double stable_support = 0.0;               ///< how far proven tiles support that pose (StableSupport), [0, 1]
     double unknown_s = 0.0;                    ///< seconds since the last scan that odometry does not cover
   };
   const HypothesisReport& observe(const sensor::LikelihoodField& field, const Seen& seen);
@@ -131,6 +133,7 @@ class HypothesisTracker {
   double since_step_m_ = 0.0;
   double since_step_rad_ = 0.0;
   HypothesisReport report_;
+  double held_by_ = 0.0;
 };
 
 }  // namespace deltamap::localization::hypotheses

@@ -8,6 +8,9 @@
 namespace deltamap::mapping::gate {
 namespace {
 
+/// A thing in whose place the map is wrong takes up more of the view as the robot comes nearer.
+constexpr double kApproached = 1.5;
+
 /// The pose that is believed afterwards may lie anywhere.
 bool may_be_another(GateReason reason) { return reason == GateReason::kSearching || reason == GateReason::kLost; }
 
@@ -80,23 +83,32 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 }
 
 /// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
-/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before.
+/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before. Small
+/// breaks are of things as long as not many more beams cease to fit than have broken off.
 void WriteGate::note_break(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
-  const bool breaks = scan_break_.observe(tracked);
+  const SeenBreak seen = scan_break_.observe(tracked);
   if (is_confirming_) {
-    if (breaks) held_s_ = held_m_ = 0.0;  // whoever was carried once may be carried again
+    if (seen.is_large) held_s_ = held_m_ = 0.0;  // whoever was carried once may be carried again
     return;
   }
-  if (was_tracking_ && breaks) {
+  const bool is_small = !seen.is_large && seen.share > params_.wary_break;
+  if (was_tracking_ && (seen.is_large || is_small)) {
     if (!broken_) inlier_drop_.remember();
-    broken_ = time;
+    if (seen.is_large) {
+      broken_ = Broken{time, 0.0, true};
+    } else if (!broken_) {
+      broken_ = Broken{time, kApproached * seen.share, false};
+    } else if (!broken_->shuts) {
+      broken_->explained += kApproached * seen.share;
+    }
   }
   if (!broken_) return;
-  if (inlier_drop_.is_worse_than_remembered()) {
+  const double over_s = broken_->shuts ? std::max(params_.wary_s, params_.break_settles_s) : params_.wary_s;
+  if (inlier_drop_.is_worse_than_remembered(broken_->explained)) {
     is_confirming_ = true;
     confirms_after_ = GateReason::kConfirming;
-  } else if (seconds(time - *broken_) > std::max(params_.wary_s, params_.break_settles_s)) {
+  } else if (seconds(time - broken_->time) > over_s) {
     forget_break();
   }
 }
@@ -107,11 +119,12 @@ void WriteGate::forget_break() {
 }
 
 bool WriteGate::breaks_now(Timestamp time) const {
-  return broken_ && seconds(time - *broken_) <= params_.break_settles_s;
+  return broken_ && broken_->shuts && seconds(time - broken_->time) <= params_.break_settles_s;
 }
 
 bool WriteGate::fits_as_before_break(Timestamp time) const {
-  return !broken_ || seconds(time - *broken_) > params_.most_unlike_s || !inlier_drop_.is_worse_than_remembered();
+  return !broken_ || seconds(time - broken_->time) > params_.most_unlike_s ||
+         !inlier_drop_.is_worse_than_remembered(0.0);
 }
 
 /// Has the pose held for long and far enough? A moment of doubt only holds that up; a proof that the pose was wrong
@@ -144,6 +157,8 @@ void WriteGate::observe(const TrackedScan& tracked) {
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
   if (was_tracking_ && is_proof) {
+    // What has only made it wary is a thing that stays: as much as without it need not fit again.
+    if (!is_confirming_ && broken_ && !broken_->shuts) forget_break();
     // What a search has found remains found, whatever else speaks against it.
     if (!is_confirming_ || !may_be_another(confirms_after_)) confirms_after_ = judgement;
     is_confirming_ = true;

@@ -55,7 +55,8 @@ struct WriteGateParams {
   PoseJumpParams jump;
   InlierDropParams inlier_drop;
   ScanBreakParams scan_break;
-  double break_settles_s = 1.0;  ///< after a break it waits so long to see whether the map still fits; >= 0
+  double break_settles_s = 1.0;  ///< after a large break it waits so long to see whether the map still fits; >= 0
+  double wary_break = 0.08;      ///< of the beams: what breaks off less makes it not even wary; [0, 1]
   double wary_s = 5.0;           ///< so long after a break a worse fit says that the robot was carried; >= 0
   double most_unlike_s = 120.0;  ///< for so long after one as much must fit as before to confirm the pose; >= 0
   ProvisionalParams provisional;
@@ -98,6 +99,11 @@ class WriteGate {
   [[nodiscard]] double shut_for_s() const { return shut_for_s_; }
 
  private:
+  struct Broken {
+    Timestamp time;
+    double explained = 0.0;  // share of the beams that a thing may have taken out of the map's view
+    bool shuts = false;
+  };
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
   void note_break(const TrackedScan& tracked);
   void forget_break();
@@ -109,7 +115,7 @@ class WriteGate {
   PoseJump jump_;
   InlierDropDetector inlier_drop_;
   ScanBreak scan_break_;
-  std::optional<Timestamp> broken_;  // the last break of the scans, until it has been explained
+  std::optional<Broken> broken_;  // the last break of the scans, until it has been explained
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
   bool was_tracking_ = false;

@@ -12,7 +12,7 @@
 namespace deltamap::localization {
 namespace {
 
-using test::kScanPeriodS;
+constexpr double kScanPeriodS = 0.2;
 constexpr double kStepM = 0.08;
 constexpr double kInside95 = 5.991;  // χ², two degrees of freedom
 

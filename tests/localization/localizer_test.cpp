@@ -17,7 +17,7 @@
 namespace deltamap::localization {
 namespace {
 
-using test::kScanPeriodS;
+constexpr double kScanPeriodS = 0.2;
 
 /// A robot that drives to and fro along a lane of constant y, with odometry that drifts.
 class Drive {

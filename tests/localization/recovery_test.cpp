@@ -14,7 +14,7 @@
 namespace deltamap::localization {
 namespace {
 
-using test::kScanPeriodS;
+constexpr double kScanPeriodS = 0.2;
 
 Odometry at_rest() {
   Odometry odometry;

@@ -15,7 +15,7 @@
 namespace deltamap::localization {
 namespace {
 
-using test::kScanPeriodS;
+constexpr double kScanPeriodS = 0.2;
 
 /// A robot that begins at a pose that the localizer is given, and is moved from scan to scan.
 class Walk {

@@ -11,8 +11,6 @@
 
 namespace deltamap::test {
 
-inline constexpr double kScanPeriodS = 0.2;  ///< of a robot that is moved from scan to scan
-
 struct CastScanner {
   double max_range_m = 80.0;
   double noise_m = 0.01;

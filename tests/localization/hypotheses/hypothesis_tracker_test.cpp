@@ -27,14 +27,15 @@ class Round {
 
   void carry_to(const Pose2& truth) { truth_ = truth; }
 
-  const HypothesisReport& step(std::optional<Pose2> believed) {
+  const HypothesisReport& step(std::optional<Pose2> believed, double held = 0.0) {
     const Pose2 motion = kMotion;
     truth_ = truth_ * motion;
     joined_ = joined_ * motion;
     const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
     return rivals_.observe(field_, {.ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 0),
                                     .continuous_odom_from_robot = joined_,
-                                    .map_from_believed = believed});
+                                    .map_from_believed = believed,
+                                    .stable_support = held});
   }
 
  private:
@@ -100,6 +101,26 @@ TEST(PoseHypotheses, FindHypothesesThatFitAsWellAndNeverPreferThem) {
     }
   }
   EXPECT_EQ(others_known, 3);
+}
+
+/// Metres until another hypothesis holds nearly all belief against a wrong pose.
+double driven_until_won_m(const OccupancyGrid& map, double held) {
+  constexpr double kMost_m = 40.0;
+  Round round{map, map, {1.6, 1.0, 0.0}, 1};
+  round.others().start_believing();
+  Pose2 believed{7.5, 3.0, 1.5};
+  double driven_m = 0.0;
+  for (bool won = false; !won && driven_m < kMost_m; driven_m += 0.1) {
+    believed = believed * kMotion;
+    const HypothesisReport& report = round.step(believed, held);
+    won = report.listed > 0 && report.others[0].share > 0.98;
+  }
+  return driven_m;
+}
+
+TEST(PoseHypotheses, HaveToOutdoWhatProvenTilesSayForThePose) {
+  const OccupancyGrid map = test::drawn_flat();
+  EXPECT_GT(driven_until_won_m(map, 1.0), driven_until_won_m(map, 0.0) + 0.2);
 }
 
 /// Scans until a quarter of the hall that was met before is heard of again, where nothing looks for new hypotheses; at

@@ -13,6 +13,8 @@
 namespace deltamap::mapping::gate {
 namespace {
 
+constexpr double kWary = WriteGateParams{}.wary_break;
+
 /// What a laser of 180 beams sees in an aisle 3 m wide: niches 1 m deep stand 2 m apart, every third one is walled up.
 /// A thing stands 1 m away across so many beams.
 TrackedScan aisle_scan(StraightDrive& robot, double carried_m, int thing_beams = 0) {
@@ -42,30 +44,35 @@ TrackedScan aisle_scan(StraightDrive& robot, double carried_m, int thing_beams =
 TEST(ScanBreak, IsNoneWhereTheRobotDrivesOnItsOwnWheels) {
   StraightDrive robot;
   ScanBreak scans{{}};
-  for (int i = 0; i < 300; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0))) << i;
+  for (int i = 0; i < 300; ++i) ASSERT_LT(scans.observe(aisle_scan(robot, 0.0)).share, kWary) << i;
 }
 
 TEST(ScanBreak, IsSeenInTheFirstScanOfACarriedRobot) {
   StraightDrive robot;
   ScanBreak scans{{}};
-  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0)));
-  EXPECT_TRUE(scans.observe(aisle_scan(robot, 2.5)));
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 2.5)));
+  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0)).is_large);
+  EXPECT_TRUE(scans.observe(aisle_scan(robot, 2.5)).is_large);
+  EXPECT_FALSE(scans.observe(aisle_scan(robot, 2.5)).is_large);
 }
 
-TEST(ScanBreak, IsNoneWhereAThingComesOrGoes) {
+TEST(ScanBreak, IsASmallOneWhereAThingComesOrGoes) {
   StraightDrive robot;
   ScanBreak scans{{}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
-  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0, 30))) << i;
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0)));
+  const SeenBreak coming = scans.observe(aisle_scan(robot, 0.0, 30));
+  EXPECT_GT(coming.share, kWary);
+  EXPECT_FALSE(coming.is_large);
+  EXPECT_LT(scans.observe(aisle_scan(robot, 0.0, 30)).share, kWary);
+  const SeenBreak going = scans.observe(aisle_scan(robot, 0.0));
+  EXPECT_GT(going.share, kWary);
+  EXPECT_FALSE(going.is_large);
 }
 
-TEST(ScanBreak, IsSeenWhereAThirdOfTheViewIsNearer) {
+TEST(ScanBreak, IsALargeOneWhereAThirdOfTheViewIsNearer) {
   StraightDrive robot;
   ScanBreak scans{{}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
-  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0, 70)));
+  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0, 70)).is_large);
 }
 
 TEST(ScanBreak, IsNoneWhereTheWheelsHaveSlippedAndTheEstimateHasNot) {
@@ -73,17 +80,17 @@ TEST(ScanBreak, IsNoneWhereTheWheelsHaveSlippedAndTheEstimateHasNot) {
   ScanBreak scans{{}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
   robot.map_from_odom.x = -0.6;  // so much the wheels counted and the body did not go
-  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, -0.6))) << i;
+  for (int i = 0; i < 20; ++i) ASSERT_LT(scans.observe(aisle_scan(robot, -0.6)).share, kWary) << i;
 }
 
-TEST(ScanBreak, IsSeenAfterAWayWithoutScansOverWhichTheWheelsMayBeOff) {
+TEST(ScanBreak, IsALargeOneAfterAWayWithoutScansOverWhichTheWheelsMayBeOff) {
   StraightDrive robot;
   ScanBreak scans{{}};
   (void)scans.observe(aisle_scan(robot, 0.0));
   robot.speed_m_per_s = 2.0 / kPeriod_s;
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0)));
+  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0)).is_large);
   robot.speed_m_per_s = 4.0 / kPeriod_s;
-  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0)));
+  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0)).is_large);
 }
 
 TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
@@ -98,7 +105,7 @@ TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
   EXPECT_FALSE(gate.trusted_since());  // nothing has proven wrong
 }
 
-TEST(WriteGate, ABreakShutsItForItsTimeWhereItIsNeverWary) {
+TEST(WriteGate, ALargeBreakShutsItForItsTimeWhereItIsNeverWary) {
   StraightDrive robot;
   WriteGateParams params;
   params.wary_s = 0.0;
@@ -175,6 +182,19 @@ TEST_F(OutOfDate, AThingThatComesLeavesTheGateOpen) {
   }
 }
 
+TEST_F(OutOfDate, MoreThatCeasesToFitThanHasBrokenOffIsACarriedRobot) {
+  for (int i = 0; i < 30; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 30), 30, 10));
+  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+}
+
+TEST_F(OutOfDate, ThingsThatComeOneAfterTheOtherLeaveTheGateOpen) {
+  for (int i = 0; i < 15; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 20), 67, 23));
+  for (int i = 0; i < 60; ++i) {
+    gate.observe(fitting(aisle_scan(robot, 0.0, 45), 38, 52));
+    ASSERT_TRUE(gate.is_open()) << i;
+  }
+}
+
 TEST_F(OutOfDate, AThingThatCameIsNoPartOfWhatAWrongPoseHasToConfirm) {
   for (int i = 0; i < 20; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 50), 50, 40));
   ASSERT_TRUE(gate.is_open());
@@ -188,6 +208,14 @@ TEST_F(OutOfDate, AThingThatCameIsNoPartOfWhatAWrongPoseHasToConfirm) {
 TEST_F(OutOfDate, AHallThatIsMoreAndMoreOutOfDateLeavesTheGateOpen) {
   for (int i = 0; i < 100; ++i) {
     gate.observe(fitting(aisle_scan(robot, 0.0), 30, 10));
+    ASSERT_TRUE(gate.is_open()) << i;
+  }
+}
+
+TEST_F(OutOfDate, ABadFitLongAfterASmallBreakSaysNothing) {
+  for (int i = 0; i < 70; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 30), 80, 10));
+  for (int i = 0; i < 50; ++i) {
+    gate.observe(fitting(aisle_scan(robot, 0.0, 30), 30, 10));
     ASSERT_TRUE(gate.is_open()) << i;
   }
 }
