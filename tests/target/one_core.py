@@ -6,7 +6,7 @@ import json, os, subprocess, sys, time
 
 from live_run import LiveRun
 
-MOST_MS, SHARE = 20, 0.999
+MOST_MS = 20
 CORE = 0
 BEFORE_OTHERS = ("nice", "-n", "-15")  # what else runs on this machine is none of the daemon's; among its threads it changes nothing
 BUSY = (sys.executable, "-c", "while True: pass")
@@ -19,11 +19,6 @@ def others():
     return ",".join(map(str, rest))
 
 
-def load():
-    """Processes that wanted to run in the last minute, this measurement's own included."""
-    return os.getloadavg()[0]
-
-
 def end(process):
     if process:
         process.kill()
@@ -34,12 +29,12 @@ def answered(folder, seed, seconds, beside_a_busy_one):
     """Of a live run of the i386 daemon: scans, map updates and quantiles of the time to an answer."""
     busy = subprocess.Popen([*BEFORE_OTHERS, "taskset", "-c", str(CORE), *BUSY]) if beside_a_busy_one else None
     try:
-        with LiveRun(folder, "i386", seed, under=(*BEFORE_OTHERS, "taskset", "-c", str(CORE)), beside=("taskset", "-c", others()), options=("--out", folder / "run")) as run:
+        with LiveRun(folder, "i386", seed, under=(*BEFORE_OTHERS, "taskset", "-c", str(CORE)), beside=("taskset", "-c", others()), options=("--out", folder / "run")):
             time.sleep(seconds)
-            had_load = load()
+            load, *_ = os.getloadavg()
             end(busy)  # before the daemon stops: what is left of a map update is done then, and may take longer beside it than an end is waited for
     finally:
         end(busy)
     report = json.loads((folder / "run/report.json").read_text())
-    return {"scans": report["localized"], "updates": report["revisions_total"] + sum(report["refusals"].values()), "load": had_load,
+    return {"scans": report["localized"], "updates": report["revisions_total"] + sum(report["refusals"].values()), "load": load,
             "drops": sum(report["drops"].values()), **{name: report["latency_ms"][name] for name in ("p50", "p99", "p999", "max")}}
