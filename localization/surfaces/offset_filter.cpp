@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -20,9 +21,8 @@ constexpr int kMisfitsOfAChange = 3;       // in a row: it was moved while in vi
 constexpr double kForgottenAfterM = 15.0;  // driven without a view of it
 constexpr std::size_t kMostFollowed = 32;
 constexpr std::size_t kMostSightings = 24;
-constexpr double kVisitsBefore = 3.0;  // that a surface is taken to have had
-constexpr double kUnknownM = 0.3;      // deviation of a place that no visit has told of
-constexpr double kReassignM = 0.02;    // a keyframe that moves the pose further is read once more
+constexpr double kUnknownM = 0.3;    // deviation of a place that no visit has told of
+constexpr double kReassignM = 0.02;  // a keyframe that moves the pose further is read once more
 constexpr double kReassignRad = 0.005;
 constexpr double kFarthestM = 0.3;  // that ends on no surface may move the pose
 constexpr double kFarthestRad = 0.18;
@@ -99,16 +99,19 @@ std::size_t OffsetFilter::surface_of(const Sighting& sighting) const {
   return static_cast<std::size_t>(map_.record(sighting.id).followed_as);
 }
 
-void OffsetFilter::follow(const Sighting& sighting) {
-  SurfaceRecord& record = map_.record(sighting.id);
-  if (record.followed_as != SurfaceRecord::kNotFollowed) return;
-  record.followed_as = static_cast<std::int32_t>(visits_.size());
-  visits_.push_back({.id = sighting.id});
-  switches_.push_back(
-      {.surface = sighting.surface,
-       .usual_m = record.offset_m,
-       .prior = (kVisitsBefore * sensor::kUsuallyHolds + record.held) / (kVisitsBefore + record.visits)});
-  state_.append(record.offset_m, sensor::kMovedM, kMovedRad);
+bool OffsetFilter::is_followed(const Sighting& sighting) const {
+  return map_.record(sighting.id).followed_as != SurfaceRecord::kNotFollowed;
+}
+
+void OffsetFilter::follow(std::span<const Sighting> sightings) {
+  for (const Sighting& sighting : sightings) {
+    if (is_followed(sighting)) continue;
+    SurfaceRecord& record = map_.record(sighting.id);
+    record.followed_as = static_cast<std::int32_t>(visits_.size());
+    visits_.push_back({.id = sighting.id});
+    switches_.push_back({.surface = sighting.surface, .usual_m = record.offset_m, .prior = record.usually_holds()});
+    state_.append(record.offset_m, sensor::kMovedM, kMovedRad);
+  }
 }
 
 /// To be followed by renumber().
@@ -171,6 +174,10 @@ std::vector<bool> OffsetFilter::fit_of(std::span<const Sighting> sightings) cons
   const Fixed here = state_.mean().head<OffsetState::kFixed>();
   std::vector<bool> fits;
   for (const Sighting& sighting : sightings) {
+    if (!is_followed(sighting)) {
+      fits.push_back(true);
+      continue;
+    }
     const SurfaceMeasurement seen = measurement_of(sighting, at, OffsetState::offset_of(surface_of(sighting)));
     const double cross = covariance_of(seen.distance, seen.turn, state_.covariance());
     Eigen::Matrix2d spread;
@@ -200,7 +207,7 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
   state_.update(rows);
 }
 
-/// Where any one surface that seems to have moved would stand where the map has it.
+/// Where any one surface that seems to have moved would stand as usual.
 std::vector<Pose2> OffsetFilter::undone_moves() const {
   const Pose2 at = state_.pose().map_from_robot;
   std::vector<Pose2> poses;
@@ -209,7 +216,8 @@ std::vector<Pose2> OffsetFilter::undone_moves() const {
     const Eigen::Index offset = OffsetState::offset_of(i);
     const Surface& surface = switches_[i].surface;
     const Pose2 unturned{0.0, 0.0, -state_.mean()[offset + 1]};
-    const Point2 from_centre = at.position() - state_.mean()[offset] * surface.normal - surface.centre;
+    const double moved_m = state_.mean()[offset] - switches_[i].usual_m;
+    const Point2 from_centre = at.position() - moved_m * surface.normal - surface.centre;
     const Point2 there = surface.centre + unturned * from_centre;
     poses.push_back({there.x(), there.y(), wrapped_angle(at.theta + unturned.theta)});
   }
@@ -219,62 +227,65 @@ std::vector<Pose2> OffsetFilter::undone_moves() const {
 /// Had the wheels slipped? Only now, where something is not where it was expected; metres ago, where something seems to
 /// have moved. Goes to where the surfaces are clearly better explained.
 bool OffsetFilter::follows_slip(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                std::span<const Sighting> sightings, const std::vector<bool>& fits,
-                                const motion::MotionModelParams& motion) {
+                                std::span<const Sighting> sightings, const motion::MotionModelParams& motion) {
+  const std::vector<bool> fits = fit_of(sightings);
   const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
   std::vector<Pose2> undone;
   if (since_doubt_m_ >= kDoubtsAgainM) undone = undone_moves();
   if (!is_strange && undone.empty()) return false;
   since_doubt_m_ = 0.0;
-  const sensor::RefinedPose wheels = state_.pose();
-  const auto number_of = [&](SurfaceMap::Id id) { return map_.record(id).followed_as; };
+  const Pose2 by_wheels = state_.pose().map_from_robot;
+  const auto record_of = [&](SurfaceMap::Id id) -> const SurfaceRecord& { return map_.record(id); };
   const auto as_followed = [&](const Pose2& at) { return find(field, ends, at); };
   const auto as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); };
   std::vector<bool> in_view(switches_.size());
-  for (const Sighting& sighting : sightings) in_view[surface_of(sighting)] = true;
-  const SlipReading no_slip{state_, switches_, PoseCovariance::Zero(), in_view};
-  const double usual = std::max(no_slip.best_near(wheels.map_from_robot, as_followed, number_of).evidence,
-                                no_slip.best_near(wheels.map_from_robot, as_mapped, number_of).evidence);
+  for (const Sighting& sighting : sightings) {
+    if (is_followed(sighting)) in_view[surface_of(sighting)] = true;
+  }
   SlipReading::Answer best;
-  best.evidence = usual + kSlipOdds;
+  double gained = kSlipOdds;
   PoseCovariance slip = PoseCovariance::Zero();
-  const auto look = [&](std::span<const Pose2> poses, const PoseCovariance& spread, auto&& seen_from) {
-    const SlipReading reading{state_, switches_, spread, in_view};
-    for (const Pose2& pose : poses) {
-      SlipReading::Answer there = reading.best_near(pose, seen_from, number_of);
-      if (there.evidence <= best.evidence) continue;
-      best = std::move(there);
-      slip = spread;
+  const auto look = [&](SlipTime when, std::span<const Pose2> poses, std::span<const PoseCovariance> spreads,
+                        auto&& seen_from) {
+    if (poses.empty()) return;
+    const SlipReading no_slip{state_, switches_, when, PoseCovariance::Zero(), in_view};
+    const double usual = no_slip.best_near(by_wheels, seen_from, record_of).evidence;
+    for (const PoseCovariance& spread : spreads) {
+      const SlipReading reading{state_, switches_, when, spread, in_view};
+      for (const Pose2& pose : poses) {
+        SlipReading::Answer there = reading.best_near(pose, seen_from, record_of);
+        if (there.evidence - usual <= gained) continue;
+        gained = there.evidence - usual;
+        best = std::move(there);
+        slip = spread;
+      }
     }
   };
-  const PoseCovariance now = motion::slip_covariance(motion, wheels.map_from_robot.theta);
+  const PoseCovariance now = motion::slip_covariance(motion, by_wheels.theta);
   if (is_strange) {
-    const std::vector<Pose2> around = motion::slips_around(motion, wheels.map_from_robot);
-    look(around, now, as_followed);
-    look(around, one_wheel_covariance(motion), as_followed);
+    look(SlipTime::kNow, motion::slips_around(motion, by_wheels), std::array{now, one_wheel_covariance(motion)},
+         as_followed);
   }
   const double aside_m = 0.5 * kForgottenAfterM * motion.slip_rad;  // by a turn that far behind
   const PoseCovariance behind =
       now + Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
-  look(undone, behind, as_mapped);
+  look(SlipTime::kBehind, undone, std::array{behind}, as_mapped);
   if (slip.isZero()) return false;
-  for (std::size_t i = visits_.size(); i-- > 0;) {
-    if (std::find(best.hold_again.begin(), best.hold_again.end(), i) != best.hold_again.end()) drop(i);
-  }
+  std::sort(best.read_wrong.begin(), best.read_wrong.end());
+  for (std::size_t i = best.read_wrong.size(); i-- > 0;) drop(best.read_wrong[i]);
   renumber();
   state_.jump(best.pose, slip);
   return true;
 }
 
-/// The surfaces that the scan shows from a pose, all of them followed.
-std::vector<Sighting> OffsetFilter::followed_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                                  const Pose2& at) {
+/// The surfaces that the scan shows from a pose: those of which it shows the most.
+std::vector<Sighting> OffsetFilter::seen_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                              const Pose2& at) {
   const std::span<const Sighting> found = find(field, ends, at);
   std::vector<Sighting> sightings{found.begin(), found.end()};
   std::stable_sort(sightings.begin(), sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.beams > b.beams; });
   if (sightings.size() > kMostSightings) sightings.resize(kMostSightings);
-  for (const Sighting& sighting : sightings) follow(sighting);
   return sightings;
 }
 
@@ -284,20 +295,19 @@ OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, s
   if (ends.empty()) return seen;
   last_ = state_.without_surfaces();
   const Eigen::Vector3d mount = state_.mean().segment<3>(OffsetState::kMount);
-  std::vector<Sighting> sightings = followed_from(field, ends, state_.pose().map_from_robot);
-  std::vector<bool> fits = fit_of(sightings);
-  seen.slipped = follows_slip(field, ends, sightings, fits, motion);
+  std::vector<Sighting> sightings = seen_from(field, ends, state_.pose().map_from_robot);
+  seen.slipped = follows_slip(field, ends, sightings, motion);
   const Pose2 at = state_.pose().map_from_robot;
-  if (seen.slipped) {
-    sightings = followed_from(field, ends, at);
-    fits = fit_of(sightings);
-  }
+  if (seen.slipped) sightings = seen_from(field, ends, at);
+  follow(sightings);
+  std::vector<bool> fits = fit_of(sightings);
   OffsetState before = state_;
   correct_by(sightings, fits, at);
   const Pose2 now = state_.pose().map_from_robot;
   if (distance_between(now, at) > kReassignM || std::abs(turn_between(now.theta, at.theta)) > kReassignRad) {
     std::swap(state_, before);
-    sightings = followed_from(field, ends, now);
+    sightings = seen_from(field, ends, now);
+    follow(sightings);
     fits = fit_of(sightings);
     correct_by(sightings, fits, at);
   }

@@ -66,17 +66,18 @@ class OffsetFilter {
   /// As if all stood where the map has it.
   [[nodiscard]] std::span<const Sighting> find_by_map(const sensor::LikelihoodField& field,
                                                       std::span<const FacedEnd> ends, const Pose2& at);
-  [[nodiscard]] std::vector<Sighting> followed_from(const sensor::LikelihoodField& field,
-                                                    std::span<const FacedEnd> ends, const Pose2& at);
+  [[nodiscard]] std::vector<Sighting> seen_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                                const Pose2& at);
   [[nodiscard]] std::vector<Pose2> undone_moves() const;
   [[nodiscard]] bool follows_slip(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                  std::span<const Sighting> sightings, const std::vector<bool>& fits,
-                                  const motion::MotionModelParams& motion);
-  void follow(const Sighting& sighting);
+                                  std::span<const Sighting> sightings, const motion::MotionModelParams& motion);
+  [[nodiscard]] bool is_followed(const Sighting& sighting) const;
+  void follow(std::span<const Sighting> sightings);
   void cease(std::size_t surface);
   void drop(std::size_t surface);
   void cease_where_long_unseen();
   void renumber();
+  /// Is each where it is expected? One that is not followed yet is expected anywhere.
   [[nodiscard]] std::vector<bool> fit_of(std::span<const Sighting> sightings) const;
   void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
   void correct_by_rest(const sensor::LikelihoodField& field, double share, const Eigen::Vector3d& mount);

@@ -5,53 +5,56 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace deltamap::localization::surfaces {
 namespace {
 
-// Nats that an explanation costs against "it holds". Moved: anywhere within half a metre, where it would stand to 2 cm,
-// and one in ten is where nothing is known of a surface; since it was last in view: one in so many metres.
+// Nats that an explanation costs against "it holds". Moved: anywhere within half a metre, where it would stand to 2 cm;
+// since it was last in view: one in so many metres.
 constexpr double kAnywhere = 3.2;
-constexpr double kMoved = 2.2 + kAnywhere;
 constexpr double kMovedOnceInM = 1500.0;
 
-/// Where the map has it.
-SurfaceStand held(const Surface& surface) {
-  return {.offset_m2 = surface.offset_deviation_m * surface.offset_deviation_m,
+double cost_of_moved(double holds) { return std::log(holds / (1.0 - holds)) + kAnywhere; }
+
+SurfaceStand usual_stand(const Surface& surface, double usual_m) {
+  return {.offset_m = usual_m,
+          .offset_m2 = surface.offset_deviation_m * surface.offset_deviation_m,
           .turn_rad2 = surface.turn_deviation_rad * surface.turn_deviation_rad};
 }
 
 }  // namespace
 
-SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch> switches, const PoseCovariance& slip,
-                         std::vector<bool> in_view)
+SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch> switches, SlipTime when,
+                         const PoseCovariance& slip, std::vector<bool> in_view)
     : state_{state},
       switches_{switches},
+      when_{when},
       in_view_{std::move(in_view)},
+      latest_first_(switches.size()),
       known_{(state.pose().covariance + slip).inverse()},
       pose_inverse_{state.covariance().topLeftCorner<3, 3>().inverse()} {
-  for (const SurfaceSwitch& of : switches) {
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    const SurfaceSwitch& of = switches[i];
+    const Eigen::Index at = OffsetState::offset_of(i);
     const auto pieces = std::count_if(switches.begin(), switches.end(), [&](const SurfaceSwitch& other) {
-      return other.holds < 0.5 && are_one_face(of.surface, other.surface);
+      return (other.holds < 0.5) == (of.holds < 0.5) && are_one_face(of.surface, other.surface);
     });
-    share_of_face_.push_back(1.0 / static_cast<double>(std::max<std::ptrdiff_t>(1, pieces)));
+    followed_.push_back(
+        {.usual = usual_stand(of.surface, of.usual_m),
+         .last = {state.mean()[at], state.mean()[at + 1], variance_beside_pose(at), variance_beside_pose(at + 1)},
+         .cost_of_moved = cost_of_moved(of.prior),
+         .share_of_face = 1.0 / static_cast<double>(std::max<std::ptrdiff_t>(1, pieces))});
   }
+  std::iota(latest_first_.begin(), latest_first_.end(), std::size_t{0});
+  std::stable_sort(latest_first_.begin(), latest_first_.end(),
+                   [&](std::size_t a, std::size_t b) { return switches[a].unseen_m < switches[b].unseen_m; });
 }
 
 double SlipReading::variance_beside_pose(Eigen::Index i) const {
   const Eigen::Vector3d with_pose = state_.covariance().block<3, 1>(0, i);
   return std::max(1e-8, state_.covariance()(i, i) - with_pose.dot(pose_inverse_ * with_pose));
-}
-
-SurfaceStand SlipReading::last_seen(std::size_t number) const {
-  const Eigen::Index at = OffsetState::offset_of(number);
-  return {state_.mean()[at], state_.mean()[at + 1], variance_beside_pose(at), variance_beside_pose(at + 1)};
-}
-
-double SlipReading::cost_of_moved(std::size_t number) const {
-  const double holds = switches_[number].prior;
-  return std::log(holds / (1.0 - holds)) + kAnywhere;
 }
 
 double SlipReading::cost_of_moved_now(std::size_t number) const {
@@ -65,7 +68,7 @@ SlipReading::Answer SlipReading::at_pose(const Pose2& pose) const {
           .evidence = -0.5 * off.dot(known_ * off),
           .information = known_,
           .pull = known_ * off,
-          .hold_again = {}};
+          .read_wrong = {}};
 }
 
 std::optional<Pose2> SlipReading::stepped(const Answer& answer) {
@@ -87,27 +90,28 @@ double SlipReading::weight_of(const Sighting& sighting, std::span<const Sighting
   return 1.0 / static_cast<double>(std::max<std::ptrdiff_t>(1, pieces));
 }
 
-void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as, double weight) const {
+void SlipReading::add_new(Answer& answer, const Sighting& sighting, const SurfaceRecord& record, double weight) const {
   const SurfaceMeasurement seen = measurement_of(sighting, answer.pose, 0);
-  SurfaceStand stand = held(sighting.surface);
-  double evidence = -0.5 * seen.strangeness(stand);
-  double least = -kMoved;
-  double gain = kMoved;
-  if (followed_as >= 0) {
-    const auto number = static_cast<std::size_t>(followed_as);
-    const SurfaceStand last = last_seen(number);
-    const double as_last = -0.5 * seen.strangeness(last) - cost_of_moved(number) * (1.0 - switches_[number].holds);
-    // One that only this pose has in view may be another thing that stands there by chance.
-    if (in_view_[number]) gain = cost_of_moved_now(number);
-    least = -gain;
-    if (as_last >= evidence) {
-      evidence = as_last;
-      stand = last;
-    } else if (evidence > least && switches_[number].holds < 0.5) {
-      answer.hold_again.push_back(number);
-    }
-  }
-  answer.evidence += weight * (gain + std::max(least, evidence));
+  const SurfaceStand stand = usual_stand(sighting.surface, record.offset_m);
+  add(answer, seen, stand, -0.5 * seen.strangeness(stand), cost_of_moved(record.usually_holds()), weight);
+}
+
+void SlipReading::add_followed(Answer& answer, const Sighting& sighting, std::size_t number, double weight) const {
+  const SurfaceMeasurement seen = measurement_of(sighting, answer.pose, 0);
+  const Followed& followed = followed_[number];
+  // One that only this pose has in view may be another thing that stands there by chance.
+  const double gain = in_view_[number] ? cost_of_moved_now(number) : followed.cost_of_moved;
+  const double as_last = -0.5 * seen.strangeness(followed.last);
+  if (when_ == SlipTime::kNow) return add(answer, seen, followed.last, as_last, gain, weight);
+  const double holds = -0.5 * seen.strangeness(followed.usual);
+  const double moved = as_last - followed.cost_of_moved * (1.0 - switches_[number].holds);
+  if (holds > std::max(moved, -gain) && switches_[number].holds < 0.5) answer.read_wrong.push_back(number);
+  add(answer, seen, holds > moved ? followed.usual : followed.last, std::max(holds, moved), gain, weight);
+}
+
+void SlipReading::add(Answer& answer, const SurfaceMeasurement& seen, const SurfaceStand& stand, double evidence,
+                      double gain, double weight) {
+  answer.evidence += weight * (gain + std::max(-gain, evidence));
   // Beams that no explanation fits pull less (Geman and McClure).
   const double trust = weight / std::pow(1.0 + std::max(0.0, -evidence) / gain, 2);
   const SurfaceStand off = seen.off(stand);
@@ -120,19 +124,34 @@ void SlipReading::add(Answer& answer, const Sighting& sighting, int followed_as,
   answer.pull[2] -= trust / off.turn_rad2 * off.turn_rad;
 }
 
-void SlipReading::add_unseen(Answer& answer, std::size_t number) const {
+double SlipReading::evidence_of_unseen(std::size_t number, const Pose2& from_believed) const {
   const Surface& surface = switches_[number].surface;
-  const SurfaceStand last = last_seen(number);
-  const Pose2 moved = answer.pose * inverse(state_.pose().map_from_robot);
-  const Point2 centre = moved * Point2{surface.centre + last.offset_m * surface.normal};
-  const double off_m = surface.normal.dot(centre - surface.centre);
-  const double off_rad = last.turn_rad + moved.theta;
-  const SurfaceStand mapped = held(surface);
-  const double holds = -0.5 * (off_m * off_m / (last.offset_m2 + mapped.offset_m2) +
-                               off_rad * off_rad / (last.turn_rad2 + mapped.turn_rad2));
-  const double stays = -cost_of_moved(number);
-  if (holds > stays) answer.hold_again.push_back(number);
-  answer.evidence += share_of_face_[number] * std::max(holds, stays);
+  const auto& [usual, last, cost_of_moved, share_of_face] = followed_[number];
+  const Point2 centre = from_believed * Point2{surface.centre + last.offset_m * surface.normal};
+  const double off_m = surface.normal.dot(centre - surface.centre) - usual.offset_m;
+  const double off_rad = last.turn_rad + from_believed.theta;
+  const double holds = -0.5 * (off_m * off_m / (last.offset_m2 + usual.offset_m2) +
+                               off_rad * off_rad / (last.turn_rad2 + usual.turn_rad2));
+  return share_of_face * std::max(holds, -cost_of_moved);
+}
+
+void SlipReading::add_seen_since(Answer& answer, const std::vector<bool>& in_view) const {
+  const Pose2 from_believed = answer.pose * inverse(state_.pose().map_from_robot);
+  std::vector<std::size_t> since;
+  std::size_t best_count = 0;
+  double best = 0.0;
+  double sum = 0.0;
+  for (const std::size_t number : latest_first_) {
+    if (in_view[number]) continue;
+    sum += evidence_of_unseen(number, from_believed) - evidence_of_unseen(number, {});
+    since.push_back(number);
+    if (sum <= best) continue;
+    best = sum;
+    best_count = since.size();
+  }
+  answer.evidence += best;
+  answer.read_wrong.insert(answer.read_wrong.end(), since.begin(),
+                           since.begin() + static_cast<std::ptrdiff_t>(best_count));
 }
 
 }  // namespace deltamap::localization::surfaces

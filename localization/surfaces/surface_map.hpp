@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/block_lattice.hpp"
+#include "localization/sensor/scan_segments.hpp"
 #include "localization/surfaces/surface.hpp"
 
 namespace deltamap::localization::surfaces {
@@ -16,8 +17,13 @@ namespace deltamap::localization::surfaces {
 struct SurfaceRecord {
   Surface surface;
   double offset_m = 0.0;  ///< along the normal, from where the map has it, when it was last in view
-  double held = 0.0;      ///< visits in which it was where the map has it
+  double held = 0.0;      ///< visits in which it was where it had been before
   double visits = 0.0;
+  /// P(holds) at the next visit.
+  [[nodiscard]] double usually_holds() const {
+    constexpr double kVisitsBefore = 3.0;  // that a surface is taken to have had
+    return (kVisitsBefore * sensor::kUsuallyHolds + held) / (kVisitsBefore + visits);
+  }
   static constexpr std::int32_t kNotFollowed = -1;
   std::int32_t followed_as = kNotFollowed;  ///< its number among those that the filter follows
 };
