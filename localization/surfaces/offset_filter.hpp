@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,8 +70,9 @@ class OffsetFilter {
   [[nodiscard]] std::vector<Sighting> seen_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
                                                 const Pose2& at);
   [[nodiscard]] std::vector<Pose2> undone_moves() const;
-  [[nodiscard]] bool follows_slip(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                  std::span<const Sighting> sightings, const motion::MotionModelParams& motion);
+  [[nodiscard]] std::optional<Pose2> slipped_to(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                                std::span<const Sighting> sightings,
+                                                const motion::MotionModelParams& motion);
   [[nodiscard]] bool is_followed(const Sighting& sighting) const;
   void follow(std::span<const Sighting> sightings);
   void cease(std::size_t surface);
@@ -78,7 +80,8 @@ class OffsetFilter {
   void cease_where_long_unseen();
   void renumber();
   /// Is each where it is expected? One that is not followed yet is expected anywhere.
-  [[nodiscard]] std::vector<bool> fit_of(std::span<const Sighting> sightings) const;
+  [[nodiscard]] std::vector<bool> fit_of(std::span<const Sighting> sightings, const Pose2& at) const;
+  [[nodiscard]] Eigen::Vector<double, OffsetState::kFixed> fixed_at(const Pose2& at) const;
   void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
   void correct_by_rest(const sensor::LikelihoodField& field, double share, const Eigen::Vector3d& mount);
   [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;

@@ -116,11 +116,6 @@ void OffsetState::predict(const motion::WheelStep& step, const PoseCovariance& a
   covariance_.diagonal().segment<kLearned>(kPose) += length_m * kWalk;
 }
 
-void OffsetState::jump(const Pose2& to, const PoseCovariance& slip) {
-  mean_.head<kPose>() << to.x, to.y, to.theta;
-  covariance_.topLeftCorner<kPose, kPose>() += slip;
-}
-
 void OffsetState::append(double offset_m, double deviation_m, double deviation_rad) {
   const Eigen::Index size = mean_.size();
   mean_.conservativeResize(size + 2);

@@ -58,8 +58,8 @@ class OffsetState {
   /// `added`: covariance of the step's own noise, map frame.
   void predict(const motion::WheelStep& step, const PoseCovariance& added);
 
-  /// The wheels have slipped: the pose is another one, and less sure. Surfaces stay where they are.
-  void jump(const Pose2& to, const PoseCovariance& slip);
+  /// The wheels have slipped: the pose is less sure. Surfaces stay where they are.
+  void widen(const PoseCovariance& slip) { covariance_.topLeftCorner<kPose, kPose>() += slip; }
 
   /// Follows one more surface, expected at `offset_m` with these deviations.
   void append(double offset_m, double deviation_m, double deviation_rad);
