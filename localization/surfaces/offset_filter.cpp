@@ -8,17 +8,14 @@
 #include <utility>
 
 #include "localization/sensor/normal_equations.hpp"
+#include "localization/surfaces/slip_search.hpp"
 #include "localization/surfaces/surface_measurement.hpp"
 
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kSlipOdds = 7.0;          // nats against one: a slip in 200 m, keyframes of 0.2 m
-constexpr double kBothWheelsOdds = 3.0;    // nats against one of both: of twenty slips nineteen are of one wheel
-constexpr double kHalfAxleM = 0.17;        // between a wheel and the robot's centre
-constexpr double kDoubtsAgainM = 1.0;      // driven between two looks for a slip that lies behind
-constexpr int kMisfitsOfAChange = 3;       // in a row: it was moved while in view
-constexpr double kForgottenAfterM = 15.0;  // driven without a view of it
+constexpr double kDoubtsAgainM = 1.0;  // driven between two looks for a slip that lies behind
+constexpr int kMisfitsOfAChange = 3;   // in a row: it was moved while in view
 constexpr std::size_t kMostFollowed = 32;
 constexpr std::size_t kMostSightings = 24;
 constexpr double kUnknownM = 0.3;    // deviation of a place that no visit has told of
@@ -38,14 +35,6 @@ double expected(const SparseRow& row, const Eigen::VectorXd& mean, const Fixed& 
     sum += entry.value * (mean[entry.index] - (entry.index < OffsetState::kFixed ? at[entry.index] : 0.0));
   }
   return sum;
-}
-
-/// One wheel slips: the robot turns about the other one.
-PoseCovariance one_wheel_covariance(const motion::MotionModelParams& motion) {
-  const double aside_m = kHalfAxleM * motion.slip_rad;
-  return Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, motion.slip_rad * motion.slip_rad}
-      .asDiagonal()
-      .toDenseMatrix();
 }
 
 double covariance_of(const SparseRow& a, const SparseRow& b, const Eigen::MatrixXd& covariance) {
@@ -212,75 +201,31 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
   state_.update(rows);
 }
 
-/// Where any one surface that seems to have moved would stand as usual.
-std::vector<Pose2> OffsetFilter::undone_moves() const {
-  const Pose2 at = state_.pose().map_from_robot;
-  std::vector<Pose2> poses;
-  for (std::size_t i = 0; i < switches_.size(); ++i) {
-    if (switches_[i].holds > 0.5) continue;
-    const Eigen::Index offset = OffsetState::offset_of(i);
-    const Surface& surface = switches_[i].surface;
-    const Pose2 unturned{0.0, 0.0, -state_.mean()[offset + 1]};
-    const double moved_m = state_.mean()[offset] - switches_[i].usual_m;
-    const Point2 from_centre = at.position() - moved_m * surface.normal - surface.centre;
-    const Point2 there = surface.centre + unturned * from_centre;
-    poses.push_back({there.x(), there.y(), wrapped_angle(at.theta + unturned.theta)});
-  }
-  return poses;
-}
-
-/// Had the wheels slipped? Only now, where something is not where it was expected; metres ago, where something seems to
-/// have moved. Answers from where the surfaces are clearly better explained, and is less sure of the pose then.
+/// Only now, where something is not where it was expected; metres ago, where something seems to have moved. Answers
+/// where the slip has led to, and is less sure of the pose then.
 std::optional<Pose2> OffsetFilter::slipped_to(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
                                               std::span<const Sighting> sightings,
                                               const motion::MotionModelParams& motion) {
-  const Pose2 by_wheels = state_.pose().map_from_robot;
-  const std::vector<bool> fits = fit_of(sightings, by_wheels);
+  const std::vector<bool> fits = fit_of(sightings, state_.pose().map_from_robot);
   const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
-  std::vector<Pose2> undone;
-  if (since_doubt_m_ >= kDoubtsAgainM) undone = undone_moves();
-  if (!is_strange && undone.empty()) return std::nullopt;
-  since_doubt_m_ = 0.0;
-  const auto record_of = [&](SurfaceMap::Id id) -> const SurfaceRecord& { return map_.record(id); };
-  const auto as_followed = [&](const Pose2& at) { return find(field, ends, at); };
-  const auto as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); };
-  std::vector<bool> in_view(switches_.size());
-  for (const Sighting& sighting : sightings) {
-    if (is_followed(sighting)) in_view[surface_of(sighting)] = true;
-  }
-  SlipReading::Answer best;
-  double gained = 0.0;
-  PoseCovariance slip = PoseCovariance::Zero();
-  const auto look = [&](SlipTime when, std::span<const Pose2> poses, const PoseCovariance& spread, double odds,
-                        auto&& seen_from) {
-    if (poses.empty()) return;
-    const SlipReading no_slip{state_, switches_, when, PoseCovariance::Zero(), in_view};
-    const double usual = no_slip.best_near(by_wheels, seen_from, record_of).evidence + odds;
-    const SlipReading reading{state_, switches_, when, spread, in_view};
-    for (const Pose2& pose : poses) {
-      SlipReading::Answer there = reading.best_near(pose, seen_from, record_of);
-      if (there.evidence - usual <= gained) continue;
-      gained = there.evidence - usual;
-      best = std::move(there);
-      slip = spread;
-    }
-  };
-  const PoseCovariance now = motion::slip_covariance(motion, by_wheels.theta);
-  if (is_strange) {
-    const std::vector<Pose2> around = motion::slips_around(motion, by_wheels);
-    look(SlipTime::kNow, around, one_wheel_covariance(motion), kSlipOdds, as_followed);
-    look(SlipTime::kNow, around, now, kSlipOdds + kBothWheelsOdds, as_followed);
-  }
-  const double aside_m = 0.5 * kForgottenAfterM * motion.slip_rad;  // by a turn that far behind
-  const PoseCovariance behind =
-      now + Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
-  look(SlipTime::kBehind, undone, behind, kSlipOdds, as_mapped);
-  if (slip.isZero()) return std::nullopt;
-  std::sort(best.read_wrong.begin(), best.read_wrong.end());
-  for (std::size_t i = best.read_wrong.size(); i-- > 0;) drop(best.read_wrong[i]);
+  const bool doubts_again = since_doubt_m_ >= kDoubtsAgainM;
+  if (!is_strange && !doubts_again) return std::nullopt;
+  const SlipScene scene{.state = state_,
+                        .switches = switches_,
+                        .sightings = sightings,
+                        .motion = motion,
+                        .seen_as_followed = [&](const Pose2& at) { return find(field, ends, at); },
+                        .seen_as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); },
+                        .record_of = [&](SurfaceMap::Id id) -> const SurfaceRecord& { return map_.record(id); }};
+  std::optional<Slip> slip = is_strange ? slip_just_now(scene) : std::nullopt;
+  std::optional<Slip> behind = doubts_again ? slip_behind(scene) : std::nullopt;
+  if (is_strange || doubts_again) since_doubt_m_ = 0.0;
+  if (behind && (!slip || behind->gained > slip->gained)) slip = std::move(behind);
+  if (!slip) return std::nullopt;
+  for (std::size_t i = slip->read_wrong.size(); i-- > 0;) drop(slip->read_wrong[i]);
   renumber();
-  state_.widen(slip);
-  return best.pose;
+  state_.widen(slip->spread);
+  return slip->led_to;
 }
 
 /// The surfaces that the scan shows from a pose: those of which it shows the most.

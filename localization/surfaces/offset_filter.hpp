@@ -12,7 +12,6 @@
 #include "localization/motion/motion_model.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/surfaces/offset_state.hpp"
-#include "localization/surfaces/slip_reading.hpp"
 #include "localization/surfaces/surface_map.hpp"
 #include "localization/surfaces/surface_sighting.hpp"
 #include "localization/surfaces/surface_switch.hpp"
@@ -69,7 +68,6 @@ class OffsetFilter {
                                                       std::span<const FacedEnd> ends, const Pose2& at);
   [[nodiscard]] std::vector<Sighting> seen_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
                                                 const Pose2& at);
-  [[nodiscard]] std::vector<Pose2> undone_moves() const;
   [[nodiscard]] std::optional<Pose2> slipped_to(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
                                                 std::span<const Sighting> sightings,
                                                 const motion::MotionModelParams& motion);

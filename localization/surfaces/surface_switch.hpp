@@ -15,6 +15,8 @@ namespace deltamap::localization::surfaces {
 
 /// Driven between two keyframes: what is in view is looked for that often.
 inline constexpr double kKeyframeM = 0.2;
+/// Driven without a view of a surface: it is followed until then.
+inline constexpr double kForgottenAfterM = 15.0;
 /// Deviation of the bearing of a surface that was moved, about where it stood; that of its offset is kMovedM.
 inline constexpr double kMovedRad = 0.1;
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/surfaces/slip_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "localization/surfaces/surface_measurement.hpp"
+
+namespace deltamap::localization::surfaces {
+namespace {
+
+constexpr double kSlipOdds = 7.0;        // nats against one: a slip in 200 m, keyframes of 0.2 m
+constexpr double kBothWheelsOdds = 3.0;  // nats against one of both: of twenty slips nineteen are of one wheel
+constexpr double kHalfAxleM = 0.17;      // between a wheel and the robot's centre
+constexpr double kSameTurnRad = 0.02;
+
+/// One wheel slips: the robot turns about the other one.
+PoseCovariance one_wheel_covariance(const motion::MotionModelParams& motion) {
+  const double aside_m = kHalfAxleM * motion.slip_rad;
+  return Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, motion.slip_rad * motion.slip_rad}
+      .asDiagonal()
+      .toDenseMatrix();
+}
+
+std::vector<bool> in_view(const SlipScene& scene) {
+  std::vector<bool> seen(scene.switches.size());
+  for (const Sighting& sighting : scene.sightings) {
+    const std::int32_t number = scene.record_of(sighting.id).followed_as;
+    if (number != SurfaceRecord::kNotFollowed) seen[static_cast<std::size_t>(number)] = true;
+  }
+  return seen;
+}
+
+/// The poses turned as the surfaces in view seem to be: the robot has turned instead. The first: not at all.
+std::vector<Pose2> turned_back(const SlipScene& scene) {
+  const Pose2 at = scene.state.pose().map_from_robot;
+  std::vector<double> turns_rad{0.0};
+  for (const Sighting& sighting : scene.sightings) {
+    const std::int32_t number = scene.record_of(sighting.id).followed_as;
+    if (number == SurfaceRecord::kNotFollowed) continue;
+    const Eigen::Index offset = OffsetState::offset_of(static_cast<std::size_t>(number));
+    const SurfaceMeasurement seen = measurement_of(sighting, at, offset);
+    const double turn_rad = seen.turn_rad - scene.state.mean()[offset + 1];
+    const bool is_new = seen.has_turn && std::none_of(turns_rad.begin(), turns_rad.end(), [&](double known_rad) {
+                          return std::abs(turn_rad - known_rad) < kSameTurnRad;
+                        });
+    if (is_new) turns_rad.push_back(turn_rad);
+  }
+  std::vector<Pose2> poses;
+  for (const double turn_rad : turns_rad) poses.push_back(at * Pose2{0.0, 0.0, turn_rad});
+  return poses;
+}
+
+std::vector<Pose2> moved_along(std::span<const Pose2> poses, double slip_m) {
+  std::vector<Pose2> moved;
+  for (const Pose2& pose : poses) {
+    for (const double ahead : {0.0, -0.75, 0.75, -1.5, 1.5}) moved.push_back(pose * Pose2{ahead * slip_m, 0.0, 0.0});
+  }
+  return moved;
+}
+
+/// Where any one surface that seems to have moved would stand as usual.
+std::vector<Pose2> undone_moves(const SlipScene& scene) {
+  const Pose2 at = scene.state.pose().map_from_robot;
+  std::vector<Pose2> poses;
+  for (std::size_t i = 0; i < scene.switches.size(); ++i) {
+    if (scene.switches[i].holds > 0.5) continue;
+    const Eigen::Index offset = OffsetState::offset_of(i);
+    const Surface& surface = scene.switches[i].surface;
+    const Pose2 unturned{0.0, 0.0, -scene.state.mean()[offset + 1]};
+    const double moved_m = scene.state.mean()[offset] - scene.switches[i].usual_m;
+    const Point2 from_centre = at.position() - moved_m * surface.normal - surface.centre;
+    const Point2 there = surface.centre + unturned * from_centre;
+    poses.push_back({there.x(), there.y(), wrapped_angle(at.theta + unturned.theta)});
+  }
+  return poses;
+}
+
+/// Slips of one kind: when, how far, and how seldom.
+struct Kind {
+  SlipTime when;
+  PoseCovariance spread;
+  double odds;  ///< nats against one
+};
+
+/// The best pose near one of several, where it is better than none and than the best so far.
+void look(const SlipScene& scene, const Kind& kind, std::span<const Pose2> poses, std::optional<Slip>& best) {
+  const SlipScene::SeenFrom& seen_from = kind.when == SlipTime::kNow ? scene.seen_as_followed : scene.seen_as_mapped;
+  const SlipReading no_slip{scene.state, scene.switches, kind.when, PoseCovariance::Zero(), in_view(scene)};
+  const double usual =
+      kind.odds + no_slip.best_near(scene.state.pose().map_from_robot, seen_from, scene.record_of).evidence;
+  const SlipReading reading{scene.state, scene.switches, kind.when, kind.spread, in_view(scene)};
+  for (const Pose2& pose : poses) {
+    SlipReading::Answer there = reading.best_near(pose, seen_from, scene.record_of);
+    const double gained = there.evidence - usual;
+    if (gained <= (best ? best->gained : 0.0)) continue;
+    std::sort(there.read_wrong.begin(), there.read_wrong.end());
+    best = Slip{there.pose, kind.spread, std::move(there.read_wrong), gained};
+  }
+}
+
+}  // namespace
+
+std::optional<Slip> slip_just_now(const SlipScene& scene) {
+  const std::vector<Pose2> turned = turned_back(scene);
+  const PoseCovariance of_both = motion::slip_covariance(scene.motion, turned.front().theta);
+  std::optional<Slip> best;
+  look(scene, {SlipTime::kNow, one_wheel_covariance(scene.motion), kSlipOdds}, turned, best);
+  look(scene, {SlipTime::kNow, of_both, kSlipOdds + kBothWheelsOdds}, moved_along(turned, scene.motion.slip_m), best);
+  return best;
+}
+
+std::optional<Slip> slip_behind(const SlipScene& scene) {
+  const std::vector<Pose2> undone = undone_moves(scene);
+  if (undone.empty()) return std::nullopt;
+  const double aside_m = 0.5 * kForgottenAfterM * scene.motion.slip_rad;  // by a turn that far behind
+  const PoseCovariance spread = motion::slip_covariance(scene.motion, scene.state.pose().map_from_robot.theta) +
+                                Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
+  std::optional<Slip> best;
+  look(scene, {SlipTime::kBehind, spread, kSlipOdds}, undone, best);
+  return best;
+}
+
+}  // namespace deltamap::localization::surfaces
