@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "localization/sensor/normal_equations.hpp"
-#include "localization/surfaces/slip_search.hpp"
 #include "localization/surfaces/surface_measurement.hpp"
 
 namespace deltamap::localization::surfaces {
@@ -203,9 +202,9 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
 
 /// Only now, where something is not where it was expected; metres ago, where something seems to have moved. Answers
 /// where the slip has led to, and is less sure of the pose then.
-std::optional<Pose2> OffsetFilter::slipped_to(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                              std::span<const Sighting> sightings,
-                                              const motion::MotionModelParams& motion) {
+std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                          std::span<const Sighting> sightings,
+                                          const motion::MotionModelParams& motion) {
   const std::vector<bool> fits = fit_of(sightings, state_.pose().map_from_robot);
   const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
   const bool doubts_again = since_doubt_m_ >= kDoubtsAgainM;
@@ -225,7 +224,7 @@ std::optional<Pose2> OffsetFilter::slipped_to(const sensor::LikelihoodField& fie
   for (std::size_t i = slip->read_wrong.size(); i-- > 0;) drop(slip->read_wrong[i]);
   renumber();
   state_.widen(slip->spread);
-  return slip->led_to;
+  return slip;
 }
 
 /// The surfaces that the scan shows from a pose: those of which it shows the most.
@@ -246,10 +245,11 @@ OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, s
   last_ = state_.without_surfaces();
   const Eigen::Vector3d mount = state_.mean().segment<3>(OffsetState::kMount);
   std::vector<Sighting> sightings = seen_from(field, ends, state_.pose().map_from_robot);
-  const std::optional<Pose2> slipped = slipped_to(field, ends, sightings, motion);
-  seen.slipped = slipped.has_value();
-  const Pose2 at = slipped.value_or(state_.pose().map_from_robot);
-  if (slipped) sightings = seen_from(field, ends, at);
+  const std::optional<Slip> slip = slip_of(field, ends, sightings, motion);
+  seen.slipped = slip.has_value();
+  seen.displaced = slip && slip->displaced;
+  const Pose2 at = slip ? slip->led_to : state_.pose().map_from_robot;
+  if (slip) sightings = seen_from(field, ends, at);
   follow(sightings);
   std::vector<bool> fits = fit_of(sightings, at);
   OffsetState before = state_;

@@ -12,6 +12,7 @@
 #include "localization/motion/motion_model.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/surfaces/offset_state.hpp"
+#include "localization/surfaces/slip_search.hpp"
 #include "localization/surfaces/surface_map.hpp"
 #include "localization/surfaces/surface_sighting.hpp"
 #include "localization/surfaces/surface_switch.hpp"
@@ -38,9 +39,10 @@ class OffsetFilter {
 
   /// What a keyframe showed.
   struct Seen {
-    double straight = 0.0;  ///< share of its ends on a surface, where that one is believed to be
-    double holding = 0.0;   ///< on surfaces that stand where the map has them, and no more than of the last metres' do
-    bool slipped = false;   ///< the wheels had slipped: the pose has gone to where the scan is explained
+    double straight = 0.0;   ///< share of its ends on a surface, where that one is believed to be
+    double holding = 0.0;    ///< on surfaces that stand where the map has them, and no more than of the last metres' do
+    bool slipped = false;    ///< the wheels had slipped: the pose has gone to where the scan is explained
+    bool displaced = false;  ///< by both: along the way it may stand elsewhere
   };
   /// `rest_share`: what an end that is on no surface counts, in (0, 1]. `motion`: how far slips may go.
   Seen observe(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends, double rest_share,
@@ -68,9 +70,9 @@ class OffsetFilter {
                                                       std::span<const FacedEnd> ends, const Pose2& at);
   [[nodiscard]] std::vector<Sighting> seen_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
                                                 const Pose2& at);
-  [[nodiscard]] std::optional<Pose2> slipped_to(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                                std::span<const Sighting> sightings,
-                                                const motion::MotionModelParams& motion);
+  [[nodiscard]] std::optional<Slip> slip_of(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+                                            std::span<const Sighting> sightings,
+                                            const motion::MotionModelParams& motion);
   [[nodiscard]] bool is_followed(const Sighting& sighting) const;
   void follow(std::span<const Sighting> sightings);
   void cease(std::size_t surface);

@@ -81,6 +81,7 @@ std::vector<Pose2> undone_moves(const SlipScene& scene) {
 struct Kind {
   SlipTime when;
   PoseCovariance spread;
+  bool displaces;
   double odds;  ///< nats against one
 };
 
@@ -96,7 +97,7 @@ void look(const SlipScene& scene, const Kind& kind, std::span<const Pose2> poses
     const double gained = there.evidence - usual;
     if (gained <= (best ? best->gained : 0.0)) continue;
     std::sort(there.read_wrong.begin(), there.read_wrong.end());
-    best = Slip{there.pose, kind.spread, std::move(there.read_wrong), gained};
+    best = Slip{there.pose, kind.spread, kind.displaces, std::move(there.read_wrong), gained};
   }
 }
 
@@ -106,8 +107,9 @@ std::optional<Slip> slip_just_now(const SlipScene& scene) {
   const std::vector<Pose2> turned = turned_back(scene);
   const PoseCovariance of_both = motion::slip_covariance(scene.motion, turned.front().theta);
   std::optional<Slip> best;
-  look(scene, {SlipTime::kNow, one_wheel_covariance(scene.motion), kSlipOdds}, turned, best);
-  look(scene, {SlipTime::kNow, of_both, kSlipOdds + kBothWheelsOdds}, moved_along(turned, scene.motion.slip_m), best);
+  look(scene, {SlipTime::kNow, one_wheel_covariance(scene.motion), false, kSlipOdds}, turned, best);
+  look(scene, {SlipTime::kNow, of_both, true, kSlipOdds + kBothWheelsOdds}, moved_along(turned, scene.motion.slip_m),
+       best);
   return best;
 }
 
@@ -118,7 +120,7 @@ std::optional<Slip> slip_behind(const SlipScene& scene) {
   const PoseCovariance spread = motion::slip_covariance(scene.motion, scene.state.pose().map_from_robot.theta) +
                                 Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
   std::optional<Slip> best;
-  look(scene, {SlipTime::kBehind, spread, kSlipOdds}, undone, best);
+  look(scene, {SlipTime::kBehind, spread, true, kSlipOdds}, undone, best);
   return best;
 }
 

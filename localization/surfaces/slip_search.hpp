@@ -32,6 +32,7 @@ struct SlipScene {
 struct Slip {
   Pose2 led_to;
   PoseCovariance spread;                ///< of a slip of that kind
+  bool displaced;                       ///< the robot, by both wheels: not turned alone, by one
   std::vector<std::size_t> read_wrong;  ///< followed surfaces, with a pose that was wrong already, ascending
   double gained = 0.0;                  ///< nats beyond those that a slip costs
 };

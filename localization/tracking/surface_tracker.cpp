@@ -154,7 +154,7 @@ sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
   since_ = SinceKeyframe{};
   since_->explained = sensor::explained_share(seen.field, seen.ends, after.map_from_robot);
   straight_ += kNewest * (shown.straight - straight_);
-  if (shown.slipped) holding_ = 0.0;
+  if (shown.displaced) holding_ = 0.0;
   holding_ += kNewest * (shown.holding - holding_);
   holds_now_ = shown.holding;
   if (straight_ < kCeasesBelow) cease();
