@@ -10,9 +10,8 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kSlipOdds = 7.0;        // nats against one: a slip in 200 m, keyframes of 0.2 m
-constexpr double kBothWheelsOdds = 3.0;  // nats against one of both: of twenty slips nineteen are of one wheel
-constexpr double kHalfAxleM = 0.17;      // between a wheel and the robot's centre
+constexpr double kSlipOdds = 7.0;    // nats against one: a slip in 200 m, keyframes of 0.2 m
+constexpr double kHalfAxleM = 0.17;  // between a wheel and the robot's centre
 constexpr double kSameTurnRad = 0.02;
 
 /// One wheel slips: the robot turns about the other one.
@@ -77,12 +76,11 @@ std::vector<Pose2> undone_moves(const SlipScene& scene) {
   return poses;
 }
 
-/// Slips of one kind: when, how far, and how seldom.
+/// Slips of one kind: when, and how far.
 struct Kind {
   SlipTime when;
   PoseCovariance spread;
   bool displaces;
-  double odds;  ///< nats against one
 };
 
 /// The best pose near one of several, where it is better than none and than the best so far.
@@ -90,7 +88,7 @@ void look(const SlipScene& scene, const Kind& kind, std::span<const Pose2> poses
   const SlipScene::SeenFrom& seen_from = kind.when == SlipTime::kNow ? scene.seen_as_followed : scene.seen_as_mapped;
   const SlipReading no_slip{scene.state, scene.switches, kind.when, PoseCovariance::Zero(), in_view(scene)};
   const double usual =
-      kind.odds + no_slip.best_near(scene.state.pose().map_from_robot, seen_from, scene.record_of).evidence;
+      kSlipOdds + no_slip.best_near(scene.state.pose().map_from_robot, seen_from, scene.record_of).evidence;
   const SlipReading reading{scene.state, scene.switches, kind.when, kind.spread, in_view(scene)};
   for (const Pose2& pose : poses) {
     SlipReading::Answer there = reading.best_near(pose, seen_from, scene.record_of);
@@ -107,9 +105,8 @@ std::optional<Slip> slip_just_now(const SlipScene& scene) {
   const std::vector<Pose2> turned = turned_back(scene);
   const PoseCovariance of_both = motion::slip_covariance(scene.motion, turned.front().theta);
   std::optional<Slip> best;
-  look(scene, {SlipTime::kNow, one_wheel_covariance(scene.motion), false, kSlipOdds}, turned, best);
-  look(scene, {SlipTime::kNow, of_both, true, kSlipOdds + kBothWheelsOdds}, moved_along(turned, scene.motion.slip_m),
-       best);
+  look(scene, {SlipTime::kNow, one_wheel_covariance(scene.motion), false}, turned, best);
+  look(scene, {SlipTime::kNow, of_both, true}, moved_along(turned, scene.motion.slip_m), best);
   return best;
 }
 
@@ -120,7 +117,7 @@ std::optional<Slip> slip_behind(const SlipScene& scene) {
   const PoseCovariance spread = motion::slip_covariance(scene.motion, scene.state.pose().map_from_robot.theta) +
                                 Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
   std::optional<Slip> best;
-  look(scene, {SlipTime::kBehind, spread, true, kSlipOdds}, undone, best);
+  look(scene, {SlipTime::kBehind, spread, true}, undone, best);
   return best;
 }
 
