@@ -287,10 +287,10 @@ double OffsetFilter::share_of_ends_held(std::span<const Sighting> sightings, con
 double OffsetFilter::share_of_surfaces_held() const {
   Eigen::Matrix2d all = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d held = Eigen::Matrix2d::Zero();
-  for (std::size_t i = 0; i < switches_.size(); ++i) {
-    const Point2& normal = switches_[i].surface.normal;
+  for (const SurfaceSwitch& of : switches_) {
+    const Point2& normal = of.surface.normal;
     all += normal * normal.transpose();
-    if (switches_[i].holds > 0.5) held += normal * normal.transpose();
+    if (of.holds > 0.5) held += normal * normal.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions{all};
   if (directions.eigenvalues().minCoeff() < kFewestOfADirection) return 0.0;

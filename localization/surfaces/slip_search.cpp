@@ -47,6 +47,7 @@ std::vector<Pose2> turned_back(const SlipScene& scene) {
     if (is_new) turns_rad.push_back(turn_rad);
   }
   std::vector<Pose2> poses;
+  poses.reserve(turns_rad.size());
   for (const double turn_rad : turns_rad) poses.push_back(at * Pose2{0.0, 0.0, turn_rad});
   return poses;
 }
