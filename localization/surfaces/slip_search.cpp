@@ -77,38 +77,52 @@ std::vector<Pose2> undone_moves(const SlipScene& scene) {
   return poses;
 }
 
-/// Slips of one kind: when, and how far.
-struct Kind {
-  SlipTime when;
-  PoseCovariance spread;
-  bool displaces;
-};
+/// For slips at one time: the best pose so far that is better than none.
+class Search {
+ public:
+  Search(const SlipScene& scene, SlipTime when)
+      : scene_{scene},
+        when_{when},
+        seen_from_{when == SlipTime::kNow ? scene.seen_as_followed : scene.seen_as_mapped},
+        in_view_{in_view(scene)},
+        usual_{kSlipOdds + reading(PoseCovariance::Zero())
+                               .best_near(scene.state.pose().map_from_robot, seen_from_, scene.record_of)
+                               .evidence} {}
 
-/// The best pose near one of several, where it is better than none and than the best so far.
-void look(const SlipScene& scene, const Kind& kind, std::span<const Pose2> poses, std::optional<Slip>& best) {
-  const SlipScene::SeenFrom& seen_from = kind.when == SlipTime::kNow ? scene.seen_as_followed : scene.seen_as_mapped;
-  const SlipReading no_slip{scene.state, scene.switches, kind.when, PoseCovariance::Zero(), in_view(scene)};
-  const double usual =
-      kSlipOdds + no_slip.best_near(scene.state.pose().map_from_robot, seen_from, scene.record_of).evidence;
-  const SlipReading reading{scene.state, scene.switches, kind.when, kind.spread, in_view(scene)};
-  for (const Pose2& pose : poses) {
-    SlipReading::Answer there = reading.best_near(pose, seen_from, scene.record_of);
-    const double gained = there.evidence - usual;
-    if (gained <= (best ? best->gained : 0.0)) continue;
-    std::sort(there.read_wrong.begin(), there.read_wrong.end());
-    best = Slip{there.pose, kind.spread, kind.displaces, std::move(there.read_wrong), gained};
+  void look_near(std::span<const Pose2> poses, const PoseCovariance& spread, bool displaces) {
+    const SlipReading slipped = reading(spread);
+    for (const Pose2& pose : poses) {
+      SlipReading::Answer there = slipped.best_near(pose, seen_from_, scene_.record_of);
+      const double gained = there.evidence - usual_;
+      if (gained <= (best_ ? best_->gained : 0.0)) continue;
+      std::sort(there.read_wrong.begin(), there.read_wrong.end());
+      best_ = Slip{there.pose, spread, displaces, std::move(there.read_wrong), gained};
+    }
   }
-}
+  [[nodiscard]] const std::optional<Slip>& best() const { return best_; }
+
+ private:
+  [[nodiscard]] SlipReading reading(const PoseCovariance& spread) const {
+    return {scene_.state, scene_.switches, when_, spread, in_view_};
+  }
+
+  const SlipScene& scene_;
+  SlipTime when_;
+  const SlipScene::SeenFrom& seen_from_;
+  std::vector<bool> in_view_;
+  double usual_;  ///< evidence that has to be exceeded
+  std::optional<Slip> best_;
+};
 
 }  // namespace
 
 std::optional<Slip> slip_just_now(const SlipScene& scene) {
   const std::vector<Pose2> turned = turned_back(scene);
   const PoseCovariance of_both = motion::slip_covariance(scene.motion, turned.front().theta);
-  std::optional<Slip> best;
-  look(scene, {SlipTime::kNow, one_wheel_covariance(scene.motion), false}, turned, best);
-  look(scene, {SlipTime::kNow, of_both, true}, moved_along(turned, scene.motion.slip_m), best);
-  return best;
+  Search search{scene, SlipTime::kNow};
+  search.look_near(turned, one_wheel_covariance(scene.motion), false);
+  search.look_near(moved_along(turned, scene.motion.slip_m), of_both, true);
+  return search.best();
 }
 
 std::optional<Slip> slip_behind(const SlipScene& scene) {
@@ -117,9 +131,9 @@ std::optional<Slip> slip_behind(const SlipScene& scene) {
   const double aside_m = 0.5 * kForgottenAfterM * scene.motion.slip_rad;  // by a turn that far behind
   const PoseCovariance spread = motion::slip_covariance(scene.motion, scene.state.pose().map_from_robot.theta) +
                                 Eigen::Vector3d{aside_m * aside_m, aside_m * aside_m, 0.0}.asDiagonal().toDenseMatrix();
-  std::optional<Slip> best;
-  look(scene, {SlipTime::kBehind, spread, true}, undone, best);
-  return best;
+  Search search{scene, SlipTime::kBehind};
+  search.look_near(undone, spread, true);
+  return search.best();
 }
 
 }  // namespace deltamap::localization::surfaces

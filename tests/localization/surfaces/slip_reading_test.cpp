@@ -8,24 +8,13 @@
 
 #include "tests/localization/surfaces/surroundings.hpp"
 
-namespace deltamap::localization::surfaces {
+namespace deltamap::localization::surfaces::slip_test {
 namespace {
 
-using slip_test::facing;
-using slip_test::kAhead;
-using slip_test::kInView;
-using slip_test::kLeft;
-using slip_test::kRight;
-using slip_test::kSlip;
-using slip_test::Surroundings;
-
 TEST(SlipReading, LeavesAContainerThatWasMovedWhereItWasLastSeen) {
-  Surroundings around;
   const Pose2 truth{0.0, 0.0, 0.08};
-  for (const Surface& wall : {kLeft, kRight}) {
-    around.show(wall, 0.0, truth, static_cast<int>(around.follow(wall, 0.0, kInView)));
-  }
-  around.show(kAhead, 0.35, truth, static_cast<int>(around.follow(kAhead, 0.35, kInView)));
+  Surroundings around = aisle_from(truth);
+  around.keep_in_view(kAhead, 0.35, truth);
   const SlipReading::Answer answer = around.best_near({0.3, 0.0, 0.1}, SlipTime::kNow, kSlip);
   EXPECT_NEAR(answer.pose.x, truth.x, 0.02);
   EXPECT_NEAR(answer.pose.theta, truth.theta, 0.005);
@@ -60,13 +49,8 @@ TEST(SlipReading, HoldsASlipThatLiesBehindAgainstAllThatWasSeenSince) {
 
 TEST(SlipReading, GivesASurfaceThatIsSeenForTheFirstTimeTheWeightOfTheMap) {
   const Pose2 turned{0.0, 0.0, 0.08};
-  Surroundings known;
-  Surroundings with_a_new_one;
-  for (Surroundings* around : {&known, &with_a_new_one}) {
-    for (const Surface& wall : {kLeft, kRight}) {
-      around->show(wall, 0.0, turned, static_cast<int>(around->follow(wall, 0.0, kInView)));
-    }
-  }
+  const Surroundings known = aisle_from(turned);
+  Surroundings with_a_new_one = aisle_from(turned);
   // Where the map has it, had the robot not turned.
   with_a_new_one.show(kAhead, 0.0, {}, SurfaceRecord::kNotFollowed);
   const double lost = known.gain(turned, SlipTime::kNow) - with_a_new_one.gain(turned, SlipTime::kNow);
@@ -83,4 +67,4 @@ TEST(SlipReading, ExpectsASurfaceWhereItStoodAtTheLastVisit) {
 }
 
 }  // namespace
-}  // namespace deltamap::localization::surfaces
+}  // namespace deltamap::localization::surfaces::slip_test

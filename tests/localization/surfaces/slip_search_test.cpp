@@ -5,24 +5,8 @@
 
 #include "tests/localization/surfaces/surroundings.hpp"
 
-namespace deltamap::localization::surfaces {
+namespace deltamap::localization::surfaces::slip_test {
 namespace {
-
-using slip_test::facing;
-using slip_test::kAhead;
-using slip_test::kInView;
-using slip_test::kLeft;
-using slip_test::kRight;
-using slip_test::Surroundings;
-
-/// Walls to either side, seen from where the robot truly is.
-Surroundings aisle_from(const Pose2& truth) {
-  Surroundings around;
-  for (const Surface& wall : {kLeft, kRight}) {
-    around.show(wall, 0.0, truth, static_cast<int>(around.follow(wall, 0.0, kInView)));
-  }
-  return around;
-}
 
 TEST(SlipSearch, FindsNoneWhereTheWheelsAreRight) {
   const Surroundings around = aisle_from({});
@@ -50,7 +34,7 @@ TEST(SlipSearch, SeesThatBothWheelsHaveSlippedWhereAWallAheadTellsOfIt) {
   const Pose2 truth{-0.3, 0.0, 0.0};
   Surroundings around = aisle_from(truth);
   for (const Surface& wall : {kAhead, facing({1.0, 0.0}, {-4.0, 0.5})}) {
-    around.show(wall, 0.0, truth, static_cast<int>(around.follow(wall, 0.0, kInView)));
+    around.keep_in_view(wall, 0.0, truth);
   }
   const std::optional<Slip> slip = slip_just_now(around.scene());
   ASSERT_TRUE(slip);
@@ -71,4 +55,4 @@ TEST(SlipSearch, FindsASlipThatLiesBehindWhereTwoThingsWouldHoldAgain) {
 }
 
 }  // namespace
-}  // namespace deltamap::localization::surfaces
+}  // namespace deltamap::localization::surfaces::slip_test

@@ -46,6 +46,11 @@ class Surroundings {
     if (followed_as >= 0) in_view_.push_back(static_cast<std::size_t>(followed_as));
   }
 
+  /// Followed, in view at the last keyframe, and shown where it was last seen.
+  void keep_in_view(const Surface& surface, double stands_m, const Pose2& truth) {
+    constexpr double kSinceThenM = 0.2;
+    show(surface, stands_m, truth, static_cast<int>(follow(surface, stands_m, kSinceThenM)));
+  }
   /// The surface shown last stood there at an earlier visit.
   void remember(double stood_m) { records_.back().offset_m = stood_m; }
 
@@ -82,9 +87,15 @@ class Surroundings {
   std::vector<std::size_t> in_view_;
 };
 
-inline constexpr double kInView = 0.2;  ///< driven since, m
 inline const Surface kLeft = facing({0.0, -1.0}, {1.0, 2.0});
 inline const Surface kRight = facing({0.0, 1.0}, {1.0, -2.0});
 inline const Surface kAhead = facing({-1.0, 0.0}, {5.0, 0.0});
+
+/// Walls to either side, seen from where the robot truly is.
+inline Surroundings aisle_from(const Pose2& truth) {
+  Surroundings around;
+  for (const Surface& wall : {kLeft, kRight}) around.keep_in_view(wall, 0.0, truth);
+  return around;
+}
 
 }  // namespace deltamap::localization::surfaces::slip_test
