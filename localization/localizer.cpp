@@ -40,7 +40,10 @@ TrackedScan Localizer::observe(Scan scan) {
   }
   tracked.rays = motion::deskewed(scan, velocity);
   state.ends = motion::scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
-  if (state.params.follow_surfaces) state.faced = surfaces::faced_ends(scan, tracked.rays, std::move(state.faced));
+  if (state.params.follow_surfaces) {
+    state.faced = surfaces::faced_ends(scan, tracked.rays, std::move(state.faced));
+    state.corners = surfaces::corners_of(scan, tracked.rays, std::move(state.corners));
+  }
   state.velocity = velocity;
   state.note_oddities(now);
   state.leave_out_unmapped(scan.robot_from_laser.position(), now);

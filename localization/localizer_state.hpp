@@ -31,7 +31,8 @@ struct Localizer::State {
   particles::PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   motion::BeamEnds ends;
-  std::vector<surfaces::FacedEnd> faced;                 ///< the same scan's, where surfaces are followed
+  std::vector<surfaces::FacedEnd> faced;                 ///< the same scan's, where surfaces are followed,
+  std::vector<surfaces::Corner> corners;                 ///< likewise
   motion::BodyVelocity velocity;                         ///< at the scan
   std::shared_ptr<const TransientObstacles> transients;  ///< that stand or are gone for now; may be null
   motion::BeamEnds ends_beside_transients;

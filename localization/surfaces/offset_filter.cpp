@@ -140,9 +140,9 @@ void OffsetFilter::cease_where_long_unseen() {
   renumber();
 }
 
-std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& field, const FacedScan& scan,
                                              const Pose2& at) {
-  return finder_.find(map_, field, ends, at, [&](const SurfaceRecord& record) -> SurfacePlace {
+  return finder_.find(map_, field, scan, at, [&](const SurfaceRecord& record) -> SurfacePlace {
     if (record.followed_as == SurfaceRecord::kNotFollowed) return {record.offset_m, 0.0, kUnknownM};
     const Eigen::Index offset = OffsetState::offset_of(static_cast<std::size_t>(record.followed_as));
     return {state_.mean()[offset], state_.mean()[offset + 1],
@@ -150,9 +150,9 @@ std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& fiel
   });
 }
 
-std::span<const Sighting> OffsetFilter::find_by_map(const sensor::LikelihoodField& field,
-                                                    std::span<const FacedEnd> ends, const Pose2& at) {
-  return finder_.find(map_, field, ends, at, [](const SurfaceRecord& record) {
+std::span<const Sighting> OffsetFilter::find_by_map(const sensor::LikelihoodField& field, const FacedScan& scan,
+                                                    const Pose2& at) {
+  return finder_.find(map_, field, scan, at, [](const SurfaceRecord& record) {
     return SurfacePlace{record.offset_m, 0.0, kUnknownM};
   });
 }
@@ -202,7 +202,7 @@ void OffsetFilter::correct_by(std::span<const Sighting> sightings, const std::ve
 
 /// Only now, where something is not where it was expected; metres ago, where something seems to have moved. Answers
 /// where the slip has led to, and is less sure of the pose then.
-std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, const FacedScan& scan,
                                           std::span<const Sighting> sightings,
                                           const motion::MotionModelParams& motion) {
   const std::vector<bool> fits = fit_of(sightings, state_.pose().map_from_robot);
@@ -213,8 +213,8 @@ std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, 
                         .switches = switches_,
                         .sightings = sightings,
                         .motion = motion,
-                        .seen_as_followed = [&](const Pose2& at) { return find(field, ends, at); },
-                        .seen_as_mapped = [&](const Pose2& at) { return find_by_map(field, ends, at); },
+                        .seen_as_followed = [&](const Pose2& at) { return find(field, scan, at); },
+                        .seen_as_mapped = [&](const Pose2& at) { return find_by_map(field, scan, at); },
                         .record_of = [&](SurfaceMap::Id id) -> const SurfaceRecord& { return map_.record(id); }};
   std::optional<Slip> slip = is_strange ? slip_just_now(scene) : std::nullopt;
   std::optional<Slip> behind = doubts_again ? slip_behind(scene) : std::nullopt;
@@ -228,9 +228,9 @@ std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, 
 }
 
 /// The surfaces that the scan shows from a pose: those of which it shows the most.
-std::vector<Sighting> OffsetFilter::seen_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+std::vector<Sighting> OffsetFilter::seen_from(const sensor::LikelihoodField& field, const FacedScan& scan,
                                               const Pose2& at) {
-  const std::span<const Sighting> found = find(field, ends, at);
+  const std::span<const Sighting> found = find(field, scan, at);
   std::vector<Sighting> sightings{found.begin(), found.end()};
   std::stable_sort(sightings.begin(), sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.beams > b.beams; });
@@ -238,18 +238,19 @@ std::vector<Sighting> OffsetFilter::seen_from(const sensor::LikelihoodField& fie
   return sightings;
 }
 
-OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                         double rest_share, const motion::MotionModelParams& motion) {
+OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, const FacedScan& scan, double rest_share,
+                                         const motion::MotionModelParams& motion) {
   Seen seen;
-  if (ends.empty()) return seen;
+  if (scan.ends.empty()) return seen;
   last_ = state_.without_surfaces();
   const Eigen::Vector3d mount = state_.mean().segment<3>(OffsetState::kMount);
-  std::vector<Sighting> sightings = seen_from(field, ends, state_.pose().map_from_robot);
-  const std::optional<Slip> slip = slip_of(field, ends, sightings, motion);
+  std::vector<Sighting> sightings = seen_from(field, scan, state_.pose().map_from_robot);
+  const std::optional<Slip> slip = slip_of(field, scan, sightings, motion);
   seen.slipped = slip.has_value();
   seen.displaced = slip && slip->displaced;
   const Pose2 at = slip ? slip->led_to : state_.pose().map_from_robot;
-  if (slip) sightings = seen_from(field, ends, at);
+  if (slip) sightings = seen_from(field, scan, at);
+  const std::size_t known = visits_.size();
   follow(sightings);
   std::vector<bool> fits = fit_of(sightings, at);
   OffsetState before = state_;
@@ -257,7 +258,7 @@ OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, s
   const Pose2 now = state_.pose().map_from_robot;
   if (distance_between(now, at) > kReassignM || std::abs(turn_between(now.theta, at.theta)) > kReassignRad) {
     std::swap(state_, before);
-    sightings = seen_from(field, ends, now);
+    sightings = seen_from(field, scan, now);
     follow(sightings);
     fits = fit_of(sightings, at);
     correct_by(sightings, fits, at);
@@ -265,9 +266,10 @@ OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, s
   note_visits(sightings, fits);
   correct_by_rest(field, rest_share, mount);
   settle(switches_, state_);
-  const auto count = static_cast<double>(ends.size());
+  const auto count = static_cast<double>(scan.ends.size());
   seen.straight = 1.0 - static_cast<double>(finder_.rest().size()) / count;
   seen.holding = std::min(share_of_ends_held(sightings, fits), share_of_surfaces_held());
+  seen.followed = share_of_ends_followed(sightings, fits, known);
   cease_where_long_unseen();
   return seen;
 }
@@ -281,6 +283,17 @@ double OffsetFilter::share_of_ends_held(std::span<const Sighting> sightings, con
     if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5) held += sightings[i].beams;
   }
   return all > 0.0 ? held / all : 0.0;
+}
+
+double OffsetFilter::share_of_ends_followed(std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                            std::size_t known) const {
+  double followed = 0.0;
+  double all = static_cast<double>(finder_.rest().size());
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    all += sightings[i].beams;
+    if (fits[i] && surface_of(sightings[i]) < known) followed += sightings[i].beams;
+  }
+  return all > 0.0 ? followed / all : 0.0;
 }
 
 /// Of the surfaces of the last metres that tell of a direction, those that hold; in the direction of which fewer do.
@@ -347,11 +360,10 @@ void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double 
   state_.multiply<6>(0, by.transpose() * information * by, by.transpose() * (pull + information * by * before));
 }
 
-double OffsetFilter::straight_share(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                    const Pose2& pose) {
-  if (ends.empty()) return 0.0;
-  (void)find_by_map(field, ends, pose);
-  return 1.0 - static_cast<double>(finder_.rest().size()) / static_cast<double>(ends.size());
+double OffsetFilter::straight_share(const sensor::LikelihoodField& field, const FacedScan& scan, const Pose2& pose) {
+  if (scan.ends.empty()) return 0.0;
+  (void)find_by_map(field, scan, pose);
+  return 1.0 - static_cast<double>(finder_.rest().size()) / static_cast<double>(scan.ends.size());
 }
 
 }  // namespace deltamap::localization::surfaces

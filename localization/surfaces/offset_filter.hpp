@@ -41,15 +41,15 @@ class OffsetFilter {
   struct Seen {
     double straight = 0.0;   ///< share of its ends on a surface, where that one is believed to be
     double holding = 0.0;    ///< on surfaces that stand where the map has them, and no more than of the last metres' do
+    double followed = 0.0;   ///< on surfaces that were followed before, and are where they were expected
     bool slipped = false;    ///< the wheels had slipped: the pose has gone to where the scan is explained
     bool displaced = false;  ///< by both: along the way it may stand elsewhere
   };
   /// `rest_share`: what an end that is on no surface counts, in (0, 1]. `motion`: how far slips may go.
-  Seen observe(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends, double rest_share,
+  Seen observe(const sensor::LikelihoodField& field, const FacedScan& scan, double rest_share,
                const motion::MotionModelParams& motion);
   /// Share of the ends on surfaces of the map, with the robot at a pose.
-  [[nodiscard]] double straight_share(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
-                                      const Pose2& pose);
+  [[nodiscard]] double straight_share(const sensor::LikelihoodField& field, const FacedScan& scan, const Pose2& pose);
 
   [[nodiscard]] sensor::RefinedPose believed() const { return state_.pose(); }
   /// What the surfaces of the last metres cannot tell of the position, for each lies anywhere in the cells that it is
@@ -63,14 +63,14 @@ class OffsetFilter {
     SurfaceMap::Id id;
     int misfits = 0;  ///< keyframes in a row in which it was not where it was expected
   };
-  [[nodiscard]] std::span<const Sighting> find(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+  [[nodiscard]] std::span<const Sighting> find(const sensor::LikelihoodField& field, const FacedScan& scan,
                                                const Pose2& at);
   /// As if all stood where the map has it.
-  [[nodiscard]] std::span<const Sighting> find_by_map(const sensor::LikelihoodField& field,
-                                                      std::span<const FacedEnd> ends, const Pose2& at);
-  [[nodiscard]] std::vector<Sighting> seen_from(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+  [[nodiscard]] std::span<const Sighting> find_by_map(const sensor::LikelihoodField& field, const FacedScan& scan,
+                                                      const Pose2& at);
+  [[nodiscard]] std::vector<Sighting> seen_from(const sensor::LikelihoodField& field, const FacedScan& scan,
                                                 const Pose2& at);
-  [[nodiscard]] std::optional<Slip> slip_of(const sensor::LikelihoodField& field, std::span<const FacedEnd> ends,
+  [[nodiscard]] std::optional<Slip> slip_of(const sensor::LikelihoodField& field, const FacedScan& scan,
                                             std::span<const Sighting> sightings,
                                             const motion::MotionModelParams& motion);
   [[nodiscard]] bool is_followed(const Sighting& sighting) const;
@@ -86,6 +86,9 @@ class OffsetFilter {
   void correct_by_rest(const sensor::LikelihoodField& field, double share, const Eigen::Vector3d& mount);
   [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;
   [[nodiscard]] double share_of_ends_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const;
+  /// `known`: so many of the surfaces were followed before.
+  [[nodiscard]] double share_of_ends_followed(std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                              std::size_t known) const;
   [[nodiscard]] double share_of_surfaces_held() const;
   void note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits);
 

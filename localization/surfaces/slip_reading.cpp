@@ -14,9 +14,15 @@ namespace {
 // Nats that an explanation costs against "it holds". Moved: anywhere within half a metre, where it would stand to 2 cm;
 // since it was last in view: one in so many metres.
 constexpr double kAnywhere = 3.2;
+constexpr double kSharpM = 0.02;
 constexpr double kMovedOnceInM = 1500.0;
 
 double cost_of_moved(double holds) { return std::log(holds / (1.0 - holds)) + kAnywhere; }
+
+/// Of that, what a measurement does not tell that is less sharp: a corner between two beams.
+double lost_by_bluntness(const SurfaceMeasurement& seen) {
+  return 0.5 * std::log(std::max(1.0, seen.distance_variance / (kSharpM * kSharpM)));
+}
 
 SurfaceStand usual_stand(const Surface& surface, double usual_m) {
   return {.offset_m = usual_m,
@@ -39,7 +45,7 @@ SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch
     const SurfaceSwitch& of = switches[i];
     const Eigen::Index at = OffsetState::offset_of(i);
     const auto pieces = std::count_if(switches.begin(), switches.end(), [&](const SurfaceSwitch& other) {
-      return (other.holds < 0.5) == (of.holds < 0.5) && are_one_face(of.surface, other.surface);
+      return (other.holds < 0.5) == (of.holds < 0.5) && move_as_one(of.surface, other.surface);
     });
     followed_.push_back(
         {.usual = usual_stand(of.surface, of.usual_m),
@@ -86,21 +92,22 @@ double SlipReading::log_share_of_spread(const Answer& answer) const {
 
 double SlipReading::weight_of(const Sighting& sighting, std::span<const Sighting> all) {
   const auto pieces = std::count_if(
-      all.begin(), all.end(), [&](const Sighting& other) { return are_one_face(sighting.surface, other.surface); });
+      all.begin(), all.end(), [&](const Sighting& other) { return move_as_one(sighting.surface, other.surface); });
   return 1.0 / static_cast<double>(std::max<std::ptrdiff_t>(1, pieces));
 }
 
 void SlipReading::add_new(Answer& answer, const Sighting& sighting, const SurfaceRecord& record, double weight) const {
   const SurfaceMeasurement seen = measurement_of(sighting, answer.pose, 0);
   const SurfaceStand stand = usual_stand(sighting.surface, record.offset_m);
-  add(answer, seen, stand, -0.5 * seen.strangeness(stand), cost_of_moved(record.usually_holds()), weight);
+  add(answer, seen, stand, -0.5 * seen.strangeness(stand),
+      cost_of_moved(record.usually_holds()) - lost_by_bluntness(seen), weight);
 }
 
 void SlipReading::add_followed(Answer& answer, const Sighting& sighting, std::size_t number, double weight) const {
   const SurfaceMeasurement seen = measurement_of(sighting, answer.pose, 0);
   const Followed& followed = followed_[number];
   // One that only this pose has in view may be another thing that stands there by chance.
-  const double gain = in_view_[number] ? cost_of_moved_now(number) : followed.cost_of_moved;
+  const double gain = (in_view_[number] ? cost_of_moved_now(number) : followed.cost_of_moved) - lost_by_bluntness(seen);
   const double as_last = -0.5 * seen.strangeness(followed.last);
   if (when_ == SlipTime::kNow) return add(answer, seen, followed.last, as_last, gain, weight);
   const double holds = -0.5 * seen.strangeness(followed.usual);
@@ -111,6 +118,7 @@ void SlipReading::add_followed(Answer& answer, const Sighting& sighting, std::si
 
 void SlipReading::add(Answer& answer, const SurfaceMeasurement& seen, const SurfaceStand& stand, double evidence,
                       double gain, double weight) {
+  if (gain <= 0.0) return;  // it may as well have been moved
   answer.evidence += weight * (gain + std::max(-gain, evidence));
   // Beams that no explanation fits pull less (Geman and McClure).
   const double trust = weight / std::pow(1.0 + std::max(0.0, -evidence) / gain, 2);

@@ -10,7 +10,9 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kSlipOdds = 7.0;    // nats against one: a slip in 200 m, keyframes of 0.2 m
+// Nats against a slip, keyframes of 0.2 m: of one wheel, one in 200 m; of both, that move the robot, in 4 km.
+constexpr double kOneWheelOdds = 7.0;
+constexpr double kBothWheelsOdds = 10.0;
 constexpr double kHalfAxleM = 0.17;  // between a wheel and the robot's centre
 constexpr double kSameTurnRad = 0.02;
 
@@ -85,15 +87,15 @@ class Search {
         when_{when},
         seen_from_{when == SlipTime::kNow ? scene.seen_as_followed : scene.seen_as_mapped},
         in_view_{in_view(scene)},
-        usual_{kSlipOdds + reading(PoseCovariance::Zero())
-                               .best_near(scene.state.pose().map_from_robot, seen_from_, scene.record_of)
-                               .evidence} {}
+        usual_{reading(PoseCovariance::Zero())
+                   .best_near(scene.state.pose().map_from_robot, seen_from_, scene.record_of)
+                   .evidence} {}
 
   void look_near(std::span<const Pose2> poses, const PoseCovariance& spread, bool displaces) {
     const SlipReading slipped = reading(spread);
     for (const Pose2& pose : poses) {
       SlipReading::Answer there = slipped.best_near(pose, seen_from_, scene_.record_of);
-      const double gained = there.evidence - usual_;
+      const double gained = there.evidence - usual_ - (displaces ? kBothWheelsOdds : kOneWheelOdds);
       if (gained <= (best_ ? best_->gained : 0.0)) continue;
       std::sort(there.read_wrong.begin(), there.read_wrong.end());
       best_ = Slip{there.pose, spread, displaces, std::move(there.read_wrong), gained};
@@ -110,7 +112,7 @@ class Search {
   SlipTime when_;
   const SlipScene::SeenFrom& seen_from_;
   std::vector<bool> in_view_;
-  double usual_;  ///< evidence that has to be exceeded
+  double usual_;  ///< evidence without a slip
   std::optional<Slip> best_;
 };
 

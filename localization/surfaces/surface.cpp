@@ -228,6 +228,16 @@ std::vector<Surface> surfaces_in(const OccupancyGrid& map, const CellBox& box) {
   return surfaces;
 }
 
+bool move_as_one(const Surface& a, const Surface& b) {
+  constexpr double kThickestM = 6.0;  // of what is moved as one
+  constexpr double kGapM = 0.5;
+  if (are_one_face(a, b)) return true;
+  const Point2 way = b.centre - a.centre;
+  const double behind_m = -a.normal.dot(way);
+  return a.normal.dot(b.normal) <= -0.99 && behind_m > 0.0 && behind_m <= kThickestM &&
+         std::abs(a.tangent().dot(way)) <= a.half_length_m + b.half_length_m + kGapM;
+}
+
 bool are_one_face(const Surface& a, const Surface& b) {
   constexpr double kOneLineM = 0.1;  // between their lines
   constexpr double kGapM = 0.5;

@@ -40,6 +40,8 @@ struct Surface {
 
 /// Pieces of one straight face, or of two that stand in line?
 [[nodiscard]] bool are_one_face(const Surface& a, const Surface& b);
+/// One face, or front and back of one thing: when it is moved both are, by as much.
+[[nodiscard]] bool move_as_one(const Surface& a, const Surface& b);
 
 /// The surfaces whose contour cells lie in the box, in a fixed order. They are cut at the box's border: what a surface
 /// is depends on the map within three cells of the box alone.

@@ -34,7 +34,8 @@ SurfaceMeasurement measurement_of(const Sighting& sighting, const Pose2& at, Eig
           .turn = {{{{2, -1.0}, {kMount + 2, -1.0}, {offset + 1, -1.0}}}, 3},
           .distance_m = seen.distance_m,
           .turn_rad = seen.slope,
-          .distance_variance = beam2 / sighting.beams + kDistanceFloorM * kDistanceFloorM,
+          .distance_variance = beam2 / sighting.beams + kDistanceFloorM * kDistanceFloorM +
+                               sighting.corner_deviation_m * sighting.corner_deviation_m,
           .turn_variance = beam2 / std::max(1e-6, seen.spread_m2) + kSlopeFloorRad * kSlopeFloorRad,
           .has_turn = seen.spread_m2 > kLeastSpreadM2,
           .along_m = seen.along_m};

@@ -7,37 +7,11 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kChordM = 0.2;       // between the neighbours that give an end its direction, at least
-constexpr std::size_t kFarthest = 8;  // beams to either side
-constexpr double kOnTheLineM = 0.04;  // an end from the chord of its neighbours
 constexpr std::size_t kFewestBeams = 3;
 constexpr double kTogetherM = 0.12;  // of their median
 constexpr double kTogetherShare = 0.4;
 
 }  // namespace
-
-std::vector<FacedEnd> faced_ends(const Scan& scan, std::span<const RayInRobot> rays, std::vector<FacedEnd> ends) {
-  ends.clear();
-  const auto valid = [&](std::size_t i) { return scan.beams[i].kind == BeamKind::kRange; };
-  const auto end = [&](std::size_t i) { return Point2{rays[i].end.cast<double>()}; };
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!valid(i)) continue;
-    FacedEnd faced{end(i), {0.0, 0.0}};
-    for (std::size_t k = 1; k <= kFarthest && k <= i && i + k < rays.size(); ++k) {
-      if (!valid(i - k) || !valid(i + k)) continue;
-      const Point2 chord = end(i + k) - end(i - k);
-      const double length_m = chord.norm();
-      if (length_m < kChordM) continue;
-      Point2 normal{-chord.y() / length_m, chord.x() / length_m};
-      if (std::abs(normal.dot(faced.at - end(i - k))) > kOnTheLineM) break;
-      if (normal.dot(Point2{rays[i].origin.cast<double>()} - faced.at) < 0.0) normal = -normal;
-      faced.normal = normal;
-      break;
-    }
-    ends.push_back(faced);
-  }
-  return ends;
-}
 
 Sighting::Measured Sighting::measured(const Pose2& pose) const {
   const double c = std::cos(pose.theta);
@@ -58,26 +32,43 @@ Sighting::Measured Sighting::measured(const Pose2& pose) const {
       .lever = lever};
 }
 
-void SightingFinder::begin() {
+void SightingFinder::begin(std::size_t ends) {
   claims_used_ = 0;
   sightings_.clear();
+  is_taken_.assign(ends, 0);
   rest_.x_m.clear();
   rest_.y_m.clear();
 }
 
-void SightingFinder::claim(const Candidate& candidate, double residual_m, std::uint32_t end) {
+void SightingFinder::claim(const Match& match, std::uint32_t end) {
   std::size_t at = 0;
-  while (at < claims_used_ && !(claims_[at].id == candidate.id)) ++at;
+  while (at < claims_used_ && !(claims_[at].id == match.id)) ++at;
   if (at == claims_used_) {
     if (at == claims_.size()) claims_.emplace_back();
-    claims_[at].id = candidate.id;
-    claims_[at].surface = candidate.surface;
+    claims_[at].id = match.id;
+    claims_[at].surface = match.surface;
     claims_[at].ends.clear();
     claims_[at].residuals_m.clear();
     ++claims_used_;
   }
   claims_[at].ends.push_back(end);
-  claims_[at].residuals_m.push_back(static_cast<float>(residual_m));
+  claims_[at].residuals_m.push_back(static_cast<float>(match.residual_m));
+}
+
+/// Beams on the surface tell more than a corner; of two corners the sharper one counts.
+void SightingFinder::add(const Match& match, const Corner& corner) {
+  const Sighting seen{.id = match.id,
+                      .surface = match.surface,
+                      .beams = 1.0,
+                      .mean = corner.at,
+                      .corner_deviation_m = corner.deviation_m};
+  const auto known =
+      std::find_if(sightings_.begin(), sightings_.end(), [&](const Sighting& other) { return other.id == match.id; });
+  if (known == sightings_.end()) {
+    sightings_.push_back(seen);
+  } else if (known->corner_deviation_m > corner.deviation_m) {
+    *known = seen;
+  }
 }
 
 void SightingFinder::judge(std::span<const FacedEnd> ends) {

@@ -75,6 +75,7 @@ sensor::RefinedPose SurfaceTracker::lead_from(const sensor::RefinedPose& at, con
   last_ = Last{seen.now, seen.velocity};
   since_.reset();
   holding_ = 0.0;
+  since_held_m_ = surfaces::kForgottenAfterM;
   return keyframe(seen);
 }
 
@@ -97,6 +98,7 @@ void SurfaceTracker::step_to(const motion::ScanInstant& now, const motion::BodyV
   const PoseCovariance added = noise(corrected, motion::step_between(last_->instant, now).unknown_s);
   filter_.predict(step, added);
   last_ = Last{now, velocity};
+  since_held_m_ += step.motion.position().norm();
   if (!since_) return;
   since_->by_wheels = since_->by_wheels * step.motion;
   since_->corrected = since_->corrected * corrected;
@@ -130,12 +132,12 @@ sensor::RefinedPose SurfaceTracker::observe(const Seen& seen) {
     cease();
     return filter_.believed();
   }
-  return !seen.faced.empty() && is_due(seen) ? keyframe(seen) : filter_.believed();
+  return !seen.faced.ends.empty() && is_due(seen) ? keyframe(seen) : filter_.believed();
 }
 
 sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
   const double share =
-      std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, seen.faced.size())));
+      std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, seen.faced.ends.size())));
   const sensor::RefinedPose before = filter_.believed();
   const surfaces::OffsetFilter::Seen shown = filter_.observe(seen.field, seen.faced, share, motion_);
   if (shown.slipped) odometry_noise_.forget_stretch();
@@ -156,12 +158,22 @@ sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
   straight_ += kNewest * (shown.straight - straight_);
   if (shown.displaced) holding_ = 0.0;
   holding_ += kNewest * (shown.holding - holding_);
-  holds_now_ = shown.holding;
+  note_held(shown);
   if (straight_ < kCeasesBelow) cease();
   return after;
 }
 
-bool SurfaceTracker::is_fixed_by_surfaces() const { return leads_ && std::min(holding_, holds_now_) >= kFixedAbove; }
+/// A pose that surfaces have held stays right while those that are followed stay where they are expected, moved or not:
+/// for as long as they are followed, and the wheels do not slip.
+void SurfaceTracker::note_held(const surfaces::OffsetFilter::Seen& shown) {
+  if (std::min(holding_, shown.holding) >= kFixedAbove) {
+    since_held_m_ = 0.0;
+  } else if (shown.displaced || shown.followed < kFixedAbove) {
+    since_held_m_ = surfaces::kForgottenAfterM;
+  }
+}
+
+bool SurfaceTracker::is_fixed_by_surfaces() const { return leads_ && since_held_m_ < surfaces::kForgottenAfterM; }
 
 void SurfaceTracker::learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after) {
   const Eigen::Vector3d correction = difference(before.map_from_robot, after.map_from_robot);

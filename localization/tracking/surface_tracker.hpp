@@ -26,7 +26,7 @@ class SurfaceTracker {
   struct Seen {
     const motion::ScanInstant& now;
     motion::BodyVelocity velocity;
-    std::span<const surfaces::FacedEnd> faced;
+    surfaces::FacedScan faced;
     const sensor::LikelihoodField& field;
     const motion::BeamEnds& ends;  ///< those that score, robot frame
   };
@@ -56,7 +56,7 @@ class SurfaceTracker {
   void restore(const motion::DriveCalibration& learned) { filter_.restore(learned); }
   [[nodiscard]] motion::DriveCalibration calibration() const { return filter_.calibration(); }
   [[nodiscard]] Eigen::Matrix2d unknown_of_cells() const { return filter_.unknown_of_cells(); }
-  /// It leads, and the pose is fixed by surfaces that stand where the map has them.
+  /// It leads, and surfaces that stand where the map has them fix the pose, or did so a few metres ago.
   [[nodiscard]] bool is_fixed_by_surfaces() const;
 
  private:
@@ -69,6 +69,7 @@ class SurfaceTracker {
   [[nodiscard]] bool has_moved() const;  ///< far enough since the last keyframe for another
   [[nodiscard]] bool is_due(const Seen& seen) const;
   sensor::RefinedPose keyframe(const Seen& seen);
+  void note_held(const surfaces::OffsetFilter::Seen& shown);
   void learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after);
 
   motion::MotionModelParams motion_;
@@ -87,7 +88,7 @@ class SurfaceTracker {
   std::optional<SinceKeyframe> since_;  // none: no keyframe yet
   double straight_ = 0.0;               // running means over keyframes, shares of ends
   double holding_ = 0.0;
-  double holds_now_ = 0.0;   // share at the last keyframe
+  double since_held_m_ = surfaces::kForgottenAfterM;  // driven since surfaces held the pose; they have followed it
   double surprise_m_ = 1.0;  // squared corrections as multiples of what was expected, running means
   double surprise_rad_ = 1.0;
 };

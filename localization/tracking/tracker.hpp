@@ -61,8 +61,8 @@ class Tracker {
     const motion::ScanInstant& now;
     const motion::BeamEnds& ends;  ///< robot frame; may be empty
     const sensor::LikelihoodField& field;
-    std::span<const surfaces::FacedEnd> faced{};  ///< the same scan's, for the surfaces; may be empty
-    motion::BodyVelocity velocity{};              ///< at the scan, by the wheels
+    surfaces::FacedScan faced{};      ///< the same scan's, for the surfaces; may be empty
+    motion::BodyVelocity velocity{};  ///< at the scan, by the wheels
   };
   struct Answer {
     sensor::RefinedPose believed;

@@ -196,7 +196,7 @@ class Round {
     Scan scan = test::cast_scan(world_, truth_, timestamp_from_ns(++scans_), scanner, random_);
     scan.robot_from_laser = filter_.calibration().mount_error;  // told: the identity
     ends_ = faced_ends(scan, motion::deskewed(scan, {}), std::move(ends_));
-    (void)filter_.observe(field_, ends_, 0.1, {});
+    (void)filter_.observe(field_, {ends_}, 0.1, {});
   }
 
   OccupancyGrid world_;

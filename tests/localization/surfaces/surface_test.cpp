@@ -32,6 +32,23 @@ OccupancyGrid wall(const Point2& from, const Point2& to) {
   return map;
 }
 
+TEST(Surface, MovesAsOneWithTheBackOfTheSameThing) {
+  const Surface front{.centre = {2.0, 0.0}, .normal = {0.0, -1.0}, .half_length_m = 1.0};
+  const Surface back{.centre = {2.5, 5.0}, .normal = {0.0, 1.0}, .half_length_m = 1.0};
+  EXPECT_TRUE(move_as_one(front, back));
+  EXPECT_TRUE(move_as_one(back, front));
+  EXPECT_TRUE(move_as_one(front, front));
+  Surface of_another = back;
+  of_another.centre.x() = 6.0;
+  EXPECT_FALSE(move_as_one(front, of_another)) << "beside it";
+  of_another.centre = {2.0, 9.0};
+  EXPECT_FALSE(move_as_one(front, of_another)) << "behind another thing";
+  of_another = {.centre = {2.0, -3.0}, .normal = {0.0, 1.0}, .half_length_m = 1.0};
+  EXPECT_FALSE(move_as_one(front, of_another)) << "across the aisle";
+  of_another = {.centre = {3.0, 2.0}, .normal = {1.0, 0.0}, .half_length_m = 1.0};
+  EXPECT_FALSE(move_as_one(front, of_another)) << "another direction: a move along the front is not seen there";
+}
+
 TEST(Surface, LiesTruerThanTheCellsOfAnObliqueWall) {
   for (const double degrees_of_wall : {7.0, 20.0, 33.0, 45.0, 71.0}) {
     const double a = radians(degrees_of_wall);

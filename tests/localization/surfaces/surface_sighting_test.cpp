@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/surfaces/surface_sighting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "core/random.hpp"
+#include "localization/motion/deskew.hpp"
+#include "tests/support/container_hall.hpp"
+
+namespace deltamap::localization::surfaces {
+namespace {
+
+/// A laser in the aisle between the rows of containers; the hall is as its map has it.
+class Aisle {
+ public:
+  Aisle()
+      : map_{std::make_shared<const OccupancyGrid>(test::map_of(test::containers_in_order()))},
+        world_{test::world_of(test::containers_in_order())},
+        field_{*map_, {}},
+        surfaces_{map_} {}
+
+  /// What is seen from `truth`, taken for a scan from `believed`.
+  std::span<const Sighting> seen(const Pose2& truth, const Pose2& believed) {
+    const Scan scan = test::cast_scan(world_, truth, {}, {.max_range_m = 8.0}, random_);
+    const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
+    ends_ = faced_ends(scan, rays, std::move(ends_));
+    corners_ = corners_of(scan, rays, std::move(corners_));
+    return finder_.find(surfaces_, field_, {ends_, corners_}, believed, [](const SurfaceRecord& record) {
+      return SurfacePlace{record.offset_m, 0.0, 0.02};
+    });
+  }
+
+ private:
+  std::shared_ptr<const OccupancyGrid> map_;
+  OccupancyGrid world_;
+  sensor::LikelihoodField field_;
+  SurfaceMap surfaces_;
+  SightingFinder finder_;
+  std::vector<FacedEnd> ends_;
+  std::vector<Corner> corners_;
+  Random random_{3};
+};
+
+/// Of the container beside the robot, the face around its far corner.
+bool is_around_the_corner(const Sighting& sighting) {
+  return sighting.surface.normal.x() > 0.9 && std::abs(sighting.surface.centre.x() - 5.0) < 0.1;
+}
+
+TEST(SurfaceSighting, SeesAFaceThatNoBeamMeetsByItsCorner) {
+  Aisle aisle;
+  const Pose2 truth{3.5, 4.25, 0.0};
+  for (const double ahead_m : {0.0, 0.2, -0.3}) {
+    int corners = 0;
+    for (const Sighting& sighting : aisle.seen(truth, truth * Pose2{ahead_m, 0.0, 0.0})) {
+      if (!is_around_the_corner(sighting)) continue;
+      ++corners;
+      EXPECT_GT(sighting.corner_deviation_m, 0.0);
+      const Sighting::Measured measured = sighting.measured(truth * Pose2{ahead_m, 0.0, 0.0});
+      EXPECT_NEAR(measured.distance_m, ahead_m, 2.0 * sighting.corner_deviation_m + 0.03) << ahead_m;
+    }
+    EXPECT_EQ(corners, 2) << "the containers to the left and to the right, believed ahead by " << ahead_m;
+  }
+}
+
+TEST(SurfaceSighting, TrustsBeamsOnAFaceRatherThanItsCorner) {
+  Aisle aisle;
+  const Pose2 behind_the_containers{6.5, 4.25, radians(180.0)};
+  int faces = 0;
+  for (const Sighting& sighting : aisle.seen(behind_the_containers, behind_the_containers)) {
+    if (!is_around_the_corner(sighting)) continue;
+    ++faces;
+    EXPECT_EQ(sighting.corner_deviation_m, 0.0);
+    EXPECT_GE(sighting.beams, 3.0);
+  }
+  EXPECT_GE(faces, 2);
+}
+
+}  // namespace
+}  // namespace deltamap::localization::surfaces
