@@ -26,6 +26,7 @@ class CornerFinder {
 
   /// The corner after this beam, if a face ends with it.
   [[nodiscard]] std::optional<Corner> after(std::ptrdiff_t beam) const {
+    if (!is_followed_by_a_gap(beam)) return std::nullopt;
     const std::optional<Point2> along = face_up_to(beam);
     if (!along) return std::nullopt;
     const Point2 laser = rays_[static_cast<std::size_t>(beam)].origin.cast<double>();
@@ -52,6 +53,16 @@ class CornerFinder {
     return rays_[static_cast<std::size_t>(beam)].end.cast<double>();
   }
 
+  /// Cheap, for most beams end beside the next one.
+  [[nodiscard]] bool is_followed_by_a_gap(std::ptrdiff_t beam) const {
+    if (!is_range(beam)) return false;
+    for (int k = 1; k <= kPassingBeams; ++k) {
+      const std::ptrdiff_t next = beam + side_ * k;
+      if (is_range(next) && (end_of(next) - end_of(beam)).squaredNorm() < 0.25 * kPassM * kPassM) return false;
+    }
+    return true;
+  }
+
   /// Does a beam go on behind a face that it would meet after `face_m`? Beside it where it would never meet it.
   [[nodiscard]] bool passes(std::ptrdiff_t beam, double face_m) const {
     if (beam < 0 || beam >= std::ssize(rays_)) return false;
@@ -63,7 +74,6 @@ class CornerFinder {
 
   /// Direction of the straight face that ends with this beam, towards its end.
   [[nodiscard]] std::optional<Point2> face_up_to(std::ptrdiff_t beam) const {
-    if (!is_range(beam)) return std::nullopt;
     for (int k = 1; k <= kMostBeamsOfFace && is_range(beam - side_ * k); ++k) {
       const Point2 chord = end_of(beam) - end_of(beam - side_ * k);
       if (k == 1 || chord.norm() < kShortestFaceM) continue;

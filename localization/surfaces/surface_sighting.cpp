@@ -13,6 +13,16 @@ constexpr double kTogetherShare = 0.4;
 
 }  // namespace
 
+bool sighting::is_on_contour(const sensor::LikelihoodField& field, const Point2& at) {
+  const double off_m = field.distance_of_steps_m()[field.steps_at(field.geometry().cell_at(at))];
+  return off_m <= kExplainedCells * field.geometry().resolution_m;
+}
+
+bool sighting::ends_face(const sensor::LikelihoodField& field, const Point2& at, const Point2& outward) {
+  const Point2 explained = kExplainedCells * field.geometry().resolution_m * outward;
+  return is_on_contour(field, at - explained) && !is_on_contour(field, at + 2.0 * explained);
+}
+
 Sighting::Measured Sighting::measured(const Pose2& pose) const {
   const double c = std::cos(pose.theta);
   const double s = std::sin(pose.theta);

@@ -92,6 +92,9 @@ inline constexpr double kBesideM = 0.4;         // beyond a surface's end: thing
 inline constexpr double kExplainedCells = 1.6;  // from a contour
 /// How far from a surface's place an end may lie that the map explains.
 [[nodiscard]] inline double known_within_m(double deviation_m) { return 0.15 + 3.0 * std::min(0.05, deviation_m); }
+[[nodiscard]] bool is_on_contour(const sensor::LikelihoodField& field, const Point2& at);
+/// Does a face of the map end there too?
+[[nodiscard]] bool ends_face(const sensor::LikelihoodField& field, const Point2& at, const Point2& outward);
 }  // namespace sighting
 
 template <typename PlaceOf>
@@ -124,14 +127,15 @@ std::span<const Sighting> SightingFinder::find(SurfaceMap& map, const sensor::Li
     if (end.normal.isZero()) continue;
     const Point2 at = from + turn * end.at;
     // What the map explains is no thing that was pushed far.
-    const double off_the_map_m = field.distance_of_steps_m()[field.steps_at(field.geometry().cell_at(at))];
-    const bool explained = off_the_map_m <= sighting::kExplainedCells * field.geometry().resolution_m;
+    const bool explained = sighting::is_on_contour(field, at);
     if (const auto match = nearest(map, at, turn * end.normal, explained, place_of))
       claim(*match, static_cast<std::uint32_t>(i));
   }
   judge(scan.ends);
   for (const Corner& corner : scan.corners) {
-    if (const auto match = nearest(map, from + turn * corner.at, turn * corner.outward, false, place_of))
+    const Point2 at = from + turn * corner.at;
+    const Point2 outward = turn * corner.outward;
+    if (const auto match = nearest(map, at, outward, sighting::ends_face(field, at, outward), place_of))
       add(*match, corner);
   }
   return sightings_;
