@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -76,6 +77,32 @@ TEST(SurfaceSighting, TrustsBeamsOnAFaceRatherThanItsCorner) {
     EXPECT_GE(sighting.beams, 3.0);
   }
   EXPECT_GE(faces, 2);
+}
+
+TEST(SurfaceSighting, TakesTheEndOfAMappedWallForNoOtherWallNearby) {
+  // The wall at y = 2 ends at a door, at x = 3; another one meets it 0.8 m before.
+  const auto room = [](double resolution_m, double half_m) {
+    const auto cells = [&](double length_m) { return static_cast<int>(std::lround(length_m / resolution_m)); };
+    OccupancyGrid map{{cells(7.0), cells(6.0), resolution_m, {-0.5, -0.5}}, CellState::kFree};
+    test::fill_box(map, {0.0, 2.0 - half_m}, {3.0, 2.0 + half_m}, CellState::kOccupied);
+    test::fill_box(map, {2.2 - half_m, 2.0}, {2.2 + half_m, 5.0}, CellState::kOccupied);
+    return map;
+  };
+  const auto map = std::make_shared<const OccupancyGrid>(room(0.05, 0.03));
+  const sensor::LikelihoodField field{*map, {}};
+  SurfaceMap surfaces{map};
+  SightingFinder finder;
+  Random random{5};
+  const Pose2 pose{1.0, 0.5, radians(45.0)};
+  const Scan scan = test::cast_scan(room(0.01, 0.025), pose, {}, {.max_range_m = 8.0}, random);
+  const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
+  const std::vector<FacedEnd> ends = faced_ends(scan, rays);
+  const std::vector<Corner> corners = corners_of(scan, rays);
+  ASSERT_FALSE(corners.empty());
+  for (const Sighting& sighting :
+       finder.find(surfaces, field, {ends, corners}, pose, [](const SurfaceRecord&) { return SurfacePlace{}; })) {
+    EXPECT_EQ(sighting.corner_deviation_m, 0.0) << sighting.surface.centre.transpose();
+  }
 }
 
 }  // namespace
