@@ -2,93 +2,115 @@
 #include "localization/surfaces/faced_scan.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
+
+#include "localization/surfaces/surface.hpp"
 
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kChordM = 0.2;       // between the neighbours that give an end its direction, at least
-constexpr std::size_t kFarthest = 8;  // beams to either side
-constexpr double kOnTheLineM = 0.04;  // an end from the chord of its neighbours
+constexpr double kChordM = 0.2;          // between the neighbours that give an end its direction, at least
+constexpr std::ptrdiff_t kFarthest = 8;  // beams to either side
+constexpr double kOnTheLineM = 0.04;     // an end from the chord of its neighbours
 
 constexpr double kShortestFaceM = 0.4;  // that ends at a corner
 constexpr int kMostBeamsOfFace = 12;
-constexpr int kPassingBeams = 2;      // beside a corner, next to each other
-constexpr double kPassM = 0.3;        // farther than the face would be, at least
-constexpr double kWidestM = 0.4;      // between the last beam and where the next would meet the face
-constexpr double kOfAnyPlace = 0.29;  // deviation of what lies anywhere within an interval of 1
+constexpr int kPassingBeams = 2;  // beside a corner, next to each other
+constexpr double kPassM = 0.3;    // farther than the face would be, at least
+constexpr double kWidestM = 0.4;  // between the last beam and where the next would meet the face
 constexpr double kLeastDeviationM = 0.02;
+
+/// A scan's beams by their number; there may be none of that number.
+class Beams {
+ public:
+  Beams(const Scan& scan, std::span<const RayInRobot> rays) : scan_{scan}, rays_{rays} {}
+
+  [[nodiscard]] std::ptrdiff_t count() const { return std::ssize(rays_); }
+  [[nodiscard]] bool is_range(std::ptrdiff_t beam) const {
+    return exists(beam) && (*this)[beam].kind == BeamKind::kRange;
+  }
+  [[nodiscard]] bool exists(std::ptrdiff_t beam) const { return beam >= 0 && beam < count(); }
+  [[nodiscard]] const Beam& operator[](std::ptrdiff_t beam) const {
+    return scan_.beams[static_cast<std::size_t>(beam)];
+  }
+  [[nodiscard]] Point2 end_of(std::ptrdiff_t beam) const {
+    return rays_[static_cast<std::size_t>(beam)].end.cast<double>();
+  }
+  [[nodiscard]] Point2 laser_of(std::ptrdiff_t beam) const {
+    return rays_[static_cast<std::size_t>(beam)].origin.cast<double>();
+  }
+  [[nodiscard]] double step_rad() const { return scan_.bearing_step_rad; }
+  [[nodiscard]] double max_range_m() const { return scan_.max_range_m; }
+
+ private:
+  const Scan& scan_;
+  std::span<const RayInRobot> rays_;
+};
 
 /// Looks along a scan to one side.
 class CornerFinder {
  public:
-  CornerFinder(const Scan& scan, std::span<const RayInRobot> rays, int side) : scan_{scan}, rays_{rays}, side_{side} {}
+  CornerFinder(const Beams& beams, int side) : beams_{beams}, side_{side} {}
 
   /// The corner after this beam, if a face ends with it.
   [[nodiscard]] std::optional<Corner> after(std::ptrdiff_t beam) const {
     if (!is_followed_by_a_gap(beam)) return std::nullopt;
     const std::optional<Point2> along = face_up_to(beam);
     if (!along) return std::nullopt;
-    const Point2 laser = rays_[static_cast<std::size_t>(beam)].origin.cast<double>();
-    const Point2 last = end_of(beam) - laser;
+    const Point2 laser = beams_.laser_of(beam);
+    const Point2 last = beams_.end_of(beam) - laser;
     const Point2 normal{-along->y(), along->x()};
-    double next_m = 0.0;  // from the laser to where the next beam would meet the face
+    Point2 next = last;  // where the next beam would meet the face
     for (int k = kPassingBeams; k >= 1; --k) {
-      const Point2 way = Pose2{0.0, 0.0, side_ * k * scan_.bearing_step_rad} * Point2{last.normalized()};
-      next_m = normal.dot(last) / normal.dot(way);
-      if (!passes(beam + side_ * k, next_m)) return std::nullopt;
+      const Point2 way = Pose2{0.0, 0.0, side_ * k * beams_.step_rad()} * Point2{last.normalized()};
+      const double face_m = normal.dot(last) / normal.dot(way);
+      if (!passes(beam + side_ * k, face_m)) return std::nullopt;
+      next = face_m * way;
     }
-    const Point2 next = next_m * (Pose2{0.0, 0.0, side_ * scan_.bearing_step_rad} * Point2{last.normalized()});
     const double gap_m = (next - last).norm();
     if (gap_m > kWidestM) return std::nullopt;
     return Corner{laser + 0.5 * (last + next), *along, std::hypot(kOfAnyPlace * gap_m, kLeastDeviationM)};
   }
 
  private:
-  [[nodiscard]] bool is_range(std::ptrdiff_t beam) const {
-    return beam >= 0 && beam < std::ssize(rays_) &&
-           scan_.beams[static_cast<std::size_t>(beam)].kind == BeamKind::kRange;
-  }
-  [[nodiscard]] Point2 end_of(std::ptrdiff_t beam) const {
-    return rays_[static_cast<std::size_t>(beam)].end.cast<double>();
-  }
-
   /// Cheap, for most beams end beside the next one.
   [[nodiscard]] bool is_followed_by_a_gap(std::ptrdiff_t beam) const {
-    if (!is_range(beam)) return false;
+    if (!beams_.is_range(beam)) return false;
     for (int k = 1; k <= kPassingBeams; ++k) {
       const std::ptrdiff_t next = beam + side_ * k;
-      if (is_range(next) && (end_of(next) - end_of(beam)).squaredNorm() < 0.25 * kPassM * kPassM) return false;
+      if (beams_.is_range(next) && (beams_.end_of(next) - beams_.end_of(beam)).squaredNorm() < 0.25 * kPassM * kPassM)
+        return false;
     }
     return true;
   }
 
   /// Does a beam go on behind a face that it would meet after `face_m`? Beside it where it would never meet it.
   [[nodiscard]] bool passes(std::ptrdiff_t beam, double face_m) const {
-    if (beam < 0 || beam >= std::ssize(rays_)) return false;
+    if (!beams_.exists(beam)) return false;
     if (face_m <= 0.0) return true;
-    const Beam& of = scan_.beams[static_cast<std::size_t>(beam)];
-    if (of.kind == BeamKind::kBeyondMaximum) return scan_.max_range_m > face_m + kPassM;
+    const Beam& of = beams_[beam];
+    if (of.kind == BeamKind::kBeyondMaximum) return beams_.max_range_m() > face_m + kPassM;
     return of.kind == BeamKind::kRange && static_cast<double>(of.range_m) > face_m + kPassM;
   }
 
   /// Direction of the straight face that ends with this beam, towards its end.
   [[nodiscard]] std::optional<Point2> face_up_to(std::ptrdiff_t beam) const {
-    for (int k = 1; k <= kMostBeamsOfFace && is_range(beam - side_ * k); ++k) {
-      const Point2 chord = end_of(beam) - end_of(beam - side_ * k);
+    for (int k = 1; k <= kMostBeamsOfFace && beams_.is_range(beam - side_ * k); ++k) {
+      const Point2 chord = beams_.end_of(beam) - beams_.end_of(beam - side_ * k);
       if (k == 1 || chord.norm() < kShortestFaceM) continue;
       const Point2 along = chord.normalized();
       const Point2 normal{-along.y(), along.x()};
       for (int j = 1; j < k; ++j) {
-        if (std::abs(normal.dot(end_of(beam - side_ * j) - end_of(beam))) > kOnTheLineM) return std::nullopt;
+        if (std::abs(normal.dot(beams_.end_of(beam - side_ * j) - beams_.end_of(beam))) > kOnTheLineM)
+          return std::nullopt;
       }
       return along;
     }
     return std::nullopt;
   }
 
-  const Scan& scan_;
-  std::span<const RayInRobot> rays_;
+  const Beams& beams_;
   int side_;  // 1: counter-clockwise, -1: clockwise
 };
 
@@ -96,19 +118,18 @@ class CornerFinder {
 
 std::vector<FacedEnd> faced_ends(const Scan& scan, std::span<const RayInRobot> rays, std::vector<FacedEnd> ends) {
   ends.clear();
-  const auto valid = [&](std::size_t i) { return scan.beams[i].kind == BeamKind::kRange; };
-  const auto end = [&](std::size_t i) { return Point2{rays[i].end.cast<double>()}; };
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!valid(i)) continue;
-    FacedEnd faced{end(i), {0.0, 0.0}};
-    for (std::size_t k = 1; k <= kFarthest && k <= i && i + k < rays.size(); ++k) {
-      if (!valid(i - k) || !valid(i + k)) continue;
-      const Point2 chord = end(i + k) - end(i - k);
+  const Beams beams{scan, rays};
+  for (std::ptrdiff_t i = 0; i < beams.count(); ++i) {
+    if (!beams.is_range(i)) continue;
+    FacedEnd faced{beams.end_of(i), {0.0, 0.0}};
+    for (std::ptrdiff_t k = 1; k <= kFarthest; ++k) {
+      if (!beams.is_range(i - k) || !beams.is_range(i + k)) continue;
+      const Point2 chord = beams.end_of(i + k) - beams.end_of(i - k);
       const double length_m = chord.norm();
       if (length_m < kChordM) continue;
       Point2 normal{-chord.y() / length_m, chord.x() / length_m};
-      if (std::abs(normal.dot(faced.at - end(i - k))) > kOnTheLineM) break;
-      if (normal.dot(Point2{rays[i].origin.cast<double>()} - faced.at) < 0.0) normal = -normal;
+      if (std::abs(normal.dot(faced.at - beams.end_of(i - k))) > kOnTheLineM) break;
+      if (normal.dot(beams.laser_of(i) - faced.at) < 0.0) normal = -normal;
       faced.normal = normal;
       break;
     }
@@ -119,9 +140,10 @@ std::vector<FacedEnd> faced_ends(const Scan& scan, std::span<const RayInRobot> r
 
 std::vector<Corner> corners_of(const Scan& scan, std::span<const RayInRobot> rays, std::vector<Corner> corners) {
   corners.clear();
+  const Beams beams{scan, rays};
   for (const int side : {-1, 1}) {
-    const CornerFinder finder{scan, rays, side};
-    for (std::ptrdiff_t i = 0; i < std::ssize(rays); ++i) {
+    const CornerFinder finder{beams, side};
+    for (std::ptrdiff_t i = 0; i < beams.count(); ++i) {
       if (const std::optional<Corner> corner = finder.after(i)) corners.push_back(*corner);
     }
   }

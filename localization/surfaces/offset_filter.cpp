@@ -238,6 +238,19 @@ std::vector<Sighting> OffsetFilter::seen_from(const sensor::LikelihoodField& fie
   return sightings;
 }
 
+/// Of the ends, those on surfaces that are where they were expected and of which `counts` is true, by their number.
+template <typename Counts>
+double OffsetFilter::share_of_ends(std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                   Counts&& counts) const {
+  double counted = 0.0;
+  double all = static_cast<double>(finder_.rest().size());
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    all += sightings[i].beams;
+    if (fits[i] && counts(surface_of(sightings[i]))) counted += sightings[i].beams;
+  }
+  return all > 0.0 ? counted / all : 0.0;
+}
+
 OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, const FacedScan& scan, double rest_share,
                                          const motion::MotionModelParams& motion) {
   Seen seen;
@@ -268,32 +281,11 @@ OffsetFilter::Seen OffsetFilter::observe(const sensor::LikelihoodField& field, c
   settle(switches_, state_);
   const auto count = static_cast<double>(scan.ends.size());
   seen.straight = 1.0 - static_cast<double>(finder_.rest().size()) / count;
-  seen.holding = std::min(share_of_ends_held(sightings, fits), share_of_surfaces_held());
-  seen.followed = share_of_ends_followed(sightings, fits, known);
+  const auto holds = [&](std::size_t surface) { return switches_[surface].holds > 0.5; };
+  seen.holding = std::min(share_of_ends(sightings, fits, holds), share_of_surfaces_held());
+  seen.followed = share_of_ends(sightings, fits, [&](std::size_t surface) { return surface < known; });
   cease_where_long_unseen();
   return seen;
-}
-
-/// Of the ends, those on surfaces that are where they were expected, and hold.
-double OffsetFilter::share_of_ends_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const {
-  double held = 0.0;
-  double all = static_cast<double>(finder_.rest().size());
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    all += sightings[i].beams;
-    if (fits[i] && switches_[surface_of(sightings[i])].holds > 0.5) held += sightings[i].beams;
-  }
-  return all > 0.0 ? held / all : 0.0;
-}
-
-double OffsetFilter::share_of_ends_followed(std::span<const Sighting> sightings, const std::vector<bool>& fits,
-                                            std::size_t known) const {
-  double followed = 0.0;
-  double all = static_cast<double>(finder_.rest().size());
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    all += sightings[i].beams;
-    if (fits[i] && surface_of(sightings[i]) < known) followed += sightings[i].beams;
-  }
-  return all > 0.0 ? followed / all : 0.0;
 }
 
 /// Of the surfaces of the last metres that tell of a direction, those that hold; in the direction of which fewer do.

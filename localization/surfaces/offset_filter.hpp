@@ -85,10 +85,9 @@ class OffsetFilter {
   void correct_by(std::span<const Sighting> sightings, const std::vector<bool>& fits, const Pose2& at);
   void correct_by_rest(const sensor::LikelihoodField& field, double share, const Eigen::Vector3d& mount);
   [[nodiscard]] std::size_t surface_of(const Sighting& sighting) const;
-  [[nodiscard]] double share_of_ends_held(std::span<const Sighting> sightings, const std::vector<bool>& fits) const;
-  /// `known`: so many of the surfaces were followed before.
-  [[nodiscard]] double share_of_ends_followed(std::span<const Sighting> sightings, const std::vector<bool>& fits,
-                                              std::size_t known) const;
+  template <typename Counts>
+  [[nodiscard]] double share_of_ends(std::span<const Sighting> sightings, const std::vector<bool>& fits,
+                                     Counts&& counts) const;
   [[nodiscard]] double share_of_surfaces_held() const;
   void note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits);
 

@@ -144,13 +144,12 @@ class Growth {
     const Point2 middle = line.centre + 0.5 * (low + high) * line.along;
     int two_sided = 0;
     for (const int member : members_) two_sided += contours_.cells()[index(member)].two_sided ? 1 : 0;
-    constexpr double kOfACell = 0.29;  // deviation of what lies anywhere in a cell
-    const double scatter_cells = std::sqrt(line.variance_across + kOfACell * kOfACell / 4.0);
+    const double scatter_cells = std::sqrt(line.variance_across + kOfAnyPlace * kOfAnyPlace / 4.0);
     const double n = static_cast<double>(members_.size());
     return {.centre = geometry.origin + geometry.resolution_m * (middle + Point2{0.5, 0.5}),
             .normal = normal,
             .half_length_m = 0.5 * (high - low + 1.0) * geometry.resolution_m,
-            .offset_deviation_m = kOfACell * geometry.resolution_m,
+            .offset_deviation_m = kOfAnyPlace * geometry.resolution_m,
             .turn_deviation_rad = std::hypot(0.003, scatter_cells / std::sqrt(n * line.variance_along)),
             .two_sided = 2 * two_sided > static_cast<int>(members_.size())};
   }
@@ -206,6 +205,14 @@ class Growth {
   Moments points_;
 };
 
+constexpr double kParallelCosine = 0.99;
+
+/// Does one begin where the other ends, or sooner, by their places along the tangent?
+bool overlap_along(const Surface& a, const Surface& b) {
+  constexpr double kGapM = 0.5;
+  return std::abs(a.tangent().dot(b.centre - a.centre)) <= a.half_length_m + b.half_length_m + kGapM;
+}
+
 }  // namespace
 
 std::vector<Surface> surfaces_in(const OccupancyGrid& map, const CellBox& box) {
@@ -228,22 +235,17 @@ std::vector<Surface> surfaces_in(const OccupancyGrid& map, const CellBox& box) {
   return surfaces;
 }
 
-bool move_as_one(const Surface& a, const Surface& b) {
-  constexpr double kThickestM = 6.0;  // of what is moved as one
-  constexpr double kGapM = 0.5;
-  if (are_one_face(a, b)) return true;
-  const Point2 way = b.centre - a.centre;
-  const double behind_m = -a.normal.dot(way);
-  return a.normal.dot(b.normal) <= -0.99 && behind_m > 0.0 && behind_m <= kThickestM &&
-         std::abs(a.tangent().dot(way)) <= a.half_length_m + b.half_length_m + kGapM;
-}
-
 bool are_one_face(const Surface& a, const Surface& b) {
   constexpr double kOneLineM = 0.1;  // between their lines
-  constexpr double kGapM = 0.5;
-  const Point2 way = b.centre - a.centre;
-  return a.normal.dot(b.normal) >= 0.99 && std::abs(a.normal.dot(way)) <= kOneLineM &&
-         std::abs(a.tangent().dot(way)) <= a.half_length_m + b.half_length_m + kGapM;
+  return a.normal.dot(b.normal) >= kParallelCosine && std::abs(a.normal.dot(b.centre - a.centre)) <= kOneLineM &&
+         overlap_along(a, b);
+}
+
+bool move_as_one(const Surface& a, const Surface& b) {
+  constexpr double kThickestM = 6.0;  // of what is moved as one
+  if (are_one_face(a, b)) return true;
+  const double behind_m = -a.normal.dot(b.centre - a.centre);
+  return a.normal.dot(b.normal) <= -kParallelCosine && behind_m > 0.0 && behind_m <= kThickestM && overlap_along(a, b);
 }
 
 }  // namespace deltamap::localization::surfaces

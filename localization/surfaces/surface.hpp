@@ -13,6 +13,9 @@
 
 namespace deltamap::localization::surfaces {
 
+/// Deviation of what lies anywhere within an interval, as a share of its length: 1/√12.
+inline constexpr double kOfAnyPlace = 0.29;
+
 struct Surface {
   Point2 centre{0.0, 0.0};            ///< m, map frame
   Point2 normal{0.0, 0.0};            ///< unit vector, towards free space
