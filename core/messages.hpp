@@ -102,6 +102,8 @@ struct Estimate {
   Timestamp time;                                      ///< of the scan's first beam
   Pose2 map_from_robot;                                ///< mean of the best hypothesis
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the best hypothesis
+  /// Of that, what all scans are off by alike, for the map's surfaces are: it is drawn and read with the same error.
+  PoseCovariance bias_covariance = PoseCovariance::Zero();
   LocalizerState state = LocalizerState::kGlobal;
   double n_eff = 0.0;  ///< effective sample size before resampling, Eq. 5; in [1, particles]
   std::uint32_t particles = 0;
@@ -109,6 +111,9 @@ struct Estimate {
   double w_avg = 0.0;  ///< exp of the mean log-likelihood of the used beams, averaged over the best hypothesis; (0, 1]
   std::uint32_t revision = 0;                ///< number k of the map that the pose was computed on
   std::shared_ptr<const OccupancyGrid> map;  ///< that map, M_k
+
+  /// What differs from scan to scan and from place to place: how far beams may be off from where the map has surfaces.
+  [[nodiscard]] PoseCovariance noise_covariance() const { return covariance - bias_covariance; }
 };
 
 /// A beam with the robot's motion during the sweep taken out: both ends in the robot's frame at Scan::time.

@@ -338,9 +338,11 @@ std::optional<Pose2> Localizer::State::expected_pose(const motion::ScanInstant& 
 }
 
 Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& believed) const {
+  const PoseCovariance bias = tracker.bias_covariance();
   return {.time = time,
           .map_from_robot = believed.map_from_robot,
-          .covariance = believed.covariance + tracker.not_counted_in(believed),
+          .covariance = believed.covariance + tracker.not_counted_in(believed) + bias,
+          .bias_covariance = bias,
           .state = monitor.state(),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(

@@ -303,20 +303,6 @@ double OffsetFilter::share_of_surfaces_held() const {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>{scale * held * scale}.eigenvalues().minCoeff();
 }
 
-Eigen::Matrix2d OffsetFilter::unknown_of_cells() const {
-  Eigen::Matrix2d told = Eigen::Matrix2d::Zero();
-  double one_m = 0.0;  // what one surface leaves open
-  for (const SurfaceSwitch& of : switches_) {
-    const double deviation_m = of.surface.offset_deviation_m;
-    one_m = std::max(one_m, deviation_m);
-    told += of.holds * of.share / (deviation_m * deviation_m) * of.surface.normal * of.surface.normal.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{told};
-  const auto left_open = [&](double precision) { return std::min(one_m * one_m, 1.0 / std::max(1e-9, precision)); };
-  const Eigen::Vector2d variances_m2 = axes.eigenvalues().unaryExpr(left_open);
-  return axes.eigenvectors() * variances_m2.asDiagonal() * axes.eigenvectors().transpose();
-}
-
 void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits) {
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const std::size_t number = surface_of(sightings[i]);

@@ -16,6 +16,7 @@
 #include "localization/surfaces/surface_map.hpp"
 #include "localization/surfaces/surface_sighting.hpp"
 #include "localization/surfaces/surface_switch.hpp"
+#include "localization/surfaces/unknown_of_cells.hpp"
 
 namespace deltamap::localization::surfaces {
 
@@ -52,9 +53,8 @@ class OffsetFilter {
   [[nodiscard]] double straight_share(const sensor::LikelihoodField& field, const FacedScan& scan, const Pose2& pose);
 
   [[nodiscard]] sensor::RefinedPose believed() const { return state_.pose(); }
-  /// What the surfaces of the last metres cannot tell of the position, for each lies anywhere in the cells that it is
-  /// drawn with, and does so whenever it is seen again. The filter itself does not count it.
-  [[nodiscard]] Eigen::Matrix2d unknown_of_cells() const;
+  /// What the cells of the last metres' surfaces leave open of the position. The filter itself does not count it.
+  [[nodiscard]] UnknownOfCells unknown_of_cells() const { return surfaces::unknown_of_cells(switches_, state_); }
   [[nodiscard]] motion::DriveCalibration calibration() const { return state_.calibration(); }
   [[nodiscard]] bool is_sound() const { return state_.is_sound(); }
 

@@ -55,7 +55,7 @@ class SurfaceTracker {
   /// Before the first scan: what an earlier run has learned.
   void restore(const motion::DriveCalibration& learned) { filter_.restore(learned); }
   [[nodiscard]] motion::DriveCalibration calibration() const { return filter_.calibration(); }
-  [[nodiscard]] Eigen::Matrix2d unknown_of_cells() const { return filter_.unknown_of_cells(); }
+  [[nodiscard]] surfaces::UnknownOfCells unknown_of_cells() const { return filter_.unknown_of_cells(); }
   /// It leads, and surfaces that stand where the map has them fix the pose, or did so a few metres ago.
   [[nodiscard]] bool is_fixed_by_surfaces() const;
 

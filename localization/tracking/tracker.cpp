@@ -54,7 +54,7 @@ PoseCovariance Tracker::not_counted_in(const sensor::RefinedPose& believed) cons
   PoseCovariance more = PoseCovariance::Zero();
   if (!surfaces_) return more;
   if (surfaces_->leads()) {
-    const Eigen::Matrix2d beyond = surfaces_->unknown_of_cells() - believed.covariance.topLeftCorner<2, 2>();
+    const Eigen::Matrix2d beyond = surfaces_->unknown_of_cells().scattered - believed.covariance.topLeftCorner<2, 2>();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{beyond};
     more.topLeftCorner<2, 2>() =
         axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
@@ -63,6 +63,12 @@ PoseCovariance Tracker::not_counted_in(const sensor::RefinedPose& believed) cons
   const Pose2 deviations = surfaces_->calibration().mount_deviations;
   return motion::covariance_along(believed.map_from_robot.theta, deviations.x * deviations.x,
                                   deviations.y * deviations.y, deviations.theta * deviations.theta);
+}
+
+PoseCovariance Tracker::bias_covariance() const {
+  PoseCovariance bias = PoseCovariance::Zero();
+  if (surfaces_ && surfaces_->leads()) bias.topLeftCorner<2, 2>() = surfaces_->unknown_of_cells().alike;
+  return bias;
 }
 
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {

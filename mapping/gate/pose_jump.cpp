@@ -13,7 +13,7 @@ bool PoseJump::observe(const TrackedScan& tracked) {
   if (!follows) samples_.clear();
   epoch_ = tracked.odometry_epoch;
 
-  const PoseCovariance& covariance = estimate.covariance;
+  const PoseCovariance covariance = estimate.noise_covariance();
   Sample now{.time = time,
              .map_from_robot = estimate.map_from_robot,
              .odom_from_robot = tracked.odom_from_robot,

@@ -18,7 +18,7 @@ namespace deltamap::mapping::redraw {
 namespace {
 
 registration::PoseBelief belief_of(const Estimate& estimate, const PlacementParams& params) {
-  PoseCovariance covariance = estimate.covariance;
+  PoseCovariance covariance = estimate.noise_covariance();
   const double position2 = params.least_position_deviation_m * params.least_position_deviation_m;
   covariance(0, 0) += position2;
   covariance(1, 1) += position2;

@@ -25,7 +25,7 @@ struct PoseDeviation {
 /// The estimate's own deviation with the floors of the parameters.
 [[nodiscard]] inline PoseDeviation pose_deviation(const Estimate& estimate, double turn_rate_rad_per_s,
                                                   const BeamEvidenceParams& params) {
-  const PoseCovariance& c = estimate.covariance;
+  const PoseCovariance c = estimate.noise_covariance();
   const double heading = std::sqrt(std::max(0.0, c(2, 2)));
   return {std::hypot(std::sqrt(std::max(0.0, std::max(c(0, 0), c(1, 1)))), params.least_position_deviation_m),
           std::hypot(heading, params.least_heading_deviation_rad) +

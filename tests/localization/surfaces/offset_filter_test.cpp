@@ -230,11 +230,11 @@ TEST(OffsetFilter, FindsTheErrorOfTheMount) {
 TEST(OffsetFilter, KnowsWhatCellsLeaveOpenHoweverOftenTheyAreSeen) {
   const double of_a_wall_m2 = std::pow(0.29 * test::map_of(test::containers_in_order()).resolution_m(), 2);
   Round round{{}};
-  EXPECT_TRUE(round.filter().unknown_of_cells().isZero()) << "nothing is followed yet";
+  EXPECT_TRUE(round.filter().unknown_of_cells().scattered.isZero()) << "nothing is followed yet";
   round.drive(8);
-  const Eigen::Matrix2d after_two_rounds = round.filter().unknown_of_cells();
+  const Eigen::Matrix2d after_two_rounds = round.filter().unknown_of_cells().scattered;
   round.drive(16);
-  const Eigen::Matrix2d after_six = round.filter().unknown_of_cells();
+  const Eigen::Matrix2d after_six = round.filter().unknown_of_cells().scattered;
   for (const Eigen::Matrix2d& unknown : {after_two_rounds, after_six}) {
     const Eigen::Vector2d variances = unknown.selfadjointView<Eigen::Lower>().eigenvalues();
     EXPECT_GT(variances.minCoeff(), of_a_wall_m2 / 32.0) << "as many surfaces as are followed at most";
@@ -248,6 +248,7 @@ TEST(SurfaceTracker, TellsNoPoseSurerThanTheCellsOfTheMap) {
   for (int i = 0; i < 40; ++i) drive.go(0.0, radians(90.0));
   const double of_a_wall_m = 0.29 * test::map_of(test::containers_in_order()).resolution_m();
   EXPECT_GT(std::sqrt(drive.estimate().covariance(0, 0)), of_a_wall_m / 4.0) << "ten turns at one place";
+  EXPECT_LE(drive.estimate().noise_covariance()(0, 0), drive.estimate().covariance(0, 0));
   EXPECT_GT(std::sqrt(drive.estimate().covariance(1, 1)), of_a_wall_m / 4.0);
 }
 

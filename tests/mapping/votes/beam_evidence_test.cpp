@@ -21,6 +21,8 @@ class Beams : public testing::Test {
     tracked.estimate.map_from_robot = pose;
     tracked.estimate.covariance =
         Eigen::Vector3d{position_m * position_m, position_m * position_m, heading_rad * heading_rad}.asDiagonal();
+    tracked.estimate.bias_covariance = Eigen::Vector3d{bias_m * bias_m, bias_m * bias_m, 0.0}.asDiagonal();
+    tracked.estimate.covariance += tracked.estimate.bias_covariance;
     tracked.estimate.state = state;
     tracked.turn_rate_rad_per_s = turn_rate;
     return beam_evidence(map, ClearSpace{map, {map.geometry(), 2}}, tracked, {}).front();
@@ -30,6 +32,7 @@ class Beams : public testing::Test {
   Pose2 pose;
   double position_m = 0.03;
   double heading_rad = 0.008;
+  double bias_m = 0.0;
   double turn_rate = 0.0;
   LocalizerState state = LocalizerState::kTracking;
 };
@@ -38,6 +41,15 @@ TEST_F(Beams, AreConsistentWhereTheyEndAtTheWall) {
   EXPECT_EQ(verdict(5.03).what, BeamClass::kConsistent);
   EXPECT_EQ(verdict(4.92).what, BeamClass::kConsistent);  // within the pose's uncertainty
   EXPECT_EQ(verdict(5.2).what, BeamClass::kConsistent);
+}
+
+TEST_F(Beams, SpeakAsSharplyWhereAllScansAreOffByAlike) {
+  const double interval_m = verdict(5.0).interval_m;
+  bias_m = 0.1;
+  EXPECT_DOUBLE_EQ(verdict(5.0).interval_m, interval_m) << "the map is drawn and read with the same error";
+  bias_m = 0.0;
+  position_m = 0.1;
+  EXPECT_GT(verdict(5.0).interval_m, 1.5 * interval_m);
 }
 
 TEST_F(Beams, SayNothingOfTheScanBeforeWhereTheyHaveNoRange) {
