@@ -245,16 +245,14 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
 }
 
 /// What was written from a few keyframes is drawn again, more sharply, once many more have seen it. It only gains: a
-/// glance from afar must not wipe out what was drawn from nearby. Away from the map's surfaces what beams end at has to
-/// be proven like any other change: it may be somebody who stands there for a moment.
+/// glance from afar must not wipe out what was drawn from nearby.
 std::optional<ScanSet> EvidencePhase::another_look(Timestamp time) {
   const std::optional<votes::Look> look = redraw_queue_.due_look();
   if (!look) return std::nullopt;
   ScanSet set;
   set.ended = time;
   for (const std::uint32_t index : look->blocks) {
-    const Cell block = layer_.blocks().cell_of(index);
-    if (clear_.distance(block) <= 1) add_verdicts(votes::Question::kAdded, block, set.verdicts);
+    add_verdicts(votes::Question::kAdded, layer_.blocks().cell_of(index), set.verdicts);
   }
   return with_scans(std::move(set), look->blocks, look->first_ms);
 }

@@ -157,22 +157,6 @@ TEST(Evidence, DrawsAPersonWhoStandsForMinutesAndFreesHimWithinSeconds) {
   EXPECT_EQ(drawn(), 0);
 }
 
-TEST(Evidence, LooksAgainWithoutDrawingWhoStandsThereNow) {
-  Drive drive{hall()};
-  drive.through(always(hall_with({9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied)), 30.0);
-  ASSERT_GT(drawn_share(*drive.map, {9.05, 7.97}, {10.95, 8.07}), 0.9);
-  drive.through(always(hall()), 40.0);
-  drive.through(always(hall_with({9.5, 7.8}, {9.85, 8.1}, CellState::kOccupied)), 60.0);
-  EXPECT_EQ(occupied_share(*drive.map, {9.3, 7.6}, {10.05, 8.2}), 0.0);
-}
-
-TEST(Evidence, DrawsAFaceAgainThatIsPushedByLessThanWhatTellsItApart) {
-  Drive drive{hall()};
-  drive.through(always(hall_with({9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied)), 30.0);
-  drive.through(always(hall_with({9.0, 7.95}, {11.0, 8.45}, CellState::kOccupied)), 120.0);
-  EXPECT_GT(drawn_share(*drive.map, {9.05, 7.96}, {10.95, 7.97}), 0.9);
-}
-
 TEST(Evidence, IgnoresADoorThatFlickers) {
   Drive drive{hall()};
   drive.through(
