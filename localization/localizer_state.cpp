@@ -338,11 +338,11 @@ std::optional<Pose2> Localizer::State::expected_pose(const motion::ScanInstant& 
 }
 
 Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& believed) const {
-  const PoseCovariance bias = tracker.bias_covariance();
+  const tracking::Tracker::NotCounted more = tracker.not_counted_in(believed);
   return {.time = time,
           .map_from_robot = believed.map_from_robot,
-          .covariance = believed.covariance + tracker.not_counted_in(believed) + bias,
-          .bias_covariance = bias,
+          .covariance = believed.covariance + more.noise + more.bias,
+          .bias_covariance = more.bias,
           .state = monitor.state(),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(

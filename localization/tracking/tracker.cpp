@@ -50,25 +50,22 @@ void Tracker::restore(const motion::DriveCalibration& learned) {
   if (surfaces_) surfaces_->restore(learned);
 }
 
-PoseCovariance Tracker::not_counted_in(const sensor::RefinedPose& believed) const {
-  PoseCovariance more = PoseCovariance::Zero();
+Tracker::NotCounted Tracker::not_counted_in(const sensor::RefinedPose& believed) const {
+  NotCounted more;
   if (!surfaces_) return more;
   if (surfaces_->leads()) {
-    const Eigen::Matrix2d beyond = surfaces_->unknown_of_cells().scattered - believed.covariance.topLeftCorner<2, 2>();
+    const surfaces::UnknownOfCells unknown = surfaces_->unknown_of_cells();
+    const Eigen::Matrix2d beyond = unknown.scattered - believed.covariance.topLeftCorner<2, 2>();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{beyond};
-    more.topLeftCorner<2, 2>() =
+    more.noise.topLeftCorner<2, 2>() =
         axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+    more.bias.topLeftCorner<2, 2>() = unknown.alike;
     return more;
   }
   const Pose2 deviations = surfaces_->calibration().mount_deviations;
-  return motion::covariance_along(believed.map_from_robot.theta, deviations.x * deviations.x,
-                                  deviations.y * deviations.y, deviations.theta * deviations.theta);
-}
-
-PoseCovariance Tracker::bias_covariance() const {
-  PoseCovariance bias = PoseCovariance::Zero();
-  if (surfaces_ && surfaces_->leads()) bias.topLeftCorner<2, 2>() = surfaces_->unknown_of_cells().alike;
-  return bias;
+  more.noise = motion::covariance_along(believed.map_from_robot.theta, deviations.x * deviations.x,
+                                        deviations.y * deviations.y, deviations.theta * deviations.theta);
+  return more;
 }
 
 sensor::RefinedPose Tracker::start_around(const particles::InitialPose& pose) {

@@ -78,11 +78,15 @@ class Tracker {
   [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;
   /// Before the first scan: what an earlier run has learned.
   void restore(const motion::DriveCalibration& learned);
-  /// What the believed pose's covariance does not count in: of the particles what is not known of the laser's mount, of
-  /// the surfaces what the map's cells leave open beyond it, each face off in its own way.
-  [[nodiscard]] PoseCovariance not_counted_in(const sensor::RefinedPose& believed) const;
-  /// Besides: what all scans are off by alike, as the map's surfaces are. Zero while the particles lead.
-  [[nodiscard]] PoseCovariance bias_covariance() const;
+  /// What the believed pose's covariance does not count in.
+  struct NotCounted {
+    /// Of the particles what is not known of the laser's mount, of the surfaces what the map's cells leave open beyond
+    /// the covariance, each face off in its own way.
+    PoseCovariance noise = PoseCovariance::Zero();
+    /// What all scans are off by alike, as the map's surfaces are; zero while the particles lead.
+    PoseCovariance bias = PoseCovariance::Zero();
+  };
+  [[nodiscard]] NotCounted not_counted_in(const sensor::RefinedPose& believed) const;
   /// Surfaces that stand where the map has them fix the pose; never while the particles lead.
   [[nodiscard]] bool is_fixed_by_surfaces() const;
 

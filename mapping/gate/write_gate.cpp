@@ -78,7 +78,8 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   if (estimate.belief.other_share > params_.most_rival_share) return GateReason::kOtherHypothesis;
   const bool is_held = estimate.belief.stable.expected + estimate.belief.elsewhere.expected >= params_.least_expected;
-  if (!is_held || widest_deviation_m(estimate.covariance) > params_.most_deviation_m) return GateReason::kSpread;
+  if (!is_held || widest_deviation_m(estimate.noise_covariance()) > params_.most_deviation_m)
+    return GateReason::kSpread;
   return GateReason::kOpen;
 }
 

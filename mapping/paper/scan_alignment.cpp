@@ -124,9 +124,9 @@ std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAl
   }
   keep_group(largest_group(count, links, params), alignment.scans, guesses, links);
   if (alignment.scans.size() < 2) return std::nullopt;
-  const PoseAnchor anchor{
-      0, guesses.front(),
-      scan_at(0).estimate.covariance + diagonal(params.least_anchor_deviation_m, params.least_anchor_deviation_rad)};
+  const PoseAnchor anchor{0, guesses.front(),
+                          scan_at(0).estimate.noise_covariance() +
+                              diagonal(params.least_anchor_deviation_m, params.least_anchor_deviation_rad)};
   PoseNetwork network = solved_network(guesses, links, {&anchor, 1}, params.network);
   if (!network.solved) return std::nullopt;
 
