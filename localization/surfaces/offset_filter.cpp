@@ -338,10 +338,25 @@ void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double 
   state_.multiply<6>(0, by.transpose() * information * by, by.transpose() * (pull + information * by * before));
 }
 
-double OffsetFilter::straight_share(const sensor::LikelihoodField& field, const FacedScan& scan, const Pose2& pose) {
-  if (scan.ends.empty()) return 0.0;
-  (void)find_by_map(field, scan, pose);
-  return 1.0 - static_cast<double>(finder_.rest().size()) / static_cast<double>(scan.ends.size());
+OffsetFilter::SeenByMap OffsetFilter::seen_by_map(const sensor::LikelihoodField& field, const FacedScan& scan,
+                                                  const Pose2& pose) {
+  if (scan.ends.empty()) return {};
+  const std::span<const Sighting> sightings = find_by_map(field, scan, pose);
+  return {1.0 - static_cast<double>(finder_.rest().size()) / static_cast<double>(scan.ends.size()),
+          supporting_faces(sightings, pose, sighting::kExplainedCells * field.geometry().resolution_m)};
+}
+
+UnknownOfCells OffsetFilter::unknown_of_cells() const {
+  std::vector<SupportingFace> faces;
+  faces.reserve(switches_.size());
+  for (std::size_t i = 0; i < switches_.size(); ++i) {
+    const SurfaceSwitch& of = switches_[i];
+    faces.push_back({.normal = of.surface.normal,
+                     .cells_m = of.surface.offset_deviation_m,
+                     .off_m = state_.mean()[OffsetState::offset_of(i)] - of.usual_m,
+                     .witnesses = of.holds * of.share});
+  }
+  return surfaces::unknown_of_cells(faces);
 }
 
 }  // namespace deltamap::localization::surfaces

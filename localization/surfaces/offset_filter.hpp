@@ -49,12 +49,16 @@ class OffsetFilter {
   /// `rest_share`: what an end that is on no surface counts, in (0, 1]. `motion`: how far slips may go.
   Seen observe(const sensor::LikelihoodField& field, const FacedScan& scan, double rest_share,
                const motion::MotionModelParams& motion);
-  /// Share of the ends on surfaces of the map, with the robot at a pose.
-  [[nodiscard]] double straight_share(const sensor::LikelihoodField& field, const FacedScan& scan, const Pose2& pose);
+  /// What a scan shows of the map's surfaces, each taken to stand where the map has it.
+  struct SeenByMap {
+    double straight = 0.0;              ///< share of its ends on them
+    std::vector<SupportingFace> faces;  ///< those that the pose may rest on
+  };
+  [[nodiscard]] SeenByMap seen_by_map(const sensor::LikelihoodField& field, const FacedScan& scan, const Pose2& pose);
 
   [[nodiscard]] sensor::RefinedPose believed() const { return state_.pose(); }
   /// What the cells of the last metres' surfaces leave open of the position. The filter itself does not count it.
-  [[nodiscard]] UnknownOfCells unknown_of_cells() const { return surfaces::unknown_of_cells(switches_, state_); }
+  [[nodiscard]] UnknownOfCells unknown_of_cells() const;
   [[nodiscard]] motion::DriveCalibration calibration() const { return state_.calibration(); }
   [[nodiscard]] bool is_sound() const { return state_.is_sound(); }
 

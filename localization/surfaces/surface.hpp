@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -43,6 +45,20 @@ struct Surface {
 
 /// Pieces of one straight face, or of two that stand in line?
 [[nodiscard]] bool are_one_face(const Surface& a, const Surface& b);
+
+/// For each of `count` pieces the number of its body: those that `are_one(a, b)` holds for, joined from pair to pair.
+template <typename AreOne>
+[[nodiscard]] std::vector<std::size_t> bodies(std::size_t count, AreOne&& are_one) {
+  std::vector<std::size_t> body(count);
+  std::iota(body.begin(), body.end(), std::size_t{0});
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (body[a] == body[b] || !are_one(a, b)) continue;
+      std::replace(body.begin(), body.end(), std::size_t{body[a]}, std::size_t{body[b]});
+    }
+  }
+  return body;
+}
 /// One face, or front and back of one thing: when it is moved both are, by as much.
 [[nodiscard]] bool move_as_one(const Surface& a, const Surface& b);
 

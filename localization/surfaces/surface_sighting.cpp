@@ -42,6 +42,24 @@ Sighting::Measured Sighting::measured(const Pose2& pose) const {
       .lever = lever};
 }
 
+std::vector<SupportingFace> supporting_faces(std::span<const Sighting> sightings, const Pose2& map_from_robot,
+                                             double within_m) {
+  std::vector<const Surface*> surfaces;
+  std::vector<SupportingFace> faces;
+  for (const Sighting& seen : sightings) {
+    const double off_m = seen.measured(map_from_robot).distance_m;
+    if (seen.corner_deviation_m > 0.0 || std::abs(off_m) > within_m) continue;
+    surfaces.push_back(&seen.surface);
+    faces.push_back({.normal = seen.surface.normal, .cells_m = seen.surface.offset_deviation_m, .off_m = off_m});
+  }
+  const std::vector<std::size_t> body =
+      bodies(faces.size(), [&](std::size_t a, std::size_t b) { return are_one_face(*surfaces[a], *surfaces[b]); });
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    faces[i].witnesses = 1.0 / static_cast<double>(std::count(body.begin(), body.end(), body[i]));
+  }
+  return faces;
+}
+
 void SightingFinder::begin(std::size_t ends) {
   claims_used_ = 0;
   sightings_.clear();

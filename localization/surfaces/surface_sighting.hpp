@@ -16,6 +16,7 @@
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/surfaces/faced_scan.hpp"
 #include "localization/surfaces/surface_map.hpp"
+#include "localization/surfaces/unknown_of_cells.hpp"
 
 namespace deltamap::localization::surfaces {
 
@@ -46,6 +47,11 @@ struct Sighting {
   };
   [[nodiscard]] Measured measured(const Pose2& map_from_robot) const;
 };
+
+/// What a pose rests on: the surfaces that stand within `within_m` of where the map has them, pieces of one face as one
+/// witness. Corners are none: they stand where their faces do.
+[[nodiscard]] std::vector<SupportingFace> supporting_faces(std::span<const Sighting> sightings,
+                                                           const Pose2& map_from_robot, double within_m);
 
 class SightingFinder {
  public:

@@ -4,8 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <span>
 
 namespace deltamap::localization::surfaces {
 namespace {
@@ -63,20 +61,6 @@ bool stand_off_alike(const OffsetState& state, std::size_t a, std::size_t b) {
   return std::abs(state.mean()[i] - state.mean()[k]) < kSameOffsetM + 2.0 * deviation_m;
 }
 
-/// For each surface the number of its body.
-std::vector<std::size_t> bodies_of(std::span<const SurfaceSwitch> switches, const OffsetState& state) {
-  std::vector<std::size_t> body(switches.size());
-  std::iota(body.begin(), body.end(), std::size_t{0});
-  for (std::size_t a = 0; a < switches.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      if (body[a] == body[b] || !are_one_face(switches[a].surface, switches[b].surface)) continue;
-      const std::size_t joins = body[a];
-      if (stand_off_alike(state, a, b)) std::replace(body.begin(), body.end(), joins, std::size_t{body[b]});
-    }
-  }
-  return body;
-}
-
 /// Moment matching: the two cases, weighed, as one Gaussian; less the cavity that is what the switch adds. Where it
 /// would take precision away the switch says nothing.
 void match(SurfaceSwitch& of, const Cavity& cavity, OffsetState& state, Eigen::Index at) {
@@ -108,7 +92,9 @@ void match(SurfaceSwitch& of, const Cavity& cavity, OffsetState& state, Eigen::I
 }  // namespace
 
 void settle(std::vector<SurfaceSwitch>& switches, OffsetState& state) {
-  const std::vector<std::size_t> body = bodies_of(switches, state);
+  const std::vector<std::size_t> body = bodies(switches.size(), [&](std::size_t a, std::size_t b) {
+    return are_one_face(switches[a].surface, switches[b].surface) && stand_off_alike(state, a, b);
+  });
   std::vector<Cavity> cavities(switches.size());
   const auto look = [&](std::size_t i) { cavities[i] = cavity_of(switches[i], state, OffsetState::offset_of(i)); };
   for (std::size_t i = 0; i < switches.size(); ++i) {

@@ -6,19 +6,27 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "localization/surfaces/offset_state.hpp"
-#include "localization/surfaces/surface_switch.hpp"
+#include "core/pose2.hpp"
 
 namespace deltamap::localization::surfaces {
 
-/// Covariances of the position, map frame, m²; zero where no surface is followed.
+/// A surface that a pose rests on.
+struct SupportingFace {
+  Point2 normal;         ///< map frame
+  double cells_m = 0.0;  ///< deviation of the surface in its cells
+  double off_m = 0.0;    ///< along the normal: how far it stands from where the map has it
+  double witnesses =
+      1.0;  ///< as how many it counts, [0, 1]: less where it may have moved, or is a piece of a longer one
+};
+
+/// Covariances of the position, map frame, m²; zero where it rests on no surface.
 struct UnknownOfCells {
   Eigen::Matrix2d scattered;  ///< were each face off its cells in its own way: the error of their mean
   Eigen::Matrix2d alike;      ///< what comes on top where they are off alike, or drawn worse than their cells allow
 };
 
-/// `switches[i]` is that of surface i of the state. In a building whose walls stand at whole cells from each other all
-/// are off alike, and a hundred tell no more than one. How they are scattered about the pose tells.
-[[nodiscard]] UnknownOfCells unknown_of_cells(std::span<const SurfaceSwitch> switches, const OffsetState& state);
+/// In a building whose walls stand at whole cells from each other all are off alike, and a hundred tell no more than
+/// one. How they are scattered about the pose tells.
+[[nodiscard]] UnknownOfCells unknown_of_cells(std::span<const SupportingFace> faces);
 
 }  // namespace deltamap::localization::surfaces

@@ -50,12 +50,15 @@ void SurfaceTracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellB
 }
 
 bool SurfaceTracker::could_lead(const Seen& seen, const Pose2& map_from_robot) {
-  straight_ += kNewest * (filter_.straight_share(seen.field, seen.faced, map_from_robot) - straight_);
+  surfaces::OffsetFilter::SeenByMap shown = filter_.seen_by_map(seen.field, seen.faced, map_from_robot);
+  rests_on_ = std::move(shown.faces);
+  straight_ += kNewest * (shown.straight - straight_);
   return straight_ >= kLeadsAbove;
 }
 
 void SurfaceTracker::learn_from(const sensor::RefinedPose& found, const motion::ScanInstant& now,
                                 const motion::BodyVelocity& velocity) {
+  rests_on_.clear();
   const bool begins = !last_;
   if (!begins) {
     step_to(now, velocity);
@@ -77,6 +80,10 @@ sensor::RefinedPose SurfaceTracker::lead_from(const sensor::RefinedPose& at, con
   holding_ = 0.0;
   since_held_m_ = surfaces::kForgottenAfterM;
   return keyframe(seen);
+}
+
+surfaces::UnknownOfCells SurfaceTracker::unknown_of_cells() const {
+  return leads_ ? filter_.unknown_of_cells() : surfaces::unknown_of_cells(rests_on_);
 }
 
 PoseCovariance SurfaceTracker::noise(const Pose2& motion, double unknown_s) const {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "localization/motion/motion_model.hpp"
 #include "localization/motion/scan_instant.hpp"
@@ -45,6 +46,7 @@ class SurfaceTracker {
   void cease() {
     leads_ = false;
     last_.reset();
+    rests_on_.clear();
   }
 
   /// The pose at one more scan. It may have ceased to lead.
@@ -55,7 +57,8 @@ class SurfaceTracker {
   /// Before the first scan: what an earlier run has learned.
   void restore(const motion::DriveCalibration& learned) { filter_.restore(learned); }
   [[nodiscard]] motion::DriveCalibration calibration() const { return filter_.calibration(); }
-  [[nodiscard]] surfaces::UnknownOfCells unknown_of_cells() const { return filter_.unknown_of_cells(); }
+  /// What the cells of the surfaces in view leave open of the position; where it leads, of those of the last metres.
+  [[nodiscard]] surfaces::UnknownOfCells unknown_of_cells() const;
   /// It leads, and surfaces that stand where the map has them fix the pose, or did so a few metres ago.
   [[nodiscard]] bool is_fixed_by_surfaces() const;
 
@@ -85,8 +88,9 @@ class SurfaceTracker {
     double variance_rad2 = 0.0;
     double explained = 0.0;  // share of the keyframe's ends, by the map
   };
-  std::optional<SinceKeyframe> since_;  // none: no keyframe yet
-  double straight_ = 0.0;               // running means over keyframes, shares of ends
+  std::optional<SinceKeyframe> since_;              // none: no keyframe yet
+  std::vector<surfaces::SupportingFace> rests_on_;  // while the particles lead: by the last scan
+  double straight_ = 0.0;                           // running means over keyframes, shares of ends
   double holding_ = 0.0;
   double since_held_m_ = surfaces::kForgottenAfterM;  // driven since surfaces held the pose; they have followed it
   double surprise_m_ = 1.0;  // squared corrections as multiples of what was expected, running means

@@ -53,15 +53,15 @@ void Tracker::restore(const motion::DriveCalibration& learned) {
 Tracker::NotCounted Tracker::not_counted_in(const sensor::RefinedPose& believed) const {
   NotCounted more;
   if (!surfaces_) return more;
-  if (surfaces_->leads()) {
-    const surfaces::UnknownOfCells unknown = surfaces_->unknown_of_cells();
-    const Eigen::Matrix2d beyond = unknown.scattered - believed.covariance.topLeftCorner<2, 2>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{beyond};
-    more.noise.topLeftCorner<2, 2>() =
-        axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
-    more.bias.topLeftCorner<2, 2>() = unknown.alike;
-    return more;
-  }
+  const surfaces::UnknownOfCells unknown = surfaces_->unknown_of_cells();
+  const Eigen::Matrix2d beyond = unknown.scattered - believed.covariance.topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{beyond};
+  more.noise.topLeftCorner<2, 2>() =
+      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+  more.bias.topLeftCorner<2, 2>() = unknown.alike;
+  if (surfaces_->leads()) return more;
+  // From scan to scan the particles' pose is as sure as the scans make it; the mount errs alike in all of them.
+  more.bias += more.noise;
   const Pose2 deviations = surfaces_->calibration().mount_deviations;
   more.noise = motion::covariance_along(believed.map_from_robot.theta, deviations.x * deviations.x,
                                         deviations.y * deviations.y, deviations.theta * deviations.theta);

@@ -83,7 +83,7 @@ class Tracker {
     /// Of the particles what is not known of the laser's mount, of the surfaces what the map's cells leave open beyond
     /// the covariance, each face off in its own way.
     PoseCovariance noise = PoseCovariance::Zero();
-    /// What all scans are off by alike, as the map's surfaces are; zero while the particles lead.
+    /// What all scans are off by alike, as the map's surfaces are. Of the particles all that cells leave open.
     PoseCovariance bias = PoseCovariance::Zero();
   };
   [[nodiscard]] NotCounted not_counted_in(const sensor::RefinedPose& believed) const;

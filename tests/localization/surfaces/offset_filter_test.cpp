@@ -252,5 +252,19 @@ TEST(SurfaceTracker, TellsNoPoseSurerThanTheCellsOfTheMap) {
   EXPECT_GT(std::sqrt(drive.estimate().covariance(1, 1)), of_a_wall_m / 4.0);
 }
 
+/// What walls that are off alike leave open, a few scans after the start, when no surface is followed yet.
+Eigen::Matrix2d told_as_a_bias_at_first(bool know_surfaces) {
+  Drive drive{test::containers_in_order(), know_surfaces};
+  drive.go(0.2, 0.0);
+  return drive.estimate().bias_covariance.topLeftCorner<2, 2>();
+}
+
+TEST(SurfaceTracker, TellsWhatCellsLeaveOpenWhileTheParticlesLead) {
+  const double of_a_wall_m = 0.29 * test::map_of(test::containers_in_order()).resolution_m();
+  EXPECT_GT(std::sqrt(told_as_a_bias_at_first(true).trace()), 0.5 * of_a_wall_m);
+  EXPECT_LT(std::sqrt(told_as_a_bias_at_first(true).trace()), 2.0 * of_a_wall_m);
+  EXPECT_TRUE(told_as_a_bias_at_first(false).isZero()) << "without surfaces nobody knows";
+}
+
 }  // namespace
 }  // namespace deltamap::localization::surfaces

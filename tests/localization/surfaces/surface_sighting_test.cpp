@@ -105,5 +105,31 @@ TEST(SurfaceSighting, TakesTheEndOfAMappedWallForNoOtherWallNearby) {
   }
 }
 
+/// Beams on a face that stands across the x axis, seen from the origin so far off its place in the map.
+Sighting sighting_of(const Point2& centre, double off_m) {
+  return {.id = {},
+          .surface = {.centre = centre, .normal = {-1.0, 0.0}, .half_length_m = 0.9, .offset_deviation_m = 0.03},
+          .beams = 5.0,
+          .mean = centre - off_m * Point2{1.0, 0.0},
+          .scatter = Eigen::Vector2d{0.0, 1.0}.asDiagonal()};
+}
+
+TEST(SupportingFaces, CountThePiecesOfOneFaceAsOneWitness) {
+  const std::vector<Sighting> seen{sighting_of({4.0, 0.0}, 0.02), sighting_of({4.0, 2.0}, 0.01),
+                                   sighting_of({6.0, 9.0}, 0.0)};
+  const std::vector<SupportingFace> faces = supporting_faces(seen, {}, 0.08);
+  ASSERT_EQ(faces.size(), 3U);
+  EXPECT_DOUBLE_EQ(faces[0].witnesses, 0.5);
+  EXPECT_DOUBLE_EQ(faces[1].witnesses, 0.5);
+  EXPECT_DOUBLE_EQ(faces[2].witnesses, 1.0);
+  EXPECT_NEAR(faces[0].off_m, 0.02, 1e-12);
+}
+
+TEST(SupportingFaces, AreNoneThatWereMovedAndNoCorners) {
+  std::vector<Sighting> seen{sighting_of({4.0, 0.0}, 0.3), sighting_of({6.0, 9.0}, 0.01)};
+  seen.back().corner_deviation_m = 0.02;
+  EXPECT_TRUE(supporting_faces(seen, {}, 0.08).empty());
+}
+
 }  // namespace
 }  // namespace deltamap::localization::surfaces

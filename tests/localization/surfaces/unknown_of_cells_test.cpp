@@ -14,22 +14,18 @@ constexpr double kCell_m2 = kCell_m * kCell_m;
 
 class Walls : public testing::Test {
  protected:
-  Walls() { state.start({}); }
-
   /// Walls that face `normal`, one for each offset.
   void stand(const Point2& normal, const std::vector<double>& offsets_m) {
     for (const double offset_m : offsets_m) {
-      switches.push_back({.surface = {.normal = normal, .offset_deviation_m = kCell_m}, .holds = 1.0});
-      state.append(offset_m, kCell_m, 0.01);
+      faces.push_back({.normal = normal, .cells_m = kCell_m, .off_m = offset_m});
     }
   }
   [[nodiscard]] Eigen::Matrix2d unknown() const {
-    const UnknownOfCells both = unknown_of_cells(switches, state);
+    const UnknownOfCells both = unknown_of_cells(faces);
     return both.scattered + both.alike;
   }
 
-  std::vector<SurfaceSwitch> switches;
-  OffsetState state;
+  std::vector<SupportingFace> faces;
 };
 
 const std::vector<double> kScattered{-0.04, -0.03, -0.02, 0.0, 0.02, 0.03, 0.04, 0.0};
@@ -49,7 +45,7 @@ TEST_F(Walls, AreOneWitnessWhereAllStandOffAlike) {
   EXPECT_GT(unknown()(0, 0), 0.8 * kCell_m2);
   EXPECT_GT(unknown()(1, 1), 0.8 * kCell_m2);
   EXPECT_LE(unknown()(0, 0), kCell_m2);
-  EXPECT_NEAR(unknown_of_cells(switches, state).scattered(0, 0), kCell_m2 / 8.0, 1e-9);
+  EXPECT_NEAR(unknown_of_cells(faces).scattered(0, 0), kCell_m2 / 8.0, 1e-9);
 }
 
 TEST_F(Walls, LeaveMoreOpenInAMapThatIsDrawnWorseThanItsCells) {
@@ -73,7 +69,7 @@ TEST_F(Walls, DoNotCountWhereTheyWereMoved) {
   stand(kAlongY, kScattered);
   const double before_m2 = unknown()(0, 0);
   stand(kAlongX, {0.4, -0.5, 0.6});
-  for (std::size_t i = switches.size() - 3; i < switches.size(); ++i) switches[i].holds = 0.0;
+  for (std::size_t i = faces.size() - 3; i < faces.size(); ++i) faces[i].witnesses = 0.0;
   EXPECT_NEAR(unknown()(0, 0), before_m2, 1e-12);
 }
 
