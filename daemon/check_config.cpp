@@ -30,7 +30,16 @@ namespace {
 namespace fs = std::filesystem;
 using Level = Finding::Level;
 
-constexpr const char* kRuntimeFolder = "/run/deltamap";  // of systemd/deltamap.service
+// Of systemd/deltamap.service: where its settings are, all that it may write to, and what it cannot see.
+constexpr const char* kServiceSettings = "/etc/deltamap";
+constexpr const char* kStateFolder = "/var/lib/deltamap";
+constexpr const char* kRuntimeFolder = "/run/deltamap";
+constexpr const char* kHidden[] = {"/home", "/root", "/run/user"};
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  const fs::path within = fs::absolute(file).lexically_normal().lexically_relative(folder);
+  return !within.empty() && *within.begin() != "..";
+}
 
 Finding settings_finding(const Settings& settings, const std::string& config) {
   return {Level::kOk, "settings",
@@ -198,6 +207,28 @@ Finding page_finding(const DashboardSettings& page) {
 
 }  // namespace
 
+std::vector<Finding> what_the_service_may_not(const Settings& settings) {
+  std::vector<Finding> findings;
+  const auto add = [&](const char* key, const std::string& file, const char* why) {
+    findings.push_back(
+        {Level::kWarning, "service", std::string("'") + key + "' " + file + ": deltamap.service " + why});
+  };
+  const std::string& map = settings.map.file;
+  const bool is_hidden = std::any_of(std::begin(kHidden), std::end(kHidden),
+                                     [&](const char* folder) { return !map.empty() && is_below(map, folder); });
+  if (is_hidden) add("map.file", map, "does not see what lies in /home, /root and /run/user");
+  const auto require_written = [&](const char* key, const std::string& file) {
+    if (file.empty() || is_below(file, kStateFolder) || is_below(file, kRuntimeFolder)) return;
+    add(key, file, "may write to /var/lib/deltamap and /run/deltamap alone");
+  };
+  require_written("map.store", settings.map.store);
+  require_written("map.newest", settings.map.newest);
+  require_written("recording.file", settings.recording.file);
+  require_written("control.socket", settings.control.socket);
+  require_written("poses.socket", settings.poses.socket);
+  return findings;
+}
+
 std::vector<Finding> check_config(const Settings& settings, const std::string& config, const std::string& out) {
   std::vector<Finding> findings{settings_finding(settings, config)};
   const auto first = check_map(settings, config, findings);
@@ -215,8 +246,12 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
     findings.push_back(place_finding("recording", file, file, [&] { return judged_file_place(file); }));
   }
   if (!out.empty()) {
-    findings.push_back(place_finding("out", out, fs::path(out) / "report.json",
-                                     [&] { return judged_out_place(out, settings.map.file); }));
+    findings.push_back(
+        place_finding("out", out, fs::path(out) / "report.json", [&] { return judged_out_place(out, settings); }));
+  }
+  if (is_below(config, kServiceSettings)) {
+    const std::vector<Finding> more = what_the_service_may_not(settings);
+    findings.insert(findings.end(), more.begin(), more.end());
   }
   return findings;
 }

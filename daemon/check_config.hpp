@@ -27,6 +27,9 @@ struct Finding {
 /// The same of settings with mistakes, as far as what a key means is known: map and ports.
 [[nodiscard]] std::vector<Finding> check_what_is_read(const SettingsReading& reading, const std::string& config);
 
+/// What the systemd unit would keep from these settings: told of settings in /etc/deltamap, which are its own.
+[[nodiscard]] std::vector<Finding> what_the_service_may_not(const Settings& settings);
+
 [[nodiscard]] bool has_error(const std::vector<Finding>& findings);
 
 /// A line each, and one that sums up.

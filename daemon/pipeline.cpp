@@ -14,6 +14,7 @@
 #include "daemon/maps/newest_map.hpp"
 #include "daemon/records/map_order.hpp"
 #include "daemon/records/recorder.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "daemon/stages/delta_stage.hpp"
 #include "daemon/stages/localization_stage.hpp"

@@ -27,6 +27,7 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/outputs/state_folders.hpp"
 #include "daemon/pipeline.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/settings/settings_documents.hpp"
 #include "daemon/settings/settings_reading.hpp"
@@ -135,8 +136,16 @@ void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
   }
 }
 
+/// As little as a start needs of the settings, and a reload too: an empty file, or one cut short, is no settings file.
+void require_map_named(const Settings& settings, const std::string& file) {
+  if (settings.map.file.empty()) throw SettingsError(file + ": 'map.file' names no map");
+  std::error_code error;
+  if (!std::filesystem::exists(settings.map.file, error))
+    throw SettingsError(settings.map.file + ": " + (error ? error.message() : "No such file or directory"));
+}
+
 OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Console& console) {
-  if (settings.map.file.empty()) throw StartError(line.config + ": 'map.file' names no map");
+  require_map_named(settings, line.config);
   try {
     FirstMap map = read_first_map(settings.map.file, memory_limit());
     for (const std::string& warning : map.warnings) console.log(LogLevel::kWarn, warning);
@@ -149,14 +158,14 @@ OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Conso
 }
 
 /// Made where there is none.
-std::filesystem::path folder_to_write(const std::string& out, const std::filesystem::path& map) {
+std::filesystem::path folder_to_write(const std::string& out, const Settings& settings) {
   std::error_code error;
   std::filesystem::create_directories(out, error);
   if (error) {
     const std::string why = why_no_folder_for(std::filesystem::path(out) / "report.json");
     throw StartError(out + ": cannot be made: " + (why.empty() ? error.message() : why));
   }
-  (void)judged_out_place(out, map);
+  (void)judged_out_place(out, settings);
   return out;
 }
 
@@ -219,14 +228,16 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   Pipeline::Options options;
   options.live = std::make_shared<LiveSettings>(settings, [line] {
     require_plain_file(line.config);
-    return read_settings_of_a_run(line.config, line.overrides);
+    Settings read = read_settings_of_a_run(line.config, line.overrides);
+    require_map_named(read, line.config);
+    return read;
   });
   const OccupancyGrid first = first_map(settings, line, console);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);
   options.start.map = std::make_shared<const OccupancyGrid>(first);
   make_state_folders(settings, line.config);
-  if (!line.out.empty()) options.out = folder_to_write(line.out, settings.map.file);
+  if (!line.out.empty()) options.out = folder_to_write(line.out, settings);
   std::optional<OpenedStore> store;
   if (!settings.map.store.empty()) store = open_store(settings.map.store, first);
   if (store) options.start = std::move(store->start);

@@ -21,23 +21,6 @@ std::vector<double> known(std::vector<double> values) {
   return values;
 }
 
-template <typename Statistic>
-Certainty by_bootstrap(const std::vector<double>& given, Statistic&& statistic) {
-  const std::vector<double> values = known(given);
-  Certainty certainty{.runs = values.size()};
-  if (values.size() < kLeastRuns) return certainty;
-  Random random{kSeed};
-  std::vector<double> answers;
-  std::vector<double> drawn(values.size());
-  for (int i = 0; i < kResamples; ++i) {
-    for (double& value : drawn) value = values[random.index_below(static_cast<std::uint32_t>(values.size()))];
-    answers.push_back(statistic(drawn));
-  }
-  certainty.low = quantile(answers, kOutside);
-  certainty.high = quantile(answers, 1.0 - kOutside);
-  return certainty;
-}
-
 /// The figures of each resample. Few runs are drawn alike again and again: then what is known is taken.
 std::vector<std::vector<double>> resampled(std::size_t runs, const FiguresOfRuns& figures_of) {
   Random random{kSeed};
@@ -56,16 +39,6 @@ std::vector<std::vector<double>> resampled(std::size_t runs, const FiguresOfRuns
 
 }  // namespace
 
-Certainty certainty_of_mean(const std::vector<double>& values) { return by_bootstrap(values, mean_of); }
-
-Certainty certainty_of_quantile(const std::vector<double>& values, double share) {
-  return by_bootstrap(values, [share](const std::vector<double>& drawn) { return quantile(drawn, share); });
-}
-
-Certainty certainty_of_root_mean_square(const std::vector<double>& values) {
-  return by_bootstrap(values, root_mean_square);
-}
-
 std::vector<Certainty> certainties_of_runs(std::size_t runs, const FiguresOfRuns& figures_of) {
   std::vector<std::size_t> each(runs);
   for (std::size_t i = 0; i < runs; ++i) each[i] = i;
@@ -81,6 +54,33 @@ std::vector<Certainty> certainties_of_runs(std::size_t runs, const FiguresOfRuns
     certainties[figure].high = quantile(values, 1.0 - kOutside);
   }
   return certainties;
+}
+
+namespace {
+
+/// Each value is a run of its own.
+template <typename Statistic>
+Certainty by_bootstrap(const std::vector<double>& given, Statistic&& statistic) {
+  const std::vector<double> values = known(given);
+  const auto statistic_of = [&](const std::vector<std::size_t>& drawn) -> std::vector<double> {
+    std::vector<double> of;
+    of.reserve(drawn.size());
+    for (const std::size_t run : drawn) of.push_back(values[run]);
+    return {statistic(of)};
+  };
+  return certainties_of_runs(values.size(), statistic_of).front();
+}
+
+}  // namespace
+
+Certainty certainty_of_mean(const std::vector<double>& values) { return by_bootstrap(values, mean_of); }
+
+Certainty certainty_of_quantile(const std::vector<double>& values, double share) {
+  return by_bootstrap(values, [share](const std::vector<double>& drawn) { return quantile(drawn, share); });
+}
+
+Certainty certainty_of_root_mean_square(const std::vector<double>& values) {
+  return by_bootstrap(values, root_mean_square);
 }
 
 Certainty certainty_of_extreme(const std::vector<double>& values) { return {.runs = known(values).size()}; }

@@ -12,6 +12,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
+#include <optional>
 #include <set>
 
 #include "daemon/control/request.hpp"
@@ -44,6 +45,11 @@ class Session : public std::enable_shared_from_this<Session> {
     say(line);
   }
 
+  /// Since when it has said nothing; nothing while it is being answered.
+  [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> idle_since() const {
+    return awaits_ || ends_ ? std::nullopt : std::optional{spoke_};
+  }
+
   void close() {
     error_code ignored;
     patience_.cancel();
@@ -56,6 +62,7 @@ class Session : public std::enable_shared_from_this<Session> {
       return say_and_end(error_line("a request has at most " + std::to_string(kLongestLine) + " bytes"));
     }
     if (error) return on_end_(this);
+    spoke_ = std::chrono::steady_clock::now();
     const std::string line = received_.substr(0, size - 1);
     received_.erase(0, size);
     wait_for_reply();
@@ -98,6 +105,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::function<void(Session*)> on_end_;
   std::string received_;
   std::string reply_;
+  std::chrono::steady_clock::time_point spoke_ = std::chrono::steady_clock::now();
   std::uint64_t number_ = 0;  // of the request that is being answered
   bool awaits_ = false;
   bool ends_ = false;
@@ -111,7 +119,18 @@ struct Server::State {
         clients{sockets::listening_at(loop, options.socket),
                 [this](Protocol::socket socket) { welcome(std::move(socket)); }} {}
 
+  /// Whoever says nothing must not keep out an order to stop: the one that has been silent longest goes.
+  void make_room() {
+    Session* longest = nullptr;
+    for (const auto& session : sessions) {
+      if (!session->idle_since()) continue;
+      if (longest == nullptr || *session->idle_since() < *longest->idle_since()) longest = session.get();
+    }
+    if (longest != nullptr) end(longest);
+  }
+
   void welcome(Protocol::socket socket) {
+    if (sessions.size() >= kMostClients) make_room();
     const bool is_full = sessions.size() >= kMostClients;
     const auto session = std::make_shared<Session>(std::move(socket), options, [this](Session* ended) { end(ended); });
     sessions.insert(session);
@@ -125,24 +144,29 @@ struct Server::State {
   }
 
   void close() {
+    remove_file();
     clients.close();
     for (const auto& session : sessions) session->close();
     sessions.clear();
     loop.stop();
   }
 
+  /// While it still listens: a daemon that follows may make its own from then on.
+  void remove_file() {
+    std::error_code ignored;
+    if (std::exchange(has_file, false)) std::filesystem::remove(options.socket, ignored);
+  }
+
   asio::io_context loop{1};
   Options options;
+  bool has_file = true;  // it has begun to listen
   sockets::AcceptLoop<Protocol> clients;
   std::set<std::shared_ptr<Session>> sessions;
 };
 
 Server::Server(Options options) : state_{std::make_unique<State>(std::move(options))} {}
 
-Server::~Server() {
-  std::error_code ignored;
-  std::filesystem::remove(state_->options.socket, ignored);
-}
+Server::~Server() { state_->remove_file(); }
 
 void Server::run() {
   const auto keep_alive = asio::make_work_guard(state_->loop);

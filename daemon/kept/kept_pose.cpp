@@ -59,15 +59,6 @@ std::optional<KeptPose> pose_in(const Json& json, std::uint64_t first_map) {
 
 }  // namespace
 
-MemoryPlaces memory_places(const std::filesystem::path& store) {
-  if (store.empty()) return {};
-  MemoryPlaces places{store, store, store};
-  places.pose.replace_extension(".pose.json");
-  places.stability.replace_extension(".stability");
-  places.saved_map.replace_extension(".saved.yaml");
-  return places;
-}
-
 std::string json_text(const KeptPose& pose) {
   Json json;
   json["map"] = hex_of(pose.first_map);

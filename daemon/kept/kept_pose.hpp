@@ -25,14 +25,6 @@ struct KeptPose {
   std::optional<localization::motion::DriveCalibration> calibration{};  ///< a start uses it whatever the pose is worth
 };
 
-/// Where things are kept that belong to a store; all empty where there is none.
-struct MemoryPlaces {
-  std::filesystem::path pose;       ///< NAME.pose.json
-  std::filesystem::path stability;  ///< NAME.stability
-  std::filesystem::path saved_map;  ///< NAME.saved.yaml with its PGM: what `ctl save` writes
-};
-[[nodiscard]] MemoryPlaces memory_places(const std::filesystem::path& store);
-
 [[nodiscard]] std::string json_text(const KeptPose& pose);
 
 /// The pose that a start may use, or why there is none.

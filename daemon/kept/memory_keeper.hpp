@@ -12,6 +12,7 @@
 #include "daemon/kept/kept_pose.hpp"
 #include "daemon/kept/kept_stability.hpp"
 #include "daemon/outputs/retrying_output.hpp"
+#include "daemon/settings/memory_places.hpp"
 
 namespace deltamap::daemon {
 

@@ -18,7 +18,8 @@ void remove_old(const std::filesystem::path& file) {
 
 /// A history that begins with this run, whenever it can be opened: that of a run before goes.
 StoreToKeep begun_history(const std::filesystem::path& file, const StartMap& start) {
-  return {.open =
+  return {.to_lock = file,
+          .open =
               [file, first = start.map] {
                 for (const char* part : {"", "-wal", "-shm"}) remove_old(file.string() + part);
                 return mapping::store::MapStore{file, *first};

@@ -21,7 +21,8 @@ std::string judged_newest_place(const MapSettings& map) {
 std::optional<FileLock> newest_map_lock(const MapSettings& map) {
   if (map.newest.empty()) return std::nullopt;
   (void)judged_newest_place(map);
-  return or_start_error([&] { return lock_of_file(map.newest); });
+  // Whatever the description is called, the picture is the one that is written.
+  return or_start_error([&] { return lock_of_file(std::filesystem::path(map.newest).replace_extension(".pgm")); });
 }
 
 }  // namespace deltamap::daemon

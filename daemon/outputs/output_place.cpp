@@ -11,6 +11,7 @@
 #include "core/file_lock.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/outputs/state_folders.hpp"
+#include "daemon/settings/settings.hpp"
 #include "daemon/settings/start_error.hpp"
 
 namespace deltamap::daemon {
@@ -62,6 +63,7 @@ std::string judged_store_place(const fs::path& store) {
   require_file_in_folder(file);
   std::error_code error;
   const bool is_there = fs::exists(file, error);
+  if (is_there && !fs::is_regular_file(file, error)) throw StartError(file.string() + ": is no plain file");
   if (is_there && !may(file, R_OK)) throw StartError(cannot_be("read", file, errno));
   or_start_error([&] { require_lockable_file(file); });
   const bool is_writable = (!is_there || may(file, W_OK)) && may(folder_of(file), W_OK | X_OK);
@@ -77,7 +79,7 @@ std::string judged_file_place(const fs::path& name) {
   return why;
 }
 
-std::string judged_out_place(const fs::path& out, const fs::path& map) {
+std::string judged_out_place(const fs::path& out, const Settings& settings) {
   std::error_code error;
   if (!fs::is_directory(out, error)) {
     throw StartError(out.string() + (error ? ": cannot be opened: " + error.message() : ": is no folder"));
@@ -85,7 +87,10 @@ std::string judged_out_place(const fs::path& out, const fs::path& map) {
   std::string why = why_not_writable(out, out);
   or_start_error([&] { require_lockable_folder(out); });
   try {
-    require_map_elsewhere(map, out);
+    require_map_elsewhere(settings.map.file, out);
+    require_no_other_maps(out, settings.map.store);
+  } catch (const FileInUse&) {
+    throw;
   } catch (const std::runtime_error& error_) {
     throw StartError(error_.what());
   }

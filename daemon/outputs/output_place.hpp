@@ -8,6 +8,8 @@
 
 namespace deltamap::daemon {
 
+struct Settings;
+
 // Each throws FileInUse where another program has the place, StartError where only a person can mend it, and answers
 // why the run would go on without the output for now; empty: nothing is in the way. The folder must be there.
 
@@ -15,7 +17,7 @@ namespace deltamap::daemon {
 [[nodiscard]] std::string judged_store_place(const std::filesystem::path& store);
 /// Of a file that is begun anew or replaced: the recording, a map.
 [[nodiscard]] std::string judged_file_place(const std::filesystem::path& name);
-/// `out` is the folder of --out; `map` is M_0, which must not be overwritten.
-[[nodiscard]] std::string judged_out_place(const std::filesystem::path& out, const std::filesystem::path& map);
+/// `out` is the folder of --out: neither M_0 nor maps of others may be overwritten there.
+[[nodiscard]] std::string judged_out_place(const std::filesystem::path& out, const Settings& settings);
 
 }  // namespace deltamap::daemon

@@ -101,6 +101,18 @@ void require_map_elsewhere(const std::filesystem::path& map, const std::filesyst
   }
 }
 
+void require_no_other_maps(const std::filesystem::path& out, const std::filesystem::path& own_store) {
+  require_lockable_file(out / "map.pgm");
+  const auto history = out / "map_store.sqlite";
+  std::error_code ignored;
+  const bool is_own = !own_store.empty() && std::filesystem::equivalent(history, own_store, ignored);
+  if (is_own || !std::filesystem::exists(history, ignored)) return;
+  require_lockable_file(history);
+  if (std::filesystem::exists(out / "changes.jsonl", ignored)) return;
+  throw std::runtime_error(history.string() +
+                           ": --out would replace it, and no run with --out has left it; give another folder");
+}
+
 StagingFolder::StagingFolder(std::filesystem::path target)
     : target_{std::filesystem::absolute(target).lexically_normal()} {
   if (!target_.has_filename()) target_ = target_.parent_path();
@@ -108,7 +120,10 @@ StagingFolder::StagingFolder(std::filesystem::path target)
   if (std::filesystem::exists(target_) && !std::filesystem::is_directory(target_)) {
     throw std::runtime_error(target_.string() + ": is no folder");
   }
-  if (std::filesystem::exists(target_)) lock_ = lock_of_folder(target_);
+  if (std::filesystem::exists(target_)) {
+    lock_ = lock_of_folder(target_);
+    require_no_other_maps(target_);
+  }
   staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
   std::filesystem::create_directories(staging_, error);
   if (error) throw std::runtime_error(staging_.string() + ": cannot create: " + error.message());
@@ -122,6 +137,7 @@ StagingFolder::~StagingFolder() {
 void StagingFolder::commit() {
   std::filesystem::create_directories(target_);
   if (!lock_) lock_ = lock_of_folder(target_);
+  require_no_other_maps(target_);
   for (const auto& entry : std::filesystem::directory_iterator(staging_)) {
     move_into_place(entry.path(), target_ / entry.path().filename());
   }

@@ -77,11 +77,15 @@ struct RunReport {
 /// Throws std::runtime_error where `out` is the folder of the map that the run begins with: it would be overwritten.
 void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out);
 
+/// Throws FileInUse where another program keeps its maps in `out`, std::runtime_error where a store lies there that no
+/// run with --out has left: both would be replaced. A store that the settings name is the run's own.
+void require_no_other_maps(const std::filesystem::path& out, const std::filesystem::path& own_store = {});
+
 /// A folder that comes into being whole: files are written to path() and moved into place by commit(). What was not
 /// committed disappears.
 class StagingFolder {
  public:
-  /// Throws std::runtime_error naming the folder, FileInUse where a daemon writes there.
+  /// Throws std::runtime_error naming the folder, FileInUse where a daemon writes there; so does commit().
   explicit StagingFolder(std::filesystem::path target);
   ~StagingFolder();
   StagingFolder(const StagingFolder&) = delete;

@@ -17,6 +17,7 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/records/journal.hpp"
 #include "daemon/records/live_recording.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "daemon/telemetry/log_line.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/telemetry.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/settings/run_contradictions.hpp"
+#include "daemon/settings/memory_places.hpp"
 
 #include <filesystem>
 #include <stdexcept>
@@ -16,9 +17,14 @@ namespace fs = std::filesystem;
 
 struct NamedFile {
   std::string key;   ///< empty: the settings file, which no key names
-  std::string name;  ///< "'map.store'"
+  std::string part;  ///< what is named after the key's file: "image"; empty: that file itself
   fs::path file;
   bool is_written = true;
+
+  [[nodiscard]] std::string name() const {
+    if (key.empty()) return "this settings file";
+    return (part.empty() ? "" : "the " + part + " of ") + "'" + key + "'";
+  }
 };
 
 /// Where it cannot be looked at, its name stands for it.
@@ -50,20 +56,30 @@ fs::path image_of(const fs::path& yaml) {
 
 /// What is only read comes first: an output that is in its place is the one that is told.
 std::vector<NamedFile> files_of(const Settings& settings, const std::string& file) {
-  std::vector<NamedFile> files{{"", "this settings file", file, false}};
+  std::vector<NamedFile> files{{"", "", file, false}};
   const auto add = [&](const std::string& key, const std::string& named, bool is_written) {
-    if (!named.empty()) files.push_back({key, "'" + key + "'", named, is_written});
+    if (!named.empty()) files.push_back({key, "", named, is_written});
   };
   const auto add_map = [&](const std::string& key, const std::string& yaml, bool is_written) {
     add(key, yaml, is_written);
-    if (!yaml.empty()) {
-      const fs::path image = is_written ? fs::path(yaml).replace_extension(".pgm") : image_of(yaml);
-      files.push_back({key, "the image of '" + key + "'", image, is_written});
-    }
+    if (yaml.empty()) return;
+    files.push_back({key, "image", is_written ? fs::path(yaml).replace_extension(".pgm") : image_of(yaml), is_written});
   };
   add_map("map.file", settings.map.file, false);
   add("dashboard.token_file", settings.dashboard.token_file, false);
   add("map.store", settings.map.store, true);
+  if (const std::string& store = settings.map.store; !store.empty()) {
+    const MemoryPlaces kept = memory_places(store);
+    const auto add_kept = [&](const char* part, const fs::path& place) {
+      files.push_back({"map.store", part, place, true});
+    };
+    add_kept("log", store + "-wal");
+    add_kept("log's index", store + "-shm");
+    add_kept("kept pose", kept.pose);
+    add_kept("kept stability", kept.stability);
+    add_kept("saved map", kept.saved_map);
+    add_kept("saved map's image", fs::path(kept.saved_map).replace_extension(".pgm"));
+  }
   add_map("map.newest", settings.map.newest, true);
   add("control.socket", settings.control.socket, true);
   add("poses.socket", settings.poses.socket, true);
@@ -79,10 +95,10 @@ void add_file_contradictions(const Settings& settings, const std::string& file, 
       const NamedFile& other = files[early];
       const bool is_told = !found.empty() && found.back().key == one.key;
       if (is_told || one.key == other.key || !is_same(one.file, other.file)) continue;
-      const std::string subject = one.name.starts_with('\'') ? "" : "its image ";
+      const std::string subject = one.part.empty() ? "" : "its " + one.part + " ";
       std::vector<std::string> others;
       if (!other.key.empty()) others.push_back(other.key);
-      found.push_back({one.key, subject + "must not be the same file as " + other.name, std::move(others)});
+      found.push_back({one.key, subject + "must not be the same file as " + other.name(), std::move(others)});
     }
   }
 }

@@ -139,13 +139,21 @@ struct LineStream::State {
   }
 
   void close() {
+    remove_file();
     arrivals.close();
     end_if([](Client&) { return true; });
     loop.stop();
   }
 
+  /// While it still listens: a daemon that follows may make its own from then on.
+  void remove_file() {
+    std::error_code ignored;
+    if (std::exchange(has_file, false)) std::filesystem::remove(options.socket, ignored);
+  }
+
   asio::io_context loop{1};
   Options options;
+  bool has_file = true;  // it has begun to listen
   AcceptLoop<Protocol> arrivals;
   asio::posix::stream_descriptor event;
   std::uint64_t woken = 0;
@@ -155,10 +163,7 @@ struct LineStream::State {
 
 LineStream::LineStream(Options options) : state_{std::make_unique<State>(std::move(options))} {}
 
-LineStream::~LineStream() {
-  std::error_code ignored;
-  std::filesystem::remove(state_->options.socket, ignored);
-}
+LineStream::~LineStream() { state_->remove_file(); }
 
 bool LineStream::has_clients() const { return state_->count.load(std::memory_order_relaxed) > 0; }
 

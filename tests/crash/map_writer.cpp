@@ -18,6 +18,7 @@
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/maps/newest_map.hpp"
 #include "daemon/maps/store_opening.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "mapping/store/map_store.hpp"
 
 namespace deltamap::daemon {

@@ -146,6 +146,25 @@ TEST_F(CheckConfig, TheUnitMakesTheFolderOfItsSockets) {
   EXPECT_EQ(finding("control").text, "/run/deltamap/ctl.sock: as a service; the unit makes /run/deltamap");
 }
 
+TEST(ServiceSettings, NameWhatTheUnitWouldKeepFromThem) {
+  Settings settings;
+  settings.map.file = "/home/me/maps/../m0.yaml";
+  settings.map.store = "/srv/robot/store.sqlite";
+  settings.map.newest = "/var/lib/deltamap/map.yaml";
+  settings.recording.file = "/var/lib/deltamap/../elsewhere/bytes.pcapng";
+  settings.control.socket = "/run/deltamap/ctl.sock";
+  settings.poses.socket = "";
+  const std::vector<Finding> findings = what_the_service_may_not(settings);
+  ASSERT_EQ(findings.size(), 3U);
+  EXPECT_EQ(
+      findings[0].text,
+      "'map.file' /home/me/maps/../m0.yaml: deltamap.service does not see what lies in /home, /root and /run/user");
+  EXPECT_EQ(findings[1].text,
+            "'map.store' /srv/robot/store.sqlite: deltamap.service may write to /var/lib/deltamap and "
+            "/run/deltamap alone");
+  EXPECT_NE(findings[2].text.find("'recording.file'"), std::string::npos);
+}
+
 TEST_F(CheckConfig, AnOutFolderThatHoldsTheMapIsAnError) {
   settings_.map.file = folder_.path() / "map.yaml";
   write_grid(first_, settings_.map.file);

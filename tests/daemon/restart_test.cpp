@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "daemon/kept/kept_stability.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "mapping/store/map_store.hpp"
 #include "tests/support/pipeline_fixture.hpp"
 

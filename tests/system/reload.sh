@@ -6,11 +6,11 @@ set -euo pipefail
 bin=$1
 source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 write_first_map
-cp config/simulation.yaml "$out/robot.yaml"
-plain=("${on_the_world[@]}")
-plain[1]=$out/robot.yaml
+# write_settings [OPTION...]: a settings file that names the map
+write_settings() { "$bin/deltamapd" --config config/simulation.yaml --set map.file="$out/m0.yaml" "$@" --print-config >"$out/robot.yaml"; }
+write_settings
 
-setsid "$bin/deltamapd" "${plain[@]}" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser" --set map.store= --set recording.file= \
+setsid "$bin/deltamapd" --config "$out/robot.yaml" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser" --set map.store= --set recording.file= \
   --set control.socket="$out/ctl.sock" 2>"$out/daemon.log" &
 daemon=$!
 for _ in $(seq 100); do ctl status >/dev/null 2>&1 && break; sleep 0.1; done
@@ -31,11 +31,11 @@ logs() {
 key() { "$bin/deltamapd" --config "$out/robot.yaml" --print-config | grep -c "$1" >/dev/null || fail "the file is not as it should be"; }
 
 reloads 0 "the settings are as they were"
-printf '\nrecording: {max_gigabytes: 2}\n' >>"$out/robot.yaml"
+write_settings --set recording.max_gigabytes=2
 reloads 0 "needs a restart: recording.max_gigabytes: 2 (in force 8)"
 logs "reload: needs a restart: recording.max_gigabytes"
 
-"$bin/deltamapd" --config config/simulation.yaml --set navigation.safety.margin_m=0.21 --print-config >"$out/robot.yaml"
+write_settings --set navigation.safety.margin_m=0.21
 key 'margin_m: 0.21'
 kill -s HUP "$daemon"
 logs "reload: taken: navigation.safety.margin_m: 0.21 (before "
@@ -47,15 +47,19 @@ grep -qF "robot.yaml:1:7: seed: needs a whole number" "$out/reload.log" || fail 
 grep -qF "robot.yaml:2:1: lazer: unknown section (nearest section laser)" "$out/reload.log" || fail "nor the second"
 kill -s HUP "$daemon"
 logs "warning reload: $out/robot.yaml:2:1: lazer: unknown section"
+printf 'map: {file: %s}\n' "$out/none.yaml" >"$out/robot.yaml"
+reloads 1 "none.yaml: No such file or directory"
+: >"$out/robot.yaml"
+reloads 1 "'map.file' names no map"
 rm "$out/robot.yaml"
 reloads 1 "cannot read the settings: No such file or directory"
 mkfifo "$out/robot.yaml"
 reloads 1 "is no plain file"
 rm "$out/robot.yaml"
 
-"$bin/deltamapd" --config config/simulation.yaml --set navigation.safety.margin_m=0.21 --print-config >"$out/robot.yaml"
+write_settings --set navigation.safety.margin_m=0.21
 reloads 0 "the settings are as they were"
 kill "$daemon"
 wait "$daemon" || fail "the daemon did not end well"
 daemon=
-echo "reload: 7 by ctl, 2 by SIGHUP"
+echo "reload: 9 by ctl, 2 by SIGHUP"

@@ -31,6 +31,8 @@ expect 2 "bad.yaml: key 'resolution' is missing" --set map.file="$out/bad.yaml"
 expect 2 "is no folder" --out "$out/file/run"
 expect 2 "is no folder" --set map.store="$out/file/store.sqlite"
 expect 2 "is a directory" --set map.store="$out"
+mkfifo "$out/pipe"
+expect 2 "pipe: is no plain file" --set map.store="$out/pipe"
 expect 2 "is no folder" --set recording.file="$out/file/bytes.pcapng"
 expect 2 "map.fiel" --set map.fiel=x
 expect 2 "map.store: must not be the same file as 'map.file'" --set map.store="$out/m0.yaml"

@@ -344,7 +344,10 @@ void SettingsReader::add_contradiction(const std::string& key, const std::string
   std::vector<std::string> concerned{key};
   concerned.insert(concerned.end(), others.begin(), others.end());
   const auto is_doubtful = [&](const std::string& one) { return read_.doubtful.contains(one); };
-  if (!read_.is_whole || std::any_of(concerned.begin(), concerned.end(), is_doubtful)) return;
+  if (std::any_of(concerned.begin(), concerned.end(), is_doubtful)) return;
+  // What could not be read may say otherwise, but not of keys that are given elsewhere.
+  const auto is_given = [&](const std::string& one) { return read_.places.contains(one); };
+  if (!read_.is_whole && !std::all_of(concerned.begin(), concerned.end(), is_given)) return;
   const auto given = std::find_if(concerned.begin(), concerned.end(),
                                   [&](const std::string& one) { return read_.places.contains(one); });
   SettingPlace place{.name = file_};

@@ -134,18 +134,47 @@ TEST_F(ServerTest, AnOverlongLineIsAnErrorAndTheEndOfThatClientOnly) {
 }
 
 TEST_F(ServerTest, AClientTooManyIsToldSoAndPlacesComeFree) {
+  std::vector<Server::Reply> waiting;
+  std::promise<void> all_wait;
+  serve([&](const std::string& line, bool, const Server::Reply& reply) {
+    if (line == "now") return reply("re: now");
+    waiting.push_back(reply);
+    if (waiting.size() == 16) all_wait.set_value();
+  });
+  std::vector<std::unique_ptr<SocketClient>> clients;
+  for (int i = 0; i < 16; ++i) {
+    clients.push_back(std::make_unique<SocketClient>(socket()));
+    ASSERT_TRUE(clients.back()->send("hello\n"));
+  }
+  all_wait.get_future().wait();
+  SocketClient late{socket()};
+  EXPECT_EQ(late.line(), error_line("too many clients"));
+  for (const Server::Reply& reply : waiting) reply("at last");
+  for (const auto& client : clients) EXPECT_EQ(client->line(), "at last");
+  EXPECT_EQ(SocketClient{socket()}.asked("now"), "re: now");
+}
+
+TEST_F(ServerTest, ClientsThatSayNothingKeepNobodyOut) {
   serve_echo();
   std::vector<std::unique_ptr<SocketClient>> clients;
   for (int i = 0; i < 16; ++i) {
     clients.push_back(std::make_unique<SocketClient>(socket()));
     ASSERT_EQ(clients.back()->asked("hello"), "re: hello");
   }
-  SocketClient late{socket()};
-  EXPECT_EQ(late.line(), error_line("too many clients"));
-  clients.clear();
-  std::string reply;
-  for (int tries = 0; tries < 1000 && reply != "re: now"; ++tries) reply = SocketClient{socket()}.asked("now");
-  EXPECT_EQ(reply, "re: now");
+  ASSERT_EQ(clients.front()->asked("still here"), "re: still here");
+  EXPECT_EQ(SocketClient{socket()}.asked("drive off"), "re: drive off");
+  EXPECT_EQ(clients[1]->line(), "") << "it had been silent longest";
+  EXPECT_EQ(clients.front()->asked("and here"), "re: and here");
+}
+
+TEST_F(ServerTest, TheSocketOfADaemonThatFollowsIsLeftAlone) {
+  serve_echo();
+  server_->stop();
+  thread_.join();
+  ASSERT_FALSE(fs::exists(socket())) << "gone before the server is";
+  Server next{Server::Options{socket(), [](const std::string&, bool, const Server::Reply&) {}, "too late", 60.0}};
+  server_.reset();
+  EXPECT_TRUE(fs::exists(socket()));
 }
 
 TEST_F(ServerTest, TheSocketIsForOwnerAndGroupAndGoneAtTheEnd) {

@@ -5,6 +5,7 @@
 
 #include "core/grid_file.hpp"
 #include "daemon/kept/memory_keeper.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace deltamap::daemon {

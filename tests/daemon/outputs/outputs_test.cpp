@@ -5,11 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/file_lock.hpp"
 #include "daemon/outputs/line_file.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"
 #include "daemon/telemetry/version.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -61,6 +63,40 @@ TEST(StagingFolder, ACommittedFolderReplacesFilesAndKeepsTheOthers) {
   }
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "out/trajectory.tum"), 3u);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/notes.txt"));
+}
+
+/// What a folder says to a run that would write there.
+std::string refusal_of(const std::filesystem::path& folder) {
+  try {
+    const StagingFolder staging{folder};
+    return {};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+TEST(StagingFolder, AStoreThatNoSuchRunHasLeftIsNotReplaced) {
+  const test::TemporaryFolder folder;
+  const auto store = folder.write("map_store.sqlite", "years of work");
+  EXPECT_EQ(refusal_of(folder.path()),
+            store.string() + ": --out would replace it, and no run with --out has left it; give another folder");
+  (void)folder.write("changes.jsonl", "");
+  EXPECT_EQ(refusal_of(folder.path()), "") << "an earlier run with --out";
+  EXPECT_NO_THROW(require_no_other_maps(folder.path(), store));
+}
+
+TEST(StagingFolder, MapsThatADaemonKeepsThereAreNotReplaced) {
+  const test::TemporaryFolder folder;
+  (void)folder.write("changes.jsonl", "");
+  for (const char* name : {"map_store.sqlite", "map.pgm"}) {
+    const auto lock = lock_of_file(folder.write(name, "x"));
+    EXPECT_NE(refusal_of(folder.path()).find(std::string{name} + ": is in use by "), std::string::npos) << name;
+  }
+  StagingFolder staging{folder.path()};
+  LineFile{staging.path() / "map_store.sqlite"}.write("new");
+  const auto lock = lock_of_file(folder.path() / "map_store.sqlite");  // a daemon that has begun meanwhile
+  EXPECT_THROW(staging.commit(), FileInUse);
+  EXPECT_EQ(test::content_of(folder.path() / "map_store.sqlite"), "x");
 }
 
 TEST(StagingFolder, AFileInPlaceOfTheFolderIsRefusedByName) {

@@ -70,6 +70,18 @@ TEST_F(RunContradictions, TwoOutputsAreTwoFiles) {
             Lines{"recording.file: must not be the same file as the image of 'map.newest'"});
 }
 
+TEST_F(RunContradictions, WhatAStoreKeepsBesideItIsNoOtherFile) {
+  const std::string store = "map.store=" + in("s.sqlite");
+  write_grid(OccupancyGrid{{3, 2, 0.05, {0.0, 0.0}}, CellState::kFree}, in("s.saved.yaml"));
+  EXPECT_EQ(told({store, "map.file=" + in("s.saved.yaml")}),
+            Lines{"map.store: its saved map must not be the same file as 'map.file'"})
+      << "`ctl save` would write over the first map";
+  EXPECT_EQ(told({store, "recording.file=" + in("s.pose.json")}),
+            Lines{"recording.file: must not be the same file as the kept pose of 'map.store'"});
+  EXPECT_EQ(told({store, "recording.file=" + in("s.sqlite-wal")}),
+            Lines{"recording.file: must not be the same file as the log of 'map.store'"});
+}
+
 TEST_F(RunContradictions, LinksAndDetoursLeadToTheSameFile) {
   fs::create_symlink(in("m0.yaml"), in("link"));
   fs::create_hard_link(in("m0.yaml"), in("second_name"));

@@ -179,5 +179,13 @@ TEST(SettingsText, ANestOfBracketsEndsInOneLine) {
   EXPECT_TRUE(lines[0].ends_with("not YAML: brackets are nested too deeply")) << lines[0];
 }
 
+TEST(SettingsTextOfKeysThatContradict, AreToldWhereBothCouldBeRead) {
+  const Lines both = errors_of("map:\n  file: \"x\nlocalization:\n  particles:\n    min: 900\n    max: 100\n");
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_NE(both[1].find("localization.particles.min: "), std::string::npos) << both[1];
+  EXPECT_EQ(errors_of("map:\n  file: \"x\nlocalization:\n  particles:\n    max: 100\n").size(), 1U)
+      << "what could not be read may say how many there are at least";
+}
+
 }  // namespace
 }  // namespace deltamap::daemon

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/settings/memory_places.hpp"
+
+namespace deltamap::daemon {
+
+MemoryPlaces memory_places(const std::filesystem::path& store) {
+  if (store.empty()) return {};
+  MemoryPlaces places{store, store, store};
+  places.pose.replace_extension(".pose.json");
+  places.stability.replace_extension(".stability");
+  places.saved_map.replace_extension(".saved.yaml");
+  return places;
+}
+
+}  // namespace deltamap::daemon

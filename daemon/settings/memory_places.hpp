@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a run keeps what belongs to its store: files beside it, named after it.
+#pragma once
+
+#include <filesystem>
+
+namespace deltamap::daemon {
+
+/// All empty where there is no store.
+struct MemoryPlaces {
+  std::filesystem::path pose;       ///< NAME.pose.json
+  std::filesystem::path stability;  ///< NAME.stability
+  std::filesystem::path saved_map;  ///< NAME.saved.yaml with its PGM: what `ctl save` writes
+};
+[[nodiscard]] MemoryPlaces memory_places(const std::filesystem::path& store);
+
+}  // namespace deltamap::daemon
