@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
-#include <optional>
 
 namespace deltamap::daemon {
 namespace {
@@ -25,20 +24,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 constexpr std::size_t kLongest = 200;  // longer is like no name, and the distance to each takes its time
 
-/// Nothing where more than half of it would have to be written anew.
-std::optional<std::string> nearest_of(const std::vector<std::string>& names, const std::string& path) {
-  if (path.size() > kLongest) return std::nullopt;
-  std::optional<std::string> nearest;
-  std::size_t least = path.size() / 2 + 1;
-  for (const std::string& name : names) {
-    const std::size_t distance = edit_distance(name, path);
-    if (distance >= least) continue;
-    least = distance;
-    nearest = name;
-  }
-  return nearest;
-}
-
 std::vector<std::string> names_of(const std::vector<SettingKey>& keys) {
   std::vector<std::string> names;
   names.reserve(keys.size());
@@ -58,6 +43,19 @@ std::vector<std::string> of_the_same_end(const std::vector<std::string>& names, 
 }
 
 }  // namespace
+
+std::optional<std::string> nearest_of(const std::vector<std::string>& names, const std::string& word) {
+  if (word.size() > kLongest) return std::nullopt;
+  std::optional<std::string> nearest;
+  std::size_t least = word.size() / 2 + 1;
+  for (const std::string& name : names) {
+    const std::size_t distance = edit_distance(name, word);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = name;
+  }
+  return nearest;
+}
 
 std::vector<std::string> sections_of(const std::vector<SettingKey>& keys) {
   std::vector<std::string> sections;

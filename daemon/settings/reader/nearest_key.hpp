@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What somebody may have meant by a key that does not exist.
+// What somebody may have meant by a key, or another name, that does not exist.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace deltamap::daemon {
 
 /// "laser", "laser.mount", …: everything that holds keys, in the order of the keys.
 [[nodiscard]] std::vector<std::string> sections_of(const std::vector<SettingKey>& keys);
+
+/// The name that is spelt most alike; nothing where more than half of the word would have to be written anew.
+[[nodiscard]] std::optional<std::string> nearest_of(const std::vector<std::string>& names, const std::string& word);
 
 struct UnknownKey {
   std::string rule;                ///< "unknown key (nearest key laser.port)"; names nothing that is not near

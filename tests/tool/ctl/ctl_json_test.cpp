@@ -54,6 +54,18 @@ TEST(CtlJson, WrongUsageIsJson) {
   EXPECT_EQ(test::run_deltamap({"ctl", "fly"}).output, "");
 }
 
+TEST(CtlJson, AnUnknownCommandIsNamedWithTheNearest) {
+  EXPECT_EQ(error_of(test::run_deltamap({"ctl", "--json", "stauts"})),
+            "ctl: unknown command 'stauts' (nearest command status)");
+  EXPECT_EQ(error_of(test::run_deltamap({"ctl", "foo", "--json"})), "ctl: unknown command 'foo'");
+  EXPECT_EQ(error_of(test::run_deltamap({"ctl", "map", "sve", "--json"})),
+            "ctl map: unknown command 'sve' (nearest command save)");
+  EXPECT_EQ(error_of(test::run_deltamap({"ctl", "--json"})), "A subcommand is required");
+  const auto top = test::run_deltamap({"replya", "x.pcapng"});
+  EXPECT_EQ(top.exit_code, 2);
+  EXPECT_EQ(top.errors.substr(0, top.errors.find('\n')), "unknown command 'replya' (nearest command replay)");
+}
+
 TEST(CtlJson, ADaemonThatDoesNotAnswerIsGivenUp) {
   const test::TemporaryFolder folder;
   const std::string path = folder.path() / "ctl.sock";
