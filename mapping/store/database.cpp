@@ -56,25 +56,45 @@ StoreError::Kind kind_of(int code) {
   }
 }
 
+/// Otherwise errno says why not.
+bool may(const std::filesystem::path& place, int mode) {
+  return ::faccessat(AT_FDCWD, place.c_str(), mode, AT_EACCESS) == 0;
+}
+
+/// The file itself, and no link to it: its log lies beside that one.
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  return (error ? std::filesystem::absolute(file, error) : real).parent_path();
+}
+
 /// SQLite has one sentence for all that the system refuses: of the file, or of its log, which lies beside it.
-std::string why_not_opened(const std::filesystem::path& file, const std::string& otherwise) {
-  const auto may = [](const std::filesystem::path& place, int mode) {
-    return ::faccessat(AT_FDCWD, place.c_str(), mode, AT_EACCESS) == 0;
-  };
+std::string why_refused(const std::filesystem::path& file, int code, const std::string& otherwise) {
   const auto because = [](int reason) { return std::generic_category().message(reason); };
-  if (!may(file, R_OK) && errno != ENOENT) return "cannot be opened: " + because(errno);
-  std::error_code ignored;
-  const std::filesystem::path folder = std::filesystem::absolute(file, ignored).parent_path();
-  if (!may(folder, W_OK | X_OK)) return "cannot be opened: its log beside it cannot be written: " + because(errno);
+  const bool reads = code == SQLITE_CANTOPEN;
+  if (!may(file, reads ? R_OK : W_OK) && errno != ENOENT) {
+    return (reads ? "cannot be opened: " : "cannot be written: ") + because(errno);
+  }
+  if (!may(folder_of(file), W_OK | X_OK)) {
+    return "cannot be opened: its log beside it cannot be written: " + because(errno);
+  }
   return otherwise;
 }
 
 std::string reason_of(const std::filesystem::path& file, sqlite3* handle, int code) {
   const std::string told = handle == nullptr ? sqlite3_errstr(code) : sqlite3_errmsg(handle);
-  return (code & 0xFF) == SQLITE_CANTOPEN ? why_not_opened(file, told) : told;
+  const int refusal = code & 0xFF;
+  return refusal == SQLITE_CANTOPEN || refusal == SQLITE_READONLY ? why_refused(file, refusal, told) : told;
 }
 
 }  // namespace
+
+bool is_read_as_is(const std::filesystem::path& file) {
+  if (may(file, W_OK) && may(folder_of(file), W_OK | X_OK)) return false;
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  return !error && !std::filesystem::exists(real.string() + "-wal", error) && !error;
+}
 
 Database::Database(std::filesystem::path file, Mode mode) : file_{std::move(file)} {
   const int result =

@@ -45,6 +45,10 @@ class Database {
   sqlite3* handle_ = nullptr;
 };
 
+/// True where this user may not write the file or a log beside it, and no log lies there: the file then holds all, and
+/// no program is writing to it.
+[[nodiscard]] bool is_read_as_is(const std::filesystem::path& file);
+
 /// One prepared statement: bind in order, then step.
 class Statement {
  public:

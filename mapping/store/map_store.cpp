@@ -223,12 +223,19 @@ MapStore::MapStore(const std::filesystem::path& file, const OccupancyGrid& first
   all.commit();
 }
 
-MapStore::MapStore(const std::filesystem::path& file)
-    : state_{std::make_unique<State>(opened_store(file, Database::Mode::kExisting))} {
+MapStore::MapStore(std::unique_ptr<State> opened) : state_{std::move(opened)} {
   if (state_->database.number("SELECT count(*) FROM map") == 0) state_->database.fail("holds no map yet");
   state_->map = state_->database.number("SELECT hash FROM map ORDER BY used DESC LIMIT 1");
   (void)state_->find_geometry();
   state_->newest = state_->newest_written();
+}
+
+MapStore::MapStore(const std::filesystem::path& file)
+    : MapStore{std::make_unique<State>(opened_store(file, Database::Mode::kExisting))} {}
+
+MapStore MapStore::to_read(const std::filesystem::path& file) {
+  const auto mode = is_read_as_is(file) ? Database::Mode::kReadAsIs : Database::Mode::kExisting;
+  return MapStore{std::make_unique<State>(opened_store(file, mode))};
 }
 
 MapStore::~MapStore() = default;

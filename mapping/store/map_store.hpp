@@ -46,6 +46,8 @@ class MapStore {
   MapStore(const std::filesystem::path& file, const OccupancyGrid& first);
   /// Opens the history that was used last in an existing file, to read or to roll back.
   explicit MapStore(const std::filesystem::path& file);
+  /// Opens it for a moment's reading: one that this user may not write is read as it is, where no log lies beside it.
+  [[nodiscard]] static MapStore to_read(const std::filesystem::path& file);
   ~MapStore();
   MapStore(MapStore&&) noexcept;
   MapStore& operator=(MapStore&&) noexcept;
@@ -91,6 +93,8 @@ class MapStore {
 
  private:
   struct State;
+  /// With the history that was used last.
+  explicit MapStore(std::unique_ptr<State> opened);
   std::unique_ptr<State> state_;
 };
 

@@ -79,6 +79,7 @@ Database opened_store(const std::filesystem::path& file, Database::Mode mode) {
   }
   check(database);
   bring_up_to_date(database);
+  if (mode == Database::Mode::kReadAsIs) return database;
   database.run("PRAGMA journal_mode = WAL");
   database.run("PRAGMA synchronous = FULL");
   return database;

@@ -8,7 +8,7 @@
 
 namespace deltamap::mapping::store {
 
-/// `mode`: kCreate or kExisting. Throws StoreError where the file is no sound map store.
+/// Throws StoreError where the file is no sound map store. What is read as it is must be up to date.
 [[nodiscard]] Database opened_store(const std::filesystem::path& file, Database::Mode mode);
 
 }  // namespace deltamap::mapping::store

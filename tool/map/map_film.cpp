@@ -74,7 +74,7 @@ std::vector<Point2> path_to(const std::vector<StampedPose>& poses, std::size_t l
 }
 
 void film(const FilmOptions& options) {
-  const mapping::store::MapStore store{options.store};
+  const auto store = mapping::store::MapStore::to_read(options.store);
   const std::vector<Step> steps = steps_of(store);
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);
   const Timestamp began = poses.front().time;

@@ -80,7 +80,7 @@ Timestamp store_time(const MapStore& store, std::uint32_t number) {
 }
 
 void list(const HistoryOptions& options) {
-  const MapStore store{options.store};
+  const MapStore store = MapStore::to_read(options.store);
   if (!options.json)
     std::printf("%6s  %-19s  %5s  %8s  %7s  %7s  %s\n", "k", "time (UTC)", "phase", "occupied", "freed", "accept.",
                 "cause");
@@ -110,7 +110,7 @@ void list(const HistoryOptions& options) {
 }
 
 void write_revision(const HistoryOptions& options) {
-  write_grid(MapStore{options.store}.grid(options.number), options.out);
+  write_grid(MapStore::to_read(options.store).grid(options.number), options.out);
   if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
 }
 
@@ -129,7 +129,7 @@ void print_changes(const std::vector<CellChange>& changes) {
 }
 
 void compare(const HistoryOptions& options) {
-  const MapStore store{options.store};
+  const MapStore store = MapStore::to_read(options.store);
   const OccupancyGrid before = store.grid(options.number);
   const OccupancyGrid after = store.grid(options.other);
   const auto changes = changes_between(before, after);
@@ -153,7 +153,7 @@ void compare(const HistoryOptions& options) {
 /// Left the place before Δ K, right after it.
 void draw_delta(const HistoryOptions& options) {
   constexpr double kAround_m = 3.0;
-  const MapStore store{options.store};
+  const MapStore store = MapStore::to_read(options.store);
   if (options.number == 0) throw std::runtime_error("revision 0 is the first map: it has changed nothing");
   const std::vector<CellChange> changes = store.changes(options.number);
   const OccupancyGrid after = store.grid(options.number);

@@ -10,6 +10,7 @@
 #include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
 #include "mapping/store/map_store.hpp"
+#include "tests/support/not_root.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/tool_run.hpp"
 
@@ -39,7 +40,10 @@ class MapHistory : public testing::Test {
     store.append(revision, {2, 0.9, "evidence"});
   }
 
+  ~MapHistory() override { std::filesystem::permissions(folder.path(), std::filesystem::perms{0700}); }
+
   test::TemporaryFolder folder;
+  test::TemporaryFolder elsewhere;
   std::string file = (folder.path() / "store.sqlite").string();
   OccupancyGrid first{{10, 8, 0.1, {0.0, 0.0}}, CellState::kUnknown};
   OccupancyGrid second = first;
@@ -120,6 +124,41 @@ TEST_F(MapHistory, OfAStoreInUseIsReadAndNotWritten) {
   EXPECT_EQ(history({file, "export", "1", (folder.path() / "one.yaml").string()}).exit_code, 0);
   store.append_refusal(timestamp_from_ns(7), {3, 0.2, "implausible"});  // it goes on storing
   EXPECT_EQ(store.history().size(), 4u);
+}
+
+TEST_F(MapHistory, OfAnotherUserIsReadAsItIsAndNotWritten) {
+  const std::string out = (elsewhere.path() / "one.yaml").string();
+  const std::string picture = (elsewhere.path() / "one.png").string();
+  std::filesystem::permissions(elsewhere.path(), std::filesystem::perms::all);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms{0555});
+  std::filesystem::permissions(file, std::filesystem::perms{0444});
+  const test::NotRoot another_user;
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"list"}, {"diff", "0", "1"}, {"export", "1", out}, {"picture", "1", picture}}) {
+    std::vector<std::string> all{file};
+    all.insert(all.end(), words.begin(), words.end());
+    const ToolRun run = history(all);
+    EXPECT_EQ(run.exit_code, 0) << words[0] << ": " << run.errors;
+  }
+  EXPECT_EQ(read_grid(out), second);
+  const ToolRun naming = history({file, "name", "1", "as built"});
+  EXPECT_EQ(naming.exit_code, 1);
+  EXPECT_EQ(naming.errors, "deltamap: " + file + ": cannot be written: Permission denied\n");
+  for (const char* what : {"rollback", "undo"}) {
+    const ToolRun run = history({file, what, what == std::string("undo") ? "1" : "0"});
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.errors.find("Permission denied"), std::string::npos) << run.errors;
+  }
+}
+
+TEST_F(MapHistory, WithALogThatCannotBeReadIsNotReadWithoutIt) {
+  (void)folder.write("store.sqlite-wal", "written by a daemon that was killed");
+  std::filesystem::permissions(folder.path(), std::filesystem::perms{0555});
+  std::filesystem::permissions(file, std::filesystem::perms{0444});
+  const test::NotRoot another_user;
+  const ToolRun run = history({file, "list"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.errors.find("Permission denied"), std::string::npos) << run.errors;
 }
 
 TEST_F(MapHistory, TellsThePoseCovarianceOfEachRevision) {
