@@ -140,4 +140,16 @@ userdel deltamap && rm -r /var/lib/deltamap
 run_dpkg -P deltamap
 everything >/tmp/files.after
 holds "a purge after user and folder were removed by hand" diff /tmp/files.before /tmp/files.after
+run_dpkg -i "/deltamap_$version.deb"
+usermod --append --groups deltamap games
+run_dpkg -P deltamap
+users >/tmp/users.after
+holds "a purge where another user is in the group" diff /tmp/users.before /tmp/users.after
+run_dpkg -i "/deltamap_$version.deb"
+setpriv --reuid deltamap --regid deltamap --clear-groups sleep 60 &
+until [[ $(stat -c %U /proc/$!) == deltamap ]]; do sleep 0.1; done
+run_dpkg -P deltamap
+holds "a purge while a process of the user runs says so in one line" test "$(grep -c '^deltamap: the user deltamap stays: ' /tmp/dpkg.log)" = 1
+holds "and ends" fails dpkg-query -W deltamap >/dev/null 2>&1
+kill $!
 echo "package: $checks checks"
