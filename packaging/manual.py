@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the manual pages and the bash completion from what the programs say of themselves: --help of both, and of
+"""Writes the manual pages and the bash completions from what the programs say of themselves: --help of both, and of
 every subcommand; --print-config for the settings. What no program prints (files, exit codes, signals) stands here.
 usage: manual.py FOLDER-OF-PROGRAMS OUT-FOLDER"""
 import dataclasses, os, pathlib, re, subprocess, sys, tempfile, time
@@ -148,39 +148,79 @@ def settings_page(listing, day, version):
                 ("FILES", PLACES), ("SEE ALSO", ".BR deltamapd (8),\n.BR deltamap (1)"))
 
 
+NO_FILE = {"--set", "--initial-pose", "--title", "--only", "pose", "name", "HEX", "NAME"}  # text that names no file
+
+
+def argument(name):
+    """What an option's value or a positional may be: its words, separated by |, 'file' or 'any'; None: an option without value."""
+    first, _, kind = name.partition(" ")
+    among = re.match(r"TEXT:\{(.*?)\}", kind)
+    if among:
+        return among.group(1).replace(",", "|")
+    if re.match(r"TEXT\b", kind):
+        return "any" if {first, first.split(",")[-1]} & NO_FILE else "file"
+    return "any" if re.match(r"(UINT|INT|FLOAT)\b", kind) else None
+
+
 def completion(help):
-    """One case per command: its subcommands and options."""
+    """One case per command: its subcommands, its options, what its arguments and its options' values may be."""
     cases = ""
 
     def add(one):
         nonlocal cases
         names = [name for name, _ in one.sections.get("Subcommands", [])]
-        flags = [word for name, _ in one.sections.get("Options", []) for word in name.split(" ")[0].split(",") if word.startswith("--")]
-        cases += "    '%s') words='%s' ;;\n" % (" ".join(one.path[1:]), " ".join(names + flags))
+        flags, values = [], []
+        for name, _ in one.sections.get("Options", []):
+            of_it = [word for word in name.split(" ")[0].split(",") if word.startswith("--")]
+            flags += of_it
+            if argument(name):
+                values += ["%s:%s" % (word, argument(name)) for word in of_it]
+        given = [argument(name) or "any" for name, _ in one.sections.get("Positionals", [])]
+        cases += "    '%s') commands='%s' flags='%s' given=(%s) values+='%s ' ;;\n" % (
+            " ".join(one.path[1:]), " ".join(names), " ".join(flags), " ".join("'%s'" % kind for kind in given), " ".join(values))
         for below in one.below:
             add(below)
 
     add(help)
-    return """# bash completion of deltamap(1); written by packaging/manual.py
-_deltamap() {
-  local word words path='' known
-  _deltamap_words ''
+    return """# bash completion of PROGRAM; written by packaging/manual.py
+_PROGRAM() {
+  local word option='' path='' commands flags given values=' ' at=0 kind=''
+  local now=${COMP_WORDS[COMP_CWORD]}
+  [[ $now != = ]] || now=''
+  _PROGRAM_command
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
-    [[ " $words " == *" $word "* && $word != -* ]] || continue
-    known="${path:+$path }$word"
-    _deltamap_words "$known"
-    path=$known
+    if [[ $word == = ]]; then  # bash takes --map=FILE for three words
+      continue
+    elif [[ -n $option ]]; then
+      option=''
+    elif [[ $word == -* ]]; then
+      [[ $values != *" $word:"* ]] || option=$word
+    elif [[ " $commands " == *" $word "* ]]; then
+      path+="${path:+ }$word" at=0
+      _PROGRAM_command
+    else
+      at=$((at + 1))
+    fi
   done
-  mapfile -t COMPREPLY < <(compgen -W "$words" -- "${COMP_WORDS[COMP_CWORD]}")
-  ((${#COMPREPLY[@]})) || compopt -o default 2>/dev/null
-}
-_deltamap_words() {
-  case $1 in
-%s    *) words='' ;;
+  if [[ -n $option ]]; then
+    kind=${values#*" $option:"}
+    kind=${kind%% *}
+  elif [[ $now != -* ]]; then
+    kind=${given[at]-}
+  fi
+  case $kind in
+    file) COMPREPLY=() && compopt -o default ;;
+    any) COMPREPLY=() ;;
+    '') mapfile -t COMPREPLY < <(compgen -W "$commands $flags" -- "$now") ;;
+    *) mapfile -t COMPREPLY < <(compgen -W "${kind//|/ }" -- "$now") ;;
   esac
 }
-complete -F _deltamap deltamap
-""" % cases
+_PROGRAM_command() {
+  case $path in
+CASES  esac
+}
+complete -F _PROGRAM PROGRAM
+""".replace("CASES", cases).replace("PROGRAM", help.path[0])
 
 
 def main():
@@ -195,7 +235,8 @@ def main():
         listing = told([programs / "deltamapd", "--config", nothing_set.name, "--print-config"])
     out.mkdir(parents=True, exist_ok=True)
     for name, text in (("deltamapd.8", daemon_page(daemon, day, version)), ("deltamap.1", tool_page(tool, day, version)),
-                       ("deltamap.yaml.5", settings_page(listing, day, version)), ("deltamap.completion", completion(tool))):
+                       ("deltamap.yaml.5", settings_page(listing, day, version)), ("deltamap.completion", completion(tool)),
+                       ("deltamapd.completion", completion(daemon))):
         (out / name).write_text(text, encoding="utf-8")
 
 

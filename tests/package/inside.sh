@@ -40,6 +40,7 @@ for program in /usr/bin/deltamapd /usr/bin/deltamap /usr/libexec/deltamap/restar
 for file in /lib/systemd/system/deltamap.service /lib/udev/rules.d/60-deltamap.rules /usr/lib/sysusers.d/deltamap.conf \
   /usr/lib/tmpfiles.d/deltamap.conf /etc/deltamap/deltamap.yaml /usr/share/man/man8/deltamapd.8.gz \
   /usr/share/man/man1/deltamap.1.gz /usr/share/man/man5/deltamap.yaml.5.gz /usr/share/bash-completion/completions/deltamap \
+  /usr/share/bash-completion/completions/deltamapd \
   /usr/share/deltamap/default.yaml /usr/share/deltamap/deltamap.schema.json /usr/share/deltamap/simulation.yaml /usr/share/deltamap/scenarios/hall.yaml \
   /usr/share/doc/deltamap/copyright /usr/share/doc/deltamap/changelog.gz /usr/share/doc/deltamap/README.md* \
   /usr/share/doc/deltamap/operating.md.gz /usr/share/doc/deltamap/examples/deltamap-page.socket \
@@ -99,13 +100,21 @@ for page in man8/deltamapd.8 man1/deltamap.1 man5/deltamap.yaml.5; do
 done
 keys=$(deltamapd --config /etc/deltamap/deltamap.yaml --print-config | grep -c '^ *[a-z_0-9]*: .*# ')
 holds "every key is in the manual" test "$(zcat /usr/share/man/man5/deltamap.yaml.5.gz | grep -c '^Default: ')" = "$keys"
-completed() {
-  bash -c 'source /usr/share/bash-completion/completions/deltamap; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _deltamap; echo "${COMPREPLY[*]}"' deltamap "$@"
+completed() {  # PROGRAM WORDS...: the proposals, or <files> where bash completes files
+  bash -c 'compopt() { [[ "$*" != "-o default" ]] || COMPREPLY=("<files>"); }
+    source "/usr/share/bash-completion/completions/$1"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); "_$1"; echo "${COMPREPLY[*]}"' completed "$@"
 }
 holds "completes a command" test "$(completed deltamap repl)" = replay
 holds "completes below a command" test "$(completed deltamap ctl pa)" = pause
 holds "completes behind an argument" test "$(completed deltamap map history store.sqlite roll)" = rollback
 holds "completes an option" test "$(completed deltamap sim --wor)" = --world
+holds "completes the words of an argument" test "$(completed deltamap ctl --socket /run/x drive '')" = "off wander"
+holds "completes the words of an option" test "$(completed deltamap map merge a.yaml b.yaml --method = g)" = global
+holds "completes a file that a command takes" test "$(completed deltamap replay '')" = "<files>"
+holds "completes a file that an option takes" test "$(completed deltamap replay x.pcapng --map = '')" = "<files>"
+holds "proposes no file for a number" test "$(completed deltamap replay --seed '')" = ""
+holds "completes the daemon's options" test "$(completed deltamapd --check)" = --check-config
+holds "completes the daemon's settings file" test "$(completed deltamapd --config '')" = "<files>"
 
 # --- upgrade
 runuser -u deltamap -- touch /var/lib/deltamap/map_store.sqlite
