@@ -61,7 +61,7 @@ mapping::store::MapStore::Undoing RevisionKeeper::cells_of(const MapOrder& order
   if (changes.empty()) {
     throw std::runtime_error("the map is as revision " + std::to_string(order.revision) + " was: nothing to do");
   }
-  return {std::move(changes), 0};
+  return {.changes = std::move(changes)};
 }
 
 std::uint32_t RevisionKeeper::number_in_store(std::uint32_t revision) const {

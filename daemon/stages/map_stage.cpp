@@ -16,12 +16,14 @@ using drivers::port::port_clock_now;
 constexpr std::chrono::seconds kRetryPeriod{1};  // between looks at outputs that could not be written
 
 /// "revision 9 takes revision 7 back: 41 cells, 3 have changed since and stay"
-std::string words_of(const MapOrder& order, const MapRevision& made, std::size_t kept) {
-  const std::string wanted = "revision " + std::to_string(order.revision);
+std::string words_of(const MapOrder& order, const MapRevision& made, const mapping::store::MapStore::Undoing& wanted) {
+  const std::string number = std::to_string(order.revision);
+  const std::string first = std::to_string(order.revision - wanted.held_before);
+  const std::string all = wanted.held_before > 0 ? "revisions " + first + " to " + number : "revision " + number;
   std::string text = "revision " + std::to_string(made.number) + " ";
-  text += order.kind == MapOrder::Kind::kUndo ? "takes " + wanted + " back" : "is " + wanted + " again";
+  text += order.kind == MapOrder::Kind::kUndo ? "takes " + all + " back" : "is " + all + " again";
   text += " from the next scan on: " + std::to_string(made.changes.size()) + " cells";
-  return kept == 0 ? text : text + ", " + std::to_string(kept) + " have changed since and stay";
+  return wanted.kept == 0 ? text : text + ", " + std::to_string(wanted.kept) + " have changed since and stay";
 }
 
 /// " scans=120 acceptance=0.973"
@@ -107,7 +109,7 @@ void MapStage::obey(const MapOrder& order) {
   hand_on(result);
   const std::string behind = outputs_.why_behind();
   wiring_.answer({order.ticket, true,
-                  words_of(order, *result.revision, wanted.kept) +
+                  words_of(order, *result.revision, wanted) +
                       (behind.empty() ? std::string{} : "; not in the store yet: " + behind)});
 }
 

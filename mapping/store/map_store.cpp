@@ -112,6 +112,13 @@ struct MapStore::State {
     database.fail_as_unsound("damaged: revision " + std::to_string(number) + " cannot be restored");
   }
 
+  /// 0: it is the first in the store.
+  [[nodiscard]] std::uint32_t number_before(std::uint32_t number) {
+    Statement row{database, "SELECT max(number) FROM revision WHERE map = ? AND refused = 0 AND number < ?"};
+    row.bind(map).bind(std::int64_t{number});
+    return row.step() && !row.is_null(0) ? static_cast<std::uint32_t>(row.number(0)) : 0;
+  }
+
   [[nodiscard]] std::vector<std::uint32_t> numbers_after(std::uint32_t number) {
     Statement rows{database, "SELECT number FROM revision WHERE map = ? AND refused = 0 AND number > ?"};
     rows.bind(map).bind(std::int64_t{number});
@@ -356,6 +363,7 @@ MapStore::Undoing MapStore::undoing(std::uint32_t number, const OccupancyGrid& n
     s.database.fail("nothing of revision " + std::to_string(number) + " is left to undo");
   }
   undoing.kept = all - undoing.changes.size();
+  undoing.held_before = number - s.number_before(number) - 1;
   return undoing;
 }
 

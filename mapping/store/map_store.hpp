@@ -75,6 +75,7 @@ class MapStore {
   struct Undoing {
     std::vector<CellChange> changes;  ///< at least one
     std::size_t kept = 0;             ///< cells of the Δ that have changed since
+    std::uint32_t held_before = 0;    ///< revisions before k that it holds, where retention has thinned them out
   };
   /// What takes Δ k back and leaves what came later as it is: its cells that no later revision has changed take the
   /// states they had before it. `newest_map` is that of the newest revision. Throws std::runtime_error where there is

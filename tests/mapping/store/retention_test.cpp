@@ -207,6 +207,16 @@ TEST_F(Retained, GoesOnWhereAStepIsDamaged) {
 
 // --- undo ---
 
+TEST_F(Retained, AnUndoSaysHowManyStepsTheRevisionHolds) {
+  MapStore store{file, first_map()};
+  fill(store, 130);
+  EXPECT_EQ(store.undoing(128, maps.back()).held_before, 0U);
+  (void)thin_out(store, {.revisions = 2}, day(130));
+  EXPECT_EQ(sound_numbers(), with({0, 64}, from_to(128, 130)));
+  EXPECT_EQ(store.undoing(128, maps.back()).held_before, 63U);
+  EXPECT_EQ(store.undoing(130, maps.back()).held_before, 0U);
+}
+
 TEST_F(Retained, ACellThatAThinnedOutStepFoundAgainIsNotUndone) {
   MapStore store{file, first_map()};
   const auto write = [&](CellState state) {
