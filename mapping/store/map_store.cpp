@@ -119,11 +119,23 @@ struct MapStore::State {
     return row.step() && !row.is_null(0) ? static_cast<std::uint32_t>(row.number(0)) : 0;
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> numbers_after(std::uint32_t number) {
-    Statement rows{database, "SELECT number FROM revision WHERE map = ? AND refused = 0 AND number > ?"};
+  /// Later revisions that may have changed something in the box. One that holds others may have changed cells and set
+  /// them back, which its own box does not tell.
+  [[nodiscard]] std::vector<std::uint32_t> numbers_after(std::uint32_t number, const CellBox& box) {
+    Statement rows{database,
+                   "SELECT number, first_column <= ? AND last_column >= ? AND first_row <= ? AND last_row >= ? FROM "
+                   "revision WHERE map = ? AND refused = 0 AND number > ? ORDER BY number"};
+    rows.bind(std::int64_t{box.last.column}).bind(std::int64_t{box.first.column});
+    rows.bind(std::int64_t{box.last.row}).bind(std::int64_t{box.first.row});
     rows.bind(map).bind(std::int64_t{number});
     std::vector<std::uint32_t> numbers;
-    while (rows.step()) numbers.push_back(static_cast<std::uint32_t>(rows.number(0)));
+    std::uint32_t before = number;
+    while (rows.step()) {
+      const auto later = static_cast<std::uint32_t>(rows.number(0));
+      const bool holds_others = later != before + 1;
+      if (holds_others || rows.number(1) != 0) numbers.push_back(later);
+      before = later;
+    }
     return numbers;
   }
 
@@ -353,7 +365,7 @@ MapStore::Undoing MapStore::undoing(std::uint32_t number, const OccupancyGrid& n
   std::vector<CellChange> delta = changes(number);
   const std::size_t all = delta.size();
   std::vector<bool> changed_later(s.geometry.cell_count(), false);
-  for (const std::uint32_t later : s.numbers_after(number)) {
+  for (const std::uint32_t later : s.numbers_after(number, bounding_box(delta))) {
     for (const CellChange& change : s.changes_of(later)) changed_later[s.geometry.index_of(change.cell)] = true;
   }
   std::erase_if(delta, [&](const CellChange& change) { return changed_later[s.geometry.index_of(change.cell)]; });
