@@ -120,6 +120,9 @@ TEST_F(NewestMap, BelongsToOneDaemon) {
   const auto lock = newest_map_lock(settings());
   ASSERT_TRUE(lock);
   EXPECT_THROW((void)newest_map_lock(settings()), FileInUse);
+  MapSettings same_picture = settings();
+  same_picture.newest = fs::path(same_picture.newest).replace_extension(".yml");
+  EXPECT_THROW((void)newest_map_lock(same_picture), FileInUse) << "both would write it";
   MapSettings none = settings();
   none.newest.clear();
   EXPECT_FALSE(newest_map_lock(none));
