@@ -343,7 +343,8 @@ OffsetFilter::SeenByMap OffsetFilter::seen_by_map(const sensor::LikelihoodField&
   if (scan.ends.empty()) return {};
   const std::span<const Sighting> sightings = find_by_map(field, scan, pose);
   return {1.0 - static_cast<double>(finder_.rest().size()) / static_cast<double>(scan.ends.size()),
-          supporting_faces(sightings, pose, sighting::kExplainedCells * field.geometry().resolution_m)};
+          surfaces::unknown_of_cells(
+              supporting_faces(sightings, pose, sighting::kExplainedCells * field.geometry().resolution_m))};
 }
 
 UnknownOfCells OffsetFilter::unknown_of_cells() const {

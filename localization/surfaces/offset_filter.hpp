@@ -51,8 +51,8 @@ class OffsetFilter {
                const motion::MotionModelParams& motion);
   /// What a scan shows of the map's surfaces, each taken to stand where the map has it.
   struct SeenByMap {
-    double straight = 0.0;              ///< share of its ends on them
-    std::vector<SupportingFace> faces;  ///< those that the pose may rest on
+    double straight = 0.0;   ///< share of its ends on them
+    UnknownOfCells unknown;  ///< what the cells of those leave open that the pose rests on
   };
   [[nodiscard]] SeenByMap seen_by_map(const sensor::LikelihoodField& field, const FacedScan& scan, const Pose2& pose);
 

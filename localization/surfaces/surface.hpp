@@ -59,6 +59,7 @@ template <typename AreOne>
   }
   return body;
 }
+
 /// One face, or front and back of one thing: when it is moved both are, by as much.
 [[nodiscard]] bool move_as_one(const Surface& a, const Surface& b);
 

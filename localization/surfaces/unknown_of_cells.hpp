@@ -21,8 +21,10 @@ struct SupportingFace {
 
 /// Covariances of the position, map frame, m²; zero where it rests on no surface.
 struct UnknownOfCells {
-  Eigen::Matrix2d scattered;  ///< were each face off its cells in its own way: the error of their mean
-  Eigen::Matrix2d alike;      ///< what comes on top where they are off alike, or drawn worse than their cells allow
+  /// Were each face off its cells in its own way: the error of their mean.
+  Eigen::Matrix2d scattered = Eigen::Matrix2d::Zero();
+  /// What comes on top where they are off alike, or drawn worse than their cells allow.
+  Eigen::Matrix2d alike = Eigen::Matrix2d::Zero();
 };
 
 /// In a building whose walls stand at whole cells from each other all are off alike, and a hundred tell no more than

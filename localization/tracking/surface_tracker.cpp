@@ -50,15 +50,15 @@ void SurfaceTracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellB
 }
 
 bool SurfaceTracker::could_lead(const Seen& seen, const Pose2& map_from_robot) {
-  surfaces::OffsetFilter::SeenByMap shown = filter_.seen_by_map(seen.field, seen.faced, map_from_robot);
-  rests_on_ = std::move(shown.faces);
+  const surfaces::OffsetFilter::SeenByMap shown = filter_.seen_by_map(seen.field, seen.faced, map_from_robot);
+  unknown_by_map_ = shown.unknown;
   straight_ += kNewest * (shown.straight - straight_);
   return straight_ >= kLeadsAbove;
 }
 
 void SurfaceTracker::learn_from(const sensor::RefinedPose& found, const motion::ScanInstant& now,
                                 const motion::BodyVelocity& velocity) {
-  rests_on_.clear();
+  unknown_by_map_ = {};
   const bool begins = !last_;
   if (!begins) {
     step_to(now, velocity);
@@ -83,7 +83,7 @@ sensor::RefinedPose SurfaceTracker::lead_from(const sensor::RefinedPose& at, con
 }
 
 surfaces::UnknownOfCells SurfaceTracker::unknown_of_cells() const {
-  return leads_ ? filter_.unknown_of_cells() : surfaces::unknown_of_cells(rests_on_);
+  return leads_ ? filter_.unknown_of_cells() : unknown_by_map_;
 }
 
 PoseCovariance SurfaceTracker::noise(const Pose2& motion, double unknown_s) const {

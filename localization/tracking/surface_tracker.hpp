@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "localization/motion/motion_model.hpp"
 #include "localization/motion/scan_instant.hpp"
@@ -46,7 +45,7 @@ class SurfaceTracker {
   void cease() {
     leads_ = false;
     last_.reset();
-    rests_on_.clear();
+    unknown_by_map_ = {};
   }
 
   /// The pose at one more scan. It may have ceased to lead.
@@ -88,9 +87,9 @@ class SurfaceTracker {
     double variance_rad2 = 0.0;
     double explained = 0.0;  // share of the keyframe's ends, by the map
   };
-  std::optional<SinceKeyframe> since_;              // none: no keyframe yet
-  std::vector<surfaces::SupportingFace> rests_on_;  // while the particles lead: by the last scan
-  double straight_ = 0.0;                           // running means over keyframes, shares of ends
+  std::optional<SinceKeyframe> since_;       // none: no keyframe yet
+  surfaces::UnknownOfCells unknown_by_map_;  // while the particles lead: by the last scan
+  double straight_ = 0.0;                    // running means over keyframes, shares of ends
   double holding_ = 0.0;
   double since_held_m_ = surfaces::kForgottenAfterM;  // driven since surfaces held the pose; they have followed it
   double surprise_m_ = 1.0;  // squared corrections as multiples of what was expected, running means
