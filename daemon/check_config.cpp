@@ -57,7 +57,7 @@ std::string cells_text(const OccupancyGrid& grid) {
 std::optional<OccupancyGrid> check_map(const Settings& settings, const std::string& config,
                                        std::vector<Finding>& findings) {
   try {
-    if (settings.map.file.empty()) throw std::runtime_error(config + ": 'map.file' names no map");
+    require_map_named(settings, config);
     FirstMap map = read_first_map(settings.map.file, memory_limit());
     require_pose_on(map.grid.geometry(), settings);
     findings.push_back(

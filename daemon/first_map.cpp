@@ -10,6 +10,7 @@
 #include "core/grid_file.hpp"
 #include "core/grid_file_facts.hpp"
 #include "core/shortest_text.hpp"
+#include "daemon/settings/settings_error.hpp"
 #include "daemon/start_banner.hpp"
 
 namespace deltamap::daemon {
@@ -44,6 +45,13 @@ std::string judged_size(const std::filesystem::path& file, const GridGeometry& g
 }
 
 }  // namespace
+
+void require_map_named(const Settings& settings, const std::string& file) {
+  if (settings.map.file.empty()) throw SettingsError(file + ": 'map.file' names no map");
+  std::error_code error;
+  if (!std::filesystem::exists(settings.map.file, error))
+    throw SettingsError(settings.map.file + ": " + (error ? error.message() : "No such file or directory"));
+}
 
 FirstMap read_first_map(const std::filesystem::path& file, const MemoryLimit& limit) {
   const GridFileFacts facts = grid_file_facts(file);

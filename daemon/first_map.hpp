@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
+#include "daemon/settings/settings.hpp"
 #include "daemon/system/memory_limit.hpp"
 #include "daemon/system/unit_memory.hpp"
 
@@ -22,6 +23,10 @@ struct FirstMap {
   OccupancyGrid grid;
   std::vector<std::string> warnings;  ///< one line each, that begins with the file
 };
+
+/// As little as a start and a reload need of the settings: an empty file, or one cut short, is no settings file. Throws
+/// SettingsError where they name no map, or one that is not there; `file` is that of the settings.
+void require_map_named(const Settings& settings, const std::string& file);
 
 /// Throws std::runtime_error with one line that names the file: as read_grid() does, where the map needs more memory
 /// than there may be (before its pixels are kept, with both figures; MemoryShortage where it may fit another time), or

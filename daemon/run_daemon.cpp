@@ -136,14 +136,6 @@ void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
   }
 }
 
-/// As little as a start needs of the settings, and a reload too: an empty file, or one cut short, is no settings file.
-void require_map_named(const Settings& settings, const std::string& file) {
-  if (settings.map.file.empty()) throw SettingsError(file + ": 'map.file' names no map");
-  std::error_code error;
-  if (!std::filesystem::exists(settings.map.file, error))
-    throw SettingsError(settings.map.file + ": " + (error ? error.message() : "No such file or directory"));
-}
-
 OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Console& console) {
   require_map_named(settings, line.config);
   try {

@@ -144,29 +144,23 @@ struct Server::State {
   }
 
   void close() {
-    remove_file();
+    file.remove();
     clients.close();
     for (const auto& session : sessions) session->close();
     sessions.clear();
     loop.stop();
   }
 
-  /// While it still listens: a daemon that follows may make its own from then on.
-  void remove_file() {
-    std::error_code ignored;
-    if (std::exchange(has_file, false)) std::filesystem::remove(options.socket, ignored);
-  }
-
   asio::io_context loop{1};
   Options options;
-  bool has_file = true;  // it has begun to listen
   sockets::AcceptLoop<Protocol> clients;
+  sockets::SocketFile file{options.socket};
   std::set<std::shared_ptr<Session>> sessions;
 };
 
 Server::Server(Options options) : state_{std::make_unique<State>(std::move(options))} {}
 
-Server::~Server() { state_->remove_file(); }
+Server::~Server() = default;
 
 void Server::run() {
   const auto keep_alive = asio::make_work_guard(state_->loop);

@@ -139,22 +139,16 @@ struct LineStream::State {
   }
 
   void close() {
-    remove_file();
+    file.remove();
     arrivals.close();
     end_if([](Client&) { return true; });
     loop.stop();
   }
 
-  /// While it still listens: a daemon that follows may make its own from then on.
-  void remove_file() {
-    std::error_code ignored;
-    if (std::exchange(has_file, false)) std::filesystem::remove(options.socket, ignored);
-  }
-
   asio::io_context loop{1};
   Options options;
-  bool has_file = true;  // it has begun to listen
   AcceptLoop<Protocol> arrivals;
+  SocketFile file{options.socket};
   asio::posix::stream_descriptor event;
   std::uint64_t woken = 0;
   std::set<std::shared_ptr<Client>> clients;
@@ -163,7 +157,7 @@ struct LineStream::State {
 
 LineStream::LineStream(Options options) : state_{std::make_unique<State>(std::move(options))} {}
 
-LineStream::~LineStream() { state_->remove_file(); }
+LineStream::~LineStream() = default;
 
 bool LineStream::has_clients() const { return state_->count.load(std::memory_order_relaxed) > 0; }
 

@@ -56,6 +56,12 @@ Protocol::acceptor listening_at(asio::io_context& loop, const std::filesystem::p
   }
 }
 
+void SocketFile::remove() {
+  std::error_code ignored;
+  if (!socket_.empty()) std::filesystem::remove(socket_, ignored);
+  socket_.clear();
+}
+
 bool is_gone(Protocol::socket& socket) {
   pollfd state{socket.native_handle(), 0, 0};
   return ::poll(&state, 1, 0) > 0 && (state.revents & POLLHUP) != 0;

@@ -17,6 +17,22 @@ namespace deltamap::daemon::sockets {
 [[nodiscard]] boost::asio::local::stream_protocol::acceptor listening_at(boost::asio::io_context& loop,
                                                                          const std::filesystem::path& socket);
 
+/// The file of a socket that listens, removed with it. To be removed while it still listens: from then on a daemon that
+/// follows may have made its own.
+class SocketFile {
+ public:
+  explicit SocketFile(std::filesystem::path socket) : socket_{std::move(socket)} {}
+  ~SocketFile() { remove(); }
+  SocketFile(const SocketFile&) = delete;
+  SocketFile& operator=(const SocketFile&) = delete;
+
+  /// Once; later calls do nothing.
+  void remove();
+
+ private:
+  std::filesystem::path socket_;  // empty: it is gone
+};
+
 /// Whether nobody is at the other end any more: both ways, for one that only has nothing more to say still listens.
 [[nodiscard]] bool is_gone(boost::asio::local::stream_protocol::socket& socket);
 
