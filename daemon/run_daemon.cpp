@@ -138,6 +138,7 @@ void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
 
 OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Console& console) {
   require_map_named(settings, line.config);
+  console.log(LogLevel::kInfo, "reads the map: " + settings.map.file);  // a large one takes seconds
   try {
     FirstMap map = read_first_map(settings.map.file, memory_limit());
     for (const std::string& warning : map.warnings) console.log(LogLevel::kWarn, warning);
