@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "core/access.hpp"
+
 namespace deltamap {
 namespace {
 
@@ -65,7 +67,7 @@ void require_lockable(const std::filesystem::path& lock_file, const std::string&
   if (descriptor < 0) {
     if (errno != ENOENT) fail(lock_file);
     const std::filesystem::path folder = lock_file.parent_path();
-    const bool may_make = ::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0 || errno == EROFS;
+    const bool may_make = may_access(folder, W_OK | X_OK) || errno == EROFS;
     if (!may_make) fail(lock_file);
     return;
   }

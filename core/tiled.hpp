@@ -65,8 +65,9 @@ class Tiled {
   [[nodiscard]] const T* background() const { return background_->values.data(); }
   /// Where in its tile a cell lies.
   [[nodiscard]] static std::size_t slot_of(Cell cell) {
-    return static_cast<std::size_t>((static_cast<unsigned>(cell.row) % kSide) * kSide +
-                                    static_cast<unsigned>(cell.column) % kSide);
+    const unsigned row = static_cast<unsigned>(cell.row) % kSide;
+    const unsigned column = static_cast<unsigned>(cell.column) % kSide;
+    return row * kSide + column;
   }
 
   /// `visit(Cell, const T&)` for the cells at most `reach` columns and rows from one, row by row, as far as they lie in

@@ -21,6 +21,7 @@
 #include "daemon/start_banner.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "drivers/port/port_check.hpp"
+#include "mapping/store/database_log.hpp"
 #include "mapping/store/map_store.hpp"
 #include "mapping/store/store_error.hpp"
 
@@ -78,8 +79,8 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
 void copy_store(const fs::path& store, const fs::path& target) {
   fs::copy_file(store, target);
   fs::permissions(target, fs::perms::owner_write, fs::perm_options::add);
-  const fs::path log = store.string() + "-wal";
-  if (fs::exists(log)) fs::copy_file(log, target.string() + "-wal");
+  const fs::path log = mapping::store::log_of(store).log;
+  if (fs::exists(log)) fs::copy_file(log, mapping::store::log_of(target).log);
 }
 
 /// Opened as a start opens it, which mends and begins histories: hence a copy.

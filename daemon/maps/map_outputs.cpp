@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/grid_file.hpp"
+#include "mapping/store/database_log.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -21,7 +22,8 @@ StoreToKeep begun_history(const std::filesystem::path& file, const StartMap& sta
   return {.to_lock = file,
           .open =
               [file, first = start.map] {
-                for (const char* part : {"", "-wal", "-shm"}) remove_old(file.string() + part);
+                const auto [log, index] = mapping::store::log_of(file);
+                for (const auto& old : {file, log, index}) remove_old(old);
                 return mapping::store::MapStore{file, *first};
               },
           .numbers_before = start.revision};

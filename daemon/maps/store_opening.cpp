@@ -6,6 +6,7 @@
 
 #include "daemon/outputs/output_place.hpp"
 #include "daemon/settings/start_error.hpp"
+#include "mapping/store/database_log.hpp"
 #include "mapping/store/map_salvage.hpp"
 #include "mapping/store/store_error.hpp"
 
@@ -27,7 +28,10 @@ std::optional<fs::path> set_aside(const fs::path& file) {
   } while (fs::exists(fs::symlink_status(aside, error)));
   fs::rename(file, aside, error);
   if (error) return std::nullopt;
-  for (const char* part : {"-wal", "-shm"}) fs::rename(file.string() + part, aside.string() + part, error);
+  const auto [log, index] = mapping::store::log_of(file);
+  const auto [log_aside, index_aside] = mapping::store::log_of(aside);
+  fs::rename(log, log_aside, error);
+  fs::rename(index, index_aside, error);
   return aside;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/outputs/output_place.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
 
+#include "core/access.hpp"
 #include "core/file_lock.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/outputs/state_folders.hpp"
@@ -23,12 +23,9 @@ std::string cannot_be(const char* done, const fs::path& place, int reason) {
   return place.string() + ": cannot be " + done + ": " + std::generic_category().message(reason);
 }
 
-/// As the user in whose name this runs; else errno says why not.
-bool may(const fs::path& place, int mode) { return ::faccessat(AT_FDCWD, place.c_str(), mode, AT_EACCESS) == 0; }
-
 /// Empty, or why not: on a read-only file system. Throws StartError where this user may not.
 std::string why_not_writable(const fs::path& folder, const fs::path& what) {
-  if (may(folder, W_OK | X_OK)) return "";
+  if (may_access(folder, W_OK | X_OK)) return "";
   const int reason = errno;
   if (reason != EROFS) throw StartError(cannot_be("written", what, reason));
   return cannot_be("written", what, reason);
@@ -64,9 +61,9 @@ std::string judged_store_place(const fs::path& store) {
   std::error_code error;
   const bool is_there = fs::exists(file, error);
   if (is_there && !fs::is_regular_file(file, error)) throw StartError(file.string() + ": is no plain file");
-  if (is_there && !may(file, R_OK)) throw StartError(cannot_be("read", file, errno));
+  if (is_there && !may_access(file, R_OK)) throw StartError(cannot_be("read", file, errno));
   or_start_error([&] { require_lockable_file(file); });
-  const bool is_writable = (!is_there || may(file, W_OK)) && may(folder_of(file), W_OK | X_OK);
+  const bool is_writable = (!is_there || may_access(file, W_OK)) && may_access(folder_of(file), W_OK | X_OK);
   return is_writable ? "" : cannot_be("written", file, errno);
 }
 

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "core/access.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -40,7 +42,7 @@ std::string why_no_folder_for(const fs::path& file) {
     status = fs::status(folder, error);
   }
   if (fs::exists(status) && !fs::is_directory(status)) return folder.string() + " is no folder";
-  if (::access(folder.c_str(), W_OK | X_OK) == 0) return "";
+  if (may_access(folder, W_OK | X_OK)) return "";
   return folder.string() + " cannot be written to (" + std::generic_category().message(errno) + ")";
 }
 

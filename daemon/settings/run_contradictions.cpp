@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/settings/run_contradictions.hpp"
-#include "daemon/settings/memory_places.hpp"
 
 #include <filesystem>
 #include <stdexcept>
@@ -9,6 +8,8 @@
 
 #include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
+#include "daemon/settings/memory_places.hpp"
+#include "mapping/store/database_log.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -73,8 +74,9 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
     const auto add_kept = [&](const char* part, const fs::path& place) {
       files.push_back({"map.store", part, place, true});
     };
-    add_kept("log", store + "-wal");
-    add_kept("log's index", store + "-shm");
+    const auto [log, index] = mapping::store::log_of(store);
+    add_kept("log", log);
+    add_kept("log's index", index);
     add_kept("kept pose", kept.pose);
     add_kept("kept stability", kept.stability);
     add_kept("saved map", kept.saved_map);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/store/database.hpp"
 
-#include <fcntl.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
 #include <utility>
+
+#include "core/access.hpp"
+#include "mapping/store/database_log.hpp"
 
 namespace deltamap::mapping::store {
 namespace {
@@ -56,11 +58,6 @@ StoreError::Kind kind_of(int code) {
   }
 }
 
-/// Otherwise errno says why not.
-bool may(const std::filesystem::path& place, int mode) {
-  return ::faccessat(AT_FDCWD, place.c_str(), mode, AT_EACCESS) == 0;
-}
-
 /// The file itself, and no link to it: its log lies beside that one.
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   std::error_code error;
@@ -72,10 +69,10 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 std::string why_refused(const std::filesystem::path& file, int code, const std::string& otherwise) {
   const auto because = [](int reason) { return std::generic_category().message(reason); };
   const bool reads = code == SQLITE_CANTOPEN;
-  if (!may(file, reads ? R_OK : W_OK) && errno != ENOENT) {
+  if (!may_access(file, reads ? R_OK : W_OK) && errno != ENOENT) {
     return (reads ? "cannot be opened: " : "cannot be written: ") + because(errno);
   }
-  if (!may(folder_of(file), W_OK | X_OK)) {
+  if (!may_access(folder_of(file), W_OK | X_OK)) {
     return "cannot be opened: its log beside it cannot be written: " + because(errno);
   }
   return otherwise;
@@ -90,10 +87,10 @@ std::string reason_of(const std::filesystem::path& file, sqlite3* handle, int co
 }  // namespace
 
 bool is_read_as_is(const std::filesystem::path& file) {
-  if (may(file, W_OK) && may(folder_of(file), W_OK | X_OK)) return false;
+  if (may_access(file, W_OK) && may_access(folder_of(file), W_OK | X_OK)) return false;
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(file, error);
-  return !error && !std::filesystem::exists(real.string() + "-wal", error) && !error;
+  return !error && !std::filesystem::exists(log_of(real).log, error) && !error;
 }
 
 Database::Database(std::filesystem::path file, Mode mode) : file_{std::move(file)} {
