@@ -12,8 +12,8 @@
 #include "localization/sensor/weighing.hpp"
 #include "mapping/merge/map_merge.hpp"
 #include "mapping/store_scan.hpp"
-#include "tests/support/cast_scan.hpp"
-#include "tests/support/merge_trial.hpp"
+#include "tests/support/merge/merge_trial.hpp"
+#include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap {
 namespace {

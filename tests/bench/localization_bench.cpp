@@ -15,7 +15,7 @@
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/sensor/weighing.hpp"
-#include "tests/support/carmen_feed.hpp"
+#include "tests/support/scans/carmen_feed.hpp"
 
 namespace {
 

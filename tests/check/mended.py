@@ -14,7 +14,7 @@ The rows stand in mended.json beside this file, a list of objects:
   before   what was measured before; text
   after    optional text. {name} stands for a figure that one of the row's tests prints as a line of its own,
 
-               figure name = value unit        (tests/support/figure.hpp)
+               figure name = value unit        (tests/support/files/figure.hpp)
 
            without `after`, all figures that they print are listed.
 

@@ -7,8 +7,8 @@
 
 #include <csignal>
 
-#include "tests/support/not_root.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/not_root.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap {
 namespace {

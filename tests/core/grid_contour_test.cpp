@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap {
 namespace {

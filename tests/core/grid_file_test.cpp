@@ -5,9 +5,9 @@
 
 #include "core/random.hpp"
 #include "core/replace_file.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/not_root.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/not_root.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap {
 namespace {

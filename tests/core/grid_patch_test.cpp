@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap {
 namespace {

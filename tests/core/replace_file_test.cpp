@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tests/support/full_disk.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/files/full_disk.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace {
 

@@ -16,8 +16,8 @@
 #include "daemon/start_banner.hpp"
 #include "daemon/telemetry/version.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may drive: what `ctl drive` is answered, and when the simulated robot moves.
 #include "daemon/kept/kept_drive.hpp"
-#include "tests/support/control_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "core/grid_file.hpp"
 #include "core/grid_file_facts.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

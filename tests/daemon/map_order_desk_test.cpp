@@ -7,7 +7,7 @@
 
 #include "daemon/maps/store_opening.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/control_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -9,8 +9,8 @@
 #include <mutex>
 
 #include "daemon/settings/start_error.hpp"
-#include "tests/support/not_root.hpp"
-#include "tests/support/pipeline_fixture.hpp"
+#include "tests/support/daemon/pipeline_fixture.hpp"
+#include "tests/support/files/not_root.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `ctl reload` in the running daemon: what it takes shows in what the robot is told.
-#include "tests/support/control_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {

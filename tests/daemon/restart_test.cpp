@@ -8,7 +8,7 @@
 #include "daemon/kept/kept_stability.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/pipeline_fixture.hpp"
+#include "tests/support/daemon/pipeline_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/random.hpp"
 #include "drivers/lms200/command.hpp"
 #include "drivers/pioneer/packet.hpp"
-#include "tests/support/damage.hpp"
+#include "tests/support/bytes/damage.hpp"
 
 namespace deltamap::drivers {
 namespace {

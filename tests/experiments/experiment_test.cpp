@@ -15,9 +15,9 @@
 #include "experiments/registry.hpp"
 #include "experiments/report/result_files.hpp"
 #include "experiments/report/svg_chart.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
+#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace {
 

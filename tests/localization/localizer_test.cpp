@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "localization/localizer_params.hpp"
-#include "tests/support/cast_scan.hpp"
-#include "tests/support/drawn_flat.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/scans/cast_scan.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::localization {
 namespace {

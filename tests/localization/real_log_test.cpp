@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "localization/localizer_params.hpp"
-#include "tests/support/carmen_feed.hpp"
-#include "tests/support/recorded_map.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/scans/carmen_feed.hpp"
+#include "tests/support/worlds/recorded_map.hpp"
 
 namespace deltamap::localization {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "tests/support/cast_scan.hpp"
-#include "tests/support/drawn_hall.hpp"
+#include "tests/support/scans/cast_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::localization {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "tests/support/cast_scan.hpp"
-#include "tests/support/symmetric_hall.hpp"
+#include "tests/support/scans/cast_scan.hpp"
+#include "tests/support/worlds/symmetric_hall.hpp"
 
 namespace deltamap::localization {
 namespace {

@@ -9,7 +9,7 @@
 #include "localization/localizer_params.hpp"
 #include "simulation/scenario/start_map.hpp"
 #include "simulation/virtual_drive.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::localization {
 namespace {

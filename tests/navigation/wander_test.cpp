@@ -12,7 +12,7 @@
 #include "core/grid_ray.hpp"
 #include "navigation/drive_mode.hpp"
 #include "navigation/safety.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::navigation {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/registration/contour_score.hpp"
-#include "tests/support/changed_hall.hpp"
+#include "tests/support/worlds/changed_hall.hpp"
 
 namespace deltamap::mapping {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mapping/store_scan.hpp"
-#include "tests/support/changed_hall.hpp"
-#include "tests/support/hall_drive.hpp"
+#include "tests/support/scans/hall_drive.hpp"
+#include "tests/support/worlds/changed_hall.hpp"
 
 namespace deltamap::mapping {
 namespace {

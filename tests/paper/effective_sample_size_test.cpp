@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "mapping/paper/delta_phase.hpp"
-#include "tests/support/changed_hall.hpp"
-#include "tests/support/hall_drive.hpp"
+#include "tests/support/scans/hall_drive.hpp"
+#include "tests/support/worlds/changed_hall.hpp"
 
 namespace deltamap::localization {
 namespace {

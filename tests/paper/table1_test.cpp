@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdio>
 
-#include "tests/support/merge_tally.hpp"
+#include "tests/support/merge/merge_tally.hpp"
 
 namespace deltamap::mapping {
 namespace {

@@ -10,8 +10,8 @@
 #include "mapping/map_update_params.hpp"
 #include "mapping/registration/contour_score.hpp"
 #include "mapping/store_scan.hpp"
-#include "tests/support/changed_hall.hpp"
-#include "tests/support/hall_drive.hpp"
+#include "tests/support/scans/hall_drive.hpp"
+#include "tests/support/worlds/changed_hall.hpp"
 
 namespace deltamap::mapping {
 namespace {

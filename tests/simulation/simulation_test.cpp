@@ -9,7 +9,7 @@
 
 #include "drivers/lms200/session.hpp"
 #include "drivers/pioneer/session.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drive in virtual time: repeatable, true to its truth, and honest about what odometry cannot see.
 #include "simulation/virtual_drive.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 #include <gtest/gtest.h>
 

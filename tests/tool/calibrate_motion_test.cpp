@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/grid_file.hpp"
-#include "tests/support/cast_scan.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/tool_run.hpp"
+#include "tests/support/scans/cast_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::tool {
 namespace {

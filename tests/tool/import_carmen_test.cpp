@@ -19,8 +19,8 @@
 #include "drivers/pioneer/odometry.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/port/byte_log.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 #include "tool/run_tool.hpp"
 
 namespace deltamap::tool {

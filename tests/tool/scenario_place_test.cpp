@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::tool {
 namespace {

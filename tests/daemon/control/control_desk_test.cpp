@@ -8,7 +8,7 @@
 #include "daemon/control/request.hpp"
 #include "daemon/control/server.hpp"
 #include "drivers/port/byte_log.hpp"
-#include "tests/support/control_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon::control {
 namespace {

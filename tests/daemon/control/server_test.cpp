@@ -12,8 +12,8 @@
 
 #include "daemon/control/client.hpp"
 #include "daemon/control/request.hpp"
-#include "tests/support/socket_client.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/daemon/socket_client.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon::control {
 namespace {

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "daemon/dashboard/page_files.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/live_decoding.hpp"
+#include "tests/support/bytes/live_decoding.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::daemon::dashboard {
 namespace {

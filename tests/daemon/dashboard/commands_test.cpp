@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "daemon/dashboard/server.hpp"
-#include "tests/support/web_client.hpp"
+#include "tests/support/daemon/web_client.hpp"
 
 namespace deltamap::daemon::dashboard {
 namespace {

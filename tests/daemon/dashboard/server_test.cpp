@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/web_client.hpp"
+#include "tests/support/daemon/web_client.hpp"
 
 namespace deltamap::daemon::dashboard {
 namespace {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <set>
 
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon {
 namespace {

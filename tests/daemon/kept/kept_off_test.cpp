@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an operator switched off in the running daemon: whether it is kept, and for which robot.
 #include "daemon/kept/kept_drive.hpp"
-#include "tests/support/control_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {

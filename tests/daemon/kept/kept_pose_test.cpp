@@ -6,7 +6,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/kept/memory_keeper.hpp"
 #include "daemon/settings/memory_places.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -13,11 +13,11 @@
 #include <thread>
 
 #include "core/grid_file.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/live_decoding.hpp"
-#include "tests/support/pipeline_fixture.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/web_client.hpp"
+#include "tests/support/bytes/live_decoding.hpp"
+#include "tests/support/daemon/pipeline_fixture.hpp"
+#include "tests/support/daemon/web_client.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::daemon {
 namespace {

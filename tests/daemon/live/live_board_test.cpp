@@ -9,8 +9,8 @@
 #include "daemon/dashboard/wire.hpp"
 #include "daemon/live/live_messages.hpp"
 #include "daemon/live/live_stream.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/live_decoding.hpp"
+#include "tests/support/bytes/live_decoding.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -10,8 +10,8 @@
 #include "daemon/dashboard/server.hpp"
 #include "daemon/kept/kept_drive.hpp"
 #include "drivers/port/port_clock.hpp"
-#include "tests/support/control_fixture.hpp"
-#include "tests/support/web_client.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
+#include "tests/support/daemon/web_client.hpp"
 
 namespace deltamap::daemon {
 namespace {

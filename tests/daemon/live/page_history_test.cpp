@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/live_decoding.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/bytes/live_decoding.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "tests/support/control_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -7,8 +7,8 @@
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/full_disk.hpp"
-#include "tests/support/saving_fixture.hpp"
+#include "tests/support/daemon/saving_fixture.hpp"
+#include "tests/support/files/full_disk.hpp"
 
 namespace deltamap::daemon {
 namespace {

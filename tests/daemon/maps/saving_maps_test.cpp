@@ -9,10 +9,10 @@
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/maps/store_opening.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/full_disk.hpp"
-#include "tests/support/not_root.hpp"
-#include "tests/support/saving_fixture.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/daemon/saving_fixture.hpp"
+#include "tests/support/files/full_disk.hpp"
+#include "tests/support/files/not_root.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

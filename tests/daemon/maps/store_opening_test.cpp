@@ -12,10 +12,10 @@
 #include "core/random.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/full_disk.hpp"
-#include "tests/support/not_root.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/files/full_disk.hpp"
+#include "tests/support/files/not_root.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -10,8 +10,8 @@
 #include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"
 #include "daemon/telemetry/version.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

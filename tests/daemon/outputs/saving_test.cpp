@@ -8,10 +8,10 @@
 #include "daemon/outputs/line_file.hpp"
 #include "daemon/records/live_recording.hpp"
 #include "daemon/settings/start_error.hpp"
-#include "tests/support/full_disk.hpp"
-#include "tests/support/not_root.hpp"
-#include "tests/support/saving_fixture.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/daemon/saving_fixture.hpp"
+#include "tests/support/files/full_disk.hpp"
+#include "tests/support/files/not_root.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/port/byte_log.hpp"
-#include "tests/support/control_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -7,11 +7,11 @@
 #include "daemon/records/recording_decoder.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "drivers/port/byte_log.hpp"
-#include "tests/support/cut_file.hpp"
-#include "tests/support/scripted_drive.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/bytes/cut_file.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
+#include "tests/support/files/tool_run.hpp"
+#include "tests/support/scans/scripted_drive.hpp"
 #include "tool/import_carmen.hpp"
 
 namespace deltamap::daemon {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/drawn_hall.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "daemon/settings/settings_documents.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon {
 namespace {

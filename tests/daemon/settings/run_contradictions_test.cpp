@@ -6,8 +6,8 @@
 
 #include "core/grid_file.hpp"
 #include "daemon/settings/settings_reading.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

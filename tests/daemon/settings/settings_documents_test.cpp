@@ -10,8 +10,8 @@
 
 #include "daemon/settings/reader/nearest_key.hpp"
 #include "daemon/settings/settings_sections.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

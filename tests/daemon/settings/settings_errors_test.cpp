@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "daemon/settings/settings.hpp"
-#include "tests/support/not_root.hpp"
-#include "tests/support/settings_lines.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/daemon/settings_lines.hpp"
+#include "tests/support/files/not_root.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon {
 namespace {

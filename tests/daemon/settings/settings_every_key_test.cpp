@@ -11,7 +11,7 @@
 
 #include "daemon/settings/former_keys.hpp"
 #include "daemon/settings/settings.hpp"
-#include "tests/support/settings_lines.hpp"
+#include "tests/support/daemon/settings_lines.hpp"
 
 namespace deltamap::daemon {
 namespace {

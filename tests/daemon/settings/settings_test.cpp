@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "daemon/settings/settings_documents.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon {
 namespace {

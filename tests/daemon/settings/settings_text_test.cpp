@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/settings/settings.hpp"
-#include "tests/support/settings_lines.hpp"
+#include "tests/support/daemon/settings_lines.hpp"
 
 namespace deltamap::daemon {
 namespace {

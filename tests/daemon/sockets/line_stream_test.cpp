@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/socket_client.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/daemon/socket_client.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon::sockets {
 namespace {

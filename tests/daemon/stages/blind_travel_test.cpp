@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "simulation/simulation.hpp"
-#include "tests/support/driving_daemon.hpp"
+#include "tests/support/daemon/driving_daemon.hpp"
 
 namespace deltamap {
 namespace {

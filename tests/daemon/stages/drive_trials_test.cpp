@@ -8,10 +8,10 @@
 
 #include "core/random.hpp"
 #include "simulation/simulation.hpp"
-#include "tests/support/driving_daemon.hpp"
-#include "tests/support/figure.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/daemon/driving_daemon.hpp"
+#include "tests/support/files/figure.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap {
 namespace {

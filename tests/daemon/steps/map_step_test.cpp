@@ -7,9 +7,9 @@
 #include "daemon/maps/revision_keeper.hpp"
 #include "mapping/map_update.hpp"
 #include "mapping/store_scan.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/drawn_scan.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/scans/drawn_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::daemon {
 namespace {

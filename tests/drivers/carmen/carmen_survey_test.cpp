@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/carmen/carmen_words.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::drivers::carmen {
 namespace {

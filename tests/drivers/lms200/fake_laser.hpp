@@ -11,7 +11,7 @@
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
 #include "drivers/lms200/telegram.hpp"
-#include "tests/support/conversation.hpp"
+#include "tests/support/bytes/conversation.hpp"
 
 namespace deltamap::drivers::lms200 {
 

@@ -6,9 +6,9 @@
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
 #include "drivers/lms200/telegram.hpp"
-#include "tests/support/figure.hpp"
-#include "tests/support/golden_frames.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/golden_frames.hpp"
+#include "tests/support/bytes/hex.hpp"
+#include "tests/support/files/figure.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {

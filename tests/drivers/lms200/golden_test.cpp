@@ -5,8 +5,8 @@
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/telegram.hpp"
-#include "tests/support/golden_vectors.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/golden_vectors.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {

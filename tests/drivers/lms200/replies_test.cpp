@@ -4,7 +4,7 @@
 
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/status.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "core/random.hpp"
 #include "tests/drivers/lms200/fake_laser.hpp"
-#include "tests/support/damage.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/damage.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/random.hpp"
-#include "tests/support/damage.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/damage.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {

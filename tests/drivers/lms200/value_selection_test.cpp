@@ -7,8 +7,8 @@
 
 #include "core/random.hpp"
 #include "drivers/lms200/command.hpp"
-#include "tests/support/damage.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/damage.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::lms200 {
 namespace {

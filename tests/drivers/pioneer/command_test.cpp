@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/pioneer/packet.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {

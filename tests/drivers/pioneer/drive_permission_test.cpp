@@ -9,9 +9,9 @@
 #include <map>
 
 #include "tests/drivers/pioneer/session_fixture.hpp"
-#include "tests/support/figure.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/files/figure.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {

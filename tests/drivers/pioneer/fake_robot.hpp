@@ -12,7 +12,7 @@
 #include "drivers/pioneer/extra_packets.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/pioneer/status.hpp"
-#include "tests/support/conversation.hpp"
+#include "tests/support/bytes/conversation.hpp"
 
 namespace deltamap::drivers::pioneer {
 

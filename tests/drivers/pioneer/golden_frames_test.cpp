@@ -9,9 +9,9 @@
 #include "drivers/pioneer/extra_packets.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/pioneer/status.hpp"
-#include "tests/support/figure.hpp"
-#include "tests/support/golden_frames.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/golden_frames.hpp"
+#include "tests/support/bytes/hex.hpp"
+#include "tests/support/files/figure.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {

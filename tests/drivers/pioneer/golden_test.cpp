@@ -8,8 +8,8 @@
 #include "drivers/pioneer/extra_packets.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/pioneer/status.hpp"
-#include "tests/support/golden_vectors.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/golden_vectors.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "drivers/pioneer/session.hpp"
 #include "tests/drivers/pioneer/fake_robot.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/hex.hpp"
 
 namespace deltamap::drivers::pioneer {
 

@@ -3,7 +3,7 @@
 
 #include "core/random.hpp"
 #include "tests/drivers/pioneer/session_fixture.hpp"
-#include "tests/support/damage.hpp"
+#include "tests/support/bytes/damage.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::drivers::port {
 namespace {

@@ -14,7 +14,7 @@
 #include "drivers/port/port_holder.hpp"
 #include "drivers/port/port_permission.hpp"
 #include "drivers/port/terminal.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::drivers::port {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::drivers::port {
 namespace {

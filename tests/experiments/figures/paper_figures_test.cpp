@@ -7,7 +7,7 @@
 
 #include "experiments/drive/room_changes.hpp"
 #include "experiments/registry.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::experiments {
 namespace {

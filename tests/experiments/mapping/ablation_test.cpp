@@ -11,8 +11,8 @@
 
 #include "experiments/mapping/ablation_changes.hpp"
 #include "experiments/registry.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {

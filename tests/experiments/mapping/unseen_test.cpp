@@ -7,9 +7,9 @@
 
 #include "experiments/seed_summary.hpp"
 #include "experiments/watch/pose_course.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
+#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {

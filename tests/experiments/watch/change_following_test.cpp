@@ -9,9 +9,9 @@
 #include "experiments/watch/override_map.hpp"
 #include "simulation/scenario/scenario.hpp"
 #include "simulation/scenario/start_map.hpp"
-#include "tests/support/block_room.hpp"
-#include "tests/support/cast_scan.hpp"
-#include "tests/support/drawn_scan.hpp"
+#include "tests/support/scans/cast_scan.hpp"
+#include "tests/support/scans/drawn_scan.hpp"
+#include "tests/support/worlds/block_room.hpp"
 
 namespace deltamap::experiments {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstdlib>
 
 #include "experiments/watch/pipeline_day.hpp"
-#include "tests/support/figure.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/figure.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::experiments {
 namespace {

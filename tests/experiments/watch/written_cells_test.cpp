@@ -9,7 +9,7 @@
 
 #include "simulation/scenario/start_map.hpp"
 #include "simulation/score/change_watch.hpp"
-#include "tests/support/block_room.hpp"
+#include "tests/support/worlds/block_room.hpp"
 
 namespace deltamap::experiments {
 namespace {

@@ -6,8 +6,8 @@
 #include "localization/belief/view_tally.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/straight_walk.hpp"
-#include "tests/support/drawn_flat.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::localization::belief {
 namespace {

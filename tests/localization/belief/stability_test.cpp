@@ -7,7 +7,7 @@
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "tests/support/drawn_flat.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
 
 namespace deltamap::localization::belief {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/symmetric_hall.hpp"
+#include "tests/support/worlds/symmetric_hall.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {

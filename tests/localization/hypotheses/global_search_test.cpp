@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "localization/sensor/weighing.hpp"
-#include "tests/support/drawn_flat.hpp"
-#include "tests/support/padded.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
+#include "tests/support/worlds/padded.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {

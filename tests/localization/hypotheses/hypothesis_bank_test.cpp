@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/drawn_flat.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {

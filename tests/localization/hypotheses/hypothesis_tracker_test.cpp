@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/drawn_flat.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/symmetric_hall.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
+#include "tests/support/worlds/symmetric_hall.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "tests/support/cast_ends.hpp"
+#include "tests/support/scans/cast_ends.hpp"
 
 namespace deltamap::localization::particles {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "core/random.hpp"
-#include "tests/support/drawn_flat.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/padded.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
+#include "tests/support/worlds/padded.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {

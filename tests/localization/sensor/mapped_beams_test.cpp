@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {

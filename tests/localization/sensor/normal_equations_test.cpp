@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/random.hpp"
-#include "tests/support/cast_scan.hpp"
-#include "tests/support/pillar_room.hpp"
+#include "tests/support/scans/cast_scan.hpp"
+#include "tests/support/worlds/pillar_room.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {

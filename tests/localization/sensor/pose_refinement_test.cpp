@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "tests/support/cast_ends.hpp"
-#include "tests/support/pillar_room.hpp"
+#include "tests/support/scans/cast_ends.hpp"
+#include "tests/support/worlds/pillar_room.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {

@@ -10,7 +10,7 @@
 #include "localization/belief/view_tally.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "tests/support/drawn_flat.hpp"
+#include "tests/support/worlds/drawn_flat.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {

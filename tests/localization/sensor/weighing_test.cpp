@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {

@@ -11,7 +11,7 @@
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/tracking/surface_tracker.hpp"
-#include "tests/support/container_hall.hpp"
+#include "tests/support/worlds/container_hall.hpp"
 
 namespace deltamap::localization::surfaces {
 namespace {

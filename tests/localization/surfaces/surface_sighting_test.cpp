@@ -9,7 +9,7 @@
 
 #include "core/random.hpp"
 #include "localization/motion/deskew.hpp"
-#include "tests/support/container_hall.hpp"
+#include "tests/support/worlds/container_hall.hpp"
 
 namespace deltamap::localization::surfaces {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/angle.hpp"
-#include "tests/support/cast_ends.hpp"
-#include "tests/support/pillar_room.hpp"
+#include "tests/support/scans/cast_ends.hpp"
+#include "tests/support/worlds/pillar_room.hpp"
 
 namespace deltamap::localization::tracking {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap::localization::tracking {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "mapping/evidence/small_objects.hpp"
 #include "mapping/votes/beam_votes.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/seen_scan.hpp"
+#include "tests/support/scans/seen_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::evidence {
 namespace {

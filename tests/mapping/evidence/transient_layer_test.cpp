@@ -8,8 +8,8 @@
 
 #include "core/random.hpp"
 #include "mapping/store_scan.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/drawn_scan.hpp"
+#include "tests/support/scans/drawn_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::evidence {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "mapping/store_scan.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/hall_drive.hpp"
+#include "tests/support/scans/hall_drive.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::gate {
 namespace {

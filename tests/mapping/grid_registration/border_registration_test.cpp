@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/grid_registration/best_nearby.hpp"
-#include "tests/support/merge_trial.hpp"
+#include "tests/support/merge/merge_trial.hpp"
 
 namespace deltamap::mapping::grid_registration {
 namespace {

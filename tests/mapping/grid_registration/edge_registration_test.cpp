@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/merge_trial.hpp"
+#include "tests/support/merge/merge_trial.hpp"
 
 namespace deltamap::mapping::grid_registration {
 namespace {

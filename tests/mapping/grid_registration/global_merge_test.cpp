@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/merge_tally.hpp"
-#include "tests/support/recorded_map.hpp"
+#include "tests/support/merge/merge_tally.hpp"
+#include "tests/support/worlds/recorded_map.hpp"
 
 namespace deltamap::mapping::grid_registration {
 namespace {

@@ -6,8 +6,8 @@
 #include "core/grid_ray.hpp"
 #include "core/random.hpp"
 #include "mapping/merge/overlay_score.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/merge_trial.hpp"
+#include "tests/support/merge/merge_trial.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::grid_registration {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/merge_tally.hpp"
-#include "tests/support/recorded_map.hpp"
+#include "tests/support/merge/merge_tally.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
+#include "tests/support/worlds/recorded_map.hpp"
 
 namespace deltamap::mapping::merge {
 namespace {

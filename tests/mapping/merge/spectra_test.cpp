@@ -6,7 +6,7 @@
 #include "mapping/merge/axis_spectrum.hpp"
 #include "mapping/merge/hough_spectrum.hpp"
 #include "mapping/merge/spectrum_peak.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::mapping::merge {
 namespace {

@@ -8,9 +8,9 @@
 #include "mapping/paper/local_map.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/registration/contour_score.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/kept_scans.hpp"
-#include "tests/support/seen_scan.hpp"
+#include "tests/support/scans/kept_scans.hpp"
+#include "tests/support/scans/seen_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::paper {
 namespace {

@@ -8,8 +8,8 @@
 #include "mapping/redraw/ray_counts.hpp"
 #include "mapping/votes/face_step.hpp"
 #include "mapping/votes/flip_memory.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/seen_scan.hpp"
+#include "tests/support/scans/seen_scan.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::mapping::redraw {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/drawn_scan.hpp"
-#include "tests/support/kept_scans.hpp"
+#include "tests/support/scans/drawn_scan.hpp"
+#include "tests/support/scans/kept_scans.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::redraw {
 namespace {

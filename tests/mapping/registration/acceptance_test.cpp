@@ -5,7 +5,7 @@
 
 #include "mapping/registration/contour_score.hpp"
 #include "mapping/registration/transformed_grid.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::mapping::registration {
 namespace {

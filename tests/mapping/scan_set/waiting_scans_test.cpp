@@ -12,8 +12,8 @@
 #include "mapping/map_update_params.hpp"
 #include "mapping/store_scan.hpp"
 #include "tests/mapping/straight_drive.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/drawn_scan.hpp"
+#include "tests/support/scans/drawn_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::scan_set {
 namespace {

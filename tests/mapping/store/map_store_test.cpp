@@ -9,9 +9,9 @@
 #include <filesystem>
 
 #include "mapping/store/taken_back.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/stored_maps.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/daemon/stored_maps.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::mapping::store {
 namespace {

@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "mapping/store/map_store.hpp"
-#include "tests/support/stored_maps.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/daemon/stored_maps.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
 namespace {

@@ -4,9 +4,9 @@
 #include <sqlite3.h>
 
 #include "mapping/store/map_store.hpp"
-#include "tests/support/figure.hpp"
-#include "tests/support/stored_maps.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/daemon/stored_maps.hpp"
+#include "tests/support/files/figure.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
 namespace {

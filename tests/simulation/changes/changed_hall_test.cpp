@@ -8,7 +8,7 @@
 
 #include "simulation/scenario/start_map.hpp"
 #include "simulation/virtual_drive.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {

@@ -9,7 +9,7 @@
 #include "simulation/scenario/scenario.hpp"
 #include "simulation/simulation.hpp"
 #include "simulation/virtual_drive.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "simulation/scenario/scenario.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::simulation {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/random.hpp"
 #include "drivers/lms200/session.hpp"
 #include "simulation/devices/virtual_lms200.hpp"
-#include "tests/support/figure.hpp"
+#include "tests/support/files/figure.hpp"
 
 namespace deltamap::simulation::devices {
 namespace {

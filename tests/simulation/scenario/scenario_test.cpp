@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/scenario/scenario.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 #include <gtest/gtest.h>
 

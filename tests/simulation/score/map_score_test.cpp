@@ -12,8 +12,8 @@
 #include "simulation/score/change_watch.hpp"
 #include "simulation/score/map_score.hpp"
 #include "simulation/score/map_truth.hpp"
-#include "tests/support/block_room.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/block_room.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::simulation::score {
 namespace {

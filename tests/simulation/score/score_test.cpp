@@ -7,7 +7,7 @@
 #include "simulation/scenario/start_map.hpp"
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/trajectory_score.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::simulation::score {
 namespace {

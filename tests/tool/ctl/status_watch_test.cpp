@@ -14,8 +14,8 @@
 
 #include "daemon/control/request.hpp"
 #include "daemon/control/server.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::tool {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/value_selection.hpp"
-#include "tests/support/golden_vectors.hpp"
-#include "tests/support/hex.hpp"
+#include "tests/support/bytes/golden_vectors.hpp"
+#include "tests/support/bytes/hex.hpp"
 #include "tool/decode/decoded_frame.hpp"
 #include "tool/run_tool.hpp"
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "core/grid_file.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 #include "tool/run_tool.hpp"
 
 namespace deltamap::tool {

@@ -10,9 +10,9 @@
 #include "core/file_lock.hpp"
 #include "core/grid_file.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/not_root.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/files/not_root.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::tool {
 namespace {

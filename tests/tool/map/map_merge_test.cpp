@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/grid_file.hpp"
-#include "tests/support/drawn_grid.hpp"
-#include "tests/support/drawn_hall.hpp"
-#include "tests/support/merge_trial.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/tool_run.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/tool_run.hpp"
+#include "tests/support/merge/merge_trial.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::tool {
 namespace {

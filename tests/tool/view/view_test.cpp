@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tests/support/live_decoding.hpp"
-#include "tests/support/pipeline_fixture.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/tool_run.hpp"
-#include "tests/support/web_client.hpp"
+#include "tests/support/bytes/live_decoding.hpp"
+#include "tests/support/daemon/pipeline_fixture.hpp"
+#include "tests/support/daemon/web_client.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/tool_run.hpp"
 #include "tool/view/moment_file.hpp"
 #include "tool/view/run_folder.hpp"
 #include "tool/view/view_desk.hpp"

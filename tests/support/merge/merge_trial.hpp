@@ -7,7 +7,7 @@
 #include "core/occupancy_grid.hpp"
 #include "core/random.hpp"
 #include "mapping/registration/transformed_grid.hpp"
-#include "tests/support/drawn_hall.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::test {
 

@@ -2,7 +2,7 @@
 // The drawn hall after a change that is seen from way_round(): one container has gone, two have come.
 #pragma once
 
-#include "tests/support/drawn_hall.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::test {
 

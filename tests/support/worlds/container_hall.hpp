@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/occupancy_grid.hpp"
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap::test {
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/grid_file.hpp"
-#include "tests/support/source_tree.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::test {
 

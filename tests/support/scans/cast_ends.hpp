@@ -3,7 +3,7 @@
 #pragma once
 
 #include "localization/motion/deskew.hpp"
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap::test {
 

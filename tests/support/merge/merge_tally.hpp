@@ -7,7 +7,7 @@
 
 #include "core/angle.hpp"
 #include "mapping/merge/map_merge.hpp"
-#include "tests/support/merge_trial.hpp"
+#include "tests/support/merge/merge_trial.hpp"
 
 namespace deltamap::test {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where tests find the project's own files and the recorded data. The checkout's path is known to source_tree.cpp alone,
-// so that no other test is compiled anew, or without its precompiled header, because the checkout stands elsewhere.
+// Where tests find the project's own files and the recorded data. The checkout's path is known to source_tree.cpp
+// alone, so that no other test is compiled anew, or without its precompiled header, because the checkout stands
+// elsewhere.
 #pragma once
 
 #include <filesystem>

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-#include "tests/support/stream_socket.hpp"
+#include "tests/support/daemon/stream_socket.hpp"
 
 namespace deltamap::test {
 

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap::test {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/occupancy_grid.hpp"
-#include "tests/support/drawn_grid.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::test {
 

@@ -12,10 +12,10 @@
 #include "core/grid_file.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/replay/replay_run.hpp"
-#include "tests/support/scripted_drive.hpp"
-#include "tests/support/scripted_port.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_file.hpp"
+#include "tests/support/bytes/scripted_port.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
+#include "tests/support/scans/scripted_drive.hpp"
 #include "tool/import_carmen.hpp"
 
 namespace deltamap::test {

@@ -10,10 +10,10 @@
 #include <thread>
 
 #include "daemon/control/request.hpp"
-#include "tests/support/pipeline_fixture.hpp"
-#include "tests/support/simulated_ports.hpp"
-#include "tests/support/socket_client.hpp"
-#include "tests/support/source_tree.hpp"
+#include "tests/support/bytes/simulated_ports.hpp"
+#include "tests/support/daemon/pipeline_fixture.hpp"
+#include "tests/support/daemon/socket_client.hpp"
+#include "tests/support/files/source_tree.hpp"
 #include "tool/run_tool.hpp"
 
 namespace deltamap::test {

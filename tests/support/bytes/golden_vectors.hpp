@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 namespace deltamap::tests {
 
@@ -21,7 +21,7 @@ namespace deltamap::tests {
 }  // namespace deltamap::tests
 
 /// Declares `name` with the vectors, or skips the test loudly.
-#define DELTAMAP_GOLDEN_VECTORS_OR_SKIP(name)                                                          \
-  const auto name##_or_none = deltamap::tests::golden_vectors();                                       \
+#define DELTAMAP_GOLDEN_VECTORS_OR_SKIP(name)                                                         \
+  const auto name##_or_none = deltamap::tests::golden_vectors();                                      \
   if (!name##_or_none) GTEST_SKIP() << "no golden_vectors.json in " << deltamap::test::data_folder(); \
   const nlohmann::json& name = *name##_or_none

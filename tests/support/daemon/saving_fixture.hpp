@@ -11,7 +11,7 @@
 #include "core/time.hpp"
 #include "daemon/outputs/retrying_output.hpp"
 #include "daemon/telemetry/telemetry.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::test {
 

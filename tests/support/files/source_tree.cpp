@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/source_tree.hpp"
+#include "tests/support/files/source_tree.hpp"
 
 #include <cstdlib>
 

@@ -2,7 +2,7 @@
 // A small flat of three rooms for tests of localization.
 #pragma once
 
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap::test {
 

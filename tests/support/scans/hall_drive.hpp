@@ -11,7 +11,7 @@
 
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "tests/support/cast_scan.hpp"
+#include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap::test {
 
