@@ -71,6 +71,12 @@ void require_lockable(const std::filesystem::path& lock_file, const std::string&
     if (!may_make) fail(lock_file);
     return;
   }
+  struct stat found {};
+  if (::fstat(descriptor, &found) == 0 && S_ISDIR(found.st_mode)) {
+    ::close(descriptor);
+    errno = EISDIR;
+    fail(lock_file);
+  }
   // Shared: two that only look are not in each other's way.
   if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) refuse_in_use(descriptor, what);
   ::close(descriptor);

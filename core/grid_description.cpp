@@ -61,6 +61,9 @@ void require_description(const std::filesystem::path& file, const std::string& t
 }
 
 std::string description_text(const std::filesystem::path& file) {
+  std::error_code told_below;
+  if (std::filesystem::is_other(file, told_below))
+    complain(file, "is no plain file");  // a pipe may say nothing for ever
   try {
     return text_of_file(file);
   } catch (const std::runtime_error& error) {

@@ -34,6 +34,7 @@ constexpr int kMaxSide = 32767;                     // cells; 16-bit indices suf
 std::ifstream open_file(const std::filesystem::path& file) {
   std::error_code told_below;
   if (std::filesystem::is_directory(file, told_below)) refuse(file, "is a directory");
+  if (std::filesystem::is_other(file, told_below)) refuse(file, "is no plain file");  // a pipe may say nothing for ever
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file, std::strerror(errno));
   return in;
@@ -200,6 +201,18 @@ std::filesystem::path picture_of(const std::filesystem::path& yaml_file) {
   return yaml_file.parent_path() / read_grid_description(yaml_file).image;
 }
 
+std::filesystem::path picture_named_in(const std::filesystem::path& yaml_file) {
+  constexpr std::uintmax_t kLargest = 1'000'000;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(yaml_file, error) && std::filesystem::file_size(yaml_file, error) <= kLargest) {
+    try {
+      return picture_of(yaml_file);
+    } catch (const std::runtime_error&) {  // whoever reads the map says why
+    }
+  }
+  return std::filesystem::path(yaml_file).replace_extension(".pgm");
+}
+
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
   const Point2& origin = grid.geometry().origin;
   return "image: " + image + "\nresolution: " + shortest_text(grid.resolution_m()) + "\norigin: [" +
@@ -286,6 +299,7 @@ void replace_both(PgmWriter& pgm, const std::filesystem::path& image, const std:
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file) {
   std::filesystem::path image = yaml_file;
   image.replace_extension(".pgm");
+  if (image == yaml_file) refuse(yaml_file, "must name a description, NAME.yaml: its picture is NAME.pgm");
   const std::string text = yaml_of(grid, image.filename().string());
   PgmWriter pgm{grid};
   if (is_other_text(yaml_file, text)) return replace_both(pgm, image, text, yaml_file);

@@ -20,11 +20,16 @@ namespace deltamap {
 
 /// Writes NAME.yaml and NAME.pgm (0 occupied, 205 unknown, 254 free; thresholds 0.65 and 0.196), each through a
 /// temporary file that is synced and renamed: at any moment the two belong together, or, while size, place or
-/// resolution change, there is no NAME.yaml. Throws std::runtime_error naming the file.
+/// resolution change, there is no NAME.yaml. Throws std::runtime_error naming the file; where it is called NAME.pgm,
+/// too.
 void write_grid(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
 
 /// The picture that a description names. Throws as read_grid() does.
 [[nodiscard]] std::filesystem::path picture_of(const std::filesystem::path& yaml_file);
+
+/// The same where the description cannot be read, too: the name that write_grid() would give it then. A pipe is not
+/// waited for.
+[[nodiscard]] std::filesystem::path picture_named_in(const std::filesystem::path& yaml_file);
 
 /// The texts of these two files, for whoever does not write them.
 [[nodiscard]] std::string yaml_of(const OccupancyGrid& grid, const std::string& image);

@@ -8,19 +8,22 @@
 #include <utility>
 
 #include "core/scratch_folder.hpp"
-#include "daemon/control/client.hpp"
 #include "daemon/dashboard/access.hpp"
 #include "daemon/dashboard/server.hpp"
 #include "daemon/first_map.hpp"
 #include "daemon/kept/kept_drive.hpp"
 #include "daemon/maps/newest_map.hpp"
+#include "daemon/maps/store_opening.hpp"
 #include "daemon/outputs/output_place.hpp"
 #include "daemon/outputs/state_folders.hpp"
+#include "daemon/records/live_recording.hpp"
 #include "daemon/settings/provenance.hpp"
 #include "daemon/settings/start_error.hpp"
+#include "daemon/sockets/listening_socket.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "drivers/port/port_check.hpp"
+#include "drivers/port/port_permission.hpp"
 #include "mapping/store/database_log.hpp"
 #include "mapping/store/map_store.hpp"
 #include "mapping/store/store_error.hpp"
@@ -31,11 +34,14 @@ namespace {
 namespace fs = std::filesystem;
 using Level = Finding::Level;
 
-// Of systemd/deltamap.service: where its settings are, all that it may write to, and what it cannot see.
+// Of systemd/deltamap.service: where its settings are, all that it may write to, what it cannot see, what only it sees,
+// and the drivers of the devices that it may open.
 constexpr const char* kServiceSettings = "/etc/deltamap";
 constexpr const char* kStateFolder = "/var/lib/deltamap";
 constexpr const char* kRuntimeFolder = "/run/deltamap";
 constexpr const char* kHidden[] = {"/home", "/root", "/run/user"};
+constexpr const char* kOwnPlaces[] = {"/tmp", "/var/tmp"};
+constexpr const char* kDrivers[] = {"ttyUSB", "ttyS", "ttyACM"};
 
 bool is_below(const fs::path& file, const fs::path& folder) {
   const fs::path within = fs::absolute(file).lexically_normal().lexically_relative(folder);
@@ -99,6 +105,8 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
     for (const mapping::store::StoredRevision& one : copy.history()) refusals += one.refused ? 1 : 0;
     std::string text = store + ": newest revision of this map " + std::to_string(copy.newest()) + ", " +
                        std::to_string(refusals) + " refusals";
+    if (const std::string others = words_of_others(copy); !others.empty())
+      return {Level::kWarning, "store", store + ": " + others};
     if (copy.dropped() == 0) return {Level::kOk, "store", text};
     return {Level::kWarning, "store", text + ", " + std::to_string(copy.dropped()) + " damaged revisions are dropped"};
   } catch (const mapping::store::StoreError& error) {
@@ -168,27 +176,31 @@ Finding place_finding(const std::string& about, const std::string& name, const f
   }
 }
 
-/// A daemon that cannot be commanded still does its work. The unit makes its folder below /run at each start
-/// (RuntimeDirectory), which nobody but root could.
+/// The name counts also where the folder has still to be made.
+Finding newest_finding(const MapSettings& map) {
+  try {
+    require_newest_named(map);
+  } catch (const StartError& error) {
+    return {Level::kError, "newest", error.what()};
+  }
+  return place_finding("newest", map.newest, map.newest, [&] { return judged_newest_place(map); });
+}
+
+/// A daemon that cannot be commanded still does its work, but two daemons do not share a socket, nor ports. The unit
+/// makes its folder below /run at each start (RuntimeDirectory), which nobody but root could.
 Finding socket_finding(const std::string& about, const fs::path& socket) {
   std::error_code ignored;
   if (socket.parent_path() == kRuntimeFolder && !fs::exists(kRuntimeFolder, ignored))
     return {Level::kOk, about, socket.string() + ": as a service; the unit makes " + kRuntimeFolder};
-  std::string why = why_no_folder_for(socket);
-  const fs::file_status status = fs::symlink_status(socket, ignored);
-  if (fs::exists(status) && !fs::is_socket(status)) why = "a file that is no socket is in the way";
-  return {why.empty() ? Level::kOk : Level::kWarning, about, socket.string() + (why.empty() ? "" : ": " + why)};
-}
-
-/// Two daemons do not share a socket, nor ports.
-Finding control_finding(const std::string& about, const std::string& socket) {
-  std::error_code ignored;
-  if (!fs::is_socket(socket, ignored)) return socket_finding(about, socket);
+  if (const std::string why = why_no_folder_for(socket); !why.empty())
+    return {Level::kWarning, about, socket.string() + ": " + why};
   try {
-    (void)control::exchange(socket, R"({"command":"status"})");
-    return {Level::kError, about, socket + ": another daemon listens there"};
-  } catch (const std::exception&) {  // left by one that was killed: it is replaced
-    return socket_finding(about, socket);
+    sockets::require_way_clear(socket);
+    return {Level::kOk, about, socket.string()};
+  } catch (const sockets::AlreadyServed& error) {
+    return {Level::kError, about, error.what()};
+  } catch (const std::runtime_error& error) {
+    return {Level::kWarning, about, error.what()};
   }
 }
 
@@ -214,10 +226,26 @@ std::vector<Finding> what_the_service_may_not(const Settings& settings) {
     findings.push_back(
         {Level::kWarning, "service", std::string("'") + key + "' " + file + ": deltamap.service " + why});
   };
-  const std::string& map = settings.map.file;
-  const bool is_hidden = std::any_of(std::begin(kHidden), std::end(kHidden),
-                                     [&](const char* folder) { return !map.empty() && is_below(map, folder); });
-  if (is_hidden) add("map.file", map, "does not see what lies in /home, /root and /run/user");
+  const auto require_seen = [&](const char* key, const std::string& file) {
+    const auto lies_in = [&](const char* folder) { return is_below(file, folder); };
+    if (file.empty()) return;
+    if (std::any_of(std::begin(kHidden), std::end(kHidden), lies_in))
+      add(key, file, "does not see what lies in /home, /root and /run/user");
+    if (std::any_of(std::begin(kOwnPlaces), std::end(kOwnPlaces), lies_in))
+      add(key, file, "has a /tmp and a /var/tmp of its own");
+  };
+  require_seen("map.file", settings.map.file);
+  require_seen("dashboard.token_file", settings.dashboard.token_file);
+  const auto require_allowed = [&](const char* key, const std::string& port) {
+    const std::string driver = drivers::port::driver_of(port);
+    const auto is_allowed = [&](const char* allowed) { return driver == allowed; };
+    if (driver.empty() || std::any_of(std::begin(kDrivers), std::end(kDrivers), is_allowed)) return;
+    findings.push_back({Level::kWarning, "service",
+                        std::string("'") + key + "' " + port + ": deltamap.service needs 'DeviceAllow=char-" + driver +
+                            " rw' (sudo systemctl edit deltamap)"});
+  };
+  require_allowed("robot.port", settings.robot.port);
+  require_allowed("laser.port", settings.laser.port);
   const auto require_written = [&](const char* key, const std::string& file) {
     if (file.empty() || is_below(file, kStateFolder) || is_below(file, kRuntimeFolder)) return;
     add(key, file, "may write to /var/lib/deltamap and /run/deltamap alone");
@@ -234,17 +262,15 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   std::vector<Finding> findings{settings_finding(settings, config)};
   const auto first = check_map(settings, config, findings);
   findings.push_back(store_finding(settings, config, first));
-  if (const std::string& file = settings.map.newest; !file.empty()) {
-    findings.push_back(place_finding("newest", file, file, [&] { return judged_newest_place(settings.map); }));
-  }
+  if (!settings.map.newest.empty()) findings.push_back(newest_finding(settings.map));
   findings.push_back(port_finding("robot", settings.robot.port));
   findings.push_back(port_finding("laser", settings.laser.port));
   findings.push_back(drive_finding(settings));
-  if (!settings.control.socket.empty()) findings.push_back(control_finding("control", settings.control.socket));
-  if (!settings.poses.socket.empty()) findings.push_back(control_finding("poses", settings.poses.socket));
+  if (!settings.control.socket.empty()) findings.push_back(socket_finding("control", settings.control.socket));
+  if (!settings.poses.socket.empty()) findings.push_back(socket_finding("poses", settings.poses.socket));
   if (settings.dashboard.port != 0) findings.push_back(page_finding(settings.dashboard));
   if (const std::string& file = settings.recording.file; !file.empty()) {
-    findings.push_back(place_finding("recording", file, file, [&] { return judged_file_place(file); }));
+    findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));
   }
   if (!out.empty()) {
     findings.push_back(

@@ -16,12 +16,14 @@
 #include <system_error>
 
 #include "core/file_lock.hpp"
+#include "core/grid_file_facts.hpp"
 #include "daemon/check_config.hpp"
 #include "daemon/console.hpp"
 #include "daemon/control/server.hpp"
 #include "daemon/first_map.hpp"
 #include "daemon/kept/kept_pose.hpp"
 #include "daemon/kept/kept_stability.hpp"
+#include "daemon/maps/newest_map.hpp"
 #include "daemon/maps/store_opening.hpp"
 #include "daemon/outputs/output_place.hpp"
 #include "daemon/outputs/outputs.hpp"
@@ -52,6 +54,10 @@ struct CommandLine {
   bool print_only = false;
 };
 
+void print(const std::string& text) {
+  if (!(std::cout << text).flush()) throw std::runtime_error("standard output: cannot be written");
+}
+
 void add_options(CLI::App& app, CommandLine& line) {
   app.set_version_flag("--version", "deltamapd " + version_text());
   app.add_option("--config", line.config, "settings, YAML")->required();
@@ -61,11 +67,11 @@ void add_options(CLI::App& app, CommandLine& line) {
   auto* check = app.add_flag("--check-config", line.check_only, "look at settings, map, store and ports, and end");
   app.add_flag("--print-config", line.print_only, "print all settings with their values and end")->excludes(check);
   const auto prints = [&app](const std::string& name, std::string (*text)(), const std::string& what) {
-    const auto print = [text] {
-      std::cout << text();
+    const auto print_and_end = [text] {
+      print(text());
       throw CLI::Success();
     };
-    app.add_flag_callback(name, print, what);
+    app.add_flag_callback(name, print_and_end, what);
   };
   prints("--print-schema", settings_schema, "print the JSON schema of the settings, for editors, and end");
   prints("--print-configuration-md", settings_page, "print the table of all settings (Markdown) and end");
@@ -198,7 +204,7 @@ int check(const CommandLine& line) {
   tell(reading.problems);
   const auto findings = reading.problems.empty() ? check_config(reading.settings, line.config, line.out)
                                                  : check_what_is_read(reading, line.config);
-  std::cout << text_of(findings);
+  print(text_of(findings));
   return has_error(findings) ? 2 : 0;
 }
 
@@ -213,6 +219,19 @@ void require_plain_file(const std::filesystem::path& settings) {
   }
 }
 
+/// A file that no start would accept is no good for a running daemon either. What takes long to know is left out.
+void require_a_start(const Settings& read, const std::string& config) {
+  require_map_named(read, config);
+  try {
+    require_pose_on(grid_file_facts(read.map.file).geometry, read);
+    require_newest_named(read.map);
+  } catch (const SettingsError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw SettingsError(error.what());
+  }
+}
+
 int run_pipeline(const Settings& settings, const CommandLine& line) {
   Console console;
   const bool hangup_reloads = !has_terminal();
@@ -222,7 +241,7 @@ int run_pipeline(const Settings& settings, const CommandLine& line) {
   options.live = std::make_shared<LiveSettings>(settings, [line] {
     require_plain_file(line.config);
     Settings read = read_settings_of_a_run(line.config, line.overrides);
-    require_map_named(read, line.config);
+    require_a_start(read, line.config);
     return read;
   });
   const OccupancyGrid first = first_map(settings, line, console);
@@ -266,6 +285,9 @@ int run_daemon(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::runtime_error& error) {
+    std::cerr << "deltamapd: " << error.what() << '\n';
+    return 1;
   }
   spdlog::set_default_logger(spdlog::stderr_color_mt("deltamapd"));
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
@@ -273,7 +295,7 @@ int run_daemon(int argc, const char* const* argv) {
     if (!line.initial_pose.empty()) line.overrides.push_back("localization.initial_pose=[" + line.initial_pose + "]");
     if (line.check_only) return check(line);
     if (line.print_only) {
-      std::cout << settings_as_yaml(read_settings(line.config, line.overrides));
+      print(settings_as_yaml(read_settings(line.config, line.overrides)));
       return 0;
     }
     return run_pipeline(read_settings_of_a_run(line.config, line.overrides), line);

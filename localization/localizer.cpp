@@ -82,7 +82,11 @@ void Localizer::apply(std::shared_ptr<const TransientObstacles> transients) {
   state_->transients = std::move(transients);
 }
 
-void Localizer::relocalize(const particles::InitialPose& pose) { state_->start_at(pose); }
+bool Localizer::relocalize(const particles::InitialPose& pose) {
+  if (particles::usable_start(*state_->map, pose).kind == particles::StartKind::kAnywhere) return false;
+  state_->start_at(pose);
+  return true;
+}
 
 const hypotheses::HypothesisReport& Localizer::hypotheses() const { return state_->hypotheses.report(); }
 

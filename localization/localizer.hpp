@@ -47,8 +47,9 @@ class Localizer {
   /// What is different from M_k for now, from the next scan on; null: nothing is known. Never localized on.
   void apply(std::shared_ptr<const TransientObstacles> transients);
 
-  /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp).
-  void relocalize(const particles::InitialPose& pose);
+  /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp). False
+  /// where nobody can stand there: all stays as it was.
+  bool relocalize(const particles::InitialPose& pose);
 
   /// What else in the map the scans may mean, as of the last scan.
   [[nodiscard]] const hypotheses::HypothesisReport& hypotheses() const;

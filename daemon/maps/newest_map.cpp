@@ -8,11 +8,15 @@
 
 namespace deltamap::daemon {
 
-std::string judged_newest_place(const MapSettings& map) {
+void require_newest_named(const MapSettings& map) {
   const std::filesystem::path yaml = map.newest;
-  if (yaml.extension() != ".yaml" && yaml.extension() != ".yml") {
-    throw StartError("'map.newest' must name a description, NAME.yaml, not '" + map.newest + "'");
-  }
+  if (yaml.empty() || yaml.extension() == ".yaml" || yaml.extension() == ".yml") return;
+  throw StartError("'map.newest' must name a description, NAME.yaml, not '" + map.newest + "'");
+}
+
+std::string judged_newest_place(const MapSettings& map) {
+  require_newest_named(map);
+  const std::filesystem::path yaml = map.newest;
   const std::filesystem::path picture = std::filesystem::path(yaml).replace_extension(".pgm");
   const std::string why = judged_file_place(yaml);
   return why.empty() ? judged_file_place(picture) : why;

@@ -11,8 +11,11 @@
 
 namespace deltamap::daemon {
 
+/// Throws StartError where map.newest names no description.
+void require_newest_named(const MapSettings& map);
+
 /// Looks at the place of map.newest. Empty, or why it cannot be written now (a read-only file system). Throws
-/// StartError where only a person can mend it: no name of a description, or this user may not.
+/// StartError where only a person can mend it: as require_newest_named(), or this user may not.
 [[nodiscard]] std::string judged_newest_place(const MapSettings& map);
 
 /// For this run alone; nothing where map.newest is empty, or there can be no lock. Throws FileInUse, and StartError as

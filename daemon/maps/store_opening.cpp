@@ -54,6 +54,8 @@ void take(OpenedStore& opened, MapStore store, const OccupancyGrid& first) {
     opened.warnings.push_back("map store: damaged revisions dropped=" + std::to_string(store.dropped()));
   }
   const std::uint32_t newest = store.newest();
+  if (const std::string others = words_of_others(store); !others.empty())
+    opened.warnings.push_back("map store: " + others);
   opened.start = {std::make_shared<const OccupancyGrid>(newest == 0 ? first : store.grid(newest)), newest};
   opened.store.store = std::move(store);
 }
@@ -83,6 +85,13 @@ void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGri
 }
 
 }  // namespace
+
+std::string words_of_others(const MapStore& store) {
+  const std::uint32_t others = store.newest() == 0 ? store.revisions_of_others() : 0;
+  if (others == 0) return "";
+  return "holds " + std::to_string(others) + (others == 1 ? " revision" : " revisions") +
+         " of another first map and none of this one: begins with the first map";
+}
 
 OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
   (void)judged_store_place(name);

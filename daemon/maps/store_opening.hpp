@@ -24,4 +24,7 @@ struct OpenedStore {
 /// not be read, or cannot be locked).
 [[nodiscard]] OpenedStore open_store(const std::filesystem::path& name, const OccupancyGrid& first);
 
+/// Where a store has nothing of this first map but revisions of others: the map's file has changed. Else empty.
+[[nodiscard]] std::string words_of_others(const mapping::store::MapStore& store);
+
 }  // namespace deltamap::daemon

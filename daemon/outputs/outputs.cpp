@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/grid_file.hpp"
 #include "core/replace_file.hpp"
 #include "daemon/settings/provenance.hpp"
 
@@ -93,11 +94,12 @@ std::string json_text(const RunReport& report, const Settings& settings) {
 }
 
 void require_map_elsewhere(const std::filesystem::path& map, const std::filesystem::path& out) {
-  for (const char* name : {"map.yaml", "map.pgm"}) {
-    std::error_code ignored;
-    const auto mine = std::filesystem::path(map).replace_extension(std::filesystem::path(name).extension());
-    if (!std::filesystem::equivalent(mine, out / name, ignored)) continue;
-    throw std::runtime_error(mine.string() + ": --out would overwrite it; give another folder");
+  for (const auto& mine : {map, picture_named_in(map)}) {
+    for (const char* name : {"map.yaml", "map.pgm"}) {
+      std::error_code ignored;
+      if (!std::filesystem::equivalent(mine, out / name, ignored)) continue;
+      throw std::runtime_error(mine.string() + ": --out would overwrite it; give another folder");
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "daemon/outputs/output_place.hpp"
 #include "daemon/records/journal.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "daemon/settings/start_error.hpp"
 
 namespace deltamap::daemon {
@@ -24,8 +25,7 @@ constexpr const char* kFull = "it has reached recording.max_gigabytes";
 std::error_code keep_previous(const std::filesystem::path& recording) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(recording, error)) return {};
-  std::filesystem::path previous = recording;
-  previous.replace_extension(".previous" + recording.extension().string());
+  const std::filesystem::path previous = previous_recording(recording);
   std::filesystem::rename(recording, previous, error);
   const int reason = error.value();
   if (!error || reason == EROFS || reason == ENOSPC || reason == EDQUOT) return error;
@@ -42,6 +42,14 @@ ByteRecord note_at(Timestamp stamp, std::string_view note, PortId port = PortId:
 
 }  // namespace
 
+std::string judged_recording_place(const std::filesystem::path& file) {
+  std::string why = judged_file_place(file);
+  std::error_code error;
+  const std::filesystem::path previous = previous_recording(file);
+  if (!std::filesystem::is_directory(previous, error)) return why;
+  throw StartError(file.string() + ": cannot be kept as " + previous.string() + ": is a directory");
+}
+
 LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const RetryingOutput::Warn& warn)
     : options_{std::move(options)},
       telemetry_{telemetry},
@@ -50,7 +58,7 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       bauds_{options_.bauds.robot, options_.bauds.laser},
       last_stamp_{options_.began} {
   options_.file = or_start_error([&] { return file_behind(options_.file); });
-  (void)judged_file_place(options_.file);
+  (void)judged_recording_place(options_.file);
   lock_ = or_start_error([&] { return lock_of_file(options_.file); });
   is_previous_kept_ = !keep_previous(options_.file);
   attempt(options_.began, [this] { go_on(); });

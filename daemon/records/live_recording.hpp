@@ -17,6 +17,10 @@
 
 namespace deltamap::daemon {
 
+/// Looks at the place of recording.file, and at that of the recording before it. Empty, or why nothing can be written
+/// now (a read-only file system). Throws StartError where only a person can mend it.
+[[nodiscard]] std::string judged_recording_place(const std::filesystem::path& file);
+
 class LiveRecording {
  public:
   struct Options {

@@ -12,4 +12,8 @@ MemoryPlaces memory_places(const std::filesystem::path& store) {
   return places;
 }
 
+std::filesystem::path previous_recording(std::filesystem::path recording) {
+  return recording.replace_extension(".previous" + recording.extension().string());
+}
+
 }  // namespace deltamap::daemon

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a run keeps what belongs to its store: files beside it, named after it.
+// Where a run keeps what belongs to its store and its recording: files beside them, named after them.
 #pragma once
 
 #include <filesystem>
@@ -13,5 +13,8 @@ struct MemoryPlaces {
   std::filesystem::path saved_map;  ///< NAME.saved.yaml with its PGM: what `ctl save` writes
 };
 [[nodiscard]] MemoryPlaces memory_places(const std::filesystem::path& store);
+
+/// Where a run keeps the recording of the run before it: NAME.previous.pcapng of NAME.pcapng.
+[[nodiscard]] std::filesystem::path previous_recording(std::filesystem::path recording);
 
 }  // namespace deltamap::daemon

@@ -42,19 +42,6 @@ bool is_same(const fs::path& one, const fs::path& other) {
   return fs::equivalent(one, other, not_both_are_there) || behind(one) == behind(other);
 }
 
-/// The picture that the description names. A daemon that reads its settings again must not wait for a pipe.
-fs::path image_of(const fs::path& yaml) {
-  constexpr std::uintmax_t kLargest = 1'000'000;
-  std::error_code error;
-  if (fs::is_regular_file(yaml, error) && fs::file_size(yaml, error) <= kLargest) {
-    try {
-      return picture_of(yaml);
-    } catch (const std::runtime_error&) {  // whoever reads the map says why
-    }
-  }
-  return fs::path(yaml).replace_extension(".pgm");
-}
-
 /// What is only read comes first: an output that is in its place is the one that is told.
 std::vector<NamedFile> files_of(const Settings& settings, const std::string& file) {
   std::vector<NamedFile> files{{"", "", file, false}};
@@ -64,7 +51,8 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
   const auto add_map = [&](const std::string& key, const std::string& yaml, bool is_written) {
     add(key, yaml, is_written);
     if (yaml.empty()) return;
-    files.push_back({key, "image", is_written ? fs::path(yaml).replace_extension(".pgm") : image_of(yaml), is_written});
+    files.push_back(
+        {key, "image", is_written ? fs::path(yaml).replace_extension(".pgm") : picture_named_in(yaml), is_written});
   };
   add_map("map.file", settings.map.file, false);
   add("dashboard.token_file", settings.dashboard.token_file, false);
@@ -86,6 +74,8 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
   add("control.socket", settings.control.socket, true);
   add("poses.socket", settings.poses.socket, true);
   add("recording.file", settings.recording.file, true);
+  if (const std::string& recording = settings.recording.file; !recording.empty())
+    files.push_back({"recording.file", "recording of the run before", previous_recording(recording), true});
   return files;
 }
 

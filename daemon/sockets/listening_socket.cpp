@@ -22,29 +22,35 @@ constexpr mode_t kOwnerAndGroup = 0660;
   throw std::runtime_error(socket.string() + ": cannot listen: " + why);
 }
 
-/// What lies at the path is no socket, or somebody answers there: refused. What a crash left is removed.
-void clear_the_way(asio::io_context& loop, const std::filesystem::path& socket) {
-  std::error_code ignored;
-  const auto status = std::filesystem::symlink_status(socket, ignored);
-  if (!std::filesystem::exists(status)) return;
-  if (!std::filesystem::is_socket(status)) refuse(socket, "a file that is no socket is in the way");
-  Protocol::socket caller{loop};
-  error_code error;
-  caller.connect(Protocol::endpoint{socket.string()}, error);
-  if (!error || error == asio::error::try_again || error == asio::error::would_block) {
-    throw AlreadyServed(socket.string() + ": another daemon listens there");
-  }
-  if (error != asio::error::connection_refused) refuse(socket, error.message());
-  std::filesystem::remove(socket, ignored);
-}
-
 }  // namespace
+
+void require_way_clear(const std::filesystem::path& socket) {
+  std::error_code ignored;
+  try {
+    const Protocol::endpoint endpoint{socket.string()};  // throws where the path is too long
+    const auto status = std::filesystem::symlink_status(socket, ignored);
+    if (!std::filesystem::exists(status)) return;
+    if (!std::filesystem::is_socket(status)) refuse(socket, "a file that is no socket is in the way");
+    asio::io_context loop;
+    Protocol::socket caller{loop};
+    error_code error;
+    caller.connect(endpoint, error);
+    if (!error || error == asio::error::try_again || error == asio::error::would_block) {
+      throw AlreadyServed(socket.string() + ": another daemon listens there");
+    }
+    if (error != asio::error::connection_refused) refuse(socket, error.message());
+  } catch (const boost::system::system_error& error) {
+    refuse(socket, error.code().message());
+  }
+}
 
 /// Never wider than owner and group, not even for a moment; and not narrower, whatever the umask.
 Protocol::acceptor listening_at(asio::io_context& loop, const std::filesystem::path& socket) {
   try {
-    const Protocol::endpoint endpoint{socket.string()};  // throws where the path is too long
-    clear_the_way(loop, socket);
+    require_way_clear(socket);
+    std::error_code ignored;
+    std::filesystem::remove(socket, ignored);
+    const Protocol::endpoint endpoint{socket.string()};
     Protocol::acceptor acceptor{loop, Protocol{}};
     (void)::fchmod(acceptor.native_handle(), kOwnerAndGroup);
     acceptor.bind(endpoint);

@@ -12,8 +12,11 @@
 
 namespace deltamap::daemon::sockets {
 
-/// Throws AlreadyServed where somebody answers there, std::runtime_error with one line that names the path where it
-/// cannot listen: a file that is no socket is in the way, no such folder, forbidden.
+/// Throws AlreadyServed where somebody listens there, std::runtime_error with one line that names the path where nobody
+/// could: a file that is no socket is in the way, the path is too long.
+void require_way_clear(const std::filesystem::path& socket);
+
+/// Throws as that does, and where it cannot listen: no such folder, forbidden.
 [[nodiscard]] boost::asio::local::stream_protocol::acceptor listening_at(boost::asio::io_context& loop,
                                                                          const std::filesystem::path& socket);
 

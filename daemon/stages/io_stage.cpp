@@ -69,6 +69,7 @@ struct IoStage::State {
               {opener(settings), recorder(), [this](Lms200Output& out) { take(out); },
                [this] { wiring.telemetry.laser_up.set(false); }, wiring.log, wiring.warn}} {
     if (drives && !kept.why_unknown().empty()) wiring.warn(kept.why_unknown());
+    show(navigation::StopReason::kNoCommand, {});
     obey_permission();
   }
 
@@ -154,21 +155,29 @@ struct IoStage::State {
   }
 
   void send_allowed_motion() {
-    if (!robot_is_connected()) return;
     const Timestamp now = drivers::port::port_clock_now();
+    if (!robot_is_connected()) return show(safety.allowed(now).stop, {});
     if (in_hand_of != 0 && seconds(now - hand_moved) > kHandLife_s) safety.release();
     const auto limits = robot.session().stopping_limits();
     safety.set_stopping_behaviour(
         {limits.watchdog_s, limits.deceleration_m_per_s2, limits.turn_deceleration_rad_per_s2});
     const navigation::AllowedMotion motion = safety.allowed(now);
-    wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(motion.stop));
     if (const LogLine line = stop_log.line(motion.stop); !line.text.empty()) {
       (line.is_warning ? wiring.warn : wiring.log)(line.text);
     }
-    wiring.telemetry.told_speed_m_per_s.set(motion.brake_hard ? 0.0 : motion.speed_m_per_s);
-    wiring.telemetry.told_turn_rate_rad_per_s.set(motion.brake_hard ? 0.0 : motion.turn_rate_rad_per_s);
+    show(motion.stop, motion.brake_hard ? Told{} : Told{motion.speed_m_per_s, motion.turn_rate_rad_per_s});
     if (motion.brake_hard) return robot.handle(robot.session().emergency_stop(now));
     robot.handle(robot.session().drive({now, motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now));
+  }
+
+  struct Told {
+    double speed_m_per_s = 0.0;
+    double turn_rate_rad_per_s = 0.0;
+  };
+  void show(navigation::StopReason stop, const Told& told) {
+    wiring.telemetry.stop_reason.set(static_cast<std::uint8_t>(stop));
+    wiring.telemetry.told_speed_m_per_s.set(told.speed_m_per_s);
+    wiring.telemetry.told_turn_rate_rad_per_s.set(told.turn_rate_rad_per_s);
   }
 
   control::CommandOutcome let_drive(const DriveRequest& request) {

@@ -187,13 +187,11 @@ void LocalizationStage::take_commands_without_scan() {
 void LocalizationStage::relocalize(const control::Command& command, const Scan& scan) {
   if (relocalized_) wiring_.answer({*relocalized_, false, "another pose has come before the next scan"});
   relocalized_.reset();
-  const bool is_there = step_.relocalize(command.map_from_robot);
-  note({Kind::kRelocalized, scan.number, 0, command.map_from_robot, scan.time});
-  if (is_there) {
-    relocalized_ = command.ticket;
-  } else {
-    wiring_.answer({command.ticket, false, "no free floor lies within 1 m of it: the whole map is searched"});
+  if (!step_.relocalize(command.map_from_robot)) {
+    return wiring_.answer({command.ticket, false, "no free floor lies within 1 m of it: the pose stays as it was"});
   }
+  note({Kind::kRelocalized, scan.number, 0, command.map_from_robot, scan.time});
+  relocalized_ = command.ticket;
 }
 
 void LocalizationStage::answer_relocalize(std::uint32_t scan) {

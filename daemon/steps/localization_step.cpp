@@ -67,9 +67,7 @@ void LocalizationStep::apply(std::shared_ptr<const TransientObstacles> transient
 }
 
 bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
-  const std::uint64_t refused = localizer_.counts().poses_refused;
-  localizer_.relocalize(localization::particles::InitialPose{map_from_robot});
-  return localizer_.counts().poses_refused == refused;
+  return localizer_.relocalize(localization::particles::InitialPose{map_from_robot});
 }
 
 std::map<std::string, std::uint64_t> LocalizationStep::counts() const {

@@ -41,8 +41,8 @@ class LocalizationStep {
   void apply(const MapRevision& revision);
   /// What is different from the map for now; null: nothing is known any more.
   void apply(std::shared_ptr<const TransientObstacles> transients);
-  /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°). False where nobody can stand there: the
-  /// whole map is searched then.
+  /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°). False where nobody can stand there:
+  /// the pose stays as it was.
   bool relocalize(const Pose2& map_from_robot);
 
   /// Of the newest scan that was localized.

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <syslog.h>
+#define SD_JOURNAL_SUPPRESS_LOCATION  // this file's own would be told
 #include <systemd/sd-journal.h>
 #include <unistd.h>
 
@@ -45,8 +46,20 @@ std::string field_name(std::string_view key) {
   return name;
 }
 
+/// Where the next "key=" begins, with the blank before it.
+std::size_t next_key(std::string_view line, std::size_t from) {
+  for (std::size_t at = line.find('=', from); at != std::string_view::npos; at = line.find('=', at + 1)) {
+    const std::size_t blank = line.rfind(' ', at);
+    if (blank != std::string_view::npos && blank >= from && !field_name(line.substr(blank + 1, at - blank - 1)).empty())
+      return blank;
+  }
+  return line.size();
+}
+
+/// Of several words where the key says so.
 std::string_view value_at(std::string_view line, std::size_t begin, std::string_view key) {
-  if (key == "reason" || key == "file") return line.substr(begin);
+  if (key == "reason") return line.substr(begin);
+  if (key == "file" || key == "size") return line.substr(begin, next_key(line, begin) - begin);
   std::string_view value = line.substr(begin, line.find(' ', begin) - begin);
   while (!value.empty() && (value.back() == ',' || value.back() == ';' || value.back() == ':')) value.remove_suffix(1);
   return value;

@@ -4,11 +4,14 @@
 #include <grp.h>
 #include <pwd.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <vector>
 
 namespace deltamap::drivers::port {
@@ -57,11 +60,30 @@ bool is_listed_in(gid_t id) {
 
 }  // namespace
 
+std::string driver_of(const std::string& path) {
+  struct stat device {};
+  if (::stat(path.c_str(), &device) != 0 || !S_ISCHR(device.st_mode)) return "";
+  std::ifstream devices{"/proc/devices"};
+  std::string driver;
+  for (std::string line; std::getline(devices, line) && line != "Block devices:";) {
+    std::istringstream words{line};
+    unsigned number = 0;
+    std::string name;
+    if (words >> number >> name && number == major(device.st_rdev)) driver = name;
+  }
+  return driver;
+}
+
 std::string way_to_permission(const std::string& path) {
   struct stat device {};
   if (::stat(path.c_str(), &device) != 0) {
     return "the folder '" + std::filesystem::path{path}.parent_path().string() + "' is closed to user '" +
            name_of_user(::geteuid()) + "'";
+  }
+  if (::access(path.c_str(), R_OK | W_OK) == 0) {
+    const std::string driver = driver_of(path);
+    return "its mode allows it: a service's unit needs 'DeviceAllow=char-" + (driver.empty() ? "DRIVER" : driver) +
+           " rw' (sudo systemctl edit deltamap)";
   }
   constexpr mode_t kGroupMay = S_IRGRP | S_IWGRP;
   constexpr mode_t kOwnerMay = S_IRUSR | S_IWUSR;

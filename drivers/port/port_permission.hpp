@@ -7,7 +7,12 @@
 
 namespace deltamap::drivers::port {
 
-/// "join the group 'dialout'", where its group may read and write and this user is not in it; else who may use it.
+/// What a unit's `DeviceAllow=char-NAME rw` calls the driver of a character device, "ttyUSB"; empty where it is none,
+/// or unknown (/proc/devices).
+[[nodiscard]] std::string driver_of(const std::string& path);
+
+/// "join the group 'dialout'", where its group may read and write and this user is not in it; else who may use it, or,
+/// where all of them let it, that a service's unit does not.
 [[nodiscard]] std::string way_to_permission(const std::string& path);
 
 }  // namespace deltamap::drivers::port

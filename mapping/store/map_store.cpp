@@ -263,6 +263,12 @@ MapStore& MapStore::operator=(MapStore&&) noexcept = default;
 
 std::uint32_t MapStore::newest() const { return state_->newest; }
 std::uint32_t MapStore::dropped() const { return state_->dropped; }
+
+std::uint32_t MapStore::revisions_of_others() const {
+  Statement row{state_->database, "SELECT count(*) FROM revision WHERE map != ? AND refused = 0 AND number > 0"};
+  row.bind(state_->map);
+  return row.step() ? static_cast<std::uint32_t>(row.number(0)) : 0;
+}
 void MapStore::catch_up() { state_->newest = state_->newest_written(); }
 
 OccupancyGrid MapStore::grid(std::uint32_t number) const {

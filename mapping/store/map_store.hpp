@@ -55,6 +55,8 @@ class MapStore {
   [[nodiscard]] std::uint32_t newest() const;
   /// Damaged revisions that opening has dropped.
   [[nodiscard]] std::uint32_t dropped() const;
+  /// Revisions that the file holds of other first maps, without those maps themselves.
+  [[nodiscard]] std::uint32_t revisions_of_others() const;
   /// What another program has written since it was opened counts, too.
   void catch_up();
   /// M_k. Throws std::runtime_error where there is no such revision, or it is damaged.

@@ -13,6 +13,7 @@
 #include "daemon/kept/kept_drive.hpp"
 #include "daemon/kept/kept_pose.hpp"
 #include "daemon/outputs/state_folders.hpp"
+#include "daemon/sockets/listening_socket.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/telemetry/version.hpp"
 #include "mapping/store/map_store.hpp"
@@ -146,6 +147,58 @@ TEST_F(CheckConfig, TheUnitMakesTheFolderOfItsSockets) {
   EXPECT_EQ(finding("control").text, "/run/deltamap/ctl.sock: as a service; the unit makes /run/deltamap");
 }
 
+TEST_F(CheckConfig, IsOfOneMindWithTheStartOnPlacesThatCannotBe) {
+  settings_.map.newest = folder_.path() / "not/made/yet.txt";
+  EXPECT_EQ(finding("newest").level, Level::kError) << finding("newest").text;
+  settings_.map.newest.clear();
+
+  settings_.recording.file = folder_.path() / "run.pcapng";
+  EXPECT_EQ(finding("recording").level, Level::kOk);
+  fs::create_directory(folder_.path() / "run.previous.pcapng");
+  EXPECT_EQ(finding("recording").level, Level::kError) << finding("recording").text;
+  settings_.recording.file.clear();
+
+  settings_.control.socket = folder_.path() / std::string(150, 's');
+  EXPECT_EQ(finding("control").level, Level::kWarning) << "a start has no socket";
+  EXPECT_NE(finding("control").text.find("File name too long"), std::string::npos) << finding("control").text;
+  settings_.control.socket.clear();
+
+  write_store();
+  EXPECT_EQ(finding("store").level, Level::kOk);
+  fs::create_directory(settings_.map.store + ".lock");
+  EXPECT_EQ(finding("store").level, Level::kError) << finding("store").text;
+}
+
+TEST_F(CheckConfig, ADaemonThatListensAndDoesNotAnswerIsAnErrorToo) {
+  settings_.control.socket = folder_.path() / "ctl";
+  boost::asio::io_context loop;
+  auto silent = sockets::listening_at(loop, settings_.control.socket);
+  EXPECT_EQ(finding("control").level, Level::kError);
+  EXPECT_EQ(finding("control").text, settings_.control.socket + ": another daemon listens there");
+  silent.close();
+  EXPECT_EQ(finding("control").level, Level::kOk) << "left by one that was killed: it is replaced";
+}
+
+TEST_F(CheckConfig, AStoreOfAnotherFirstMapIsAWarning) {
+  write_store();
+  first_.set({0, 1}, CellState::kFree);
+  write_grid(first_, settings_.map.file);
+  EXPECT_EQ(finding("store").level, Level::kWarning);
+  EXPECT_EQ(finding("store").text, settings_.map.store +
+                                       ": holds 1 revision of another first map and none of this one: begins with "
+                                       "the first map");
+  EXPECT_TRUE(would_start());
+}
+
+TEST_F(CheckConfig, APipeInPlaceOfTheMapIsNotWaitedFor) {
+  fs::remove(folder_.path() / "hall.pgm");
+  ASSERT_EQ(mkfifo((folder_.path() / "hall.pgm").c_str(), 0600), 0);
+  EXPECT_EQ(finding("map").text, (folder_.path() / "hall.pgm").string() + ": is no plain file");
+  fs::remove(settings_.map.file);
+  ASSERT_EQ(mkfifo(settings_.map.file.c_str(), 0600), 0);
+  EXPECT_EQ(finding("map").text, settings_.map.file + ": is no plain file");
+}
+
 TEST(ServiceSettings, NameWhatTheUnitWouldKeepFromThem) {
   Settings settings;
   settings.map.file = "/home/me/maps/../m0.yaml";
@@ -163,6 +216,19 @@ TEST(ServiceSettings, NameWhatTheUnitWouldKeepFromThem) {
             "'map.store' /srv/robot/store.sqlite: deltamap.service may write to /var/lib/deltamap and "
             "/run/deltamap alone");
   EXPECT_NE(findings[2].text.find("'recording.file'"), std::string::npos);
+}
+
+TEST(ServiceSettings, NameWhatTheUnitHidesAndTheDriversThatItForbids) {
+  Settings settings;
+  settings.map.file = "/var/tmp/m0.yaml";
+  settings.dashboard.token_file = "/root/token";
+  settings.robot.port = "/dev/null";
+  const std::vector<Finding> findings = what_the_service_may_not(settings);
+  ASSERT_EQ(findings.size(), 3U);
+  EXPECT_EQ(findings[0].text, "'map.file' /var/tmp/m0.yaml: deltamap.service has a /tmp and a /var/tmp of its own");
+  EXPECT_EQ(findings[1].text.find("'dashboard.token_file' /root/token: "), 0u) << findings[1].text;
+  EXPECT_EQ(findings[2].text,
+            "'robot.port' /dev/null: deltamap.service needs 'DeviceAllow=char-mem rw' (sudo systemctl edit deltamap)");
 }
 
 TEST_F(CheckConfig, AnOutFolderThatHoldsTheMapIsAnError) {

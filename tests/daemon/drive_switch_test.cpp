@@ -22,6 +22,7 @@ TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
     EXPECT_TRUE(reached_scan(scan + 10));
     EXPECT_FALSE(moves(ports));
     EXPECT_EQ(status()["drive"], "off");
+    EXPECT_EQ(status()["stopped_by"], "no command");
   });
 }
 
@@ -87,6 +88,19 @@ TEST_F(DriveTest, AWordToAMissingRobotDoesNotMakeItPresent) {
     ASSERT_TRUE(comes_true([&] { return status()["ports"]["robot"] == "down"; }));
     EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["message"], "wanders once the robot is connected");
     EXPECT_EQ(status()["ports"]["robot"], "down");
+    EXPECT_TRUE(comes_true([&] { return status()["stopped_by"] == "no odometry"; }));
+  });
+}
+
+TEST_F(DriveTest, AStatusTellsThatARobotIsGoneWhichWasDriving) {
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  run([&](test::SimulatedPorts& ports) {
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+    ASSERT_TRUE(comes_true([&] { return status()["told"]["speed_m_per_s"] > 0.0; }));
+    ports.unplug_robot();
+    ASSERT_TRUE(comes_true([&] { return status()["stopped_by"] == "no odometry"; }));
+    EXPECT_EQ(status()["told"]["speed_m_per_s"], 0.0);
+    EXPECT_EQ(status()["told"]["turn_rate_rad_per_s"], 0.0);
   });
 }
 

@@ -175,6 +175,17 @@ TEST(GivenPose, OutsideTheMapOrOfNoNumberMeansThatTheWholeMapIsSearched) {
   }
 }
 
+TEST(GivenPose, WhereNobodyCanStandLeavesATrackedPoseAsItIs) {
+  Tour tour{2};
+  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 2);
+  ASSERT_EQ(tour.next(localizer).estimate.state, LocalizerState::kTracking);
+  EXPECT_FALSE(localizer.relocalize(particles::InitialPose{{-50.0, 3.0, 0.0}}));
+  const TrackedScan tracked = tour.next(localizer);
+  EXPECT_EQ(tracked.estimate.state, LocalizerState::kTracking);
+  EXPECT_TRUE(right(tracked, tour));
+  EXPECT_EQ(localizer.counts().searches, 0u);
+}
+
 TEST(BadInput, ScansWithoutReturnsWhileThePoseIsUnknownFindNothingAndBreakNothing) {
   Tour tour{3};
   Localizer localizer = localizer_at(std::nullopt, 3);

@@ -53,6 +53,8 @@ done
 holds "the configuration is a conffile" grep -q '^ /etc/deltamap/deltamap.yaml ' <(dpkg-query -W -f='${Conffiles}\n' deltamap)
 holds "the only conffile" test "$(dpkg-query -W -f='${Conffiles}\n' deltamap | grep -c .)" = 1
 holds "the files are as packed" dpkg --verify deltamap
+holds "udev knows a port's ID_PATH where the rule looks at it" \
+  awk '/IMPORT{builtin}="path_id"/ { known = 1 } /ENV{ID_PATH}==/ { exit !known }' /lib/udev/rules.d/60-deltamap.rules
 holds "user deltamap may open serial ports" grep -qw dialout <(id -nG deltamap)
 holds "user deltamap has no password" grep -q '^deltamap:!' /etc/shadow
 holds "user deltamap has no shell" grep -q '^deltamap:.*nologin$' /etc/passwd

@@ -15,6 +15,12 @@ same docs/configuration.md "$out/page"
 same config/default.yaml "$out/yaml"
 "$bin/deltamapd" --config "$out/yaml" --print-config | cmp -s "$out/yaml" - || fail "what is printed does not read back"
 
+for what in --print-schema --print-configuration-md "--config $out/yaml --print-config" "--config $out/yaml --check-config"; do
+  code=0
+  "$bin/deltamapd" $what >/dev/full 2>"$out/err" || code=$?
+  [[ $code == 1 ]] && grep -q 'standard output: cannot be written' "$out/err" || fail "$what on a full disk ends with $code"
+done
+
 code=0
 "$bin/deltamapd" --print-config >/dev/null 2>"$out/err" || code=$?
 [[ $code == 2 ]] && grep -q -- '--config is required' "$out/err" || fail "a missing --config is not told"

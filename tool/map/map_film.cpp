@@ -10,6 +10,7 @@
 #include "daemon/maps/png_bytes.hpp"
 #include "mapping/store/map_store.hpp"
 #include "simulation/score/trajectory_score.hpp"
+#include "tool/output_file.hpp"
 #include "tool/picture/animated_png.hpp"
 #include "tool/picture/scene.hpp"
 #include "tool/subcommands.hpp"
@@ -74,6 +75,7 @@ std::vector<Point2> path_to(const std::vector<StampedPose>& poses, std::size_t l
 }
 
 void film(const FilmOptions& options) {
+  require_output_beside(options.png, options.store);
   const auto store = mapping::store::MapStore::to_read(options.store);
   const std::vector<Step> steps = steps_of(store);
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);

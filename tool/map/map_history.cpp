@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@
 #include "daemon/maps/png_bytes.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/store/map_store.hpp"
+#include "tool/output_file.hpp"
 #include "tool/picture/scene.hpp"
 #include "tool/subcommands.hpp"
 
@@ -110,6 +112,8 @@ void list(const HistoryOptions& options) {
 }
 
 void write_revision(const HistoryOptions& options) {
+  require_output_beside(options.out, options.store);
+  require_output_beside(std::filesystem::path(options.out).replace_extension(".pgm"), options.store);
   write_grid(MapStore::to_read(options.store).grid(options.number), options.out);
   if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
 }
@@ -153,6 +157,7 @@ void compare(const HistoryOptions& options) {
 /// Left the place before Δ K, right after it.
 void draw_delta(const HistoryOptions& options) {
   constexpr double kAround_m = 3.0;
+  require_output_beside(options.out, options.store);
   const MapStore store = MapStore::to_read(options.store);
   if (options.number == 0) throw std::runtime_error("revision 0 is the first map: it has changed nothing");
   const std::vector<CellChange> changes = store.changes(options.number);

@@ -11,6 +11,7 @@
 #include "core/grid_file.hpp"
 #include "daemon/maps/png_bytes.hpp"
 #include "simulation/score/trajectory_score.hpp"
+#include "tool/output_file.hpp"
 #include "tool/picture/scene.hpp"
 #include "tool/subcommands.hpp"
 
@@ -56,6 +57,8 @@ void add_scan_from(Scene& scene, const std::string& file) {
 }
 
 void draw(const PictureOptions& options) {
+  require_output_beside(options.png, options.map);
+  require_output_beside(options.png, picture_named_in(options.map));
   const OccupancyGrid map = read_grid(options.map);
   const OccupancyGrid before = options.before.empty() ? OccupancyGrid{} : read_grid(options.before);
   Scene scene{.map = map};

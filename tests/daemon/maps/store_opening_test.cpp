@@ -172,7 +172,9 @@ TEST_F(StoreOpening, AnotherMapBeginsItsOwnHistoryInTheSameFile) {
   OccupancyGrid other = first;
   other.set({3, 3}, CellState::kUnknown);
   const OpenedStore opened = open_store(file, other);
-  EXPECT_TRUE(opened.warnings.empty());
+  ASSERT_EQ(opened.warnings.size(), 1u) << "whoever has edited the first map must know what that costs";
+  EXPECT_EQ(opened.warnings.front().find("map store: holds "), 0u) << opened.warnings.front();
+  EXPECT_NE(opened.warnings.front().find(" of another first map and none of this one"), std::string::npos);
   EXPECT_EQ(opened.start.revision, 0u);
   EXPECT_EQ(*opened.start.map, other);
 }

@@ -82,6 +82,11 @@ TEST_F(RunContradictions, WhatAStoreKeepsBesideItIsNoOtherFile) {
             Lines{"recording.file: must not be the same file as the log of 'map.store'"});
 }
 
+TEST_F(RunContradictions, TheRecordingOfTheRunBeforeIsNoOtherFile) {
+  EXPECT_EQ(told({"map.store=" + in("run.previous.pcapng"), "recording.file=" + in("run.pcapng")}),
+            Lines{"recording.file: its recording of the run before must not be the same file as 'map.store'"});
+}
+
 TEST_F(RunContradictions, LinksAndDetoursLeadToTheSameFile) {
   fs::create_symlink(in("m0.yaml"), in("link"));
   fs::create_hard_link(in("m0.yaml"), in("second_name"));

@@ -100,6 +100,17 @@ TEST(SystemJournal, TakesAReasonToTheEndOfTheLine) {
   EXPECT_EQ(fields.back(), "DELTAMAP_REASON=too few scans");
 }
 
+TEST(SystemJournal, OfTheStartTakesAFileAndASizeOfSeveralWords) {
+  const auto settings =
+      system_journal::fields_of(LogLevel::kInfo, "settings: file=my robot.yaml changed=3 fingerprint=9c83");
+  EXPECT_EQ(
+      (std::vector<std::string>{settings.begin() + 3, settings.end()}),
+      (std::vector<std::string>{"DELTAMAP_FILE=my robot.yaml", "DELTAMAP_CHANGED=3", "DELTAMAP_FINGERPRINT=9c83"}));
+  const auto map = system_journal::fields_of(LogLevel::kInfo, "map: file=m0.yaml size=741 x 740 cells of 0.05 m");
+  EXPECT_EQ((std::vector<std::string>{map.begin() + 3, map.end()}),
+            (std::vector<std::string>{"DELTAMAP_FILE=m0.yaml", "DELTAMAP_SIZE=741 x 740 cells of 0.05 m"}));
+}
+
 TEST(SystemJournal, MakesNoFieldOfWhatIsNoKey) {
   EXPECT_EQ(
       system_journal::fields_of(LogLevel::kError, "x == y, 7=8, =9, A=1, a-b=2, phase=, stage=map; phase=4 phase=5")

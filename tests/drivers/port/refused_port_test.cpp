@@ -167,5 +167,14 @@ TEST_F(ForbiddenPort, NamesTheFolderThatIsClosed) {
   EXPECT_EQ(way(0, 0, 0666), "the folder '" + folder_.path().string() + "' is closed to user 'nobody'");
 }
 
+TEST(PortPermission, WhereTheModeAllowsItTheUnitIsNamed) {
+  EXPECT_EQ(driver_of("/dev/null"), "mem");
+  EXPECT_EQ(driver_of("/nowhere"), "");
+  EXPECT_EQ(
+      why_not_opened("/dev/null", EPERM),
+      "is forbidden (Operation not permitted): its mode allows it: a service's unit needs 'DeviceAllow=char-mem rw' "
+      "(sudo systemctl edit deltamap)");
+}
+
 }  // namespace
 }  // namespace deltamap::drivers::port

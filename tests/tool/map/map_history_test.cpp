@@ -151,6 +151,22 @@ TEST_F(MapHistory, OfAnotherUserIsReadAsItIsAndNotWritten) {
   }
 }
 
+TEST_F(MapHistory, NeverWritesOverTheStoreNorIntoAPicturesName) {
+  for (const auto& words : std::vector<std::vector<std::string>>{{"export", "1", file}, {"picture", "1", file}}) {
+    std::vector<std::string> all{file};
+    all.insert(all.end(), words.begin(), words.end());
+    const ToolRun run = history(all);
+    EXPECT_EQ(run.exit_code, 1) << words[0];
+    EXPECT_EQ(run.errors, "deltamap: " + file + ": is what is read; give another name\n");
+  }
+  const std::string picture = (folder.path() / "one.pgm").string();
+  const ToolRun run = history({file, "export", "1", picture});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.errors, "deltamap: " + picture + ": must name a description, NAME.yaml: its picture is NAME.pgm\n");
+  EXPECT_FALSE(std::filesystem::exists(picture));
+  EXPECT_EQ(history({file, "list"}).exit_code, 0) << "the store is as it was";
+}
+
 TEST_F(MapHistory, WithALogThatCannotBeReadIsNotReadWithoutIt) {
   (void)folder.write("store.sqlite-wal", "written by a daemon that was killed");
   std::filesystem::permissions(folder.path(), std::filesystem::perms{0555});

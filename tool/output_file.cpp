@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tool/output_file.hpp"
+
+#include <stdexcept>
+#include <system_error>
+
+#include "core/file_lock.hpp"
+
+namespace deltamap::tool {
+
+void require_output_beside(const std::filesystem::path& output, const std::filesystem::path& read) {
+  std::error_code not_both_are_there;
+  if (std::filesystem::equivalent(output, read, not_both_are_there))
+    throw std::runtime_error(output.string() + ": is what is read; give another name");
+  if (std::filesystem::exists(output, not_both_are_there)) require_lockable_file(output);
+}
+
+}  // namespace deltamap::tool

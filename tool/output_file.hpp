@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace deltamap::tool {
+
+/// What a command is about to write is neither what it reads nor what a running daemon has in use. Throws
+/// std::runtime_error naming the file, FileInUse naming the daemon.
+void require_output_beside(const std::filesystem::path& output, const std::filesystem::path& read);
+
+}  // namespace deltamap::tool
