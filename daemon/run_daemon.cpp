@@ -144,8 +144,10 @@ void watch(Pipeline& pipeline, Console& console, bool hangup_reloads) {
 
 OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Console& console) {
   require_map_named(settings, line.config);
-  console.log(LogLevel::kInfo, "reads the map: " + settings.map.file);  // a large one takes seconds
+  constexpr std::uint64_t kReadInAMoment = 20'000'000;  // cells: within half a second
   try {
+    if (grid_file_facts(settings.map.file).geometry.cell_count() > kReadInAMoment)
+      console.log(LogLevel::kInfo, "reads the map: " + settings.map.file);
     FirstMap map = read_first_map(settings.map.file, memory_limit());
     for (const std::string& warning : map.warnings) console.log(LogLevel::kWarn, warning);
     return std::move(map.grid);

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "core/access.hpp"
 #include "drivers/port/port_holder.hpp"
 #include "drivers/port/terminal.hpp"
 
@@ -47,7 +48,7 @@ PortCheck check_port(const std::string& path) {
     return {error == EACCES ? State::kForbidden : State::kMissing, path + " " + why_not_opened(path, error)};
   }
   if (!is_serial(device)) return {State::kNotSerial, path + " is not a serial port"};
-  if (::access(path.c_str(), R_OK | W_OK) != 0) return {State::kForbidden, path + " " + why_not_opened(path, EACCES)};
+  if (!may_access(path, R_OK | W_OK)) return {State::kForbidden, path + " " + why_not_opened(path, EACCES)};
   if (const std::string why = busy(path, device.st_rdev); !why.empty()) {
     return {State::kBusy, path + " is busy: " + why};
   }

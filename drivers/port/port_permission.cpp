@@ -80,11 +80,6 @@ std::string way_to_permission(const std::string& path) {
     return "the folder '" + std::filesystem::path{path}.parent_path().string() + "' is closed to user '" +
            name_of_user(::geteuid()) + "'";
   }
-  if (::access(path.c_str(), R_OK | W_OK) == 0) {
-    const std::string driver = driver_of(path);
-    return "its mode allows it: a service's unit needs 'DeviceAllow=char-" + (driver.empty() ? "DRIVER" : driver) +
-           " rw' (sudo systemctl edit deltamap)";
-  }
   constexpr mode_t kGroupMay = S_IRGRP | S_IWGRP;
   constexpr mode_t kOwnerMay = S_IRUSR | S_IWUSR;
   const std::string group = name_of_group(device.st_gid);

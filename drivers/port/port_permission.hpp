@@ -11,8 +11,7 @@ namespace deltamap::drivers::port {
 /// or unknown (/proc/devices).
 [[nodiscard]] std::string driver_of(const std::string& path);
 
-/// "join the group 'dialout'", where its group may read and write and this user is not in it; else who may use it, or,
-/// where all of them let it, that a service's unit does not.
+/// "join the group 'dialout'", where its group may read and write and this user is not in it; else who may use it.
 [[nodiscard]] std::string way_to_permission(const std::string& path);
 
 }  // namespace deltamap::drivers::port

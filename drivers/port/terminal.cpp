@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/access.hpp"
 #include "drivers/port/port_holder.hpp"
 #include "drivers/port/port_permission.hpp"
 
@@ -86,6 +87,15 @@ std::string own_exclusively(const std::string& path, int descriptor) {
   return why_not_opened(path, errno, descriptor);
 }
 
+std::string is_forbidden(int error) { return "is forbidden (" + std::generic_category().message(error) + "): "; }
+
+/// Owner, group and mode let this process open it, and yet it may not: DevicePolicy= of a service.
+std::string way_past_the_unit(const std::string& path) {
+  const std::string driver = driver_of(path);
+  return "its mode allows it: a service's unit needs 'DeviceAllow=char-" + (driver.empty() ? "NAME" : driver) +
+         " rw' (sudo systemctl edit deltamap)";
+}
+
 }  // namespace
 
 bool is_pseudo_terminal(dev_t number) { return major(number) >= 136 && major(number) <= 143; }
@@ -99,9 +109,11 @@ std::string why_not_opened(const std::string& path, int error, int own_descripto
     case EBUSY:
     case EWOULDBLOCK:
       return "is busy: " + lockers_or_holders_of(path, own_descriptor).told();
-    case EACCES:
     case EPERM:
-      return "is forbidden (" + std::generic_category().message(error) + "): " + way_to_permission(path);
+      if (may_access(path, R_OK | W_OK)) return is_forbidden(error) + way_past_the_unit(path);
+      [[fallthrough]];
+    case EACCES:
+      return is_forbidden(error) + way_to_permission(path);
     default:
       return "cannot be opened: " + std::generic_category().message(error);
   }
