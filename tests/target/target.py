@@ -80,7 +80,7 @@ class Trial:
     def install(self, deb):
         (self.target.share / "deltamap.deb").write_bytes(deb.read_bytes())
         code, output = self.target.sh("dpkg --install /mnt/share/deltamap.deb")
-        self.check("installs", code == 0, "" if code == 0 else output[-500:])
+        self.check("installs", code == 0, self.sh("deltamapd --version") if code == 0 else output[-500:])
         self.check("installing starts nothing and enables nothing", self.sh("systemctl is-active deltamap; systemctl is-enabled deltamap").split() == ["inactive", "disabled"])
         settings = "/etc/deltamap/deltamap.yaml"
         self.sh("sed -i 's|/dev/ttyUSB0|PORT_OF_ROBOT|; s|/dev/ttyUSB1|%s|; s|PORT_OF_ROBOT|%s|; s|mode: off .*|mode: wander|' %s" %
