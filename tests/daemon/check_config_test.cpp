@@ -238,6 +238,16 @@ TEST_F(CheckConfig, AnOutFolderThatHoldsTheMapIsAnError) {
   EXPECT_FALSE(has_error(check_config(settings_, "robot.yaml", folder_.path() / "run")));
 }
 
+TEST_F(CheckConfig, AnOutFolderThatHoldsTheMapsPictureByAnotherNameIsAnError) {
+  EXPECT_FALSE(has_error(check_config(settings_, "robot.yaml", folder_.path())));
+  fs::rename(folder_.path() / "hall.pgm", folder_.path() / "map.pgm");
+  (void)folder_.write("hall.yaml", yaml_of(first_, "map.pgm"));  // as map_saver names it
+  const std::vector<Finding> findings = check_config(settings_, "robot.yaml", folder_.path());
+  EXPECT_TRUE(has_error(findings));
+  EXPECT_NE(text_of(findings).find("map.pgm: --out would overwrite it; give another folder"), std::string::npos)
+      << text_of(findings);
+}
+
 TEST_F(CheckConfig, TellsWhetherItWouldDrive) {
   EXPECT_EQ(finding("drive").text, "off: it never moves the robot");
   settings_.navigation.mode = navigation::DriveMode::kWander;
