@@ -240,9 +240,9 @@ std::vector<Finding> what_the_service_may_not(const Settings& settings) {
     const std::string driver = drivers::port::driver_of(port);
     const auto is_allowed = [&](const char* allowed) { return driver == allowed; };
     if (driver.empty() || std::any_of(std::begin(kDrivers), std::end(kDrivers), is_allowed)) return;
-    findings.push_back({Level::kWarning, "service",
-                        std::string("'") + key + "' " + port + ": deltamap.service needs 'DeviceAllow=char-" + driver +
-                            " rw' (sudo systemctl edit deltamap)"});
+    findings.push_back(
+        {Level::kWarning, "service",
+         std::string("'") + key + "' " + port + ": deltamap.service needs " + drivers::port::way_past_the_unit(port)});
   };
   require_allowed("robot.port", settings.robot.port);
   require_allowed("laser.port", settings.laser.port);

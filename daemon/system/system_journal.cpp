@@ -46,12 +46,18 @@ std::string field_name(std::string_view key) {
   return name;
 }
 
+/// The word that ends at a '='.
+std::string_view key_before(std::string_view line, std::size_t equals) {
+  const std::size_t blank = line.rfind(' ', equals);
+  const std::size_t begin = blank == std::string_view::npos ? 0 : blank + 1;
+  return line.substr(begin, equals - begin);
+}
+
 /// Where the next "key=" begins, with the blank before it.
 std::size_t next_key(std::string_view line, std::size_t from) {
   for (std::size_t at = line.find('=', from); at != std::string_view::npos; at = line.find('=', at + 1)) {
-    const std::size_t blank = line.rfind(' ', at);
-    if (blank != std::string_view::npos && blank >= from && !field_name(line.substr(blank + 1, at - blank - 1)).empty())
-      return blank;
+    const std::string_view key = key_before(line, at);
+    if (at - key.size() > from && !field_name(key).empty()) return at - key.size() - 1;
   }
   return line.size();
 }
@@ -82,9 +88,7 @@ std::vector<std::string> fields_of(LogLevel level, const std::string& line) {
   const std::string_view text = line;
   std::set<std::string> told;
   for (std::size_t at = text.find('='); at != std::string_view::npos; at = text.find('=', at + 1)) {
-    const std::size_t blank = text.rfind(' ', at);
-    const std::size_t begin = blank == std::string_view::npos ? 0 : blank + 1;
-    const std::string_view key = text.substr(begin, at - begin);
+    const std::string_view key = key_before(text, at);
     const std::string name = field_name(key);
     const std::string_view value = value_at(text, at + 1, key);
     if (name.empty() || value.empty() || !told.insert(name).second) continue;

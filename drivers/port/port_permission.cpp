@@ -74,6 +74,11 @@ std::string driver_of(const std::string& path) {
   return driver;
 }
 
+std::string way_past_the_unit(const std::string& path) {
+  const std::string driver = driver_of(path);
+  return "'DeviceAllow=char-" + (driver.empty() ? "NAME" : driver) + " rw' (sudo systemctl edit deltamap)";
+}
+
 std::string way_to_permission(const std::string& path) {
   struct stat device {};
   if (::stat(path.c_str(), &device) != 0) {

@@ -11,6 +11,9 @@ namespace deltamap::drivers::port {
 /// or unknown (/proc/devices).
 [[nodiscard]] std::string driver_of(const std::string& path);
 
+/// What lets a service's unit open the device: "'DeviceAllow=char-ttyUSB rw' (sudo systemctl edit deltamap)".
+[[nodiscard]] std::string way_past_the_unit(const std::string& path);
+
 /// "join the group 'dialout'", where its group may read and write and this user is not in it; else who may use it.
 [[nodiscard]] std::string way_to_permission(const std::string& path);
 

@@ -89,13 +89,6 @@ std::string own_exclusively(const std::string& path, int descriptor) {
 
 std::string is_forbidden(int error) { return "is forbidden (" + std::generic_category().message(error) + "): "; }
 
-/// Owner, group and mode let this process open it, and yet it may not: DevicePolicy= of a service.
-std::string way_past_the_unit(const std::string& path) {
-  const std::string driver = driver_of(path);
-  return "its mode allows it: a service's unit needs 'DeviceAllow=char-" + (driver.empty() ? "NAME" : driver) +
-         " rw' (sudo systemctl edit deltamap)";
-}
-
 }  // namespace
 
 bool is_pseudo_terminal(dev_t number) { return major(number) >= 136 && major(number) <= 143; }
@@ -110,7 +103,8 @@ std::string why_not_opened(const std::string& path, int error, int own_descripto
     case EWOULDBLOCK:
       return "is busy: " + lockers_or_holders_of(path, own_descriptor).told();
     case EPERM:
-      if (may_access(path, R_OK | W_OK)) return is_forbidden(error) + way_past_the_unit(path);
+      if (may_access(path, R_OK | W_OK))  // and yet it may not: DevicePolicy= of a service
+        return is_forbidden(error) + "its mode allows it: a service's unit needs " + way_past_the_unit(path);
       [[fallthrough]];
     case EACCES:
       return is_forbidden(error) + way_to_permission(path);
