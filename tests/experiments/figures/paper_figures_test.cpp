@@ -78,7 +78,7 @@ TEST(Figure13, BoxesThatAreTakenAwayLeaveTheMapAndComeBackToWhereTheyWere) {
 }
 
 TEST(Figure14, MemoryIsThatOfAProcessAndPhasesCostMoreThanTheRest) {
-  const Report report = small_report("fig14", 4.0, 21);
+  const Report report = small_report("fig14", 10.0, 21);
   for (const std::string method : {"evidence", "paper"}) {
     const double peak_mb = figure(report, method + ": resident memory, simulator and all, peak");
     EXPECT_GT(peak_mb, 4.0);
