@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/grid_file.hpp"
+#include "daemon/control/calibration_json.hpp"
 #include "daemon/records/recording_decoder.hpp"
 #include "daemon/settings/settings.hpp"
 #include "drivers/port/replay_port.hpp"
@@ -47,7 +48,8 @@ struct Drive {
   double turned_rad = 0.0;
   std::size_t scans = 0;
   std::size_t sure_scans = 0;
-  std::optional<drivers::port::LogCut> cut;  ///< the recording ends there
+  std::optional<localization::motion::DriveCalibration> learned;  ///< by the localizer as it is set, while driving
+  std::optional<drivers::port::LogCut> cut;                       ///< the recording ends there
 };
 
 bool is_sure(const Estimate& estimate) {
@@ -61,10 +63,11 @@ bool is_sure(const Estimate& estimate) {
 Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) {
   std::optional<localization::particles::InitialPose> start;
   if (settings.initial_pose) start = localization::particles::InitialPose{*settings.initial_pose};
+  const auto map = std::make_shared<const OccupancyGrid>(read_grid(options.map));
+  localization::Localizer as_set{settings.localizer, map, start, settings.seed};
   localization::LocalizerParams params = settings.localizer;
   params.follow_surfaces = false;  // wheels as they count, not as they have been corrected
-  localization::Localizer localizer{params, std::make_shared<const OccupancyGrid>(read_grid(options.map)), start,
-                                    settings.seed};
+  localization::Localizer localizer{params, map, start, settings.seed};
   const auto& update = settings.localizer.update;
   localization::motion::MotionSegments pairs{
       {.step_m = std::max(1e-3, update.distance_m), .step_rad = std::max(1e-3, update.turn_rad)}};
@@ -72,8 +75,12 @@ Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) 
   drivers::port::ReplayPort port{options.recording, {}};
   daemon::RecordingDecoder decoder{settings};
   const daemon::RecordingDecoder::Sinks sinks{
-      [&](Odometry&& odometry, std::uint32_t) { localizer.observe(odometry); },
+      [&](Odometry&& odometry, std::uint32_t) {
+        as_set.observe(odometry);
+        localizer.observe(odometry);
+      },
       [&](Scan&& scan) {
+        (void)as_set.observe(scan);
         const TrackedScan tracked = localizer.observe(std::move(scan));
         const bool sure = is_sure(tracked.estimate);
         ++drive.scans;
@@ -85,6 +92,7 @@ Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) 
     decoder.feed(replayed->record, sinks);
     progress.show(port.read_bytes());
   }
+  drive.learned = as_set.calibration();
   drive.cut = port.cut();
   drive.segments = pairs.segments();
   for (const auto& segment : drive.segments) {
@@ -131,7 +139,7 @@ void print_calibration_text(const MotionCalibration& as_they_are, const MotionCa
             << as_they_are.of(MotionSource::kEstimatePosition).value << " m, "
             << degrees(as_they_are.of(MotionSource::kEstimateHeading).value) << " deg\n";
   print_keys(as_they_are);
-  std::cout << "# systematic, covered by the deviations above since the localizer does not correct it:\n"
+  std::cout << "# systematic, covered by the deviations above:\n"
             << "# true metres a metre of odometry: " << 1.0 + corrected.wheel_scale.value << " +- "
             << corrected.wheel_scale.error << " (wheels)\n"
             << "# true turn a turn of odometry:    " << 1.0 + corrected.turn_scale.value << " +- "
@@ -140,7 +148,8 @@ void print_calibration_text(const MotionCalibration& as_they_are, const MotionCa
             << degrees(corrected.drift_rad_per_m.error)
             << " deg (unequal wheels)\n# with it corrected, the deviations would be";
   for (const FittedKey& key : kKeys) std::cout << ' ' << corrected.of(key.source).value / key.unit;
-  std::cout << '\n';
+  std::cout << "\n# found and corrected while driving, as `calibration` in `deltamap ctl status`:\n# "
+            << daemon::control::calibration_json(drive.learned).dump() << '\n';
 }
 
 Json json_of_fitted(const Fitted& fitted, double unit = 1.0) {
@@ -164,6 +173,7 @@ void print_calibration_json(const MotionCalibration& as_they_are, const MotionCa
                  {"estimate_position_m", as_they_are.of(MotionSource::kEstimatePosition).value},
                  {"estimate_heading_deg", degrees(as_they_are.of(MotionSource::kEstimateHeading).value)},
                  {"motion", motion},
+                 {"calibration", daemon::control::calibration_json(drive.learned)},
                  {"systematic",
                   {{"wheel_scale", json_of_fitted(corrected.wheel_scale)},
                    {"turn_scale", json_of_fitted(corrected.turn_scale)},

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/angle.hpp"
+#include "daemon/control/calibration_json.hpp"
 #include "daemon/telemetry/log_level.hpp"
 #include "drivers/pioneer/drive_permission.hpp"
 #include "navigation/drive_mode.hpp"
@@ -65,23 +66,6 @@ Json gate_json(const GateGauges& gate) {
   return json;
 }
 
-Json calibration_json(const std::array<Gauge<double>, 7>& values) {
-  const auto value = [&](std::size_t i) { return values[i].value(); };
-  return {{"distance_percent", 100.0 * value(0)},
-          {"turn_percent", 100.0 * value(1)},
-          {"drift_deg_per_m", degrees(value(2))},
-          {"lag_ms", 1e3 * value(3)},
-          {"mount", {{"x_mm", 1e3 * value(4)}, {"y_mm", 1e3 * value(5)}, {"yaw_deg", degrees(value(6))}}}};
-}
-
-/// What driving has told of wheels and mount; deviations are those of the delivered robot until it has.
-Json calibration_json(const CalibrationGauges& calibration) {
-  if (!calibration.known.value()) return nullptr;
-  Json json = calibration_json(calibration.values);
-  json["deviations"] = calibration_json(calibration.deviations);
-  return json;
-}
-
 const char* mapping_word(const Telemetry& t, const Settings& settings) {
   if (!settings.mapping.enabled) return "off";
   return t.paused.value() ? "paused" : "on";
@@ -120,7 +104,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                    {"r_d", t.r_d.value()}};
   json["temporary"] = {{"standing_blocks", t.transients_standing.value()}, {"gone_blocks", t.transients_gone.value()}};
   json["gate"] = gate_json(t.gate);
-  json["calibration"] = calibration_json(t.calibration);
+  json["calibration"] = calibration_json(t.calibration.get());
   json["scans"] = t.scans.value();
   json["localized"] = t.localized.value();
   json["odometry"] = t.odometry.value();

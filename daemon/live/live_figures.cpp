@@ -11,9 +11,9 @@ LiveFigures figures_of(const WatchedStages& stages, const Telemetry& telemetry) 
     if (stages[i] != nullptr) figures.cpu_s[i] = stages[i]->cpu_now_s().value_or(LiveFigures::kUnknown);
   }
   if (const std::uint64_t bytes = resident_bytes(); bytes > 0) figures.resident_bytes = static_cast<double>(bytes);
-  if (telemetry.calibration.known.value()) {
-    figures.wheel_distance = telemetry.calibration.values[0].value();
-    figures.wheel_turn = telemetry.calibration.values[1].value();
+  if (const auto calibration = telemetry.calibration.get()) {
+    figures.wheel_distance = calibration->wheels.distance;
+    figures.wheel_turn = calibration->wheels.turn;
   }
   return figures;
 }

@@ -78,12 +78,14 @@ void EstimateGauges::set(const Estimate& estimate) {
 void CalibrationGauges::set(const std::optional<localization::motion::DriveCalibration>& calibration) {
   known.set(calibration.has_value());
   if (!calibration) return;
-  const auto found = numbers_of(calibration->wheels, calibration->mount_error);
-  const auto spread = numbers_of(calibration->wheel_deviations, calibration->mount_deviations);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    values[i].set(found[i]);
-    deviations[i].set(spread[i]);
-  }
+  const std::array<double, 14> found = numbers_of(*calibration);
+  for (std::size_t i = 0; i < found.size(); ++i) numbers[i].set(found[i]);
+}
+
+std::optional<localization::motion::DriveCalibration> CalibrationGauges::get() const {
+  std::array<double, 14> found{};
+  for (std::size_t i = 0; i < found.size(); ++i) found[i] = numbers[i].value();
+  return known.value() ? localization::motion::calibration_of(found) : std::nullopt;
 }
 
 void GateGauges::set(mapping::gate::GateReason now, const mapping::gate::GateTimes& times) {

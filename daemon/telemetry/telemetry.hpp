@@ -52,9 +52,9 @@ struct EstimateGauges {
 /// What driving has told of wheels and mount, with deviations.
 struct CalibrationGauges {
   Gauge<bool> known;
-  std::array<Gauge<double>, 7> values,
-      deviations;  ///< distance, turn, drift (rad/m), lag (s), mount x, y (m), yaw (rad)
+  std::array<Gauge<double>, 14> numbers;  ///< as localization::motion::numbers_of() orders them
   void set(const std::optional<localization::motion::DriveCalibration>& calibration);
+  [[nodiscard]] std::optional<localization::motion::DriveCalibration> get() const;
 };
 
 struct GateGauges {

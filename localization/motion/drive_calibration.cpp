@@ -14,20 +14,22 @@ Pose2 corrected(const WheelStep& step, const WheelErrors& errors) {
           (1.0 + errors.distance) * along_the_arc.y, step.motion.theta + further_rad};
 }
 
-std::array<double, 7> numbers_of(const WheelErrors& wheels, const Pose2& mount) {
-  return {wheels.distance, wheels.turn, wheels.drift_rad_per_m, wheels.lag_s, mount.x, mount.y, mount.theta};
-}
-
 std::array<double, 14> numbers_of(const DriveCalibration& calibration) {
   const auto& [wheels, wheel_deviations, mount, mount_deviations] = calibration;
-  const auto found = numbers_of(wheels, mount);
-  const auto spread = numbers_of(wheel_deviations, mount_deviations);
-  std::array<double, 14> all{};
-  std::copy_n(found.begin(), 4, all.begin());
-  std::copy_n(spread.begin(), 4, all.begin() + 4);
-  std::copy_n(found.begin() + 4, 3, all.begin() + 8);
-  std::copy_n(spread.begin() + 4, 3, all.begin() + 11);
-  return all;
+  return {wheels.distance,
+          wheels.turn,
+          wheels.drift_rad_per_m,
+          wheels.lag_s,
+          wheel_deviations.distance,
+          wheel_deviations.turn,
+          wheel_deviations.drift_rad_per_m,
+          wheel_deviations.lag_s,
+          mount.x,
+          mount.y,
+          mount.theta,
+          mount_deviations.x,
+          mount_deviations.y,
+          mount_deviations.theta};
 }
 
 std::optional<DriveCalibration> calibration_of(std::span<const double> n) {

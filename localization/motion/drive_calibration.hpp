@@ -35,8 +35,6 @@ struct DriveCalibration {
   Pose2 mount_deviations;
 };
 
-/// Wheels and mount, each in the order of its fields.
-[[nodiscard]] std::array<double, 7> numbers_of(const WheelErrors& wheels, const Pose2& mount);
 /// Wheels, their deviations, mount, its deviations, each in the order of its fields: to be kept and read again.
 [[nodiscard]] std::array<double, 14> numbers_of(const DriveCalibration& calibration);
 /// Nothing where it is not what numbers_of() gives.

@@ -77,6 +77,17 @@ TEST_F(CalibrateMotion, FindsTheScaleOfTheWheelsAndOffersTheKeys) {
   EXPECT_TRUE(json["cut"].is_null());
 }
 
+TEST_F(CalibrateMotion, TellsWhatTheLocalizerFindsWhileDriving) {
+  record(900, true);
+  const ToolRun calibrated = calibrate();
+  ASSERT_EQ(calibrated.exit_code, 0) << calibrated.errors;
+  const auto found = nlohmann::json::parse(calibrated.output)["calibration"];
+  EXPECT_NEAR(found["distance_percent"].get<double>(), 100.0 * (1.0 / 0.95 - 1.0), 1.0);
+  EXPECT_LT(found["deviations"]["distance_percent"].get<double>(), 1.0);
+  for (const char* name : {"turn_percent", "drift_deg_per_m", "lag_ms", "mount"})
+    EXPECT_TRUE(found.contains(name)) << name;
+}
+
 TEST_F(CalibrateMotion, UsesARecordingThatWasCutUpToTheCut) {
   record(900, true);
   const auto whole = std::filesystem::file_size(file("drive.pcapng"));
