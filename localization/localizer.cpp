@@ -40,10 +40,7 @@ TrackedScan Localizer::observe(Scan scan) {
   }
   tracked.rays = motion::deskewed(scan, velocity);
   state.ends = motion::scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
-  if (state.params.follow_surfaces) {
-    state.faced = surfaces::faced_ends(scan, tracked.rays, std::move(state.faced));
-    state.corners = surfaces::corners_of(scan, tracked.rays, std::move(state.corners));
-  }
+  state.faces.begin(scan, tracked.rays);
   state.velocity = velocity;
   state.note_oddities(now);
   state.leave_out_unmapped(scan.robot_from_laser.position(), now);
@@ -87,8 +84,6 @@ bool Localizer::relocalize(const particles::InitialPose& pose) {
   state_->start_at(pose);
   return true;
 }
-
-const hypotheses::HypothesisReport& Localizer::hypotheses() const { return state_->hypotheses.report(); }
 
 std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 

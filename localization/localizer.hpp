@@ -11,7 +11,6 @@
 #include "core/messages.hpp"
 #include "core/transient_obstacles.hpp"
 #include "localization/belief/stability.hpp"
-#include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "localization/particles/start_pose.hpp"
@@ -51,8 +50,6 @@ class Localizer {
   /// where nobody can stand there: all stays as it was.
   bool relocalize(const particles::InitialPose& pose);
 
-  /// What else in the map the scans may mean, as of the last scan.
-  [[nodiscard]] const hypotheses::HypothesisReport& hypotheses() const;
   [[nodiscard]] const LocalizerCounts& counts() const;
   /// What the pose rests on, valid until the next message; null where it does not rest on particles: while straight
   /// surfaces lead, and while the whole map is searched.

@@ -163,8 +163,7 @@ void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const 
   if (telling == ends.size()) return;
   motion::keep_ends(
       ends, [&](const Point2& end) { return mapped.tells_everywhere(end); }, ends);
-  std::erase_if(faced, [&](const surfaces::FacedEnd& end) { return !mapped.tells_everywhere(end.at); });
-  std::erase_if(corners, [&](const surfaces::Corner& corner) { return !mapped.tells_everywhere(corner.at); });
+  faces.keep([mapped](const Point2& end) { return mapped.tells_everywhere(end); });
 }
 
 bool Localizer::State::meets_obstacle(const Point2& from, const Point2& to) const {
@@ -195,8 +194,8 @@ sensor::RefinedPose Localizer::State::search(const motion::ScanInstant& now) {
 }
 
 sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
-  const tracking::Tracker::Answer tracked = tracker.observe(
-      {.now = now, .ends = weighing_ends(now), .field = field, .faced = {faced, corners}, .velocity = velocity});
+  const tracking::Tracker::Answer tracked =
+      tracker.observe({.now = now, .ends = weighing_ends(now), .field = field, .faces = &faces, .velocity = velocity});
   best = tracker.best();
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);

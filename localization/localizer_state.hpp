@@ -11,8 +11,11 @@
 #include <vector>
 
 #include "localization/belief/stable_support.hpp"
+#include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
+#include "localization/surfaces/faced_scan.hpp"
+#include "localization/tracking/tracker.hpp"
 
 namespace deltamap::localization {
 
@@ -31,8 +34,7 @@ struct Localizer::State {
   particles::PoseCheck check;  ///< under way: particles around a pose that is not yet believed
   LocalizerCounts counts;
   motion::BeamEnds ends;
-  std::vector<surfaces::FacedEnd> faced;                 ///< the same scan's, where surfaces are followed,
-  std::vector<surfaces::Corner> corners;                 ///< likewise
+  surfaces::FaceFinder faces;                            ///< of the same scan
   motion::BodyVelocity velocity;                         ///< at the scan
   std::shared_ptr<const TransientObstacles> transients;  ///< that stand or are gone for now; may be null
   motion::BeamEnds ends_beside_transients;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "localization/surfaces/surface.hpp"
 
@@ -148,6 +149,26 @@ std::vector<Corner> corners_of(const Scan& scan, std::span<const RayInRobot> ray
     }
   }
   return corners;
+}
+
+void FaceFinder::begin(const Scan& scan, std::span<const RayInRobot> rays) {
+  scan_ = &scan;
+  rays_ = rays;
+  keeps_ = nullptr;
+  found_ = false;
+}
+
+FacedScan FaceFinder::faces() {
+  if (scan_ != nullptr && !found_) {
+    ends_ = faced_ends(*scan_, rays_, std::move(ends_));
+    corners_ = corners_of(*scan_, rays_, std::move(corners_));
+    if (keeps_) {
+      std::erase_if(ends_, [&](const FacedEnd& end) { return !keeps_(end.at); });
+      std::erase_if(corners_, [&](const Corner& corner) { return !keeps_(corner.at); });
+    }
+    found_ = true;
+  }
+  return {ends_, corners_};
 }
 
 }  // namespace deltamap::localization::surfaces

@@ -3,7 +3,9 @@
 // corners where a face ends and the next beams pass by.
 #pragma once
 
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -23,7 +25,7 @@ struct Corner {
   double deviation_m = 0.0;  ///< along `outward`: it lies anywhere between the last beam and the next
 };
 
-/// One scan; views of what the caller keeps.
+/// One scan; views of what is kept elsewhere.
 struct FacedScan {
   std::span<const FacedEnd> ends;
   std::span<const Corner> corners{};
@@ -34,5 +36,26 @@ struct FacedScan {
                                                std::vector<FacedEnd> reused = {});
 [[nodiscard]] std::vector<Corner> corners_of(const Scan& scan, std::span<const RayInRobot> rays,
                                              std::vector<Corner> reused = {});
+
+/// Finds them when they are first asked for: between keyframes nobody asks.
+class FaceFinder {
+ public:
+  using Keeps = std::function<bool(const Point2& end)>;
+
+  /// The next scan. Both must live for as long as its faces are asked for.
+  void begin(const Scan& scan, std::span<const RayInRobot> rays);
+  /// Leaves out ends and corners, robot frame, for which `keeps` answers false.
+  void keep(Keeps keeps) { keeps_ = std::move(keeps); }
+  /// Valid until the next scan begins; empty before the first.
+  [[nodiscard]] FacedScan faces();
+
+ private:
+  const Scan* scan_ = nullptr;
+  std::span<const RayInRobot> rays_;
+  Keeps keeps_;
+  bool found_ = false;
+  std::vector<FacedEnd> ends_;
+  std::vector<Corner> corners_;
+};
 
 }  // namespace deltamap::localization::surfaces

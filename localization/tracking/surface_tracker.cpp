@@ -18,10 +18,10 @@ constexpr double kFixedAbove = 0.3;  // of the surfaces that fix the pose
 constexpr double kOnePlaceM = 0.15;
 const double kOnePlaceRad = radians(4.0);
 constexpr double kNewest = 0.1;             // share of one keyframe in the running means
-const double kKeyframeRad = radians(10.0);  // turned since the last keyframe,
+const double kKeyframeRad = radians(10.0);  // turned since the last keyframe
 constexpr double kUnsureM = 0.01;           // or as unsure as what a surface tells
 constexpr double kUnsureRad = 0.004;
-constexpr double kSuddenly = 0.1;  // share of ends that the map ceases to explain: the wheels may have slipped
+constexpr double kSuddenly = 0.1;           // share of ends that the map ceases to explain: the wheels may have slipped
 // How far a pose that the particles have found is off, besides what they say: cells, and a map drawn a little wrong.
 const PoseCovariance kOfAPose = Eigen::Vector3d{9e-4, 9e-4, 2.5e-5}.asDiagonal();
 constexpr double kMostSurprise = 25.0;  // squared deviations: a slip is no measure of how the wheels usually do
@@ -50,7 +50,7 @@ void SurfaceTracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellB
 }
 
 bool SurfaceTracker::could_lead(const Seen& seen, const Pose2& map_from_robot) {
-  const surfaces::OffsetFilter::SeenByMap shown = filter_.seen_by_map(seen.field, seen.faced, map_from_robot);
+  const surfaces::OffsetFilter::SeenByMap shown = filter_.seen_by_map(seen.field, seen.faces.faces(), map_from_robot);
   unknown_by_map_ = shown.unknown;
   straight_ += kNewest * (shown.straight - straight_);
   return straight_ >= kLeadsAbove;
@@ -139,14 +139,16 @@ sensor::RefinedPose SurfaceTracker::observe(const Seen& seen) {
     cease();
     return filter_.believed();
   }
-  return !seen.faced.ends.empty() && is_due(seen) ? keyframe(seen) : filter_.believed();
+  const bool is_keyframe = is_due(seen) && !seen.faces.faces().ends.empty();
+  return is_keyframe ? keyframe(seen) : filter_.believed();
 }
 
 sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
+  const surfaces::FacedScan faces = seen.faces.faces();
   const double share =
-      std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, seen.faced.ends.size())));
+      std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, faces.ends.size())));
   const sensor::RefinedPose before = filter_.believed();
-  const surfaces::OffsetFilter::Seen shown = filter_.observe(seen.field, seen.faced, share, motion_);
+  const surfaces::OffsetFilter::Seen shown = filter_.observe(seen.field, faces, share, motion_);
   if (shown.slipped) odometry_noise_.forget_stretch();
   const sensor::RefinedPose after = filter_.believed();
   const bool runs_away =

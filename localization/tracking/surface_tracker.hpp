@@ -26,7 +26,7 @@ class SurfaceTracker {
   struct Seen {
     const motion::ScanInstant& now;
     motion::BodyVelocity velocity;
-    surfaces::FacedScan faced;
+    surfaces::FaceFinder& faces;  ///< of the scan
     const sensor::LikelihoodField& field;
     const motion::BeamEnds& ends;  ///< those that score, robot frame
   };

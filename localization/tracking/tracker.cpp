@@ -114,7 +114,7 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
   pose_filter_.after_scan(seen.now, answer.believed);
   if (surfaces_ && seen.ends.size() > 0) {
     surfaces_->learn_from(answer.believed, seen.now, seen.velocity);
-    let_surfaces_lead(seen, answer);
+    if (seen.faces != nullptr) let_surfaces_lead(seen, answer);
   }
   return answer;
 }
@@ -123,7 +123,7 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
 /// scan.
 Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   Answer answer;
-  answer.believed = surfaces_->observe({seen.now, seen.velocity, seen.faced, seen.field, seen.ends});
+  answer.believed = surfaces_->observe({seen.now, seen.velocity, *seen.faces, seen.field, seen.ends});
   const Pose2& pose = answer.believed.map_from_robot;
   if (!surfaces_->leads()) {
     (void)start_around(answer.believed);
@@ -140,7 +140,7 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
 void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
   const PoseCovariance& spread = best_.covariance;
   const bool one_place = best_.weight > kOnePlaceShare && SurfaceTracker::is_one_place(spread);
-  const SurfaceTracker::Seen by_surfaces{seen.now, seen.velocity, seen.faced, seen.field, seen.ends};
+  const SurfaceTracker::Seen by_surfaces{seen.now, seen.velocity, *seen.faces, seen.field, seen.ends};
   if (!one_place || !surfaces_->could_lead(by_surfaces, answer.believed.map_from_robot)) return;
   answer.believed =
       surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, by_surfaces);

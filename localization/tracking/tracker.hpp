@@ -16,7 +16,7 @@
 #include "localization/particles/particle_filter.hpp"
 #include "localization/particles/start_pose.hpp"
 #include "localization/sensor/pose_refinement.hpp"
-#include "localization/surfaces/surface_sighting.hpp"
+#include "localization/surfaces/faced_scan.hpp"
 #include "localization/tracking/pose_filter.hpp"
 #include "localization/tracking/slip_finder.hpp"
 
@@ -61,8 +61,8 @@ class Tracker {
     const motion::ScanInstant& now;
     const motion::BeamEnds& ends;  ///< robot frame; may be empty
     const sensor::LikelihoodField& field;
-    surfaces::FacedScan faced{};      ///< the same scan's, for the surfaces; may be empty
-    motion::BodyVelocity velocity{};  ///< at the scan, by the wheels
+    surfaces::FaceFinder* faces = nullptr;  ///< of the same scan; none: surfaces never lead
+    motion::BodyVelocity velocity{};        ///< at the scan, by the wheels
   };
   struct Answer {
     sensor::RefinedPose believed;

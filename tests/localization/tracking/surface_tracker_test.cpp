@@ -56,15 +56,15 @@ class CorridorDrive {
     const Scan scan = test::cast_scan(world_, truth_, timestamp_from_ns(++scans_ * 100'000'000),
                                       {.max_range_m = 8.0, .beams = 361}, random_);
     const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
-    const std::vector<surfaces::FacedEnd> faced = surfaces::faced_ends(scan, rays);
-    const std::vector<surfaces::Corner> corners = surfaces::corners_of(scan, rays);
+    surfaces::FaceFinder faces;
+    faces.begin(scan, rays);
     motion::BeamEnds ends;
-    for (const surfaces::FacedEnd& end : faced) {
+    for (const surfaces::FacedEnd& end : faces.faces().ends) {
       ends.x_m.push_back(static_cast<float>(end.at.x()));
       ends.y_m.push_back(static_cast<float>(end.at.y()));
     }
     const motion::ScanInstant now{scan.time, motion::OdometryAt{odom_, 0, odom_}};
-    const SurfaceTracker::Seen seen{now, {1.0, 0.0}, {faced, corners}, field_, ends};
+    const SurfaceTracker::Seen seen{now, {1.0, 0.0}, faces, field_, ends};
     const sensor::RefinedPose start{truth_, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
     believed_ = tracker_.leads() ? tracker_.observe(seen) : tracker_.lead_from(start, seen);
   }
