@@ -19,8 +19,6 @@ constexpr double kOnePlaceM = 0.15;
 const double kOnePlaceRad = radians(4.0);
 constexpr double kNewest = 0.1;             // share of one keyframe in the running means
 const double kKeyframeRad = radians(10.0);  // turned since the last keyframe
-constexpr double kUnsureM = 0.01;           // or as unsure as what a surface tells
-constexpr double kUnsureRad = 0.004;
 constexpr double kSuddenly = 0.1;           // share of ends that the map ceases to explain: the wheels may have slipped
 // How far a pose that the particles have found is off, besides what they say: cells, and a map drawn a little wrong.
 const PoseCovariance kOfAPose = Eigen::Vector3d{9e-4, 9e-4, 2.5e-5}.asDiagonal();
@@ -109,8 +107,6 @@ void SurfaceTracker::step_to(const motion::ScanInstant& now, const motion::BodyV
   if (!since_) return;
   since_->by_wheels = since_->by_wheels * step.motion;
   since_->corrected = since_->corrected * corrected;
-  since_->variance_m2 += std::max(added(0, 0), added(1, 1));
-  since_->variance_rad2 += added(2, 2);
 }
 
 bool SurfaceTracker::is_one_place(const PoseCovariance& spread) {
@@ -124,7 +120,6 @@ bool SurfaceTracker::has_moved() const {
 
 bool SurfaceTracker::is_due(const Seen& seen) const {
   if (!since_ || has_moved()) return true;
-  if (since_->variance_m2 > kUnsureM * kUnsureM || since_->variance_rad2 > kUnsureRad * kUnsureRad) return true;
   const double explained = sensor::explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
   return explained < since_->explained - kSuddenly;
 }

@@ -83,8 +83,6 @@ class SurfaceTracker {
   struct SinceKeyframe {
     Pose2 by_wheels;
     Pose2 corrected;
-    double variance_m2 = 0.0;
-    double variance_rad2 = 0.0;
     double explained = 0.0;  // share of the keyframe's ends, by the map
   };
   std::optional<SinceKeyframe> since_;       // none: no keyframe yet
