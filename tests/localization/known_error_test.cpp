@@ -12,7 +12,7 @@
 namespace deltamap::localization {
 namespace {
 
-constexpr double kScanPeriodS = 0.2;
+constexpr double kBetweenScansS = 0.2;
 constexpr double kStepM = 0.08;
 constexpr double kInside95 = 5.991;  // χ², two degrees of freedom
 
@@ -34,7 +34,7 @@ class DriveThrough {
         random_{seed} {}
 
   Estimate next() {
-    time_ += duration_from_seconds(kScanPeriodS);
+    time_ += duration_from_seconds(kBetweenScansS);
     truth_ = truth_ * Pose2{kStepM, 0.0, 0.0};
     odom_ = odom_ * Pose2{kStepM + random_.normal(0.004), 0.0, random_.normal(0.001)};
     Odometry odometry;

@@ -1,95 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot that is carried away, that wakes up elsewhere, or whose messages have gone bad.
+// A robot that is carried away, that is not seen for a while, or whose messages have gone bad.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <vector>
 
-#include "localization/localizer.hpp"
-#include "localization/localizer_params.hpp"
-#include "tests/support/scans/cast_scan.hpp"
-#include "tests/support/worlds/drawn_hall.hpp"
+#include "tests/localization/hall_tour.hpp"
 
-namespace deltamap::localization {
+namespace deltamap::localization::tour_test {
 namespace {
-
-constexpr double kScanPeriodS = 0.2;
-
-Odometry at_rest() {
-  Odometry odometry;
-  odometry.time = timestamp_from_ns(1'700'000'000'000'000'000);
-  return odometry;
-}
-
-/// A robot that drives round the drawn hall and can be lifted off its wheels.
-class Tour {
- public:
-  explicit Tour(std::uint64_t seed) : random_{seed} {}
-
-  TrackedScan next(Localizer& localizer) {
-    step();
-    localizer.observe(odometry_);
-    return localizer.observe(scan());
-  }
-  void step() {
-    const std::vector<Point2> way{{18.5, 1.0}, {18.5, 7.0}, {1.5, 7.0}, {1.5, 1.0}};
-    if ((way[goal_] - truth_.position()).norm() < 0.15) goal_ = (goal_ + 1) % way.size();
-    const Point2 to = way[goal_] - truth_.position();
-    const double off_rad = turn_between(truth_.theta, std::atan2(to.y(), to.x()));
-    const Pose2 motion{std::abs(off_rad) > 0.5 ? 0.0 : 0.1, 0.0, std::clamp(off_rad, -0.15, 0.15)};
-    truth_ = truth_ * motion;
-    const Pose2 measured{motion.x * (1.02 + random_.normal(0.03)), 0.0, motion.theta * 1.02 + random_.normal(0.003)};
-    odometry_.odom_from_robot = odometry_.odom_from_robot * measured;
-    wait(kScanPeriodS);
-  }
-  /// Drives on while no scan comes.
-  void drive_unseen(Localizer& localizer, double seconds) {
-    for (double left_s = seconds; left_s > 0.0; left_s -= kScanPeriodS) {
-      step();
-      localizer.observe(odometry_);
-    }
-  }
-  void wait(double seconds) { odometry_.time += duration_from_seconds(seconds); }
-  void carry_to(const Pose2& place) {
-    truth_ = place;
-    goal_ = place.y > 4.0 ? 2 : 0;
-  }
-  void restart_controller() {
-    odometry_.odom_from_robot = {};
-    ++odometry_.epoch;
-  }
-  [[nodiscard]] const Odometry& odometry() const { return odometry_; }
-  [[nodiscard]] Scan scan() { return test::cast_scan(world_, truth_, odometry_.time, {}, random_); }
-  [[nodiscard]] const Pose2& truth() const { return truth_; }
-
- private:
-  OccupancyGrid world_ = test::drawn_hall();
-  Random random_;
-  Pose2 truth_{2.0, 1.0, 0.0};
-  std::size_t goal_ = 0;
-  Odometry odometry_ = at_rest();
-};
-
-Localizer localizer_at(std::optional<particles::InitialPose> pose, std::uint64_t seed) {
-  LocalizerParams params;
-  params.particles.max = 2000;
-  return Localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()), pose, seed};
-}
-
-bool right(const TrackedScan& tracked, const Tour& tour) {
-  const Pose2& pose = tracked.estimate.map_from_robot;
-  return distance_between(pose, tour.truth()) < 0.3 && std::abs(turn_between(pose.theta, tour.truth().theta)) < 0.1;
-}
-
-/// Scans until the pose is right and tracked; `most` where it never is.
-int scans_until_right(Localizer& localizer, Tour& tour, int most) {
-  for (int i = 0; i < most; ++i) {
-    const TrackedScan tracked = tour.next(localizer);
-    if (tracked.estimate.state == LocalizerState::kTracking && right(tracked, tour)) return i;
-  }
-  return most;
-}
 
 TEST(Recovery, FindsARobotThatWasCarriedAwayWithinThirtySeconds) {
   const int thirty_s = static_cast<int>(30.0 / kScanPeriodS);
@@ -128,79 +46,6 @@ TEST(Recovery, NeverJumpsWhileAllIsWell) {
     EXPECT_EQ(localizer.counts().searches, 0u);
     EXPECT_EQ(localizer.counts().scans, 500u);
   }
-}
-
-TEST(RememberedPose, IsBelievedOnceTheFirstScansFit) {
-  Tour tour{1};
-  Localizer localizer = localizer_at(particles::InitialPose{.map_from_robot = tour.truth(), .remembered = true}, 1);
-  const TrackedScan first = tour.next(localizer);
-  EXPECT_NE(first.estimate.state, LocalizerState::kTracking);
-  EXPECT_TRUE(right(first, tour));
-  EXPECT_LE(scans_until_right(localizer, tour, 20), 5);
-  EXPECT_EQ(localizer.counts().poses_confirmed, 1u);
-  EXPECT_EQ(localizer.counts().searches, 0u);
-}
-
-TEST(RememberedPose, IsGivenUpWhereTheFirstScansDoNotFit) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    Tour tour{seed};
-    Localizer localizer =
-        localizer_at(particles::InitialPose{.map_from_robot = {12.0, 12.5, 2.0}, .remembered = true}, seed);
-    for (int i = 0; i < 300; ++i) {
-      const TrackedScan tracked = tour.next(localizer);
-      ASSERT_TRUE(tracked.estimate.state != LocalizerState::kTracking || right(tracked, tour)) << seed << ' ' << i;
-    }
-    EXPECT_EQ(localizer.counts().poses_refuted, 1u);
-    EXPECT_EQ(tour.next(localizer).estimate.state, LocalizerState::kTracking);
-  }
-}
-
-TEST(GivenPose, InsideAContainerIsMovedBesideItAndChecked) {
-  Tour tour{1};
-  tour.carry_to({8.0, 3.0, 0.0});
-  Localizer localizer = localizer_at(particles::InitialPose{{9.2, 3.0, 0.0}, 0.4}, 1);
-  EXPECT_EQ(localizer.counts().poses_in_obstacle, 1u);
-  EXPECT_NE(tour.next(localizer).estimate.state, LocalizerState::kTracking);
-  EXPECT_LT(scans_until_right(localizer, tour, 300), 300);
-}
-
-TEST(GivenPose, OutsideTheMapOrOfNoNumberMeansThatTheWholeMapIsSearched) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Pose2& nonsense : {Pose2{-50.0, 3.0, 0.0}, Pose2{1e300, 0.0, 0.0}, Pose2{nan, 3.0, 0.0}}) {
-    Tour tour{2};
-    Localizer localizer = localizer_at(particles::InitialPose{nonsense}, 2);
-    EXPECT_EQ(localizer.counts().poses_refused, 1u);
-    EXPECT_EQ(localizer.counts().searches, 1u);
-    EXPECT_LT(scans_until_right(localizer, tour, 300), 300);
-  }
-}
-
-TEST(GivenPose, WhereNobodyCanStandLeavesATrackedPoseAsItIs) {
-  Tour tour{2};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 2);
-  ASSERT_EQ(tour.next(localizer).estimate.state, LocalizerState::kTracking);
-  EXPECT_FALSE(localizer.relocalize(particles::InitialPose{{-50.0, 3.0, 0.0}}));
-  const TrackedScan tracked = tour.next(localizer);
-  EXPECT_EQ(tracked.estimate.state, LocalizerState::kTracking);
-  EXPECT_TRUE(right(tracked, tour));
-  EXPECT_EQ(localizer.counts().searches, 0u);
-}
-
-TEST(BadInput, ScansWithoutReturnsWhileThePoseIsUnknownFindNothingAndBreakNothing) {
-  Tour tour{3};
-  Localizer localizer = localizer_at(std::nullopt, 3);
-  for (int i = 0; i < 10; ++i) {
-    tour.step();
-    Scan empty = tour.scan();
-    for (Beam& beam : empty.beams) beam = Beam{};
-    const TrackedScan tracked = localizer.observe(std::move(empty));
-    EXPECT_EQ(tracked.estimate.state, LocalizerState::kGlobal);
-    EXPECT_TRUE(tracked.estimate.covariance.allFinite());
-    EXPECT_TRUE(std::isfinite(tracked.estimate.map_from_robot.x));
-  }
-  EXPECT_EQ(localizer.counts().scans_without_return, 10u);
-  EXPECT_EQ(localizer.counts().scans_without_odometry, 10u);
-  EXPECT_LT(scans_until_right(localizer, tour, 300), 300);
 }
 
 TEST(BadInput, AClockThatFallsBackIsCountedAndThePoseKept) {
@@ -324,31 +169,6 @@ TEST(ScanGap, WidensThePoseByWhatWasDrivenNotByWhatLiesBetweenItsEnds) {
   EXPECT_GT(driving_m, standing_m + 0.1);
 }
 
-TEST(BadInput, AMinuteOfSilenceMakesThePoseProveItself) {
-  Tour tour{5};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 5);
-  for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
-  tour.wait(60.0);
-  EXPECT_EQ(tour.next(localizer).estimate.state, LocalizerState::kGlobal);
-  EXPECT_LT(scans_until_right(localizer, tour, 20), 10);
-  EXPECT_EQ(localizer.counts().gaps, 1u);
-  EXPECT_EQ(localizer.counts().poses_confirmed, 1u);
-  EXPECT_EQ(localizer.counts().searches, 0u);
-}
-
-TEST(BadInput, ARobotCarriedOffInAMinuteOfSilenceIsSearchedForAtOnce) {
-  Tour tour{6};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 6);
-  for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
-  tour.wait(60.0);
-  tour.restart_controller();
-  tour.carry_to({14.0, 7.0, 2.5});
-  EXPECT_LT(scans_until_right(localizer, tour, 300), 75);
-  EXPECT_EQ(localizer.counts().gaps, 1u);
-  EXPECT_EQ(localizer.counts().odometry_epochs, 1u);
-  EXPECT_EQ(localizer.counts().poses_refuted, 1u);
-}
-
 TEST(BadInput, NothingIsBelievedOnAMapOnWhichNothingFits) {
   OccupancyGrid other{{200, 200, 0.1, {0.0, 0.0}}, CellState::kFree};
   test::fill_box(other, {3.0, 3.0}, {3.2, 3.2}, CellState::kOccupied);
@@ -360,4 +180,4 @@ TEST(BadInput, NothingIsBelievedOnAMapOnWhichNothingFits) {
 }
 
 }  // namespace
-}  // namespace deltamap::localization
+}  // namespace deltamap::localization::tour_test

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "localization/belief/view_tally.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/straight_walk.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
@@ -87,23 +86,6 @@ TEST(StraightWalk, MeetsTheFirstCellThatIsNotFreeAndNothingBeyondTheEnd) {
   EXPECT_EQ(sensor::first_met(map, {0.5, 0.5}, {1.0, 0.0}, 0.0, 7.0).what, CellState::kUnknown);
   EXPECT_EQ(sensor::first_met(map, {0.5, 0.5}, {-1.0, 0.0}, 0.0, 7.0).what, CellState::kUnknown) << "left the map";
   EXPECT_EQ(sensor::first_met(map, {0.5, 0.5}, {-1.0, 0.0}, 3.0, 7.0).what, CellState::kUnknown) << "begins outside";
-}
-
-TEST(ViewTally, KeepsTheTwoDirectionsApart) {
-  const Stability nothing_proven{test::drawn_flat().geometry(), {}};
-  const std::vector<CheckedBeam> corridor{{BeamFit::kFit, {10, 10}, {0.0, 1.0}},
-                                          {BeamFit::kFit, {20, 10}, {0.0, -1.0}},
-                                          {BeamFit::kFit, {30, 10}, {0.0, 1.0}},
-                                          {BeamFit::kBeyond, {40, 10}, {1.0, 0.0}},
-                                          {BeamFit::kSilent, {50, 10}, {1.0, 0.0}}};
-  const ViewTally tally = tallied(corridor, nothing_proven);
-  EXPECT_EQ(tally.stable.expected, 0u);
-  EXPECT_EQ(tally.elsewhere.expected, 4u);
-  EXPECT_EQ(tally.elsewhere.beyond, 1u);
-  EXPECT_NEAR(tally.elsewhere_along[0].fit, 3.0, 1e-9);
-  EXPECT_NEAR(tally.elsewhere_along[0].beyond, 0.0, 1e-9);
-  EXPECT_NEAR(tally.elsewhere_along[1].fit, 0.0, 1e-9);
-  EXPECT_NEAR(tally.elsewhere_along[1].beyond, 1.0, 1e-9);
 }
 
 }  // namespace

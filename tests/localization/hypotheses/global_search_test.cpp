@@ -100,39 +100,6 @@ TEST(CoarseField, AnswersForBlocksSideBySideAsForEachAlone) {
   }
 }
 
-TEST(LatticeSearch, LooksAtEveryPoseOnceHoweverItIsSliced) {
-  const OccupancyGrid map = test::drawn_flat();
-  const sensor::LikelihoodField field{map, {}};
-  const sensor::CoarseField coarse{map, field, kBlock_m};
-  const motion::BeamEnds ends = seen_from({4.5, 2.0, 1.1}, 3);
-  LatticeSearch whole{kHeadings, 100};
-  EXPECT_TRUE(whole.look(coarse, ends, whole.poses(coarse)));
-  LatticeSearch sliced{kHeadings, 100};
-  std::size_t looked_at = 0;
-  while (!sliced.look(coarse, ends, 777)) looked_at += 777;
-  EXPECT_LT(looked_at, sliced.poses(coarse));
-  EXPECT_GE(looked_at + 777, sliced.poses(coarse));
-  const auto expected = whole.best_apart(20);
-  const auto found = sliced.best_apart(20);
-  ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].map_from_robot, expected[i].map_from_robot);
-}
-
-TEST(LatticeSearch, KnowsWhereAScanMayFitAsWellAsAtTheTruth) {
-  const OccupancyGrid map = test::drawn_flat();
-  const sensor::LikelihoodField field{map, {}};
-  const sensor::CoarseField coarse{map, field, kBlock_m};
-  const Pose2 truth{4.5, 2.0, 1.1};
-  const motion::BeamEnds ends = seen_from(truth, 3);
-  LatticeSearch lattice{kHeadings, 2000};
-  (void)lattice.look(coarse, ends, lattice.poses(coarse));
-  const double fit =
-      -sensor::LikelihoodField::kStep * sensor::misfit_steps(field, ends, truth) / static_cast<double>(ends.size());
-  const std::vector<Candidate> found = lattice.best_apart(200);
-  EXPECT_TRUE(may_reach(found.front(), fit));
-  EXPECT_FALSE(may_reach(found.back(), fit));
-}
-
 TEST(GlobalSearch, FindsTheRobotFromManyHypothesesInItsFirstLook) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};

@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <future>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <streambuf>
 #include <thread>
 
 #include "daemon/control/request.hpp"
@@ -20,7 +23,7 @@
 namespace deltamap::tool {
 namespace {
 
-using namespace std::chrono_literals;
+constexpr std::chrono::seconds kGiveUp{60};
 
 /// Answers each request with a status whose line counts them.
 class FakeDaemon {
@@ -36,27 +39,61 @@ class FakeDaemon {
     server_.stop();
     thread_.join();
   }
-  [[nodiscard]] int answered() const { return answered_; }
-  [[nodiscard]] bool has_answered(int times) const {
-    for (const auto until = std::chrono::steady_clock::now() + 60s; std::chrono::steady_clock::now() < until;) {
-      if (answered_ >= times) return true;
-      std::this_thread::sleep_for(1ms);
-    }
-    return false;
+  [[nodiscard]] bool has_answered(int times) {
+    std::unique_lock lock{mutex_};
+    return has_answered_.wait_for(lock, kGiveUp, [&] { return answered_ >= times; });
   }
 
  private:
   void answer(const std::string& line, const daemon::control::Server::Reply& reply) {
     EXPECT_EQ(line, R"({"command":"status"})");
-    const int number = ++answered_;
+    const int number = counted();
     reply(nlohmann::json{
         {"ok", true}, {"line", "scans=" + std::to_string(number)}, {"since_start_s", since_start_s_ + number}}
               .dump());
   }
+  int counted() {
+    const std::lock_guard lock{mutex_};
+    has_answered_.notify_all();
+    return ++answered_;
+  }
+
   double since_start_s_;
-  std::atomic<int> answered_{0};
+  std::mutex mutex_;
+  std::condition_variable has_answered_;
+  int answered_ = 0;
   daemon::control::Server server_;
   std::thread thread_;
+};
+
+/// What one thread prints and another waits for.
+class WatchedText : public std::streambuf {
+ public:
+  [[nodiscard]] std::string str() {
+    const std::lock_guard lock{mutex_};
+    return text_;
+  }
+  [[nodiscard]] bool comes(const std::string& words) {
+    std::unique_lock lock{mutex_};
+    return has_grown_.wait_for(lock, kGiveUp, [&] { return text_.find(words) != std::string::npos; });
+  }
+
+ private:
+  std::streamsize xsputn(const char* characters, std::streamsize count) override {
+    const std::lock_guard lock{mutex_};
+    text_.append(characters, static_cast<std::size_t>(count));
+    has_grown_.notify_all();
+    return count;
+  }
+  int_type overflow(int_type character) override {
+    const char one = traits_type::to_char_type(character);
+    (void)xsputn(&one, 1);
+    return character;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable has_grown_;
+  std::string text_;
 };
 
 class StatusWatchTest : public testing::Test {
@@ -72,40 +109,46 @@ class StatusWatchTest : public testing::Test {
   /// Watches while `meanwhile` goes on, then presses Ctrl-C; answers what the watch ended with.
   template <typename Meanwhile>
   std::string watch_while(const Meanwhile& meanwhile) {
-    std::string error;
-    std::thread watcher{[&] {
+    std::packaged_task<std::string()> watch{[&]() -> std::string {
       try {
         watch_status(options_, out_, err_);
       } catch (const std::runtime_error& why) {
-        error = why.what();
+        return why.what();
       }
+      return "";
     }};
+    ended_ = watch.get_future();
+    std::thread watcher{std::move(watch)};
     meanwhile();
     pthread_kill(watcher.native_handle(), SIGINT);
     watcher.join();
-    return error;
+    return ended_.get();
   }
-  [[nodiscard]] std::vector<std::string> lines() const {
+  [[nodiscard]] bool ends_by_itself() const { return ended_.wait_for(kGiveUp) == std::future_status::ready; }
+  [[nodiscard]] std::vector<std::string> lines() {
     std::vector<std::string> all;
-    std::istringstream text(out_.str());
+    std::istringstream text(printed_.str());
     for (std::string line; std::getline(text, line);) all.push_back(line);
     return all;
   }
 
   test::TemporaryFolder folder_;
   WatchOptions options_{.socket = folder_.path() / "ctl.sock", .period_s = 0.01, .patience_s = 60.0};
-  std::ostringstream out_;
-  std::ostringstream err_;
+  WatchedText printed_;
+  WatchedText told_;
+  std::ostream out_{&printed_};
+  std::ostream err_{&told_};
+  std::future<std::string> ended_;
   sigset_t before_{};
 };
 
 TEST_F(StatusWatchTest, PrintsALineEachPeriodUntilCtrlC) {
-  const FakeDaemon daemon{options_.socket};
+  FakeDaemon daemon{options_.socket};
   EXPECT_EQ(watch_while([&] { EXPECT_TRUE(daemon.has_answered(4)); }), "");
   const auto printed = lines();
   ASSERT_GE(printed.size(), 3u);
   for (std::size_t i = 0; i < printed.size(); ++i) EXPECT_EQ(printed[i], "scans=" + std::to_string(i + 1));
-  EXPECT_EQ(err_.str(), "");
+  EXPECT_EQ(told_.str(), "");
 }
 
 TEST_F(StatusWatchTest, ADaemonThatGoesAndComesBackIsWaitedFor) {
@@ -113,12 +156,12 @@ TEST_F(StatusWatchTest, ADaemonThatGoesAndComesBackIsWaitedFor) {
   EXPECT_EQ(watch_while([&] {
               EXPECT_TRUE(daemon->has_answered(2));
               daemon.reset();
-              std::this_thread::sleep_for(100ms);
+              EXPECT_TRUE(told_.comes("; waits for it"));
               daemon.emplace(options_.socket);
               EXPECT_TRUE(daemon->has_answered(2));
             }),
             "");
-  const std::string told = err_.str();
+  const std::string told = told_.str();
   EXPECT_NE(told.find(": no daemon listens there"), std::string::npos) << told;
   EXPECT_NE(told.find("; waits for it\ndeltamap: the daemon has been started again\n"), std::string::npos) << told;
   EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 2) << "each is told once: " << told;
@@ -130,7 +173,7 @@ TEST_F(StatusWatchTest, AsJsonEveryLineIsAnObjectWhateverHappens) {
   (void)watch_while([&] {
     EXPECT_TRUE(daemon->has_answered(2));
     daemon.reset();
-    std::this_thread::sleep_for(100ms);
+    EXPECT_TRUE(printed_.comes("; waits for it"));
     daemon.emplace(options_.socket);
     EXPECT_TRUE(daemon->has_answered(2));
   });
@@ -141,7 +184,7 @@ TEST_F(StatusWatchTest, AsJsonEveryLineIsAnObjectWhateverHappens) {
     errors += json["ok"] == true ? 0 : 1;
   }
   EXPECT_EQ(errors, 2);
-  EXPECT_EQ(err_.str(), "");
+  EXPECT_EQ(told_.str(), "");
 }
 
 TEST_F(StatusWatchTest, ADaemonThatDoesNotComeBackEndsIt) {
@@ -150,7 +193,7 @@ TEST_F(StatusWatchTest, ADaemonThatDoesNotComeBackEndsIt) {
   const std::string error = watch_while([&] {
     EXPECT_TRUE(daemon->has_answered(2));
     daemon.reset();
-    std::this_thread::sleep_for(1s);
+    EXPECT_TRUE(ends_by_itself());
   });
   EXPECT_NE(error.find("no daemon listens there"), std::string::npos) << error;
 }

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/store_scan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "core/random.hpp"
+#include "tests/support/scans/drawn_scan.hpp"
+#include "tests/support/worlds/drawn_hall.hpp"
+
+namespace deltamap::mapping {
+namespace {
+
+constexpr double kScanPeriod_s = 0.2;
+
+StoreScanParams with_method(MappingMethod method) {
+  StoreScanParams params;
+  params.method = method;
+  return params;
+}
+
+/// Drives to and fro below the containers of the hall; what the localizer thinks of its pose is told by the test.
+class HallWatch {
+ public:
+  explicit HallWatch(MappingMethod method) : store{with_method(method), 1} {}
+
+  std::optional<ScanSet> see(const OccupancyGrid& world) {
+    const double way_m = std::fmod(0.4 * time_s_, 10.0);
+    const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
+    TrackedScan tracked = test::drawn_scan(world, map_, pose, time_s_, random_);
+    time_s_ += kScanPeriod_s;
+    tracked.estimate.state = state;
+    tracked.estimate.w_avg = w_avg;
+    tracked.estimate.belief.other_share = other_share;
+    if (is_sure) return store.observe(tracked);
+    tracked.estimate.covariance *= 2.0;
+    return store.observe(tracked);
+  }
+  /// The first set that ends within the time.
+  std::optional<ScanSet> watch(const OccupancyGrid& world, double for_s) {
+    std::optional<ScanSet> set;
+    for (double left_s = for_s; left_s > 0.0 && !set; left_s -= kScanPeriod_s) set = see(world);
+    return set;
+  }
+
+  StoreScan store;
+  LocalizerState state = LocalizerState::kTracking;
+  double w_avg = 0.5;
+  double other_share = 0.0;
+  bool is_sure = true;
+
+ private:
+  std::shared_ptr<const OccupancyGrid> map_ = std::make_shared<const OccupancyGrid>(test::drawn_hall(0.05));
+  Random random_{5};
+  double time_s_ = 0.0;
+};
+
+const OccupancyGrid& unchanged_hall() {
+  static const OccupancyGrid hall = test::drawn_hall(0.05);
+  return hall;
+}
+
+const OccupancyGrid& hall_with_a_container() {
+  static const OccupancyGrid hall = [] {
+    OccupancyGrid grid = test::drawn_hall(0.05);
+    test::fill(grid, {9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied);
+    return grid;
+  }();
+  return hall;
+}
+
+TEST(StoreScan, KeepsThePapersAveragesWithBothMethodsAndOfTrackedPosesAlone) {
+  for (const MappingMethod method : {MappingMethod::kPaper, MappingMethod::kEvidence}) {
+    HallWatch watch{method};
+    (void)watch.watch(unchanged_hall(), 2.0);
+    EXPECT_EQ(watch.store.awareness().w_slow, 0.5);
+    watch.w_avg = 0.2;
+    (void)watch.see(unchanged_hall());
+    const Awareness tracked = watch.store.awareness();
+    EXPECT_LT(tracked.w_fast, tracked.w_slow);
+    EXPECT_DOUBLE_EQ(tracked.r_d, 1.0 - tracked.w_fast / tracked.w_slow);
+    watch.state = LocalizerState::kLost;
+    (void)watch.see(unchanged_hall());
+    EXPECT_EQ(watch.store.awareness().w_fast, tracked.w_fast) << "what a lost localizer thinks does not count";
+  }
+}
+
+TEST(StoreScan, AnswersAPapersSetWithTheCovarianceOfThePoseAtItsEnd) {
+  HallWatch watch{MappingMethod::kPaper};
+  (void)watch.watch(unchanged_hall(), 4.0);
+  watch.w_avg = 0.1;
+  for (int i = 0; i < 40; ++i) ASSERT_FALSE(watch.see(unchanged_hall()));
+  watch.w_avg = 0.9;
+  watch.is_sure = false;
+  const std::optional<ScanSet> set = watch.watch(unchanged_hall(), 20.0);
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->method, MappingMethod::kPaper);
+  EXPECT_NEAR(set->covariance(0, 0), 2.0 * 9e-4, 1e-9);
+}
+
+std::uint32_t most_short_beams(MappingMethod method, const OccupancyGrid& world) {
+  HallWatch watch{method};
+  std::uint32_t most = 0;
+  for (int i = 0; i < 10; ++i) {
+    (void)watch.see(world);
+    most = std::max(most, watch.store.awareness().short_beams);
+  }
+  return most;
+}
+
+TEST(StoreScan, CountsBeamsThatContradictTheMapByEvidenceAlone) {
+  EXPECT_GT(most_short_beams(MappingMethod::kEvidence, hall_with_a_container()), 10u);
+  EXPECT_EQ(most_short_beams(MappingMethod::kEvidence, unchanged_hall()), 0u);
+  EXPECT_EQ(most_short_beams(MappingMethod::kPaper, hall_with_a_container()), 0u);
+}
+
+TEST(StoreScan, LetsNoScanVoteWhileAnotherPoseFitsAndLetsThoseVoteLate) {
+  constexpr double kSoonerThanNewVotes_s = 1.2;  // than EvidencePhaseParams::face_persistence_s
+  HallWatch watch{MappingMethod::kEvidence};
+  watch.other_share = 0.3;
+  EXPECT_FALSE(watch.watch(hall_with_a_container(), 8.0));
+  EXPECT_FALSE(watch.store.awareness().in_phase);
+  EXPECT_EQ(watch.store.awareness().gate, gate::GateReason::kOtherHypothesis);
+  EXPECT_NEAR(watch.store.awareness().gate_shut_for_s, 8.0, 2.0 * kScanPeriod_s);
+  watch.other_share = 0.0;
+  EXPECT_TRUE(watch.watch(hall_with_a_container(), kSoonerThanNewVotes_s));
+  EXPECT_EQ(watch.store.awareness().gate, gate::GateReason::kOpen);
+}
+
+TEST(StoreScan, ShowsWhatIsDifferentNowOnlyWhileThePoseIsSure) {
+  HallWatch in_order{MappingMethod::kEvidence};
+  (void)in_order.watch(unchanged_hall(), 4.0);
+  EXPECT_EQ(in_order.store.transients(), nullptr) << "nothing has been different yet";
+  HallWatch watch{MappingMethod::kEvidence};
+  (void)watch.watch(hall_with_a_container(), 1.2);
+  ASSERT_NE(watch.store.transients(), nullptr);
+  EXPECT_FALSE(watch.store.transients()->standing.empty());
+  watch.other_share = 0.3;
+  (void)watch.watch(hall_with_a_container(), 1.0);
+  EXPECT_TRUE(watch.store.transients()->standing.empty());
+}
+
+TEST(StoreScan, OrdersBackWhatAPoseHasWrittenThatProvesWrong) {
+  HallWatch watch{MappingMethod::kEvidence};
+  const std::optional<ScanSet> set = watch.watch(hall_with_a_container(), 30.0);
+  ASSERT_TRUE(set);
+  EXPECT_FALSE(watch.store.withdrawal());
+  watch.state = LocalizerState::kLost;
+  (void)watch.see(hall_with_a_container());
+  EXPECT_EQ(watch.store.awareness().gate, gate::GateReason::kLost);
+  EXPECT_TRUE(watch.store.withdrawal());
+  (void)watch.see(hall_with_a_container());
+  EXPECT_FALSE(watch.store.withdrawal()) << "once";
+}
+
+}  // namespace
+}  // namespace deltamap::mapping
