@@ -62,7 +62,6 @@ class ParticleFilter {
   bool resample_if_needed(std::size_t occupied_cells);
 
   [[nodiscard]] const ParticleSet& particles() const { return particles_; }
-  [[nodiscard]] Random& random() { return random_; }
 
  private:
   [[nodiscard]] std::size_t best() const;
