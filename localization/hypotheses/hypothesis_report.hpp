@@ -14,7 +14,6 @@ namespace deltamap::localization::hypotheses {
 /// A hypothesis that is not believed, with what speaks for it.
 struct ReportedHypothesis {
   Pose2 map_from_robot;
-  double log_evidence = 0.0;  ///< ln p(recent scans | there), from independent beams; <= 0
   double share = 0.0;         ///< of the belief, [0, 1]
   double share_around = 0.0;  ///< the same of all hypotheses within some decimetres of it together
   double followed_m = 0.0;    ///< driven since it was found
@@ -23,8 +22,7 @@ struct ReportedHypothesis {
 /// The believed hypothesis and the best others. All shares, those of hypotheses not listed too, sum to 1.
 struct HypothesisReport {
   static constexpr std::size_t kListed = 4;
-  bool own_known = false;         ///< false: nothing is believed, the best hypothesis leads `others`
-  double own_log_evidence = 0.0;  ///< as in ReportedHypothesis
+  bool own_known = false;  ///< false: nothing is believed, the best hypothesis leads `others`
   double own_share = 0.0;
   std::array<ReportedHypothesis, kListed> others;  ///< best first
   std::size_t listed = 0;                          ///< of them in use

@@ -65,8 +65,6 @@ class SurfaceMap {
   /// The surface that lies where that one did; not valid where none is left.
   [[nodiscard]] Id like(const Surface& surface);
 
-  [[nodiscard]] std::size_t tiles_known() const { return tiles_.size(); }
-
  private:
   [[nodiscard]] const std::vector<SurfaceRecord>& records_of(std::int32_t tile);
   [[nodiscard]] std::vector<SurfaceRecord> found_in(std::int32_t tile) const;

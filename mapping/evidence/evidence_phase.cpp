@@ -68,7 +68,7 @@ void EvidencePhase::count_beams() {
   through_beams_ = 0;
   for (const votes::BeamVerdict& beam : beams_) {
     short_beams_ += beam.ends_off_map ? 1 : 0;
-    through_beams_ += beam.what == votes::BeamClass::kThrough ? 1 : 0;
+    through_beams_ += beam.passed.empty() ? 0 : 1;
   }
 }
 

@@ -211,7 +211,6 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
   });
   for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
   scan_set::MapUpdate update;
-  update.map_from_local = placement.mean_correction;
   MapDraft draft = with_contradicted_cells(MapDraft{map}, map, counts, mask, params);
   draft = with_closed_faces(std::move(draft), counts, placement.scans, mask.box(),
                             [&](Cell cell) { return mask.may_be_added(cell); },

@@ -28,7 +28,6 @@ struct PlacementParams {
 struct Placement {
   std::vector<PlacedScan> scans;  ///< those that fit, pointing to those of the set
   std::uint32_t implausible = 0;  ///< left out: they contradict the localizer, or do not fit
-  Pose2 mean_correction;          ///< of the poses in the map
 };
 
 /// `is_in_doubt(cell)`: surfaces there do not count.

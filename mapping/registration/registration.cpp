@@ -70,14 +70,6 @@ Eigen::Matrix3d without_normal_noise(const Eigen::Matrix3d& information) {
 
 }  // namespace
 
-LineResidual line_residual(const Pose2& reference_from_moving, const Point2& point_in_moving,
-                           const SurfacePoint& line) {
-  const Point2 place = reference_from_moving * point_in_moving;
-  const Point2 arm = place - reference_from_moving.position();
-  return {line.normal.dot(place - line.position),
-          {line.normal.x(), line.normal.y(), -line.normal.x() * arm.y() + line.normal.y() * arm.x()}};
-}
-
 Registration registration(std::span<const Point2> points_in_moving, const NearestSurface& reference,
                           const Pose2& initial, const PoseBelief& prior, const RegistrationParams& params) {
   Registration result;

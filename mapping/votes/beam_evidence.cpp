@@ -136,7 +136,6 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     BeamVerdict& beam = verdicts[i];
     beam.passed.clear();
-    beam.what = BeamClass::kSilent;
     beam.length_m = 0.0;
     beam.ends_at_surface = true;
     beam.ends_off_map = false;
@@ -157,14 +156,6 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
     judge.collect_passed(beam);
     beam.ends_off_map =
         beam.ends_at_surface && !has_surface_within(map, clear, beam.end, beam.interval_m + map.resolution_m());
-    if (!beam.passed.empty()) {
-      beam.what = BeamClass::kThrough;
-    } else if (beam.ends_off_map) {
-      const bool on_unknown = map.at(map.geometry().cell_at(beam.end)) == CellState::kUnknown;
-      beam.what = on_unknown ? BeamClass::kUnknown : BeamClass::kShort;
-    } else if (beam.ends_at_surface) {
-      beam.what = BeamClass::kConsistent;
-    }
   }
   return verdicts;
 }

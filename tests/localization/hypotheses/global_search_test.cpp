@@ -106,12 +106,9 @@ TEST(LatticeSearch, LooksAtEveryPoseOnceHoweverItIsSliced) {
   const sensor::CoarseField coarse{map, field, kBlock_m};
   const motion::BeamEnds ends = seen_from({4.5, 2.0, 1.1}, 3);
   LatticeSearch whole{kHeadings, 100};
-  EXPECT_TRUE(whole.look(coarse, ends, whole.poses(coarse)));
+  whole.look(coarse, ends, whole.poses(coarse));
   LatticeSearch sliced{kHeadings, 100};
-  std::size_t looked_at = 0;
-  while (!sliced.look(coarse, ends, 777)) looked_at += 777;
-  EXPECT_LT(looked_at, sliced.poses(coarse));
-  EXPECT_GE(looked_at + 777, sliced.poses(coarse));
+  for (std::size_t looked_at = 0; looked_at < sliced.poses(coarse); looked_at += 777) sliced.look(coarse, ends, 777);
   const auto expected = whole.best_apart(20);
   const auto found = sliced.best_apart(20);
   ASSERT_EQ(found.size(), expected.size());
@@ -125,7 +122,7 @@ TEST(LatticeSearch, KnowsWhereAScanMayFitAsWellAsAtTheTruth) {
   const Pose2 truth{4.5, 2.0, 1.1};
   const motion::BeamEnds ends = seen_from(truth, 3);
   LatticeSearch lattice{kHeadings, 2000};
-  (void)lattice.look(coarse, ends, lattice.poses(coarse));
+  lattice.look(coarse, ends, lattice.poses(coarse));
   const double fit =
       -sensor::LikelihoodField::kStep * sensor::misfit_steps(field, ends, truth) / static_cast<double>(ends.size());
   const std::vector<Candidate> found = lattice.best_apart(200);
