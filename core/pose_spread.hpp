@@ -9,6 +9,9 @@
 
 namespace deltamap {
 
+/// Squared deviations of (x, y, θ) that 99.9 % of poses stay within: χ² of 3 degrees of freedom.
+inline constexpr double kMostChi2 = 16.27;
+
 /// σ of the position along the longest axis of its ellipse, m.
 [[nodiscard]] inline double widest_deviation_m(const PoseCovariance& covariance) {
   const double middle = 0.5 * (covariance(0, 0) + covariance(1, 1));

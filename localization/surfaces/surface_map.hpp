@@ -71,7 +71,7 @@ class SurfaceMap {
   [[nodiscard]] CellBox tiles_around(const Point2& at, double reach_m) const;
 
   std::shared_ptr<const OccupancyGrid> map_;
-  BlockLattice lattice_;  // a block: a tile
+  BlockLattice lattice_;  // a block: a tile, at whose border longer surfaces are cut
   std::unordered_map<std::int32_t, std::vector<SurfaceRecord>> tiles_;
 };
 
