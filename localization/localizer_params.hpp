@@ -8,30 +8,18 @@
 #include "localization/hypotheses/global_search.hpp"
 #include "localization/hypotheses/hypothesis_bank.hpp"
 #include "localization/hypotheses/hypothesis_tracker.hpp"
-#include "localization/motion/motion_model.hpp"
 #include "localization/motion/odometry_buffer.hpp"
-#include "localization/particles/particle_clusters.hpp"
-#include "localization/particles/particle_filter.hpp"
 #include "localization/sensor/likelihood_field.hpp"
-#include "localization/sensor/pose_refinement.hpp"
 #include "localization/sensor/transient_beams.hpp"
-#include "localization/tracking/pose_filter.hpp"
 #include "localization/tracking/tracker.hpp"
 
 namespace deltamap::localization {
 
-struct LocalizerParams {
+struct LocalizerParams : tracking::TrackerParams {
   double gap_s = 20.0;  ///< without scan and odometry, after which the pose must prove itself again, s; > 0
   int beams = 0;        ///< beams of a scan that score, evenly chosen among the valid ones; 0 = all
-  particles::ParticleFilterParams particles;
   motion::OdometryBufferParams odometry;
-  motion::MotionModelParams motion;
   sensor::LikelihoodFieldParams field;
-  particles::ParticleClusterParams hypothesis;
-  sensor::RefinementParams refinement;
-  tracking::PoseFilterParams track;
-  tracking::UpdateParams update;
-  bool follow_surfaces = true;  ///< as of TrackerParams
   hypotheses::GlobalSearchParams global;
   hypotheses::HypothesisTrackerParams rivals;
   hypotheses::HypothesisBankParams places;

@@ -28,16 +28,6 @@ constexpr double kClearlyBetter = 0.15;  // share of the ends that one place exp
 constexpr double kSearchBeginsM = 1.0;
 const double kSearchBeginsRad = radians(90.0);
 
-tracking::TrackerParams tracker_params(const LocalizerParams& given) {
-  return {.particles = given.particles,
-          .motion = given.motion,
-          .hypothesis = given.hypothesis,
-          .refinement = given.refinement,
-          .track = given.track,
-          .update = given.update,
-          .follow_surfaces = given.follow_surfaces};
-}
-
 }  // namespace
 
 Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const OccupancyGrid> first_map,
@@ -46,7 +36,7 @@ Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const Occu
       map{particles::with_free_space(std::move(first_map))},
       field{*map, given.field},
       odometry{given.odometry},
-      tracker{tracker_params(given), map, seed},
+      tracker{given, map, seed},
       monitor{given.fit},
       judgement{*map, given.judgement},
       hypotheses{given.rivals, given.places, given.global, *map, field, seed ^ kSeedOfHypotheses} {}

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "localization/belief/fit_monitor.hpp"
+#include "localization/particles/start_pose.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
-// As localization.fit and the check of a remembered pose judge (localization/belief/fit_monitor.hpp, start_pose.hpp).
-constexpr int kFirstScans = 5;
-constexpr double kFits = 0.6;
-constexpr double kMisfit = 0.4;
-constexpr double kMemory_s = 3.0;
+constexpr int kFirstScans = localization::particles::PoseCheck::kScans;
+constexpr localization::belief::FitParams kJudged{};  // as localization.fit judges where it is not set otherwise
 
 // A search needs some seconds and metres, someone may stand in the way for a while.
 constexpr double kLong_s = 60.0;
@@ -24,7 +24,7 @@ std::string percent(double share) { return std::to_string(std::lround(100.0 * sh
 
 }  // namespace
 
-bool is_in_doubt(std::optional<double> fit) { return fit.value_or(0.0) < kFits; }
+bool is_in_doubt(std::optional<double> fit) { return fit.value_or(0.0) < kJudged.found_above; }
 
 std::string fit_words(std::optional<double> fit) {
   if (!fit) return "no beam came back, so that nothing tells whether it fits";
@@ -54,9 +54,10 @@ LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit)
       return judged_start();
     }
     const double before = mean_fit_.value_or(*fit);
-    mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kMemory_s)) * (*fit - before);
+    mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kJudged.memory_s)) * (*fit - before);
   }
-  const bool is_unfit = tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kMisfit;
+  const bool is_unfit =
+      tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kJudged.lost_below;
   unfit_s_ = is_unfit ? unfit_s_ + passed_s_ : 0.0;
   unfit_m_ = is_unfit ? unfit_m_ + driven_m_ : 0.0;
   return judged_long(tracked.estimate.state);
@@ -64,7 +65,7 @@ LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit)
 
 LogLine FitWatch::judged_start() {
   const double mean = first_fit_ / kFirstScans;
-  if (mean >= kFits) return {};
+  if (mean >= kJudged.found_above) return {};
   return {"the start pose does not fit: " + percent(mean) +
               " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere,
           true};

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::string_view kHead = "began from";
-constexpr std::size_t kTileBytes = 4;  // of a StabilityRecord
+constexpr std::size_t kTileBytes = localization::belief::StabilityRecord::kBytesATile;
 
 std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "core/near_occupied.hpp"
+#include "core/pose_spread.hpp"
 #include "localization/sensor/straight_walk.hpp"
 
 namespace deltamap::localization::belief {
@@ -34,30 +35,6 @@ Point2 surface_normal(const OccupancyGrid& map, Cell at) {
   return length > 0.0 ? Point2{sum / length} : Point2{0.0, 0.0};
 }
 
-/// The obstacle nearest to a place, at most `reach_m` away.
-std::optional<Cell> obstacle_near(const OccupancyGrid& map, const Point2& place, double reach_m) {
-  const GridGeometry& geometry = map.geometry();
-  const Cell centre = geometry.cell_at(place);
-  if (map.at(centre) == CellState::kOccupied) return centre;
-  const int rings = static_cast<int>(std::ceil(reach_m / geometry.resolution_m));
-  double nearest_m2 = reach_m * reach_m;
-  std::optional<Cell> nearest;
-  for (int ring = 1; ring <= rings && !nearest; ++ring) {
-    for (int row = -ring; row <= ring; ++row) {
-      const int step = std::abs(row) == ring ? 1 : 2 * ring;
-      for (int column = -ring; column <= ring; column += step) {
-        const Cell cell{centre.column + column, centre.row + row};
-        if (map.at(cell) != CellState::kOccupied) continue;
-        const double away_m2 = (geometry.centre_of(cell) - place).squaredNorm();
-        if (away_m2 > nearest_m2) continue;
-        nearest_m2 = away_m2;
-        nearest = cell;
-      }
-    }
-  }
-  return nearest;
-}
-
 class BeamJudge {
  public:
   BeamJudge(const OccupancyGrid& map, const sensor::RefinedPose& believed, double max_range_m,
@@ -67,7 +44,7 @@ class BeamJudge {
         pose_{believed.map_from_robot},
         params_{params},
         hit_deviation_m_{std::max(params.hit_deviation_m, map.resolution_m())},
-        position_m_{std::hypot(std::sqrt(widest_variance(believed.covariance)), params.least_position_deviation_m)},
+        position_m_{std::hypot(widest_deviation_m(believed.covariance), params.least_position_deviation_m)},
         heading_rad_{
             std::hypot(std::sqrt(std::max(0.0, believed.covariance(2, 2))), params.least_heading_deviation_rad)} {}
 
@@ -88,18 +65,13 @@ class BeamJudge {
     if (met.what == CellState::kOccupied) {
       return is_crossed_beside(from, end, aside, slack_m) ? beam(BeamFit::kBeyond, met.cell) : CheckedBeam{};
     }
-    if (const auto surface = obstacle_near(map_, end, slack_m)) return beam(BeamFit::kFit, *surface);
+    if (const auto surface = occupied_near(map_, end, slack_m)) return beam(BeamFit::kFit, *surface);
     const Met hidden = first_met(map_, from, along, length_m, max_range_m_ - slack_m);
     if (hidden.what == CellState::kOccupied) return beam(BeamFit::kShort, hidden.cell);
     return {};
   }
 
  private:
-  static double widest_variance(const PoseCovariance& c) {
-    const double half = 0.5 * (c(0, 0) + c(1, 1));
-    return std::max(0.0, half + std::hypot(0.5 * (c(0, 0) - c(1, 1)), c(0, 1)));
-  }
-
   [[nodiscard]] CheckedBeam beam(BeamFit what, Cell expected) const {
     return {what, expected, surface_normal(map_, expected)};
   }

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kMostLevels = 4;       // of proven_after: three counted refutations undo the longest history
 constexpr int kLeastUnitsApart = 3;  // of half a distance or time: surely more than one whole
-constexpr std::size_t kBytesATile = 4;
 
 /// 16 units of half `apart_m` in x and y; farther places may look alike, which only delays a count.
 std::uint8_t place_of(const Point2& seen_from, double apart_m) {
@@ -109,9 +108,9 @@ std::size_t Stability::proven_tiles() const {
 StabilityRecord Stability::record() const {
   const GridGeometry& places = lattice_.blocks();
   StabilityRecord record{geometry_, lattice_.cells_per_block(), {}};
-  record.bytes.resize(kBytesATile * places.cell_count());
+  record.bytes.resize(StabilityRecord::kBytesATile * places.cell_count());
   tiles_.visit_written(places.box(), [&](Cell first, std::span<const Tile> tiles) {
-    std::uint8_t* to = record.bytes.data() + kBytesATile * places.index_of(first);
+    std::uint8_t* to = record.bytes.data() + StabilityRecord::kBytesATile * places.index_of(first);
     for (const Tile& tile : tiles) {
       for (const std::uint8_t byte : {tile.level, tile.directions, tile.place, tile.moment}) *to++ = byte;
     }
@@ -122,12 +121,12 @@ StabilityRecord Stability::record() const {
 bool Stability::restore(const StabilityRecord& record) {
   const GridGeometry& places = lattice_.blocks();
   if (!(record.geometry == geometry_) || record.cells_a_tile != lattice_.cells_per_block() ||
-      record.bytes.size() != kBytesATile * places.cell_count()) {
+      record.bytes.size() != StabilityRecord::kBytesATile * places.cell_count()) {
     return false;
   }
   const int most = kMostLevels * params_.proven_after;
   for (std::size_t i = 0; i < places.cell_count(); ++i) {
-    const std::uint8_t* const kept = record.bytes.data() + kBytesATile * i;
+    const std::uint8_t* const kept = record.bytes.data() + StabilityRecord::kBytesATile * i;
     tiles_.set(places.cell_of(i), {static_cast<std::uint8_t>(std::min<int>(most, kept[0])), kept[1], kept[2], kept[3]});
   }
   return true;

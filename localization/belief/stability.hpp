@@ -24,11 +24,12 @@ struct StabilityParams {
   int proven_after = 6;   ///< counted confirmations that prove a tile; 1..60: with apart_s two minutes at least
 };
 
-/// What is kept across restarts: 4 bytes a tile, row by row.
+/// What is kept across restarts.
 struct StabilityRecord {
+  static constexpr std::size_t kBytesATile = 4;
   GridGeometry geometry;  ///< of the map
   int cells_a_tile = 0;
-  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> bytes;  ///< row by row
 };
 
 class Stability {

@@ -66,7 +66,7 @@ void AliasMonitor::probe(const Seen& seen) {
     turned_.x_m[i] = c * seen.near_ends.x_m[i] - s * seen.near_ends.y_m[i];
     turned_.y_m[i] = s * seen.near_ends.x_m[i] + c * seen.near_ends.y_m[i];
   }
-  (void)lattice_.look(seen.coarse, turned_, static_cast<std::size_t>(std::max(0, effort_.probes)));
+  lattice_.look(seen.coarse, turned_, static_cast<std::size_t>(std::max(0, effort_.probes)));
   for (const Candidate& candidate : lattice_.best_apart(1)) {
     if (!may_reach(candidate, own_fit_ - kFitsNearlyAsWell)) continue;
     const Pose2& at = candidate.map_from_robot;

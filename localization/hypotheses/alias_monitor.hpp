@@ -19,13 +19,13 @@ namespace deltamap::localization::hypotheses {
 class AliasMonitor {
  public:
   struct Effort {
-    int images = 16;        ///< that are remembered; >= 0
-    int images_a_scan = 2;  ///< of them looked at again in a scan; >= 0
-    int probes = 400;       ///< poses turned by right angles that are looked at in a scan; >= 0
-    int slid = 4;  ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
-    double nearby_m = 1.5;     ///< no alias of the believed pose but a slip, m; > 0
-    double nearby_rad = 0.35;  ///< and turned less; > 0
-    double prior = 0.003;      ///< odds of one against the believed pose, before any scan; 0..1
+    int images;         ///< that are remembered; >= 0
+    int images_a_scan;  ///< of them looked at again in a scan; >= 0
+    int probes;         ///< poses turned by right angles that are looked at in a scan; >= 0
+    int slid;           ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
+    double nearby_m;    ///< no alias of the believed pose but a slip, m; > 0
+    double nearby_rad;  ///< and turned less; > 0
+    double prior;       ///< odds of one against the believed pose, before any scan; 0..1
   };
   AliasMonitor(const HypothesisBankParams& bank, const Effort& effort);
 

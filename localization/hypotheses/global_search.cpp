@@ -65,7 +65,7 @@ std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, con
   }
   if (stage_ == Stage::kLooking) {
     const std::size_t now = std::min(left_, share_of(params_.candidates_a_scan));
-    (void)lattice_.look(coarse, ends_, now);
+    lattice_.look(coarse, ends_, now);
     left_ -= now;
     if (left_ > 0) return hypotheses_;
     candidates_ = lattice_.best_apart(static_cast<std::size_t>(params_.places));

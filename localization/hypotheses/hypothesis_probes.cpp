@@ -10,7 +10,7 @@ namespace deltamap::localization::hypotheses {
 HypothesisProbes::HypothesisProbes(int headings, std::uint64_t seed) : lattice_{headings}, random_{seed} {}
 
 void HypothesisProbes::look(const sensor::CoarseField& coarse, const motion::BeamEnds& ends, std::size_t count) {
-  (void)lattice_.look(coarse, ends, count);
+  lattice_.look(coarse, ends, count);
 }
 
 std::optional<Pose2> HypothesisProbes::best_anywhere(double fit) {

@@ -26,8 +26,8 @@ class HypothesisProbes {
 
   struct Around {
     Pose2 map_from_believed;
-    double distance_m = 1.5;
-    double turn_rad = 0.35;
+    double distance_m;
+    double turn_rad;
   };
   /// The best of `count` poses about the believed one that the bank does not know.
   [[nodiscard]] std::optional<Pose2> best_nearby(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,

@@ -19,8 +19,7 @@ double says(const PoseHypothesis& hypothesis) {
 
 /// Among the best others, where it belongs there.
 void list(const PoseHypothesis& hypothesis, HypothesisReport& report) {
-  ReportedHypothesis entry{hypothesis.map_from_robot, hypothesis.log_evidence, hypothesis.share, 0.0,
-                           hypothesis.followed_m};
+  ReportedHypothesis entry{hypothesis.map_from_robot, hypothesis.share, 0.0, hypothesis.followed_m};
   for (std::size_t rank = 0; rank < report.listed; ++rank) {
     if (entry.share > report.others[rank].share) std::swap(entry, report.others[rank]);
   }
@@ -51,7 +50,6 @@ HypothesisReport report_on(const HypothesisBank& bank, const HypothesisBank& wat
   if (!report.own_known || report.followed == 0) return report;
 
   const PoseHypothesis& own = bank.hypotheses().front();
-  report.own_log_evidence = own.log_evidence;
   report.own_share = own.share;
   for (const PoseHypothesis& hypothesis : bank.others()) {
     const double ahead = hypothesis.log_evidence - own.log_evidence;

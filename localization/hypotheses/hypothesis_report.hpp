@@ -14,7 +14,6 @@ namespace deltamap::localization::hypotheses {
 /// A hypothesis that is not believed, with what speaks for it.
 struct ReportedHypothesis {
   Pose2 map_from_robot;
-  double log_evidence = 0.0;  ///< ln p(recent scans | there), from independent beams; <= 0
   double share = 0.0;         ///< of the belief, [0, 1]
   double share_around = 0.0;  ///< the same of all hypotheses within some decimetres of it together
   double followed_m = 0.0;    ///< driven since it was found
@@ -23,8 +22,7 @@ struct ReportedHypothesis {
 /// The believed hypothesis and the best others. All shares, those of hypotheses not listed too, sum to 1.
 struct HypothesisReport {
   static constexpr std::size_t kListed = 4;
-  bool own_known = false;         ///< false: nothing is believed, the best hypothesis leads `others`
-  double own_log_evidence = 0.0;  ///< as in ReportedHypothesis
+  bool own_known = false;  ///< false: nothing is believed, the best hypothesis leads `others`
   double own_share = 0.0;
   std::array<ReportedHypothesis, kListed> others;  ///< best first
   std::size_t listed = 0;                          ///< of them in use
@@ -38,11 +36,11 @@ struct HypothesisReport {
 
 /// The limits that the report is drawn by.
 struct ReportRules {
-  double nearby_m = 1.5;         ///< a hypothesis within this of the believed one is a slip; > 0
-  double nearby_rad = 0.35;      ///< and turned less; > 0
-  double carried_prior = 0.003;  ///< odds that the robot has just been carried to a pose that fits from then on; 0..1
-  double beats_by = 12.0;        ///< log evidence of clearly better, proven tiles counted in; > 0
-  double wins_after_m = 1.0;     ///< driven since such a hypothesis was found, m; >= 0
+  double nearby_m;       ///< a hypothesis within this of the believed one is a slip; > 0
+  double nearby_rad;     ///< and turned less; > 0
+  double carried_prior;  ///< odds that the robot has just been carried to a pose that fits from then on; 0..1
+  double beats_by;       ///< log evidence of clearly better, proven tiles counted in; > 0
+  double wins_after_m;   ///< driven since such a hypothesis was found, m; >= 0
 };
 
 /// `watched`: aliases of the believed pose, of which only is told whether the robot may have been carried to one.

@@ -78,8 +78,6 @@ class HypothesisTracker {
   [[nodiscard]] std::optional<PoseHypothesis> best_hypothesis() const;
   /// Is the pose about where the robot was last believed to be, predicted by odometry?
   [[nodiscard]] bool is_near_believed(const Pose2& pose) const;
-  /// True while a search of the whole map is under way.
-  [[nodiscard]] bool searching() const { return search_.under_way(); }
 
   /// The map has changed within the box (all of it: a box of the whole map).
   void apply(const OccupancyGrid& map, const sensor::LikelihoodField& field, const CellBox& changed);

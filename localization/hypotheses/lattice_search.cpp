@@ -57,12 +57,11 @@ void LatticeSearch::keep(const Candidate& candidate) {
   std::push_heap(best_.begin(), best_.end(), fits_better);
 }
 
-bool LatticeSearch::look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count) {
+void LatticeSearch::look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count) {
   const std::span<const std::uint32_t> blocks = field.free_blocks();
-  if (blocks.empty() || ends.size() == 0) return true;
-  bool wrapped = false;
+  if (blocks.empty() || ends.size() == 0) return;
   next_block_ = std::min(next_block_, blocks.size() - 1);  // the map may have changed
-  while (count > 0 && !wrapped) {
+  while (count > 0) {
     const double heading = heading_rad(next_heading_);
     const sensor::TurnedBeams beams = sensor::turned_beams(ends, heading, field.block_m());
     const std::size_t until = std::min(blocks.size(), next_block_ + count);
@@ -84,9 +83,8 @@ bool LatticeSearch::look(const sensor::CoarseField& field, const motion::BeamEnd
     if (next_block_ < blocks.size()) continue;
     next_block_ = 0;
     next_heading_ = (next_heading_ + 1) % headings_;
-    wrapped = next_heading_ == 0;
+    if (next_heading_ == 0) return;
   }
-  return wrapped;
 }
 
 std::vector<Candidate> LatticeSearch::best_apart(std::size_t count) {

@@ -36,9 +36,8 @@ class LatticeSearch {
   /// Forgets what was found, not where it stopped.
   void clear();
 
-  /// Judges the next `count` poses by the scan. True where the last pose of the lattice was among them: the next one is
-  /// the first again.
-  bool look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count);
+  /// Judges the next `count` poses by the scan, but none beyond the lattice's last: the next one is the first again.
+  void look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count);
 
   /// The best of all looks since clear(), the best first; each half a metre or 15° away from those before.
   [[nodiscard]] std::vector<Candidate> best_apart(std::size_t count);

@@ -36,7 +36,7 @@ void PoseAliases::note(const Pose2& map_from_believed, const Pose2& map_from_hyp
 
 void PoseAliases::age(double driven_m) {
   for (Alias& alias : aliases_) alias.driven_since_m += driven_m;
-  std::erase_if(aliases_, [&](const Alias& alias) { return alias.driven_since_m > forgotten_after_m_; });
+  std::erase_if(aliases_, [](const Alias& alias) { return alias.driven_since_m > 1000.0; });
 }
 
 std::optional<Pose2> PoseAliases::next(const Pose2& map_from_believed) {

@@ -16,13 +16,8 @@ namespace deltamap::localization::hypotheses {
 class PoseAliases {
  public:
   /// Remembers `most`; beyond, those that have been followed for the shortest way go. One that has not been met again
-  /// while the robot drove `forgotten_after_m` is of somewhere else, or of a map that has changed.
-  explicit PoseAliases(std::size_t most, double forgotten_after_m = 1000.0)
-      : most_{most}, forgotten_after_m_{forgotten_after_m} {
-    aliases_.reserve(most);
-  }
-
-  [[nodiscard]] std::size_t size() const { return aliases_.size(); }
+  /// while the robot drove a kilometre is of somewhere else, or of a map that has changed.
+  explicit PoseAliases(std::size_t most) : most_{most} { aliases_.reserve(most); }
 
   /// A hypothesis that has explained the scans beside the believed pose, for so long.
   void note(const Pose2& map_from_believed, const Pose2& map_from_hypothesis, double followed_m);
@@ -41,7 +36,6 @@ class PoseAliases {
   };
 
   std::size_t most_;
-  double forgotten_after_m_;
   std::vector<Alias> aliases_;
   std::size_t next_ = 0;
 };

@@ -26,7 +26,7 @@ PoseCovariance covariance_along(double direction_rad, double along_m2, double as
 std::vector<Pose2> slips_around(const MotionModelParams& params, const Pose2& pose) {
   std::vector<Pose2> poses;
   for (const double turn : {0.0, -0.5, 0.5, -1.0, 1.0, -1.5, 1.5, -2.0, 2.0}) {  // deviations
-    for (const double ahead : {0.0, -0.75, 0.75, -1.5, 1.5}) {
+    for (const double ahead : kSlipsAhead) {
       poses.push_back(pose * Pose2{ahead * params.slip_m, 0.0, turn * params.slip_rad});
     }
   }

@@ -3,6 +3,7 @@
 // straight line and a turn, and each gets noise in proportion to the others.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/angle.hpp"
@@ -29,6 +30,8 @@ struct MotionModelParams {
 
 /// Deviation of a slip across the robot's way, as a share of that along it.
 inline constexpr double kSlipSideways = 0.25;
+/// How far along its way a slip is looked for, in deviations; none first.
+inline constexpr std::array kSlipsAhead{0.0, -0.75, 0.75, -1.5, 1.5};
 
 /// Of a pose that errs along a direction of the map, across it and in its heading, each for itself: variances.
 [[nodiscard]] PoseCovariance covariance_along(double direction_rad, double along_m2, double aside_m2, double turn_rad2);

@@ -56,8 +56,6 @@ class OdometryBuffer {
   /// Measured over a tenth of a second around the instant, clamped to what the robot can do.
   [[nodiscard]] BodyVelocity velocity_at(Timestamp time) const;
 
-  [[nodiscard]] bool empty() const { return count_ == 0; }
-
  private:
   struct Report {
     Timestamp time;

@@ -17,6 +17,27 @@ int floored(double value) {
   return towards_zero - (value < towards_zero ? 1 : 0);
 }
 
+/// Weighted mean and covariance of some particles. `weight` is what theirs sum to.
+ParticleCluster moments(const ParticleSet& particles, std::span<const std::uint32_t> members) {
+  ParticleCluster of;
+  if (members.empty()) return of;
+  const Pose2 first = particles.pose(members.front());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const std::uint32_t i : members) {
+    const double w = particles.weight[i];
+    const Eigen::Vector3d off = difference(first, particles.pose(i));
+    of.weight += w;
+    sum += w * off;
+    squares.noalias() += w * off * off.transpose();
+  }
+  if (of.weight <= 0.0) return of;
+  const Eigen::Vector3d mean = sum / of.weight;
+  of.map_from_robot = {first.x + mean.x(), first.y + mean.y(), wrapped_angle(first.theta + mean.z())};
+  of.covariance = squares / of.weight - mean * mean.transpose();
+  return of;
+}
+
 }  // namespace
 
 int ParticleClusterFinder::heading_cells() const {
@@ -103,26 +124,6 @@ ParticleCluster ParticleClusterFinder::best(const ParticleSet& particles) {
     if (cells_[cell_of_particle_[i]].joined == heaviest) members_.push_back(i);
   }
   return moments(particles, members_);
-}
-
-ParticleCluster moments(const ParticleSet& particles, std::span<const std::uint32_t> members) {
-  ParticleCluster of;
-  if (members.empty()) return of;
-  const Pose2 first = particles.pose(members.front());
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const std::uint32_t i : members) {
-    const double w = particles.weight[i];
-    const Eigen::Vector3d off = difference(first, particles.pose(i));
-    of.weight += w;
-    sum += w * off;
-    squares.noalias() += w * off * off.transpose();
-  }
-  if (of.weight <= 0.0) return of;
-  const Eigen::Vector3d mean = sum / of.weight;
-  of.map_from_robot = {first.x + mean.x(), first.y + mean.y(), wrapped_angle(first.theta + mean.z())};
-  of.covariance = squares / of.weight - mean * mean.transpose();
-  return of;
 }
 
 }  // namespace deltamap::localization::particles

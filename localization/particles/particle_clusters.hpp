@@ -62,7 +62,4 @@ class ParticleClusterFinder {
   std::vector<std::uint32_t> members_;
 };
 
-/// Weighted mean and covariance of some particles. `weight` is what theirs sum to.
-[[nodiscard]] ParticleCluster moments(const ParticleSet& particles, std::span<const std::uint32_t> members);
-
 }  // namespace deltamap::localization::particles

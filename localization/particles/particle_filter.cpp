@@ -61,12 +61,6 @@ void ParticleFilter::draw_smoothed(const PoseCovariance& covariance, std::size_t
   for (std::size_t i = 0; i < count; ++i) particles_.set_pose(i, beside(particles_.pose(i), root));
 }
 
-void ParticleFilter::start_at(std::span<const Pose2> map_from_robot) {
-  first_slip_.reset();
-  particles_.resize_uniform(map_from_robot.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i) particles_.set_pose(i, map_from_robot[i]);
-}
-
 void ParticleFilter::move(const Pose2& motion, double unknown_s, const motion::MotionModelParams& model) {
   const motion::TurnDriveTurn turns = motion::turn_drive_turn(motion);
   const motion::MotionNoise noise = motion::motion_noise(turns, unknown_s, model);

@@ -33,8 +33,6 @@ class ParticleFilter {
 
   /// Around one pose, normally distributed: `count` particles. `covariance`: x, y and heading in the map frame.
   void start_around(const Pose2& map_from_robot, const PoseCovariance& covariance, std::size_t count);
-  /// Exactly there, all equally likely.
-  void start_at(std::span<const Pose2> map_from_robot);
 
   void move(const Pose2& motion, double unknown_s, const motion::MotionModelParams& model);
 
@@ -62,7 +60,6 @@ class ParticleFilter {
   bool resample_if_needed(std::size_t occupied_cells);
 
   [[nodiscard]] const ParticleSet& particles() const { return particles_; }
-  [[nodiscard]] Random& random() { return random_; }
 
  private:
   [[nodiscard]] std::size_t best() const;

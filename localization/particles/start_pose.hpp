@@ -43,6 +43,7 @@ struct Start {
 /// Holds a pose against the first scans.
 class PoseCheck {
  public:
+  static constexpr int kScans = 5;  ///< that are looked at
   enum class Answer : std::uint8_t { kNotYet, kFits, kDoesNotFit };
 
   void start() { scans_left_ = kScans; }
@@ -53,7 +54,6 @@ class PoseCheck {
   Answer observe(double fit, double enough);
 
  private:
-  static constexpr int kScans = 5;
   int scans_left_ = 0;
   double sum_ = 0.0;
 };

@@ -11,12 +11,12 @@
 namespace deltamap::localization::sensor {
 namespace {
 
-constexpr double kSettledM = 5e-4;
-constexpr double kSettledRad = 2e-4;
 constexpr double kUnknowns = 3.0;       // of a pose
 constexpr double kNewestErrors = 0.05;  // share of one scan in the running means
 
 }  // namespace
+
+bool is_settled(const Eigen::Vector3d& step) { return step.head<2>().norm() < 5e-4 && std::abs(step.z()) < 2e-4; }
 
 void BeamErrors::blend_in(const BeamErrors& scan, double share) {
   if (explained <= 0.0) share = 1.0;
@@ -46,7 +46,7 @@ Refinement refined(const LikelihoodField& field, const motion::BeamEnds& ends, c
     const Eigen::Vector3d move = -(holding + beam_share * beams.information).ldlt().solve(pull);
     if (!move.allFinite()) return unchanged;
     pose = {pose.x + move.x(), pose.y + move.y(), wrapped_angle(pose.theta + move.z())};
-    if (move.head<2>().norm() < kSettledM && std::abs(move.z()) < kSettledRad) break;
+    if (is_settled(move)) break;
   }
   const Eigen::Vector3d shift = difference(prior.map_from_robot, pose);
   if (shift.head<2>().norm() > params.longest_shift_m || std::abs(shift.z()) > params.largest_turn_rad) {

@@ -40,6 +40,9 @@ struct Refinement {
   BeamErrors errors;  ///< with this scan's
 };
 
+/// Is a step of (x, y, θ) too small to go on?
+[[nodiscard]] bool is_settled(const Eigen::Vector3d& step);
+
 /// `hold` is the covariance that holds the pose near the prior; the prior's own says how far that may be off.
 /// `beam_share`: what one beam's evidence counts, in (0, 1]; neighbouring beams see the same things.
 [[nodiscard]] Refinement refined(const LikelihoodField& field, const motion::BeamEnds& ends, const RefinedPose& prior,

@@ -8,8 +8,7 @@
 namespace deltamap::localization::sensor {
 namespace {
 
-constexpr float kApartM = 0.4F;    // two ends of one thing lie no further apart: wider than the gaps of its own beams
-constexpr float kLongestM = 2.0F;  // as SurfaceMap cuts its surfaces
+constexpr float kApartM = 0.4F;  // two ends of one thing lie no further apart: wider than the gaps of its own beams
 
 float distance_m(const motion::BeamEnds& ends, std::size_t from, std::size_t to) {
   return std::hypot(ends.x_m[to] - ends.x_m[from], ends.y_m[to] - ends.y_m[from]);
@@ -23,7 +22,7 @@ std::vector<ScanSegment> segmented(const motion::BeamEnds& ends, std::size_t few
   std::size_t first = 0;
   for (std::size_t i = 1; i <= ends.size(); ++i) {
     const bool goes_on =
-        i < ends.size() && distance_m(ends, i - 1, i) <= kApartM && distance_m(ends, first, i) <= kLongestM;
+        i < ends.size() && distance_m(ends, i - 1, i) <= kApartM && distance_m(ends, first, i) <= kMovesAsOneM;
     if (goes_on) continue;
     if (i - first >= fewest) segments.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(i)});
     first = i;

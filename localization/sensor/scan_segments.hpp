@@ -17,6 +17,8 @@ namespace deltamap::localization::sensor {
 inline constexpr double kMovedM = 0.5;
 /// P(stands where the map has it) of a thing that nothing is known of.
 inline constexpr double kUsuallyHolds = 0.9;
+/// Longest piece of a surface that moves as one, m: a container does, a whole aisle does not.
+inline constexpr double kMovesAsOneM = 2.0;
 
 struct ScanSegment {
   std::uint32_t first = 0;  ///< its first end

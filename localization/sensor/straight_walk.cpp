@@ -13,18 +13,19 @@ constexpr int kSide = Tiled<CellState>::kSide;
 
 struct Axis {
   int step = 0;
-  std::ptrdiff_t stride = 0;  ///< the same in a tile
-  int cells = 0;              ///< of the grid
-  int cells_left = 0;         ///< before the line leaves the tile or the grid
-  double next = 0.0;          ///< distance at which the line crosses the next border, cells
-  double per_cell = 0.0;
+  std::ptrdiff_t stride = 0;                              ///< the same in a tile
+  int cells = 0;                                          ///< of the grid
+  int cells_left = 0;                                     ///< before the line leaves the tile or the grid
+  double next = std::numeric_limits<double>::infinity();  ///< distance at which the line crosses the next border, cells
+  double per_cell = next;
 
   Axis(double start, double along, int cell, int cells_of_grid, std::ptrdiff_t per_step) : cells{cells_of_grid} {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
     step = along > 0.0 ? 1 : along < 0.0 ? -1 : 0;
     stride = step * per_step;
-    next = step == 0 ? kNever : (cell + (step > 0 ? 1 : 0) - start) / along;
-    per_cell = step == 0 ? kNever : std::abs(1.0 / along);
+    if (step != 0) {
+      next = (cell + (step > 0 ? 1 : 0) - start) / along;
+      per_cell = std::abs(1.0 / along);
+    }
     enter_tile(cell);
   }
   void enter_tile(int cell) {

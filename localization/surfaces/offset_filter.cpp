@@ -20,9 +20,7 @@ constexpr std::size_t kMostSightings = 24;
 constexpr double kUnknownM = 0.3;    // deviation of a place that no visit has told of
 constexpr double kReassignM = 0.02;  // a keyframe that moves the pose further is read once more
 constexpr double kReassignRad = 0.005;
-constexpr double kFarthestM = 0.3;  // that ends on no surface may move the pose
-constexpr double kFarthestRad = 0.18;
-constexpr int kRestSteps = 6;
+constexpr double kFarthestRad = 0.18;        // that ends on no surface may turn the pose
 constexpr double kFewestOfADirection = 2.0;  // surfaces that tell of it
 
 using Fixed = Eigen::Vector<double, OffsetState::kFixed>;
@@ -315,6 +313,7 @@ void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::v
 /// `mount`: as the scan was corrected by.
 void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double share, const Eigen::Vector3d& mount) {
   if (finder_.rest().size() == 0) return;
+  const sensor::RefinementParams as_delivered;
   const Eigen::Vector<double, 6> before = state_.mean().head<6>();
   const Eigen::Matrix<double, 3, 6> by = state_.scan_by_pose_and_mount();
   const Eigen::Vector3d start = before.head<3>() + by.rightCols<3>() * (before.tail<3>() - mount);
@@ -322,7 +321,7 @@ void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double 
   Eigen::Vector3d at = start;
   Eigen::Matrix3d information;
   Eigen::Vector3d pull;
-  for (int step = 0; step < kRestSteps; ++step) {
+  for (int step = 0; step < as_delivered.steps; ++step) {
     const sensor::NormalEquations beams =
         sensor::normal_equations(field, finder_.rest(), {at.x(), at.y(), wrapped_angle(at.z())});
     information = share * beams.information;
@@ -331,10 +330,10 @@ void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double 
     const Eigen::Vector3d next = start + inverse * spread * pull;
     const Eigen::Vector3d move = next - at;
     at = next;
-    if (move.head<2>().norm() < 5e-4 && std::abs(move.z()) < 2e-4) break;
+    if (sensor::is_settled(move)) break;
   }
   const Eigen::Vector3d moved = at - start;
-  if (moved.head<2>().norm() > kFarthestM || std::abs(moved.z()) > kFarthestRad) return;
+  if (moved.head<2>().norm() > as_delivered.longest_shift_m || std::abs(moved.z()) > kFarthestRad) return;
   state_.multiply<6>(0, by.transpose() * information * by, by.transpose() * (pull + information * by * before));
 }
 

@@ -30,14 +30,14 @@ const Learned kWalk = learned({4e-8, 4e-8, 8e-9}, {1e-7, 1e-7, 1e-8, 1e-8});
 
 template <typename Values>
 motion::WheelErrors wheels_in(const Values& state) {
-  constexpr Eigen::Index kWheels = OffsetState::kWheels;
-  return {state[kWheels], state[kWheels + 1], state[kWheels + 2], state[kWheels + 3]};
+  const auto wheels = state.template segment<4>(OffsetState::kWheels);
+  return {wheels[0], wheels[1], wheels[2], wheels[3]};
 }
 
 template <typename Values>
 Pose2 mount_in(const Values& state) {
-  constexpr Eigen::Index kMount = OffsetState::kMount;
-  return {state[kMount], state[kMount + 1], state[kMount + 2]};
+  const auto mount = state.template segment<3>(OffsetState::kMount);
+  return {mount[0], mount[1], mount[2]};
 }
 
 Point2 turned_left(const Point2& p) { return {-p.y(), p.x()}; }

@@ -57,7 +57,7 @@ std::vector<Pose2> turned_back(const SlipScene& scene) {
 std::vector<Pose2> moved_along(std::span<const Pose2> poses, double slip_m) {
   std::vector<Pose2> moved;
   for (const Pose2& pose : poses) {
-    for (const double ahead : {0.0, -0.75, 0.75, -1.5, 1.5}) moved.push_back(pose * Pose2{ahead * slip_m, 0.0, 0.0});
+    for (const double ahead : motion::kSlipsAhead) moved.push_back(pose * Pose2{ahead * slip_m, 0.0, 0.0});
   }
   return moved;
 }

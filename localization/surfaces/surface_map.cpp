@@ -8,7 +8,6 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kTileM = 2.0;    // longer surfaces are cut: a piece of a thing moves as one, a whole aisle does not
 constexpr int kReachCells = 5;    // how far a changed cell changes what counts as a surface
 constexpr double kAlikeM = 0.03;  // across
 constexpr double kAlikeAlongM = 0.3;
@@ -25,7 +24,8 @@ bool lies_alike(const Surface& a, const Surface& b) {
 
 SurfaceMap::SurfaceMap(std::shared_ptr<const OccupancyGrid> map)
     : map_{std::move(map)},
-      lattice_{map_->geometry(), std::max(8, static_cast<int>(std::lround(kTileM / map_->resolution_m())))} {}
+      lattice_{map_->geometry(),
+               std::max(8, static_cast<int>(std::lround(sensor::kMovesAsOneM / map_->resolution_m())))} {}
 
 bool SurfaceMap::apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed) {
   if (!(map->geometry() == map_->geometry())) {

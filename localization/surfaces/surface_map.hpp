@@ -65,15 +65,13 @@ class SurfaceMap {
   /// The surface that lies where that one did; not valid where none is left.
   [[nodiscard]] Id like(const Surface& surface);
 
-  [[nodiscard]] std::size_t tiles_known() const { return tiles_.size(); }
-
  private:
   [[nodiscard]] const std::vector<SurfaceRecord>& records_of(std::int32_t tile);
   [[nodiscard]] std::vector<SurfaceRecord> found_in(std::int32_t tile) const;
   [[nodiscard]] CellBox tiles_around(const Point2& at, double reach_m) const;
 
   std::shared_ptr<const OccupancyGrid> map_;
-  BlockLattice lattice_;  // a block: a tile
+  BlockLattice lattice_;  // a block: a tile, at whose border longer surfaces are cut
   std::unordered_map<std::int32_t, std::vector<SurfaceRecord>> tiles_;
 };
 

@@ -19,19 +19,18 @@ SurfaceMeasurement measurement_of(const Sighting& sighting, const Pose2& at, Eig
   const double by_turn_m = n.y() * seen.lever.x() - n.x() * seen.lever.y();
   // The mount errs in the robot's directions.
   const Point2 in_robot = Pose2{0.0, 0.0, -at.theta} * n;
-  constexpr Eigen::Index kMount = OffsetState::kMount;
   const double beam2 =
       std::max(kRangeDeviationM * kRangeDeviationM, seen.across_m2 / std::max(1.0, sighting.beams - 2.0));
   return {.distance = {{{{0, n.x()},
                          {1, n.y()},
                          {2, by_turn_m},
-                         {kMount, in_robot.x()},
-                         {kMount + 1, in_robot.y()},
-                         {kMount + 2, by_turn_m},
+                         {OffsetState::kMount, in_robot.x()},
+                         {OffsetState::kMount + 1, in_robot.y()},
+                         {OffsetState::kMount + 2, by_turn_m},
                          {offset, -1.0},
                          {offset + 1, -seen.along_m}}},
                        8},
-          .turn = {{{{2, -1.0}, {kMount + 2, -1.0}, {offset + 1, -1.0}}}, 3},
+          .turn = {{{{2, -1.0}, {OffsetState::kMount + 2, -1.0}, {offset + 1, -1.0}}}, 3},
           .distance_m = seen.distance_m,
           .turn_rad = seen.slope,
           .distance_variance = beam2 / sighting.beams + kDistanceFloorM * kDistanceFloorM +

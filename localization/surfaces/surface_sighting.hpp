@@ -22,9 +22,9 @@ namespace deltamap::localization::surfaces {
 
 /// Where a surface is believed to lie, beside where the map has it.
 struct SurfacePlace {
-  double offset_m = 0.0;     ///< along the normal
-  double turn_rad = 0.0;     ///< about the surface's centre
-  double deviation_m = 0.5;  ///< of the offset
+  double offset_m;     ///< along the normal
+  double turn_rad;     ///< about the surface's centre
+  double deviation_m;  ///< of the offset
 };
 
 /// The beams that ended at one surface, by their moments, robot frame; or the corner behind which it lies.

@@ -68,7 +68,7 @@ void EvidencePhase::count_beams() {
   through_beams_ = 0;
   for (const votes::BeamVerdict& beam : beams_) {
     short_beams_ += beam.ends_off_map ? 1 : 0;
-    through_beams_ += beam.what == votes::BeamClass::kThrough ? 1 : 0;
+    through_beams_ += beam.passed.empty() ? 0 : 1;
   }
 }
 
@@ -271,7 +271,7 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
 
   beams_ = votes::beam_evidence(*map_, clear_, tracked, params_.beams, std::move(beams_));
   count_beams();
-  const votes::FaceParams face{.slant = params_.face_slant, .bearing_step_rad = tracked.scan.bearing_step_rad};
+  const votes::FaceParams face{.bearing_step_rad = tracked.scan.bearing_step_rad};
   const std::vector<Cell> gone = small_objects_.missed(tracked, beams_, params_.beams);
   const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, face);
   cast(votes);

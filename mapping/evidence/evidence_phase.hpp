@@ -31,10 +31,9 @@ struct EvidencePhaseParams {
   double least_removed_share = 0.8;  ///< of the votes on a block that say "removed"; (0.5, 1]
   int reach_blocks = 2;              ///< proven blocks at most so far apart are one region; >= 1
   std::uint32_t least_blocks = 3;    ///< a smaller region is too small and waits; >= 1
-  double face_slant = 3.0;     ///< as in EvidenceUpdateParams: what lies between two ends on a face is voted on too
-  double settle_s = 0.2;       ///< a region is handed on when it has not grown for so long, …
-  double most_wait_s = 0.6;    ///< … or has waited so long
-  double joining_votes = 2.0;  ///< blocks beside an added region with so many votes and the share are taken along
+  double settle_s = 0.2;             ///< a region is handed on when it has not grown for so long, …
+  double most_wait_s = 0.6;          ///< … or has waited so long
+  double joining_votes = 2.0;        ///< blocks beside an added region with so many votes and the share are taken along
   double joining_gone_votes = 1.0;   ///< the same beside a removed one
   double young_persistence_s = 0.3;  ///< votes that what this run itself has written is gone must span; >= 0
   votes::BeamEvidenceParams beams;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/near_occupied.hpp"
+
 namespace deltamap::mapping::evidence {
 namespace {
 
@@ -97,19 +99,12 @@ void TransientLayer::keep_newest(Entries& entries, std::uint32_t now_ms) {
   });
 }
 
-bool TransientLayer::has_occupied(const OccupancyGrid& map, std::uint32_t block, int margin_cells) const {
-  const CellBox cells = grown(lattice_.cells_of(lattice_.blocks().cell_of(block)), margin_cells);
-  for (int row = cells.first.row; row < cells.last.row; ++row) {
-    for (int column = cells.first.column; column < cells.last.column; ++column) {
-      if (map.at({column, row}) == CellState::kOccupied) return true;
-    }
-  }
-  return false;
-}
-
 void TransientLayer::follow(const OccupancyGrid& map) {
-  std::erase_if(standing_, [&](const Entry& entry) { return has_occupied(map, entry.block, 1); });
-  std::erase_if(gone_, [&](const Entry& entry) { return !has_occupied(map, entry.block, 0); });
+  const auto has_surface = [&](const Entry& entry, int margin_cells) {
+    return has_occupied(map, grown(lattice_.cells_of(lattice_.blocks().cell_of(entry.block)), margin_cells));
+  };
+  std::erase_if(standing_, [&](const Entry& entry) { return has_surface(entry, 1); });
+  std::erase_if(gone_, [&](const Entry& entry) { return !has_surface(entry, 0); });
 }
 
 void TransientLayer::hide(Timestamp time) {

@@ -57,7 +57,6 @@ class TransientLayer {
   static void vote_no(Entries& entries, std::span<const std::uint32_t> blocks, std::uint32_t now_ms);
   void vote_yes(Entries& entries, std::span<const std::uint32_t> blocks, std::uint32_t now_ms);
   void keep_newest(Entries& entries, std::uint32_t now_ms);
-  [[nodiscard]] bool has_occupied(const OccupancyGrid& map, std::uint32_t block, int margin_cells) const;
   void publish(Timestamp time);
 
   TransientLayerParams params_;

@@ -15,8 +15,8 @@
 namespace deltamap::mapping::gate {
 
 struct OperatorCellsParams {
-  double hold_s = 120.0;  ///< of scans after the operator's word; >= 0 (mapping.persistence_s)
-  int margin_cells = 4;   ///< as far as a second look may draw a face beside where it stood; >= 0
+  double hold_s;     ///< of scans after the operator's word; >= 0 (mapping.persistence_s)
+  int margin_cells;  ///< as far as a second look may draw a face beside where it stood; >= 0
 };
 
 class OperatorCells {

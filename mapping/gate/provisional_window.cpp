@@ -22,14 +22,9 @@ void add(Milestones& milestones, double passed, Timestamp now, double step, doub
 
 }  // namespace
 
-void ProvisionalWindow::observe(const TrackedScan& tracked, bool counts) {
-  const Timestamp now = tracked.scan.time;
-  const double way_m = driven_way_.since_last_m(tracked);
-  if (counts && last_) {
-    passed_s_ += std::max(0.0, seconds(now - *last_));
-    driven_m_ += way_m;
-  }
-  last_ = now;
+void ProvisionalWindow::observe(Timestamp now, double passed_s, double driven_m) {
+  passed_s_ += passed_s;
+  driven_m_ += driven_m;
   add(way_, driven_m_, now, kMilestone_m, params_.way_m);
   add(time_, passed_s_, now, kMilestone_s, params_.time_s);
 }

@@ -7,8 +7,7 @@
 #include <deque>
 #include <optional>
 
-#include "core/messages.hpp"
-#include "mapping/gate/driven_way.hpp"
+#include "core/time.hpp"
 
 namespace deltamap::mapping::gate {
 
@@ -21,8 +20,8 @@ class ProvisionalWindow {
  public:
   explicit ProvisionalWindow(const ProvisionalParams& params) : params_{params} {}
 
-  /// Way and time count where the pose is not in doubt.
-  void observe(const TrackedScan& tracked, bool counts);
+  /// Seconds that have passed and metres that were driven since the scan before; none while the pose is in doubt.
+  void observe(Timestamp now, double passed_s, double driven_m);
 
   /// What was written before is settled; nothing where all of it is provisional.
   [[nodiscard]] std::optional<Timestamp> settled() const;
@@ -38,8 +37,6 @@ class ProvisionalWindow {
   std::deque<Milestone> time_;  // of the seconds that count
   double driven_m_ = 0.0;
   double passed_s_ = 0.0;
-  std::optional<Timestamp> last_;
-  DrivenWay driven_way_;
 };
 
 }  // namespace deltamap::mapping::gate

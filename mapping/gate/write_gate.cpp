@@ -2,8 +2,9 @@
 #include "mapping/gate/write_gate.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+
+#include "core/pose_spread.hpp"
 
 namespace deltamap::mapping::gate {
 namespace {
@@ -13,13 +14,6 @@ constexpr double kApproached = 1.5;
 
 /// The pose that is believed afterwards may lie anywhere.
 bool may_be_another(GateReason reason) { return reason == GateReason::kSearching || reason == GateReason::kLost; }
-
-/// σ along the longest axis of the ellipse.
-double widest_deviation_m(const PoseCovariance& covariance) {
-  const double middle = 0.5 * (covariance(0, 0) + covariance(1, 1));
-  const double half = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
-  return std::sqrt(std::max(0.0, middle + half));
-}
 
 }  // namespace
 
@@ -176,7 +170,7 @@ void WriteGate::observe(const TrackedScan& tracked) {
     trusted_since_ = time;
   }
   if (is_open()) shut_for_s_ = 0.0;
-  provisional_.observe(tracked, is_open());
+  provisional_.observe(time, is_open() ? passed_s : 0.0, is_open() ? driven_m : 0.0);
 }
 
 }  // namespace deltamap::mapping::gate

@@ -15,7 +15,6 @@
 namespace deltamap::mapping::grid_registration {
 namespace {
 
-constexpr std::size_t kLeastContour = 20;       // cells; fewer make no line
 constexpr std::size_t kSpectrumPoints = 2000;   // of a contour, for its Hough spectrum
 constexpr std::size_t kSortedPoints = 300;      // of the local contour, to sort out hopeless candidates
 constexpr std::size_t kRegisteredPoints = 600;  // of the local contour, to be brought onto the map's
@@ -114,7 +113,7 @@ merge::MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& loca
   assert(map.resolution_m() == local.resolution_m() && "both maps must have the same resolution");
   const std::vector<Cell> local_contour = contour_cells(local);
   const merge::LocalCells cells{local, local_contour};
-  if (cells.contour().size() < kLeastContour) {
+  if (cells.contour().size() < merge::kLeastContour) {
     merge::MapMerge refused;
     refused.refusal = merge::MergeRefusal::kTooFewPoints;
     return refused;

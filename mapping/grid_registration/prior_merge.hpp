@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
+#include "core/pose_spread.hpp"
 #include "mapping/merge/merge_refusal.hpp"
 
 namespace deltamap::mapping::grid_registration {
@@ -30,7 +31,7 @@ struct PriorMergeParams {
   double independent_points = 60.0;  ///< at most so many points' worth of information: cell noise is shared; > 0
   std::uint32_t least_points = 20;   ///< fewer, or fewer on known cells, are refused
   double least_agreement = 0.5;  ///< share of points within 1 cell of an occupied one, of those on known cells; [0, 1]
-  double most_chi2 = 16.27;      ///< 3 degrees of freedom, 99.9 %
+  double most_chi2 = kMostChi2;  ///< of the correction under the prior's covariance
   double ambiguity_margin = 0.03;  ///< a second pose whose agreement comes this near is one too many; [0, 1]
 };
 

@@ -11,7 +11,6 @@
 namespace deltamap::mapping::merge {
 namespace {
 
-constexpr std::size_t kLeastContour = 20;  // cells; fewer make no line
 // Hopeless candidates are sorted out by few of the local map's cells, then by more.
 constexpr std::size_t kFewCells = 400;
 constexpr std::size_t kHopefulByFew = 200;

@@ -26,6 +26,9 @@ struct PointInCells {
   float y = 0.0F;
 };
 
+/// Cells of a contour; fewer make no line.
+inline constexpr std::size_t kLeastContour = 20;
+
 /// Mean of the cells, in cells from the grid's corner; the grid's own middle where there are none.
 [[nodiscard]] Point2 middle_of(std::span<const Cell> contour, const OccupancyGrid& grid);
 

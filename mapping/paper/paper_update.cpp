@@ -48,7 +48,6 @@ scan_set::MapUpdate paper_update(const OccupancyGrid& map, const ScanSet& set, c
   const OccupancyGrid local = drawn(set, *aligned, map.geometry(), params.local_map);
   const merge::MapMerge merged = merge::map_merge(map, local, params.merge);
   update.acceptance = merged.score.acceptance();
-  update.map_from_local = merged.map_from_local;
   if (!merged.accepted()) return refused(scan_set::Refusal::kNoMerge);
 
   const OccupancyGrid moved = registration::transformed_grid(local, merged.map_from_local, map.geometry());

@@ -19,16 +19,16 @@ double mahalanobis2(const Eigen::Vector3d& error, const PoseCovariance& covarian
   return error.dot(covariance.inverse() * error);
 }
 
-struct NormalEquations {
+struct NetworkSums {
   std::vector<SymmetricBlock> blocks;
   Eigen::VectorXd right_side;
   double chi2 = 0.0;
 };
 
 /// Σ JᵀC⁻¹J δ = -Σ JᵀC⁻¹e over links and anchors (Lu and Milios' Eq. 6 to 9).
-NormalEquations normal_equations(const std::vector<Pose2>& poses, std::span<const PoseLink> links,
-                                 const std::vector<char>& is_kept, std::span<const PoseAnchor> anchors) {
-  NormalEquations sums;
+NetworkSums sums_over_network(const std::vector<Pose2>& poses, std::span<const PoseLink> links,
+                              const std::vector<char>& is_kept, std::span<const PoseAnchor> anchors) {
+  NetworkSums sums;
   sums.right_side = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * poses.size()));
   const auto right_side_of = [&](std::uint32_t pose) {
     return sums.right_side.segment<3>(3 * static_cast<Eigen::Index>(pose));
@@ -65,7 +65,7 @@ NormalEquations normal_equations(const std::vector<Pose2>& poses, std::span<cons
 bool settle(std::vector<Pose2>& poses, std::span<const PoseLink> links, const std::vector<char>& is_kept,
             std::span<const PoseAnchor> anchors, const PoseNetworkParams& params, SparseCholesky& cholesky) {
   for (int i = 0; i < params.most_iterations; ++i) {
-    const NormalEquations sums = normal_equations(poses, links, is_kept, anchors);
+    const NetworkSums sums = sums_over_network(poses, links, is_kept, anchors);
     if (!cholesky.factorize(poses.size(), sums.blocks)) return false;
     const Eigen::VectorXd step = cholesky.solve(sums.right_side);
     if (!step.allFinite()) return false;
@@ -143,7 +143,7 @@ PoseNetwork solved_network(std::span<const Pose2> initial, std::span<const PoseL
     is_kept[worst] = 0;
     network.dropped.push_back(static_cast<std::uint32_t>(worst));
   }
-  network.chi2 = normal_equations(poses, links, is_kept, anchors).chi2;
+  network.chi2 = sums_over_network(poses, links, is_kept, anchors).chi2;
   network.poses = std::move(poses);
   network.covariances = marginal_covariances(network.poses.size(), cholesky);
   network.solved = true;

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/pose_spread.hpp"
 
 namespace deltamap::mapping::paper {
 
@@ -31,8 +31,8 @@ struct PoseAnchor {
 
 struct PoseNetworkParams {
   int most_iterations = 10;
-  double settled = 1e-6;     ///< a step below this (m and rad) ends the iteration
-  double most_chi2 = 16.27;  ///< of one link after solving, 3 degrees of freedom (99.9 %); above, the worst is dropped
+  double settled = 1e-6;         ///< a step below this (m and rad) ends the iteration
+  double most_chi2 = kMostChi2;  ///< of one link after solving; above, the worst is dropped
   int most_dropping_rounds = 20;
 };
 

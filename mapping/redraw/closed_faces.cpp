@@ -100,7 +100,7 @@ MapDraft with_closed_faces(MapDraft draft, const RayCounts& counts, const std::v
            counts[cell].clear_passes < params.free_passes && count_drawn_around(cell, is_drawn) <= 2;
   };
   for (const PlacedScan& scan : scans) {
-    const votes::FaceParams face{.slant = params.face_slant, .bearing_step_rad = scan.tracked->scan.bearing_step_rad};
+    const votes::FaceParams face{.bearing_step_rad = scan.tracked->scan.bearing_step_rad};
     for_each_step_near(ends_of(scan, params.longest_m), face, may_be_face, [&](const Point2& one, const Point2& next) {
       if (!is_face(one) || !is_face(next)) return;
       walk_ray(geometry, one, next, [&](Cell cell, double) {

@@ -14,9 +14,8 @@
 namespace deltamap::mapping::redraw {
 
 struct ClosedFacesParams {
-  double longest_m = 25.0;  ///< beams beyond end on no face
-  double face_slant = 3.0;  ///< votes::FaceParams::slant; >= 1
-  int free_passes = 3;      ///< so many clear passes make a gap
+  double longest_m;  ///< beams beyond end on no face
+  int free_passes;   ///< so many clear passes make a gap
 };
 
 /// The draft with gaps closed where `may_be_added(cell)`, which is nowhere outside `box`.

@@ -211,11 +211,9 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
   });
   for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
   scan_set::MapUpdate update;
-  update.map_from_local = placement.mean_correction;
   MapDraft draft = with_contradicted_cells(MapDraft{map}, map, counts, mask, params);
   draft = with_closed_faces(std::move(draft), counts, placement.scans, mask.box(),
-                            [&](Cell cell) { return mask.may_be_added(cell); },
-                            {params.longest_m, params.face_slant, params.free_passes});
+                            [&](Cell cell) { return mask.may_be_added(cell); }, {params.longest_m, params.free_passes});
   draft = without_small_groups(std::move(draft), params.least_speck_cells);
   draft = without_remnants(std::move(draft), counts, mask, params.free_passes);
   draft = without_enclosed_free_space(std::move(draft), placement.scans, params.most_hidden_m2);

@@ -99,7 +99,6 @@ Placement placed_scans(const OccupancyGrid& map, const KeptScans& scans, const s
   const registration::NearestSurface surface = surface_around(map, guesses, ends, is_in_doubt, params);
 
   Placement placement;
-  Eigen::Vector3d moved_sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < guesses.size(); ++i) {
     const PlacedScan& guess = guesses[i];
     const std::vector<Point2>& points = ends[i];
@@ -126,11 +125,8 @@ Placement placed_scans(const OccupancyGrid& map, const KeptScans& scans, const s
       ++placement.implausible;
       continue;
     }
-    moved_sum += moved;
     placement.scans.push_back({guess.tracked, pose});
   }
-  if (!placement.scans.empty()) moved_sum /= static_cast<double>(placement.scans.size());
-  placement.mean_correction = {moved_sum.x(), moved_sum.y(), wrapped_angle(moved_sum.z())};
   return placement;
 }
 

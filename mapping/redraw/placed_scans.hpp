@@ -9,6 +9,7 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
+#include "core/pose_spread.hpp"
 #include "mapping/redraw/placed_scan.hpp"
 
 namespace deltamap::mapping::redraw {
@@ -22,13 +23,12 @@ struct PlacementParams {
   double independent_points = 60.0;             ///< at most so many points' worth of information: cell noise is shared
   std::uint32_t least_points = 30;              ///< with fewer near a surface the localizer's pose stays
   double least_agreement = 0.5;                 ///< share of the points near a surface that come to lie on it; [0, 1]
-  double most_chi2 = 16.27;  ///< of a correction under the pose's covariance; 3 degrees of freedom, 99.9 %
+  double most_chi2 = kMostChi2;                 ///< of a correction under the pose's covariance
 };
 
 struct Placement {
   std::vector<PlacedScan> scans;  ///< those that fit, pointing to those of the set
   std::uint32_t implausible = 0;  ///< left out: they contradict the localizer, or do not fit
-  Pose2 mean_correction;          ///< of the poses in the map
 };
 
 /// `is_in_doubt(cell)`: surfaces there do not count.

@@ -129,9 +129,8 @@ void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
 
 CellBox box_seen(const GridGeometry& map, std::span<const PlacedScan> scans, double longest_m,
                  const std::optional<CellBox>& part) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Point2 low{kFar, kFar};
-  Point2 high{-kFar, -kFar};
+  Point2 low = Point2::Constant(std::numeric_limits<double>::infinity());
+  Point2 high = -low;
   for (const PlacedScan& scan : scans) {
     for_each_beam(scan, longest_m, [&](const BeamInMap& beam) {
       if (part && !touches(map, *part, beam.from, beam.end)) return;

@@ -15,16 +15,16 @@ constexpr double kReachShrink = 0.8;   // per iteration, from the first reach to
 constexpr double kDamping = 1e-6;      // of the mean curvature: holds what nothing observes
 constexpr double kNormalNoise = 0.01;  // mean square error of a normal, rad²: curvature of the stronger axis that leaks
 
-struct NormalEquations {
+struct PairSums {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  // Σ w gᵀg, no unit deviation yet
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   double squares = 0.0;
   std::size_t paired = 0;
 };
 
-NormalEquations normal_equations(std::span<const Point2> points, const NearestSurface& reference, const Pose2& pose,
-                                 double reach_m) {
-  NormalEquations sums;
+PairSums sums_over_pairs(std::span<const Point2> points, const NearestSurface& reference, const Pose2& pose,
+                         double reach_m) {
+  PairSums sums;
   const PointsInMap in_reference{pose};
   // The lower half of the matrix, number by number: this loop is most of what a registration costs.
   double xx = 0.0, yx = 0.0, yy = 0.0, tx = 0.0, ty = 0.0, tt = 0.0;
@@ -70,21 +70,13 @@ Eigen::Matrix3d without_normal_noise(const Eigen::Matrix3d& information) {
 
 }  // namespace
 
-LineResidual line_residual(const Pose2& reference_from_moving, const Point2& point_in_moving,
-                           const SurfacePoint& line) {
-  const Point2 place = reference_from_moving * point_in_moving;
-  const Point2 arm = place - reference_from_moving.position();
-  return {line.normal.dot(place - line.position),
-          {line.normal.x(), line.normal.y(), -line.normal.x() * arm.y() + line.normal.y() * arm.x()}};
-}
-
 Registration registration(std::span<const Point2> points_in_moving, const NearestSurface& reference,
                           const Pose2& initial, const PoseBelief& prior, const RegistrationParams& params) {
   Registration result;
   result.reference_from_moving = initial;
   double reach_m = params.first_reach_m;
   for (int i = 0; i < params.most_iterations; ++i) {
-    const NormalEquations sums = normal_equations(points_in_moving, reference, result.reference_from_moving, reach_m);
+    const PairSums sums = sums_over_pairs(points_in_moving, reference, result.reference_from_moving, reach_m);
     if (sums.paired < 3) return result;
     const double mean_square = sums.squares / static_cast<double>(sums.paired);
     const double variance = std::max(params.point_deviation_m * params.point_deviation_m, mean_square);

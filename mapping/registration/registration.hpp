@@ -38,12 +38,4 @@ struct Registration {
                                         const Pose2& initial, const PoseBelief& prior,
                                         const RegistrationParams& params);
 
-/// Signed distance of a point to its line, and its derivatives by the pose's x, y, θ.
-struct LineResidual {
-  double distance_m = 0.0;
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-};
-[[nodiscard]] LineResidual line_residual(const Pose2& reference_from_moving, const Point2& point_in_moving,
-                                         const SurfacePoint& line);
-
 }  // namespace deltamap::mapping::registration

@@ -63,7 +63,6 @@ class NearestSurface {
     return distance2_[static_cast<std::size_t>(row) * static_cast<std::size_t>(table_.width) +
                       static_cast<std::size_t>(column)];
   }
-  [[nodiscard]] const std::vector<SurfacePoint>& points() const { return points_; }
 
  private:
   std::vector<SurfacePoint> points_;

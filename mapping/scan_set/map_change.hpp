@@ -27,7 +27,6 @@ struct MapUpdate {
   Refusal refusal = Refusal::kNone;
   std::vector<CellChange> changes;  ///< empty where refused
   double acceptance = 0.0;          ///< Eq. 11 of local map and map
-  Pose2 map_from_local;             ///< the merge's correction of the localizer's frame; identity = none
 
   [[nodiscard]] bool accepted() const { return refusal == Refusal::kNone; }
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/near_occupied.hpp"
 #include "core/points_in_map.hpp"
 #include "mapping/votes/pose_deviation.hpp"
 
@@ -15,25 +16,10 @@ namespace {
 constexpr double kMostSlant = 4.0;
 
 bool has_surface_within(const OccupancyGrid& map, const ClearSpace& clear, const Point2& place, double radius_m) {
-  const GridGeometry& geometry = map.geometry();
-  const Cell centre = geometry.cell_at(place);
-  const bool on_map = geometry.contains(centre);
-  if (on_map && map[centre] == CellState::kOccupied) return true;
-  if (on_map && clear.clear_cells_around(centre) * geometry.resolution_m >= radius_m) return false;
-  const int reach = static_cast<int>(std::ceil(radius_m / geometry.resolution_m));
-  const double radius2 = radius_m * radius_m;
-  for (int ring = 1; ring <= reach; ++ring) {
-    for (int row = -ring; row <= ring; ++row) {
-      const int step = std::abs(row) == ring ? 1 : 2 * ring;
-      for (int column = -ring; column <= ring; column += step) {
-        const Cell cell{centre.column + column, centre.row + row};
-        if (map.at(cell) == CellState::kOccupied && (geometry.centre_of(cell) - place).squaredNorm() <= radius2) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
+  const Cell centre = map.geometry().cell_at(place);
+  const bool is_clear =
+      map.geometry().contains(centre) && clear.clear_cells_around(centre) * map.resolution_m() >= radius_m;
+  return !is_clear && occupied_near(map, place, radius_m);
 }
 
 struct Passage {
@@ -136,7 +122,6 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     BeamVerdict& beam = verdicts[i];
     beam.passed.clear();
-    beam.what = BeamClass::kSilent;
     beam.length_m = 0.0;
     beam.ends_at_surface = true;
     beam.ends_off_map = false;
@@ -157,14 +142,6 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
     judge.collect_passed(beam);
     beam.ends_off_map =
         beam.ends_at_surface && !has_surface_within(map, clear, beam.end, beam.interval_m + map.resolution_m());
-    if (!beam.passed.empty()) {
-      beam.what = BeamClass::kThrough;
-    } else if (beam.ends_off_map) {
-      const bool on_unknown = map.at(map.geometry().cell_at(beam.end)) == CellState::kUnknown;
-      beam.what = on_unknown ? BeamClass::kUnknown : BeamClass::kShort;
-    } else if (beam.ends_at_surface) {
-      beam.what = BeamClass::kConsistent;
-    }
   }
   return verdicts;
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classifies the beams of a scan against the map, with the pose's uncertainty taken into account: a beam ends where the
-// map has a surface (consistent), before it (short), or beyond something that the map has (through). It counts against
-// a surface only where it would do so at every pose within the uncertainty.
+// Holds the beams of a scan against the map, with the pose's uncertainty taken into account: a beam ends where the map
+// has a surface, where it has none, or beyond something that the map has. It counts against a surface only where it
+// would do so at every pose within the uncertainty.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -26,23 +25,14 @@ struct BeamEvidenceParams {
   double beyond_m = 0.2;  ///< a beam must end this far behind what it went through, besides the interval
 };
 
-enum class BeamClass : std::uint8_t {
-  kSilent,      ///< no range, too far, or the pose too poor
-  kConsistent,  ///< ends at a surface of the map
-  kShort,       ///< ends where the map has nothing: on a free cell
-  kUnknown,     ///< ends where the map has nothing: on an unknown cell
-  kThrough      ///< has passed a surface of the map for every pose within the uncertainty
-};
-
 struct BeamVerdict {
-  BeamClass what = BeamClass::kSilent;
   Point2 from{0.0, 0.0};        ///< where the beam left the laser, map frame
   Point2 end{0.0, 0.0};         ///< where it ended, map frame; cut at the range to which it speaks
-  double length_m = 0.0;        ///< from `from` to `end`
+  double length_m = 0.0;        ///< from `from` to `end`; 0 where it says nothing: no range, or the pose too poor
   double interval_m = 0.0;      ///< half width of the interval of expected ranges: `deviations` · σ at the end
   bool ends_at_surface = true;  ///< false where the beam was cut
   bool ends_off_map = false;    ///< ends where the map has no surface, whatever it passed before
-  std::vector<Cell> passed;     ///< kThrough: the occupied cells that it speaks against
+  std::vector<Cell> passed;     ///< the occupied cells that it has gone through at every pose within the uncertainty
 };
 
 /// Is the estimate good enough for its beams to say anything?

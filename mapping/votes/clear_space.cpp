@@ -1,41 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/votes/clear_space.hpp"
 
-#include "core/occupancy_grid.hpp"
+#include "core/near_occupied.hpp"
 
 namespace deltamap::mapping::votes {
 
 ClearSpace::ClearSpace(const OccupancyGrid& map, const BlockLattice& lattice)
-    : lattice_{lattice},
-      solid_{lattice.blocks().width, lattice.blocks().height, 0},
-      distance_{lattice.blocks().width, lattice.blocks().height, kFarthest} {
+    : lattice_{lattice}, distance_{lattice.blocks().width, lattice.blocks().height, kFarthest} {
   CellBox all;
   for_each_known(map, [&](Cell cell, CellState state) {
     if (state != CellState::kOccupied) return;
     const Cell block = lattice_.block_of(cell);
-    solid_.set(block, 1);
+    distance_.set(block, 0);
     all = united(all, {block, {block.column + 1, block.row + 1}});
   });
   measure(grown(all, kFarthest, blocks()));
-}
-
-bool ClearSpace::has_occupied_cell(const OccupancyGrid& map, Cell block) const {
-  const CellBox cells = lattice_.cells_of(block);
-  for (int row = cells.first.row; row < cells.last.row; ++row) {
-    for (int column = cells.first.column; column < cells.last.column; ++column) {
-      if (map.at({column, row}) == CellState::kOccupied) return true;
-    }
-  }
-  return false;
 }
 
 void ClearSpace::update(const OccupancyGrid& map, std::span<const CellChange> changes) {
   std::vector<CellChange> turned;  // blocks that have become solid or clear
   for (const CellChange& change : changes) {
     const Cell block = lattice_.block_of(change.cell);
-    const std::uint8_t is_solid = has_occupied_cell(map, block) ? 1 : 0;
-    if (solid_[block] == is_solid) continue;
-    solid_.set(block, is_solid);
+    const bool has_surface = has_occupied(map, lattice_.cells_of(block));
+    if (has_surface == is_solid(block)) continue;
+    distance_.set(block, static_cast<std::uint8_t>(has_surface ? 0 : kFarthest));
     turned.push_back({.cell = block});
   }
   measure(grown(bounding_box(turned), kFarthest, blocks()));
@@ -50,7 +38,7 @@ void ClearSpace::measure(const CellBox& box) {
   };
   const auto take = [&](int column, int row, int nearest) {
     const Cell block{column, row};
-    distance_.set(block, solid_[block] != 0 ? 0 : static_cast<std::uint8_t>(std::min(kFarthest, nearest + 1)));
+    if (!is_solid(block)) distance_.set(block, static_cast<std::uint8_t>(std::min(kFarthest, nearest + 1)));
   };
   for (int row = box.first.row; row < box.last.row; ++row) {
     for (int column = box.first.column; column < box.last.column; ++column) {

@@ -35,17 +35,17 @@ class ClearSpace {
   /// `visit(Cell block)` for each solid block, row by row.
   template <typename Visit>
   void for_each_solid(Visit&& visit) const {
-    solid_.visit_written(blocks().box(), [&](Cell first, std::span<const std::uint8_t> solid) {
-      for (int i = 0; i < static_cast<int>(solid.size()); ++i) {
-        if (solid[static_cast<std::size_t>(i)] != 0) visit(Cell{first.column + i, first.row});
+    distance_.visit_written(blocks().box(), [&](Cell first, std::span<const std::uint8_t> distances) {
+      for (int i = 0; i < static_cast<int>(distances.size()); ++i) {
+        if (distances[static_cast<std::size_t>(i)] == 0) visit(Cell{first.column + i, first.row});
       }
     });
   }
   /// The same for those that touch a block, and the block itself; it may lie beyond the map's border.
   template <typename Visit>
   void for_each_solid_around(Cell block, Visit&& visit) const {
-    solid_.visit_around(block, 1, blocks(), [&](Cell at, std::uint8_t solid) {
-      if (solid != 0) visit(at);
+    distance_.visit_around(block, 1, blocks(), [&](Cell at, std::uint8_t distance) {
+      if (distance == 0) visit(at);
     });
   }
   [[nodiscard]] const BlockLattice& lattice() const { return lattice_; }
@@ -58,12 +58,10 @@ class ClearSpace {
   }
 
  private:
-  [[nodiscard]] bool has_occupied_cell(const OccupancyGrid& map, Cell block) const;
   /// Where solid blocks have come or gone.
   void measure(const CellBox& blocks);
 
   BlockLattice lattice_;
-  Tiled<std::uint8_t> solid_;
   Tiled<std::uint8_t> distance_;
 };
 

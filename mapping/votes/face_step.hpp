@@ -13,9 +13,9 @@
 namespace deltamap::mapping::votes {
 
 struct FaceParams {
-  double slant = 3.0;                 ///< 1 over the sine of the least angle at which a face is met; >= 1
-  double most_bend_rad = 0.45;        ///< between neighbouring pieces of one face (26°): corners are not cut
-  double bearing_step_rad = 0.01745;  ///< between neighbouring beams
+  double slant = 3.0;           ///< 1 over the sine of the least angle at which a face is met; >= 1
+  double most_bend_rad = 0.45;  ///< between neighbouring pieces of one face (26°): corners are not cut
+  double bearing_step_rad;      ///< between neighbouring beams
 };
 
 /// `visit(i)` for each i whose end and that of beam i + 1 lie on one face. `length_m(i)`: of the beam, <= 0 where it

@@ -14,13 +14,11 @@ constexpr float kNobody = 0.1F;  // worn votes that count for nothing
 VoteLayer::VoteLayer(const VoteLayerParams& params, const GridGeometry& map) : params_{params} {
   lattice_ = {map, std::max(1, static_cast<int>(std::lround(params.block_m / map.resolution_m)))};
   const GridGeometry& blocks = lattice_.blocks();
-  tiles_across_ = static_cast<unsigned>(blocks.width) / kTileSide + 1;
-  const std::size_t tiles_up = static_cast<unsigned>(blocks.height) / kTileSide + 1;
   open_ = Tiled<std::uint8_t>{blocks.width, blocks.height, 0};
-  squares_ = {blocks.width / kSquareSide + 1, blocks.height / kSquareSide + 1, blocks.resolution_m * kSquareSide,
-              blocks.origin};
-  opened_.assign(squares_.cell_count(), 0);
-  tile_of_.assign(tiles_across_ * tiles_up, -1);
+  places_ = {blocks.width / kTileSide + 1, blocks.height / kTileSide + 1, blocks.resolution_m * kTileSide,
+             blocks.origin};
+  opened_.assign(places_.cell_count(), 0);
+  tile_of_.assign(places_.cell_count(), -1);
 }
 
 Ballot VoteLayer::ballot(Question question, Cell block, std::uint32_t now_ms) const {
@@ -57,7 +55,7 @@ VoteLayer::Tile& VoteLayer::tile_for(Cell block, std::uint32_t now_ms) {
 
 void VoteLayer::set_open(Cell block, int bits) {
   const std::uint8_t open = open_[block];
-  std::uint8_t& opened = opened_[squares_.index_of({block.column / kSquareSide, block.row / kSquareSide})];
+  std::uint8_t& opened = opened_[place_of(block)];
   const std::uint8_t added = bit_of(Question::kAdded);
   if ((open & added) != (bits & added))
     opened = static_cast<std::uint8_t>((bits & added) != 0 ? opened + 1 : opened - 1);
@@ -65,11 +63,10 @@ void VoteLayer::set_open(Cell block, int bits) {
 }
 
 void VoteLayer::empty_tile(Tile& tile) {
-  const int side = kTileSide;
-  const Cell first{static_cast<int>(tile.place % tiles_across_) * side,
-                   static_cast<int>(tile.place / tiles_across_) * side};
-  for (int row = first.row; row < std::min(first.row + side, blocks().height); ++row) {
-    for (int column = first.column; column < std::min(first.column + side, blocks().width); ++column) {
+  const Cell place = places_.cell_of(tile.place);
+  const Cell first{place.column * kTileSide, place.row * kTileSide};
+  for (int row = first.row; row < std::min(first.row + kTileSide, blocks().height); ++row) {
+    for (int column = first.column; column < std::min(first.column + kTileSide, blocks().width); ++column) {
       set_open({column, row}, 0);
     }
   }

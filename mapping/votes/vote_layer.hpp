@@ -57,7 +57,7 @@ class VoteLayer {
   /// Has anybody said yes to the question in this block, and not been outvoted as often as it counts since?
   [[nodiscard]] bool is_open(Question question, Cell block) const { return (open_[block] & bit_of(question)) != 0; }
   /// `visit(Cell block)` for those that the segment touches in which somebody has said "added"; most of the way there
-  /// is none, and it is passed in squares of many blocks. `from` lies on the map, or none is visited.
+  /// is none, and it is passed in places of many blocks. `from` lies on the map, or none is visited.
   template <typename Visit>
   void walk_open(const Point2& from, const Point2& to, Visit&& visit) const;
   /// Without the yes votes that are void by now.
@@ -70,20 +70,18 @@ class VoteLayer {
   void reset(const CellBox& cells);
 
  private:
-  static constexpr unsigned kTileSide = 8;
-  static constexpr int kSquareSide = 8;
+  static constexpr int kTileSide = 8;
   struct Tile {
     Ballot ballots[2][kTileSide * kTileSide];
     std::uint32_t last_ms = 0;
-    std::uint32_t place = 0;  // index into tile_of_
+    std::uint32_t place = 0;  // index into places_
   };
 
   [[nodiscard]] static std::uint8_t bit_of(Question question) {
     return static_cast<std::uint8_t>(1U << static_cast<unsigned>(question));
   }
   [[nodiscard]] std::size_t place_of(Cell block) const {
-    return static_cast<unsigned>(block.row) / kTileSide * tiles_across_ +
-           static_cast<unsigned>(block.column) / kTileSide;
+    return places_.index_of({block.column / kTileSide, block.row / kTileSide});
   }
   [[nodiscard]] static std::size_t slot_of(Cell block) {
     return static_cast<unsigned>(block.row) % kTileSide * kTileSide + static_cast<unsigned>(block.column) % kTileSide;
@@ -95,11 +93,10 @@ class VoteLayer {
 
   VoteLayerParams params_;
   BlockLattice lattice_;
-  std::size_t tiles_across_ = 0;
   Tiled<std::uint8_t> open_;           // a bit a question, for each block
-  GridGeometry squares_;               // of kSquareSide × kSquareSide blocks
-  std::vector<std::uint8_t> opened_;   // blocks in a square in which somebody has said "added"
-  std::vector<std::int32_t> tile_of_;  // index into tiles_, -1 = none
+  GridGeometry places_;                // of tiles
+  std::vector<std::uint8_t> opened_;   // blocks in a place in which somebody has said "added"
+  std::vector<std::int32_t> tile_of_;  // of a place, index into tiles_, -1 = none
   std::deque<Tile> tiles_;             // never moved: growing costs no second copy
 };
 
@@ -113,9 +110,9 @@ void VoteLayer::walk_open(const Point2& from, const Point2& to, Visit&& visit) c
       return true;
     });
   };
-  if (!squares_.contains(squares_.cell_at(from))) return;
-  BoxWalk walk{squares_, {{0, 0}, {squares_.width, squares_.height}}, from, to};
-  const auto has_none = [&](std::size_t square) { return opened_[square] == 0; };
+  if (!places_.contains(places_.cell_at(from))) return;
+  BoxWalk walk{places_, places_.box(), from, to};
+  const auto has_none = [&](std::size_t place) { return opened_[place] == 0; };
   const auto goes_on = [&] { return !walk.is_at_end() && walk.goes_on(); };
   const auto here = [&] { return Point2{from + (to - from) * (walk.entered_m() / length_m)}; };
   bool is_on_way = true;

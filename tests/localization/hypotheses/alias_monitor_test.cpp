@@ -40,7 +40,14 @@ class WatchedRound {
   sensor::LikelihoodField field_;
   sensor::CoarseField coarse_;
   ScanStack stack_;
-  AliasMonitor alias_monitor_{{}, {.prior = 0.003}};
+  AliasMonitor alias_monitor_{{},
+                              {.images = 16,
+                               .images_a_scan = 2,
+                               .probes = 400,
+                               .slid = 4,
+                               .nearby_m = 1.5,
+                               .nearby_rad = 0.35,
+                               .prior = 0.003}};
 };
 
 TEST(AliasMonitor, HoldsAliasesForAsUnlikelyAsThatSomebodyCarriesRobots) {

@@ -27,9 +27,10 @@ TEST(PoseAliases, GoWithTheRobotWhereverItDrives) {
 }
 
 TEST(PoseAliases, AreOneWhereTheyAreMetAgainAnotherTime) {
-  PoseAliases images{4};
+  PoseAliases images{2};
   for (double x = 0.0; x < 5.0; x += 0.5) images.note({x, 1.0, 0.1}, image_of({x, 1.1, 0.1}), x);
-  EXPECT_EQ(images.size(), 1U);
+  images.note({}, {0.0, 5.0, 0.0}, 0.0);
+  EXPECT_GT(distance_between(*images.next({}), *images.next({})), 5.0) << "there is room for one more";
 }
 
 TEST(PoseAliases, AreLookedAtInTurn) {
@@ -48,20 +49,18 @@ TEST(PoseAliases, KeepThoseThatWereFollowedLongest) {
   images.note({}, {0.0, 5.0, 0.0}, 2.0);
   images.note({}, {0.0, 9.0, 0.0}, 3.0);
   images.note({}, {9.0, 0.0, 0.0}, 1.0);
-  ASSERT_EQ(images.size(), 2U);
   const double x_m = images.next({})->x + images.next({})->x;
   EXPECT_DOUBLE_EQ(x_m, 5.0) << "the one of 20 m and the one of 3 m, neither that of 1 m";
 }
 
 TEST(PoseAliases, AreForgottenWhereTheyAreNotMetAgainOnALongWay) {
-  PoseAliases images{4, 100.0};
+  PoseAliases images{4};
   images.note({}, {5.0, 0.0, 0.0}, 20.0);
   images.note({}, {0.0, 5.0, 0.0}, 2.0);
-  images.age(60.0);
+  images.age(600.0);
   images.note({}, {0.0, 5.0, 0.0}, 1.0);
-  images.age(60.0);
-  ASSERT_EQ(images.size(), 1U);
-  EXPECT_DOUBLE_EQ(images.next({})->y, 5.0) << "the one that was met again";
+  images.age(600.0);
+  for (int i = 0; i < 2; ++i) EXPECT_DOUBLE_EQ(images.next({})->y, 5.0) << "the one that was met again";
 }
 
 TEST(PoseAliases, RememberNoneWhereThereIsNoRoom) {

@@ -187,11 +187,15 @@ TEST(ParticleFilter, HoldsAMovedThingForOneWitnessHoweverManyBeamsMeetIt) {
   const sensor::LikelihoodField field{map, {}};
   const Pose2 truth{5.0, 5.0, std::numbers::pi / 2.0};
   const motion::BeamEnds ends = test::cast_ends(world, truth);
-  ParticleFilter filter{{.min = 2, .max = 2, .evidence_beams = 60.0}, 1};
-  const std::vector<Pose2> poses{truth, {5.0, 4.5, truth.theta}};
-  filter.start_at(poses);
+  ParticleFilter filter{{.min = 16, .max = 16, .evidence_beams = 60.0}, 1};
+  filter.start_around(truth, PoseCovariance::Zero(), 16);
+  filter.move({}, 0.0, {.slip_probability = 1.0 / 16.0});  // one of them, then as likely as each other one
+  const std::vector<Pose2> astray{{5.0, 4.5, truth.theta}};
+  filter.propose_slips(astray);
   (void)filter.weigh(field, ends);
-  EXPECT_GT(filter.particles().weight[0], 0.95);
+  const auto [least, most] = std::minmax_element(filter.particles().weight.begin(), filter.particles().weight.end());
+  EXPECT_DOUBLE_EQ(filter.particles().pose(static_cast<std::size_t>(least - filter.particles().weight.begin())).y, 4.5);
+  EXPECT_LT(*least, 0.05 * *most);
 }
 
 TEST(ParticleFilter, KeepsAStandingRobotsParticlesApart) {

@@ -99,8 +99,9 @@ TEST(SurfaceSighting, TakesTheEndOfAMappedWallForNoOtherWallNearby) {
   const std::vector<FacedEnd> ends = faced_ends(scan, rays);
   const std::vector<Corner> corners = corners_of(scan, rays);
   ASSERT_FALSE(corners.empty());
-  for (const Sighting& sighting :
-       finder.find(surfaces, field, {ends, corners}, pose, [](const SurfaceRecord&) { return SurfacePlace{}; })) {
+  for (const Sighting& sighting : finder.find(surfaces, field, {ends, corners}, pose, [](const SurfaceRecord&) {
+         return SurfacePlace{0.0, 0.0, 0.5};
+       })) {
     EXPECT_EQ(sighting.corner_deviation_m, 0.0) << sighting.surface.centre.transpose();
   }
 }

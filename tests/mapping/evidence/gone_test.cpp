@@ -204,7 +204,7 @@ TEST_F(Gone, IsTheWholeFaceBetweenTheBeamsThatPassIt) {
   votes::VoteLayer layer{{}, face.geometry()};
   const votes::RedrawQueue watched{{}, layer.blocks()};
   votes::BeamVotes votes;
-  const votes::FaceParams params{.slant = 3.0, .bearing_step_rad = tracked.scan.bearing_step_rad};
+  const votes::FaceParams params{.bearing_step_rad = tracked.scan.bearing_step_rad};
   const votes::Blocks gone =
       votes.of(beams, {}, {clear, layer, watched}, params).yes[static_cast<int>(votes::Question::kRemoved)];
   int in_the_middle = 0;  // beams are 13 cm apart there, blocks 10 cm wide
@@ -226,7 +226,7 @@ TEST_F(Gone, IsNothingBetweenBeamsThatPassTwoDifferentThings) {
   votes::VoteLayer layer{{}, map.geometry()};
   const votes::RedrawQueue watched{{}, layer.blocks()};
   votes::BeamVotes votes;
-  const votes::FaceParams params{.slant = 3.0, .bearing_step_rad = tracked.scan.bearing_step_rad};
+  const votes::FaceParams params{.bearing_step_rad = tracked.scan.bearing_step_rad};
   for (const std::uint32_t block : votes.of(beams, {}, {clear, layer, watched}, params).yes[1]) {
     const Point2 centre = layer.blocks().centre_of(layer.blocks().cell_of(block));
     EXPECT_GT(std::abs(centre.x() - 6.55), 0.1);

@@ -10,7 +10,9 @@ namespace deltamap::mapping::gate {
 namespace {
 
 void drive(StraightDrive& robot, ProvisionalWindow& window, double duration_s, bool counts = true) {
-  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) window.observe(robot.next(), counts);
+  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
+    window.observe(robot.next().scan.time, counts ? kPeriod_s : 0.0, counts ? robot.speed_m_per_s * kPeriod_s : 0.0);
+  }
 }
 
 TEST(ProvisionalWindow, NeedsBothWayAndTime) {

@@ -7,7 +7,6 @@
 
 #include "core/random.hpp"
 #include "mapping/paper/sparse_cholesky.hpp"
-#include "mapping/registration/registration.hpp"
 
 namespace deltamap::mapping::paper {
 namespace {
@@ -38,20 +37,6 @@ TEST(LinkError, HasTheDerivativesThatDifferencesShow) {
       EXPECT_LT((at.by_from.col(axis) - by_from).norm(), kTolerance);
       EXPECT_LT((at.by_to.col(axis) - by_to).norm(), kTolerance);
     }
-  }
-}
-
-TEST(LineResidual, HasTheDerivativesThatDifferencesShow) {
-  constexpr double kStep = 1e-6;
-  const registration::SurfacePoint line{{1.0, 2.0}, {std::cos(0.4), std::sin(0.4)}};
-  const Pose2 pose{0.3, -0.7, 1.1};
-  const Point2 point{2.0, 0.5};
-  const registration::LineResidual at = registration::line_residual(pose, point, line);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double difference = (registration::line_residual(moved(pose, axis, kStep), point, line).distance_m -
-                               registration::line_residual(moved(pose, axis, -kStep), point, line).distance_m) /
-                              (2.0 * kStep);
-    EXPECT_NEAR(at.gradient[axis], difference, 1e-7);
   }
 }
 

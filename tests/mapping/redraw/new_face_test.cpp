@@ -92,7 +92,7 @@ TEST(HiddenFloor, OutsideTheMapAndOnSurfacesThereIsNone) {
 std::vector<std::size_t> face_steps(const std::vector<Point2>& ends) {
   std::vector<std::size_t> steps;
   votes::for_each_face_step(
-      ends.size(), votes::FaceParams{}, [&](std::size_t i) { return ends[i].norm(); },
+      ends.size(), votes::FaceParams{.bearing_step_rad = radians(1.0)}, [&](std::size_t i) { return ends[i].norm(); },
       [&](std::size_t i) -> const Point2& { return ends[i]; }, [&](std::size_t i) { steps.push_back(i); });
   return steps;
 }
