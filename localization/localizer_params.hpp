@@ -21,8 +21,8 @@ struct LocalizerParams : tracking::TrackerParams {
   motion::OdometryBufferParams odometry;
   sensor::LikelihoodFieldParams field;
   hypotheses::GlobalSearchParams global;
-  hypotheses::HypothesisTrackerParams rivals;
-  hypotheses::HypothesisBankParams places;
+  hypotheses::HypothesisTrackerParams hypothesis_tracker;
+  hypotheses::HypothesisBankParams hypothesis_bank;
   belief::FitParams fit;
   belief::JudgementParams judgement;
   sensor::TransientBeamsParams temporary;

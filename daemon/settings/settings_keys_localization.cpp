@@ -85,7 +85,8 @@ void add_belief(localization::LocalizerParams& localizer, Keys& keys) {
 void add_localization_keys(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(whole_key("localization.beams", localizer.beams, "", 0, 1000,
                            "beams of a scan that are weighed, evenly chosen among the valid ones; 0: all"));
-  keys.push_back(number_key("localization.kidnapping_prior", localizer.rivals.elsewhere_prior, "", 1e-30, 1.0,
+  keys.push_back(number_key("localization.kidnapping_prior", localizer.hypothesis_tracker.elsewhere_prior, "", 1e-30,
+                            1.0,
                             "odds of any pose hypothesis elsewhere against the believed one, before any scan: how "
                             "rarely the robot is kidnapped"));
   add_particles(localizer, keys);

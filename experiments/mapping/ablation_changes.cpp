@@ -31,16 +31,17 @@ constexpr std::array kOfLocalization{
     Mechanism{"learned-wheels", "noise of the wheels learned while driving",
               [](Settings& s) { s.localizer.track.wheels.learning_share = 0.0; }},
     Mechanism{"slips", "particles that slip", [](Settings& s) { s.localizer.motion.slip_probability = 0.0; }},
-    Mechanism{"probes", "probes of the whole map while tracking", [](Settings& s) { s.localizer.rivals.probes = 0; }},
+    Mechanism{"probes", "probes of the whole map while tracking",
+              [](Settings& s) { s.localizer.hypothesis_tracker.probes = 0; }},
     Mechanism{"probes-nearby", "probes around the believed pose",
-              [](Settings& s) { s.localizer.rivals.probes_nearby = 0; }},
+              [](Settings& s) { s.localizer.hypothesis_tracker.probes_nearby = 0; }},
     Mechanism{"refined-hypotheses", "refinement of other pose hypotheses while tracking",
-              [](Settings& s) { s.localizer.rivals.refined_a_scan = 0; }},
-    Mechanism{"aliases", "memory of aliases", [](Settings& s) { s.localizer.rivals.images = 0; }},
+              [](Settings& s) { s.localizer.hypothesis_tracker.refined_a_scan = 0; }},
+    Mechanism{"aliases", "memory of aliases", [](Settings& s) { s.localizer.hypothesis_tracker.aliases = 0; }},
     Mechanism{"support", "support of the believed pose by proven tiles",
-              [](Settings& s) { s.localizer.rivals.held_by = 0.0; }},
+              [](Settings& s) { s.localizer.hypothesis_tracker.stable_support_nats = 0.0; }},
     Mechanism{"kidnapped-share", "write gate: odds of having just been kidnapped",
-              [](Settings& s) { s.localizer.rivals.carried_prior = 0.0; }},
+              [](Settings& s) { s.localizer.hypothesis_tracker.kidnapped_now_prior = 0.0; }},
     Mechanism{"suspicious-search", "search of the whole map beside a believed pose",
               [](Settings& s) { s.localizer.fit.suspicious_below = 0.0; }},
     Mechanism{"lost-by-verdict", "lost by the verdict wrong",
@@ -68,7 +69,7 @@ constexpr std::array kOfMapping{
     Mechanism{"changed-this-run", "quicker removal of what this run has written",
               [](Settings& s) {
                 auto& evidence = s.mapping.store_scan.evidence;
-                evidence.young_persistence_s = evidence.face_persistence_s;
+                evidence.changed_this_run_persistence_s = evidence.face_persistence_s;
               }},
     Mechanism{"joining", "blocks beside a proven region taken along",
               [](Settings& s) {
@@ -80,15 +81,15 @@ constexpr std::array kOfMapping{
     Mechanism{"wear", "wear of votes by those of the other side",
               [](Settings& s) { s.mapping.store_scan.evidence.votes.wear = 0.0; }},
     Mechanism{"redraw-queue", "later looks at written regions",
-              [](Settings& s) { s.mapping.store_scan.evidence.watch.looks = 0; }},
+              [](Settings& s) { s.mapping.store_scan.evidence.redraw_queue.looks = 0; }},
     Mechanism{"scan-placement", "scans placed on the map before they draw",
               [](Settings& s) {
                 s.mapping.update.evidence.placement.least_points = std::numeric_limits<std::uint32_t>::max();
               }},
     Mechanism{"enclosed-space", "enclosed free space becomes unknown",
-              [](Settings& s) { s.mapping.update.evidence.most_hidden_m2 = 0.0; }},
+              [](Settings& s) { s.mapping.update.evidence.most_enclosed_m2 = 0.0; }},
     Mechanism{"small-groups", "small groups of new occupied cells left out",
-              [](Settings& s) { s.mapping.update.evidence.least_speck_cells = 1; }},
+              [](Settings& s) { s.mapping.update.evidence.least_group_cells = 1; }},
     Mechanism{"scan-break", "write gate: break between scans",
               [](Settings& s) {
                 auto& scan_break = s.mapping.store_scan.gate.scan_break;
@@ -102,7 +103,7 @@ constexpr std::array kOfMapping{
                 jump.least_m = jump.least_rad = kNever;
               }},
     Mechanism{"other-share", "write gate: share of another pose hypothesis",
-              [](Settings& s) { s.mapping.store_scan.gate.most_rival_share = 1.0; }},
+              [](Settings& s) { s.mapping.store_scan.gate.most_other_share = 1.0; }},
     Mechanism{"spread", "write gate: a pose that is spread wide or that nothing in view holds",
               [](Settings& s) {
                 auto& gate = s.mapping.store_scan.gate;
@@ -117,7 +118,7 @@ constexpr std::array kOfMapping{
     Mechanism{"held-sets", "finished sets that wait for a sign",
               [](Settings& s) { s.mapping.store_scan.gate.hold_s = 0.0; }},
     Mechanism{"held-by-share", "finished sets that wait while another hypothesis holds a share",
-              [](Settings& s) { s.mapping.store_scan.gate.hold_rival_share = 1.0; }},
+              [](Settings& s) { s.mapping.store_scan.gate.hold_other_share = 1.0; }},
     Mechanism{"provisional", "withdrawal of what is provisional",
               [](Settings& s) {
                 auto& window = s.mapping.store_scan.gate.provisional;

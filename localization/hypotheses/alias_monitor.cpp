@@ -18,7 +18,7 @@ constexpr double kBeforeItIsSlid = 0.3;  // kFitsNearlyAsWell before an alias is
 AliasMonitor::AliasMonitor(const HypothesisBankParams& bank, const Effort& effort)
     : effort_{effort},
       bank_{bank},
-      aliases_{static_cast<std::size_t>(std::max(0, effort.images))},
+      aliases_{static_cast<std::size_t>(std::max(0, effort.aliases))},
       lattice_{kRightAngles} {}
 
 void AliasMonitor::predict(const Pose2& motion) {
@@ -47,7 +47,7 @@ void AliasMonitor::note(std::span<const PoseHypothesis> followed, const Pose2& m
 }
 
 void AliasMonitor::look_again(const Seen& seen) {
-  for (int i = 0; i < effort_.images_a_scan; ++i) {
+  for (int i = 0; i < effort_.aliases_a_scan; ++i) {
     const std::optional<Pose2> there = aliases_.next(seen.map_from_believed);
     if (!there || bank_.knows(*there)) continue;
     if (mean_log_likelihood(seen.field, seen.ends, *there) < own_fit_ - kBeforeItIsSlid) continue;

@@ -19,13 +19,13 @@ namespace deltamap::localization::hypotheses {
 class AliasMonitor {
  public:
   struct Effort {
-    int images;         ///< that are remembered; >= 0
-    int images_a_scan;  ///< of them looked at again in a scan; >= 0
-    int probes;         ///< poses turned by right angles that are looked at in a scan; >= 0
-    int slid;           ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
-    double nearby_m;    ///< no alias of the believed pose but a slip, m; > 0
-    double nearby_rad;  ///< and turned less; > 0
-    double prior;       ///< odds of one against the believed pose, before any scan; 0..1
+    int aliases;         ///< that are remembered; >= 0
+    int aliases_a_scan;  ///< of them looked at again in a scan; >= 0
+    int probes;          ///< poses turned by right angles that are looked at in a scan; >= 0
+    int slid;            ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
+    double nearby_m;     ///< no alias of the believed pose but a slip, m; > 0
+    double nearby_rad;   ///< and turned less; > 0
+    double prior;        ///< odds of one against the believed pose, before any scan; 0..1
   };
   AliasMonitor(const HypothesisBankParams& bank, const Effort& effort);
 
@@ -38,7 +38,7 @@ class AliasMonitor {
     const sensor::CoarseField& coarse;
     const motion::BeamEnds& ends;
     const motion::BeamEnds& near_ends;  ///< that a coarse lattice can place
-    Pose2 map_from_believed;            ///< slid to where the scan fits, as its images will be
+    Pose2 map_from_believed;            ///< slid to where the scan fits, as its aliases will be
     Pose2 continuous_odom_from_robot;
     const ScanStack& stack;
     double evidence_weight = 1.0;      ///< how much beams that miss say, [0, 1]
@@ -48,7 +48,7 @@ class AliasMonitor {
   /// Every scan beside a believed pose, after predict(). `followed`: hypotheses that explain the scans as well.
   void observe(const Seen& seen, std::span<const PoseHypothesis> followed);
 
-  /// The believed pose and its images.
+  /// The believed pose and its aliases.
   [[nodiscard]] const HypothesisBank& hypotheses() const { return bank_; }
 
  private:

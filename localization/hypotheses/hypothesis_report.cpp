@@ -65,7 +65,7 @@ HypothesisReport report_on(const HypothesisBank& bank, const HypothesisBank& wat
     }
   }
   if (kidnapped == nullptr || says(*kidnapped) <= 0.0) return report;
-  report.kidnapped_share = rules.carried_prior / (rules.carried_prior + std::exp(-says(*kidnapped)));
+  report.kidnapped_share = rules.kidnapped_now_prior / (rules.kidnapped_now_prior + std::exp(-says(*kidnapped)));
   report.map_from_kidnapped = kidnapped->map_from_robot;
   return report;
 }

@@ -36,11 +36,11 @@ struct HypothesisReport {
 
 /// The limits that the report is drawn by.
 struct ReportRules {
-  double nearby_m;       ///< a hypothesis within this of the believed one is a slip; > 0
-  double nearby_rad;     ///< and turned less; > 0
-  double carried_prior;  ///< odds that the robot has just been carried to a pose that fits from then on; 0..1
-  double beats_by;       ///< log evidence of clearly better, proven tiles counted in; > 0
-  double wins_after_m;   ///< driven since such a hypothesis was found, m; >= 0
+  double nearby_m;             ///< a hypothesis within this of the believed one is a slip; > 0
+  double nearby_rad;           ///< and turned less; > 0
+  double kidnapped_now_prior;  ///< odds that the robot has just been carried to a pose that fits from then on; 0..1
+  double beats_by;             ///< log evidence of clearly better, proven tiles counted in; > 0
+  double wins_after_m;         ///< driven since such a hypothesis was found, m; >= 0
 };
 
 /// `watched`: aliases of the believed pose, of which only is told whether the robot may have been carried to one.

@@ -21,13 +21,13 @@ HypothesisTracker::HypothesisTracker(const HypothesisTrackerParams& params, cons
       coarse_{map, field, params.block_m},
       probes_{params.headings, seed},
       alias_monitor_{bank,
-                     {.images = params.images,
-                      .images_a_scan = params.images_a_scan,
+                     {.aliases = params.aliases,
+                      .aliases_a_scan = params.aliases_a_scan,
                       .probes = params.probes / 2,
                       .slid = params.refined_a_scan,
                       .nearby_m = params.nearby_m,
                       .nearby_rad = params.nearby_rad,
-                      .prior = params.carried_prior}},
+                      .prior = params.kidnapped_now_prior}},
       search_{search, params.headings},
       bank_{bank},
       elsewhere_prior_{params.elsewhere_prior} {}
@@ -152,7 +152,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
     bank_.believe(*seen.map_from_believed);
   }
   if (believing_) last_believed_ = seen.map_from_believed;
-  held_by_ = believing_ ? params_.held_by * seen.stable_support : 0.0;
+  held_by_ = believing_ ? params_.stable_support_nats * seen.stable_support : 0.0;
   bank_.set_believed_prior(held_by_);
   thin(seen);
   if (ends_.size() == 0) return report_;
@@ -296,7 +296,7 @@ void HypothesisTracker::write_report() {
   report_ = report_on(bank_, alias_monitor_.hypotheses(),
                       {.nearby_m = params_.nearby_m,
                        .nearby_rad = params_.nearby_rad,
-                       .carried_prior = params_.carried_prior,
+                       .kidnapped_now_prior = params_.kidnapped_now_prior,
                        .beats_by = params_.beats_by + held_by_,
                        .wins_after_m = params_.wins_after_m});
 }

@@ -22,27 +22,27 @@
 namespace deltamap::localization::hypotheses {
 
 struct HypothesisTrackerParams {
-  int probes = 800;                   ///< poses of the whole map that are looked at in a scan while tracking; >= 0
-  int probes_nearby = 60;             ///< and around the believed pose: slips; >= 0
-  double nearby_m = 1.5;              ///< how far "around" is, m; > 0
-  double nearby_rad = radians(20.0);  ///< likewise, rad; > 0
-  double nearby_prior = 1e-3;         ///< odds of such a hypothesis against the believed one, before any scan; 0..1
-  double elsewhere_prior = 1e-5;      ///< odds of any other hypothesis: nobody carries robots about; 0..1
-  double carried_prior = 0.003;       ///< odds that it has just been carried to one that fits from then on; 0..1
-  double prior_after_search = 0.3;    ///< the same where the believed pose was not given but found; 0..1
+  int probes = 800;                    ///< poses of the whole map that are looked at in a scan while tracking; >= 0
+  int probes_nearby = 60;              ///< and around the believed pose: slips; >= 0
+  double nearby_m = 1.5;               ///< how far "around" is, m; > 0
+  double nearby_rad = radians(20.0);   ///< likewise, rad; > 0
+  double nearby_prior = 1e-3;          ///< odds of such a hypothesis against the believed one, before any scan; 0..1
+  double elsewhere_prior = 1e-5;       ///< odds of any other hypothesis: nobody carries robots about; 0..1
+  double kidnapped_now_prior = 0.003;  ///< odds that it has just been carried to one that fits from then on; 0..1
+  double prior_after_search = 0.3;     ///< the same where the believed pose was not given but found; 0..1
   double kidnapped_prior =
       0.001;  ///< odds of being elsewhere against near, where the believed pose has proven wrong; 0..1
-  double winning_share = 0.98;   ///< of the belief at which another hypothesis is believed instead; 0.5..1
-  double wins_after_m = 1.0;     ///< driven since it was found before another hypothesis may win, m; >= 0
-  double beats_by = 12.0;        ///< log evidence of clearly better, whatever the odds before; > 0
-  double held_by = 16.0;         ///< more log evidence against a pose that proven tiles support; >= 0
+  double winning_share = 0.98;        ///< of the belief at which another hypothesis is believed instead; 0.5..1
+  double wins_after_m = 1.0;          ///< driven since it was found before another hypothesis may win, m; >= 0
+  double beats_by = 12.0;             ///< log evidence of clearly better, whatever the odds before; > 0
+  double stable_support_nats = 16.0;  ///< more log evidence against a pose that proven tiles support; >= 0
   double most_ahead = 10.0;      ///< log evidence that a hypothesis may be found with ahead of the believed one; >= 0
   int refined_a_scan = 4;        ///< hypotheses that are slid to their best fit at a scan while tracking; >= 0
   double block_m = 0.25;         ///< side of the coarse field's blocks, m; > 0
   int headings = 96;             ///< of the lattice of poses; > 0
   double suspicious_pace = 0.2;  ///< of a search of the whole map while a pose is believed; (0, 1]
-  int images = 16;               ///< aliases of the believed pose that are remembered; >= 0
-  int images_a_scan = 2;         ///< of them looked at again in a scan; >= 0
+  int aliases = 16;              ///< aliases of the believed pose that are remembered; >= 0
+  int aliases_a_scan = 2;        ///< of them looked at again in a scan; >= 0
 };
 
 class HypothesisTracker {

@@ -32,7 +32,7 @@ bool EvidencePhase::is_proven(votes::Question question, Cell block) const {
   const votes::Ballot ballot = layer_.ballot(question, block, now_ms_);
   const bool is_changed_this_run =
       question == votes::Question::kRemoved && changed_this_run_.is_changed_this_run(block);
-  const double least_span_s = is_changed_this_run ? params_.young_persistence_s : params_.face_persistence_s;
+  const double least_span_s = is_changed_this_run ? params_.changed_this_run_persistence_s : params_.face_persistence_s;
   return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= least_span_s &&
          ballot.share() >= least_share(question);
 }
@@ -47,7 +47,7 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
     transients_ = TransientLayer{params_.temporary, layer_.lattice()};
     waiting_.clear();
     clear_ = votes::ClearSpace{*map_, layer_.lattice()};
-    redraw_queue_ = votes::RedrawQueue{params_.watch, layer_.blocks()};
+    redraw_queue_ = votes::RedrawQueue{params_.redraw_queue, layer_.blocks()};
     joined_ = Tiled<std::uint8_t>{layer_.blocks().width, layer_.blocks().height, 0};
     passing_ = Passing{params_.passing};
     changed_this_run_ = votes::ChangedThisRun{clear_};

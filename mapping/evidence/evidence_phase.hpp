@@ -35,11 +35,11 @@ struct EvidencePhaseParams {
   double most_wait_s = 0.6;          ///< … or has waited so long
   double joining_votes = 2.0;        ///< blocks beside an added region with so many votes and the share are taken along
   double joining_gone_votes = 1.0;   ///< the same beside a removed one
-  double young_persistence_s = 0.3;  ///< votes that what this run itself has written is gone must span; >= 0
+  double changed_this_run_persistence_s = 0.3;  ///< votes that what this run itself has written is gone must span; >= 0
   votes::BeamEvidenceParams beams;
   votes::VoteLayerParams votes;
   scan_set::KeyframeParams keyframes;
-  votes::RedrawQueueParams watch;
+  votes::RedrawQueueParams redraw_queue;
   PassingParams passing;
   SmallObjectParams small_objects;
   TransientLayerParams temporary;

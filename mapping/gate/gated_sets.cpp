@@ -50,7 +50,7 @@ void GatedSets::take(std::optional<ScanSet> set, const TrackedScan& tracked) {
 
 bool GatedSets::is_due(const ScanSet& set) const {
   if (!params_.enabled) return true;
-  return gate_.is_open() && other_share_ <= params_.hold_rival_share && seconds(now_ - set.ended) >= params_.hold_s;
+  return gate_.is_open() && other_share_ <= params_.hold_other_share && seconds(now_ - set.ended) >= params_.hold_s;
 }
 
 std::optional<ScanSet> GatedSets::next() {

@@ -70,7 +70,7 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   if (jumped) return GateReason::kJumped;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
-  if (estimate.belief.other_share > params_.most_rival_share) return GateReason::kOtherHypothesis;
+  if (estimate.belief.other_share > params_.most_other_share) return GateReason::kOtherHypothesis;
   const bool is_held = estimate.belief.stable.expected + estimate.belief.elsewhere.expected >= params_.least_expected;
   if (!is_held || widest_deviation_m(estimate.noise_covariance()) > params_.most_deviation_m)
     return GateReason::kSpread;

@@ -42,7 +42,7 @@ struct WriteGateParams {
   bool enabled = true;             ///< false: everything is written, as the paper does (mapping.gate.enabled)
   double least_pose_right = 0.83;  ///< P(pose right) below which it is shut; [0, 1]
   double disbelieved_below = 0.3;  ///< P(pose right) that counts as a proof that it was wrong; [0, 1]
-  double most_rival_share = 0.05;  ///< of the belief, that another pose hypothesis may hold; [0, 1]
+  double most_other_share = 0.05;  ///< of the belief, that another pose hypothesis may hold; [0, 1]
   double most_deviation_m = 0.3;   ///< σ of the position along its worst axis; > 0
   std::uint32_t least_expected =
       3;                    ///< beams that the map expects something of: fewer, and only the wheels hold the pose
@@ -51,7 +51,7 @@ struct WriteGateParams {
   double confirm_followed_s = 8.0;  ///< the same where the pose was followed all along and something spoke against it,
   double confirm_followed_m = 4.0;  ///< which an alias cannot explain: seconds and metres; >= 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
-  double hold_rival_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
+  double hold_other_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
   PoseJumpParams jump;
   InlierDropParams inlier_drop;
   ScanBreakParams scan_break;

@@ -127,7 +127,7 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
 /// What surfaces have closed off from the robot is not known any longer: floor beside new ones, and floor that beams
 /// saw before they stood there.
 [[nodiscard]] MapDraft without_enclosed_free_space(MapDraft draft, const std::vector<PlacedScan>& scans,
-                                                   double most_hidden_m2) {
+                                                   double most_enclosed_m2) {
   std::vector<Cell> starts;
   for (const auto& [cell, was, is] : draft.changes()) {
     if (is == CellState::kFree && was == CellState::kUnknown) starts.push_back(cell);
@@ -138,7 +138,7 @@ CellState state_after(const OccupancyGrid& map, CellState before, Cell cell, con
   std::vector<Point2> robot_was;
   robot_was.reserve(scans.size());
   for (const PlacedScan& scan : scans) robot_was.push_back(scan.map_from_robot.position());
-  for (const Cell& cell : enclosed_free_space(draft.map(), starts, robot_was, most_hidden_m2)) {
+  for (const Cell& cell : enclosed_free_space(draft.map(), starts, robot_was, most_enclosed_m2)) {
     draft.set(cell, CellState::kUnknown);
   }
   return draft;
@@ -214,9 +214,9 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
   MapDraft draft = with_contradicted_cells(MapDraft{map}, map, counts, mask, params);
   draft = with_closed_faces(std::move(draft), counts, placement.scans, mask.box(),
                             [&](Cell cell) { return mask.may_be_added(cell); }, {params.longest_m, params.free_passes});
-  draft = without_small_groups(std::move(draft), params.least_speck_cells);
+  draft = without_small_groups(std::move(draft), params.least_group_cells);
   draft = without_remnants(std::move(draft), counts, mask, params.free_passes);
-  draft = without_enclosed_free_space(std::move(draft), placement.scans, params.most_hidden_m2);
+  draft = without_enclosed_free_space(std::move(draft), placement.scans, params.most_enclosed_m2);
   update.changes = draft.changes();
   update.acceptance = acceptance(counts, draft.map(), params.occupied_hit_share).value();
   if (update.changes.empty()) update.refusal = scan_set::Refusal::kNothingChanged;

@@ -17,13 +17,13 @@ struct EvidenceUpdateParams {
   double longest_m = 25.0;              ///< beams beyond do not draw
   int added_reach_cells = 4;            ///< cells so far from a verdict "occupied" may become occupied; >= 0
   int removed_reach_cells = 2;          ///< cells so far from a verdict "free" may become free; >= 0
-  double most_hidden_m2 = 15.0;         ///< larger pieces of floor that new surfaces close off stay free; >= 0
+  double most_enclosed_m2 = 15.0;       ///< larger pieces of floor that new surfaces close off stay free; >= 0
   double occupied_hit_share = 0.3;      ///< a cell is occupied from this share of hits on, …
   int occupied_hits = 2;                ///< … and so many hits
   double free_hit_share = 0.1;          ///< an occupied or unknown cell becomes free up to this share of hits, …
   int free_passes = 3;                  ///< … and from so many passes on that go on for …
   double clear_m = 0.2;                 ///< … so far: others may have hit what stands there
-  int least_speck_cells = 3;            ///< smaller groups of new occupied cells that touch nothing are left out
+  int least_group_cells = 3;            ///< smaller groups of new occupied cells that touch nothing are left out
   double least_acceptance = 0.8;        ///< Eq. 11 of local map and updated map below which the update is refused
   PlacementParams placement;
 };

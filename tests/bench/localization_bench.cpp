@@ -122,10 +122,10 @@ int main(int argc, char** argv) {
   app.add_option("--heading-floor", params.motion.heading_floor_rad);
   app.add_option("--candidates", params.global.candidates_a_scan);
   app.add_option("--places", params.global.places);
-  app.add_option("--place-evidence", params.places.evidence_beams);
-  app.add_option("--memory", params.places.memory_steps);
-  app.add_option("--headings", params.rivals.headings);
-  app.add_option("--block", params.rivals.block_m);
+  app.add_option("--place-evidence", params.hypothesis_bank.evidence_beams);
+  app.add_option("--memory", params.hypothesis_bank.memory_steps);
+  app.add_option("--headings", params.hypothesis_tracker.headings);
+  app.add_option("--block", params.hypothesis_tracker.block_m);
   app.add_option("--refine", params.refinement.steps);
   app.add_option("--prior", params.refinement.prior_share);
   app.add_option("--alike", params.refinement.alike_beams);

@@ -31,7 +31,7 @@ class WatchedRound {
                            {});
     stack_.add(ends, truth_);
   }
-  [[nodiscard]] std::span<const PoseHypothesis> images() const { return alias_monitor_.hypotheses().others(); }
+  [[nodiscard]] std::span<const PoseHypothesis> aliases() const { return alias_monitor_.hypotheses().others(); }
 
  private:
   const OccupancyGrid& world_;
@@ -41,8 +41,8 @@ class WatchedRound {
   sensor::CoarseField coarse_;
   ScanStack stack_;
   AliasMonitor alias_monitor_{{},
-                              {.images = 16,
-                               .images_a_scan = 2,
+                              {.aliases = 16,
+                               .aliases_a_scan = 2,
                                .probes = 400,
                                .slid = 4,
                                .nearby_m = 1.5,
@@ -54,8 +54,8 @@ TEST(AliasMonitor, HoldsAliasesForAsUnlikelyAsThatSomebodyCarriesRobots) {
   const OccupancyGrid map = test::symmetric_hall();
   WatchedRound round{map, map};
   for (int i = 0; i < 60; ++i) round.step();
-  ASSERT_FALSE(round.images().empty());
-  for (const PoseHypothesis& alias : round.images()) EXPECT_DOUBLE_EQ(alias.log_prior, std::log(0.003));
+  ASSERT_FALSE(round.aliases().empty());
+  for (const PoseHypothesis& alias : round.aliases()) EXPECT_DOUBLE_EQ(alias.log_prior, std::log(0.003));
 }
 
 }  // namespace

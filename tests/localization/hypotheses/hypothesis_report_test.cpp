@@ -22,7 +22,7 @@ HypothesisBank believing_bank() {
 }
 
 constexpr ReportRules kRules{
-    .nearby_m = 1.5, .nearby_rad = 0.35, .carried_prior = 0.003, .beats_by = 12.0, .wins_after_m = 1.0};
+    .nearby_m = 1.5, .nearby_rad = 0.35, .kidnapped_now_prior = 0.003, .beats_by = 12.0, .wins_after_m = 1.0};
 
 TEST(HypothesisReport, SaysWhereTheRobotMayHaveBeenCarried) {
   const PoseHypothesis other{.map_from_robot = {15.0, 0.0, 0.0}, .since_kidnapping = 7.0};

@@ -122,12 +122,12 @@ TEST(PoseHypotheses, HaveToOutdoWhatProvenTilesSayForThePose) {
 
 /// Scans until a quarter of the hall that was met before is heard of again, where nothing looks for new hypotheses; at
 /// most 100.
-int scans_until_met_again(int images) {
+int scans_until_met_again(int aliases) {
   const OccupancyGrid map = symmetric_hall();
   HypothesisTrackerParams params;
   params.probes = 0;
   params.probes_nearby = 0;
-  params.images = images;
+  params.aliases = aliases;
   Round round{map, map, {6.0, 4.0, 0.0}, 2, params};
   round.others().start_believing();
   round.others().suspect(true);
@@ -147,7 +147,8 @@ TEST(PoseHypotheses, AreHeardOfAtOnceWhereAHypothesisThatLooksAlikeWasMetBefore)
   EXPECT_LE(scans_until_met_again(16), 10);
 }
 
-/// A robot that slips and is believed 0.6 m beside where it is, until images of its true hypothesis speak against that.
+/// A robot that slips and is believed 0.6 m beside where it is, until aliases of its true hypothesis speak against
+/// that.
 void slipped_until_heard_of(Round& round) {
   round.others().start_believing();
   for (int i = 0; i < 100; ++i) (void)round.step(round.truth() * kMotion);
@@ -187,8 +188,8 @@ double share_of_newcomers(const OccupancyGrid& map, const OccupancyGrid& world) 
   HypothesisTrackerParams params;
   params.probes = 0;
   params.probes_nearby = 0;
-  params.images = 0;
-  params.carried_prior = 0.3;
+  params.aliases = 0;
+  params.kidnapped_now_prior = 0.3;
   Round round{map, world, {6.0, 4.0, 0.0}, 2, params};
   round.others().start_believing();
   for (int i = 0; i < 30; ++i) (void)round.step(round.truth() * kMotion);
