@@ -46,15 +46,15 @@ class FlatDrive {
     const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
     motion::BeamEnds ends;
     if (sees) ends = motion::scoring_ends(scan, rays, 0);
-    const std::vector<surfaces::FacedEnd> faced = sees ? surfaces::faced_ends(scan, rays) : no_faces_;
-    return tracker_.observe({.now = now(), .ends = ends, .field = field_, .faced = {faced, {}}});
+    surfaces::FaceFinder faces;
+    if (sees) faces.begin(scan, rays);
+    return tracker_.observe({.now = now(), .ends = ends, .field = field_, .faces = &faces});
   }
   [[nodiscard]] motion::ScanInstant now() const { return {time_, motion::OdometryAt{odom_, 0, odom_}}; }
 
   std::shared_ptr<const OccupancyGrid> map_ = std::make_shared<const OccupancyGrid>(test::drawn_flat());
   sensor::LikelihoodField field_{*map_, {}};
   Tracker tracker_;
-  const std::vector<surfaces::FacedEnd> no_faces_;
   Pose2 truth_ = kStart;
   Pose2 odom_;
   Timestamp time_ = timestamp_from_ns(1'700'000'000'000'000'000);
