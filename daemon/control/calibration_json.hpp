@@ -2,7 +2,6 @@
 // What driving has told of wheels and mount, as `ctl status` and `calibrate motion` print it.
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 

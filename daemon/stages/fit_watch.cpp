@@ -63,7 +63,7 @@ LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit)
   return judged_long(tracked.estimate.state);
 }
 
-LogLine FitWatch::judged_start() {
+LogLine FitWatch::judged_start() const {
   const double mean = first_fit_ / kFirstScans;
   if (mean >= kJudged.found_above) return {};
   return {"the start pose does not fit: " + percent(mean) +

@@ -32,7 +32,7 @@ class FitWatch {
   [[nodiscard]] LogLine observe(const TrackedScan& tracked, std::optional<double> fit);
 
  private:
-  [[nodiscard]] LogLine judged_start();
+  [[nodiscard]] LogLine judged_start() const;
   [[nodiscard]] LogLine judged_long(LocalizerState state);
   void pass(const TrackedScan& tracked);
 

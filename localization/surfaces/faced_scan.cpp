@@ -52,7 +52,7 @@ class Beams {
 /// Looks along a scan to one side.
 class CornerFinder {
  public:
-  CornerFinder(const Beams& beams, int side) : beams_{beams}, side_{side} {}
+  CornerFinder(const Beams& beams, std::ptrdiff_t side) : beams_{beams}, side_{side} {}
 
   /// The corner after this beam, if a face ends with it.
   [[nodiscard]] std::optional<Corner> after(std::ptrdiff_t beam) const {
@@ -64,7 +64,8 @@ class CornerFinder {
     const Point2 normal{-along->y(), along->x()};
     Point2 next = last;  // where the next beam would meet the face
     for (int k = kPassingBeams; k >= 1; --k) {
-      const Point2 way = Pose2{0.0, 0.0, side_ * k * beams_.step_rad()} * Point2{last.normalized()};
+      const Point2 way =
+          Pose2{0.0, 0.0, static_cast<double>(side_ * k) * beams_.step_rad()} * Point2{last.normalized()};
       const double face_m = normal.dot(last) / normal.dot(way);
       if (!passes(beam + side_ * k, face_m)) return std::nullopt;
       next = face_m * way;
@@ -112,7 +113,7 @@ class CornerFinder {
   }
 
   const Beams& beams_;
-  int side_;  // 1: counter-clockwise, -1: clockwise
+  std::ptrdiff_t side_;  // 1: counter-clockwise, -1: clockwise
 };
 
 }  // namespace
@@ -142,7 +143,7 @@ std::vector<FacedEnd> faced_ends(const Scan& scan, std::span<const RayInRobot> r
 std::vector<Corner> corners_of(const Scan& scan, std::span<const RayInRobot> rays, std::vector<Corner> corners) {
   corners.clear();
   const Beams beams{scan, rays};
-  for (const int side : {-1, 1}) {
+  for (const std::ptrdiff_t side : {-1, 1}) {
     const CornerFinder finder{beams, side};
     for (std::ptrdiff_t i = 0; i < beams.count(); ++i) {
       if (const std::optional<Corner> corner = finder.after(i)) corners.push_back(*corner);

@@ -100,13 +100,15 @@ void SurfaceTracker::step_to(const motion::ScanInstant& now, const motion::BodyV
     step.turn_rate_change_rad_per_s = velocity.turn_rate_rad_per_s - last_->velocity.turn_rate_rad_per_s;
   }
   const Pose2 corrected = filter_.corrected(step);
-  const PoseCovariance added = noise(corrected, motion::step_between(last_->instant, now).unknown_s);
+  const double unknown_s = motion::step_between(last_->instant, now).unknown_s;
+  const PoseCovariance added = noise(corrected, unknown_s);
   filter_.predict(step, added);
   last_ = Last{now, velocity};
   since_held_m_ += step.motion.position().norm();
   if (!since_) return;
   since_->by_wheels = since_->by_wheels * step.motion;
   since_->corrected = since_->corrected * corrected;
+  since_->wheels_told = since_->wheels_told && unknown_s == 0.0;
 }
 
 bool SurfaceTracker::is_one_place(const PoseCovariance& spread) {
@@ -119,7 +121,7 @@ bool SurfaceTracker::has_moved() const {
 }
 
 bool SurfaceTracker::is_due(const Seen& seen) const {
-  if (!since_ || has_moved()) return true;
+  if (!since_ || !since_->wheels_told || has_moved()) return true;
   const double explained = sensor::explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
   return explained < since_->explained - kSuddenly;
 }
@@ -142,10 +144,10 @@ sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
   const surfaces::FacedScan faces = seen.faces.faces();
   const double share =
       std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, faces.ends.size())));
-  const sensor::RefinedPose before = filter_.believed();
+  sensor::RefinedPose before = filter_.believed();
   const surfaces::OffsetFilter::Seen shown = filter_.observe(seen.field, faces, share, motion_);
   if (shown.slipped) odometry_noise_.forget_stretch();
-  const sensor::RefinedPose after = filter_.believed();
+  sensor::RefinedPose after = filter_.believed();
   const bool runs_away =
       !shown.slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
   if (!filter_.is_sound() || runs_away) {

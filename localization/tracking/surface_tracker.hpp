@@ -83,7 +83,8 @@ class SurfaceTracker {
   struct SinceKeyframe {
     Pose2 by_wheels;
     Pose2 corrected;
-    double explained = 0.0;  // share of the keyframe's ends, by the map
+    bool wheels_told = true;  // of all of the way
+    double explained = 0.0;   // share of the keyframe's ends, by the map
   };
   std::optional<SinceKeyframe> since_;       // none: no keyframe yet
   surfaces::UnknownOfCells unknown_by_map_;  // while the particles lead: by the last scan

@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -122,6 +123,7 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
 /// The particles rest. Where surfaces cease to lead, they begin anew around the pose, as unsure as it is, at this very
 /// scan.
 Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
+  assert(seen.faces != nullptr && "surfaces lead where a scan's faces are told");
   Answer answer;
   answer.believed = surfaces_->observe({seen.now, seen.velocity, *seen.faces, seen.field, seen.ends});
   const Pose2& pose = answer.believed.map_from_robot;

@@ -160,7 +160,7 @@ TEST(SurfaceTracker, LeavesAPoseThatIsNotSureToTheParticles) {
   Drive drive{test::containers_in_order(), true};
   drive.go(5.0, 0.0);
   drive.be_blind(20.0, {1.2, 0.0, 0.1});
-  drive.go(2.5, 0.0);
+  drive.go(3.5, 0.0);
   EXPECT_LT(drive.error_m(), 0.06);
   EXPECT_FALSE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{0.04, 0.0, 0.0}.asDiagonal().toDenseMatrix()));
   EXPECT_FALSE(tracking::SurfaceTracker::is_one_place(Eigen::Vector3d{0.0, 0.0, 0.01}.asDiagonal().toDenseMatrix()));

@@ -47,12 +47,17 @@ class CorridorDrive {
       observe();
     }
   }
+  /// It stands, and its wheels say nothing.
+  void stand_without_wheels(int scans) {
+    for (int i = 0; i < scans; ++i) observe(std::nullopt);
+  }
   void be_carried(const Pose2& robot_from_there) { truth_ = truth_ * robot_from_there; }
   [[nodiscard]] const SurfaceTracker& tracker() const { return tracker_; }
   [[nodiscard]] double error_m() const { return distance_between(truth_, believed_.map_from_robot); }
 
  private:
-  void observe() {
+  void observe() { observe(motion::OdometryAt{odom_, 0, odom_}); }
+  void observe(const std::optional<motion::OdometryAt>& odometry) {
     const Scan scan = test::cast_scan(world_, truth_, timestamp_from_ns(++scans_ * 100'000'000),
                                       {.max_range_m = 8.0, .beams = 361}, random_);
     const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
@@ -63,7 +68,7 @@ class CorridorDrive {
       ends.x_m.push_back(static_cast<float>(end.at.x()));
       ends.y_m.push_back(static_cast<float>(end.at.y()));
     }
-    const motion::ScanInstant now{scan.time, motion::OdometryAt{odom_, 0, odom_}};
+    const motion::ScanInstant now{scan.time, odometry};
     const SurfaceTracker::Seen seen{now, {1.0, 0.0}, faces, field_, ends};
     const sensor::RefinedPose start{truth_, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
     believed_ = tracker_.leads() ? tracker_.observe(seen) : tracker_.lead_from(start, seen);
@@ -89,6 +94,14 @@ TEST(SurfaceTracker, HoldsThePoseForSomeMetresWhileAllThatItFollowsWasMoved) {
   EXPECT_LT(drive.error_m(), 0.1);
   drive.go_to(40.0);
   EXPECT_FALSE(drive.tracker().is_fixed_by_surfaces()) << "for kForgottenAfterM, no longer";
+}
+
+TEST(SurfaceTracker, LeadsOnWhileTheWheelsAreSilent) {
+  CorridorDrive drive{kLengthM};
+  drive.go_to(5.0);
+  drive.stand_without_wheels(20);
+  EXPECT_TRUE(drive.tracker().leads());
+  EXPECT_LT(drive.error_m(), 0.05);
 }
 
 TEST(SurfaceTracker, HoldsThePoseNoLongerWhereWhatItFollowsIsNotWhereItWas) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <numbers>
 #include <vector>
 
 #include "core/random.hpp"
@@ -13,6 +15,7 @@ namespace deltamap::mapping::redraw {
 namespace {
 
 constexpr double kLongestBeam_m = 25.0;
+constexpr ClosedFacesParams kParams{.longest_m = kLongestBeam_m, .free_passes = 3};
 constexpr int kWallRow = 90;
 const GridGeometry kField{120, 120, 0.1, {0.0, 0.0}};
 const CellBox kAll{{0, 0}, {120, 120}};
@@ -46,7 +49,7 @@ class DottedWall {
     return gaps;
   }
   [[nodiscard]] std::vector<int> gaps_after_closing(const std::function<bool(Cell)>& may_be_added) const {
-    return gaps(with_closed_faces(draft, counts, {placed()}, kAll, may_be_added, {}).map());
+    return gaps(with_closed_faces(draft, counts, {placed()}, kAll, may_be_added, kParams).map());
   }
 
   MapDraft draft{kEmptyField};
@@ -86,7 +89,8 @@ TEST(ClosedFaces, LeaveAWayBetweenTwoWalls) {
   DottedWall wall;
   MapDraft with_a_door = wall.draft;
   for (int column = 55; column < 63; ++column) with_a_door.set({column, kWallRow}, CellState::kFree);
-  const OccupancyGrid closed = with_closed_faces(with_a_door, wall.counts, {wall.placed()}, kAll, anywhere, {}).map();
+  const OccupancyGrid closed =
+      with_closed_faces(with_a_door, wall.counts, {wall.placed()}, kAll, anywhere, kParams).map();
   for (int column = 55; column < 63; ++column) EXPECT_EQ((closed[{column, kWallRow}]), CellState::kFree) << column;
 }
 
