@@ -149,7 +149,7 @@ void print_calibration_text(const MotionCalibration& as_they_are, const MotionCa
             << " deg (unequal wheels)\n# with it corrected, the deviations would be";
   for (const FittedKey& key : kKeys) std::cout << ' ' << corrected.of(key.source).value / key.unit;
   std::cout << "\n# found and corrected while driving, as `calibration` in `deltamap ctl status`:\n# "
-            << daemon::control::calibration_json(drive.learned).dump() << '\n';
+            << daemon::control::calibration_json(drive.learned) << '\n';
 }
 
 Json json_of_fitted(const Fitted& fitted, double unit = 1.0) {
@@ -173,7 +173,7 @@ void print_calibration_json(const MotionCalibration& as_they_are, const MotionCa
                  {"estimate_position_m", as_they_are.of(MotionSource::kEstimatePosition).value},
                  {"estimate_heading_deg", degrees(as_they_are.of(MotionSource::kEstimateHeading).value)},
                  {"motion", motion},
-                 {"calibration", daemon::control::calibration_json(drive.learned)},
+                 {"calibration", Json::parse(daemon::control::calibration_json(drive.learned))},
                  {"systematic",
                   {{"wheel_scale", json_of_fitted(corrected.wheel_scale)},
                    {"turn_scale", json_of_fitted(corrected.turn_scale)},

@@ -20,11 +20,11 @@ Json numbers_json(const localization::motion::WheelErrors& wheels, const Pose2& 
 
 }  // namespace
 
-Json calibration_json(const std::optional<localization::motion::DriveCalibration>& calibration) {
-  if (!calibration) return nullptr;
+std::string calibration_json(const std::optional<localization::motion::DriveCalibration>& calibration) {
+  if (!calibration) return "null";
   Json json = numbers_json(calibration->wheels, calibration->mount_error);
   json["deviations"] = numbers_json(calibration->wheel_deviations, calibration->mount_deviations);
-  return json;
+  return json.dump();
 }
 
 }  // namespace deltamap::daemon::control

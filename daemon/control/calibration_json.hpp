@@ -2,16 +2,15 @@
 // What driving has told of wheels and mount, as `ctl status` and `calibrate motion` print it.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 
 #include "localization/motion/drive_calibration.hpp"
 
 namespace deltamap::daemon::control {
 
-/// Distance and turn in per cent beyond what the wheels count, drift in degrees a metre, lag in ms, the mount's error
-/// in mm and degrees; `deviations` likewise. Null where nothing is known.
-[[nodiscard]] nlohmann::ordered_json calibration_json(
-    const std::optional<localization::motion::DriveCalibration>& calibration);
+/// A JSON object: distance and turn in per cent beyond what the wheels count, drift in degrees a metre, lag in ms, the
+/// mount's error in mm and degrees; `deviations` likewise. Null where nothing is known.
+[[nodiscard]] std::string calibration_json(const std::optional<localization::motion::DriveCalibration>& calibration);
 
 }  // namespace deltamap::daemon::control

@@ -104,7 +104,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                    {"r_d", t.r_d.value()}};
   json["temporary"] = {{"standing_blocks", t.transients_standing.value()}, {"gone_blocks", t.transients_gone.value()}};
   json["gate"] = gate_json(t.gate);
-  json["calibration"] = calibration_json(t.calibration.get());
+  json["calibration"] = Json::parse(calibration_json(t.calibration.get()));
   json["scans"] = t.scans.value();
   json["localized"] = t.localized.value();
   json["odometry"] = t.odometry.value();
