@@ -186,7 +186,7 @@ sensor::RefinedPose Localizer::State::search(const motion::ScanInstant& now) {
 
 sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
   const tracking::Tracker::Answer tracked =
-      tracker.observe({.now = now, .ends = weighing_ends(now), .field = field, .faces = &faces, .velocity = velocity});
+      tracker.observe({.now = now, .ends = weighing_ends(now), .field = field, .faces = faces, .velocity = velocity});
   best = tracker.best();
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);

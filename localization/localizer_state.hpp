@@ -88,8 +88,8 @@ struct Localizer::State {
     last_believed.reset();
     has_gone_through = false;
   }
-  /// The best place that has come to mind leads, until it is believed; at first, what has been given up: the place that
-  /// has beaten it may be the image of one that nobody has looked at yet.
+  /// The hypothesis with the largest share, until it is believed. Over the first metres the pose that was given up:
+  /// what has beaten it may be an alias of a pose that nobody has looked at yet.
   sensor::RefinedPose search(const motion::ScanInstant& now);
   sensor::RefinedPose track(const motion::ScanInstant& now);
   /// Those that weigh the believed pose: without what stands about for now, where enough are left.

@@ -19,10 +19,10 @@ namespace deltamap::mapping {
 
 struct StoreScanParams {
   MappingMethod method = MappingMethod::kEvidence;
-  paper::DivergenceRatioParams divergence;  ///< w_fast, w_slow and r_d: kept with both methods
-  paper::DeltaPhaseParams delta_phase;      ///< paper
-  evidence::EvidencePhaseParams evidence;   ///< evidence
-  gate::WriteGateParams gate;               ///< evidence: when the pose is sure enough to write by
+  paper::DivergenceRatioParams divergence{};  ///< w_fast, w_slow and r_d: kept with both methods
+  paper::DeltaPhaseParams delta_phase{};      ///< paper
+  evidence::EvidencePhaseParams evidence{};   ///< evidence
+  gate::WriteGateParams gate{};               ///< evidence: when the pose is sure enough to write by
 };
 
 /// What Δ-awareness thought of the last scan, for telemetry and the paper's Figures 2 to 4.

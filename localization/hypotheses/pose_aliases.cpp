@@ -9,6 +9,7 @@
 namespace deltamap::localization::hypotheses {
 namespace {
 
+constexpr double kForgottenAfter_m = 1000.0;
 constexpr double kSame_m = 0.5;
 const double kSame_rad = radians(10.0);
 
@@ -36,7 +37,7 @@ void PoseAliases::note(const Pose2& map_from_believed, const Pose2& map_from_hyp
 
 void PoseAliases::age(double driven_m) {
   for (Alias& alias : aliases_) alias.driven_since_m += driven_m;
-  std::erase_if(aliases_, [](const Alias& alias) { return alias.driven_since_m > 1000.0; });
+  std::erase_if(aliases_, [](const Alias& alias) { return alias.driven_since_m > kForgottenAfter_m; });
 }
 
 std::optional<Pose2> PoseAliases::next(const Pose2& map_from_believed) {

@@ -47,7 +47,7 @@ void SurfaceTracker::apply(std::shared_ptr<const OccupancyGrid> map, const CellB
   filter_.apply(std::move(map), changed);
 }
 
-bool SurfaceTracker::could_lead(const Seen& seen, const Pose2& map_from_robot) {
+bool SurfaceTracker::could_lead(const SeenScan& seen, const Pose2& map_from_robot) {
   const surfaces::OffsetFilter::SeenByMap shown = filter_.seen_by_map(seen.field, seen.faces.faces(), map_from_robot);
   unknown_by_map_ = shown.unknown;
   straight_ += kNewest * (shown.straight - straight_);
@@ -69,7 +69,7 @@ void SurfaceTracker::learn_from(const sensor::RefinedPose& found, const motion::
   since_ = SinceKeyframe{};
 }
 
-sensor::RefinedPose SurfaceTracker::lead_from(const sensor::RefinedPose& at, const Seen& seen) {
+sensor::RefinedPose SurfaceTracker::lead_from(const sensor::RefinedPose& at, const SeenScan& seen) {
   filter_.start(at);
   odometry_noise_.forget_stretch();
   leads_ = true;
@@ -120,7 +120,7 @@ bool SurfaceTracker::has_moved() const {
          std::abs(since_->by_wheels.theta) >= kKeyframeRad;
 }
 
-bool SurfaceTracker::is_due(const Seen& seen) const {
+bool SurfaceTracker::is_due(const SeenScan& seen) const {
   if (!since_ || !since_->wheels_told || has_moved()) return true;
   const double explained = sensor::explained_share(seen.field, seen.ends, filter_.believed().map_from_robot);
   return explained < since_->explained - kSuddenly;
@@ -130,7 +130,7 @@ void SurfaceTracker::predict(const motion::ScanInstant& now) {
   if (last_) step_to(now, last_->velocity);
 }
 
-sensor::RefinedPose SurfaceTracker::observe(const Seen& seen) {
+sensor::RefinedPose SurfaceTracker::observe(const SeenScan& seen) {
   step_to(seen.now, seen.velocity);
   if (!is_one_place(filter_.believed().covariance)) {
     cease();
@@ -140,7 +140,7 @@ sensor::RefinedPose SurfaceTracker::observe(const Seen& seen) {
   return is_keyframe ? keyframe(seen) : filter_.believed();
 }
 
-sensor::RefinedPose SurfaceTracker::keyframe(const Seen& seen) {
+sensor::RefinedPose SurfaceTracker::keyframe(const SeenScan& seen) {
   const surfaces::FacedScan faces = seen.faces.faces();
   const double share =
       std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, faces.ends.size())));

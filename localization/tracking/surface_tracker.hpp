@@ -12,6 +12,7 @@
 #include "localization/motion/scan_instant.hpp"
 #include "localization/surfaces/offset_filter.hpp"
 #include "localization/tracking/odometry_noise.hpp"
+#include "localization/tracking/seen_scan.hpp"
 
 namespace deltamap::localization::tracking {
 
@@ -23,24 +24,17 @@ class SurfaceTracker {
 
   void apply(std::shared_ptr<const OccupancyGrid> map, const CellBox& changed);
 
-  struct Seen {
-    const motion::ScanInstant& now;
-    motion::BodyVelocity velocity;
-    surfaces::FaceFinder& faces;  ///< of the scan
-    const sensor::LikelihoodField& field;
-    const motion::BeamEnds& ends;  ///< those that score, robot frame
-  };
   /// Is a pose sure enough to tell the surfaces around it apart?
   [[nodiscard]] static bool is_one_place(const PoseCovariance& spread);
 
   [[nodiscard]] bool leads() const { return leads_; }
   /// Looks at a scan while the particles lead. True where straight surfaces have explained the scans of late.
-  [[nodiscard]] bool could_lead(const Seen& seen, const Pose2& map_from_robot);
+  [[nodiscard]] bool could_lead(const SeenScan& seen, const Pose2& map_from_robot);
   /// The particles lead: how the wheels err is learned from where they find the robot.
   void learn_from(const sensor::RefinedPose& found, const motion::ScanInstant& now,
                   const motion::BodyVelocity& velocity);
   /// Leads from here on.
-  sensor::RefinedPose lead_from(const sensor::RefinedPose& at, const Seen& seen);
+  sensor::RefinedPose lead_from(const sensor::RefinedPose& at, const SeenScan& seen);
   /// The pose was set, or the particles have taken over.
   void cease() {
     leads_ = false;
@@ -49,7 +43,7 @@ class SurfaceTracker {
   }
 
   /// The pose at one more scan. It may have ceased to lead.
-  sensor::RefinedPose observe(const Seen& seen);
+  sensor::RefinedPose observe(const SeenScan& seen);
   /// No scan has come for long: predicts by the wheels.
   void predict(const motion::ScanInstant& now);
 
@@ -69,8 +63,8 @@ class SurfaceTracker {
   [[nodiscard]] PoseCovariance noise(const Pose2& motion, double unknown_s) const;
   void step_to(const motion::ScanInstant& now, const motion::BodyVelocity& velocity);
   [[nodiscard]] bool has_moved() const;  ///< far enough since the last keyframe for another
-  [[nodiscard]] bool is_due(const Seen& seen) const;
-  sensor::RefinedPose keyframe(const Seen& seen);
+  [[nodiscard]] bool is_due(const SeenScan& seen) const;
+  sensor::RefinedPose keyframe(const SeenScan& seen);
   void note_held(const surfaces::OffsetFilter::Seen& shown);
   void learn_noise(const sensor::RefinedPose& before, const sensor::RefinedPose& after);
 

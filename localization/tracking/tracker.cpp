@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -105,7 +104,7 @@ void Tracker::restart_clock(Timestamp time) {
   if (last_update_) last_update_->time = time;
 }
 
-Tracker::Answer Tracker::observe(const Seen& seen) {
+Tracker::Answer Tracker::observe(const SeenScan& seen) {
   const motion::MotionSince since =
       last_update_ ? motion::motion_since(*last_update_, seen.now, params_.update.time_s) : motion::MotionSince{};
   const bool are_led = surfaces_ && surfaces_->leads();
@@ -115,17 +114,16 @@ Tracker::Answer Tracker::observe(const Seen& seen) {
   pose_filter_.after_scan(seen.now, answer.believed);
   if (surfaces_ && seen.ends.size() > 0) {
     surfaces_->learn_from(answer.believed, seen.now, seen.velocity);
-    if (seen.faces != nullptr) let_surfaces_lead(seen, answer);
+    let_surfaces_lead(seen, answer);
   }
   return answer;
 }
 
 /// The particles rest. Where surfaces cease to lead, they begin anew around the pose, as unsure as it is, at this very
 /// scan.
-Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
-  assert(seen.faces != nullptr && "surfaces lead where a scan's faces are told");
+Tracker::Answer Tracker::led_by_surfaces(const SeenScan& seen) {
   Answer answer;
-  answer.believed = surfaces_->observe({seen.now, seen.velocity, *seen.faces, seen.field, seen.ends});
+  answer.believed = surfaces_->observe(seen);
   const Pose2& pose = answer.believed.map_from_robot;
   if (!surfaces_->leads()) {
     (void)start_around(answer.believed);
@@ -139,13 +137,11 @@ Tracker::Answer Tracker::led_by_surfaces(const Seen& seen) {
   return answer;
 }
 
-void Tracker::let_surfaces_lead(const Seen& seen, Answer& answer) {
+void Tracker::let_surfaces_lead(const SeenScan& seen, Answer& answer) {
   const PoseCovariance& spread = best_.covariance;
   const bool one_place = best_.weight > kOnePlaceShare && SurfaceTracker::is_one_place(spread);
-  const SurfaceTracker::Seen by_surfaces{seen.now, seen.velocity, *seen.faces, seen.field, seen.ends};
-  if (!one_place || !surfaces_->could_lead(by_surfaces, answer.believed.map_from_robot)) return;
-  answer.believed =
-      surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, by_surfaces);
+  if (!one_place || !surfaces_->could_lead(seen, answer.believed.map_from_robot)) return;
+  answer.believed = surfaces_->lead_from({answer.believed.map_from_robot, answer.believed.covariance + spread}, seen);
 }
 
 void Tracker::predict(const motion::ScanInstant& now) {
@@ -171,7 +167,7 @@ bool Tracker::update_due(const motion::MotionSince& since) const {
 }
 
 /// Moves and weighs the particles; they may be drawn anew afterwards.
-Tracker::Answer Tracker::update(const Seen& seen, const motion::MotionSince& since) {
+Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
   if (sees && has_driven_blind_) fill_in();
   if (last_update_) filter_.move(since.motion, since.unknown_s, pose_filter_.particle_motion());
@@ -203,7 +199,7 @@ void Tracker::fill_in() {
 }
 
 /// Between updates: the particles stay, the answer follows the wheels and the scan.
-Tracker::Answer Tracker::follow(const Seen& seen, const motion::MotionSince& since) {
+Tracker::Answer Tracker::follow(const SeenScan& seen, const motion::MotionSince& since) {
   particles::ParticleCluster moved = best_;
   moved.map_from_robot = best_.map_from_robot * since.motion;
   Answer answer;
@@ -216,7 +212,7 @@ Tracker::Answer Tracker::follow(const Seen& seen, const motion::MotionSince& sin
   return answer;
 }
 
-std::span<const Pose2> Tracker::slips(const Seen& seen) {
+std::span<const Pose2> Tracker::slips(const SeenScan& seen) {
   const std::optional<Pose2> by_wheels = pose_filter_.predicted_at(seen.now);
   if (!by_wheels) return {};
   return slip_finder_.slips(seen.field, seen.ends, *by_wheels, beam_share(seen));
@@ -229,7 +225,7 @@ double Tracker::mean_over_members(std::span<const std::int32_t> misfits, std::si
 }
 
 /// Evenly chosen: enough to know the mean over all of them.
-double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) const {
+double Tracker::mean_over_some_members(const SeenScan& seen, const Pose2& motion) const {
   constexpr std::size_t kEnough = 50;
   const std::span<const std::uint32_t> members = clusters_.members();
   const std::size_t count = std::min(kEnough, members.size());
@@ -242,7 +238,7 @@ double Tracker::mean_over_some_members(const Seen& seen, const Pose2& motion) co
 }
 
 /// The pose where the scan fits best.
-sensor::RefinedPose Tracker::slid(const Seen& seen, const sensor::RefinedPose& prior) {
+sensor::RefinedPose Tracker::slid(const SeenScan& seen, const sensor::RefinedPose& prior) {
   const sensor::Refinement found =
       sensor::refined(seen.field, seen.ends, prior, best_.covariance, errors_, beam_share(seen), params_.refinement);
   errors_ = found.errors;
@@ -250,7 +246,7 @@ sensor::RefinedPose Tracker::slid(const Seen& seen, const sensor::RefinedPose& p
   return found.pose;
 }
 
-double Tracker::beam_share(const Seen& seen) const {
+double Tracker::beam_share(const SeenScan& seen) const {
   return std::min(1.0, params_.particles.evidence_beams / static_cast<double>(seen.ends.size()));
 }
 

@@ -16,8 +16,8 @@
 #include "localization/particles/particle_filter.hpp"
 #include "localization/particles/start_pose.hpp"
 #include "localization/sensor/pose_refinement.hpp"
-#include "localization/surfaces/faced_scan.hpp"
 #include "localization/tracking/pose_filter.hpp"
+#include "localization/tracking/seen_scan.hpp"
 #include "localization/tracking/slip_finder.hpp"
 
 namespace deltamap::localization::tracking {
@@ -57,20 +57,13 @@ class Tracker {
   /// The clock of the scans has fallen back to this time.
   void restart_clock(Timestamp time);
 
-  struct Seen {
-    const motion::ScanInstant& now;
-    const motion::BeamEnds& ends;  ///< robot frame; may be empty
-    const sensor::LikelihoodField& field;
-    surfaces::FaceFinder* faces = nullptr;  ///< of the same scan; none: surfaces never lead
-    motion::BodyVelocity velocity{};        ///< at the scan, by the wheels
-  };
   struct Answer {
     sensor::RefinedPose believed;
     std::optional<double> w_avg;  ///< mean likelihood over the believed particles (paper §3.1); none without a return
     std::optional<double> n_eff;  ///< where the scan was an update
     double unknown_s = 0.0;       ///< since the last update, not covered by odometry
   };
-  Answer observe(const Seen& seen);
+  Answer observe(const SeenScan& seen);
   /// No scan has come for long: particles and pose filter are predicted by the wheels up to this instant.
   void predict(const motion::ScanInstant& now);
 
@@ -97,19 +90,19 @@ class Tracker {
   [[nodiscard]] std::size_t particle_count() const { return filter_.particles().size(); }
 
  private:
-  Answer update(const Seen& seen, const motion::MotionSince& since);
+  Answer update(const SeenScan& seen, const motion::MotionSince& since);
   void fill_in();
-  Answer follow(const Seen& seen, const motion::MotionSince& since);
-  Answer led_by_surfaces(const Seen& seen);
+  Answer follow(const SeenScan& seen, const motion::MotionSince& since);
+  Answer led_by_surfaces(const SeenScan& seen);
   sensor::RefinedPose start_around(const sensor::RefinedPose& pose);
   [[nodiscard]] std::size_t particles_for(const PoseCovariance& spread) const;
-  void let_surfaces_lead(const Seen& seen, Answer& answer);
+  void let_surfaces_lead(const SeenScan& seen, Answer& answer);
   [[nodiscard]] bool update_due(const motion::MotionSince& since) const;
-  [[nodiscard]] std::span<const Pose2> slips(const Seen& seen);
-  [[nodiscard]] double beam_share(const Seen& seen) const;
+  [[nodiscard]] std::span<const Pose2> slips(const SeenScan& seen);
+  [[nodiscard]] double beam_share(const SeenScan& seen) const;
   [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const;
-  [[nodiscard]] double mean_over_some_members(const Seen& seen, const Pose2& motion) const;
-  [[nodiscard]] sensor::RefinedPose slid(const Seen& seen, const sensor::RefinedPose& prior);
+  [[nodiscard]] double mean_over_some_members(const SeenScan& seen, const Pose2& motion) const;
+  [[nodiscard]] sensor::RefinedPose slid(const SeenScan& seen, const sensor::RefinedPose& prior);
   void draw_anew_if_needed();
 
   TrackerParams params_;

@@ -79,6 +79,13 @@ inline Localizer localizer_at(std::optional<particles::InitialPose> pose, std::u
   return Localizer{params, std::make_shared<const OccupancyGrid>(test::drawn_hall()), pose, seed};
 }
 
+/// One that was told where the robot is, and has followed it over so many scans.
+inline Localizer localizer_after(int scans, Tour& tour, std::uint64_t seed) {
+  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
+  for (int i = 0; i < scans; ++i) (void)tour.next(localizer);
+  return localizer;
+}
+
 inline bool right(const TrackedScan& tracked, const Tour& tour) {
   const Pose2& pose = tracked.estimate.map_from_robot;
   return distance_between(pose, tour.truth()) < 0.3 && std::abs(turn_between(pose.theta, tour.truth().theta)) < 0.1;

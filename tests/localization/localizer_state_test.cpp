@@ -98,12 +98,11 @@ TEST(RememberedPose, IsNeitherConfirmedNorGivenUpByBlindScans) {
   EXPECT_EQ(localizer.counts().poses_confirmed, 1u);
 }
 
-/// What beats the believed place may be the image of one that nobody has looked at yet.
+/// What beats the believed place may be an alias of one that nobody has looked at yet.
 TEST(DoubtedPose, GoesOnAlongTheWheelsWhileTheSearchHasOnlyBegun) {
   constexpr double kBegunM = 0.9;
   Tour tour{1};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 1);
-  for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
+  Localizer localizer = localizer_after(20, tour, 1);
   tour.carry_to({14.0, 7.0, 2.5});
   TrackedScan last = tour.next(localizer);
   for (int i = 0; i < 300 && last.estimate.state != LocalizerState::kGlobal; ++i) last = tour.next(localizer);
@@ -123,8 +122,7 @@ TEST(DoubtedPose, GoesOnAlongTheWheelsWhileTheSearchHasOnlyBegun) {
 
 TEST(Silence, OfAMinuteMakesThePoseProveItself) {
   Tour tour{5};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 5);
-  for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
+  Localizer localizer = localizer_after(20, tour, 5);
   tour.wait(60.0);
   EXPECT_EQ(tour.next(localizer).estimate.state, LocalizerState::kGlobal);
   EXPECT_LT(scans_until_right(localizer, tour, 20), 10);
@@ -135,8 +133,7 @@ TEST(Silence, OfAMinuteMakesThePoseProveItself) {
 
 TEST(Silence, InWhichTheRobotWasCarriedOffMakesItSearchedForAtOnce) {
   Tour tour{6};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 6);
-  for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
+  Localizer localizer = localizer_after(20, tour, 6);
   tour.wait(60.0);
   tour.restart_controller();
   tour.carry_to({14.0, 7.0, 2.5});

@@ -14,8 +14,7 @@ TEST(Recovery, FindsARobotThatWasCarriedAwayWithinThirtySeconds) {
   int late = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Tour tour{seed};
-    Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
-    for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
+    Localizer localizer = localizer_after(20, tour, seed);
     Random random{seed + 100};
     const Point2 low = seed % 2 == 0 ? Point2{11.0, 0.6} : Point2{4.0, 6.2};
     tour.carry_to({low.x() + 7.0 * random.uniform(), low.y() + random.uniform(), random.uniform(-3.0, 3.0)});
@@ -29,8 +28,7 @@ TEST(Recovery, FindsARobotThatWasCarriedAwayWithinThirtySeconds) {
 TEST(Recovery, FindsARobotThatSlippedAMetre) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Tour tour{seed};
-    Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
-    for (int i = 0; i < 30 + 3 * static_cast<int>(seed); ++i) (void)tour.next(localizer);
+    Localizer localizer = localizer_after(30 + 3 * static_cast<int>(seed), tour, seed);
     const Pose2 before = tour.truth();
     tour.carry_to(before * Pose2{0.9, 0.4, 0.3});
     EXPECT_LT(scans_until_right(localizer, tour, 300), 150) << seed;
@@ -50,8 +48,7 @@ TEST(Recovery, NeverJumpsWhileAllIsWell) {
 
 TEST(BadInput, AClockThatFallsBackIsCountedAndThePoseKept) {
   Tour tour{4};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 4);
-  for (int i = 0; i < 20; ++i) (void)tour.next(localizer);
+  Localizer localizer = localizer_after(20, tour, 4);
   tour.wait(-3600.0);
   for (int i = 0; i < 50; ++i) ASSERT_TRUE(right(tour.next(localizer), tour)) << i;
   EXPECT_EQ(localizer.counts().clock_fell_back, 1u);
@@ -60,8 +57,7 @@ TEST(BadInput, AClockThatFallsBackIsCountedAndThePoseKept) {
 TEST(BadInput, AScanThatFallsBackBeforeOdometryDoesNeitherMovesNorLosesThePose) {
   for (const double back_s : {0.5, 1.0, 20.0, 3600.0}) {
     Tour tour{4};
-    Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 4);
-    for (int i = 0; i < 120; ++i) (void)tour.next(localizer);
+    Localizer localizer = localizer_after(120, tour, 4);
     tour.wait(-back_s);
     ASSERT_TRUE(right(localizer.observe(tour.scan()), tour)) << back_s;
     for (int i = 0; i < 50; ++i) ASSERT_TRUE(right(tour.next(localizer), tour)) << back_s << " s, scan " << i;
@@ -70,8 +66,7 @@ TEST(BadInput, AScanThatFallsBackBeforeOdometryDoesNeitherMovesNorLosesThePose) 
 
 TEST(BadInput, BlindScansLeaveThePoseUndecided) {
   Tour tour{8};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 8);
-  for (int i = 0; i < 200; ++i) (void)tour.next(localizer);
+  Localizer localizer = localizer_after(200, tour, 8);
   PoseVerdict verdict = PoseVerdict::kRight;
   for (int i = 0; i < 300; ++i) {
     tour.step();
@@ -89,8 +84,7 @@ TEST(ScanGap, IsBridgedByTheWheelsAndThePoseStaysTracked) {
   for (const double gap_s : {1.0, 4.0, 10.0, 25.0, 40.0, 60.0}) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
       Tour tour{seed};
-      Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, seed);
-      for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
+      Localizer localizer = localizer_after(50, tour, seed);
       tour.drive_unseen(localizer, gap_s);
       const TrackedScan first = tour.next(localizer);
       ASSERT_EQ(first.estimate.state, LocalizerState::kTracking) << gap_s << " s, seed " << seed;
@@ -126,8 +120,7 @@ TEST(ScanGap, TheFirstScanFindsTheRobotWhereTheWheelsHaveBroughtIt) {
 /// A view that fits little is no proof against a pose that the wheels have kept.
 TEST(ScanGap, ThePoseIsKeptWhereTheWorldHasChangedMeanwhile) {
   Tour tour{3};
-  Localizer localizer = localizer_at(particles::InitialPose{tour.truth()}, 3);
-  for (int i = 0; i < 50; ++i) (void)tour.next(localizer);
+  Localizer localizer = localizer_after(50, tour, 3);
   tour.drive_unseen(localizer, 4.0);
   for (double left_s = 26.0; left_s > 0.0; left_s -= kScanPeriodS) {
     tour.wait(kScanPeriodS);

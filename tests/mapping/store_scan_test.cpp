@@ -16,16 +16,10 @@ namespace {
 
 constexpr double kScanPeriod_s = 0.2;
 
-StoreScanParams with_method(MappingMethod method) {
-  StoreScanParams params;
-  params.method = method;
-  return params;
-}
-
 /// Drives to and fro below the containers of the hall; what the localizer thinks of its pose is told by the test.
 class HallWatch {
  public:
-  explicit HallWatch(MappingMethod method) : store{with_method(method), 1} {}
+  explicit HallWatch(MappingMethod method) : store{{.method = method}, 1} {}
 
   std::optional<ScanSet> see(const OccupancyGrid& world) {
     const double way_m = std::fmod(0.4 * time_s_, 10.0);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/symmetric_hall.hpp"
 
 namespace deltamap::localization::hypotheses {
@@ -19,8 +20,7 @@ class WatchedRound {
   void step() {
     truth_ = truth_ * kMotion;
     alias_monitor_.predict(kMotion);
-    const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
-    const motion::BeamEnds ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 60);
+    const motion::BeamEnds ends = test::cast_ends(world_, truth_, {}, random_, 60);
     alias_monitor_.observe({.field = field_,
                             .coarse = coarse_,
                             .ends = ends,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "localization/sensor/weighing.hpp"
+#include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
 #include "tests/support/worlds/padded.hpp"
 
@@ -15,8 +16,7 @@ constexpr int kHeadings = 48;
 
 motion::BeamEnds seen_from(const Pose2& truth, std::uint64_t seed) {
   Random random{seed};
-  const Scan scan = test::cast_scan(test::drawn_flat(), truth, {}, {}, random);
-  return motion::scoring_ends(scan, motion::deskewed(scan, {}), 60);
+  return test::cast_ends(test::drawn_flat(), truth, {}, random, 60);
 }
 
 bool very_near(const Pose2& a, const Pose2& b) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
 
 namespace deltamap::localization::hypotheses {
@@ -23,9 +24,9 @@ std::vector<bool> slid(HypothesisBank& bank) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
   Random random{3};
-  const Scan scan = test::cast_scan(map, kTruth, {}, {}, random);
+  const motion::BeamEnds ends = test::cast_ends(map, kTruth, {}, random, 60);
   const std::vector<PoseHypothesis> before{bank.hypotheses().begin(), bank.hypotheses().end()};
-  bank.slide_others(field, motion::scoring_ends(scan, motion::deskewed(scan, {}), 60), 1, 0.0);
+  bank.slide_others(field, ends, 1, 0.0);
   std::vector<bool> moved;
   for (std::size_t i = 0; i < before.size(); ++i) {
     moved.push_back(bank.hypotheses()[i].map_from_robot != before[i].map_from_robot);
@@ -49,8 +50,7 @@ double falls_behind_by(int beams) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
   Random random{3};
-  const Scan scan = test::cast_scan(map, kTruth, {}, {}, random);
-  const motion::BeamEnds ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), beams);
+  const motion::BeamEnds ends = test::cast_ends(map, kTruth, {}, random, beams);
   const std::vector<float> each_new(ends.size(), 1.0F);
   HypothesisBank bank{{}};
   bank.believe(kTruth);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 #include "tests/support/worlds/symmetric_hall.hpp"
@@ -31,8 +32,7 @@ class Round {
     const Pose2 motion = kMotion;
     truth_ = truth_ * motion;
     joined_ = joined_ * motion;
-    const Scan scan = test::cast_scan(world_, truth_, {}, {}, random_);
-    return rivals_.observe(field_, {.ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 0),
+    return rivals_.observe(field_, {.ends = test::cast_ends(world_, truth_, {}, random_),
                                     .continuous_odom_from_robot = joined_,
                                     .map_from_believed = believed,
                                     .stable_support = held});
@@ -325,11 +325,9 @@ TEST(PoseHypotheses, LearnNothingWhileTheRobotStands) {
   Random random{1};
   const Pose2 truth{1.6, 1.0, 0.0};
   for (int i = 0; i < 200; ++i) {
-    const Scan scan = test::cast_scan(map, truth, {}, {}, random);
-    const HypothesisReport& report =
-        others.observe(field, {.ends = motion::scoring_ends(scan, motion::deskewed(scan, {}), 0),
-                               .continuous_odom_from_robot = {},
-                               .map_from_believed = Pose2{7.5, 3.0, 1.5}});
+    const HypothesisReport& report = others.observe(field, {.ends = test::cast_ends(map, truth, {}, random),
+                                                            .continuous_odom_from_robot = {},
+                                                            .map_from_believed = Pose2{7.5, 3.0, 1.5}});
     ASSERT_GT(report.own_share, 0.9) << "one view is no evidence, however often it is repeated";
   }
 }

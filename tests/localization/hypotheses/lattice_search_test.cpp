@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "localization/motion/deskew.hpp"
 #include "localization/sensor/weighing.hpp"
+#include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
 
 namespace deltamap::localization::hypotheses {
@@ -15,8 +15,7 @@ constexpr int kTurns = 48;
 
 motion::BeamEnds ends_seen_from(const Pose2& truth) {
   Random random{3};
-  const Scan scan = test::cast_scan(test::drawn_flat(), truth, {}, {}, random);
-  return motion::scoring_ends(scan, motion::deskewed(scan, {}), 60);
+  return test::cast_ends(test::drawn_flat(), truth, {}, random, 60);
 }
 
 TEST(LatticeSearch, LooksAtEveryPoseOnceHoweverItIsSliced) {

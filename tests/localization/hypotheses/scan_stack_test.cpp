@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
 
 namespace deltamap::localization::hypotheses {
@@ -18,8 +19,7 @@ ScanStack driven_to_the_truth(const OccupancyGrid& world) {
   Random random{3};
   for (const double back_m : {3.0, 2.0, 1.0, 0.0}) {
     const Pose2 at = kTruthAtEnd * Pose2{-back_m, 0.0, 0.0};
-    const Scan scan = test::cast_scan(world, at, {}, {}, random);
-    stack.add(motion::scoring_ends(scan, motion::deskewed(scan, {}), 60), at);
+    stack.add(test::cast_ends(world, at, {}, random, 60), at);
   }
   return stack;
 }

@@ -69,7 +69,7 @@ class CorridorDrive {
       ends.y_m.push_back(static_cast<float>(end.at.y()));
     }
     const motion::ScanInstant now{scan.time, odometry};
-    const SurfaceTracker::Seen seen{now, {1.0, 0.0}, faces, field_, ends};
+    const SeenScan seen{.now = now, .ends = ends, .field = field_, .faces = faces, .velocity = {1.0, 0.0}};
     const sensor::RefinedPose start{truth_, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
     believed_ = tracker_.leads() ? tracker_.observe(seen) : tracker_.lead_from(start, seen);
   }

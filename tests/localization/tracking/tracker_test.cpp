@@ -48,7 +48,7 @@ class FlatDrive {
     if (sees) ends = motion::scoring_ends(scan, rays, 0);
     surfaces::FaceFinder faces;
     if (sees) faces.begin(scan, rays);
-    return tracker_.observe({.now = now(), .ends = ends, .field = field_, .faces = &faces});
+    return tracker_.observe({.now = now(), .ends = ends, .field = field_, .faces = faces});
   }
   [[nodiscard]] motion::ScanInstant now() const { return {time_, motion::OdometryAt{odom_, 0, odom_}}; }
 
@@ -154,7 +154,9 @@ TEST(Tracker, SaysHowLongNoWheelsSpokeForTheRobot) {
   const motion::ScanInstant without_wheels{drive.time() + duration_from_seconds(0.5), std::nullopt};
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
-  EXPECT_NEAR(tracker.observe({.now = without_wheels, .ends = {}, .field = field}).unknown_s, 0.6, 1e-6);
+  surfaces::FaceFinder faces;
+  EXPECT_NEAR(tracker.observe({.now = without_wheels, .ends = {}, .field = field, .faces = faces}).unknown_s, 0.6,
+              1e-6);
 }
 
 TEST(Tracker, LetsSurfacesLeadWhereTheyExplainTheScansAndTheParticlesRest) {

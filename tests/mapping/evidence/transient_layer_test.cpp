@@ -130,16 +130,10 @@ TEST(TransientLayer, TellsNobodyWhileThePoseIsInDoubtAndKnowsNothingOnceItWasWro
   EXPECT_TRUE(layer.standing().empty());
 }
 
-StoreScanParams params_of(MappingMethod method) {
-  StoreScanParams params;
-  params.method = method;
-  return params;
-}
-
 /// A robot that stands in the hall and looks at what comes and goes.
 class Lookout {
  public:
-  explicit Lookout(MappingMethod method) : store{params_of(method), 1} {}
+  explicit Lookout(MappingMethod method) : store{{.method = method}, 1} {}
   void look_at(const OccupancyGrid& world, double for_s) {
     for (const double end_s = time_s + for_s; time_s < end_s; time_s += 0.2) {
       const TrackedScan tracked = test::drawn_scan(world, map, {7.5, 6.8, 0.4}, time_s, random);
