@@ -19,6 +19,8 @@ constexpr double kDiffers = 0.05;   // share of the beams above which a change i
 constexpr double kFewBeams = 0.15;  // share of the beams below which little is in view
 constexpr double kPersonNear_m = 3.0;
 constexpr double kJudgeEvery_s = 5.0;
+constexpr double kWheelsKnownAfter_s =
+    900.0;  // what was found of them is judged then, or at the end of a shorter drive
 
 /// Of a drive whose map may be updated.
 constexpr std::array kMapNumbers{"changes_seen_10s",
@@ -111,9 +113,12 @@ Outcome watched_drive(const WatchedRun& run) {
   TrajectoryPair paths;
   double changed_share = 0.0;
   double next_row_s = 0.0;
+  std::vector<std::pair<std::string, double>> wheels;
   for (double passed_s = 0.0; passed_s < 60.0 * run.minutes;) {
     const Mapped scan = drive.next();
     passed_s = scan.passed_s;
+    if (wheels.empty() && passed_s >= std::min(kWheelsKnownAfter_s, 60.0 * run.minutes))
+      wheels = wheel_numbers(run, drive.localization());
     const bool writes_row = passed_s >= next_row_s;
     if (writes_row) changed_share = changed_view.share(drive.drive(), scan.map_from_robot);
     course.observe(scan, {changed_share > kDiffers, is_person_near(scan), is_little_in_view(scan.tracked.scan)});
@@ -132,7 +137,7 @@ Outcome watched_drive(const WatchedRun& run) {
   outcome.labels = {{"cause", course.cause()}};
   outcome.numbers = course.numbers();
   for (auto& number : map_numbers(watch, drive.map())) outcome.numbers.push_back(std::move(number));
-  for (auto& number : wheel_numbers(run, drive.localization())) outcome.numbers.push_back(std::move(number));
+  for (auto& number : wheels) outcome.numbers.push_back(std::move(number));
   return outcome;
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Does every experiment and writes docs/results/experiments.md, and ablation.md, from what each leaves in its summary.json;
+"""Does every experiment and writes docs/results/experiments.md, ablation.md and unseen.md from what each leaves in its summary.json;
 what was measured and at which revision is kept in experiments.json beside it. Called by ./dev experiments.
 
   experiments.py [--quick] [--only NAME]... [--seed N] [--jobs N]
@@ -8,7 +8,8 @@ what was measured and at which revision is kept in experiments.json beside it. C
       --quick: short drives, few seeds; writes into build/ alone
       --only: does these anew and keeps what is known of the others
       --jobs: drives at once; experiments that measure the machine do one
-      --page: only writes the page of an ablation that `deltamap experiment ablation --out FOLDER` has done"""
+      --page: only writes the page of an ablation or of unseen worlds that `deltamap experiment NAME --out FOLDER` has
+              done"""
 import argparse, json, os, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -17,7 +18,6 @@ from measuring import DATA, ROOT, TOOL, in_a_cell, processor, row_of_figure, run
 
 OUT = ROOT / "build/experiments"
 OF_THE_LOCALIZER = {"hall", "stale-map", "verdict"}  # ./dev bench localization
-PAGES = {"ablation": "docs/results/ablation.md"}  # their tables fill a page of their own
 
 
 def experiments():
@@ -69,15 +69,33 @@ with the pose off by more than 0.3 m, cells written meanwhile, share of the time
 interval leaves out 0. Of twenty cells that nothing moves, one is bold by chance.
 """
 
+UNSEEN = """# Worlds that nobody has tuned on
+
+Written by `./dev experiments --only unseen --seed 1000`, or from what `deltamap experiment unseen` has left in its folder, on %s:
+%s.
+
+Every seed is another kind of building, first map, laser, robot and life in it ([what is drawn](../experiments.md)). Seeds 1 to
+999 are for development; 1000 to 1059 are driven for this page alone. Why figures are missed:
+[what falls short](../decisions/what-falls-short.md).
+"""
+
+# Their tables fill a page of their own.
+PAGES = {"ablation": ("docs/results/ablation.md", ABLATION), "unseen": ("docs/results/unseen.md", UNSEEN)}
+
 
 def page_of(summary):
     """Figures and tables of one experiment, on a page of its own."""
     made = "version %s, commit %s, settings %s: %s" % (
         summary["version"], summary["commit"], summary["settings"]["fingerprint"], told(summary["settings"]))
-    lines = [ABLATION % (processor(), "worlds of `unseen` from seed %d; %s" % (summary["seed"], made))]
+    _, about = PAGES[summary["experiment"]]
+    lines = [about % (processor(), "%d runs from seed %d; %s" % (summary["runs"], summary["seed"], made))]
     lines += table_lines([row_of_figure(figure) for figure in summary["figures"]])
     for table in summary["tables"]:
-        lines += ["", "## " + table["title"], "", "| %s |" % " | ".join(table["columns"]), "|" + "---|" * len(table["columns"])]
+        lines += ["", "## " + table["title"], ""]
+        if not table["rows"]:
+            lines.append("Not asked this time.")
+            continue
+        lines += ["| %s |" % " | ".join(table["columns"]), "|" + "---|" * len(table["columns"])]
         lines += ["| %s |" % " | ".join(in_a_cell(cell) for cell in row) for row in table["rows"]]
     return "\n".join(lines) + "\n"
 
@@ -106,7 +124,8 @@ def main():
     parser.add_argument("--page", type=pathlib.Path, metavar="FOLDER")
     arguments = parser.parse_args()
     if arguments.page:
-        (ROOT / PAGES["ablation"]).write_text(page_of(json.loads((arguments.page / "summary.json").read_text())))
+        summary = json.loads((arguments.page / "summary.json").read_text())
+        (ROOT / PAGES[summary["experiment"]][0]).write_text(page_of(summary))
         return
     known = experiments()
     unknown = sorted(set(arguments.only or []) - set(known))
@@ -123,7 +142,7 @@ def main():
             continue
         summary = done(name, measures_machine, arguments, folder)
         if name in PAGES:
-            (folder / "ablation.md" if arguments.quick else ROOT / PAGES[name]).write_text(page_of(summary))
+            (folder / (name + ".md") if arguments.quick else ROOT / PAGES[name][0]).write_text(page_of(summary))
             continue
         summary.pop("tables", None)  # they are on the experiment's own page
         parts[name] = {"revision": at, "what": what, "summary": summary}
