@@ -35,14 +35,6 @@ double lever_arm_m(std::span<const Point2> points) {
   return std::max(0.5, std::sqrt(squares / static_cast<double>(points.size())));
 }
 
-PoseCovariance floored(PoseCovariance covariance, const PriorMergeParams& params) {
-  const double position2 = params.least_position_deviation_m * params.least_position_deviation_m;
-  covariance(0, 0) += position2;
-  covariance(1, 1) += position2;
-  covariance(2, 2) += params.least_heading_deviation_rad * params.least_heading_deviation_rad;
-  return covariance;
-}
-
 CellBox box_around(const GridGeometry& geometry, std::span<const Point2> points, double margin_m) {
   Point2 low = points.front();
   Point2 high = low;
@@ -118,7 +110,7 @@ std::vector<Start> search(std::span<const Point2> points, const registration::Ne
   std::vector<PointInMetres> sample;
   for (std::size_t i = 0; i < points.size(); i += points.size() / kMostSearchPoints + 1)
     sample.push_back({static_cast<float>(points[i].x()), static_cast<float>(points[i].y())});
-  const double shared = std::min(1.0, params.independent_points / static_cast<double>(sample.size()));
+  const double shared = registration::share_of_point(sample.size(), params);
   const double most_chi2 = 1.8 * params.search_deviations * params.search_deviations;
   std::vector<Start> found;
   for (int i = -steps.x(); i <= steps.x(); ++i) {
@@ -181,7 +173,7 @@ std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map, std::span<const
   if (surface_points_in_map_guess.size() < std::max(1U, params.least_points)) return {};
   const std::vector<Point2> points = about(prior.position_in_map, surface_points_in_map_guess);
   const double lever_m = lever_arm_m(points);
-  const PoseCovariance covariance = floored(prior.covariance, params);
+  const PoseCovariance covariance = registration::floored(prior.covariance, params);
   const double margin_m =
       params.reach_m +
       std::min(params.most_search_m, params.search_deviations * std::sqrt(covariance.topLeftCorner<2, 2>().trace()));
@@ -189,12 +181,9 @@ std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map, std::span<const
   const registration::NearestSurface surface{registration::contour_of(map, box), map.resolution_m(), params.reach_m};
 
   const Pose2 guess{prior.position_in_map.x(), prior.position_in_map.y(), 0.0};
-  const double shared = std::min(1.0, params.independent_points / static_cast<double>(points.size()));
-  const double point_deviation_m = params.surface_deviation_m / std::sqrt(shared);
-  const registration::RegistrationParams registration_params{
-      .first_reach_m = params.reach_m,
-      .last_reach_m = std::min(params.reach_m, std::max(0.12, 2.0 * map.resolution_m())),
-      .point_deviation_m = point_deviation_m};
+  const double shared = registration::share_of_point(points.size(), params);
+  const registration::RegistrationParams registration_params =
+      registration::registration_params(points.size(), map.resolution_m(), params);
   const registration::PoseBelief belief{guess, covariance.inverse()};
 
   struct End {
@@ -240,10 +229,10 @@ PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface
   merge.covariance = best.covariance;
   merge.agreement = best.agreement;
   merge.chi2 = best.chi2;
-  const bool has_rival = std::any_of(answers.begin() + 1, answers.end(), [&](const PriorAnswer& other) {
+  const bool is_ambiguous = std::any_of(answers.begin() + 1, answers.end(), [&](const PriorAnswer& other) {
     return other.agreement > best.agreement - params.ambiguity_margin && other.cost < best.cost + kRivalCost;
   });
-  if (merge.accepted() && has_rival) merge.refusal = merge::MergeRefusal::kAmbiguous;
+  if (merge.accepted() && is_ambiguous) merge.refusal = merge::MergeRefusal::kAmbiguous;
   if (merge.accepted()) merge.map_from_guess = best.map_from_guess;
   return merge;
 }

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
-#include "core/pose_spread.hpp"
 #include "mapping/merge/merge_refusal.hpp"
+#include "mapping/registration/from_pose.hpp"
 
 namespace deltamap::mapping::grid_registration {
 
@@ -20,18 +20,12 @@ struct PosePrior {
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the robot's (x, y, θ) in the map
 };
 
-struct PriorMergeParams {
-  double search_deviations = 3.0;            ///< half width of the search in σ along each axis of the prior; > 0
-  double least_position_deviation_m = 0.03;  ///< floor of the prior's σ: particle filters are too sure of themselves
-  double least_heading_deviation_rad = 0.0087;  ///< floor of the prior's σ (0.5°)
-  double most_search_m = 1.0;                   ///< bound of the half width in position
-  double most_search_rad = 0.35;                ///< bound of the half width in heading (20°)
-  double reach_m = 0.3;                         ///< points farther from every surface do not count
-  double surface_deviation_m = 0.04;            ///< spread of a hit around a surface of the map; > 0
-  double independent_points = 60.0;  ///< at most so many points' worth of information: cell noise is shared; > 0
-  std::uint32_t least_points = 20;   ///< fewer, or fewer on known cells, are refused
+struct PriorMergeParams : registration::FromPoseParams {
+  double search_deviations = 3.0;   ///< half width of the search in σ along each axis of the prior; > 0
+  double most_search_m = 1.0;       ///< bound of the half width in position
+  double most_search_rad = 0.35;    ///< bound of the half width in heading (20°)
+  std::uint32_t least_points = 20;  ///< fewer, or fewer on known cells, are refused
   double least_agreement = 0.5;  ///< share of points within 1 cell of an occupied one, of those on known cells; [0, 1]
-  double most_chi2 = kMostChi2;  ///< of the correction under the prior's covariance
   double ambiguity_margin = 0.03;  ///< a second pose whose agreement comes this near is one too many; [0, 1]
 };
 
@@ -66,8 +60,8 @@ struct PriorAnswer {
 [[nodiscard]] PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
                                      const PosePrior& prior, const PriorMergeParams& params);
 
-/// The same for a local map: its contour is brought onto the map, Eq. 11 along its edges tells rivals apart, then these
-/// edges are brought to a fraction of a cell. `covariance`: of the place and turn of its middle (the mean of its
+/// The same for a local map: its contour is brought onto the map, Eq. 11 along its edges tells such answers apart, then
+/// these edges are brought to a fraction of a cell. `covariance`: of the place and turn of its middle (the mean of its
 /// contour). Both grids must have the same resolution.
 [[nodiscard]] PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local,
                                      const Pose2& map_from_local_guess, const PoseCovariance& covariance,

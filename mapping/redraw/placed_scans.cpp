@@ -17,15 +17,6 @@
 namespace deltamap::mapping::redraw {
 namespace {
 
-registration::PoseBelief belief_of(const Estimate& estimate, const PlacementParams& params) {
-  PoseCovariance covariance = estimate.noise_covariance();
-  const double position2 = params.least_position_deviation_m * params.least_position_deviation_m;
-  covariance(0, 0) += position2;
-  covariance(1, 1) += position2;
-  covariance(2, 2) += params.least_heading_deviation_rad * params.least_heading_deviation_rad;
-  return {estimate.map_from_robot, covariance.inverse()};
-}
-
 /// The places near which the scans' beams end, with room for the placement to move them: surfaces elsewhere need not be
 /// known.
 class PlacesOfEnds {
@@ -102,15 +93,12 @@ Placement placed_scans(const OccupancyGrid& map, const KeptScans& scans, const s
   for (std::size_t i = 0; i < guesses.size(); ++i) {
     const PlacedScan& guess = guesses[i];
     const std::vector<Point2>& points = ends[i];
-    const double shared =
-        std::min(1.0, params.independent_points / std::max<double>(1.0, static_cast<double>(points.size())));
-    const registration::RegistrationParams registration_params{
-        .most_iterations = 15,
-        .first_reach_m = params.reach_m,
-        .last_reach_m = std::min(params.reach_m, std::max(0.12, 2.0 * map.resolution_m())),
-        .point_deviation_m = params.surface_deviation_m / std::sqrt(shared),
-        .settled_m = 1e-3};
-    const registration::PoseBelief belief = belief_of(guess.tracked->estimate, params);
+    registration::RegistrationParams registration_params =
+        registration::registration_params(points.size(), map.resolution_m(), params);
+    registration_params.most_iterations = 15;
+    registration_params.settled_m = 1e-3;
+    const registration::PoseBelief belief{
+        guess.map_from_robot, registration::floored(guess.tracked->estimate.noise_covariance(), params).inverse()};
     const registration::Registration found =
         registration::registration(points, surface, guess.map_from_robot, belief, registration_params);
     const Pose2& pose = found.reference_from_moving;

@@ -9,21 +9,15 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
-#include "core/pose_spread.hpp"
 #include "mapping/redraw/placed_scan.hpp"
+#include "mapping/registration/from_pose.hpp"
 
 namespace deltamap::mapping::redraw {
 
-struct PlacementParams {
-  double reach_m = 0.3;                         ///< points farther from every surface of the map do not count
-  double surface_deviation_m = 0.04;            ///< spread of a hit around a surface of the map; > 0
-  double longest_m = 10.0;                      ///< beams beyond do not count
-  double least_position_deviation_m = 0.03;     ///< floor of the pose's σ: particle filters are too sure of themselves
-  double least_heading_deviation_rad = 0.0087;  ///< floor of the heading's σ (0.5°)
-  double independent_points = 60.0;             ///< at most so many points' worth of information: cell noise is shared
-  std::uint32_t least_points = 30;              ///< with fewer near a surface the localizer's pose stays
-  double least_agreement = 0.5;                 ///< share of the points near a surface that come to lie on it; [0, 1]
-  double most_chi2 = kMostChi2;                 ///< of a correction under the pose's covariance
+struct PlacementParams : registration::FromPoseParams {
+  double longest_m = 10.0;          ///< beams beyond do not count
+  std::uint32_t least_points = 30;  ///< with fewer near a surface the localizer's pose stays
+  double least_agreement = 0.5;     ///< share of the points near a surface that come to lie on it; [0, 1]
 };
 
 struct Placement {

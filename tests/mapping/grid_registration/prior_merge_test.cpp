@@ -91,7 +91,9 @@ TEST(PriorMerge, RefusesACorrectionThatThePriorFindsImplausible) {
   const Pose2 error = guess_from_map(robot.position(), 0.25, 0.0, 0.0);
   const auto guessed = moved(error, seen_from(hall, robot, random));
   const PosePrior sure{error * robot.position(), covariance_of(0.01, 0.005)};
-  EXPECT_EQ(prior_merge(hall, guessed, sure, {.search_deviations = 10.0}).refusal, merge::MergeRefusal::kImplausible);
+  PriorMergeParams far;
+  far.search_deviations = 10.0;
+  EXPECT_EQ(prior_merge(hall, guessed, sure, far).refusal, merge::MergeRefusal::kImplausible);
   const PosePrior unsure{error * robot.position(), covariance_of(0.2, 0.005)};
   EXPECT_TRUE(prior_merge(hall, guessed, unsure, {}).accepted());
 }
