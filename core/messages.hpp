@@ -100,15 +100,15 @@ struct Belief {
 /// What the localizer believes at one scan.
 struct Estimate {
   Timestamp time;                                      ///< of the scan's first beam
-  Pose2 map_from_robot;                                ///< mean of the best hypothesis
-  PoseCovariance covariance = PoseCovariance::Zero();  ///< of the best hypothesis
+  Pose2 map_from_robot;                                ///< the believed pose
+  PoseCovariance covariance = PoseCovariance::Zero();  ///< of that pose
   /// Of that, what all scans are off by alike, for the map's surfaces are: it is drawn and read with the same error.
   PoseCovariance bias_covariance = PoseCovariance::Zero();
   LocalizerState state = LocalizerState::kGlobal;
   double n_eff = 0.0;  ///< effective sample size before resampling, Eq. 5; in [1, particles]
   std::uint32_t particles = 0;
   Belief belief{};     ///< how right the pose is, and how wrong the map
-  double w_avg = 0.0;  ///< exp of the mean log-likelihood of the used beams, averaged over the best hypothesis; (0, 1]
+  double w_avg = 0.0;  ///< exp of the mean log-likelihood of the used beams, averaged over the heaviest cluster; (0, 1]
   std::uint32_t revision = 0;                ///< number k of the map that the pose was computed on
   std::shared_ptr<const OccupancyGrid> map;  ///< that map, M_k
 
@@ -122,6 +122,15 @@ struct RayInRobot {
   Eigen::Vector2f end{0.0F, 0.0F};     ///< where it ended, m; equal to origin where the beam has no range
 };
 
+/// How well scans of a tracked pose have fitted the map of late, and over the long run (paper Eq. 2).
+struct WeightAverages {
+  double w_fast = 0.0;  ///< 0 until the first tracked scan
+  double w_slow = 0.0;
+
+  /// r_d, Eq. 3. Positive: scans fit the map worse than they used to.
+  [[nodiscard]] double divergence_ratio() const { return w_slow > 0.0 ? 1.0 - w_fast / w_slow : 0.0; }
+};
+
 /// A scan with the pose it was taken from: what Δ-awareness and the pilot judge by.
 struct TrackedScan {
   Scan scan;
@@ -131,6 +140,7 @@ struct TrackedScan {
   std::uint32_t odometry_epoch = 0;
   double speed_m_per_s = 0.0;        ///< measured around Scan::time
   double turn_rate_rad_per_s = 0.0;  ///< measured around Scan::time
+  WeightAverages weights{};          ///< up to this scan
 };
 
 /// A cell that has proven to be persistently different from the map.
@@ -163,6 +173,9 @@ struct WithdrawOrder {
   Timestamp from;                                      ///< what was written from then on
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose at that scan
 };
+
+/// What Δ-awareness asks of the map, at most one a scan.
+using MapRequest = std::variant<ScanSet, WithdrawOrder>;
 
 /// M_k: the map after a Δ.
 struct MapRevision {

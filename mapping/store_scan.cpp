@@ -14,7 +14,6 @@ constexpr int kLateAtOnce = 3;               // keyframes a scan, so that no sca
 struct StoreScan::State {
   State(const StoreScanParams& params, std::uint64_t seed)
       : method{params.method},
-        ratio{params.divergence},
         paper{params.delta_phase, seed},
         evidence{params.evidence},
         gate{params.gate},
@@ -22,7 +21,7 @@ struct StoreScan::State {
 
   /// Where the gate is shut a keyframe waits, unless the pose may be wrong by then; once it is open again, those that
   /// wait vote first.
-  std::optional<ScanSet> gated_set(const TrackedScan& tracked) {
+  std::optional<MapRequest> gated_request(const TrackedScan& tracked) {
     gate.observe(tracked);
     if (gate.gate().has_proven_wrong()) {
       waiting.clear();
@@ -44,7 +43,6 @@ struct StoreScan::State {
   }
 
   MappingMethod method;
-  paper::DivergenceRatio ratio;
   paper::DeltaPhase paper;
   evidence::EvidencePhase evidence;
   gate::GatedSets gate;
@@ -57,8 +55,6 @@ StoreScan::StoreScan(const StoreScanParams& params, std::uint64_t seed)
 StoreScan::~StoreScan() = default;
 StoreScan::StoreScan(StoreScan&&) noexcept = default;
 StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
-
-const std::optional<WithdrawOrder>& StoreScan::withdrawal() const { return state_->gate.withdrawal(); }
 
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
@@ -76,32 +72,29 @@ const std::shared_ptr<const TransientObstacles>& StoreScan::transients() const {
   return state_->evidence.transients().newest();
 }
 
-std::optional<ScanSet> StoreScan::observe(const TrackedScan& tracked) {
+std::optional<MapRequest> StoreScan::observe(const TrackedScan& tracked) {
   State& s = *state_;
-  // Averages hold the weights of a tracked pose alone: what a lost filter thinks of a scan says nothing about the map.
-  if (tracked.estimate.state == LocalizerState::kTracking) (void)s.ratio.observe(tracked.estimate.w_avg);
-  std::optional<ScanSet> set;
+  std::optional<MapRequest> request;
   if (s.method == MappingMethod::kPaper) {
-    set = s.paper.observe(tracked, s.ratio.value());
+    if (std::optional<ScanSet> set = s.paper.observe(tracked)) {
+      set->covariance = tracked.estimate.covariance;
+      request = *std::move(set);
+    }
     s.awareness.in_phase = s.paper.is_open();
     s.awareness.phase = s.paper.number();
     s.awareness.stored_scans = s.paper.kept();
   } else {
-    set = s.gated_set(tracked);
+    request = s.gated_request(tracked);
     s.awareness.in_phase = s.evidence.waiting() > 0;
     s.awareness.phase = s.evidence.number();
     s.awareness.short_beams = s.evidence.short_beams();
     s.awareness.through_beams = s.evidence.through_beams();
   }
-  if (set && s.method == MappingMethod::kPaper) set->covariance = tracked.estimate.covariance;
-  s.awareness.w_fast = s.ratio.w_fast();
-  s.awareness.w_slow = s.ratio.w_slow();
-  s.awareness.r_d = s.ratio.value();
   s.awareness.gate = s.gate.gate().reason();
   s.awareness.gate_confirms_after = s.gate.gate().confirms_after();
   s.awareness.gate_shut_for_s = s.gate.gate().shut_for_s();
   s.awareness.gate_times = s.gate.gate().times();
-  return set;
+  return request;
 }
 
 }  // namespace deltamap::mapping

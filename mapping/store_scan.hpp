@@ -13,23 +13,18 @@
 #include "mapping/evidence/evidence_phase.hpp"
 #include "mapping/gate/gated_sets.hpp"
 #include "mapping/paper/delta_phase.hpp"
-#include "mapping/paper/divergence_ratio.hpp"
 
 namespace deltamap::mapping {
 
 struct StoreScanParams {
   MappingMethod method = MappingMethod::kEvidence;
-  paper::DivergenceRatioParams divergence{};  ///< w_fast, w_slow and r_d: kept with both methods
-  paper::DeltaPhaseParams delta_phase{};      ///< paper
-  evidence::EvidencePhaseParams evidence{};   ///< evidence
-  gate::WriteGateParams gate{};               ///< evidence: when the pose is sure enough to write by
+  paper::DeltaPhaseParams delta_phase{};     ///< paper
+  evidence::EvidencePhaseParams evidence{};  ///< evidence
+  gate::WriteGateParams gate{};              ///< evidence: when the pose is sure enough to write by
 };
 
-/// What Δ-awareness thought of the last scan, for telemetry and the paper's Figures 2 to 4.
+/// What Δ-awareness thought of the last scan, for telemetry.
 struct Awareness {
-  double w_fast = 0.0;  ///< Eq. 2
-  double w_slow = 0.0;  ///< Eq. 2
-  double r_d = 0.0;     ///< Eq. 3
   bool in_phase = false;
   std::uint32_t phase = 0;          ///< number of the present or last Δ-phase
   std::uint32_t stored_scans = 0;   ///< in the present phase
@@ -55,10 +50,9 @@ class StoreScan {
   StoreScan(StoreScan&&) noexcept;
   StoreScan& operator=(StoreScan&&) noexcept;
 
-  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update().
-  [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
-  /// In place of a set: the last scan has proven the pose wrong.
-  [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const;
+  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update(), or, where the scan has
+  /// proven the pose wrong, an order to take back what was written by it.
+  [[nodiscard]] std::optional<MapRequest> observe(const TrackedScan& tracked);
 
   [[nodiscard]] const Awareness& awareness() const;
   [[nodiscard]] StoredScans stored() const;

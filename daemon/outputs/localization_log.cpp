@@ -62,6 +62,9 @@ LocalizationRow row_of(const TrackedScan& tracked) {
   row.state = estimate.state;
   row.belief = estimate.belief;
   row.w_avg = estimate.w_avg;
+  row.w_fast = tracked.weights.w_fast;
+  row.w_slow = tracked.weights.w_slow;
+  row.r_d = tracked.weights.divergence_ratio();
   row.n_eff = estimate.n_eff;
   row.particles = estimate.particles;
   row.revision = estimate.revision;

@@ -31,7 +31,7 @@ struct MapOrder {
 /// What the delta thread reads, in order.
 using DeltaWork = std::variant<TrackedScan, MapOrder>;
 /// What the map thread reads, in order.
-using MapWork = std::variant<ScanSet, WithdrawOrder, MapOrder>;
+using MapWork = std::variant<MapRequest, MapOrder>;
 
 /// "undo of 7 by an operator", "rolled back to 3 by an operator": the reason of the revision that comes of it.
 [[nodiscard]] std::string reason_of(const MapOrder& order);

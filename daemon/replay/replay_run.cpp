@@ -52,6 +52,7 @@ class Replay {
   void take(Scan&& scan);
   void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
+  [[nodiscard]] bool reaches_map(const ScanSet& set, std::uint32_t scan);
   void keep_result(const MapStep::Result& result);
 
   const ReplayJob& job_;
@@ -163,18 +164,24 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
     ++report_.scans.tracked_lost;
     return;
   }
-  const std::optional<ScanSet> set = run_.look_for_changes(tracked);
-  if (const auto withdrawn = run_.withdraw()) keep_result(*withdrawn);
-  if (!set) return;
-  ++report_.phases;
-  const auto closing = journal_.closing_scan(set->phase);
-  const bool is_unknown = !closing && is_cut_;
-  if (obeys_ && !is_unknown && closing != tracked.scan.number) ++report_.journal_differences;
-  if (obeys_ && journal_.set_was_lost(set->phase)) {
-    ++report_.scans.sets_lost;
+  const std::optional<MapRequest> request = run_.look_for_changes(tracked);
+  if (!request) return;
+  if (const auto* set = std::get_if<ScanSet>(&*request); set != nullptr && !reaches_map(*set, tracked.scan.number))
     return;
+  keep_result(run_.update_map(*request));
+}
+
+/// Counts the phase, and holds it against the journal. False: the live run lost the set.
+bool Replay::reaches_map(const ScanSet& set, std::uint32_t scan) {
+  ++report_.phases;
+  const auto closing = journal_.closing_scan(set.phase);
+  const bool is_unknown = !closing && is_cut_;
+  if (obeys_ && !is_unknown && closing != scan) ++report_.journal_differences;
+  if (obeys_ && journal_.set_was_lost(set.phase)) {
+    ++report_.scans.sets_lost;
+    return false;
   }
-  keep_result(run_.update_map(*set));
+  return true;
 }
 
 void Replay::keep_result(const MapStep::Result& result) {

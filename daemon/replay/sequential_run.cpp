@@ -31,22 +31,16 @@ TrackedScan SequentialRun::observe(Scan scan) {
   return localization_.observe(std::move(scan));
 }
 
-std::optional<ScanSet> SequentialRun::look_for_changes(const TrackedScan& tracked) {
+std::optional<MapRequest> SequentialRun::look_for_changes(const TrackedScan& tracked) {
   const CpuTimer timer{cpu_.awareness_s};
-  std::optional<ScanSet> set = store_scan_.observe(tracked);
+  std::optional<MapRequest> request = store_scan_.observe(tracked);
   transients_.push(store_scan_.transients());
-  return set;
+  return request;
 }
 
-MapStep::Result SequentialRun::update_map(const ScanSet& set) {
+MapStep::Result SequentialRun::update_map(const MapRequest& request) {
   const CpuTimer timer{cpu_.map_update_s};
-  return handed_on(map_.update(set));
-}
-
-std::optional<MapStep::Result> SequentialRun::withdraw() {
-  if (!store_scan_.withdrawal()) return std::nullopt;
-  const CpuTimer timer{cpu_.map_update_s};
-  return handed_on(map_.withdraw(*store_scan_.withdrawal()));
+  return handed_on(map_.take(request));
 }
 
 MapStep::Result SequentialRun::obey(const SetCells& wanted) {

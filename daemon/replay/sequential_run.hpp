@@ -32,10 +32,8 @@ class SequentialRun {
   void take_what_is_due(const Scan& scan);
   [[nodiscard]] TrackedScan observe(Scan scan);
   /// What is to be handed to update_map().
-  [[nodiscard]] std::optional<ScanSet> look_for_changes(const TrackedScan& tracked);
-  [[nodiscard]] MapStep::Result update_map(const ScanSet& set);
-  /// Nothing where the last scan orders nothing back.
-  [[nodiscard]] std::optional<MapStep::Result> withdraw();
+  [[nodiscard]] std::optional<MapRequest> look_for_changes(const TrackedScan& tracked);
+  [[nodiscard]] MapStep::Result update_map(const MapRequest& request);
   [[nodiscard]] MapStep::Result obey(const SetCells& wanted);
 
   [[nodiscard]] LocalizationStep& localization() { return localization_; }

@@ -18,6 +18,7 @@
 #include "drivers/pioneer/session.hpp"
 #include "localization/localizer_params.hpp"
 #include "mapping/map_update_params.hpp"
+#include "mapping/paper/divergence_ratio.hpp"
 #include "mapping/store/retention.hpp"
 #include "mapping/store_scan.hpp"
 #include "navigation/drive_mode.hpp"
@@ -45,6 +46,7 @@ struct MapSettings {
 
 struct MappingSettings {
   bool enabled = true;
+  mapping::paper::DivergenceRatioParams divergence;  ///< w_fast, w_slow and r_d: told with both methods
   mapping::StoreScanParams store_scan;
   mapping::MapUpdateParams update;
 };

@@ -30,16 +30,15 @@ void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& long
                             "standard deviation of the laser's ranges"));
 }
 
-void add_paper(mapping::StoreScanParams& store_scan, Keys& keys) {
-  auto& ratio = store_scan.divergence;
+void add_paper(mapping::paper::DivergenceRatioParams& ratio, mapping::paper::DeltaPhaseParams& phase, Keys& keys) {
   keys.push_back(with_symbol(number_key("mapping.paper.alpha_slow", ratio.alpha_slow, "", 1e-6, 1.0,
                                         "long-term rate of the average weight, per scan"),
                              "α_slow, Eq. 2"));
   keys.push_back(with_symbol(number_key("mapping.paper.alpha_fast", ratio.alpha_fast, "", 1e-6, 1.0,
                                         "short-term rate of the average weight, per scan"),
                              "α_fast, Eq. 2"));
-  keys.push_back(with_symbol(number_key("mapping.paper.least_n_eff_share", store_scan.delta_phase.least_n_eff_share, "",
-                                        0.0, 1.0, "N_eff / particles below which a scan is not kept"),
+  keys.push_back(with_symbol(number_key("mapping.paper.least_n_eff_share", phase.least_n_eff_share, "", 0.0, 1.0,
+                                        "N_eff / particles below which a scan is not kept"),
                              "N_eff, Eq. 5"));
 }
 
@@ -69,7 +68,7 @@ void add_mapping_keys(MappingSettings& settings, Keys& keys) {
                             "how changes are found and merged; paper: as published, evidence: votes of beams"));
   add_evidence(store_scan.evidence, settings.update.evidence.longest_m, keys);
   add_gate(store_scan.gate, keys);
-  add_paper(store_scan, keys);
+  add_paper(settings.divergence, store_scan.delta_phase, keys);
   add_paper_update(settings.update.paper, keys);
 }
 

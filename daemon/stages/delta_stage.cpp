@@ -10,7 +10,10 @@ namespace {
 
 constexpr std::chrono::seconds kLookAgainAfter{1};
 
-bool is_set(const MapWork& work) { return std::holds_alternative<ScanSet>(work); }
+const ScanSet* set_in(const MapWork& work) {
+  const auto* request = std::get_if<MapRequest>(&work);
+  return request != nullptr ? std::get_if<ScanSet>(request) : nullptr;
+}
 
 }  // namespace
 
@@ -32,19 +35,20 @@ void DeltaStage::run() {
 }
 
 void DeltaStage::look_for_changes(const TrackedScan& tracked) {
-  auto set = store_scan_.observe(tracked);
+  std::optional<MapRequest> request = store_scan_.observe(tracked);
   offer_transients();
   const mapping::Awareness& awareness = store_scan_.awareness();
-  wiring_.telemetry.r_d.set(awareness.r_d);
+  wiring_.telemetry.r_d.set(tracked.weights.divergence_ratio());
   wiring_.telemetry.in_phase.set(awareness.in_phase);
   wiring_.telemetry.phase.set(awareness.phase);
   wiring_.telemetry.stored_scans.set(awareness.stored_scans);
   tell_of_gate();
-  if (const auto& order = store_scan_.withdrawal()) hand_over(*order);
-  if (set) {
-    wiring_.telemetry.phases_closed.add(1);
-    note({Decision::Kind::kPhaseClosed, tracked.scan.number, set->phase});
-    hand_over(std::move(*set));
+  if (request) {
+    if (const auto* set = std::get_if<ScanSet>(&*request)) {
+      wiring_.telemetry.phases_closed.add(1);
+      note({Decision::Kind::kPhaseClosed, tracked.scan.number, set->phase});
+    }
+    hand_over(*std::move(request));
   }
   if (wiring_.shows_scans()) show_scans();
 }
@@ -53,7 +57,7 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
 void DeltaStage::show_scans() {
   mapping::StoredScans stored = store_scan_.stored();
   for (const MapWork& work : waiting_) {
-    if (const auto* set = std::get_if<ScanSet>(&work)) {
+    if (const ScanSet* set = set_in(work)) {
       stored.waiting.insert(stored.waiting.end(), set->scans.begin(), set->scans.end());
     }
   }
@@ -85,8 +89,8 @@ void DeltaStage::tell_of_gate() {
 /// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an
 /// operator gives few.
 void DeltaStage::hand_over(MapWork work) {
-  const auto* set = std::get_if<ScanSet>(&work);
-  if (set != nullptr && std::any_of(waiting_.begin(), waiting_.end(), is_set)) {
+  const ScanSet* set = set_in(work);
+  if (set != nullptr && std::any_of(waiting_.begin(), waiting_.end(), set_in)) {
     wiring_.telemetry.sets_lost.add(1);
     note({Decision::Kind::kSetLost, 0, set->phase});
     return;

@@ -65,10 +65,8 @@ void MapStage::run(const std::deque<MapWork>& rest) {
 }
 
 void MapStage::take(const MapWork& work) {
-  if (const auto* set = std::get_if<ScanSet>(&work)) {
-    tell_and_hand_on(step_.update(*set));
-  } else if (const auto* order = std::get_if<WithdrawOrder>(&work)) {
-    tell_and_hand_on(step_.withdraw(*order));
+  if (const auto* request = std::get_if<MapRequest>(&work)) {
+    tell_and_hand_on(step_.take(*request));
   } else {
     obey(std::get<MapOrder>(work));
   }

@@ -34,7 +34,7 @@ void require_pose_on(const GridGeometry& map, const Settings& settings) {
 
 LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
     : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
-      ratio_{settings.mapping.store_scan.divergence},
+      ratio_{settings.mapping.divergence},
       last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
   if (start.revision > 0)
     apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
@@ -49,7 +49,8 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   count_time(tracked.scan.time);
   last_state_ = tracked.estimate.state;
   last_verdict_ = tracked.estimate.belief.verdict;
-  note(tracked);
+  tracked.weights = ratio_.observe(tracked.estimate);
+  row_ = row_of(tracked);
   return tracked;
 }
 
@@ -107,15 +108,6 @@ void LocalizationStep::count_time(Timestamp time) {
     if (last_verdict_ == PoseVerdict::kWrong) verdict_times_.wrong_s += passed_s;
   }
   last_scan_ = time;
-}
-
-void LocalizationStep::note(const TrackedScan& tracked) {
-  // As Δ-awareness does: averages of the weights of a tracked pose alone.
-  if (tracked.estimate.state == LocalizerState::kTracking) (void)ratio_.observe(tracked.estimate.w_avg);
-  row_ = row_of(tracked);
-  row_.w_fast = ratio_.w_fast();
-  row_.w_slow = ratio_.w_slow();
-  row_.r_d = ratio_.value();
 }
 
 }  // namespace deltamap::daemon

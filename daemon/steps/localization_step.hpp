@@ -65,7 +65,6 @@ class LocalizationStep {
 
  private:
   void count_time(Timestamp time);
-  void note(const TrackedScan& tracked);
 
   localization::Localizer localizer_;
   mapping::paper::DivergenceRatio ratio_;

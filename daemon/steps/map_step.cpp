@@ -63,6 +63,11 @@ void MapStep::settle(const std::optional<Timestamp>& before) {
   }
 }
 
+MapStep::Result MapStep::take(const MapRequest& request) {
+  const auto* set = std::get_if<ScanSet>(&request);
+  return set != nullptr ? update(*set) : withdraw(std::get<WithdrawOrder>(request));
+}
+
 MapStep::Result MapStep::update(const ScanSet& set) {
   settle(set.settled);
   mapping::scan_set::MapUpdate update = mapping::map_update(*newest_.map, set, update_);

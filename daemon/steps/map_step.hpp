@@ -27,9 +27,9 @@ class MapStep {
     std::optional<MapRevision> revision;
     ChangeNote note;
   };
-  [[nodiscard]] Result update(const ScanSet& set);
-  /// What was written since, and no set has settled, is taken back in one revision.
-  [[nodiscard]] Result withdraw(const WithdrawOrder& order);
+  /// A set becomes a revision or is refused; an order takes back, in one revision, what was written since then and no
+  /// set has settled.
+  [[nodiscard]] Result take(const MapRequest& request);
   /// An operator's cells take the states that the order gives them, whatever they are. Older evidence does not write
   /// them again. No revision where they are so already, or the map has another size.
   [[nodiscard]] Result obey(const SetCells& wanted);
@@ -47,6 +47,8 @@ class MapStep {
     std::vector<CellChange> changes;
   };
 
+  [[nodiscard]] Result update(const ScanSet& set);
+  [[nodiscard]] Result withdraw(const WithdrawOrder& order);
   void settle(const std::optional<Timestamp>& before);
   [[nodiscard]] MapRevision publish(Timestamp time, std::vector<CellChange> changes);
 

@@ -43,8 +43,7 @@ Mapped MappingDrive::next() {
   mapped.estimate = mapped.tracked.estimate;
   last_pose_ = mapped.estimate.map_from_robot;
   if (settings_.mapping.enabled) {
-    const auto set = run_->look_for_changes(mapped.tracked);
-    mapped.update = set ? run_->update_map(*set) : run_->withdraw();
+    if (const auto request = run_->look_for_changes(mapped.tracked)) mapped.update = run_->update_map(*request);
   }
   mapped.awareness = run_->store_scan().awareness();
   mapped.transients = run_->store_scan().transients();

@@ -40,10 +40,10 @@ class Indicators {
 
   void observe(const TrackedScan& tracked) {
     const std::uint32_t kept_before = paper_.awareness().in_phase ? paper_.awareness().stored_scans : 0;
-    const auto set = paper_.observe(tracked);
+    const bool ends = paper_.observe(tracked).has_value();
     const mapping::Awareness& now = paper_.awareness();
     // The scan that ends a phase is not kept.
-    stored_ = !set && now.in_phase && now.stored_scans > kept_before ? 1 : 0;
+    stored_ = !ends && now.in_phase && now.stored_scans > kept_before ? 1 : 0;
     (void)evidence_.observe(tracked);
     const mapping::Awareness& evidence = evidence_.awareness();
     speaking_[scans_++ % speaking_.size()] = static_cast<double>(evidence.short_beams + evidence.through_beams);
@@ -123,8 +123,9 @@ Outcome two_laps(const simulation::Scenario& scenario, const localization::Local
     if (!is_second) continue;
     const Pose2 map_from_laser = scan.map_from_robot * scenario.laser.optics.robot_from_laser;
     const mapping::Awareness& paper = indicators.paper();
-    outcome.scans.add({passed_s - 60.0 * minutes, scan.estimate.w_avg, paper.w_fast, paper.w_slow, paper.r_d,
-                       paper.in_phase ? 1.0 : 0.0, indicators.stored(),
+    outcome.scans.add({passed_s - 60.0 * minutes, scan.estimate.w_avg, scan.tracked.weights.w_fast,
+                       scan.tracked.weights.w_slow, scan.tracked.weights.divergence_ratio(), paper.in_phase ? 1.0 : 0.0,
+                       indicators.stored(),
                        differing_share(pair.drive().surfaces(), as_mapped, map_from_laser, kNear_m),
                        indicators.speaking_beams(), scan.tracked.turn_rate_rad_per_s, error_of(scan).position.norm()});
   }

@@ -53,9 +53,9 @@ bool GatedSets::is_due(const ScanSet& set) const {
   return gate_.is_open() && other_share_ <= params_.hold_other_share && seconds(now_ - set.ended) >= params_.hold_s;
 }
 
-std::optional<ScanSet> GatedSets::next() {
+std::optional<MapRequest> GatedSets::next() {
+  if (withdrawal_) return std::exchange(withdrawal_, std::nullopt);
   std::optional<ScanSet> set;
-  if (withdrawal_) return set;
   if (!due_.empty()) {
     set = std::move(due_.front());
     due_.pop_front();
@@ -64,7 +64,8 @@ std::optional<ScanSet> GatedSets::next() {
     waiting_.pop_front();
     last_handed_on_ = set->ended;
   }
-  if (set) set->settled = gate_.settled();
+  if (!set) return std::nullopt;
+  set->settled = gate_.settled();
   return set;
 }
 

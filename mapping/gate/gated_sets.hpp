@@ -24,10 +24,9 @@ class GatedSets {
   [[nodiscard]] bool waits_to_vote(const Estimate& estimate) const;
   /// The set that ended with this scan, if one did.
   void take(std::optional<ScanSet> set, const TrackedScan& tracked);
-  /// What is to be handed on now: a set or a marked set, at most one a scan, and none with an order.
-  [[nodiscard]] std::optional<ScanSet> next();
-  /// What the newest scan has proven wrong is ordered back.
-  [[nodiscard]] const std::optional<WithdrawOrder>& withdrawal() const { return withdrawal_; }
+  /// What is to be handed on now: an order to take back what the newest scan has proven wrong, else a set or a marked
+  /// set.
+  [[nodiscard]] std::optional<MapRequest> next();
 
   [[nodiscard]] const WriteGate& gate() const { return gate_; }
   /// Finished sets that are not handed on yet, in order of their end.

@@ -37,7 +37,8 @@ void DeltaPhase::abandon() {
   set_ = empty_set(set_.phase);
 }
 
-std::optional<ScanSet> DeltaPhase::observe(const TrackedScan& tracked, double r_d) {
+std::optional<ScanSet> DeltaPhase::observe(const TrackedScan& tracked) {
+  const double r_d = tracked.weights.divergence_ratio();
   const Timestamp time = tracked.scan.time;
   if (open_ && !set_.scans.empty() && set_.scans.back()->odometry_epoch != tracked.odometry_epoch) return close(time);
   if (tracked.estimate.state != LocalizerState::kTracking) {

@@ -21,9 +21,8 @@ class DeltaPhase {
  public:
   DeltaPhase(const DeltaPhaseParams& params, std::uint64_t seed) : params_{params}, random_{seed} {}
 
-  /// Takes a scan and the present r_d. An answer is the S(k) of a phase that has just ended with at least one scan
-  /// kept.
-  [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked, double r_d);
+  /// An answer is the S(k) of a phase that has just ended with at least one scan kept.
+  [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
 
   [[nodiscard]] bool is_open() const { return open_; }
   [[nodiscard]] std::uint32_t number() const { return set_.phase; }

@@ -3,14 +3,15 @@
 
 namespace deltamap::mapping::paper {
 
-double DivergenceRatio::observe(double w_avg) {
+const WeightAverages& DivergenceRatio::observe(const Estimate& estimate) {
+  if (estimate.state != LocalizerState::kTracking) return averages_;
   if (!started_) {
-    w_fast_ = w_slow_ = w_avg;
+    averages_ = {.w_fast = estimate.w_avg, .w_slow = estimate.w_avg};
     started_ = true;
   }
-  w_fast_ += params_.alpha_fast * (w_avg - w_fast_);
-  w_slow_ += params_.alpha_slow * (w_avg - w_slow_);
-  return value();
+  averages_.w_fast += params_.alpha_fast * (estimate.w_avg - averages_.w_fast);
+  averages_.w_slow += params_.alpha_slow * (estimate.w_avg - averages_.w_slow);
+  return averages_;
 }
 
 }  // namespace deltamap::mapping::paper

@@ -2,6 +2,8 @@
 // Δ-awareness (paper §3.1): notices by weighted recency averaging that scans fit the map worse than they used to.
 #pragma once
 
+#include "core/messages.hpp"
+
 namespace deltamap::mapping::paper {
 
 struct DivergenceRatioParams {
@@ -13,19 +15,13 @@ class DivergenceRatio {
  public:
   explicit DivergenceRatio(const DivergenceRatioParams& params) : params_{params} {}
 
-  /// Takes w_avg, the weight of the best pose hypothesis, and returns r_d = 1 - w_fast / w_slow (Eq. 3). Positive:
-  /// scans fit the map worse than they used to. w += α (w_avg - w) for both averages (Eq. 2), which start at the first
-  /// w_avg.
-  double observe(double w_avg);
-
-  [[nodiscard]] double w_fast() const { return w_fast_; }
-  [[nodiscard]] double w_slow() const { return w_slow_; }
-  [[nodiscard]] double value() const { return w_slow_ > 0.0 ? 1.0 - w_fast_ / w_slow_ : 0.0; }
+  /// Takes w_avg of every scan: w += α (w_avg - w) for both averages (Eq. 2), which start at the first. Those of a
+  /// tracked pose alone count: what a lost filter thinks of a scan says nothing about the map.
+  const WeightAverages& observe(const Estimate& estimate);
 
  private:
   DivergenceRatioParams params_;
-  double w_fast_ = 0.0;
-  double w_slow_ = 0.0;
+  WeightAverages averages_;
   bool started_ = false;
 };
 

@@ -12,7 +12,7 @@
 
 namespace deltamap::mapping::paper {
 
-/// The paper's hall is as symmetric as halls are: rivals are left to the χ² test.
+/// The paper's hall is as symmetric as halls are: other poses that fit are left to the χ² test.
 [[nodiscard]] inline merge::MapMergeParams paper_merge_params() {
   merge::MapMergeParams params;
   params.choice.refuse_ambiguous = false;

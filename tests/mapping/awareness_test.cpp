@@ -7,38 +7,53 @@
 
 #include "mapping/paper/divergence_ratio.hpp"
 #include "mapping/store_scan.hpp"
+#include "tests/support/scans/map_requests.hpp"
 
 namespace deltamap::mapping {
 namespace {
 
 constexpr double kExact = 1e-12;
 
+Estimate weighed(double w_avg, LocalizerState state = LocalizerState::kTracking) {
+  Estimate estimate;
+  estimate.w_avg = w_avg;
+  estimate.state = state;
+  return estimate;
+}
+
 TEST(DivergenceRatio, StartsBothAveragesAtTheFirstWeight) {
   paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
-  EXPECT_EQ(ratio.observe(0.8), 0.0);
-  EXPECT_EQ(ratio.w_fast(), 0.8);
-  EXPECT_EQ(ratio.w_slow(), 0.8);
+  const WeightAverages& averages = ratio.observe(weighed(0.8));
+  EXPECT_EQ(averages.divergence_ratio(), 0.0);
+  EXPECT_EQ(averages.w_fast, 0.8);
+  EXPECT_EQ(averages.w_slow, 0.8);
 }
 
 TEST(DivergenceRatio, FollowsEquationsTwoAndThree) {
   paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
-  (void)ratio.observe(0.8);
-  EXPECT_NEAR(ratio.observe(0.4), 1.0 - 0.76 / 0.796, kExact);  // 0.8 - 0.1 · 0.4 and 0.8 - 0.01 · 0.4
-  EXPECT_NEAR(ratio.observe(0.9), 1.0 - (0.76 + 0.1 * 0.14) / (0.796 + 0.01 * 0.104), kExact);
+  (void)ratio.observe(weighed(0.8));
+  // 0.8 - 0.1 · 0.4 and 0.8 - 0.01 · 0.4
+  EXPECT_NEAR(ratio.observe(weighed(0.4)).divergence_ratio(), 1.0 - 0.76 / 0.796, kExact);
+  EXPECT_NEAR(ratio.observe(weighed(0.9)).divergence_ratio(), 1.0 - (0.76 + 0.1 * 0.14) / (0.796 + 0.01 * 0.104),
+              kExact);
 }
 
 TEST(DivergenceRatio, IsNegativeWhereScansFitBetterThanTheyUsedTo) {
   paper::DivergenceRatio ratio{{}};
-  (void)ratio.observe(0.4);
-  EXPECT_LT(ratio.observe(0.8), 0.0);
+  (void)ratio.observe(weighed(0.4));
+  EXPECT_LT(ratio.observe(weighed(0.8)).divergence_ratio(), 0.0);
+}
+
+TEST(DivergenceRatio, CountsNoScanOfALostPose) {
+  paper::DivergenceRatio ratio{{}};
+  EXPECT_EQ(ratio.observe(weighed(0.2, LocalizerState::kLost)).divergence_ratio(), 0.0);
+  EXPECT_EQ(ratio.observe(weighed(0.8)).w_slow, 0.8);
+  EXPECT_EQ(ratio.observe(weighed(0.2, LocalizerState::kGlobal)).w_fast, 0.8);
 }
 
 class PaperPhases : public testing::Test {
  protected:
-  PaperPhases() {
-    params.method = MappingMethod::kPaper;
-    params.divergence = {.alpha_slow = 0.01, .alpha_fast = 0.5};
-  }
+  PaperPhases() { params.method = MappingMethod::kPaper; }
 
   /// Sends a scan with that weight.
   std::optional<ScanSet> send(double w_avg, double n_eff = 400.0, LocalizerState state = LocalizerState::kTracking,
@@ -53,7 +68,9 @@ class PaperPhases : public testing::Test {
     tracked.estimate.state = state;
     tracked.estimate.map = std::make_shared<const OccupancyGrid>();
     tracked.odometry_epoch = epoch;
-    return store->observe(tracked);
+    tracked.weights = ratio.observe(tracked.estimate);
+    r_d = tracked.weights.divergence_ratio();
+    return test::set_in(store->observe(tracked));
   }
   /// Good scans until the averages agree.
   void settle() {
@@ -62,6 +79,8 @@ class PaperPhases : public testing::Test {
 
   StoreScanParams params;
   std::optional<StoreScan> store;
+  paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.5}};
+  double r_d = 0.0;
   std::uint32_t sent = 0;
 };
 
@@ -79,7 +98,7 @@ TEST_F(PaperPhases, BeginAtTheFirstPositiveRatioAndEndBelowZero) {
   EXPECT_EQ(set->phase, 1u);
   EXPECT_EQ(set->method, MappingMethod::kPaper);
   EXPECT_FALSE(store->awareness().in_phase);
-  EXPECT_LT(store->awareness().r_d, 0.0);
+  EXPECT_LT(r_d, 0.0);
   EXPECT_GT(set->scans.size(), 5u);
   EXPECT_LT(set->began, set->ended);
 }
@@ -90,7 +109,7 @@ TEST_F(PaperPhases, KeepAScanWithTheProbabilityOfTheRatio) {
   double expected = 0.0;
   for (; sent_in_phase < 400; ++sent_in_phase) {
     (void)send(0.5);
-    expected += std::max(0.0, store->awareness().r_d);
+    expected += std::max(0.0, r_d);
     if (!store->awareness().in_phase) break;
   }
   constexpr double kFourDeviations = 40.0;  // of a sum of 400 draws, at most √(400/4) each
@@ -109,7 +128,7 @@ TEST_F(PaperPhases, KeepOnlyWhatIsTracked) {
   settle();
   for (int i = 0; i < 50; ++i) (void)send(0.1, 400.0, LocalizerState::kLost);
   EXPECT_FALSE(store->awareness().in_phase);
-  EXPECT_EQ(store->awareness().r_d, 0.0);
+  EXPECT_EQ(r_d, 0.0);
 }
 
 TEST_F(PaperPhases, AreAbandonedWhereTheLocalizerIsLost) {
@@ -142,6 +161,7 @@ TEST_F(PaperPhases, EndWhereTheOdometryJumps) {
 TEST_F(PaperPhases, DrawTheSameScansFromTheSameSeed) {
   const auto numbers = [&](std::uint64_t seed) {
     store.emplace(params, seed);
+    ratio = paper::DivergenceRatio{{.alpha_slow = 0.01, .alpha_fast = 0.5}};
     sent = 0;
     settle();
     for (int i = 0; i < 30; ++i) (void)send(0.5);

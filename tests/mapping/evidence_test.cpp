@@ -11,6 +11,7 @@
 #include "mapping/store_scan.hpp"
 #include "tests/support/scans/drawn_scan.hpp"
 #include "tests/support/scans/kept_scans.hpp"
+#include "tests/support/scans/map_requests.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping {
@@ -31,7 +32,7 @@ class Drive {
     for (double t = 0.0; t < duration_s; t += kPeriod_s, time_s += kPeriod_s) {
       const double way_m = std::fmod(time_s * speed_m_per_s, 10.0);
       const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
-      const auto set = store.observe(test::drawn_scan(world(time_s), map, pose, time_s, random, noise));
+      const auto set = test::set_in(store.observe(test::drawn_scan(world(time_s), map, pose, time_s, random, noise)));
       if (!set) continue;
       const scan_set::MapUpdate update = map_update(*map, *set, {});
       if (!update.accepted()) continue;
@@ -216,7 +217,8 @@ class EvidenceUpdate : public testing::Test {
     Random random{5};
     const auto shared = std::make_shared<const OccupancyGrid>(map);
     for (int i = 0; i < 100 && set.scans.empty(); ++i) {
-      const auto found = store.observe(test::drawn_scan(world, shared, {8.0 + 0.05 * i, 6.8, 0.4}, 0.2 * i, random));
+      const auto found =
+          test::set_in(store.observe(test::drawn_scan(world, shared, {8.0 + 0.05 * i, 6.8, 0.4}, 0.2 * i, random)));
       if (found) set = *found;
     }
   }

@@ -8,9 +8,11 @@
 
 #include "mapping/map_update.hpp"
 #include "mapping/map_update_params.hpp"
+#include "mapping/paper/divergence_ratio.hpp"
 #include "mapping/registration/contour_score.hpp"
 #include "mapping/store_scan.hpp"
 #include "tests/support/scans/hall_drive.hpp"
+#include "tests/support/scans/map_requests.hpp"
 #include "tests/support/worlds/changed_hall.hpp"
 
 namespace deltamap::mapping {
@@ -24,13 +26,16 @@ TEST(UpdateLoop, BringsTheMapNearerToTheChangedHallAndKeepsTheRobotInIt) {
   StoreScanParams params;
   params.method = MappingMethod::kPaper;
   StoreScan store{params, 31};
+  paper::DivergenceRatio ratio{{}};
   std::uint32_t revision = 0;
   double most_error_m = 0.0;
   for (int lap = 0; lap < 4; ++lap) {
     for (const Point2& place : test::way_round()) {
       drive.drive_to(place, lap == 0 ? before : after, [&](const TrackedScan& tracked) {
         most_error_m = std::max(most_error_m, distance_between(tracked.estimate.map_from_robot, drive.truth()));
-        const auto set = store.observe(tracked);
+        TrackedScan weighed = tracked;
+        weighed.weights = ratio.observe(tracked.estimate);
+        const auto set = test::set_in(store.observe(weighed));
         if (!set) return;
         scan_set::MapUpdate update = map_update(map, *set, {});
         std::printf("lap %d: %zu scans, acceptance %.3f, %s, %zu cells\n", lap, set->scans.size(), update.acceptance,

@@ -50,13 +50,12 @@ TEST(SequentialRun, WithoutADelayLocalizesOnItFromTheNextScanOn) {
   EXPECT_EQ(revision_at(run, 10.1), 1u);
 }
 
-TEST(SequentialRun, HasNothingToWithdrawWhereNoPoseHasProvenWrong) {
+TEST(SequentialRun, AsksNothingOfTheMapWhereNothingIsInView) {
   const auto map = std::make_shared<const OccupancyGrid>(test::drawn_hall(0.05));
   SequentialRun run = run_with_delay(map, 0.0);
   Scan scan;
   scan.time = at(1.0);
   EXPECT_FALSE(run.look_for_changes(run.observe(scan)));
-  EXPECT_FALSE(run.withdraw());
 }
 
 }  // namespace

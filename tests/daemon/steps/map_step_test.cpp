@@ -31,16 +31,16 @@ class Withdrawal : public testing::Test {
     for (int scan = 0; scan < 600; ++scan, time_s += 0.2) {
       const double way_m = std::fmod(time_s * 0.4, 10.0);
       const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
-      const auto set = store_scan.observe(test::drawn_scan(world, step.map(), pose, time_s, random, noise));
-      if (!set) continue;
-      MapStep::Result result = step.update(*set);
+      const auto request = store_scan.observe(test::drawn_scan(world, step.map(), pose, time_s, random, noise));
+      if (!request) continue;
+      MapStep::Result result = step.take(*request);
       if (result.revision) return result;
     }
     ADD_FAILURE() << "nothing was written";
     return {};
   }
   [[nodiscard]] MapStep::Result withdraw(Timestamp from, double after_s) {
-    return step.withdraw({.time = at(time_s + after_s), .from = from});
+    return step.take(WithdrawOrder{.time = at(time_s + after_s), .from = from});
   }
 
   OccupancyGrid hall = test::drawn_hall(0.05);
@@ -83,7 +83,7 @@ TEST_F(Withdrawal, LeavesWhatIsSettled) {
   const OccupancyGrid kept = *step.map();
   ScanSet later;
   later.settled = written.note.time + std::chrono::nanoseconds{1};
-  (void)step.update(later);
+  (void)step.take(later);
   const MapStep::Result result = withdraw(Timestamp::min(), 1.0);
   EXPECT_FALSE(result.revision);
   EXPECT_EQ(result.note.reason, "nothing to withdraw");
@@ -109,7 +109,7 @@ TEST_F(Withdrawal, StandsInTheMapStore) {
 TEST_F(Withdrawal, ASetOfADoubtfulPoseIsRefusedByName) {
   ScanSet set;
   set.pose_in_doubt = true;
-  const MapStep::Result result = step.update(set);
+  const MapStep::Result result = step.take(set);
   EXPECT_FALSE(result.revision);
   EXPECT_EQ(result.note.reason, "pose in doubt");
 }

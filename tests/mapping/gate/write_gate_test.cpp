@@ -229,8 +229,12 @@ class Sets : public testing::Test {
   }
   void take(const TrackedScan& tracked, std::vector<ScanSet>& handed_on) {
     sets.observe(tracked);
-    if (sets.withdrawal()) ordered_back.push_back(*sets.withdrawal());
-    while (auto set = sets.next()) handed_on.push_back(*std::move(set));
+    while (auto request = sets.next()) {
+      if (const auto* order = std::get_if<WithdrawOrder>(&*request))
+        ordered_back.push_back(*order);
+      else
+        handed_on.push_back(std::get<ScanSet>(*std::move(request)));
+    }
   }
   void end_set(double span_s, std::uint32_t phase) {
     sets.take(set_of(robot.time_s() - span_s, robot.time_s(), phase), robot.next());

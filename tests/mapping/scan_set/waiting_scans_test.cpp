@@ -13,6 +13,7 @@
 #include "mapping/store_scan.hpp"
 #include "tests/mapping/straight_drive.hpp"
 #include "tests/support/scans/drawn_scan.hpp"
+#include "tests/support/scans/map_requests.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::scan_set {
@@ -60,7 +61,7 @@ class GoneWhileShut {
       tracked.estimate.belief.pose_right = 0.95;
       tracked.estimate.belief.stable = {100, 97, 1, 2};
       tracked.estimate.belief.other_share = is_unique ? 0.0 : 0.3;
-      const auto set = store_.observe(tracked);
+      const auto set = test::set_in(store_.observe(tracked));
       shut_s += store_.awareness().gate == gate::GateReason::kOpen ? 0.0 : 0.2;
       if (!set) continue;
       const MapUpdate update = map_update(*map, *set, {});
