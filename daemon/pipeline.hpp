@@ -31,7 +31,7 @@ class Pipeline {
     PortOpener open;                           ///< empty: the serial devices of the settings
     drivers::SessionMode mode = drivers::SessionMode::kLive;
     std::function<void(const std::string&)> log;     ///< any thread: a short line
-    std::function<void(const std::string&)> warn{};  ///< likewise, of what is degraded; empty: log
+    std::function<void(const std::string&)> warn{};  ///< any thread: a line on what is degraded; empty: log
     std::function<void(LogLevel)> set_log_level{};   ///< control thread; empty: the log has no levels
     std::function<void(const std::string&)> failed;  ///< any thread: a stage has ended by an exception
   };

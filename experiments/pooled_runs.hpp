@@ -35,7 +35,7 @@ class PooledRuns {
   [[nodiscard]] double number(const std::string& name) const { return all_.number(name); }
   [[nodiscard]] Figure figure(const std::string& name, const std::string& number, const std::string& unit = "",
                               const std::optional<Target>& target = {}, const std::string& peers = "") const;
-  /// Likewise of a count, a least or a most: without an interval.
+  /// A figure that is a count, a least or a most: without an interval.
   [[nodiscard]] Figure figure_of_extreme(const std::string& name, const std::string& number,
                                          const std::string& unit = "", const std::optional<Target>& target = {},
                                          const std::string& peers = "") const;

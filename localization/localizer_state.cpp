@@ -149,9 +149,9 @@ void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const 
   has_gone_through = has_gone_through && sensor::explained_share(field, ends, *expected) < params.fit.found_above;
   if (has_gone_through) return;
   const sensor::MappedBeams mapped{*map, field, {*expected, best.covariance}, robot_from_laser};
-  std::size_t telling = 0;
-  while (telling < ends.size() && mapped.tells({ends.x_m[telling], ends.y_m[telling]})) ++telling;
-  if (telling == ends.size()) return;
+  std::size_t mapped_ends = 0;
+  while (mapped_ends < ends.size() && mapped.tells({ends.x_m[mapped_ends], ends.y_m[mapped_ends]})) ++mapped_ends;
+  if (mapped_ends == ends.size()) return;
   motion::keep_ends(
       ends, [&](const Point2& end) { return mapped.tells_everywhere(end); }, ends);
   faces.keep([mapped](const Point2& end) { return mapped.tells_everywhere(end); });

@@ -11,7 +11,7 @@ namespace {
 constexpr double kCrawlMPerS = 0.02;         // slower than this is standing
 constexpr double kControllerCycleS = 0.1;    // A6: so late the controller may notice that its watchdog is due
 constexpr double kAccelerationMPerS2 = 0.3;  // of a P3-DX as delivered (A10: TRANSACC)
-constexpr double kTurnAccelerationRadPerS2 = radians(100.0);  // likewise (ROTACC)
+constexpr double kTurnAccelerationRadPerS2 = radians(100.0);  // of a P3-DX as delivered (A10: ROTACC)
 constexpr double kMostTurnRad = 0.5 * std::numbers::pi;       // further on it would go where the laser does not look
 constexpr int kHalvings = 7;                                  // of the share of a speed: 5 mm/s of 0.7 m/s
 constexpr std::uint8_t kLaserErrorSeverity = 3;               // B6: 3 error, 4 fatal

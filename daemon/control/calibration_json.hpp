@@ -10,7 +10,7 @@
 namespace deltamap::daemon::control {
 
 /// A JSON object: distance and turn in per cent beyond what the wheels count, drift in degrees a metre, lag in ms, the
-/// mount's error in mm and degrees; `deviations` likewise. Null where nothing is known.
+/// mount's error in mm and degrees; `deviations` in the same units. Null where nothing is known.
 [[nodiscard]] std::string calibration_json(const std::optional<localization::motion::DriveCalibration>& calibration);
 
 }  // namespace deltamap::daemon::control

@@ -23,7 +23,7 @@ inline constexpr std::string_view kDrivePath = "/drive";          ///< a WebSock
 /// by everybody, shorter than kShortestToken, or with other characters than letters, digits, '-', '_' and '.'.
 [[nodiscard]] std::string read_token(const std::filesystem::path& file);
 
-/// Likewise; empty where there is no file.
+/// The token of that file, or an empty one where no file is named.
 [[nodiscard]] inline std::string token_in(const std::filesystem::path& file) {
   return file.empty() ? std::string{} : read_token(file);
 }

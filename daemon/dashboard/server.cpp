@@ -113,7 +113,7 @@ struct Server::State {
 
   Host host;
   std::set<Viewer*> viewers;  // among the connections
-  std::size_t drivers = 0;    // likewise
+  std::size_t drivers = 0;    // connections that may drive
   asio::io_context loop{1};
   sockets::AcceptLoop<tcp> clients;
   asio::steady_timer period_timer;

@@ -18,9 +18,9 @@ using dashboard::Answer;
 using dashboard::Request;
 using drivers::port::port_clock_now;
 
-constexpr double kScanPeriod_s = 0.19;  // with a look every 0.1 s: five scans a second at most
-constexpr double kStoredPeriod_s = 0.99;
-constexpr double kStatusPeriod_s = 0.99;  // likewise: once a second
+constexpr double kScanPeriod_s = 0.19;    // with a look every 0.1 s: five scans a second at most
+constexpr double kStoredPeriod_s = 0.99;  // with the same look: once a second
+constexpr double kStatusPeriod_s = 0.99;  // once a second
 constexpr const char* kJson = "application/json";
 
 }  // namespace

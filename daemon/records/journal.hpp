@@ -72,7 +72,7 @@ class Journal {
   [[nodiscard]] bool has_gap() const { return has_gap_; }
   /// The newest revision to be taken before the scan; nothing where none is.
   [[nodiscard]] std::optional<std::uint32_t> revision_before(std::uint32_t scan) const;
-  /// Likewise of the transient layer.
+  /// The number of the newest transient layer to be taken before the scan; nothing where none is.
   [[nodiscard]] std::optional<std::uint32_t> transients_before(std::uint32_t scan) const;
   [[nodiscard]] bool was_dropped(std::uint32_t scan) const { return dropped_.contains(scan); }
   [[nodiscard]] bool was_lost(std::uint32_t scan) const { return lost_.contains(scan); }

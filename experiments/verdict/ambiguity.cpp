@@ -13,7 +13,7 @@ namespace deltamap::experiments {
 namespace {
 
 constexpr double kTellUpTo = 1.5;      // times the log odds that are asked for
-constexpr double kAnyRival = 0.99;     // likewise: a rival that makes the path ambiguous, rounding aside
+constexpr double kAnyRival = 0.99;     // times them: another path that makes this one ambiguous, rounding aside
 constexpr std::size_t kStride = 61;    // a prime: neighbours of the path lie far apart in the order of judging
 constexpr double kMostChanged = 0.45;  // of the pieces: beyond this a misfit would hardly speak against a pose
 

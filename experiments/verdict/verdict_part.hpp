@@ -34,9 +34,9 @@ class VerdictPart {
   [[nodiscard]] double wrong_called_right() const;                     ///< for more than 5 s unbroken
   [[nodiscard]] double right_called_lost() const;                      ///< of those that never were wrong
   [[nodiscard]] double recovered_in(double driving_s) const;           ///< of the once wrong
-  [[nodiscard]] double called_right_again_in(double driving_s) const;  ///< likewise, and called right
+  [[nodiscard]] double called_right_again_in(double driving_s) const;  ///< and called right by then
 
-  /// Likewise, counted from when the path had become unambiguous.
+  /// Of the once wrong, counted from when the path had become unambiguous.
   [[nodiscard]] double recovered_in_after_unique(double driving_s) const;
 
   /// Driving until a wrong pose has recovered, s; those that never do are as late as can be: NaN.

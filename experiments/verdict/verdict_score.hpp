@@ -19,7 +19,7 @@ enum class PoseTruth { kRight, kBetween, kWrong };
 /// noticed_s (until a wrong pose was not called right; NaN: never wrong, or never noticed),
 /// recovered_s (from the first wrong scan to the first scan after the last wrong one with which 5 s unbroken begin of
 /// a right pose that is tracked; NaN: never wrong, or not recovered) and recovered_driving_s (the driving within that),
-/// recovered_called_right_s (likewise of driving, until right, tracked and called right; NaN: never),
+/// recovered_called_right_s (driving from the first wrong scan until right, tracked and called right; NaN: never),
 /// ends_wrong, ends_called_right, pose_brier and map_brier with their scans.
 [[nodiscard]] std::vector<std::pair<std::string, double>> verdict_numbers(const ScanTable& scans);
 

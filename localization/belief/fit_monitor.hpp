@@ -28,7 +28,7 @@ struct FitParams {
   double converged_m = 0.3;              ///< deviation of position that ends global localization, m; > 0
   double converged_rad = radians(10.0);  ///< deviation of heading that ends global localization, rad; > 0
   double converged_after_m = 2.0;        ///< driven before it may end, m; >= 0: one view may look like another
-  double converged_after_rad = radians(172.0);  ///< or turned, rad; >= 0
+  double converged_after_rad = radians(172.0);  ///< or heading turned before it may, rad; >= 0
   double converged_unfit_after_m = 8.0;  ///< driven before it may end where little fits: the map may be old, m; >= 0
 };
 

@@ -98,7 +98,7 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   decide(shares);
 }
 
-/// A place that a search has chosen because it fits proves less by fitting: a wrong one is an image of the right one.
+/// A place that a search has chosen because it fits proves less by fitting: a wrong one is an alias of the right one.
 /// What does not fit speaks against it as against any other.
 double PoseJudge::told_by(double evidence) const {
   return found_ && evidence > 0.0 ? std::max(0.0, evidence - params_.doubt_after_search) : evidence;

@@ -17,7 +17,7 @@ struct GlobalSearchParams {
   int places = 600;                        ///< candidates that are slid to their best fit; > 0
   int places_a_scan = 200;                 ///< of these in one scan; > 0
   double again_after_m = 0.5;              ///< driven until the whole map is looked at again, m; > 0
-  double again_after_rad = radians(30.0);  ///< or turned, rad; > 0
+  double again_after_rad = radians(30.0);  ///< or heading turned until then, rad; > 0
 };
 
 /// Refines a pose of the coarse lattice to where the scan fits.

@@ -23,7 +23,7 @@ struct HypothesisBankParams {
   double evidence_beams = 12.0;     ///< independent beams that so many count as if each hit a new surface; fewer count
                                     ///< as less, no scan as more than a quarter; > 0
   double step_m = 0.2;              ///< driven until a scan tells something new, m; > 0
-  double step_rad = radians(15.0);  ///< or turned, rad; > 0
+  double step_rad = radians(15.0);  ///< or heading turned until then, rad; > 0
   double memory_steps = 40.0;       ///< scans that count until their evidence has faded to 1/e; > 1
   double hopeless = 14.0;           ///< behind the best one by this log evidence a hypothesis is given up; > 0
   double same_m = 0.3;              ///< two hypotheses nearer than this are one, m; > 0
@@ -106,7 +106,7 @@ class HypothesisBank {
   /// Slides `count` hypotheses, a round after the other, those that come close to the best one and the believed one
   /// always.
   void slide(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count, double unknown_s);
-  /// Likewise, but for the believed one.
+  /// The same for all but the believed one.
   void slide_others(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count,
                     double unknown_s);
   /// Once for each decorrelated scan. `evidence_weight`: how much of it counts as evidence since the robot may have

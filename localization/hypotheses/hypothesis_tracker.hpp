@@ -24,8 +24,8 @@ namespace deltamap::localization::hypotheses {
 struct HypothesisTrackerParams {
   int probes = 800;                    ///< poses of the whole map that are looked at in a scan while tracking; >= 0
   int probes_nearby = 60;              ///< and around the believed pose: slips; >= 0
-  double nearby_m = 1.5;               ///< how far "around" is, m; > 0
-  double nearby_rad = radians(20.0);   ///< likewise, rad; > 0
+  double nearby_m = 1.5;               ///< how far "around" is in position, m; > 0
+  double nearby_rad = radians(20.0);   ///< and in heading, rad; > 0
   double nearby_prior = 1e-3;          ///< odds of such a hypothesis against the believed one, before any scan; 0..1
   double elsewhere_prior = 1e-5;       ///< odds of any other hypothesis: nobody carries robots about; 0..1
   double kidnapped_now_prior = 0.003;  ///< odds that it has just been carried to one that fits from then on; 0..1

@@ -25,7 +25,7 @@ struct MotionModelParams {
   double unknown_turn_rate_rad_per_s = radians(17.2);  ///< deviation a second without odometry, rad; >= 0
   double slip_probability = 1e-7;  ///< that wheels slip or someone pushes, a step; 0..0.1, 0 = never
   double slip_m = 0.2;             ///< deviation of what is then lost or made up, m; > 0
-  double slip_rad = radians(5.0);  ///< likewise of the heading, rad; > 0
+  double slip_rad = radians(5.0);  ///< deviation of the heading that is lost or made up, rad; > 0
 };
 
 /// Deviation of a slip across the robot's way, as a share of that along it.

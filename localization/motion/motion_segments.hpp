@@ -19,7 +19,7 @@ namespace deltamap::localization::motion {
 /// way, can be told from those of the wheels, which do.
 struct MotionSegmentsParams {
   double step_m = 0.05;            ///< a step of the filter: driven, m; > 0 (localization.update.distance_m)
-  double step_rad = radians(2.0);  ///< or turned, rad; > 0 (localization.update.turn_deg)
+  double step_rad = radians(2.0);  ///< or heading turned in one, rad; > 0 (localization.update.turn_deg)
   std::array<double, 4> length_m{0.3, 0.6, 1.2, 2.4};
   std::array<double, 4> turn_rad{radians(20.0), radians(40.0), radians(80.0), radians(160.0)};
 };
@@ -31,7 +31,7 @@ enum class MotionSource : std::uint8_t {
   kMetrePerMetre,
   kMetrePerTurn,
   kEstimatePosition,  ///< the localizer's own error at both ends, m
-  kEstimateHeading    ///< likewise, rad
+  kEstimateHeading    ///< its own error of heading at both ends, rad
 };
 inline constexpr std::size_t kMotionSources = 6;
 

@@ -66,8 +66,8 @@ void OdometryBuffer::add(const Odometry& odometry) {
 }
 
 void OdometryBuffer::clock_fell_back(Timestamp last_scan) {
-  constexpr double kScansLagS = 0.3;
-  if (count_ == 0 || seconds(last_scan - newest().time) > kScansLagS) return;  // it has fallen back here, too
+  constexpr double kReportsLagS = 0.3;  // the newest report may be so much older than the scan
+  if (count_ == 0 || seconds(last_scan - newest().time) > kReportsLagS) return;  // it has fallen back here, too
   begin_anew();
 }
 

@@ -25,7 +25,7 @@ struct ParticleCluster {
   double weight = 0.0;                                 ///< share of all particles' weight
 };
 
-/// Finds the heaviest hypothesis; keeps its working memory from scan to scan.
+/// Finds the heaviest cluster; keeps its working memory from scan to scan.
 class ParticleClusterFinder {
  public:
   explicit ParticleClusterFinder(const ParticleClusterParams& params) : params_{params} {}

@@ -26,7 +26,7 @@ struct LikelihoodFieldParams {
 
 /// True for an occupied cell with a free neighbour, or an unknown neighbour that is next to free space (8 and 4
 /// neighbours), and for one with neither neighbour in its row, or neither in its column, occupied: the face between two
-/// things, of which one may be gone; specks in unknown space too.
+/// things, of which one may be gone; single cells in unknown space too.
 [[nodiscard]] bool is_contour(const OccupancyGrid& map, Cell cell);
 
 class LikelihoodField {

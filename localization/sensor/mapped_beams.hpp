@@ -18,8 +18,8 @@ class MappedBeams {
 
   /// `end`: of a beam, robot frame, m. An end that a contour explains always tells.
   [[nodiscard]] bool tells(const Point2& end) const { return tells(end, {0.0, 0.0}); }
-  /// Likewise at all poses within two deviations, half a metre at most. One that tells at some of them alone would pull
-  /// the pose to these: to where a wall that goes on beyond the known map is known.
+  /// Whether it tells at all poses within two deviations, half a metre at most. One that tells at some of them alone
+  /// would pull the pose to these: to where a wall that goes on beyond the known map is known.
   [[nodiscard]] bool tells_everywhere(const Point2& end) const;
 
  private:

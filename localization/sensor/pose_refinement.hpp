@@ -13,7 +13,7 @@ struct RefinementParams {
   int steps = 6;                            ///< Gauss-Newton steps at most; 0..30, 0 = off
   double prior_share = 0.3;                 ///< how strongly the particles' covariance holds the pose; 0..10
   double longest_shift_m = 0.3;             ///< a refined pose farther from the particles' mean is refused, m; > 0
-  double largest_turn_rad = radians(10.0);  ///< likewise, rad; > 0
+  double largest_turn_rad = radians(10.0);  ///< and one that is turned farther, rad; > 0
   double range_deviation_m = 0.01;          ///< of the laser: ends that scatter more show a rough map, m; > 0
   double alike_beams = 100.0;               ///< beams, of this and other scans, that share an error of the map; >= 1
 };

@@ -106,7 +106,7 @@ void OffsetFilter::cease(std::size_t surface) {
     SurfaceRecord& record = map_.record(visits_[surface].id);
     const double holds = switches_[surface].holds;
     record.visits += 1.0;
-    record.held += holds;
+    record.visits_in_place += holds;
     if (holds <= 0.5) record.offset_m = state_.mean()[OffsetState::offset_of(surface)];
   }
   drop(surface);

@@ -100,7 +100,7 @@ class OffsetFilter {
   OffsetState state_;
   OffsetState last_;                     ///< before the newest keyframe
   std::vector<SurfaceSwitch> switches_;  ///< of the surfaces of the state, in its order
-  std::vector<Visit> visits_;            ///< likewise
+  std::vector<Visit> visits_;            ///< of the same surfaces, in the same order
   double since_doubt_m_ = 0.0;           ///< driven since another reading was last looked for
 };
 

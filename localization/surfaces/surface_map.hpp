@@ -16,13 +16,13 @@ namespace deltamap::localization::surfaces {
 /// What is known of a surface of the map from earlier visits.
 struct SurfaceRecord {
   Surface surface;
-  double offset_m = 0.0;  ///< along the normal, from where the map has it, when it was last in view
-  double held = 0.0;      ///< visits in which it was where it had been before
+  double offset_m = 0.0;         ///< along the normal, from where the map has it, when it was last in view
+  double visits_in_place = 0.0;  ///< in which it was where it had been before
   double visits = 0.0;
   /// P(holds) at the next visit.
   [[nodiscard]] double usually_holds() const {
     constexpr double kVisitsBefore = 3.0;  // that a surface is taken to have had
-    return (kVisitsBefore * sensor::kUsuallyHolds + held) / (kVisitsBefore + visits);
+    return (kVisitsBefore * sensor::kUsuallyHolds + visits_in_place) / (kVisitsBefore + visits);
   }
   static constexpr std::int32_t kNotFollowed = -1;
   std::int32_t followed_as = kNotFollowed;  ///< its number among those that the filter follows

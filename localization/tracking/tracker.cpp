@@ -22,12 +22,12 @@ constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are s
 Tracker::Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed)
     : params_{params},
       filter_{params.particles, seed},
-      pose_filter_{params.track, params.motion},
-      clusters_{params.hypothesis},
+      pose_filter_{params.pose_filter, params.motion},
+      clusters_{params.clusters},
       slip_finder_{params.motion, params.refinement} {
   if (!params.follow_surfaces) return;
-  surfaces_ = std::make_unique<SurfaceTracker>(params.track.wheels, params.motion, params.particles.evidence_beams,
-                                               std::move(map));
+  surfaces_ = std::make_unique<SurfaceTracker>(params.pose_filter.wheels, params.motion,
+                                               params.particles.evidence_beams, std::move(map));
 }
 
 Tracker::~Tracker() = default;
@@ -253,7 +253,7 @@ double Tracker::beam_share(const SeenScan& seen) const {
 void Tracker::draw_anew_if_needed() {
   const std::size_t before = filter_.particles().size();
   const bool drawn = filter_.resample_if_needed(clusters_.cell_count());
-  // Where all belonged to the best hypothesis, all that were drawn from them do.
+  // Where all belonged to the heaviest cluster, all that were drawn from them do.
   drawn_anew_ = drawn && (clusters_.members().size() != before || filter_.particles().size() != before);
 }
 

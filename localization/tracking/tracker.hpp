@@ -35,9 +35,9 @@ struct UpdateParams {
 struct TrackerParams {
   particles::ParticleFilterParams particles;
   motion::MotionModelParams motion;
-  particles::ParticleClusterParams hypothesis;
+  particles::ParticleClusterParams clusters;
   sensor::RefinementParams refinement;
-  PoseFilterParams track;
+  PoseFilterParams pose_filter;
   UpdateParams update;
   bool follow_surfaces = true;  ///< where straight surfaces explain the scans they lead, and the particles rest
 };
@@ -83,7 +83,7 @@ class Tracker {
   /// Surfaces that stand where the map has them fix the pose; never while the particles lead.
   [[nodiscard]] bool is_fixed_by_surfaces() const;
 
-  /// The heaviest hypothesis at the last update.
+  /// The heaviest cluster of particles at the last update.
   [[nodiscard]] const particles::ParticleCluster& best() const { return best_; }
   /// As of the last update; null while the surfaces lead: the particles rest then, somewhere behind.
   [[nodiscard]] const particles::ParticleSet* particles() const;

@@ -13,9 +13,9 @@ namespace deltamap::mapping::gate {
 struct PoseJumpParams {
   double window_s = 3.0;             ///< over which the two are compared, s; > 0
   double least_m = 0.25;             ///< a smaller difference is none, m; > 0
-  double least_rad = radians(12.0);  ///< likewise of the heading, rad; > 0
+  double least_rad = radians(12.0);  ///< a smaller difference of heading is none, rad; > 0
   double per_metre = 0.05;           ///< more is allowed for each metre driven: wheels are not exact; >= 0
-  double rad_per_rad = 0.1;          ///< likewise of the heading; >= 0
+  double rad_per_rad = 0.1;          ///< more of heading for each radian turned; >= 0
   double deviations = 3.0;           ///< σ of both estimates that are allowed besides; >= 0
 };
 

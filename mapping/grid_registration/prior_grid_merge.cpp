@@ -20,7 +20,7 @@ constexpr std::size_t kPlacingContour = 2000;  // cells of the local contour nea
 constexpr std::size_t kContourPoints = 250;    // of these, to be brought onto the map's
 constexpr std::size_t kFewEdgeCells = 2500;    // to come near, before more of them count
 constexpr double kRoughlySettled_cells = 0.02;
-constexpr double kRivalAnswerCost = 15.0;       // above the best answer's: Eq. 11 is asked
+constexpr double kNearlyBestCost = 15.0;        // above the best answer's: Eq. 11 is asked
 constexpr double kLeastLead = 0.01;             // in Eq. 11 along the edges, over the second best
 constexpr double kNearlySettled_cells = 0.03;   // well inside the reach of the last search
 constexpr std::size_t kMostEdgeContour = 1750;  // whose cells and neighbours count at the end
@@ -54,20 +54,20 @@ struct Choice {
 template <typename AcceptanceOf>
 Choice chosen(const std::vector<PriorAnswer>& answers, const PriorMergeParams& params, AcceptanceOf&& acceptance_of) {
   if (answers.empty()) return {};
-  std::vector<const PriorAnswer*> rivals;
+  std::vector<const PriorAnswer*> candidates;
   for (const PriorAnswer& answer : answers) {
-    const bool is_rival = answer.cost < answers.front().cost + kRivalAnswerCost;
-    if (is_rival && refusal_of(answer, params) == merge::MergeRefusal::kNone) rivals.push_back(&answer);
+    const bool is_nearly_best = answer.cost < answers.front().cost + kNearlyBestCost;
+    if (is_nearly_best && refusal_of(answer, params) == merge::MergeRefusal::kNone) candidates.push_back(&answer);
   }
-  if (rivals.empty()) return {refusal_of(answers.front(), params), &answers.front()};
-  if (rivals.size() == 1) return {merge::MergeRefusal::kNone, rivals.front()};
+  if (candidates.empty()) return {refusal_of(answers.front(), params), &answers.front()};
+  if (candidates.size() == 1) return {merge::MergeRefusal::kNone, candidates.front()};
   double best = -1.0;
   double second = -1.0;
   const PriorAnswer* answer = nullptr;
-  for (const PriorAnswer* const rival : rivals) {
-    const double acceptance = acceptance_of(*rival);
+  for (const PriorAnswer* const candidate : candidates) {
+    const double acceptance = acceptance_of(*candidate);
     second = std::max(second, std::min(best, acceptance));
-    if (acceptance > best) best = acceptance, answer = rival;
+    if (acceptance > best) best = acceptance, answer = candidate;
   }
   return {best < second + kLeastLead ? merge::MergeRefusal::kAmbiguous : merge::MergeRefusal::kNone, answer};
 }

@@ -95,9 +95,9 @@ bool clearly_differ(const CellMotion& a, const CellMotion& b) {
          std::abs(turn_between(a.turn_rad, b.turn_rad)) > kApart_rad;
 }
 
-bool fits_nearly_as_well(const OverlayScore& rival, const OverlayScore& best, double margin) {
-  return rival.surface_found > best.surface_found - margin &&
-         rival.surface_agreement > best.surface_agreement - margin && rival.acceptance() > best.acceptance() - margin;
+bool fits_nearly_as_well(const OverlayScore& other, const OverlayScore& best, double margin) {
+  return other.surface_found > best.surface_found - margin &&
+         other.surface_agreement > best.surface_agreement - margin && other.acceptance() > best.acceptance() - margin;
 }
 
 }  // namespace
@@ -123,14 +123,14 @@ MapMerge chosen(const std::vector<ScoredMotion>& candidates, const OccupancyGrid
   }
   merge.map_from_local = map_from_local(best->motion, map.geometry(), local);
   merge.score = best->score;
-  bool has_rival = false;
+  bool is_ambiguous = false;
   for (const ScoredMotion& candidate : candidates) {
     if (!clearly_differ(candidate.motion, best->motion) || candidate.score.overlap < params.least_overlap) continue;
-    has_rival = has_rival || fits_nearly_as_well(candidate.score, best->score, params.ambiguity_margin);
+    is_ambiguous = is_ambiguous || fits_nearly_as_well(candidate.score, best->score, params.ambiguity_margin);
   }
   if (best->score.surface_agreement < params.least_agreement || best->score.acceptance() < params.least_acceptance) {
     merge.refusal = MergeRefusal::kLowAgreement;
-  } else if (params.refuse_ambiguous && has_rival) {
+  } else if (params.refuse_ambiguous && is_ambiguous) {
     merge.refusal = MergeRefusal::kAmbiguous;
   }
   return merge;

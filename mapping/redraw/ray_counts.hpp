@@ -54,7 +54,7 @@ class RayCounts {
   void for_each_seen(Visit&& visit) const {
     for (const std::uint32_t index : seen()) visit(cell_of(index), count_at(index));
   }
-  /// Likewise, those alone that at least so many beams have passed clearly.
+  /// The same for the cells alone that at least so many beams have passed clearly.
   template <typename Visit>
   void for_each_clear(int least_passes, Visit&& visit) const {
     for (const std::uint32_t index : seen()) {
@@ -101,9 +101,9 @@ class RayCounts {
 
   GridGeometry map_;
   CellBox box_;
-  std::optional<CellBox> part_;      // that beams have to come into
-  std::vector<Mark> marks_;          // by cell of the box
-  std::unique_ptr<Count[]> counts_;  // likewise; of no value where unseen: most cells are, and need not be cleared
+  std::optional<CellBox> part_;            // that beams have to come into
+  std::vector<Mark> marks_;                // by cell of the box
+  std::unique_ptr<Count[]> counts_;        // by cell of the box; of no value where unseen: most cells are
   std::unique_ptr<std::uint32_t[]> seen_;  // cells by index, in the order in which they were
   std::size_t seen_cells_ = 0;
   const OccupancyGrid* walls_ = nullptr;

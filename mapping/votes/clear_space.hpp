@@ -52,7 +52,7 @@ class ClearSpace {
   [[nodiscard]] const GridGeometry& blocks() const { return lattice_.blocks(); }
   /// No cell within so many rows and columns of this one, which lies on the map, is occupied; 0: who knows.
   [[nodiscard]] int clear_cells_around(Cell cell) const { return clear_cells_around_block(lattice_.block_of(cell)); }
-  /// Likewise for each cell of a block.
+  /// The same for every cell of a block.
   [[nodiscard]] int clear_cells_around_block(Cell block) const {
     return (distance(block) - 1) * lattice_.cells_per_block();
   }

@@ -24,7 +24,7 @@ class MomentFile {
 
   /// The messages of one scan; times never step back. Throws std::system_error naming the folder: it is full.
   void add(Timestamp time, const std::vector<std::string>& messages);
-  /// Messages that belong to every scan from the next one on, in place of those before. Throws likewise.
+  /// Messages that belong to every scan from the next one on, in place of those before. Throws as add() does.
   void add_lasting(const std::vector<std::string>& messages);
 
   /// The messages of the newest scan that is not younger than `time`, else of the first one, and those that last: each
