@@ -30,7 +30,7 @@ LOGS = {
     "intel": ("ref_intel", 0.0, (0.0, 80.0), "raw, poor"),
     "wean3": ("ref_wean3", 0.25, (0.0, 80.0), "raw"),
     "aces": ("aces", 0.0, (0.0, 49.0), "reconstructed"),
-    "duke": ("duke", 0.0, (0.0, 8.1), "raw"),
+    "duke": ("duke", 0.4, (0.0, 8.1), "raw"),  # by its turns on the spot: the log tells the laser by the robot's pose
     "p3dx0": ("p3dx0", 0.0, (0.02, 5.5), "raw, of a P3-DX"),
     "uma_map": ("uma_map", 0.78, (0.0, 31.0), "corrected poses"),
     "uma_loc": ("uma_map", 0.78, (0.0, 31.0), "raw"),
