@@ -5,8 +5,7 @@
 
 #include "core/grid_ray.hpp"
 #include "core/random.hpp"
-#include "mapping/merge/overlay_score.hpp"
-#include "tests/support/merge/merge_trial.hpp"
+#include "tests/mapping/grid_registration/wrong_guess.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 
 namespace deltamap::mapping::grid_registration {
@@ -32,17 +31,6 @@ std::vector<Point2> moved(const Pose2& b_from_a, const std::vector<Point2>& poin
   std::vector<Point2> result;
   for (const Point2& point : points) result.push_back(b_from_a * point);
   return result;
-}
-
-PoseCovariance covariance_of(double position_deviation_m, double heading_deviation_rad) {
-  return Eigen::Vector3d{position_deviation_m * position_deviation_m, position_deviation_m * position_deviation_m,
-                         heading_deviation_rad * heading_deviation_rad}
-      .asDiagonal();
-}
-
-/// The guess is wrong by a turn about the robot and a shift.
-Pose2 guess_from_map(const Point2& robot, double dx, double dy, double turn_rad) {
-  return Pose2{robot.x() + dx, robot.y() + dy, turn_rad} * inverse(Pose2{robot.x(), robot.y(), 0.0});
 }
 
 TEST(PriorMerge, FindsTheErrorsThatThePriorAllows) {
@@ -132,51 +120,6 @@ TEST(PriorMerge, RefusesTooFewPointsAndAnEmptyMap) {
   EXPECT_EQ(prior_merge(empty, many, {}, {}).refusal, merge::MergeRefusal::kLowAgreement);
   const std::vector<Point2> outside(50, Point2{500.0, -500.0});
   EXPECT_EQ(prior_merge(hall, outside, {}, {}).refusal, merge::MergeRefusal::kLowAgreement);
-}
-
-/// Small version of `deltamap experiment merge`: two parts that share two thirds, guesses that the prior allows.
-TEST(PriorMerge, BringsALocalMapOntoTheMapToATenthOfACell) {
-  const OccupancyGrid world = test::drawn_warehouse(3);
-  const OccupancyGrid map = test::moved_grid(test::part_of(world, 0.0, 0.75), {}, 0.1);
-  const OccupancyGrid other = test::part_of(world, 0.25, 1.0);
-  const merge::OverlayMap overlay{map};
-  Random random{6};
-  for (int trial = 0; trial < 10; ++trial) {
-    const Pose2 local_from_map{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-3.1, 3.1)};
-    const OccupancyGrid local = test::moved_grid(other, local_from_map, 0.1);
-    const merge::LocalCells cells{local};
-    const Point2 middle = inverse(local_from_map) * cells.middle_in_local();
-    const Pose2 by{random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), random.uniform(-0.05, 0.05)};
-    const Pose2 error = guess_from_map(middle, by.x, by.y, by.theta);
-    const Pose2 guess = error * inverse(local_from_map);
-    const PriorMerge merge = prior_merge(map, local, guess, covariance_of(0.15, 0.035), {});
-    ASSERT_TRUE(merge.accepted()) << trial << ": " << name_of(merge.refusal);
-    const Pose2 found = merge.map_from_guess * guess;
-    EXPECT_LT((found * cells.middle_in_local() - middle).norm(), 0.1 * 0.1) << trial;
-    const auto acceptance_at = [&](const Pose2& pose) {
-      return overlay.score(cells, merge::cell_motion(pose, map.geometry(), cells)).acceptance();
-    };
-    EXPECT_GT(acceptance_at(found), acceptance_at(inverse(local_from_map)) - 0.001) << trial;
-  }
-}
-
-TEST(PriorMerge, RefusesALocalMapOfAnotherPlace) {
-  const OccupancyGrid map = test::moved_grid(test::drawn_warehouse(3), {}, 0.1);
-  OccupancyGrid scattered{{200, 200, 0.1, {10.0, 10.0}}, CellState::kFree};
-  Random random{7};
-  for (int i = 0; i < 800; ++i) {
-    scattered.set({static_cast<int>(random.index_below(200)), static_cast<int>(random.index_below(200))},
-                  CellState::kOccupied);
-  }
-  const PriorMerge merge = prior_merge(map, scattered, {}, covariance_of(0.15, 0.035), {});
-  EXPECT_EQ(merge.refusal, merge::MergeRefusal::kLowAgreement);
-  EXPECT_EQ(merge.map_from_guess, Pose2{});
-}
-
-TEST(PriorMerge, RefusesALocalMapWithoutSurface) {
-  const OccupancyGrid map = test::drawn_hall();
-  const OccupancyGrid floor{{50, 50, 0.1, {0.0, 0.0}}, CellState::kFree};
-  EXPECT_EQ(prior_merge(map, floor, {}, covariance_of(0.1, 0.03), {}).refusal, merge::MergeRefusal::kTooFewPoints);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include "core/grid_ray.hpp"
 #include "core/random.hpp"
+#include "tests/support/scans/seen_scan.hpp"
+#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::mapping::redraw {
 namespace {
@@ -145,6 +147,29 @@ TEST(RayCounts, OfAPartLeaveOutTheBeamsBesideIt) {
   EXPECT_EQ((counts[{22, 0}].passes), 1);
   EXPECT_EQ((counts[{0, 20}].passes), 0);
   EXPECT_EQ(box_seen(kMap, {&placed, 1}, kLongest_m, part).last.row, 1);
+}
+
+TEST(RayCounts, CountNothingBehindAnOpaqueCell) {
+  const OccupancyGrid world = test::drawn_grid({"...........#"}, 0.1);
+  Random random{1};
+  TrackedScan scan = test::seen_scan(world, {0.05, 0.05, 0.0}, 0.0, random);
+  for (Beam& beam : scan.scan.beams) beam.kind = BeamKind::kNotValid;
+  scan.scan.beams[90] = {1.1F, 0.0F, BeamKind::kRange};
+  scan.rays[90].end = {1.1F, 0.0F};
+  const CellBox all{{0, 0}, {12, 1}};
+  RayCounts open{world.geometry(), all};
+  open.add({&scan, scan.estimate.map_from_robot}, 20.0, 0.2);
+  EXPECT_GT((open[{11, 0}].hits), 0);
+  EXPECT_GT((open[{8, 0}].passes), 0);
+  RayCounts shut{world.geometry(), all};
+  OccupancyGrid walls = world;
+  walls.set({5, 0}, CellState::kOccupied);
+  walls.set({3, 0}, CellState::kOccupied);
+  shut.stop_at(walls, [](Cell cell) { return cell.column == 5; });
+  shut.add({&scan, scan.estimate.map_from_robot}, 20.0, 0.2);
+  EXPECT_EQ((shut[{11, 0}].hits), 0);
+  EXPECT_EQ((shut[{8, 0}].passes), 0);
+  EXPECT_GT((shut[{5, 0}].passes), 0);
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "mapping/registration/contour_score.hpp"
-#include "mapping/registration/transformed_grid.hpp"
 #include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::mapping::registration {
@@ -42,33 +40,6 @@ TEST(SurfaceAgreement, CountsOccupiedCellsBesideOccupiedOnes) {
   const OccupancyGrid local = drawn_grid({".#....", "....#.", "......"});
   EXPECT_DOUBLE_EQ(surface_agreement(map, local, {}), 0.5);
   EXPECT_DOUBLE_EQ(surface_agreement(map, local, {100.0, 0.0, 0.0}), 0.0);
-}
-
-TEST(TransformedGrid, TurnsAndShiftsWholeCells) {
-  const OccupancyGrid source = drawn_grid({"#. ",  //
-                                           "..."});
-  const OccupancyGrid turned = transformed_grid(source, {2.0, 0.0, radians(90.0)}, {2, 3, 1.0, {0.0, 0.0}});
-  EXPECT_EQ(turned, drawn_grid({" .", "..", "#."}));
-}
-
-TEST(Overridden, KeepsTheMapWhereTheLocalMapIsUnknown) {
-  EXPECT_EQ(overridden(drawn_grid({"#.# "}), drawn_grid({".#  "})), drawn_grid({".## "}));
-}
-
-TEST(ContourScore, PairsOneToOneEqualCellsFirst) {
-  const OccupancyGrid truth = drawn_grid({"......", "###...", "......"});
-  EXPECT_DOUBLE_EQ(contour_score(truth, truth).f1(), 1.0);
-  // One row off: all three still pair. A doubled wall: only half of it does.
-  EXPECT_DOUBLE_EQ(contour_score(truth, drawn_grid({"###...", "......", "......"})).f1(), 1.0);
-  const ContourScore doubled = contour_score(truth, drawn_grid({"###...", "###...", "......"}));
-  EXPECT_DOUBLE_EQ(doubled.recall(), 1.0);
-  EXPECT_DOUBLE_EQ(doubled.precision(), 0.5);
-  EXPECT_DOUBLE_EQ(contour_score(truth, drawn_grid({"......", "....##", "......"})).f1(), 0.0);
-}
-
-TEST(ContourScore, ForgivesWallsWhereTheReferenceIsUnknown) {
-  const ContourScore score = contour_score(drawn_grid({"#.    "}), drawn_grid({"#...##"}));
-  EXPECT_DOUBLE_EQ(score.f1(), 1.0);
 }
 
 }  // namespace

@@ -2,16 +2,13 @@
 #include "mapping/store/map_store.hpp"
 
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
 
-#include "mapping/store/taken_back.hpp"
-#include "tests/support/daemon/stored_maps.hpp"
+#include "tests/mapping/store/written_store.hpp"
 #include "tests/support/files/temporary_folder.hpp"
-#include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::mapping::store {
 namespace {
@@ -21,24 +18,6 @@ namespace fs = std::filesystem;
 using test::complaint;
 using test::first_map;
 using test::revision_after;
-
-/// Appends revisions up to `last` and returns every map.
-std::vector<OccupancyGrid> fill(MapStore& store, std::uint32_t last) {
-  std::vector<OccupancyGrid> maps{first_map()};
-  for (std::uint32_t number = 1; number <= last; ++number) {
-    const MapRevision revision = revision_after(maps.back(), number);
-    store.append(revision, {number, 0.97, "evidence"});
-    maps.push_back(*revision.map);
-  }
-  return maps;
-}
-
-void run_sql(const fs::path& file, const std::string& sql) {
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
-  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
-  sqlite3_close(database);
-}
 
 class Store : public testing::Test {
  protected:
@@ -185,35 +164,6 @@ TEST_F(Store, KeepsThePoseCovariance) {
   EXPECT_EQ(history[1].note.covariance, covariance);
 }
 
-TEST_F(Store, GoesOnWithAFileOfVersion1) {
-  std::vector<OccupancyGrid> maps;
-  {
-    MapStore store{file, first_map()};
-    maps = fill(store, 70);
-    store.append_refusal(timestamp_from_ns(7), {2, 0.4, "low acceptance"});
-  }
-  for (const char* column : {"xx_m2", "xy_m2", "xh_m_rad", "yy_m2", "yh_m_rad", "hh_rad2"}) {
-    run_sql(file, std::string("ALTER TABLE revision DROP COLUMN ") + column);
-  }
-  run_sql(file, "PRAGMA user_version = 1");
-  {
-    const MapStore read{file};
-    EXPECT_EQ(read.grid(70), maps[70]);
-    EXPECT_FALSE(read.history()[70].note.covariance);
-  }
-  MapStore store{file, first_map()};
-  EXPECT_EQ(store.dropped(), 0u);
-  for (std::uint32_t number = 0; number <= 70; ++number) EXPECT_EQ(store.grid(number), maps[number]) << number;
-  store.append(revision_after(maps[70], 71), {3, 0.9, "evidence", PoseCovariance::Identity()});
-  EXPECT_EQ(store.history().back().note.covariance, PoseCovariance::Identity());
-}
-
-TEST_F(Store, RefusesAFileOfALaterVersion) {
-  { const MapStore store{file, first_map()}; }
-  run_sql(file, "PRAGMA user_version = 3");
-  EXPECT_EQ(complaint([&] { MapStore store{file}; }), file.string() + ": map store of version 3, not 1 to 2");
-}
-
 TEST_F(Store, StoresWholeWhatCouldNotBeStoredStepByStep) {
   std::vector<OccupancyGrid> maps;
   {
@@ -244,15 +194,6 @@ TEST_F(Store, KeepsTheNewestThousandRefusals) {
   ASSERT_EQ(history.size(), 3u + 1000u);
   EXPECT_EQ(history.back().note.phase, 1499u);
   EXPECT_EQ(history[3].note.phase, 500u);
-}
-
-TEST(TakenBack, LeavesCellsThatHoldSomethingElse) {
-  const OccupancyGrid before = test::drawn_grid({"....", "...."});
-  const OccupancyGrid after = test::drawn_grid({"##..", "...."});
-  const OccupancyGrid today = test::drawn_grid({"# ..", "...#"});
-  const auto back = taken_back(today, changes_between(before, after));
-  EXPECT_EQ(patched(today, back), test::drawn_grid({". ..", "...#"}));
-  EXPECT_EQ(back.size(), 1u);
 }
 
 TEST_F(Store, RefusesARevisionThatDoesNotFollow) {
@@ -323,21 +264,6 @@ TEST_F(Store, NoticesCellsThatAreNotWhatWasWritten) {
   }
   run_sql(file, "UPDATE revision SET changes = (SELECT changes FROM revision WHERE number = 1) WHERE number = 3");
   EXPECT_EQ((MapStore{file, first_map()}.newest()), 2u);
-}
-
-TEST_F(Store, NamesTheFileThatIsNoStore) {
-  const fs::path text = folder.write("notes.txt", std::string(5000, 'x'));
-  const fs::path empty = folder.write("empty.sqlite", "");
-  run_sql(folder.path() / "foreign.sqlite", "CREATE TABLE songs (name TEXT)");
-  for (const fs::path& bad : {text, folder.path() / "foreign.sqlite", folder.path(), folder.path() / "no" / "where"}) {
-    const std::string line = complaint([&] { MapStore store(bad, first_map()); });
-    EXPECT_EQ(line.find(bad.string()), 0u) << line;
-    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-  }
-  EXPECT_EQ(complaint([&] { MapStore store{empty}; }), empty.string() + ": not a map store");
-  const fs::path missing = folder.path() / "missing.sqlite";
-  EXPECT_EQ(complaint([&] { MapStore store{missing}; }), missing.string() + ": no such file");
-  EXPECT_FALSE(fs::exists(missing));
 }
 
 TEST_F(Store, NamesAFileThatWasCut) {

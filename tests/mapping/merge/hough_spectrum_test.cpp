@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "mapping/merge/hough_spectrum.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
-#include "mapping/merge/axis_spectrum.hpp"
-#include "mapping/merge/hough_spectrum.hpp"
-#include "mapping/merge/spectrum_peak.hpp"
-#include "tests/support/worlds/drawn_grid.hpp"
+#include "core/angle.hpp"
 
 namespace deltamap::mapping::merge {
 namespace {
@@ -59,49 +61,6 @@ TEST(BestTurns, TurnTheSecondMapOntoTheFirst) {
     EXPECT_TRUE(found) << turn_deg;
     EXPECT_NEAR(std::abs(turn_between(turns[0].turn_rad, turns[1].turn_rad)), std::numbers::pi, 1e-9);
   }
-}
-
-TEST(AxisSpectra, CountTheContourByColumnAndRow) {
-  const AxisSpectra spectra = axis_spectra(test::drawn_grid({"....",  //
-                                                             ".##.",  //
-                                                             ".#.."}),
-                                           1);
-  EXPECT_EQ(spectra.x.first, 1);
-  EXPECT_EQ(spectra.x.counts, (std::vector<float>{2.0F, 1.0F}));
-  EXPECT_EQ(spectra.y.first, 0);
-  EXPECT_EQ(spectra.y.counts, (std::vector<float>{1.0F, 2.0F}));
-}
-
-TEST(AxisSpectra, DrawACellSoManyPixelsWideAboutItsCentre) {
-  const AxisSpectra map = axis_spectra(test::drawn_grid({"....",  //
-                                                         ".#..",  //
-                                                         "...."}),
-                                       2);
-  EXPECT_EQ(map.x.first, 2);
-  EXPECT_EQ(map.x.counts, (std::vector<float>{1.0F, 1.0F}));
-  const std::vector<PointInCells> centre{{1.5F, 0.75F}};
-  const AxisSpectra local = axis_spectra(centre, 0.0, 2);
-  EXPECT_EQ(local.x.first, 2);
-  EXPECT_EQ(local.x.counts, (std::vector<float>{1.0F, 1.0F}));
-  EXPECT_EQ(local.y.first, 1) << "three quarters of a cell: half a cell from the row that it lies in";
-}
-
-TEST(BestShifts, FindTheShiftBetweenTwoSpectra) {
-  const AxisSpectrum one{0, {0.0, 0.0, 0.0, 5.0, 1.0, 0.0, 2.0, 0.0}};
-  const AxisSpectrum other{-4, {5.0, 1.0, 0.0, 2.0}};
-  EXPECT_EQ(best_shifts(one, other, 1, 3), std::vector<int>{7});
-  EXPECT_TRUE(best_shifts(one, {}, 3, 3).empty());
-}
-
-TEST(BestPeaks, AreApartAndBestFirst) {
-  const std::vector<double> signal{0.0, 3.0, 2.0, 0.0, 5.0, 5.0, 0.0, 1.0, 0.0};
-  const auto peaks = best_peaks(signal, 5, 1, SpectrumEnds::kOpen);
-  ASSERT_EQ(peaks.size(), 3U);
-  EXPECT_EQ(peaks[0].index, 4U);
-  EXPECT_EQ(peaks[1].index, 1U);
-  EXPECT_EQ(peaks[2].index, 7U);
-  EXPECT_EQ(best_peaks(signal, 5, 3, SpectrumEnds::kOpen).size(), 1U);
-  EXPECT_EQ(best_peaks(std::vector<double>{4.0, 1.0, 0.0, 5.0}, 5, 1, SpectrumEnds::kJoined).size(), 1U);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a map store keeps where it may not keep everything: by count, by age, what has a name, and with a clock that
 // jumps. Whatever remains can be restored bit for bit.
-#include "mapping/store/retention.hpp"
+#include "mapping/store/store_retention.hpp"
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What beams show to be gone together that none of them shows alone: small objects between them, and the face that they
-// pass.
+// Small objects that beams show to be gone together, though none of them shows it alone.
+#include "mapping/evidence/small_objects.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,48 +9,26 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/evidence/small_objects.hpp"
-#include "mapping/votes/beam_votes.hpp"
-#include "tests/support/scans/seen_scan.hpp"
-#include "tests/support/worlds/drawn_hall.hpp"
+#include "tests/mapping/seen_room.hpp"
 
 namespace deltamap::mapping::evidence {
 namespace {
 
-const Pose2 kRobot{2.0, 5.0, 0.0};
-
-OccupancyGrid room() {
-  OccupancyGrid room{{200, 200, 0.05, {0.0, 0.0}}, CellState::kFree};
-  test::fill(room, {9.8, 0.0}, {9.9, 10.0}, CellState::kOccupied);
-  return room;
-}
-
-OccupancyGrid room_with(Point2 low, Point2 high) {
-  OccupancyGrid with = room();
-  test::fill(with, low, high, CellState::kOccupied);
-  return with;
-}
-
 class Gone : public testing::Test {
  protected:
-  /// What the robot sees of `world`.
-  void look(const OccupancyGrid& world, const OccupancyGrid& map, const Pose2& robot = kRobot) {
-    tracked = test::seen_scan(world, robot, 0.0, random);
-    clear = votes::ClearSpace{map, {map.geometry(), 2}};
-    beams = votes::beam_evidence(map, clear, tracked, {});
+  void look(const OccupancyGrid& world, const OccupancyGrid& map) { seen = seen_room(world, map); }
+  void look(const OccupancyGrid& world, const OccupancyGrid& map, const Pose2& robot) {
+    seen = seen_room(world, map, robot);
   }
   /// First the one map, then the other.
   void known(const OccupancyGrid& first, const OccupancyGrid& then) {
     objects.begin(first);
     objects.follow(then, changes_between(first, then));
   }
-  std::size_t missed() { return objects.missed(tracked, beams, {}).size(); }
+  std::size_t missed() { return objects.missed(seen.tracked, seen.beams, {}).size(); }
 
-  Random random{1};
   SmallObjects objects{SmallObjectParams{}};
-  votes::ClearSpace clear;
-  TrackedScan tracked;
-  std::vector<votes::BeamVerdict> beams;
+  SeenRoom seen;
   const OccupancyGrid object = room_with({4.0, 5.0}, {4.1, 5.1});  // four cells, 2 m ahead
   const OccupancyGrid surface = room_with({4.0, 4.0}, {4.1, 6.0});
 };
@@ -195,41 +174,6 @@ TEST_F(Gone, FollowsSmallObjectsThroughAnyChanges) {
             << "change " << change << ", cell " << column << ", " << row;
       }
     }
-  }
-}
-
-TEST_F(Gone, IsTheWholeFaceBetweenTheBeamsThatPassIt) {
-  const OccupancyGrid face = room_with({8.0, 4.0}, {8.1, 6.0});
-  look(room(), face, {0.5, 5.0, 0.0});
-  votes::VoteLayer layer{{}, face.geometry()};
-  const votes::RedrawQueue watched{{}, layer.blocks()};
-  votes::BeamVotes votes;
-  const votes::FaceParams params{.bearing_step_rad = tracked.scan.bearing_step_rad};
-  const votes::Blocks gone =
-      votes.of(beams, {}, {clear, layer, watched}, params).yes[static_cast<int>(votes::Question::kRemoved)];
-  int in_the_middle = 0;  // beams are 13 cm apart there, blocks 10 cm wide
-  for (const std::uint32_t block : gone) {
-    const Point2 centre = layer.blocks().centre_of(layer.blocks().cell_of(block));
-    in_the_middle += std::abs(centre.y() - 5.0) < 0.5 ? 1 : 0;
-    EXPECT_TRUE(clear.is_solid(layer.blocks().cell_of(block)));
-  }
-  EXPECT_EQ(in_the_middle, 10);
-}
-
-TEST_F(Gone, IsNothingBetweenBeamsThatPassTwoDifferentThings) {
-  OccupancyGrid map = room_with({8.0, 4.0}, {8.1, 4.9});
-  test::fill(map, {5.0, 5.1}, {5.1, 6.0}, CellState::kOccupied);
-  test::fill(map, {6.5, 4.9}, {6.6, 5.1}, CellState::kOccupied);  // stands between them, as it did
-  OccupancyGrid world = room();
-  test::fill(world, {6.5, 4.9}, {6.6, 5.1}, CellState::kOccupied);
-  look(world, map);
-  votes::VoteLayer layer{{}, map.geometry()};
-  const votes::RedrawQueue watched{{}, layer.blocks()};
-  votes::BeamVotes votes;
-  const votes::FaceParams params{.bearing_step_rad = tracked.scan.bearing_step_rad};
-  for (const std::uint32_t block : votes.of(beams, {}, {clear, layer, watched}, params).yes[1]) {
-    const Point2 centre = layer.blocks().centre_of(layer.blocks().cell_of(block));
-    EXPECT_GT(std::abs(centre.x() - 6.55), 0.1);
   }
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Awareness by the paper: Eq. 2 and 3 by hand, and the Δ-phases that follow from them.
+// The Δ-phases that follow from the divergence ratio, as store-scan sees them.
+#include "mapping/paper/delta_phase.hpp"
+
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -9,47 +11,8 @@
 #include "mapping/store_scan.hpp"
 #include "tests/support/scans/map_requests.hpp"
 
-namespace deltamap::mapping {
+namespace deltamap::mapping::paper {
 namespace {
-
-constexpr double kExact = 1e-12;
-
-Estimate weighed(double w_avg, LocalizerState state = LocalizerState::kTracking) {
-  Estimate estimate;
-  estimate.w_avg = w_avg;
-  estimate.state = state;
-  return estimate;
-}
-
-TEST(DivergenceRatio, StartsBothAveragesAtTheFirstWeight) {
-  paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
-  const WeightAverages& averages = ratio.observe(weighed(0.8));
-  EXPECT_EQ(averages.divergence_ratio(), 0.0);
-  EXPECT_EQ(averages.w_fast, 0.8);
-  EXPECT_EQ(averages.w_slow, 0.8);
-}
-
-TEST(DivergenceRatio, FollowsEquationsTwoAndThree) {
-  paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.1}};
-  (void)ratio.observe(weighed(0.8));
-  // 0.8 - 0.1 · 0.4 and 0.8 - 0.01 · 0.4
-  EXPECT_NEAR(ratio.observe(weighed(0.4)).divergence_ratio(), 1.0 - 0.76 / 0.796, kExact);
-  EXPECT_NEAR(ratio.observe(weighed(0.9)).divergence_ratio(), 1.0 - (0.76 + 0.1 * 0.14) / (0.796 + 0.01 * 0.104),
-              kExact);
-}
-
-TEST(DivergenceRatio, IsNegativeWhereScansFitBetterThanTheyUsedTo) {
-  paper::DivergenceRatio ratio{{}};
-  (void)ratio.observe(weighed(0.4));
-  EXPECT_LT(ratio.observe(weighed(0.8)).divergence_ratio(), 0.0);
-}
-
-TEST(DivergenceRatio, CountsNoScanOfALostPose) {
-  paper::DivergenceRatio ratio{{}};
-  EXPECT_EQ(ratio.observe(weighed(0.2, LocalizerState::kLost)).divergence_ratio(), 0.0);
-  EXPECT_EQ(ratio.observe(weighed(0.8)).w_slow, 0.8);
-  EXPECT_EQ(ratio.observe(weighed(0.2, LocalizerState::kGlobal)).w_fast, 0.8);
-}
 
 class PaperPhases : public testing::Test {
  protected:
@@ -79,7 +42,7 @@ class PaperPhases : public testing::Test {
 
   StoreScanParams params;
   std::optional<StoreScan> store;
-  paper::DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.5}};
+  DivergenceRatio ratio{{.alpha_slow = 0.01, .alpha_fast = 0.5}};
   double r_d = 0.0;
   std::uint32_t sent = 0;
 };
@@ -161,7 +124,7 @@ TEST_F(PaperPhases, EndWhereTheOdometryJumps) {
 TEST_F(PaperPhases, DrawTheSameScansFromTheSameSeed) {
   const auto numbers = [&](std::uint64_t seed) {
     store.emplace(params, seed);
-    ratio = paper::DivergenceRatio{{.alpha_slow = 0.01, .alpha_fast = 0.5}};
+    ratio = DivergenceRatio{{.alpha_slow = 0.01, .alpha_fast = 0.5}};
     sent = 0;
     settle();
     for (int i = 0; i < 30; ++i) (void)send(0.5);
@@ -177,4 +140,4 @@ TEST_F(PaperPhases, DrawTheSameScansFromTheSameSeed) {
 }
 
 }  // namespace
-}  // namespace deltamap::mapping
+}  // namespace deltamap::mapping::paper

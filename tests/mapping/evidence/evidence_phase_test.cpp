@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes a set by evidence and what does not, through store-scan and with a map that follows.
+#include "mapping/evidence/evidence_phase.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "tests/mapping/mapped_drive.hpp"
+
+namespace deltamap::mapping::evidence {
+namespace {
+
+TEST(EvidencePhase, ShowsTheScansOfASetWhileItIsCollectedAndWhileItWaits) {
+  MappedDrive drive{hall()};
+  std::size_t collected = 0;
+  std::size_t waiting = 0;
+  drive.through(
+      [&](double) {
+        const StoredScans stored = drive.store.stored();
+        collected = std::max(collected, stored.collected.size());
+        waiting = std::max(waiting, stored.waiting.size());
+        return hall_with({9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied);
+      },
+      30.0);
+  ASSERT_GE(drive.revisions, 1);
+  EXPECT_GE(collected, 2u);
+  EXPECT_LE(collected, 40u);
+  EXPECT_GE(waiting, 2u);
+  drive.through(always(*drive.map), 10.0);
+  EXPECT_EQ(drive.store.stored(), StoredScans{}) << "nothing differs from the map any more";
+}
+
+TEST(EvidencePhase, IgnoresAPersonWhoWalks) {
+  MappedDrive drive{hall()};
+  drive.through(
+      [](double time_s) {
+        const double x = 6.5 + std::fmod(time_s * 0.8, 7.0);
+        return hall_with({x, 7.5}, {x + 0.35, 7.8}, CellState::kOccupied);
+      },
+      60.0);
+  EXPECT_EQ(count_of(*drive.map, CellState::kOccupied), count_of(hall(), CellState::kOccupied));
+}
+
+TEST(EvidencePhase, IgnoresADoorThatFlickers) {
+  MappedDrive drive{hall()};
+  drive.through(
+      [](double time_s) {
+        const bool open = std::fmod(time_s, 4.0) < 2.0;
+        return open ? hall() : hall_with({9.0, 7.9}, {10.0, 7.95}, CellState::kOccupied);
+      },
+      60.0);
+  EXPECT_EQ(drive.revisions, 0);
+}
+
+TEST(EvidencePhase, CountsForAParkedRobotByTime) {
+  MappedDrive drive{hall()};
+  drive.through(always(hall_with({11.0, 8.0}, {13.0, 8.4}, CellState::kOccupied)), 12.0, 0.0);
+  EXPECT_GE(drive.revisions, 1);
+}
+
+TEST(EvidencePhase, SaysNothingWhileThePoseIsLost) {
+  StoreScan store{StoreScanParams{}, 1};
+  Random random{5};
+  const auto map = std::make_shared<const OccupancyGrid>(hall());
+  const OccupancyGrid world = hall_with({9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied);
+  for (int i = 0; i < 100; ++i) {
+    TrackedScan tracked = test::drawn_scan(world, map, {8.0, 6.8, 0.4}, 0.2 * i, random);
+    tracked.estimate.state = LocalizerState::kLost;
+    EXPECT_FALSE(store.observe(tracked));
+  }
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::evidence

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that the store makes, brings up to date, or refuses.
+#include "mapping/store/store_schema.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/mapping/store/written_store.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+
+namespace deltamap::mapping::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::complaint;
+using test::first_map;
+using test::revision_after;
+
+class StoreSchema : public testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+  fs::path file = folder.path() / "store.sqlite";
+};
+
+TEST_F(StoreSchema, GoesOnWithAFileOfVersion1) {
+  std::vector<OccupancyGrid> maps;
+  {
+    MapStore store{file, first_map()};
+    maps = fill(store, 70);
+    store.append_refusal(timestamp_from_ns(7), {2, 0.4, "low acceptance"});
+  }
+  for (const char* column : {"xx_m2", "xy_m2", "xh_m_rad", "yy_m2", "yh_m_rad", "hh_rad2"}) {
+    run_sql(file, std::string("ALTER TABLE revision DROP COLUMN ") + column);
+  }
+  run_sql(file, "PRAGMA user_version = 1");
+  {
+    const MapStore read{file};
+    EXPECT_EQ(read.grid(70), maps[70]);
+    EXPECT_FALSE(read.history()[70].note.covariance);
+  }
+  MapStore store{file, first_map()};
+  EXPECT_EQ(store.dropped(), 0u);
+  for (std::uint32_t number = 0; number <= 70; ++number) EXPECT_EQ(store.grid(number), maps[number]) << number;
+  store.append(revision_after(maps[70], 71), {3, 0.9, "evidence", PoseCovariance::Identity()});
+  EXPECT_EQ(store.history().back().note.covariance, PoseCovariance::Identity());
+}
+
+TEST_F(StoreSchema, RefusesAFileOfALaterVersion) {
+  { const MapStore store{file, first_map()}; }
+  run_sql(file, "PRAGMA user_version = 3");
+  EXPECT_EQ(complaint([&] { MapStore store{file}; }), file.string() + ": map store of version 3, not 1 to 2");
+}
+
+TEST_F(StoreSchema, NamesTheFileThatIsNoStore) {
+  const fs::path text = folder.write("notes.txt", std::string(5000, 'x'));
+  const fs::path empty = folder.write("empty.sqlite", "");
+  run_sql(folder.path() / "foreign.sqlite", "CREATE TABLE songs (name TEXT)");
+  for (const fs::path& bad : {text, folder.path() / "foreign.sqlite", folder.path(), folder.path() / "no" / "where"}) {
+    const std::string line = complaint([&] { MapStore store(bad, first_map()); });
+    EXPECT_EQ(line.find(bad.string()), 0u) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  }
+  EXPECT_EQ(complaint([&] { MapStore store{empty}; }), empty.string() + ": not a map store");
+  const fs::path missing = folder.path() / "missing.sqlite";
+  EXPECT_EQ(complaint([&] { MapStore store{missing}; }), missing.string() + ": no such file");
+  EXPECT_FALSE(fs::exists(missing));
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::store
