@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "localization/sensor/weighing.hpp"
 #include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
-#include "tests/support/worlds/padded.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {
@@ -21,83 +19,6 @@ motion::BeamEnds seen_from(const Pose2& truth, std::uint64_t seed) {
 
 bool very_near(const Pose2& a, const Pose2& b) {
   return distance_between(a, b) < 0.1 && std::abs(turn_between(a.theta, b.theta)) < radians(3.0);
-}
-
-TEST(CoarseField, IsAsGoodInEachBlockAsItsBestCell) {
-  const OccupancyGrid map = test::drawn_flat();
-  const sensor::LikelihoodField field{map, {}};
-  const sensor::CoarseField coarse{map, field, kBlock_m};
-  const int cells = 5;
-  const Point2 middle_of_a_cell = Point2::Constant(0.5 * map.resolution_m());
-  const Cell first = map.geometry().cell_at(coarse.origin() + middle_of_a_cell);
-  for (int row = 0; row < coarse.rows(); ++row) {
-    for (int column = 0; column < coarse.columns(); ++column) {
-      int best = 255;
-      for (int i = 0; i < cells * cells; ++i) {
-        const Cell cell{first.column + column * cells + i % cells, first.row + row * cells + i / cells};
-        best = std::min<int>(best, field.steps_at(cell));
-      }
-      ASSERT_EQ(*coarse.from(column, row), best) << column << ' ' << row;
-    }
-  }
-}
-
-TEST(CoarseField, FollowsAChangeOfTheMapAsIfBuiltAnew) {
-  const OccupancyGrid before = test::drawn_flat();
-  OccupancyGrid after = before;
-  test::fill_box(after, {4.0, 1.0}, {5.1, 1.7}, CellState::kOccupied);
-  sensor::CoarseField patched{before, sensor::LikelihoodField{before, {}}, kBlock_m};
-  const sensor::LikelihoodField field{after, {}};
-  patched.update(after, field, sensor::field_patch(after, changes_between(before, after), {}).box);
-  const sensor::CoarseField built{after, field, kBlock_m};
-  for (int row = -1; row <= built.rows(); ++row) {
-    const std::uint8_t* const expected = built.from(0, row);
-    EXPECT_TRUE(std::equal(expected, expected + built.columns(), patched.from(0, row))) << row;
-  }
-  EXPECT_TRUE(std::ranges::equal(built.free_blocks(), patched.free_blocks()));
-  EXPECT_LT(patched.free_blocks().size(), sensor::CoarseField(before, field, kBlock_m).free_blocks().size());
-}
-
-TEST(CoarseField, IsTheSameHoweverMuchUnknownSpaceLiesAroundTheMap) {
-  const OccupancyGrid map = test::drawn_flat();
-  const sensor::CoarseField own{map, sensor::LikelihoodField{map, {}}, kBlock_m};
-  const OccupancyGrid padded_map = test::padded(map, {.left = 1213, .low = 7, .right = 1, .high = 902});
-  const sensor::CoarseField wide{padded_map, sensor::LikelihoodField{padded_map, {}}, kBlock_m};
-  ASSERT_EQ(wide.columns(), own.columns());
-  ASSERT_TRUE(std::ranges::equal(wide.free_blocks(), own.free_blocks()));
-  EXPECT_NEAR((wide.origin() - own.origin()).norm(), 0.0, 1e-9);
-  for (int row = -1; row <= own.rows(); ++row)
-    EXPECT_TRUE(std::equal(own.from(0, row), own.from(0, row) + own.columns(), wide.from(0, row))) << row;
-}
-
-TEST(CoarseField, TakesBeamsThatLeaveTheMapAsEndingInTheUnknown) {
-  const OccupancyGrid map = test::drawn_flat();
-  const sensor::LikelihoodField field{map, {}};
-  const sensor::CoarseField coarse{map, field, kBlock_m};
-  const motion::BeamEnds far{{1000.0F, 5000.0F, 9e9F}, {0.0F, -3000.0F, 1.0F}};
-  const sensor::CoarseMisfits misfits =
-      sensor::coarse_misfits(coarse, sensor::turned_beams(far, 1.0, kBlock_m), coarse.free_blocks()[7]);
-  for (const std::uint16_t misfit : misfits) EXPECT_EQ(misfit, 3 * field.steps_at({-1, -1}));
-}
-
-TEST(CoarseField, AnswersForBlocksSideBySideAsForEachAlone) {
-  const OccupancyGrid map = test::drawn_flat();
-  const sensor::LikelihoodField field{map, {}};
-  const sensor::CoarseField coarse{map, field, kBlock_m};
-  const sensor::TurnedBeams beams = sensor::turned_beams(seen_from({4.5, 2.0, 1.1}, 3), 0.7, kBlock_m);
-  for (const std::uint32_t first : coarse.free_blocks()) {
-    const sensor::CoarseMisfits misfits = sensor::coarse_misfits(coarse, beams, first);
-    const int row = static_cast<int>(first) / coarse.columns();
-    for (int i = 0; i < sensor::CoarseField::kAtOnce; ++i) {
-      const int column = static_cast<int>(first) % coarse.columns() + i;
-      if (column >= coarse.columns()) break;
-      int sum = 0;
-      for (std::size_t beam = 0; beam < beams.count; ++beam) {
-        sum += *coarse.from(column + beams.columns[beam], row + beams.rows[beam]);
-      }
-      ASSERT_EQ(misfits[static_cast<std::size_t>(i)], sum) << column << ' ' << row;
-    }
-  }
 }
 
 TEST(GlobalSearch, FindsTheRobotFromManyHypothesesInItsFirstLook) {

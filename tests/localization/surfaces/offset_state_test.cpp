@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Gaussian over pose, wheels, mount and offsets, and the switches that settle on it.
+// The Gaussian over pose, wheels, mount and offsets.
 #include "localization/surfaces/offset_state.hpp"
 
 #include <gtest/gtest.h>
@@ -7,29 +7,14 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <span>
-#include <vector>
 
 #include "core/angle.hpp"
 #include "core/random.hpp"
 #include "localization/motion/drive_calibration.hpp"
-#include "localization/surfaces/surface_switch.hpp"
+#include "tests/localization/surfaces/measured_state.hpp"
 
 namespace deltamap::localization::surfaces {
 namespace {
-
-sensor::RefinedPose at_rest(double x, double y, double theta) {
-  return {{x, y, theta}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal().toDenseMatrix()};
-}
-
-void measure(OffsetState& state, const SparseRow& row, double innovation, double variance) {
-  const RowMeasurement measured{row, innovation, variance};
-  state.update({&measured, 1});
-}
-
-// Of the first surface that is followed.
-constexpr Eigen::Index kOffset = OffsetState::kFixed;
 
 TEST(OffsetState, TakesMeasurementsTogetherAsOneAfterTheOther) {
   OffsetState one_by_one;
@@ -143,73 +128,12 @@ TEST(OffsetState, GoesOnFromWhatAnEarlierRunHasLearnedAndIsALittleLessSure) {
   EXPECT_TRUE(state.is_sound());
 }
 
-TEST(DriveCalibration, OfTooFewNumbersOrOfNoneIsRefused) {
-  std::array<double, 14> numbers = motion::numbers_of(after_metres(10.0).calibration());
-  EXPECT_FALSE(motion::calibration_of(std::span(numbers).first(13)));
-  numbers[12] = -0.001;  // a deviation
-  EXPECT_FALSE(motion::calibration_of(numbers));
-  numbers[12] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(motion::calibration_of(numbers));
-}
-
 TEST(OffsetState, TakesNoPoseThatIsFarFromWhereItIsExpected) {
   OffsetState state;
   state.start(at_rest(0.0, 0.0, 0.0));
   const Eigen::VectorXd before = state.mean();
   EXPECT_FALSE(state.update(at_rest(1.0, 0.0, 0.0)));
   EXPECT_EQ(state.mean(), before);
-}
-
-Surface face(double x) {
-  return {.centre = {x, 0.0},
-          .normal = {0.0, 1.0},
-          .half_length_m = 0.5,
-          .offset_deviation_m = 0.015,
-          .turn_deviation_rad = 0.005};
-}
-
-/// The offset of a surface measured `offset_m` from where the map has it, with a pose known that well.
-double holds_after(double offset_m, double pose_deviation_m) {
-  OffsetState state;
-  sensor::RefinedPose pose = at_rest(0.0, 0.0, 0.0);
-  pose.covariance(1, 1) = pose_deviation_m * pose_deviation_m;
-  state.start(pose);
-  state.append(0.0, sensor::kMovedM, kMovedRad);
-  measure(state, {{{{1, 1.0}, {kOffset, -1.0}}}, 2}, -offset_m, 1e-4);
-  measure(state, {{{{2, -1.0}, {kOffset + 1, -1.0}}}, 2}, 0.0, 1e-5);
-  std::vector<SurfaceSwitch> switches{{.surface = face(0.0)}};
-  settle(switches, state);
-  EXPECT_TRUE(state.is_sound());
-  return switches[0].holds;
-}
-
-TEST(SurfaceSwitch, TellsAMovedSurfaceFromOneThatHolds) {
-  EXPECT_GT(holds_after(0.0, 0.01), 0.95);
-  EXPECT_GT(holds_after(0.02, 0.01), 0.9);
-  EXPECT_LT(holds_after(0.15, 0.01), 0.05);
-  EXPECT_LT(holds_after(-0.5, 0.01), 0.01);
-  EXPECT_GT(holds_after(0.15, 0.2), 0.5) << "a pose that may be off explains it as well";
-}
-
-TEST(SurfaceSwitch, TakesTwoHalvesOfOneFaceForOneWitness) {
-  // Pieces of one face, seen 0.1 m off: whether the pose or the face is off, both halves say the same.
-  const auto pose_after = [](int pieces) {
-    OffsetState state;
-    sensor::RefinedPose pose = at_rest(0.0, 0.0, 0.0);
-    pose.covariance(1, 1) = 0.06 * 0.06;
-    state.start(pose);
-    std::vector<SurfaceSwitch> switches;
-    for (int i = 0; i < pieces; ++i) {
-      state.append(0.0, sensor::kMovedM, kMovedRad);
-      switches.push_back({.surface = face(i)});
-      const Eigen::Index at = OffsetState::offset_of(static_cast<std::size_t>(i));
-      measure(state, {{{{1, 1.0}, {at, -1.0}}}, 2}, -0.1, 1e-4);
-      measure(state, {{{{2, -1.0}, {at + 1, -1.0}}}, 2}, 0.0, 1e-5);
-    }
-    settle(switches, state);
-    return switches.front().holds;
-  };
-  EXPECT_NEAR(pose_after(4), pose_after(1), 0.2);
 }
 
 }  // namespace
