@@ -185,6 +185,41 @@ TEST(Layering, EveryRoomOfLocalizationAndMappingIsANamespace) {
   }
 }
 
+/// In the folder of the tests that mirrors the source's own, by the name of the source.
+fs::path test_of(const std::string& source) {
+  const fs::path path{source};
+  return kRoot / "tests" / path.parent_path() / (path.stem().string() + "_test.cpp");
+}
+
+std::string first_include_of(const fs::path& file) {
+  const std::regex include{R"re(^\s*#\s*include\s+["<]([^">]+))re"};
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    std::smatch match;
+    if (std::regex_search(line, match, include)) return match[1];
+  }
+  return "";
+}
+
+TEST(Layering, EverySourceOfLocalizationAndMappingHasItsTest) {
+  for (const std::string wing : {"localization", "mapping"}) {
+    std::ifstream in(kRoot / "tests" / wing / "CMakeLists.txt");
+    const std::string programs{std::istreambuf_iterator<char>(in), {}};
+    for (const auto& file : sources_of(wing)) {
+      if (file.extension() != ".cpp") continue;
+      const std::string source = fs::relative(file, kRoot).string();
+      const fs::path test = test_of(source);
+      EXPECT_TRUE(fs::exists(test)) << source << " has no test " << fs::relative(test, kRoot).string();
+      const std::string named = fs::relative(test, kRoot / "tests" / wing).string();
+      EXPECT_NE(programs.find(named), std::string::npos) << named << " is built into no test program";
+      const std::string header = fs::path{source}.replace_extension(".hpp").string();
+      if (fs::exists(kRoot / header)) {
+        EXPECT_EQ(first_include_of(test), header) << fs::relative(test, kRoot).string();
+      }
+    }
+  }
+}
+
 TEST(Layering, FindsACircleOfThreeRooms) {
   const Rooms circle = circles_of({{"a", {"b"}}, {"b", {"c", "d"}}, {"c", {"a"}}, {"d", {"e"}}});
   EXPECT_EQ(circle, (Rooms{{"a", {"b"}}, {"b", {"c"}}, {"c", {"a"}}}));
