@@ -12,7 +12,6 @@ constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late
 
 void GatedSets::observe(const TrackedScan& tracked) {
   now_ = tracked.scan.time;
-  withdrawal_.reset();
   other_share_ = tracked.estimate.belief.other_share;
   gate_.observe(tracked);
   if (params_.enabled && gate_.has_proven_wrong()) withdraw(tracked);

@@ -40,7 +40,7 @@ class GatedSets {
   WriteGate gate_;
   std::deque<ScanSet> waiting_;              // sets in order of their end
   std::deque<ScanSet> due_;                  // marked sets
-  std::optional<WithdrawOrder> withdrawal_;  // of the newest scan
+  std::optional<WithdrawOrder> withdrawal_;  // not handed on yet
   std::optional<Timestamp> last_handed_on_;  // end of the newest set that may have been written
   Timestamp now_;
   double other_share_ = 0.0;

@@ -10,7 +10,7 @@ what was measured and at which revision is kept in experiments.json beside it. C
       --jobs: drives at once; experiments that measure the machine do one
       --page: only writes the page of an ablation or of unseen worlds that `deltamap experiment NAME --out FOLDER` has
               done"""
-import argparse, json, os, pathlib, subprocess, sys
+import argparse, collections, json, os, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import paper_figures
@@ -61,8 +61,8 @@ ABLATION = """# What each mechanism and each key is worth
 
 Written by `./dev experiments`, or from what `deltamap experiment ablation` has left in its folder, on %s: %s.
 
-A row changes one thing: a mechanism is switched off, or a key is set to half or twice its value. The same worlds are driven
-through as delivered. A cell tells the mean difference to that, its 95 %% interval (bootstrap over the worlds), and in how many
+A row changes one thing: a mechanism is switched off, or a key is set to half or twice its value. The same worlds of `unseen` are
+driven through as delivered. A cell tells the mean difference to that, its 95 %% interval (bootstrap over the worlds), and in how many
 worlds the change is better : worse; `0`: no world differs. More is better of `recall`, `precision` and `skill`, less of all
 others. `carried_`: in a hall that is half out of date, the robot is carried one bay on, some decimetres, or anywhere; seconds
 with the pose off by more than 0.3 m, cells written meanwhile, share of the time that the gate was shut after it. Bold: the
@@ -79,25 +79,33 @@ Every seed is another kind of building, first map, laser, robot and life in it (
 [what falls short](../decisions/what-falls-short.md).
 """
 
-# Their tables fill a page of their own.
-PAGES = {"ablation": ("docs/results/ablation.md", ABLATION), "unseen": ("docs/results/unseen.md", UNSEEN)}
+# Their tables fill a page of their own. `empty`: what an empty table says; `seed`: of other seeds the page lies in the run's folder.
+Page = collections.namedtuple("Page", "file about empty seed")
+PAGES = {"ablation": Page("docs/results/ablation.md", ABLATION, "Not asked this time.", None),
+         "unseen": Page("docs/results/unseen.md", UNSEEN, "None.", 1000)}
 
 
 def page_of(summary):
     """Figures and tables of one experiment, on a page of its own."""
     made = "version %s, commit %s, settings %s: %s" % (
         summary["version"], summary["commit"], summary["settings"]["fingerprint"], told(summary["settings"]))
-    _, about = PAGES[summary["experiment"]]
-    lines = [about % (processor(), "%d runs from seed %d; %s" % (summary["runs"], summary["seed"], made))]
+    page = PAGES[summary["experiment"]]
+    lines = [page.about % (processor(), "%d runs from seed %d; %s" % (summary["runs"], summary["seed"], made))]
     lines += table_lines([row_of_figure(figure) for figure in summary["figures"]])
     for table in summary["tables"]:
         lines += ["", "## " + table["title"], ""]
         if not table["rows"]:
-            lines.append("Not asked this time.")
+            lines.append(page.empty)
             continue
         lines += ["| %s |" % " | ".join(table["columns"]), "|" + "---|" * len(table["columns"])]
         lines += ["| %s |" % " | ".join(in_a_cell(cell) for cell in row) for row in table["rows"]]
     return "\n".join(lines) + "\n"
+
+
+def write_page(summary, folder, quick):
+    page = PAGES[summary["experiment"]]
+    is_kept = not quick and page.seed in (None, summary["seed"])
+    (ROOT / page.file if is_kept else folder / pathlib.Path(page.file).name).write_text(page_of(summary))
 
 
 def done(name, measures_machine, arguments, folder):
@@ -124,8 +132,7 @@ def main():
     parser.add_argument("--page", type=pathlib.Path, metavar="FOLDER")
     arguments = parser.parse_args()
     if arguments.page:
-        summary = json.loads((arguments.page / "summary.json").read_text())
-        (ROOT / PAGES[summary["experiment"]][0]).write_text(page_of(summary))
+        write_page(json.loads((arguments.page / "summary.json").read_text()), arguments.page, False)
         return
     known = experiments()
     unknown = sorted(set(arguments.only or []) - set(known))
@@ -142,7 +149,7 @@ def main():
             continue
         summary = done(name, measures_machine, arguments, folder)
         if name in PAGES:
-            (folder / (name + ".md") if arguments.quick else ROOT / PAGES[name][0]).write_text(page_of(summary))
+            write_page(summary, folder, arguments.quick)
             continue
         summary.pop("tables", None)  # they are on the experiment's own page
         parts[name] = {"revision": at, "what": what, "summary": summary}

@@ -68,6 +68,9 @@ class Writer(unittest.TestCase):
             self.write()
         self.assertIn('from seed 3, version 0.1.0, commit ccc3, settings 00ff: mapping.method: "paper". 1 of 1 met.', self.text())
 
+    def page_of_two(self, seed=None):
+        return experiments.Page("docs/results/two.md", "# Two, on %s: %s.\n", "Nobody asked.", seed)
+
     def test_leaves_the_report_alone_when_quick(self):
         self.revision = "aaa1"
         self.write("--quick")
@@ -77,16 +80,29 @@ class Writer(unittest.TestCase):
     def test_gives_an_experiment_of_tables_a_page_of_its_own(self):
         self.revision = "aaa1"
         tables = {"version": "0.1.0", "commit": "ccc3", "settings": {"fingerprint": "00ff", "changed": {}},
-                  "tables": [{"title": "Off", "columns": ["change", "jumps"], "rows": [["off-x", "+1 [0, +2] 0:3"]]}]}
+                  "tables": [{"title": "Off", "columns": ["change", "jumps"], "rows": [["off-x", "+1 [0, +2] 0:3"]]},
+                             {"title": "On", "columns": ["change"], "rows": []}]}
         known = summary
         self.measured["one"] = (0.04, True)
         with mock.patch.dict(globals(), summary=lambda *what: {**known(*what), **tables}), \
-                mock.patch.object(experiments, "PAGES", {"two": "docs/results/two.md"}):
+                mock.patch.object(experiments, "PAGES", {"two": self.page_of_two()}):
             self.write()
         page = (self.root / "docs/results/two.md").read_text()
+        self.assertIn("# Two, on ", page)
         self.assertIn("| off-x | +1 [0, +2] 0:3 |", page)
+        self.assertIn("## On\n\nNobody asked.", page)
         self.assertNotIn("## two", self.text())
         self.assertNotIn("off-x", self.text())
+
+    def test_leaves_a_page_alone_that_other_seeds_are_asked_for(self):
+        self.revision = "aaa1"
+        tables = {"version": "0.1.0", "commit": "ccc3", "settings": {"fingerprint": "00ff", "changed": {}}, "tables": []}
+        known = summary
+        with mock.patch.dict(globals(), summary=lambda *what: {**known(*what), **tables}), \
+                mock.patch.object(experiments, "PAGES", {"two": self.page_of_two(seed=1000)}):
+            self.write()
+        self.assertFalse((self.root / "docs/results/two.md").exists())
+        self.assertTrue((self.root / "build/full/two.md").exists())
 
     def test_refuses_a_name_that_there_is_not(self):
         self.revision = "aaa1"

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every recorded log on the map of its own building: how far is the pose off, and is the robot ever lost?
 
-    tests/bench/recorded_logs.py OUT [--tool FILE] [--seeds N] [--only TEXT] [--set KEY=VALUE]... [--page]
+    tests/bench/recorded_logs.py OUT [--tool FILE] [--seeds N] [--only TEXT] [--set KEY=VALUE]... [--page [--changes FOLDER]]
 
-Writes OUT/logs.csv, a row a run, which tests/bench/paired.py compares with that of another program. Of `intel` and `wean3`
+Writes OUT/logs.csv, a row a run, which tests/bench/paired.py compares with that of another program (--figure error_median_m). Of `intel` and `wean3`
 there are maps; those of the others are drawn here, by counting beams from the reference's poses: a run of the same log on
 them is optimistic, as on ref_intel. `uma_loc` is driven on the map of the day before. The map is not updated.
 
-  --page  writes docs/results/recorded.md, with the summary of OUT/recorded.csv (recorded_changes.py) where it is there
+  --page     writes docs/results/recorded.md
+  --changes  with a summary of what recorded_changes.py has left in that folder, of the same program
 """
 import argparse
 import bisect
@@ -19,7 +20,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from project import DATA, ROOT, provenance, run, unpacked
+from project import DATA, ROOT, processor, run, unpacked
 
 TOOLS = DATA.parent / "tools"
 sys.path.insert(0, str(TOOLS))
@@ -136,9 +137,10 @@ def worst(rows, key):
     return max(float(row[key]) for row in rows)
 
 
-def page(tool, rows, changed):
+def page(tool, settings, rows, changed):
     lines = ["# Recorded logs", "",
-             "Written by `tests/bench/recorded_logs.py --page` from what it and `recorded_changes.py` have replayed: %s." % provenance(), "",
+             "Written by `tests/bench/recorded_logs.py --page` from what it and `recorded_changes.py` have replayed: %s on %s%s."
+             % (run(tool, "--version").strip(), processor(), ", " + ", ".join(settings) if settings else ""), "",
              "## Each on the map of its own building", "",
              "The map is not updated. Maps but those of `intel` and `wean3` are drawn from the reference's poses. Of some seeds the worst;",
              "lost: share of the scans that are more than 0.5 m off, or have no pose.", "",
@@ -173,7 +175,10 @@ def main():
     parser.add_argument("--only", default="", help="only runs with this in their name")
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE over the settings")
     parser.add_argument("--page", action="store_true")
+    parser.add_argument("--changes", type=pathlib.Path, help="folder of recorded_changes.py, for the page")
     given = parser.parse_args()
+    if given.page and given.only:
+        parser.error("a page is of all logs: --page without --only")
     OUT = pathlib.Path(given.out).resolve()
     (OUT / "data").mkdir(parents=True, exist_ok=True)
     rows = [run_one(given.tool, log, seed, given.set) for log in LOGS for seed in range(1, given.seeds + 1)
@@ -185,8 +190,8 @@ def main():
         writer.writeheader()
         writer.writerows(rows)
     if given.page:
-        changed = OUT / "recorded.csv"
-        page(given.tool, rows, list(csv.DictReader(changed.open(encoding="utf-8"))) if changed.exists() else [])
+        changed = list(csv.DictReader((given.changes / "recorded.csv").open(encoding="utf-8"))) if given.changes else []
+        page(given.tool, given.set, rows, changed)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ TrackedScan some_scan() {
   tracked.scan.number = 42;
   tracked.speed_m_per_s = 0.25;
   tracked.turn_rate_rad_per_s = -0.5;
+  tracked.weights = {.w_fast = 0.375, .w_slow = 0.5};
   Estimate& estimate = tracked.estimate;
   estimate.map_from_robot = {1.5, -2.25, 0.75};
   estimate.covariance(0, 2) = 0.125;
@@ -51,6 +52,9 @@ TEST(LocalizationLog, EveryColumnHasItsNameAndItsValue) {
   EXPECT_EQ(value_of("x_m"), "1.5");
   EXPECT_EQ(value_of("heading_rad"), "0.75");
   EXPECT_EQ(value_of("w_avg"), "0.625");
+  EXPECT_EQ(value_of("w_fast"), "0.375");
+  EXPECT_EQ(value_of("w_slow"), "0.5");
+  EXPECT_EQ(value_of("r_d"), "0.25");
   EXPECT_EQ(value_of("n_eff"), "99.5");
   EXPECT_EQ(value_of("particles"), "500");
   EXPECT_EQ(value_of("revision"), "3");

@@ -27,7 +27,7 @@ TEST(MotionSegments, PredictTheEndThatALeverArmGives) {
   EXPECT_NEAR(segment.covariance[static_cast<std::size_t>(MotionSource::kTurnPerMetre)](1, 1), 4.0 + 1.0 + 1.0, 1e-12);
 }
 
-TEST(MotionSegments, EndByTurnsAtTheLengthsAndTheAnglesThatAreAsked) {
+TEST(MotionSegments, EndAtTheLengthsThatAreAskedInTurn) {
   MotionSegments segments{{.length_m = {0.25, 0.45, 0.25, 0.45}}};
   for (int i = 0; i <= 8; ++i) {
     const Pose2 at{0.1 * i, 0.0, 0.0};

@@ -112,6 +112,22 @@ TEST_F(Sets, WhatWasWrittenLatelyIsOrderedBackOnce) {
   EXPECT_EQ(ordered_back.size(), 1u) << "nothing was written since";
 }
 
+TEST_F(Sets, AnOrderGoesBeforeTheSetsThatItMarks) {
+  (void)on(60.0);
+  end_set(2.0, 1);
+  ASSERT_EQ(on(5.0).size(), 1u);
+  end_set(2.0, 2);
+  TrackedScan lost = robot.next();
+  lost.estimate.state = LocalizerState::kLost;
+  sets.observe(lost);
+  const auto first = sets.next();
+  ASSERT_TRUE(first && std::holds_alternative<WithdrawOrder>(*first));
+  sets.observe(lost);
+  const auto second = sets.next();
+  ASSERT_TRUE(second && std::holds_alternative<ScanSet>(*second));
+  EXPECT_TRUE(std::get<ScanSet>(*second).pose_in_doubt);
+}
+
 TEST_F(Sets, WhatIsSettledStays) {
   (void)on(60.0);
   end_set(2.0, 1);
