@@ -130,7 +130,7 @@ def run_one(tool, log, kind, seed, settings):
     gate = report["write_gate"]
     row = {"run": name, "recall": round(found(score), 3), "skill": score["skill"], "walls_kept": score["kept"],
            "ghost_m2": score["ghost_m2"], "error_median_m": pose["median_m"], "error_p95_m": pose["p95_m"],
-           "off_share": pose["lost"], "shut_share": round(gate["shut_s"] / gate["observed_s"], 4),
+           "off_share": pose["lost"], "revisions": report["revisions_total"], "shut_share": round(gate["shut_s"] / gate["observed_s"], 4),
            "shut_by_reason": " ".join("%s:%.0f" % item for item in sorted(gate["shut_by_reason_s"].items()))}
     print("%(run)-22s found %(recall)-5s skill %(skill)-7s kept %(walls_kept)-8s ghosts %(ghost_m2)-6s median %(error_median_m)-7s"
           " off %(off_share)-6s shut %(shut_share)-6s %(shut_by_reason)s" % row, flush=True)

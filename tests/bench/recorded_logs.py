@@ -155,13 +155,13 @@ def page(tool, settings, rows, changed):
         lines += ["", "## On maps that were made out of date, the map live", "",
                   "Ten things erased and ten added for each seed; `poor`: wheels made of the reference, 2 % too far, 0.3° a metre, 120 ms late;",
                   "`worse`: those of the log with the same errors on top; `global`: the start is not given. Means over the seeds.", "",
-                  "| log, wheels | seeds | found | skill | kept | ghosts, m² | median, m | lost | gate shut |", "|---|---|---|---|---|---|---|---|---|"]
+                  "| log, wheels | seeds | revisions | found | skill | kept | ghosts, m² | median, m | lost | gate shut |", "|---|---|---|---|---|---|---|---|---|---|"]
         kinds = sorted({row["run"].rsplit("-seed", 1)[0] for row in changed})
         for kind in kinds:
             of = [row for row in changed if row["run"].rsplit("-seed", 1)[0] == kind]
             mean = lambda key: sum(float(row[key]) for row in of) / len(of)
-            lines.append("| `%s` | %d | %.2f | %.3f | %.4f | %.2f | %.3f | %.4f | %.3f |" % (
-                kind, len(of), mean("recall"), mean("skill"), mean("walls_kept"), mean("ghost_m2"), mean("error_median_m"),
+            lines.append("| `%s` | %d | %.0f | %.2f | %.3f | %.4f | %.2f | %.3f | %.4f | %.3f |" % (
+                kind, len(of), mean("revisions"), mean("recall"), mean("skill"), mean("walls_kept"), mean("ghost_m2"), mean("error_median_m"),
                 mean("off_share"), mean("shut_share")))
     (ROOT / "docs/results/recorded.md").write_text("\n".join(lines) + "\n")
 
