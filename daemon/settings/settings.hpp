@@ -46,7 +46,7 @@ struct MapSettings {
 
 struct MappingSettings {
   bool enabled = true;
-  mapping::paper::DivergenceRatioParams divergence;  ///< w_fast, w_slow, r_d: of every tracked scan, mapping paused or not
+  mapping::paper::DivergenceRatioParams divergence;  ///< w_fast, w_slow, r_d: mapping paused or not
   mapping::StoreScanParams store_scan;
   mapping::MapUpdateParams update;
 };

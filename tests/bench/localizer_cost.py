@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the localizer costs: runs build/*/bench/localizer_cost, alone for times and under callgrind for instructions."""
-import re, subprocess
+import re, subprocess, sys
 
 from measuring import ROOT, row, run
 
@@ -61,19 +61,42 @@ def tracking_rows(program, on, quick, judged):
     return made
 
 
+def runs_atom():
+    """Whether this kernel runs 32-bit programs: it may have been built without them."""
+    try:
+        subprocess.run([str(ATOM)], capture_output=True)
+    except OSError as error:
+        print("localizer_cost: the 32-bit build is not measured: %s" % error, file=sys.stderr)
+        return False
+    return True
+
+
+def programs():
+    """Program, and what its rows are called besides."""
+    return [(X86_64, "")] + ([(ATOM, ", 32-bit build")] if runs_atom() else [])
+
+
 def rows(quick):
-    atom = ", 32-bit build"
+    made = x86_64_rows(quick)
+    return made + atom_rows(quick) if runs_atom() else made
+
+
+def x86_64_rows(quick):
     return (weighing_rows(X86_64, "", quick, 4, [(60, "beluga 13.7 ns, MRPT 37, amcl 50, nav2 54"), (0, "beluga 9.0 ns")])
             + update_rows(X86_64, "", quick, [(60, 150, "beluga 411 µs, nav2 1616"), (0, 400, "beluga 815 µs, nav2 3871")])
-            + tracking_rows(X86_64, "", quick, True)
-            + weighing_rows(ATOM, atom, quick, 10, [(60, "nav2 133 ns"), (0, "")])
+            + tracking_rows(X86_64, "", quick, True))
+
+
+def atom_rows(quick):
+    atom = ", 32-bit build"
+    return (weighing_rows(ATOM, atom, quick, 10, [(60, "nav2 133 ns"), (0, "")])
             + update_rows(ATOM, atom, quick, [(60, 0, ""), (0, 0, "")])
             + tracking_rows(ATOM, atom, quick, False))
 
 
 def patch_rows(quick):
     made = []
-    for program, on in ((X86_64, ""), (ATOM, ", 32-bit build")):
+    for program, on in programs():
         f = figures(program, "patch", 0, quick)
         made.append(row("a 5 × 5 m container patched into a 700² field%s" % on,
                         "%.2f ms (whole rebuild %.1f ms); %.1f million instructions"
@@ -85,7 +108,7 @@ def patch_rows(quick):
 
 def memory_rows(quick):
     made = []
-    for program, on in ((X86_64, ""), (ATOM, ", 32-bit build")):
+    for program, on in programs():
         f = figures(program, "memory", 0, quick)
         made.append(row("resident memory, this localizer alone, 700² map, 2000 particles%s" % on,
                         "%.1f MB (peak %.1f MB)" % (f["VmRSS"], f["VmHWM"]), "" if on else "≤ 14 MB",
