@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <compare>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -48,7 +49,7 @@ class Replay {
   [[nodiscard]] RunReport finish(const std::filesystem::path& out);
 
  private:
-  void take(Odometry&& odometry, std::uint32_t number);
+  void take(const Odometry& odometry, std::uint32_t number);
   void take(Scan&& scan);
   void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
@@ -91,7 +92,7 @@ void Replay::run(const ReplayProgress& progress) {
       decoder.feed(replayed->record, sinks);
       if (!replayed->in_window) continue;
     }
-    for (auto& [message, number] : odometry) take(std::move(message), number);
+    for (const auto& [message, number] : odometry) take(message, number);
     for (Scan& scan : scans) take(std::move(scan));
     const double done = static_cast<double>(port.read_bytes()) / static_cast<double>(port.size_bytes());
     if (!scans.empty() && !progress(done)) throw std::runtime_error("interrupted");
@@ -104,7 +105,7 @@ void Replay::run(const ReplayProgress& progress) {
   report_.wire = decoder.counts();
 }
 
-void Replay::take(Odometry&& odometry, std::uint32_t number) {
+void Replay::take(const Odometry& odometry, std::uint32_t number) {
   ++report_.scans.odometry;
   if (obeys_ && journal_.odometry_was_lost(number)) {
     ++report_.scans.odometry_lost;
@@ -146,9 +147,9 @@ void Replay::obey_commands_before(const Scan& scan) {
   for (; next_command_ != journal_.commands().end(); ++next_command_) {
     const Decision& command = *next_command_;
     const auto place = journal_.place_of(command, scan);
-    if (place > 0) break;
+    if (std::is_gt(place)) break;
     ++report_.commands;
-    const bool is_of_before = !has_begun_ && place < 0;  // the window begins later
+    const bool is_of_before = !has_begun_ && std::is_lt(place);  // the window begins later
     if (command.kind == Decision::Kind::kRelocalized && !is_of_before)
       run_.localization().relocalize(command.map_from_robot);
     if (command.kind == Decision::Kind::kMapSet) keep_result(run_.obey(*command.set));

@@ -59,6 +59,7 @@ std::vector<CellMotion> best_by_sample(const std::vector<CellMotion>& candidates
   std::stable_sort(rated.begin(), rated.end(), [](const Rated& a, const Rated& b) { return a.rating > b.rating; });
   if (rated.size() > n) rated.resize(n);
   std::vector<CellMotion> left;
+  left.reserve(rated.size());
   for (const Rated& candidate : rated) left.push_back(candidate.motion);
   return left;
 }
