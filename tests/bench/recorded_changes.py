@@ -12,20 +12,16 @@ Writes OUT/recorded.csv, a row a run, which tests/bench/paired.py compares with 
   worse   the wheels of the log with the same errors on top
   global  the wheels of the log, the start is not given
 """
-import argparse
 import bisect
-import csv
 import json
 import math
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from project import DATA, ROOT, run, unpacked
+import recorded
+from recorded import AHEAD_M, DATA, TOOLS, run, unpacked
 
-TOOLS = DATA.parent / "tools"
-LOGS = {"intel": {"laser_m": 0.0, "start": "9.442,-3.389,-156.2"},
-        "wean3": {"laser_m": 0.25, "start": "44.508,15.702,-91.93"}}
+STARTS = {"intel": "9.442,-3.389,-156.2", "wean3": "44.508,15.702,-91.93"}
 KINDS = ["own", "poor", "worse", "global"]
 SCALE = 1.02
 DRIFT_RAD_PER_M = math.radians(0.3)
@@ -65,10 +61,8 @@ def late(times, poses):
 
 def reference_of(log):
     """{stamp: pose of the robot} of the reference, which is of the laser."""
-    back = (-LOGS[log]["laser_m"], 0.0, 0.0)
-    lines = unpacked("reference/%s.gt.txt" % log, OUT / "data").read_text().splitlines()
-    rows = [[float(word) for word in line.split()] for line in lines if line.strip() and line[0] != "#"]
-    return {round(row[0], 3): after(row[1:4], back) for row in rows}
+    back = (-AHEAD_M[log], 0.0, 0.0)
+    return {round(row[0], 3): after(row[1:4], back) for row in recorded.reference_of(log, OUT / "data")}
 
 
 def with_poor_wheels(log, of_reference):
@@ -85,7 +79,7 @@ def with_poor_wheels(log, of_reference):
     shown = late([float(words[-3]) for words in scans], counted_poorly(poses))
     with open(target, "w", encoding="utf-8") as out:
         for words, pose in zip(scans, shown):
-            laser = after(pose, (LOGS[log]["laser_m"], 0.0, 0.0))
+            laser = after(pose, (AHEAD_M[log], 0.0, 0.0))
             numbers = ["%.6f" % part for part in (*laser, *pose)]
             out.write(" ".join([*words[:-9], *numbers, *words[-3:]]) + "\n")
     return target
@@ -118,14 +112,10 @@ def found(score):
 def run_one(tool, log, kind, seed, settings):
     name = "%s-%s-seed%d" % (log, kind, seed)
     true_map, was = changed_map(log, seed)
-    start = [] if kind == "global" else ["--initial-pose", LOGS[log]["start"]]
+    start = [] if kind == "global" else ["--initial-pose", STARTS[log]]
     folder = OUT / "runs" / name
-    run(tool, "replay", recording(tool, log, kind), "--map", was, "--config", ROOT / "config/pioneer.yaml", "--out", folder,
-        "--seed", seed, "--set", "laser.mount.x_m=%g" % LOGS[log]["laser_m"], *start,
-        *(word for setting in settings for word in ("--set", setting)))
+    pose = recorded.replayed(tool, log, recording(tool, log, kind), was, folder, seed, settings, *start)
     report = json.loads((folder / "report.json").read_text())
-    pose = json.loads(run(sys.executable, TOOLS / "score_trajectory.py", folder / "trajectory.tum",
-                          DATA / ("reference/%s.gt.txt.xz" % log), "--laser", LOGS[log]["laser_m"]))
     score = json.loads(run(sys.executable, TOOLS / "score_change.py", true_map, was, folder / "map.yaml", was.with_suffix(".changes.json")))
     gate = report["write_gate"]
     row = {"run": name, "recall": round(found(score), 3), "skill": score["skill"], "walls_kept": score["kept"],
@@ -139,26 +129,17 @@ def run_one(tool, log, kind, seed, settings):
 
 def main():
     global OUT
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", help="folder for the result")
-    parser.add_argument("--tool", default=ROOT / "build/release/bin/deltamap", help="the program that is measured")
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--only", default="", help="only runs with this in their name")
-    parser.add_argument("--set", action="append", default=[], help="KEY=VALUE over the settings")
-    given = parser.parse_args()
+    given = recorded.options(__doc__, seeds=5).parse_args()
     OUT = pathlib.Path(given.out).resolve()
     rows = []
-    for log in LOGS:
+    for log in STARTS:
         for kind in KINDS:
             for seed in range(1, given.seeds + 1):
                 if given.only in "%s-%s-seed%d" % (log, kind, seed):
                     rows.append(run_one(given.tool, log, kind, seed, given.set))
     if not rows:
         raise SystemExit("recorded_changes: no run has %r in its name" % given.only)
-    with open(OUT / "recorded.csv", "w", newline="", encoding="utf-8") as table:
-        writer = csv.DictWriter(table, fieldnames=rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+    recorded.write_table(OUT / "recorded.csv", rows)
 
 
 if __name__ == "__main__":
