@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the localizer costs: runs build/*/bench/localizer_cost, alone for times and under callgrind for instructions."""
-import re, subprocess, sys
+import errno, functools, re, subprocess, sys
 
 from measuring import ROOT, row, run
 
@@ -61,11 +61,14 @@ def tracking_rows(program, on, quick, judged):
     return made
 
 
+@functools.cache
 def runs_atom():
     """Whether this kernel runs 32-bit programs: it may have been built without them."""
     try:
         subprocess.run([str(ATOM)], capture_output=True)
     except OSError as error:
+        if error.errno != errno.ENOEXEC:
+            raise
         print("localizer_cost: the 32-bit build is not measured: %s" % error, file=sys.stderr)
         return False
     return True
@@ -77,8 +80,7 @@ def programs():
 
 
 def rows(quick):
-    made = x86_64_rows(quick)
-    return made + atom_rows(quick) if runs_atom() else made
+    return x86_64_rows(quick) + (atom_rows(quick) if runs_atom() else [])
 
 
 def x86_64_rows(quick):
