@@ -2,38 +2,25 @@
 #include "mapping/store/map_salvage.hpp"
 
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
-#include "mapping/store/map_store.hpp"
-#include "tests/support/daemon/stored_maps.hpp"
-#include "tests/support/files/temporary_folder.hpp"
+#include "tests/mapping/store/written_store.hpp"
 
 namespace deltamap::mapping::store {
 namespace {
 
-class MapSalvage : public testing::Test {
+class MapSalvage : public StoreFile {
  protected:
   /// M_0 to M_last, of which every 64th is whole.
   void write(std::uint32_t last) {
     MapStore store{file, test::first_map()};
-    while (store.newest() < last) {
-      const std::uint32_t number = store.newest() + 1;
-      const MapRevision revision = test::revision_after(maps.back(), number);
-      store.append(revision, {number, 0.97, "evidence"});
-      maps.push_back(*revision.map);
-    }
+    maps = fill(store, last);
   }
-  void damage(const std::string& what) const {
-    sqlite3* database = nullptr;
-    ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
-    EXPECT_EQ(sqlite3_exec(database, ("UPDATE revision SET " + what).c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
-    sqlite3_close(database);
-  }
+  void damage(const std::string& what) const { run_sql(file, "UPDATE revision SET " + what); }
   [[nodiscard]] std::string bytes() const {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -46,9 +33,7 @@ class MapSalvage : public testing::Test {
     EXPECT_EQ(salvaged->time, timestamp_from_ns(std::int64_t{number} * 1'000'000'000));
   }
 
-  test::TemporaryFolder folder;
-  std::filesystem::path file = folder.path() / "store.sqlite";
-  std::vector<OccupancyGrid> maps{test::first_map()};
+  std::vector<OccupancyGrid> maps;
 };
 
 TEST_F(MapSalvage, IsTheNewestOfASoundStoreWhichIsLeftAsItIs) {

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "tests/mapping/store/written_store.hpp"
-#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
 namespace {
@@ -19,11 +18,7 @@ using test::complaint;
 using test::first_map;
 using test::revision_after;
 
-class Store : public testing::Test {
- protected:
-  test::TemporaryFolder folder;
-  fs::path file = folder.path() / "store.sqlite";
-};
+using Store = StoreFile;
 
 TEST_F(Store, BeginsWithTheFirstMap) {
   const MapStore store{file, first_map()};

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "tests/mapping/store/written_store.hpp"
-#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
 namespace {
@@ -20,11 +19,7 @@ using test::complaint;
 using test::first_map;
 using test::revision_after;
 
-class StoreSchema : public testing::Test {
- protected:
-  test::TemporaryFolder folder;
-  fs::path file = folder.path() / "store.sqlite";
-};
+using StoreSchema = StoreFile;
 
 TEST_F(StoreSchema, GoesOnWithAFileOfVersion1) {
   std::vector<OccupancyGrid> maps;

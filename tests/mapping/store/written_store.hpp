@@ -12,8 +12,16 @@
 
 #include "mapping/store/map_store.hpp"
 #include "tests/support/daemon/stored_maps.hpp"
+#include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::mapping::store {
+
+/// The file of a store, in a folder of its own.
+class StoreFile : public testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+  std::filesystem::path file = folder.path() / "store.sqlite";
+};
 
 /// Appends revisions up to `last` and returns every map.
 inline std::vector<OccupancyGrid> fill(MapStore& store, std::uint32_t last) {
