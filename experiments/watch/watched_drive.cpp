@@ -19,8 +19,7 @@ constexpr double kDiffers = 0.05;   // share of the beams above which a change i
 constexpr double kFewBeams = 0.15;  // share of the beams below which little is in view
 constexpr double kPersonNear_m = 3.0;
 constexpr double kJudgeEvery_s = 5.0;
-constexpr double kWheelsKnownAfter_s =
-    900.0;  // what was found of them is judged then, or at the end of a shorter drive
+constexpr double kWheelsKnownAfter_s = 900.0;  // what was found of them is judged then, or at the end
 
 /// Of a drive whose map may be updated.
 constexpr std::array kMapNumbers{"changes_seen_10s",

@@ -2,7 +2,6 @@
 // A drive through a drawn hall that changes, with the evidence method from scans to map: the map follows.
 #pragma once
 
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -30,8 +29,7 @@ class MappedDrive {
   void through(const World& world, double duration_s, double speed_m_per_s = 0.4) {
     constexpr double kPeriod_s = 0.2;
     for (double t = 0.0; t < duration_s; t += kPeriod_s, time_s += kPeriod_s) {
-      const double way_m = std::fmod(time_s * speed_m_per_s, 10.0);
-      const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
+      const Pose2 pose = test::below_the_containers(time_s, speed_m_per_s);
       const auto set = test::set_in(store.observe(test::drawn_scan(world(time_s), map, pose, time_s, random, noise)));
       if (!set) continue;
       const scan_set::MapUpdate update = map_update(*map, *set, {});

@@ -24,9 +24,7 @@ class HallWatch {
   explicit HallWatch(MappingMethod method) : store{{.method = method}, 1} {}
 
   std::optional<MapRequest> see(const OccupancyGrid& world) {
-    const double way_m = std::fmod(0.4 * time_s_, 10.0);
-    const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
-    TrackedScan tracked = test::drawn_scan(world, map_, pose, time_s_, random_);
+    TrackedScan tracked = test::drawn_scan(world, map_, test::below_the_containers(time_s_), time_s_, random_);
     time_s_ += kScanPeriod_s;
     tracked.estimate.state = state;
     tracked.estimate.w_avg = w_avg;

@@ -29,8 +29,7 @@ class Withdrawal : public testing::Test {
   MapStep::Result change(const OccupancyGrid& world) {
     test::DrawnScanParams noise;
     for (int scan = 0; scan < 600; ++scan, time_s += 0.2) {
-      const double way_m = std::fmod(time_s * 0.4, 10.0);
-      const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
+      const Pose2 pose = test::below_the_containers(time_s);
       const auto request = store_scan.observe(test::drawn_scan(world, step.map(), pose, time_s, random, noise));
       if (!request) continue;
       MapStep::Result result = step.take(*request);

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 
 #include "mapping/map_update.hpp"
@@ -54,8 +53,7 @@ class GoneWhileShut {
  public:
   void drive(double duration_s, const OccupancyGrid& world, bool is_unique, LocalizerState state) {
     for (const double end_s = time_s_ + duration_s; time_s_ < end_s; time_s_ += 0.2) {
-      const double way_m = std::fmod(0.4 * time_s_, 10.0);
-      const Pose2 pose{way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
+      const Pose2 pose = test::below_the_containers(time_s_);
       TrackedScan tracked = test::drawn_scan(world, map, pose, time_s_, random_);
       tracked.estimate.state = state;
       tracked.estimate.belief.pose_right = 0.95;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/occupancy_grid.hpp"
+#include "core/pose2.hpp"
 
 namespace deltamap::test {
 
@@ -39,6 +40,12 @@ inline OccupancyGrid drawn_hall(double resolution_m = 0.1) {
   fill(hall, {20.0, 10.0}, {20.8, 12.0}, CellState::kOccupied);
   fill(hall, {20.0 - wall, 10.3}, {20.6, 11.7}, CellState::kFree);
   return hall;
+}
+
+/// Where a robot is after so long that drives to and fro below the containers, 5 m each way; it turns at once.
+inline Pose2 below_the_containers(double time_s, double speed_m_per_s = 0.4) {
+  const double way_m = std::fmod(time_s * speed_m_per_s, 10.0);
+  return {way_m < 5.0 ? 7.5 + way_m : 17.5 - way_m, 6.8, way_m < 5.0 ? 0.4 : 2.7};
 }
 
 }  // namespace deltamap::test
