@@ -235,14 +235,6 @@ const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstan
   return left >= params.temporary.least_share_left * static_cast<double>(ends.size()) ? ends_beside_transients : ends;
 }
 
-Belief Localizer::State::belief() const {
-  Belief belief = judgement.belief();
-  if (searches() || !tracker.is_fixed_by_surfaces()) return belief;
-  belief.verdict = PoseVerdict::kRight;
-  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.other_share);
-  return belief;
-}
-
 bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const {
   if (hypothesis.share_around < params.hypothesis_tracker.winning_share ||
       hypothesis.followed_m < params.hypothesis_tracker.wins_after_m)
@@ -262,30 +254,26 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.fit = sensor::explained_share(field, ends, believed.map_from_robot);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
   newest_fit = blind ? std::nullopt : std::optional{seen.fit};
+  judgement.fix_by_surfaces(!searches() && tracker.is_fixed_by_surfaces());
   if (check.under_way()) return blind ? void() : judge_start(seen.fit);
   const LocalizerState before = monitor.state();
-  const Belief& judged = judgement.observe({.map = *map,
-                                            .scan = scan,
-                                            .rays = rays,
-                                            .believed = believed,
-                                            .state = before,
-                                            .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
-                                            .hypotheses = hypotheses.report(),
-                                            .transients = params.temporary.belief ? transients.get() : nullptr});
+  judgement.observe({.map = *map,
+                     .scan = scan,
+                     .rays = rays,
+                     .believed = believed,
+                     .state = before,
+                     .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
+                     .hypotheses = hypotheses.report(),
+                     .transients = params.temporary.belief ? transients.get() : nullptr});
   if (before == LocalizerState::kTracking) {
-    stable_support.observe(judged.stable);
+    stable_support.observe(judgement.belief().stable);
   } else {
     stable_support.forget();
   }
   if (blind) return;
-  seen.verdict = judged.verdict;
+  seen.verdict = judgement.belief().verdict;
   seen.trust = judgement.trust();
   seen.beaten = hypotheses.report().beaten;
-  if (tracker.is_fixed_by_surfaces()) {
-    seen.verdict = PoseVerdict::kRight;
-    seen.trust = std::max(seen.trust, kTrustInASearch);
-    seen.beaten = false;
-  }
   const LocalizerState after = monitor.observe(seen, best);
   hypotheses.suspect(monitor.suspicious());
   if (before != after) enter(after, before, believed.map_from_robot, now);
@@ -338,7 +326,7 @@ Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& b
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(
               monitor.state() == LocalizerState::kGlobal ? hypotheses.report().followed : tracker.particle_count()),
-          .belief = belief(),
+          .belief = judgement.belief(),
           .w_avg = w_avg,
           .revision = revision,
           .map = map};

@@ -98,8 +98,6 @@ struct Localizer::State {
   [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
   /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
   [[nodiscard]] bool has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const;
-  /// What the localizer answers: where surfaces hold the pose, nothing but another pose speaks against it.
-  [[nodiscard]] Belief belief() const;
   /// No pose is believed, nor one being checked.
   [[nodiscard]] bool searches() const;
   /// Is an obstacle of the map the first thing on the straight way that is not free?

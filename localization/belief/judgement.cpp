@@ -7,6 +7,8 @@
 namespace deltamap::localization::belief {
 namespace {
 
+constexpr double kTrustInSurfaces = 0.5;  // P(pose right) at least, whatever the beams say
+
 PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
   if (report.own_known) {
@@ -33,6 +35,19 @@ void Judgement::start(double pose_right, bool found) {
   judge_.start(pose_right, found);
   since_check_.reset();
   belief_ = judge_.belief();
+  fixed_by_surfaces_ = false;
+}
+
+Belief Judgement::belief() const {
+  Belief belief = belief_;
+  if (!fixed_by_surfaces_) return belief;
+  belief.verdict = PoseVerdict::kRight;
+  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.other_share);
+  return belief;
+}
+
+double Judgement::trust() const {
+  return fixed_by_surfaces_ ? std::max(judge_.trust(), kTrustInSurfaces) : judge_.trust();
 }
 
 bool Judgement::due(const PoseJudge::Passed& passed) {
@@ -44,9 +59,9 @@ bool Judgement::due(const PoseJudge::Passed& passed) {
          since_check_->time_s >= params_.check_s;
 }
 
-const Belief& Judgement::observe(const View& view) {
+void Judgement::observe(const View& view) {
   belief_.is_checked = false;
-  if (!due(view.passed)) return belief_;
+  if (!due(view.passed)) return;
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
   const std::span<const CheckedBeam> beams =
@@ -55,7 +70,6 @@ const Belief& Judgement::observe(const View& view) {
   belief_ = judge_.belief();
   belief_.is_checked = true;
   earn(beams, view);
-  return belief_;
 }
 
 void Judgement::earn(std::span<const CheckedBeam> beams, const View& view) {

@@ -43,11 +43,14 @@ class Judgement {
     const TransientObstacles* transients = nullptr;  ///< what is known to be different for now
   };
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
-  const Belief& observe(const View& view);
+  void observe(const View& view);
+  /// Do surfaces of the map fix the pose at this scan? Then nothing but another pose speaks against it, however many
+  /// beams end elsewhere. Holds until the next call or start().
+  void fix_by_surfaces(bool fixed) { fixed_by_surfaces_ = fixed; }
 
-  [[nodiscard]] const Belief& belief() const { return belief_; }
+  [[nodiscard]] Belief belief() const;
   /// P(pose right) by all beams, whether on proven tiles or not.
-  [[nodiscard]] double trust() const { return judge_.trust(); }
+  [[nodiscard]] double trust() const;
 
   /// The map is replaced by `next`: what differs has to earn its stability again.
   void forget(const OccupancyGrid& before, const OccupancyGrid& next);
@@ -65,7 +68,8 @@ class Judgement {
   BeamCheck check_;
   PoseJudge judge_;
   std::optional<PoseJudge::Passed> since_check_;  ///< none: nothing checked yet
-  Belief belief_;
+  Belief belief_;  ///< by the beams
+  bool fixed_by_surfaces_ = false;
 };
 
 }  // namespace deltamap::localization::belief

@@ -6,20 +6,21 @@
 namespace deltamap::localization::belief {
 namespace {
 
-/// What the belief says of a scan without beams, beside a believed place that has no rivals of its own.
-Belief belief_with(const hypotheses::HypothesisReport& hypotheses) {
+/// Seen by a scan without beams, beside a believed place that has no rivals of its own.
+Judgement judged_with(const hypotheses::HypothesisReport& hypotheses, double pose_right = 0.9) {
   const OccupancyGrid map{GridGeometry{20, 20, 0.1, {0.0, 0.0}}, CellState::kFree};
   Judgement judgement{map, {}};
-  judgement.start(0.9);
+  judgement.start(pose_right);
   const Scan scan;
   const sensor::RefinedPose believed{};
-  return judgement.observe({.map = map,
-                            .scan = scan,
-                            .rays = {},
-                            .believed = believed,
-                            .state = LocalizerState::kTracking,
-                            .passed = {},
-                            .hypotheses = hypotheses});
+  judgement.observe({.map = map,
+                     .scan = scan,
+                     .rays = {},
+                     .believed = believed,
+                     .state = LocalizerState::kTracking,
+                     .passed = {},
+                     .hypotheses = hypotheses});
+  return judgement;
 }
 
 TEST(Judgement, HearsOfAWatchedPlaceBesideWhichNoneIsFollowed) {
@@ -29,7 +30,7 @@ TEST(Judgement, HearsOfAWatchedPlaceBesideWhichNoneIsFollowed) {
   report.followed = 1;
   report.kidnapped_share = 0.4;
   report.map_from_kidnapped = {15.0, 0.0, 0.0};
-  const Belief belief = belief_with(report);
+  const Belief belief = judged_with(report).belief();
   EXPECT_DOUBLE_EQ(belief.other_share, 0.4);
   EXPECT_DOUBLE_EQ(belief.map_from_other.x, 15.0);
 }
@@ -39,7 +40,29 @@ TEST(Judgement, HearsOfNoPlaceWhereNoneIsKnown) {
   report.own_known = true;
   report.own_share = 1.0;
   report.followed = 1;
-  EXPECT_DOUBLE_EQ(belief_with(report).other_share, 0.0);
+  EXPECT_DOUBLE_EQ(judged_with(report).belief().other_share, 0.0);
+}
+
+TEST(Judgement, BelievesAPoseThatSurfacesFixAsFarAsNoOtherSpeaksAgainstIt) {
+  hypotheses::HypothesisReport report;
+  report.own_known = true;
+  report.own_share = 0.8;
+  report.followed = 1;
+  report.kidnapped_share = 0.2;
+  Judgement judgement = judged_with(report, 0.05);
+  EXPECT_NE(judgement.belief().verdict, PoseVerdict::kRight);
+  EXPECT_LT(judgement.trust(), 0.1);
+  judgement.fix_by_surfaces(true);
+  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kRight);
+  EXPECT_DOUBLE_EQ(judgement.belief().pose_right, 0.8);
+  EXPECT_DOUBLE_EQ(judgement.trust(), 0.5);
+}
+
+TEST(Judgement, ForgetsAtAStartThatSurfacesHaveFixedThePose) {
+  Judgement judgement = judged_with({});
+  judgement.fix_by_surfaces(true);
+  judgement.start(0.5);
+  EXPECT_NE(judgement.belief().verdict, PoseVerdict::kRight);
 }
 
 }  // namespace
