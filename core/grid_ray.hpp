@@ -20,30 +20,35 @@ void walk_ray(const GridGeometry& geometry, const Point2& from, const Point2& to
   Cell cell = geometry.cell_at(from);
 
   struct Axis {
-    int step;           // -1, 0, 1
-    double next_m;      // distance at which the beam crosses the next border
+    int step;           // -1, 1; 0 where no border is to be crossed
+    int left;           // borders to cross: ends the walk exactly in the last cell, whatever the rounding
+    double next_m;      // distance at which the beam crosses the next border; never where none is left
     double per_cell_m;  // distance between borders
+
+    void cross(int& coordinate) {
+      coordinate += step;
+      next_m = --left > 0 ? next_m + per_cell_m : kNever;
+    }
   };
-  const auto axis = [&](double start, double delta, double cell_low) -> Axis {
-    if (delta == 0.0) return {0, kNever, kNever};
+  const auto axis = [&](double start, double delta, double cell_low, int from_cell, int to_cell) -> Axis {
+    if (from_cell == to_cell) return {0, 0, kNever, kNever};
     const double per_metre = delta / length_m;
     const double border = delta > 0.0 ? cell_low + geometry.resolution_m : cell_low;
-    return {delta > 0.0 ? 1 : -1, (border - start) / per_metre, geometry.resolution_m / std::abs(per_metre)};
+    return {delta > 0.0 ? 1 : -1, std::abs(to_cell - from_cell), (border - start) / per_metre,
+            geometry.resolution_m / std::abs(per_metre)};
   };
-  Axis x = axis(from.x(), to.x() - from.x(), geometry.origin.x() + cell.column * geometry.resolution_m);
-  Axis y = axis(from.y(), to.y() - from.y(), geometry.origin.y() + cell.row * geometry.resolution_m);
-
-  // Counting borders, not comparing distances, ends the walk exactly in the last cell whatever the rounding.
-  int columns_left = std::abs(last.column - cell.column);
-  int rows_left = std::abs(last.row - cell.row);
+  const Point2 low = geometry.origin + geometry.resolution_m * Point2{cell.column, cell.row};
+  Axis x = axis(from.x(), to.x() - from.x(), low.x(), cell.column, last.column);
+  Axis y = axis(from.y(), to.y() - from.y(), low.y(), cell.row, last.row);
   double entered_m = 0.0;
-  while (visit(cell, entered_m) && columns_left + rows_left > 0) {
-    const bool along_x = rows_left == 0 || (columns_left > 0 && x.next_m < y.next_m);
-    Axis& crossed = along_x ? x : y;
-    (along_x ? cell.column : cell.row) += crossed.step;
-    --(along_x ? columns_left : rows_left);
-    entered_m = crossed.next_m;
-    crossed.next_m += crossed.per_cell_m;
+  while (visit(cell, entered_m) && x.left + y.left > 0) {
+    if (x.next_m < y.next_m) {
+      entered_m = x.next_m;
+      x.cross(cell.column);
+    } else {
+      entered_m = y.next_m;
+      y.cross(cell.row);
+    }
   }
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/box_walk.hpp"
 #include "core/grid_ray.hpp"
 #include "core/points_in_map.hpp"
 
@@ -73,57 +72,36 @@ void RayCounts::stop_at(const OccupancyGrid& walls, std::function<bool(Cell)> st
   stops_ = std::move(stops);
 }
 
-bool RayCounts::lets_through(std::size_t index) {
-  if (marks_[index] == kUnseen) see(index);
+bool RayCounts::stops(std::size_t index) {
   if (marks_[index] == kWall) marks_[index] = stops_(cell_of(index)) ? kOpaque : kOpen;
-  return marks_[index] != kOpaque;
+  return marks_[index] == kOpaque;
 }
 
 void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits) {
-  BoxWalk walk{map_, box_, from, end};
-  const Mark* const marks = marks_.data();
-  Count* const counts = counts_.get();
-  const auto is_clear = [&] { return walk.entered_m() < clear_end_m && !walk.is_at_end(); };
-  while (is_clear()) {
-    walk.strides(clear_end_m, [&](std::size_t index) {
-      const Mark mark = marks[index] == kUnseen ? see(index) : marks[index];
-      if (mark == kOpen) ++counts[index].clear_passes;
-      return mark == kOpen;
-    });
-    if (!is_clear()) break;
-    const bool goes_through = lets_through(walk.index());
-    ++counts[walk.index()].clear_passes;
-    if (!goes_through || !walk.goes_on()) return;
-  }
-  while (!walk.is_at_end()) {
-    ++seen_count(walk.index()).late_passes;
-    if (!walk.goes_on()) return;
-  }
-  if (hits) ++seen_count(walk.index()).hits;
-}
-
-/// A robot seldom stands outside its map: cell by cell will do.
-void RayCounts::add_beam_from_outside(const Point2& from, const Point2& end, double clear_end_m, bool hits) {
   const Cell last = map_.cell_at(end);
   bool stopped = false;
   walk_ray(map_, from, end, [&](Cell cell, double entered_m) {
     if (cell == last || !box_.contains(cell)) return true;
     const std::size_t index = index_of(cell);
-    const bool goes_through = lets_through(index);
-    const bool is_clear = entered_m < clear_end_m;
-    ++(is_clear ? counts_[index].clear_passes : counts_[index].late_passes);
-    stopped = is_clear && !goes_through;
+    if (marks_[index] == kUnseen) see(index);
+    if (entered_m >= clear_end_m) {
+      ++counts_[index].late_passes;
+      return true;
+    }
+    ++counts_[index].clear_passes;
+    stopped = marks_[index] != kOpen && stops(index);
     return !stopped;
   });
-  if (hits && !stopped && box_.contains(last)) ++seen_count(index_of(last)).hits;
+  if (stopped || !hits || !box_.contains(last)) return;
+  const std::size_t index = index_of(last);
+  if (marks_[index] == kUnseen) see(index);
+  ++counts_[index].hits;
 }
 
 void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
   for_each_beam(scan, longest_m, [&](const BeamInMap& beam) {
     if (part_ && !touches(map_, *part_, beam.from, beam.end)) return;
-    const bool is_inside = box_.contains(map_.cell_at(beam.from));
-    const auto count = is_inside ? &RayCounts::add_beam : &RayCounts::add_beam_from_outside;
-    (this->*count)(beam.from, beam.end, beam.length_m - clear_m, beam.hits);
+    add_beam(beam.from, beam.end, beam.length_m - clear_m, beam.hits);
   });
 }
 

@@ -83,21 +83,15 @@ class RayCounts {
     return {count.hits, count.clear_passes + count.late_passes, count.clear_passes};
   }
   [[nodiscard]] std::span<const std::uint32_t> seen() const { return {seen_.get(), seen_cells_}; }
-  /// Nothing is called here: walks that come upon cells for the first time stay in registers.
-  [[gnu::always_inline]] Mark see(std::size_t index) {
+  void see(std::size_t index) {
     seen_[seen_cells_++] = static_cast<std::uint32_t>(index);
     counts_[index] = {0, 0, 0};
     const bool is_wall = walls_ != nullptr && (*walls_)[cell_of(index)] == CellState::kOccupied;
-    return marks_[index] = is_wall ? kWall : kOpen;
+    marks_[index] = is_wall ? kWall : kOpen;
   }
-  [[nodiscard]] Count& seen_count(std::size_t index) {
-    if (marks_[index] == kUnseen) see(index);
-    return counts_[index];
-  }
-  /// Sees the cell, where it has not been, and says whether beams go on behind it.
-  [[nodiscard]] bool lets_through(std::size_t index);
+  /// Does nothing count behind the cell, which has been seen?
+  [[nodiscard]] bool stops(std::size_t index);
   void add_beam(const Point2& from, const Point2& end, double clear_end_m, bool hits);
-  void add_beam_from_outside(const Point2& from, const Point2& end, double clear_end_m, bool hits);
 
   GridGeometry map_;
   CellBox box_;

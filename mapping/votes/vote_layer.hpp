@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <deque>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/block_lattice.hpp"
-#include "core/box_walk.hpp"
 #include "core/grid_patch.hpp"
 #include "core/grid_ray.hpp"
 #include "core/occupancy_grid.hpp"
@@ -103,29 +103,25 @@ class VoteLayer {
 template <typename Visit>
 void VoteLayer::walk_open(const Point2& from, const Point2& to, Visit&& visit) const {
   const double length_m = (to - from).norm();
-  const auto walk_blocks = [&](const Point2& first, const Point2& last) {
-    walk_ray(blocks(), first, last, [&](Cell block, double) {
-      if (!blocks().contains(block)) return false;
-      if (is_open(Question::kAdded, block)) visit(block);
-      return true;
-    });
+  const auto walk_blocks = [&](double since_m, double until_m) {
+    const auto at = [&](double way_m) { return Point2{from + (to - from) * (way_m / length_m)}; };
+    walk_ray(blocks(), since_m > 0.0 ? at(since_m) : from, until_m < length_m ? at(until_m) : to,
+             [&](Cell block, double) {
+               if (!blocks().contains(block)) return false;
+               if (is_open(Question::kAdded, block)) visit(block);
+               return true;
+             });
   };
-  if (!places_.contains(places_.cell_at(from))) return;
-  BoxWalk walk{places_, places_.box(), from, to};
-  const auto has_none = [&](std::size_t place) { return opened_[place] == 0; };
-  const auto goes_on = [&] { return !walk.is_at_end() && walk.goes_on(); };
-  const auto here = [&] { return Point2{from + (to - from) * (walk.entered_m() / length_m)}; };
-  bool is_on_way = true;
-  while (is_on_way) {
-    walk.strides(length_m, has_none);
-    if (has_none(walk.index())) {
-      is_on_way = goes_on();
-      continue;
-    }
-    const Point2 since = walk.entered_m() > 0.0 ? here() : from;
-    while (is_on_way && !has_none(walk.index())) is_on_way = goes_on();
-    walk_blocks(since, is_on_way ? here() : to);
-  }
+  constexpr double kInNone = -1.0;
+  double since_m = kInNone;  // where the beam has come into places in which somebody has said "added"
+  walk_ray(places_, from, to, [&](Cell place, double entered_m) {
+    if (!places_.contains(place)) return false;
+    const bool has_open = opened_[places_.index_of(place)] != 0;
+    if (has_open && since_m == kInNone) since_m = entered_m;
+    if (!has_open && since_m != kInNone) walk_blocks(std::exchange(since_m, kInNone), entered_m);
+    return true;
+  });
+  if (since_m != kInNone) walk_blocks(since_m, length_m);
 }
 
 }  // namespace deltamap::mapping::votes
