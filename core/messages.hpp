@@ -43,6 +43,9 @@ struct Beam {
   BeamKind kind = BeamKind::kNotValid;
 };
 
+/// 1 σ of a range of an LMS 200, laser and what it meets together, where nothing else is configured.
+inline constexpr double kRangeDeviationM = 0.015;
+
 /// One sweep of the laser, counter-clockwise. Beam i points to first_bearing_rad + i · bearing_step_rad in the laser
 /// frame.
 struct Scan {
@@ -51,8 +54,9 @@ struct Scan {
   std::uint32_t number = 0;  ///< counts decoded scans from 0
   double first_bearing_rad = 0.0;
   double bearing_step_rad = 0.0;
-  double max_range_m = 0.0;   ///< longest range that the configuration lets pass; longer ones are kBeyondMaximum
-  Pose2 robot_from_laser;     ///< the mount
+  double max_range_m = 0.0;  ///< longest range that the configuration lets pass; longer ones are kBeyondMaximum
+  double range_deviation_m = kRangeDeviationM;  ///< 1 σ of a range; the localizer puts in what is configured
+  Pose2 robot_from_laser;                       ///< the mount
   std::uint8_t severity = 0;  ///< of the laser's status: 0 ok, 1 info, 2 warning, 3 error, 4 fatal (protocols.md B6)
   bool implausible = false;   ///< the laser itself flags its values as implausible (protocols.md B6, bit 6)
   std::vector<Beam> beams;

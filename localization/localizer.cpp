@@ -34,6 +34,7 @@ TrackedScan Localizer::observe(Scan scan) {
   if (state.last_scan && scan.time < *state.last_scan) state.odometry.clock_fell_back(*state.last_scan);
   const motion::ScanInstant now{scan.time, state.odometry.at(scan.time)};
   const motion::BodyVelocity velocity = state.odometry.velocity_at(scan.time);
+  scan.range_deviation_m = state.params.range_deviation_m;
   if (const auto known = state.tracker.calibration()) {
     state.odometry.calibrate(known->wheels);
     scan.robot_from_laser = known->mount_error * scan.robot_from_laser;

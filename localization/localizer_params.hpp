@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/angle.hpp"
+#include "core/messages.hpp"
 #include "localization/belief/fit_monitor.hpp"
 #include "localization/belief/judgement.hpp"
 #include "localization/hypotheses/global_search.hpp"
@@ -18,6 +19,7 @@ namespace deltamap::localization {
 struct LocalizerParams : tracking::TrackerParams {
   double gap_s = 20.0;  ///< without scan and odometry, after which the pose must prove itself again, s; > 0
   int beams = 0;        ///< beams of a scan that score, evenly chosen among the valid ones; 0 = all
+  double range_deviation_m = kRangeDeviationM;  ///< 1 σ of a range, for all who read the tracked scan, m; > 0
   motion::OdometryBufferParams odometry;
   sensor::LikelihoodFieldParams field;
   hypotheses::GlobalSearchParams global;

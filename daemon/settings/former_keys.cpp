@@ -63,9 +63,11 @@ constexpr std::array<Section, 29> kFixed{{
     {"navigation.wander", "turn_away_m slow_down_m go_on_m"},
 }};
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kRenamed{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
     {{"localization.fit.converged_after_m", "localization.global.converged_after_m"},
-     {"localization.rivals.elsewhere_prior", "localization.kidnapping_prior"}}};
+     {"localization.rivals.elsewhere_prior", "localization.kidnapping_prior"},
+     {"localization.refinement.range_deviation_m", "laser.range_deviation_m"},
+     {"mapping.evidence.range_deviation_m", "laser.range_deviation_m"}}};
 
 }  // namespace
 

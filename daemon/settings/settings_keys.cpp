@@ -56,7 +56,7 @@ void add_robot(RobotSettings& robot, Keys& keys) {
                   "deceleration of a turn that the controller is set to, for stops of its own too")));
 }
 
-void add_laser(LaserSettings& laser, Keys& keys) {
+void add_laser(LaserSettings& laser, double& range_deviation_m, Keys& keys) {
   using drivers::lms200::ScanVariant;
   using drivers::lms200::Units;
   auto& session = laser.session;
@@ -80,6 +80,9 @@ void add_laser(LaserSettings& laser, Keys& keys) {
                             "step of a range; the laser is set to it, in its EEPROM"));
   keys.push_back(number_key("laser.max_range_m", session.max_range_m, "m", 0.0, 90.0,
                             "a longer range counts as no return; 0: as far as the laser's mode goes"));
+  keys.push_back(with_symbol(number_key("laser.range_deviation_m", range_deviation_m, "m", 0.001, 1.0,
+                                        "standard deviation of a range, laser and what it meets together"),
+                             "σ_r"));
   keys.push_back(number_key("laser.mount.x_m", session.robot_from_laser.x, "m", -5.0, 5.0,
                             "how far the laser is mounted ahead of the middle of the wheel axle"));
   keys.push_back(number_key("laser.mount.y_m", session.robot_from_laser.y, "m", -5.0, 5.0,
@@ -170,7 +173,7 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   keys.push_back(whole_key("seed", settings.seed, "", 0, kNoLimit,
                            "seed of all randomness: the same bytes and seed give the same results"));
   add_robot(settings.robot, keys);
-  add_laser(settings.laser, keys);
+  add_laser(settings.laser, settings.localizer.range_deviation_m, keys);
   keys.push_back(not_for_results(
       with_symbol(text_key("map.file", settings.map.file, "first map: map_server YAML with its PGM"), "M_0")));
   keys.push_back(not_for_results(with_symbol(

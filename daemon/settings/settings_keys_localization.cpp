@@ -57,9 +57,6 @@ void add_sensor(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(with_symbol(number_key("localization.field.random_share", field.random_share, "", 0.02,
                                         field.unknown_likelihood, "share of beams that hit what no map knows"),
                              "z_rand"));
-  keys.push_back(number_key("localization.refinement.range_deviation_m", localizer.refinement.range_deviation_m, "m",
-                            0.0001, 1.0,
-                            "standard deviation of the laser's ranges; end points that scatter more show a rough map"));
   keys.push_back(
       flag_key("localization.track.surfaces", localizer.follow_surfaces,
                "whether straight surfaces give the pose where they explain the scans; false: particles always do"));

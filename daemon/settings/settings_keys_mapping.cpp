@@ -26,8 +26,6 @@ void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& long
   keys.push_back(number_key(at + "small_m", evidence.passing.small_m, "m", 0.0, 100.0,
                             "widest free-standing object that counts as small; 0: none is"));
   keys.push_back(most_range_key(at + "most_range_m", evidence.beams.most_range_m, longest_drawn_m));
-  keys.push_back(number_key(at + "range_deviation_m", evidence.beams.range_deviation_m, "m", 0.001, 1.0,
-                            "standard deviation of the laser's ranges"));
 }
 
 void add_paper(mapping::paper::DivergenceRatioParams& ratio, mapping::paper::DeltaPhaseParams& phase, Keys& keys) {

@@ -18,7 +18,6 @@ const std::vector<SettingSection>& setting_sections() {
       {"localization.motion", "motion model: how far odometry may be wrong"},
       {"localization.wheels", "noise of the wheels, learned while driving"},
       {"localization.field", "likelihood field: how a beam is weighed by where it ends"},
-      {"localization.refinement", "refinement of a pose to where the scan fits best"},
       {"localization.track", "what gives the pose from scan to scan"},
       {"localization.temporary", "what transient obstacles count for"},
       {"localization.global", "global localization: search of the whole map"},

@@ -127,7 +127,8 @@ constexpr std::array kOfMapping{
 };
 
 bool is_asked(const SettingKey& key, const Settings& delivered) {
-  const bool of_the_algorithm = key.name.starts_with("localization.") || key.name.starts_with("mapping.");
+  const bool of_the_algorithm = key.name.starts_with("localization.") || key.name.starts_with("mapping.") ||
+                                key.name == "laser.range_deviation_m";
   const bool is_on =
       delivered.mapping.store_scan.method == MappingMethod::kPaper || !key.name.starts_with("mapping.paper.");
   return of_the_algorithm && is_on && key.affects_result && key.name != "mapping.enabled";

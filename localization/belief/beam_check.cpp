@@ -2,7 +2,6 @@
 #include "localization/belief/beam_check.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/near_occupied.hpp"
 #include "core/pose_spread.hpp"
@@ -14,12 +13,6 @@ namespace {
 using sensor::first_met;
 using sensor::kOutOfTheLaserM;
 using sensor::Met;
-
-/// How far aside a beam may lie from where the pose puts it.
-struct Aside {
-  double at_laser_m = 0.0;
-  double at_end_m = 0.0;
-};
 
 /// Towards free space, from the cells around; zero inside blocks and on single cells.
 Point2 surface_normal(const OccupancyGrid& map, Cell at) {
@@ -37,16 +30,13 @@ Point2 surface_normal(const OccupancyGrid& map, Cell at) {
 
 class BeamJudge {
  public:
-  BeamJudge(const OccupancyGrid& map, const sensor::RefinedPose& believed, double max_range_m,
-            const BeamCheckParams& params)
+  BeamJudge(const OccupancyGrid& map, const sensor::RefinedPose& believed, const Scan& scan, double most_aside_m)
       : map_{map},
-        max_range_m_{max_range_m},
+        max_range_m_{scan.max_range_m},
+        range_deviation_m_{scan.range_deviation_m},
+        most_aside_m_{most_aside_m},
         pose_{believed.map_from_robot},
-        params_{params},
-        hit_deviation_m_{std::max(params.hit_deviation_m, map.resolution_m())},
-        position_m_{std::hypot(widest_deviation_m(believed.covariance), params.least_position_deviation_m)},
-        heading_rad_{
-            std::hypot(std::sqrt(std::max(0.0, believed.covariance(2, 2))), params.least_heading_deviation_rad)} {}
+        deviation_{pose_deviation(believed.covariance)} {}
 
   [[nodiscard]] Point2 end_of(const RayInRobot& ray) const { return pose_ * Point2{ray.end.cast<double>()}; }
 
@@ -54,16 +44,16 @@ class BeamJudge {
     const Point2 from = pose_ * Point2{ray.origin.cast<double>()};
     const Point2 end = end_of(ray);
     const double length_m = (end - from).norm();
-    const Aside aside{position_m_, std::hypot(position_m_, length_m * heading_rad_)};
-    if (length_m <= kOutOfTheLaserM || aside.at_end_m > params_.most_aside_m) return {};
-    const double slack_m = params_.deviations * std::hypot(aside.at_end_m, hit_deviation_m_);
+    const double aside_m = deviation_.aside_m(length_m);
+    if (length_m <= kOutOfTheLaserM || aside_m > most_aside_m_) return {};
+    const double slack_m = expected_within_m(aside_m, range_deviation_m_) + map_.resolution_m();
     const Point2 along = (end - from) / length_m;
 
     if (map_.at(map_.geometry().cell_at(from)) != CellState::kFree) return {};  // no view from inside a block
-    const Met met = first_met(map_, from, along, kOutOfTheLaserM, length_m - params_.beyond_m - slack_m);
+    const Met met = first_met(map_, from, along, kOutOfTheLaserM, length_m - kClearlyBeyondM - slack_m);
     if (met.what == CellState::kUnknown) return {};
     if (met.what == CellState::kOccupied) {
-      return is_crossed_beside(from, end, aside, slack_m) ? beam(BeamFit::kBeyond, met.cell) : CheckedBeam{};
+      return is_crossed_beside(from, end, aside_m, slack_m) ? beam(BeamFit::kBeyond, met.cell) : CheckedBeam{};
     }
     if (const auto surface = occupied_near(map_, end, slack_m)) return beam(BeamFit::kFit, *surface);
     const Met hidden = first_met(map_, from, along, length_m, max_range_m_ - slack_m);
@@ -77,15 +67,14 @@ class BeamJudge {
   }
 
   /// Do the outermost beams that the pose may as well have sent also go through an obstacle?
-  [[nodiscard]] bool is_crossed_beside(const Point2& from, const Point2& end, const Aside& aside,
-                                       double slack_m) const {
+  [[nodiscard]] bool is_crossed_beside(const Point2& from, const Point2& end, double aside_m, double slack_m) const {
     const Point2 ahead = (end - from).normalized();
     const Point2 left{-ahead.y(), ahead.x()};
-    for (const double side : {params_.deviations, -params_.deviations}) {
-      const Point2 start = from + side * aside.at_laser_m * left;
-      const Point2 way = end + side * aside.at_end_m * left - start;
+    for (const double side : {kBeamDeviations, -kBeamDeviations}) {
+      const Point2 start = from + side * deviation_.position_m * left;
+      const Point2 way = end + side * aside_m * left - start;
       const double length_m = way.norm();
-      const Met met = first_met(map_, start, way / length_m, kOutOfTheLaserM, length_m - params_.beyond_m - slack_m);
+      const Met met = first_met(map_, start, way / length_m, kOutOfTheLaserM, length_m - kClearlyBeyondM - slack_m);
       if (met.what != CellState::kOccupied) return false;
     }
     return true;
@@ -93,11 +82,10 @@ class BeamJudge {
 
   const OccupancyGrid& map_;
   const double max_range_m_;
+  const double range_deviation_m_;
+  const double most_aside_m_;
   const Pose2 pose_;
-  const BeamCheckParams& params_;
-  const double hit_deviation_m_;
-  const double position_m_;
-  const double heading_rad_;
+  const PoseDeviation deviation_;
 };
 
 }  // namespace
@@ -105,7 +93,7 @@ class BeamJudge {
 std::span<const CheckedBeam> BeamCheck::check(const OccupancyGrid& map, const Scan& scan,
                                               std::span<const RayInRobot> rays, const sensor::RefinedPose& believed,
                                               const TransientObstacles* transients) {
-  const BeamJudge judge{map, believed, scan.max_range_m, params_};
+  const BeamJudge judge{map, believed, scan, params_.most_aside_m};
   const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(1, params_.beams)));
   beams_.clear();
   for (std::size_t i = 0; i < count; ++i) {

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "core/angle.hpp"
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
 #include "core/transient_obstacles.hpp"
@@ -17,13 +16,8 @@
 namespace deltamap::localization::belief {
 
 struct BeamCheckParams {
-  int beams = 72;                                       ///< of a scan that are looked at, evenly chosen; 8..1000
-  double deviations = 2.0;                              ///< half width of what still fits, in σ; > 0
-  double hit_deviation_m = 0.05;                        ///< of laser and map together, m; > 0; at least a cell is used
-  double least_position_deviation_m = 0.02;             ///< added to the pose's σ, m; >= 0
-  double least_heading_deviation_rad = radians(0.286);  ///< added to the heading's σ, rad; >= 0
-  double most_aside_m = 0.3;                            ///< a beam whose place is less certain says nothing, m; > 0
-  double beyond_m = 0.2;  ///< a beam must end this far behind what it went through, m; >= 0
+  int beams = 72;             ///< of a scan that are looked at, evenly chosen; 8..1000
+  double most_aside_m = 0.3;  ///< a beam whose place is less certain says nothing, m; > 0
 };
 
 enum class BeamFit : std::uint8_t {

@@ -49,7 +49,8 @@ class Judgement {
   void fix_by_surfaces(bool fixed) { fixed_by_surfaces_ = fixed; }
 
   [[nodiscard]] Belief belief() const;
-  /// P(pose right) by all beams, whether on proven tiles or not.
+  /// P(pose right) by all beams, whether on proven tiles or not; at least one half where surfaces fix the pose. Tiles
+  /// earn stability by the beams alone.
   [[nodiscard]] double trust() const;
 
   /// The map is replaced by `next`: what differs has to earn its stability again.
@@ -68,7 +69,7 @@ class Judgement {
   BeamCheck check_;
   PoseJudge judge_;
   std::optional<PoseJudge::Passed> since_check_;  ///< none: nothing checked yet
-  Belief belief_;  ///< by the beams
+  Belief belief_;                                 ///< by the beams
   bool fixed_by_surfaces_ = false;
 };
 

@@ -60,6 +60,7 @@ void AliasMonitor::probe(const Seen& seen) {
   const auto c = static_cast<float>(std::cos(heading_rad));
   const auto s = static_cast<float>(std::sin(heading_rad));
   const std::size_t count = seen.near_ends.size();
+  turned_.range_deviation_m = seen.near_ends.range_deviation_m;
   turned_.x_m.resize(count);
   turned_.y_m.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

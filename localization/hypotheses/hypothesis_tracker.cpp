@@ -122,6 +122,7 @@ void HypothesisTracker::apply(const OccupancyGrid& map, const sensor::Likelihood
 void HypothesisTracker::thin(const Seen& seen) {
   const auto most = static_cast<std::size_t>(std::max(1, bank_.params().beams));
   const std::size_t count = std::min(most, seen.ends.size());
+  ends_.range_deviation_m = seen.ends.range_deviation_m;
   ends_.x_m.resize(count);
   ends_.y_m.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

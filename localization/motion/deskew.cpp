@@ -31,6 +31,7 @@ std::vector<RayInRobot> deskewed(const Scan& scan, const BodyVelocity& velocity)
 BeamEnds scoring_ends(const Scan& scan, const std::vector<RayInRobot>& rays, int beams, BeamEnds ends) {
   ends.x_m.clear();
   ends.y_m.clear();
+  ends.range_deviation_m = scan.range_deviation_m;
   std::size_t valid = 0;
   for (const Beam& beam : scan.beams) valid += beam.kind == BeamKind::kRange ? 1 : 0;
   const std::size_t wanted = beams <= 0 ? valid : static_cast<std::size_t>(beams);

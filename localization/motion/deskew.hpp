@@ -18,6 +18,7 @@ namespace deltamap::localization::motion {
 struct BeamEnds {
   std::vector<float> x_m;
   std::vector<float> y_m;
+  double range_deviation_m = kRangeDeviationM;  ///< Scan::range_deviation_m
   [[nodiscard]] std::size_t size() const { return x_m.size(); }
 };
 
@@ -35,6 +36,7 @@ void keep_ends(const BeamEnds& ends, IsKept is_kept, BeamEnds& kept) {
   }
   kept.x_m.resize(count);
   kept.y_m.resize(count);
+  kept.range_deviation_m = ends.range_deviation_m;
 }
 
 /// Only beams with a valid range score; of these `beams` are taken evenly (0 = all). Reuses the memory of `ends`.

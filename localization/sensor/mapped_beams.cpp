@@ -2,14 +2,12 @@
 #include "localization/sensor/mapped_beams.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "localization/sensor/straight_walk.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {
 
-constexpr double kDeviations = 2.0;
 constexpr double kMostReachM = 0.5;  // a room that is smaller than the doubt has to tell, too
 
 }  // namespace
@@ -20,11 +18,10 @@ MappedBeams::MappedBeams(const OccupancyGrid& map, const LikelihoodField& field,
       field_{field},
       map_from_robot_{about.map_from_robot},
       laser_{about.map_from_robot * robot_from_laser},
-      position_m_{std::sqrt(std::max({0.0, about.covariance(0, 0), about.covariance(1, 1)}))},
-      heading_rad_{std::sqrt(std::max(0.0, about.covariance(2, 2)))} {}
+      deviation_{pose_deviation(about.covariance)} {}
 
 bool MappedBeams::tells_everywhere(const Point2& end) const {
-  const double reach_m = std::min(kMostReachM, kDeviations * std::hypot(position_m_, heading_rad_ * end.norm()));
+  const double reach_m = std::min(kMostReachM, kBeamDeviations * deviation_.aside_m(end.norm()));
   return tells(end, {reach_m, 0.0}) && tells(end, {-reach_m, 0.0}) && tells(end, {0.0, reach_m}) &&
          tells(end, {0.0, -reach_m}) && tells(end);
 }

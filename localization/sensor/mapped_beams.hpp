@@ -5,6 +5,7 @@
 
 #include "core/messages.hpp"
 #include "core/occupancy_grid.hpp"
+#include "core/pose_spread.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 
@@ -29,8 +30,7 @@ class MappedBeams {
   const LikelihoodField& field_;
   Pose2 map_from_robot_;
   Point2 laser_;
-  double position_m_;   ///< deviation
-  double heading_rad_;  ///< deviation
+  PoseDeviation deviation_;
 };
 
 }  // namespace deltamap::localization::sensor

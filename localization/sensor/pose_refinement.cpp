@@ -25,10 +25,10 @@ void BeamErrors::blend_in(const BeamErrors& scan, double share) {
   blend(squares_m2, scan.squares_m2);
 }
 
-double BeamErrors::variance_m2(const RefinementParams& params) const {
+double BeamErrors::variance_m2(double range_deviation_m, double alike_beams) const {
   const double seen_m2 = squares_m2 / std::max(1.0, explained - kUnknowns);
-  const double laser_m2 = params.range_deviation_m * params.range_deviation_m;
-  return std::clamp(seen_m2, 0.1 * laser_m2, laser_m2) + params.alike_beams * std::max(0.0, seen_m2 - laser_m2);
+  const double laser_m2 = range_deviation_m * range_deviation_m;
+  return std::clamp(seen_m2, 0.1 * laser_m2, laser_m2) + alike_beams * std::max(0.0, seen_m2 - laser_m2);
 }
 
 Refinement refined(const LikelihoodField& field, const motion::BeamEnds& ends, const RefinedPose& prior,
@@ -54,7 +54,8 @@ Refinement refined(const LikelihoodField& field, const motion::BeamEnds& ends, c
   }
   known.blend_in({beams.explained, beams.squares_m2}, kNewestErrors);
   // Whatever the weights were chosen for, the errors that they pass on are those that the beams and the prior have.
-  const double error = known.variance_m2(params) / (field.hit_deviation_m() * field.hit_deviation_m());
+  const double error = known.variance_m2(ends.range_deviation_m, params.alike_beams) /
+                       (field.hit_deviation_m() * field.hit_deviation_m());
   const Eigen::Matrix3d of_beams = (beam_share * beam_share * error) * beams.information;
   const Eigen::Matrix3d of_prior = holding * prior.covariance * holding;
   const Eigen::Matrix3d gain = (holding + beam_share * beams.information).inverse();

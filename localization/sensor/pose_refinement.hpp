@@ -14,7 +14,6 @@ struct RefinementParams {
   double prior_share = 0.3;                 ///< how strongly the particles' covariance holds the pose; 0..10
   double longest_shift_m = 0.3;             ///< a refined pose farther from the particles' mean is refused, m; > 0
   double largest_turn_rad = radians(10.0);  ///< and one that is turned farther, rad; > 0
-  double range_deviation_m = 0.01;          ///< of the laser: ends that scatter more show a rough map, m; > 0
   double alike_beams = 100.0;               ///< beams, of this and other scans, that share an error of the map; >= 1
 };
 
@@ -32,7 +31,7 @@ struct BeamErrors {
   void blend_in(const BeamErrors& scan, double share);
   /// What counts as one independent beam's squared error, m². The laser errs anew with every beam; what goes beyond it
   /// is the map's, and that is shared by the beams on one wall, scan after scan.
-  [[nodiscard]] double variance_m2(const RefinementParams& params) const;
+  [[nodiscard]] double variance_m2(double range_deviation_m, double alike_beams) const;
 };
 
 struct Refinement {

@@ -169,7 +169,7 @@ FacedScan FaceFinder::faces() {
     }
     found_ = true;
   }
-  return {ends_, corners_};
+  return {ends_, corners_, scan_ == nullptr ? kRangeDeviationM : scan_->range_deviation_m};
 }
 
 }  // namespace deltamap::localization::surfaces

@@ -29,6 +29,7 @@ struct Corner {
 struct FacedScan {
   std::span<const FacedEnd> ends;
   std::span<const Corner> corners{};
+  double range_deviation_m = kRangeDeviationM;  ///< Scan::range_deviation_m
 };
 
 /// `rays`: the scan's, without the robot's own motion (deskew.hpp). `reused`: its memory is.

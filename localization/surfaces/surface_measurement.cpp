@@ -6,8 +6,7 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
-constexpr double kRangeDeviationM = 0.015;  // of one beam, laser and surface together
-constexpr double kDistanceFloorM = 0.01;    // what all beams on one surface err together
+constexpr double kDistanceFloorM = 0.01;  // what all beams on one surface err together
 constexpr double kSlopeFloorRad = 0.004;
 constexpr double kLeastSpreadM2 = 0.02;  // of the ends along a surface, for its direction to be told
 
@@ -19,8 +18,8 @@ SurfaceMeasurement measurement_of(const Sighting& sighting, const Pose2& at, Eig
   const double by_turn_m = n.y() * seen.lever.x() - n.x() * seen.lever.y();
   // The mount errs in the robot's directions.
   const Point2 in_robot = Pose2{0.0, 0.0, -at.theta} * n;
-  const double beam2 =
-      std::max(kRangeDeviationM * kRangeDeviationM, seen.across_m2 / std::max(1.0, sighting.beams - 2.0));
+  const double beam2 = std::max(sighting.range_deviation_m * sighting.range_deviation_m,
+                                seen.across_m2 / std::max(1.0, sighting.beams - 2.0));
   return {.distance = {{{{0, n.x()},
                          {1, n.y()},
                          {2, by_turn_m},

@@ -84,11 +84,12 @@ void SightingFinder::claim(const Match& match, std::uint32_t end) {
 }
 
 /// Beams on the surface tell more than a corner; of two corners the sharper one counts.
-void SightingFinder::add(const Match& match, const Corner& corner) {
+void SightingFinder::add(const Match& match, const Corner& corner, double range_deviation_m) {
   const Sighting seen{.id = match.id,
                       .surface = match.surface,
                       .beams = 1.0,
                       .mean = corner.at,
+                      .range_deviation_m = range_deviation_m,
                       .corner_deviation_m = corner.deviation_m};
   const auto known =
       std::find_if(sightings_.begin(), sightings_.end(), [&](const Sighting& other) { return other.id == match.id; });
@@ -99,7 +100,9 @@ void SightingFinder::add(const Match& match, const Corner& corner) {
   }
 }
 
-void SightingFinder::judge(std::span<const FacedEnd> ends) {
+void SightingFinder::judge(const FacedScan& scan) {
+  const std::span<const FacedEnd> ends = scan.ends;
+  rest_.range_deviation_m = scan.range_deviation_m;
   std::vector<float> sorted;
   for (std::size_t at = 0; at < claims_used_; ++at) {
     const Claim& claim = claims_[at];
@@ -108,7 +111,7 @@ void SightingFinder::judge(std::span<const FacedEnd> ends) {
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
     const float median = *middle;
-    Sighting seen{.id = claim.id, .surface = claim.surface};
+    Sighting seen{.id = claim.id, .surface = claim.surface, .range_deviation_m = scan.range_deviation_m};
     for (std::size_t i = 0; i < claim.ends.size(); ++i) {
       if (std::abs(claim.residuals_m[i] - median) > kTogetherM) continue;
       seen.beams += 1.0;

@@ -34,6 +34,7 @@ struct Sighting {
   double beams = 0.0;                                 ///< 1 for a corner
   Point2 mean{0.0, 0.0};                              ///< m
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();  ///< sum of squares about the mean, m²
+  double range_deviation_m = kRangeDeviationM;        ///< Scan::range_deviation_m
   double corner_deviation_m = 0.0;                    ///< along the normal; 0 where beams ended at the surface
 
   /// What the beams say of the surface with the robot at a pose.
@@ -80,8 +81,8 @@ class SightingFinder {
                                                     bool explained, PlaceOf& place_of);
   void begin(std::size_t ends);
   void claim(const Match& match, std::uint32_t end);
-  void judge(std::span<const FacedEnd> ends);
-  void add(const Match& match, const Corner& corner);
+  void judge(const FacedScan& scan);
+  void add(const Match& match, const Corner& corner, double range_deviation_m);
 
   std::vector<Claim> claims_;
   std::size_t claims_used_ = 0;
@@ -137,12 +138,12 @@ std::span<const Sighting> SightingFinder::find(SurfaceMap& map, const sensor::Li
     if (const auto match = nearest(map, at, turn * end.normal, explained, place_of))
       claim(*match, static_cast<std::uint32_t>(i));
   }
-  judge(scan.ends);
+  judge(scan);
   for (const Corner& corner : scan.corners) {
     const Point2 at = from + turn * corner.at;
     const Point2 outward = turn * corner.outward;
     if (const auto match = nearest(map, at, outward, sighting::ends_face(field, at, outward), place_of))
-      add(*match, corner);
+      add(*match, corner, scan.range_deviation_m);
   }
   return sightings_;
 }

@@ -109,7 +109,7 @@ void SmallObjects::follow(const OccupancyGrid& map, std::span<const CellChange> 
 std::vector<Cell> SmallObjects::missed(const TrackedScan& tracked, std::span<const votes::BeamVerdict> beams,
                                        const votes::BeamEvidenceParams& params) {
   std::vector<Cell> cells;
-  const votes::PoseDeviation deviation = votes::pose_deviation(tracked.estimate, tracked.turn_rate_rad_per_s, params);
+  const PoseDeviation deviation = votes::pose_deviation(tracked.estimate, tracked.turn_rate_rad_per_s);
   for (SmallObject& object : small_objects_) {
     if (is_missed(object, look_at(object, tracked, beams, deviation, params)))
       cells.insert(cells.end(), object.cells.begin(), object.cells.end());
@@ -137,8 +137,7 @@ bool SmallObjects::is_missed(SmallObject& object, Look look) const {
 }
 
 SmallObjects::Look SmallObjects::look_at(const SmallObject& object, const TrackedScan& tracked,
-                                         std::span<const votes::BeamVerdict> beams,
-                                         const votes::PoseDeviation& deviation,
+                                         std::span<const votes::BeamVerdict> beams, const PoseDeviation& deviation,
                                          const votes::BeamEvidenceParams& params) const {
   const Scan& scan = tracked.scan;
   const Pose2 laser = tracked.estimate.map_from_robot * scan.robot_from_laser;
@@ -146,13 +145,13 @@ SmallObjects::Look SmallObjects::look_at(const SmallObject& object, const Tracke
   const double distance_m = way.norm();
   if (distance_m > params.most_range_m || distance_m <= object.radius_m) return Look::kNothing;
   const double bearing_rad = wrapped_angle(std::atan2(way.y(), way.x()) - laser.theta) - scan.first_bearing_rad;
-  const double aside_m = object.radius_m + params.deviations * deviation.aside_m(distance_m);
+  const double aside_m = object.radius_m + kBeamDeviations * deviation.aside_m(distance_m);
   const double half_rad = aside_m / distance_m;
   const double first = std::floor((bearing_rad - half_rad) / scan.bearing_step_rad);
   const double last = std::ceil((bearing_rad + half_rad) / scan.bearing_step_rad);
   if (first < 0.0 || last >= static_cast<double>(beams.size())) return Look::kNothing;
   const auto fan = beams.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first) + 1);
-  const double near_m = aside_m + params.beyond_m;
+  const double near_m = aside_m + kClearlyBeyondM;
   const auto is_beyond = [&](const votes::BeamVerdict& beam) { return beam.length_m >= distance_m + near_m; };
   const auto is_met = [&](const votes::BeamVerdict& beam) { return std::abs(beam.length_m - distance_m) < near_m; };
   if (!std::all_of(fan.begin(), fan.end(), is_beyond))

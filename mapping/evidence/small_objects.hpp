@@ -63,7 +63,7 @@ class SmallObjects {
   [[nodiscard]] std::optional<Group> small_group(const OccupancyGrid& map, Cell start);
   void gather(const OccupancyGrid& map, std::span<const Cell> starts);
   [[nodiscard]] Look look_at(const SmallObject& object, const TrackedScan& tracked,
-                             std::span<const votes::BeamVerdict> beams, const votes::PoseDeviation& deviation,
+                             std::span<const votes::BeamVerdict> beams, const PoseDeviation& deviation,
                              const votes::BeamEvidenceParams& params) const;
   [[nodiscard]] bool is_missed(SmallObject& object, Look look) const;
 

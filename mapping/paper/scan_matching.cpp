@@ -14,7 +14,7 @@ constexpr double kTableCell_m = 0.1;
 MatchableScan matchable(const TrackedScan& tracked, const ScanMatchingParams& params) {
   std::vector<Point2> ends = registration::ray_ends(tracked, params.longest_m);
   registration::NearestSurface surface{registration::surface_of(ends), kTableCell_m, params.first_reach_m};
-  return {std::move(ends), std::move(surface)};
+  return {std::move(ends), std::move(surface), tracked.scan.range_deviation_m};
 }
 
 std::optional<ScanMatch> scan_match(const MatchableScan& first, const MatchableScan& second,
@@ -23,7 +23,7 @@ std::optional<ScanMatch> scan_match(const MatchableScan& first, const MatchableS
       registration::registration(second.ends, first.surface, initial_first_from_second, {},
                                  {.first_reach_m = params.first_reach_m,
                                   .last_reach_m = params.last_reach_m,
-                                  .point_deviation_m = params.range_deviation_m});
+                                  .point_deviation_m = second.range_deviation_m});
   if (!found.settled || second.ends.empty()) return std::nullopt;
   ScanMatch match;
   match.first_from_second = found.reference_from_moving;

@@ -15,7 +15,6 @@ struct ScanMatchingParams {
   double longest_m = 15.0;                ///< longer ranges are left out: their ends lie too far apart; > 0
   double first_reach_m = 0.5;             ///< how wrong the initial pose may place a point
   double last_reach_m = 0.1;              ///< pairs at the end
-  double range_deviation_m = 0.015;       ///< of one range; > 0
   double independent_share = 0.25;        ///< of the paired points whose errors are their own; (0, 1]
   double unobserved_deviation_m = 1.0;    ///< σ along an axis that the scans do not observe (a corridor)
   double unobserved_deviation_rad = 0.2;  ///< the same in heading
@@ -29,6 +28,7 @@ struct ScanMatchingParams {
 struct MatchableScan {
   std::vector<Point2> ends;
   registration::NearestSurface surface;
+  double range_deviation_m = kRangeDeviationM;  ///< Scan::range_deviation_m
 };
 [[nodiscard]] MatchableScan matchable(const TrackedScan& tracked, const ScanMatchingParams& params);
 

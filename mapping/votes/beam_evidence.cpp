@@ -30,13 +30,12 @@ struct Passage {
 
 class BeamJudge {
  public:
-  BeamJudge(const OccupancyGrid& map, const ClearSpace& clear, const PoseDeviation& deviation,
-            const BeamEvidenceParams& params)
-      : map_{map}, clear_{clear}, deviation_{deviation}, params_{params} {}
+  BeamJudge(const OccupancyGrid& map, const ClearSpace& clear, const PoseDeviation& deviation)
+      : map_{map}, clear_{clear}, deviation_{deviation} {}
 
   /// The occupied cells in the beam's way that it has clearly left behind, for every pose within the uncertainty.
   void collect_passed(BeamVerdict& beam) const {
-    const double limit_m = beam.length_m - params_.beyond_m - beam.interval_m;
+    const double limit_m = beam.length_m - kClearlyBeyondM - beam.interval_m;
     if (limit_m <= 0.0) return;
     std::optional<Passage> passage;
     const double gap_m = 2.5 * map_.resolution_m();
@@ -63,9 +62,9 @@ class BeamJudge {
   [[nodiscard]] bool crosses_for_every_pose(const BeamVerdict& beam, const Passage& passage) const {
     const Point2 along = (beam.end - beam.from) / beam.length_m;
     const Point2 left{-along.y(), along.x()};
-    const double near_m = params_.deviations * deviation_.position_m;
-    const double far_m = params_.deviations * deviation_.aside_m(beam.length_m);
-    const double slack_m = params_.beyond_m + near_m + kMostSlant * (far_m - near_m);
+    const double near_m = kBeamDeviations * deviation_.position_m;
+    const double far_m = kBeamDeviations * deviation_.aside_m(beam.length_m);
+    const double slack_m = kClearlyBeyondM + near_m + kMostSlant * (far_m - near_m);
     for (const double side : {1.0, -1.0}) {
       const Point2 from = beam.from + side * near_m * left;
       const Point2 end = beam.end + side * far_m * left;
@@ -95,14 +94,13 @@ class BeamJudge {
   const OccupancyGrid& map_;
   const ClearSpace& clear_;
   const PoseDeviation deviation_;
-  const BeamEvidenceParams& params_;
 };
 
 }  // namespace
 
 bool speaks(const Estimate& estimate, double turn_rate_rad_per_s, const BeamEvidenceParams& params) {
   if (estimate.state != LocalizerState::kTracking) return false;
-  const PoseDeviation deviation = pose_deviation(estimate, turn_rate_rad_per_s, params);
+  const PoseDeviation deviation = pose_deviation(estimate, turn_rate_rad_per_s);
   return deviation.position_m <= params.most_position_deviation_m &&
          deviation.heading_rad <= params.most_heading_deviation_rad;
 }
@@ -111,9 +109,8 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
                                        const BeamEvidenceParams& params, std::vector<BeamVerdict> verdicts) {
   verdicts.resize(tracked.rays.size());
   const bool silent = !speaks(tracked.estimate, tracked.turn_rate_rad_per_s, params);
-  const PoseDeviation deviation = pose_deviation(tracked.estimate, tracked.turn_rate_rad_per_s, params);
-  const BeamJudge judge{map, clear, deviation, params};
-  const double range_deviation2 = params.range_deviation_m * params.range_deviation_m;
+  const PoseDeviation deviation = pose_deviation(tracked.estimate, tracked.turn_rate_rad_per_s);
+  const BeamJudge judge{map, clear, deviation};
   const double farthest_m =
       std::min(params.most_range_m, std::sqrt(std::max(0.0, params.most_aside_m * params.most_aside_m -
                                                                 deviation.position_m * deviation.position_m)) /
@@ -136,8 +133,7 @@ std::vector<BeamVerdict> beam_evidence(const OccupancyGrid& map, const ClearSpac
       beam.end = beam.from + (beam.end - beam.from) * (farthest_m / beam.length_m);
       beam.length_m = farthest_m;
     }
-    const double aside_m = deviation.aside_m(beam.length_m);
-    beam.interval_m = params.deviations * std::sqrt(aside_m * aside_m + range_deviation2);
+    beam.interval_m = expected_within_m(deviation.aside_m(beam.length_m), tracked.scan.range_deviation_m);
 
     judge.collect_passed(beam);
     beam.ends_off_map =

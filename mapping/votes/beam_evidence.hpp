@@ -13,23 +13,17 @@
 namespace deltamap::mapping::votes {
 
 struct BeamEvidenceParams {
-  double deviations = 2.0;                     ///< half width of the interval in σ; > 0
-  double least_position_deviation_m = 0.01;    ///< floor added to the pose's σ: estimates are too sure of themselves
-  double least_heading_deviation_rad = 0.004;  ///< floor added to the heading's σ
-  double range_deviation_m = 0.015;            ///< of the laser, σ_r
-  double clock_deviation_s = 0.01;             ///< times the turn rate is added to the heading's σ
-  double most_position_deviation_m = 0.3;      ///< poses worse than this say nothing
-  double most_heading_deviation_rad = 0.07;    ///< poses worse than this say nothing (4°)
-  double most_aside_m = 0.2;                   ///< a beam says nothing beyond where its own σ aside exceeds this
-  double most_range_m = 25.0;                  ///< a beam says nothing beyond this
-  double beyond_m = 0.2;  ///< a beam must end this far behind what it went through, besides the interval
+  double most_position_deviation_m = 0.3;    ///< poses worse than this say nothing
+  double most_heading_deviation_rad = 0.07;  ///< poses worse than this say nothing (4°)
+  double most_aside_m = 0.2;                 ///< a beam says nothing beyond where its own σ aside exceeds this
+  double most_range_m = 25.0;                ///< a beam says nothing beyond this
 };
 
 struct BeamVerdict {
   Point2 from{0.0, 0.0};        ///< where the beam left the laser, map frame
   Point2 end{0.0, 0.0};         ///< where it ended, map frame; cut at the range to which it speaks
   double length_m = 0.0;        ///< from `from` to `end`; 0 where it says nothing: no range, or the pose too poor
-  double interval_m = 0.0;      ///< half width of the interval of expected ranges: `deviations` · σ at the end
+  double interval_m = 0.0;      ///< half width of the interval of expected ranges
   bool ends_at_surface = true;  ///< false where the beam was cut
   bool ends_off_map = false;    ///< ends where the map has no surface, whatever it passed before
   std::vector<Cell> passed;     ///< the occupied cells that it has gone through at every pose within the uncertainty

@@ -236,6 +236,13 @@ TEST(Localizer, CarriesThePoseByOdometryThroughScansWithoutReturns) {
   EXPECT_EQ(tracked.estimate.state, LocalizerState::kTracking);
 }
 
+TEST(Localizer, TellsWithEachScanHowFarItsRangesErr) {
+  LocalizerParams params = small();
+  params.range_deviation_m = 0.05;
+  Localizer localizer = localizer_at_start(params, test::drawn_flat());
+  EXPECT_EQ(localizer.observe(Scan{}).scan.range_deviation_m, 0.05);
+}
+
 TEST(Localizer, AnswersAScanWithoutAnyBeam) {
   Localizer localizer = localizer_at_start(small(), test::drawn_flat());
   Scan empty;

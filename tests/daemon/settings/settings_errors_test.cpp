@@ -62,6 +62,11 @@ TEST(SettingsErrors, AKeyThatIsFixedNowIsToldAsSuch) {
 TEST(SettingsErrors, ARenamedKeyIsToldItsNewName) {
   EXPECT_EQ(errors_of("localization: {rivals: {elsewhere_prior: 0.1}}\n"),
             Lines{"f:1:25: localization.rivals.elsewhere_prior: is now called 'localization.kidnapping_prior'"});
+  EXPECT_EQ(
+      errors_of("localization: {refinement: {range_deviation_m: 0.02}}\n", {"mapping.evidence.range_deviation_m=0.02"}),
+      (Lines{"f:1:29: localization.refinement.range_deviation_m: is now called 'laser.range_deviation_m'",
+             "--set mapping.evidence.range_deviation_m=0.02: mapping.evidence.range_deviation_m: is now called "
+             "'laser.range_deviation_m'"}));
 }
 
 TEST(SettingsErrors, WhatIsLikeNothingGetsNoHint) {

@@ -40,7 +40,9 @@ TEST(Ablation, HalvesAndDoublesKeysWithinTheirRange) {
   change_named(changes, "half-localization.particles.min").apply(settings);
   change_named(changes, "twice-mapping.persistence_s").apply(settings);
   change_named(changes, "twice-mapping.gate.least_pose_right").apply(settings);
+  change_named(changes, "twice-laser.range_deviation_m").apply(settings);
   EXPECT_EQ(settings.localizer.particles.min, 250);
+  EXPECT_EQ(settings.localizer.range_deviation_m, 0.03);
   EXPECT_EQ(settings.mapping.store_scan.evidence.passing.persistence_s, 240.0);
   EXPECT_EQ(settings.mapping.store_scan.gate.least_pose_right, 1.0);
   const auto is_of_the_paper = [](const auto& one) { return one.name.find("mapping.paper.") != std::string::npos; };

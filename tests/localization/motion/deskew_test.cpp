@@ -48,8 +48,11 @@ TEST(Deskew, PutsEachBeamWhereTheRobotWasThen) {
 }
 
 TEST(ScoringEnds, TakesOnlyValidRanges) {
-  const Scan scan = four_beams();
-  EXPECT_EQ(scoring_ends(scan, deskewed(scan, {}), 0).size(), 3u);
+  Scan scan = four_beams();
+  scan.range_deviation_m = 0.02;
+  const BeamEnds ends = scoring_ends(scan, deskewed(scan, {}), 0);
+  EXPECT_EQ(ends.size(), 3u);
+  EXPECT_EQ(ends.range_deviation_m, 0.02);
 }
 
 TEST(ScoringEnds, TakesAsManyAsAskedEvenly) {
@@ -70,12 +73,13 @@ TEST(ScoringEnds, TakesAsManyAsAskedEvenly) {
 }
 
 TEST(KeepEnds, KeepsOrderAndMayWriteIntoWhatItReads) {
-  BeamEnds ends{{1.0F, -2.0F, 3.0F, -4.0F}, {5.0F, 6.0F, 7.0F, 8.0F}};
+  BeamEnds ends{{1.0F, -2.0F, 3.0F, -4.0F}, {5.0F, 6.0F, 7.0F, 8.0F}, 0.02};
   const auto is_ahead = [](const Point2& end) { return end.x() > 0.0; };
   BeamEnds others{{9.0F}, {9.0F}};
   keep_ends(ends, is_ahead, others);
   EXPECT_EQ(others.x_m, (std::vector<float>{1.0F, 3.0F}));
   EXPECT_EQ(others.y_m, (std::vector<float>{5.0F, 7.0F}));
+  EXPECT_EQ(others.range_deviation_m, 0.02);
   keep_ends(ends, is_ahead, ends);
   EXPECT_EQ(ends.x_m, others.x_m);
   EXPECT_EQ(ends.y_m, others.y_m);

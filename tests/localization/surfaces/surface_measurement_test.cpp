@@ -38,6 +38,15 @@ double coefficient(const SparseRow& row, Eigen::Index index) {
   return sum;
 }
 
+TEST(SurfaceMeasurement, SaysLessWhereRangesErrMore) {
+  Sighting sighting = sighted(kWallAhead, kBesideIt, 0.0, 0.0, 1.0);
+  const SurfaceMeasurement sharp = measurement_of(sighting, kBesideIt, OffsetState::offset_of(0));
+  sighting.range_deviation_m = 0.1;
+  const SurfaceMeasurement blunt = measurement_of(sighting, kBesideIt, OffsetState::offset_of(0));
+  EXPECT_GT(blunt.distance_variance, sharp.distance_variance + 0.9 * 0.1 * 0.1 / 21.0);
+  EXPECT_GT(blunt.turn_variance, sharp.turn_variance);
+}
+
 TEST(SurfaceMeasurement, FindsNothingWhereTheWallStandsInItsPlace) {
   const SurfaceMeasurement seen =
       measurement_of(sighted(kWallAhead, kBesideIt, 0.0, 0.0, 1.0), kBesideIt, OffsetState::offset_of(0));

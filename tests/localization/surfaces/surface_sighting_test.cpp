@@ -14,6 +14,8 @@
 namespace deltamap::localization::surfaces {
 namespace {
 
+constexpr double kRangesErrM = 0.02;
+
 /// A laser in the aisle between the rows of containers; the hall is as its map has it.
 class Aisle {
  public:
@@ -29,7 +31,7 @@ class Aisle {
     const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
     ends_ = faced_ends(scan, rays, std::move(ends_));
     corners_ = corners_of(scan, rays, std::move(corners_));
-    return finder_.find(surfaces_, field_, {ends_, corners_}, believed, [](const SurfaceRecord& record) {
+    return finder_.find(surfaces_, field_, {ends_, corners_, kRangesErrM}, believed, [](const SurfaceRecord& record) {
       return SurfacePlace{record.offset_m, 0.0, 0.02};
     });
   }
@@ -48,6 +50,19 @@ class Aisle {
 /// Of the container beside the robot, the face around its far corner.
 bool is_around_the_corner(const Sighting& sighting) {
   return sighting.surface.normal.x() > 0.9 && std::abs(sighting.surface.centre.x() - 5.0) < 0.1;
+}
+
+TEST(SurfaceSighting, TellsOfFacesAndCornersHowFarRangesErr) {
+  Aisle aisle;
+  const Pose2 truth{3.5, 4.25, 0.0};
+  int corners = 0;
+  int faces = 0;
+  for (const Sighting& sighting : aisle.seen(truth, truth)) {
+    EXPECT_EQ(sighting.range_deviation_m, kRangesErrM);
+    ++(sighting.corner_deviation_m > 0.0 ? corners : faces);
+  }
+  EXPECT_GT(corners, 0);
+  EXPECT_GT(faces, 0);
 }
 
 TEST(SurfaceSighting, SeesAFaceThatNoBeamMeetsByItsCorner) {

@@ -25,6 +25,7 @@ class Beams : public testing::Test {
     tracked.estimate.covariance += tracked.estimate.bias_covariance;
     tracked.estimate.state = state;
     tracked.turn_rate_rad_per_s = turn_rate;
+    tracked.scan.range_deviation_m = range_deviation_m;
     return beam_evidence(map, ClearSpace{map, {map.geometry(), 2}}, tracked, {}).front();
   }
 
@@ -34,6 +35,7 @@ class Beams : public testing::Test {
   double heading_rad = 0.008;
   double bias_m = 0.0;
   double turn_rate = 0.0;
+  double range_deviation_m = kRangeDeviationM;
   LocalizerState state = LocalizerState::kTracking;
 };
 
@@ -44,6 +46,12 @@ TEST_F(Beams, AreConsistentWhereTheyEndAtTheWall) {
     EXPECT_FALSE(beam.ends_off_map) << range_m;
     EXPECT_TRUE(beam.passed.empty()) << range_m;
   }
+}
+
+TEST_F(Beams, SpeakLessSharplyWhereRangesErrMore) {
+  const double interval_m = verdict(5.0).interval_m;
+  range_deviation_m = 0.1;
+  EXPECT_GT(verdict(5.0).interval_m, interval_m + 0.05);
 }
 
 TEST_F(Beams, SpeakAsSharplyWhereAllScansAreOffByAlike) {
