@@ -10,7 +10,7 @@ SettingKey most_range_key(std::string name, double& judged_m, double& drawn_m) {
   SettingKey key =
       number_key(std::move(name), judged_m, "m", 0.1, 100.0, "range beyond which a beam neither votes nor draws");
   key.assign = [assign = std::move(key.assign), &judged_m, &drawn_m](const SettingValue& value) {
-    const auto needed = assign(value);
+    auto needed = assign(value);
     drawn_m = judged_m;
     return needed;
   };

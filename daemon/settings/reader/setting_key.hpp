@@ -74,6 +74,7 @@ template <typename Enum>
 [[nodiscard]] SettingKey choice_key(std::string name, Enum& field, std::vector<std::pair<std::string, Enum>> choices,
                                     std::string meaning) {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& choice : choices) words.push_back(choice.first);
   const auto read = [&field, choices] {
     std::size_t index = 0;
