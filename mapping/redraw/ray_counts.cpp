@@ -83,7 +83,7 @@ void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end
   walk_ray(map_, from, end, [&](Cell cell, double entered_m) {
     if (cell == last || !box_.contains(cell)) return true;
     const std::size_t index = index_of(cell);
-    if (marks_[index] == kUnseen) see(index);
+    see(index);
     if (entered_m >= clear_end_m) {
       ++counts_[index].late_passes;
       return true;
@@ -94,7 +94,7 @@ void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end
   });
   if (stopped || !hits || !box_.contains(last)) return;
   const std::size_t index = index_of(last);
-  if (marks_[index] == kUnseen) see(index);
+  see(index);
   ++counts_[index].hits;
 }
 

@@ -83,7 +83,9 @@ class RayCounts {
     return {count.hits, count.clear_passes + count.late_passes, count.clear_passes};
   }
   [[nodiscard]] std::span<const std::uint32_t> seen() const { return {seen_.get(), seen_cells_}; }
+  /// Counts of the cell begin, where it has not been seen yet.
   void see(std::size_t index) {
+    if (marks_[index] != kUnseen) return;
     seen_[seen_cells_++] = static_cast<std::uint32_t>(index);
     counts_[index] = {0, 0, 0};
     const bool is_wall = walls_ != nullptr && (*walls_)[cell_of(index)] == CellState::kOccupied;

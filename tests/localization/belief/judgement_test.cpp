@@ -6,6 +6,15 @@
 namespace deltamap::localization::belief {
 namespace {
 
+/// A place is believed, and none beside it is followed.
+hypotheses::HypothesisReport believed_with(double own_share) {
+  hypotheses::HypothesisReport report;
+  report.own_known = true;
+  report.own_share = own_share;
+  report.followed = 1;
+  return report;
+}
+
 /// Seen by a scan without beams, beside a believed place that has no rivals of its own.
 Judgement judged_with(const hypotheses::HypothesisReport& hypotheses, double pose_right = 0.9) {
   const OccupancyGrid map{GridGeometry{20, 20, 0.1, {0.0, 0.0}}, CellState::kFree};
@@ -24,10 +33,7 @@ Judgement judged_with(const hypotheses::HypothesisReport& hypotheses, double pos
 }
 
 TEST(Judgement, HearsOfAWatchedPlaceBesideWhichNoneIsFollowed) {
-  hypotheses::HypothesisReport report;
-  report.own_known = true;
-  report.own_share = 1.0;
-  report.followed = 1;
+  hypotheses::HypothesisReport report = believed_with(1.0);
   report.kidnapped_share = 0.4;
   report.map_from_kidnapped = {15.0, 0.0, 0.0};
   const Belief belief = judged_with(report).belief();
@@ -36,18 +42,11 @@ TEST(Judgement, HearsOfAWatchedPlaceBesideWhichNoneIsFollowed) {
 }
 
 TEST(Judgement, HearsOfNoPlaceWhereNoneIsKnown) {
-  hypotheses::HypothesisReport report;
-  report.own_known = true;
-  report.own_share = 1.0;
-  report.followed = 1;
-  EXPECT_DOUBLE_EQ(judged_with(report).belief().other_share, 0.0);
+  EXPECT_DOUBLE_EQ(judged_with(believed_with(1.0)).belief().other_share, 0.0);
 }
 
 TEST(Judgement, BelievesAPoseThatSurfacesFixAsFarAsNoOtherSpeaksAgainstIt) {
-  hypotheses::HypothesisReport report;
-  report.own_known = true;
-  report.own_share = 0.8;
-  report.followed = 1;
+  hypotheses::HypothesisReport report = believed_with(0.8);
   report.kidnapped_share = 0.2;
   Judgement judgement = judged_with(report, 0.05);
   EXPECT_NE(judgement.belief().verdict, PoseVerdict::kRight);
