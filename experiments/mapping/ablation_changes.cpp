@@ -37,7 +37,6 @@ constexpr std::array kOfLocalization{
               [](Settings& s) { s.localizer.hypothesis_tracker.probes_nearby = 0; }},
     Mechanism{"refined-hypotheses", "refinement of other pose hypotheses while tracking",
               [](Settings& s) { s.localizer.hypothesis_tracker.refined_a_scan = 0; }},
-    Mechanism{"aliases", "memory of aliases", [](Settings& s) { s.localizer.hypothesis_tracker.aliases = 0; }},
     Mechanism{"support", "support of the believed pose by proven tiles",
               [](Settings& s) { s.localizer.hypothesis_tracker.stable_support_nats = 0.0; }},
     Mechanism{"kidnapped-share", "write gate: odds of having just been kidnapped",
@@ -94,13 +93,6 @@ constexpr std::array kOfMapping{
               [](Settings& s) {
                 auto& scan_break = s.mapping.store_scan.gate.scan_break;
                 scan_break.most = scan_break.most_one_way = 1.0;
-              }},
-    Mechanism{"wary-break", "write gate: worse fit after a small break",
-              [](Settings& s) { s.mapping.store_scan.gate.wary_break = 1.0; }},
-    Mechanism{"pose-jump", "write gate: jump of the pose off odometry",
-              [](Settings& s) {
-                auto& jump = s.mapping.store_scan.gate.jump;
-                jump.least_m = jump.least_rad = kNever;
               }},
     Mechanism{"other-share", "write gate: share of another pose hypothesis",
               [](Settings& s) { s.mapping.store_scan.gate.most_other_share = 1.0; }},

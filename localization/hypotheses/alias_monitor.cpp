@@ -10,49 +10,19 @@ namespace deltamap::localization::hypotheses {
 namespace {
 
 constexpr int kRightAngles = 4;
-constexpr double kMetAfterM = 1.0;       // a hypothesis that has been followed for so long is an alias
-constexpr double kBeforeItIsSlid = 0.3;  // kFitsNearlyAsWell before an alias is slid to its best fit
 
 }  // namespace
 
 AliasMonitor::AliasMonitor(const HypothesisBankParams& bank, const Effort& effort)
-    : effort_{effort},
-      bank_{bank},
-      aliases_{static_cast<std::size_t>(std::max(0, effort.aliases))},
-      lattice_{kRightAngles} {}
+    : effort_{effort}, bank_{bank}, lattice_{kRightAngles} {}
 
-void AliasMonitor::predict(const Pose2& motion) {
-  bank_.predict(motion);
-  aliases_.age(motion.position().norm());
-}
-
-void AliasMonitor::observe(const Seen& seen, std::span<const PoseHypothesis> followed) {
+void AliasMonitor::observe(const Seen& seen) {
   bank_.believe(seen.map_from_believed);
   own_fit_ = mean_log_likelihood(seen.field, seen.ends, seen.map_from_believed);
   bank_.slide_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
   if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.evidence_weight);
-  note(followed, seen.map_from_believed);
-  note(bank_.others(), seen.map_from_believed);
-  look_again(seen);
   probe(seen);
   bank_.settle();
-}
-
-void AliasMonitor::note(std::span<const PoseHypothesis> followed, const Pose2& map_from_believed) {
-  for (const PoseHypothesis& hypothesis : followed) {
-    if (hypothesis.followed_m < kMetAfterM) continue;
-    if (is_within(hypothesis.map_from_robot, map_from_believed, effort_.nearby_m, effort_.nearby_rad)) continue;
-    aliases_.note(map_from_believed, hypothesis.map_from_robot, hypothesis.followed_m);
-  }
-}
-
-void AliasMonitor::look_again(const Seen& seen) {
-  for (int i = 0; i < effort_.aliases_a_scan; ++i) {
-    const std::optional<Pose2> there = aliases_.next(seen.map_from_believed);
-    if (!there || bank_.knows(*there)) continue;
-    if (mean_log_likelihood(seen.field, seen.ends, *there) < own_fit_ - kBeforeItIsSlid) continue;
-    admit(*there, seen);
-  }
 }
 
 void AliasMonitor::probe(const Seen& seen) {

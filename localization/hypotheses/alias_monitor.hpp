@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows the aliases of the believed pose, so that the write gate learns at once when the robot may have been carried
-// to one. It examines the aliases that were met before, and poses whose heading differs from the believed one by right
-// angles: most aliases in buildings do. It collects evidence only; no alias is believed because it is monitored, since
-// among poses that are examined again and again one would sooner or later win by chance.
+// to one. It examines poses whose heading differs from the believed one by right angles: most aliases in buildings do.
+// It collects evidence only; no alias is believed because it is monitored, since among poses that are examined again
+// and again one would sooner or later win by chance.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,6 @@
 
 #include "localization/hypotheses/hypothesis_bank.hpp"
 #include "localization/hypotheses/lattice_search.hpp"
-#include "localization/hypotheses/pose_aliases.hpp"
 #include "localization/hypotheses/scan_stack.hpp"
 #include "localization/sensor/coarse_field.hpp"
 
@@ -19,19 +18,16 @@ namespace deltamap::localization::hypotheses {
 class AliasMonitor {
  public:
   struct Effort {
-    int aliases;         ///< that are remembered; >= 0
-    int aliases_a_scan;  ///< of them looked at again in a scan; >= 0
-    int probes;          ///< poses turned by right angles that are looked at in a scan; >= 0
-    int slid;            ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
-    double nearby_m;     ///< no alias of the believed pose but a slip, m; > 0
-    double nearby_rad;   ///< and turned less; > 0
-    double prior;        ///< odds of one against the believed pose, before any scan; 0..1
+    int probes;         ///< poses turned by right angles that are looked at in a scan; >= 0
+    int slid;           ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
+    double nearby_m;    ///< no alias of the believed pose but a slip, m; > 0
+    double nearby_rad;  ///< and turned less; > 0
+    double prior;       ///< odds of one against the believed pose, before any scan; 0..1
   };
   AliasMonitor(const HypothesisBankParams& bank, const Effort& effort);
 
-  /// Forgets what speaks for them, not where they are.
   void clear() { bank_.clear(); }
-  void predict(const Pose2& motion);
+  void predict(const Pose2& motion) { bank_.predict(motion); }
 
   struct Seen {
     const sensor::LikelihoodField& field;
@@ -45,21 +41,18 @@ class AliasMonitor {
     std::span<const float> weights{};  ///< of the beams, where the scan tells something new
     double unknown_s = 0.0;
   };
-  /// Every scan beside a believed pose, after predict(). `followed`: hypotheses that explain the scans as well.
-  void observe(const Seen& seen, std::span<const PoseHypothesis> followed);
+  /// Every scan beside a believed pose, after predict().
+  void observe(const Seen& seen);
 
   /// The believed pose and its aliases.
   [[nodiscard]] const HypothesisBank& hypotheses() const { return bank_; }
 
  private:
-  void note(std::span<const PoseHypothesis> followed, const Pose2& map_from_believed);
-  void look_again(const Seen& seen);
   void probe(const Seen& seen);
   void admit(const Pose2& rough, const Seen& seen);
 
   Effort effort_;
   HypothesisBank bank_;
-  PoseAliases aliases_;
   LatticeSearch lattice_;
   motion::BeamEnds turned_;  // to the believed heading
   double own_fit_ = 0.0;     // mean ln p(z) of the scan at the believed pose

@@ -21,9 +21,7 @@ HypothesisTracker::HypothesisTracker(const HypothesisTrackerParams& params, cons
       coarse_{map, field, params.block_m},
       probes_{params.headings, seed},
       alias_monitor_{bank,
-                     {.aliases = params.aliases,
-                      .aliases_a_scan = params.aliases_a_scan,
-                      .probes = params.probes / 2,
+                     {.probes = params.probes / 2,
                       .slid = params.refined_a_scan,
                       .nearby_m = params.nearby_m,
                       .nearby_rad = params.nearby_rad,
@@ -249,8 +247,7 @@ void HypothesisTracker::weigh(const sensor::LikelihoodField& field, const Seen& 
                           .stack = stack_,
                           .evidence_weight = outlier_rate_.evidence_weight(),
                           .weights = weights,
-                          .unknown_s = seen.unknown_s},
-                         bank_.others());
+                          .unknown_s = seen.unknown_s});
 }
 
 void HypothesisTracker::probe(const sensor::LikelihoodField& field, const Pose2& odom) {

@@ -41,8 +41,6 @@ struct HypothesisTrackerParams {
   double block_m = 0.25;         ///< side of the coarse field's blocks, m; > 0
   int headings = 96;             ///< of the lattice of poses; > 0
   double suspicious_pace = 0.2;  ///< of a search of the whole map while a pose is believed; (0, 1]
-  int aliases = 16;              ///< aliases of the believed pose that are remembered; >= 0
-  int aliases_a_scan = 2;        ///< of them looked at again in a scan; >= 0
 };
 
 class HypothesisTracker {

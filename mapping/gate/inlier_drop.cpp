@@ -26,8 +26,8 @@ void InlierDropDetector::observe(const TrackedScan& tracked) {
   present_ = approached(present_, now, passed_s / params_.present_s);
 }
 
-bool InlierDropDetector::is_worse_than_remembered(double explained) const {
-  return remembered_ && present_ - *remembered_ > params_.most_drop + explained;
+bool InlierDropDetector::is_worse_than_remembered() const {
+  return remembered_ && present_ - *remembered_ > params_.most_drop;
 }
 
 }  // namespace deltamap::mapping::gate

@@ -29,8 +29,8 @@ class InlierDropDetector {
     if (known_for_s_ >= params_.usual_s) remembered_ = usual_;
   }
   void forget() { remembered_.reset(); }
-  /// Fewer beams fit than usual before it was remembered, and than without `explained`, a share of them.
-  [[nodiscard]] bool is_worse_than_remembered(double explained) const;
+  /// Fewer beams fit than was usual before it was remembered.
+  [[nodiscard]] bool is_worse_than_remembered() const;
 
  private:
   InlierDropParams params_;

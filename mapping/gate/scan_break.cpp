@@ -88,7 +88,7 @@ bool ScanBreak::was_blind(const TrackedScan& tracked) const {
   return 0.5 * params_.wheels_rad_per_m * way_m * way_m > params_.least_m;
 }
 
-SeenBreak ScanBreak::observe(const TrackedScan& tracked) {
+bool ScanBreak::observe(const TrackedScan& tracked) {
   const bool follows =
       last_ && epoch_ == tracked.odometry_epoch &&
       distance_between(odom_from_robot_, tracked.odom_from_robot) <= params_.most_way_m &&
@@ -97,17 +97,15 @@ SeenBreak ScanBreak::observe(const TrackedScan& tracked) {
   const bool blind = was_blind(tracked);
   const double passed_s = last_ ? std::max(0.0, seconds(tracked.scan.time - *last_)) : 0.0;
   keep(tracked);
-  if (!now) return {0.0, blind};
+  if (!now) return blind;
   const Shares usual = usual_.value_or(Shares{});
   const Shares more{now->nearer - usual.nearer, now->farther - usual.farther};
   const double most = std::min(more.nearer, more.farther) >= params_.each_way ? params_.most : params_.most_one_way;
-  const SeenBreak seen{more.nearer + more.farther, more.nearer + more.farther > most};
-  if (!seen.is_large) {
-    const double weight = std::min(1.0, passed_s / params_.usual_s);
-    usual_ = Shares{usual.nearer + weight * (now->nearer - usual.nearer),
-                    usual.farther + weight * (now->farther - usual.farther)};
-  }
-  return seen;
+  if (more.nearer + more.farther > most) return true;
+  const double weight = std::min(1.0, passed_s / params_.usual_s);
+  usual_ = Shares{usual.nearer + weight * (now->nearer - usual.nearer),
+                  usual.farther + weight * (now->farther - usual.farther)};
+  return false;
 }
 
 }  // namespace deltamap::mapping::gate

@@ -28,18 +28,13 @@ struct ScanBreakParams {
   std::uint32_t least_compared = 30;  ///< beams; fewer say nothing
 };
 
-/// What of the view does not follow from the scan before.
-struct SeenBreak {
-  double share = 0.0;     ///< of the beams, more than usual
-  bool is_large = false;  ///< as large as if the robot had been carried
-};
-
 class ScanBreak {
  public:
   explicit ScanBreak(const ScanBreakParams& params) : params_{params} {}
 
-  /// Every scan in order.
-  [[nodiscard]] SeenBreak observe(const TrackedScan& tracked);
+  /// Every scan in order: does more of its view than usual not follow from the scan before, as if the robot had been
+  /// carried?
+  [[nodiscard]] bool observe(const TrackedScan& tracked);
 
  private:
   struct Shares {

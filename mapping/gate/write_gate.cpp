@@ -9,9 +9,6 @@
 namespace deltamap::mapping::gate {
 namespace {
 
-/// A thing in whose place the map is wrong takes up more of the view as the robot comes nearer.
-constexpr double kApproached = 1.5;
-
 /// The pose that is believed afterwards may lie anywhere.
 bool may_be_another(GateReason reason) { return reason == GateReason::kSearching || reason == GateReason::kLost; }
 
@@ -27,8 +24,6 @@ std::string_view name_of(GateReason reason) {
       return "lost";
     case GateReason::kWrong:
       return "wrong";
-    case GateReason::kJumped:
-      return "jumped";
     case GateReason::kDisbelieved:
       return "disbelieved";
     case GateReason::kConfirming:
@@ -45,7 +40,7 @@ std::string_view name_of(GateReason reason) {
 
 bool proves_wrong(GateReason reason) {
   return reason == GateReason::kSearching || reason == GateReason::kLost || reason == GateReason::kWrong ||
-         reason == GateReason::kJumped || reason == GateReason::kDisbelieved;
+         reason == GateReason::kDisbelieved;
 }
 
 double observed_s(const GateTimes& times) { return std::accumulate(times.begin(), times.end(), 0.0); }
@@ -62,12 +57,10 @@ std::map<std::string, double> shut_by_reason(const GateTimes& times) {
 
 GateReason WriteGate::judged(const TrackedScan& tracked) {
   const Estimate& estimate = tracked.estimate;
-  const bool jumped = jump_.observe(tracked);
   inlier_drop_.observe(tracked);
   if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
   if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
   if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
-  if (jumped) return GateReason::kJumped;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   if (estimate.belief.other_share > params_.most_other_share) return GateReason::kOtherHypothesis;
@@ -78,48 +71,39 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
 }
 
 /// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
-/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before. Small
-/// breaks are of things as long as not many more beams cease to fit than have broken off.
+/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before.
 void WriteGate::note_break(const TrackedScan& tracked) {
   const Timestamp time = tracked.scan.time;
-  const SeenBreak seen = scan_break_.observe(tracked);
+  const bool breaks_off = scan_break_.observe(tracked);
   if (is_confirming_) {
-    if (seen.is_large) held_s_ = held_m_ = 0.0;  // whoever was carried once may be carried again
+    if (breaks_off) held_s_ = held_m_ = 0.0;  // whoever was carried once may be carried again
     return;
   }
-  const bool is_small = !seen.is_large && seen.share > params_.wary_break;
-  if (was_tracking_ && (seen.is_large || is_small)) {
-    if (!broken_) inlier_drop_.remember();
-    if (seen.is_large) {
-      broken_ = Broken{time, 0.0, true};
-    } else if (!broken_) {
-      broken_ = Broken{time, kApproached * seen.share, false};
-    } else if (!broken_->shuts) {
-      broken_->explained += kApproached * seen.share;
-    }
+  if (was_tracking_ && breaks_off) {
+    if (!broken_off_) inlier_drop_.remember();
+    broken_off_ = time;
   }
-  if (!broken_) return;
-  const double over_s = broken_->shuts ? std::max(params_.wary_s, params_.break_settles_s) : params_.wary_s;
-  if (inlier_drop_.is_worse_than_remembered(broken_->explained)) {
+  if (!broken_off_) return;
+  if (inlier_drop_.is_worse_than_remembered()) {
     is_confirming_ = true;
     confirms_after_ = GateReason::kConfirming;
-  } else if (seconds(time - broken_->time) > over_s) {
+  } else if (seconds(time - *broken_off_) > params_.wary_s) {
     forget_break();
   }
 }
 
 void WriteGate::forget_break() {
-  broken_.reset();
+  broken_off_.reset();
   inlier_drop_.forget();
 }
 
 bool WriteGate::breaks_now(Timestamp time) const {
-  return broken_ && broken_->shuts && seconds(time - broken_->time) <= params_.break_settles_s;
+  return broken_off_ && seconds(time - *broken_off_) <= params_.break_settles_s;
 }
 
 bool WriteGate::fits_as_before_break(Timestamp time) const {
-  return !broken_ || seconds(time - broken_->time) > params_.most_unlike_s ||
-         !inlier_drop_.is_worse_than_remembered(0.0);
+  return !broken_off_ || seconds(time - *broken_off_) > params_.most_unlike_s ||
+         !inlier_drop_.is_worse_than_remembered();
 }
 
 /// Has the pose held for long and far enough? A moment of doubt only holds that up; a proof that the pose was wrong
@@ -152,8 +136,6 @@ void WriteGate::observe(const TrackedScan& tracked) {
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
   if (was_tracking_ && is_proof) {
-    // What has only made it wary is a thing that stays: as much as without it need not fit again.
-    if (!is_confirming_ && broken_ && !broken_->shuts) forget_break();
     // What a search has found remains found, whatever else speaks against it.
     if (!is_confirming_ || !may_be_another(confirms_after_)) confirms_after_ = judgement;
     is_confirming_ = true;

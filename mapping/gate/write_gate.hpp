@@ -14,7 +14,6 @@
 #include "core/messages.hpp"
 #include "mapping/gate/driven_way.hpp"
 #include "mapping/gate/inlier_drop.hpp"
-#include "mapping/gate/pose_jump.hpp"
 #include "mapping/gate/provisional_window.hpp"
 #include "mapping/gate/scan_break.hpp"
 
@@ -25,14 +24,13 @@ enum class GateReason : std::uint8_t {
   kSearching,        ///< the localizer does not know where the robot is
   kLost,             ///< it has lost its way
   kWrong,            ///< it calls its own pose wrong
-  kJumped,           ///< the estimate has moved otherwise than odometry, farther than its covariance explains
   kDisbelieved,      ///< P(pose right) is so low that it is rather wrong
   kConfirming,       ///< the pose was wrong a moment ago, or scans broke off, and it has to hold for a while
   kDoubtful,         ///< P(pose right) is low
   kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
   kSpread            ///< the pose is spread too wide, or nothing in view holds it
 };
-inline constexpr std::size_t kGateReasons = 10;
+inline constexpr std::size_t kGateReasons = 9;
 /// For status, report and log: "open", "searching", "lost", …
 [[nodiscard]] std::string_view name_of(GateReason reason);
 /// Does it say that the pose was wrong, and not only that it may be?
@@ -52,12 +50,10 @@ struct WriteGateParams {
   double confirm_followed_m = 4.0;  ///< which an alias cannot explain: seconds and metres; >= 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
   double hold_other_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
-  PoseJumpParams jump;
   InlierDropParams inlier_drop;
   ScanBreakParams scan_break;
-  double break_settles_s = 1.0;  ///< after a large break it waits so long to see whether the map still fits; >= 0
-  double wary_break = 0.08;      ///< of the beams: what breaks off less makes it not even wary; [0, 1]
-  double wary_s = 5.0;           ///< so long after a break a worse fit says that the robot was carried; >= 0
+  double break_settles_s = 1.0;  ///< after a break it waits so long to see whether the map still fits; >= 0
+  double wary_s = 5.0;           ///< so long after it a worse fit says that the robot was carried; >= break_settles_s
   double most_unlike_s = 120.0;  ///< for so long after one as much must fit as before to confirm the pose; >= 0
   ProvisionalParams provisional;
 };
@@ -73,7 +69,6 @@ class WriteGate {
  public:
   explicit WriteGate(const WriteGateParams& params)
       : params_{params},
-        jump_{params.jump},
         inlier_drop_{params.inlier_drop},
         scan_break_{params.scan_break},
         provisional_{params.provisional} {}
@@ -99,11 +94,6 @@ class WriteGate {
   [[nodiscard]] double shut_for_s() const { return shut_for_s_; }
 
  private:
-  struct Broken {
-    Timestamp time;
-    double explained = 0.0;  // share of the beams that a thing may have taken out of the map's view
-    bool shuts = false;
-  };
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
   void note_break(const TrackedScan& tracked);
   void forget_break();
@@ -112,10 +102,9 @@ class WriteGate {
   [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double passed_s, double driven_m);
 
   WriteGateParams params_;
-  PoseJump jump_;
   InlierDropDetector inlier_drop_;
   ScanBreak scan_break_;
-  std::optional<Broken> broken_;  // the last break of the scans, until it has been explained
+  std::optional<Timestamp> broken_off_;  // the last break of the scans, until it has been explained
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
   bool was_tracking_ = false;

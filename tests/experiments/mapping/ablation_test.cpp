@@ -90,13 +90,13 @@ TEST(Ablation, PairsWorldsAndMarksWhatIsClear) {
 TEST(Ablation, DrivesAsDeliveredWhateverOnlySays) {
   const test::TemporaryFolder folder;
   const test::ToolRun answer = test::run_deltamap({"experiment", "ablation", "--out", folder.path().string(), "--seed",
-                                                   "2", "--repeats", "1", "--minutes", "0.2", "--only", "off-aliases",
+                                                   "2", "--repeats", "1", "--minutes", "0.2", "--only", "off-slips",
                                                    "--scenarios", test::source_path("config/scenarios"), "--json"});
   ASSERT_EQ(answer.exit_code, 0) << answer.errors;
   const auto summary = nlohmann::json::parse(answer.output);
   EXPECT_EQ(summary["runs"], 2 * (1 + 3)) << "one world, and carried in three ways";
   EXPECT_EQ(summary["tables"][0]["rows"].size(), 1u);
-  EXPECT_EQ(summary["tables"][0]["rows"][0][1], "memory of aliases");
+  EXPECT_EQ(summary["tables"][0]["rows"][0][1], "particles that slip");
 }
 
 }  // namespace

@@ -27,8 +27,7 @@ class WatchedRound {
                             .near_ends = ends,
                             .map_from_believed = truth_,
                             .continuous_odom_from_robot = truth_,
-                            .stack = stack_},
-                           {});
+                            .stack = stack_});
     stack_.add(ends, truth_);
   }
   [[nodiscard]] std::span<const PoseHypothesis> aliases() const { return alias_monitor_.hypotheses().others(); }
@@ -40,14 +39,7 @@ class WatchedRound {
   sensor::LikelihoodField field_;
   sensor::CoarseField coarse_;
   ScanStack stack_;
-  AliasMonitor alias_monitor_{{},
-                              {.aliases = 16,
-                               .aliases_a_scan = 2,
-                               .probes = 400,
-                               .slid = 4,
-                               .nearby_m = 1.5,
-                               .nearby_rad = 0.35,
-                               .prior = 0.003}};
+  AliasMonitor alias_monitor_{{}, {.probes = 400, .slid = 4, .nearby_m = 1.5, .nearby_rad = 0.35, .prior = 0.003}};
 };
 
 TEST(AliasMonitor, HoldsAliasesForAsUnlikelyAsThatSomebodyCarriesRobots) {

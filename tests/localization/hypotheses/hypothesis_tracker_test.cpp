@@ -120,33 +120,6 @@ TEST(PoseHypotheses, HaveToOutdoWhatProvenTilesSayForThePose) {
   EXPECT_GT(driven_until_won_m(map, 1.0), driven_until_won_m(map, 0.0) + 0.2);
 }
 
-/// Scans until a quarter of the hall that was met before is heard of again, where nothing looks for new hypotheses; at
-/// most 100.
-int scans_until_met_again(int aliases) {
-  const OccupancyGrid map = symmetric_hall();
-  HypothesisTrackerParams params;
-  params.probes = 0;
-  params.probes_nearby = 0;
-  params.aliases = aliases;
-  Round round{map, map, {6.0, 4.0, 0.0}, 2, params};
-  round.others().start_believing();
-  round.others().suspect(true);
-  for (int i = 0; i < 150; ++i) (void)round.step(round.truth() * kMotion);
-  round.others().suspect(false);
-  round.others().start_believing();
-  for (int scans = 1; scans < 100; ++scans) {
-    const HypothesisReport& report = round.step(round.truth() * kMotion);
-    EXPECT_EQ(report.listed, 0U) << "none is believed for having been met before";
-    if (report.kidnapped_share > 0.0) return scans;
-  }
-  return 100;
-}
-
-TEST(PoseHypotheses, AreHeardOfAtOnceWhereAHypothesisThatLooksAlikeWasMetBefore) {
-  EXPECT_EQ(scans_until_met_again(0), 100);
-  EXPECT_LE(scans_until_met_again(16), 10);
-}
-
 /// A robot that slips and is believed 0.6 m beside where it is, until aliases of its true hypothesis speak against
 /// that.
 void slipped_until_heard_of(Round& round) {
@@ -188,7 +161,6 @@ double share_of_newcomers(const OccupancyGrid& map, const OccupancyGrid& world) 
   HypothesisTrackerParams params;
   params.probes = 0;
   params.probes_nearby = 0;
-  params.aliases = 0;
   params.kidnapped_now_prior = 0.3;
   Round round{map, world, {6.0, 4.0, 0.0}, 2, params};
   round.others().start_believing();

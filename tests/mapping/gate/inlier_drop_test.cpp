@@ -17,7 +17,7 @@ TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
     tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 50, .short_of = 50};
     inlier_drop.observe(tracked);
   }
-  EXPECT_FALSE(inlier_drop.is_worse_than_remembered(0.0));
+  EXPECT_FALSE(inlier_drop.is_worse_than_remembered());
 }
 
 TEST(InlierDropDetector, SeesThatTheMapFitsWorseAfterASilenceToo) {
@@ -33,8 +33,7 @@ TEST(InlierDropDetector, SeesThatTheMapFitsWorseAfterASilenceToo) {
   TrackedScan tracked = robot.next();
   tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 60, .short_of = 20, .beyond = 20};
   inlier_drop.observe(tracked);
-  EXPECT_TRUE(inlier_drop.is_worse_than_remembered(0.0));
-  EXPECT_FALSE(inlier_drop.is_worse_than_remembered(0.3));
+  EXPECT_TRUE(inlier_drop.is_worse_than_remembered());
 }
 
 TEST(InlierDropDetector, HearsNothingFromAFewBeams) {
@@ -48,9 +47,9 @@ TEST(InlierDropDetector, HearsNothingFromAFewBeams) {
   for (int i = 0; i < 200; ++i) observe(100, 0);
   inlier_drop.remember();
   for (int i = 0; i < 50; ++i) observe(29, 29);
-  EXPECT_FALSE(inlier_drop.is_worse_than_remembered(0.0));
+  EXPECT_FALSE(inlier_drop.is_worse_than_remembered());
   for (int i = 0; i < 10; ++i) observe(30, 30);
-  EXPECT_TRUE(inlier_drop.is_worse_than_remembered(0.0));
+  EXPECT_TRUE(inlier_drop.is_worse_than_remembered());
 }
 
 }  // namespace

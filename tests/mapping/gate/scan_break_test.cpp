@@ -13,8 +13,6 @@
 namespace deltamap::mapping::gate {
 namespace {
 
-constexpr double kWary = WriteGateParams{}.wary_break;
-
 /// What a laser of 180 beams sees in an aisle 3 m wide: niches 1 m deep stand 2 m apart, every third one is walled up.
 /// A thing stands 1 m away across so many beams.
 TrackedScan aisle_scan(StraightDrive& robot, double carried_m, int thing_beams = 0) {
@@ -44,35 +42,29 @@ TrackedScan aisle_scan(StraightDrive& robot, double carried_m, int thing_beams =
 TEST(ScanBreak, IsNoneWhereTheRobotDrivesOnItsOwnWheels) {
   StraightDrive robot;
   ScanBreak scans{{}};
-  for (int i = 0; i < 300; ++i) ASSERT_LT(scans.observe(aisle_scan(robot, 0.0)).share, kWary) << i;
+  for (int i = 0; i < 300; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0))) << i;
 }
 
 TEST(ScanBreak, IsSeenInTheFirstScanOfACarriedRobot) {
   StraightDrive robot;
   ScanBreak scans{{}};
-  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0)).is_large);
-  EXPECT_TRUE(scans.observe(aisle_scan(robot, 2.5)).is_large);
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 2.5)).is_large);
+  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0)));
+  EXPECT_TRUE(scans.observe(aisle_scan(robot, 2.5)));
+  EXPECT_FALSE(scans.observe(aisle_scan(robot, 2.5)));
 }
 
-TEST(ScanBreak, IsASmallOneWhereAThingComesOrGoes) {
+TEST(ScanBreak, IsNoneWhereAThingComesOrGoes) {
   StraightDrive robot;
   ScanBreak scans{{}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
-  const SeenBreak coming = scans.observe(aisle_scan(robot, 0.0, 30));
-  EXPECT_GT(coming.share, kWary);
-  EXPECT_FALSE(coming.is_large);
-  EXPECT_LT(scans.observe(aisle_scan(robot, 0.0, 30)).share, kWary);
-  const SeenBreak going = scans.observe(aisle_scan(robot, 0.0));
-  EXPECT_GT(going.share, kWary);
-  EXPECT_FALSE(going.is_large);
+  for (const int thing_beams : {30, 30, 0}) EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0, thing_beams)));
 }
 
-TEST(ScanBreak, IsALargeOneWhereAThirdOfTheViewIsNearer) {
+TEST(ScanBreak, IsOneWhereAThirdOfTheViewIsNearer) {
   StraightDrive robot;
   ScanBreak scans{{}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
-  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0, 70)).is_large);
+  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0, 70)));
 }
 
 TEST(ScanBreak, IsNoneWhereTheWheelsHaveSlippedAndTheEstimateHasNot) {
@@ -80,17 +72,17 @@ TEST(ScanBreak, IsNoneWhereTheWheelsHaveSlippedAndTheEstimateHasNot) {
   ScanBreak scans{{}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
   robot.map_from_odom.x = -0.6;  // so much the wheels counted and the body did not go
-  for (int i = 0; i < 20; ++i) ASSERT_LT(scans.observe(aisle_scan(robot, -0.6)).share, kWary) << i;
+  for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, -0.6))) << i;
 }
 
-TEST(ScanBreak, IsALargeOneAfterAWayWithoutScansOverWhichTheWheelsMayBeOff) {
+TEST(ScanBreak, IsOneAfterAWayWithoutScansOverWhichTheWheelsMayBeOff) {
   StraightDrive robot;
   ScanBreak scans{{}};
   (void)scans.observe(aisle_scan(robot, 0.0));
   robot.speed_m_per_s = 2.0 / kPeriod_s;
-  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0)).is_large);
+  EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0)));
   robot.speed_m_per_s = 4.0 / kPeriod_s;
-  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0)).is_large);
+  EXPECT_TRUE(scans.observe(aisle_scan(robot, 0.0)));
 }
 
 TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
@@ -103,21 +95,6 @@ TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
   for (int i = 0; i < 12; ++i) gate.observe(aisle_scan(robot, 2.5));
   EXPECT_TRUE(gate.is_open());
   EXPECT_FALSE(gate.trusted_since());  // nothing has proven wrong
-}
-
-TEST(WriteGate, ALargeBreakShutsItForItsTimeWhereItIsNeverWary) {
-  StraightDrive robot;
-  WriteGateParams params;
-  params.wary_s = 0.0;
-  params.break_settles_s = 1.0;
-  WriteGate gate{params};
-  for (int i = 0; i < 100; ++i) gate.observe(aisle_scan(robot, 0.0));
-  for (int i = 0; i < 10; ++i) {
-    gate.observe(aisle_scan(robot, 2.5));
-    ASSERT_EQ(gate.reason(), GateReason::kConfirming) << i;
-  }
-  for (int i = 0; i < 2; ++i) gate.observe(aisle_scan(robot, 2.5));
-  EXPECT_TRUE(gate.is_open());
 }
 
 TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
@@ -164,7 +141,7 @@ TrackedScan fitting(TrackedScan tracked, std::uint32_t fit, std::uint32_t short_
   return tracked;
 }
 
-/// Where the map is out of date anyway, no bad fit alone says anything.
+/// Where the map is out of date anyway, a bad fit alone says nothing.
 class OutOfDate : public testing::Test {
  protected:
   void SetUp() override {
@@ -182,40 +159,9 @@ TEST_F(OutOfDate, AThingThatComesLeavesTheGateOpen) {
   }
 }
 
-TEST_F(OutOfDate, MoreThatCeasesToFitThanHasBrokenOffIsACarriedRobot) {
-  for (int i = 0; i < 30; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 30), 30, 10));
-  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
-}
-
-TEST_F(OutOfDate, ThingsThatComeOneAfterTheOtherLeaveTheGateOpen) {
-  for (int i = 0; i < 15; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 20), 67, 23));
-  for (int i = 0; i < 60; ++i) {
-    gate.observe(fitting(aisle_scan(robot, 0.0, 45), 38, 52));
-    ASSERT_TRUE(gate.is_open()) << i;
-  }
-}
-
-TEST_F(OutOfDate, AThingThatCameIsNoPartOfWhatAWrongPoseHasToConfirm) {
-  for (int i = 0; i < 20; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 50), 50, 40));
-  ASSERT_TRUE(gate.is_open());
-  TrackedScan disbelieved = fitting(aisle_scan(robot, 0.0, 50), 50, 40);
-  disbelieved.estimate.belief.pose_right = 0.2;
-  gate.observe(disbelieved);
-  for (int i = 0; i < 205; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 50), 50, 40));
-  EXPECT_TRUE(gate.is_open());
-}
-
 TEST_F(OutOfDate, AHallThatIsMoreAndMoreOutOfDateLeavesTheGateOpen) {
   for (int i = 0; i < 100; ++i) {
     gate.observe(fitting(aisle_scan(robot, 0.0), 30, 10));
-    ASSERT_TRUE(gate.is_open()) << i;
-  }
-}
-
-TEST_F(OutOfDate, ABadFitLongAfterASmallBreakSaysNothing) {
-  for (int i = 0; i < 70; ++i) gate.observe(fitting(aisle_scan(robot, 0.0, 30), 80, 10));
-  for (int i = 0; i < 50; ++i) {
-    gate.observe(fitting(aisle_scan(robot, 0.0, 30), 30, 10));
     ASSERT_TRUE(gate.is_open()) << i;
   }
 }

@@ -43,7 +43,6 @@ TEST(WriteGate, TellsWhyItIsShut) {
   EXPECT_EQ(reason_after([](Estimate& e) { e.belief.other_share = 0.5; }), GateReason::kOtherHypothesis);
   EXPECT_EQ(reason_after([](Estimate& e) { e.covariance(1, 1) = 1.0; }), GateReason::kSpread);
   EXPECT_EQ(reason_after([](Estimate& e) { e.belief.elsewhere = {.expected = 2, .fit = 2}; }), GateReason::kSpread);
-  EXPECT_EQ(reason_after([](Estimate& e) { e.map_from_robot.x += 1.0; }), GateReason::kJumped);
 }
 
 TEST(WriteGate, SeesTheSpreadAlongASlantingAxis) {
