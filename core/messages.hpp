@@ -109,7 +109,8 @@ struct Estimate {
   /// Of that, what all scans are off by alike, for the map's surfaces are: it is drawn and read with the same error.
   PoseCovariance bias_covariance = PoseCovariance::Zero();
   LocalizerState state = LocalizerState::kGlobal;
-  double n_eff = 0.0;  ///< effective sample size before resampling, Eq. 5; in [1, particles]
+  std::uint32_t relocalizations = 0;  ///< grows when a person says where the robot is: it was believed elsewhere
+  double n_eff = 0.0;                 ///< effective sample size before resampling, Eq. 5; in [1, particles]
   std::uint32_t particles = 0;
   Belief belief{};     ///< how right the pose is, and how wrong the map
   double w_avg = 0.0;  ///< exp of the mean log-likelihood of the used beams, averaged over the heaviest cluster; (0, 1]

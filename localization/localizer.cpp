@@ -83,6 +83,7 @@ void Localizer::apply(std::shared_ptr<const TransientObstacles> transients) {
 bool Localizer::relocalize(const particles::InitialPose& pose) {
   if (particles::usable_start(*state_->map, pose).kind == particles::StartKind::kAnywhere) return false;
   state_->start_at(pose);
+  ++state_->counts.relocalizations;
   return true;
 }
 

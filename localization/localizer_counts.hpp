@@ -13,6 +13,7 @@ struct LocalizerCounts {
   std::uint64_t clock_fell_back = 0;    ///< a scan older than the one before
   std::uint64_t odometry_epochs = 0;    ///< changes: the controller's pose jumped
   std::uint64_t gaps = 0;               ///< long silences of scans and wheels after which the pose was checked
+  std::uint64_t relocalizations = 0;    ///< poses that a person has given while it ran
   std::uint64_t poses_in_obstacle = 0;  ///< given poses inside a wall: moved to free space and checked
   std::uint64_t poses_refused = 0;      ///< given poses far from any free space: searched instead
   std::uint64_t poses_confirmed = 0;    ///< remembered ones that the first scans fitted

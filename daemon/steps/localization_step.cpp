@@ -79,6 +79,7 @@ std::map<std::string, std::uint64_t> LocalizationStep::counts() const {
           {"clock_fell_back", c.clock_fell_back},
           {"odometry_epochs", c.odometry_epochs},
           {"gaps", c.gaps},
+          {"relocalizations", c.relocalizations},
           {"poses_in_obstacle", c.poses_in_obstacle},
           {"poses_refused", c.poses_refused},
           {"poses_confirmed", c.poses_confirmed},

@@ -14,7 +14,7 @@
 
 namespace deltamap::experiments {
 
-/// Why the map may not be written: "doubtful", "confirming after jumped", … After scans that broke off it is
+/// Why the map may not be written: "doubtful", "confirming after lost", … After scans that broke off it is
 /// "confirming" alone.
 [[nodiscard]] std::vector<std::string> all_whys_shut();
 /// The number of a course: seconds in which that was so although the pose was right.

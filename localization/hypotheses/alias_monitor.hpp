@@ -5,7 +5,6 @@
 // and again one would sooner or later win by chance.
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 #include "localization/hypotheses/hypothesis_bank.hpp"

@@ -29,7 +29,7 @@ class InlierDropDetector {
     if (known_for_s_ >= params_.usual_s) remembered_ = usual_;
   }
   void forget() { remembered_.reset(); }
-  /// Fewer beams fit than was usual before it was remembered.
+  /// Do fewer beams fit than was usual when it was remembered, by more than most_drop?
   [[nodiscard]] bool is_worse_than_remembered() const;
 
  private:

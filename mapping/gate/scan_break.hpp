@@ -32,7 +32,7 @@ class ScanBreak {
  public:
   explicit ScanBreak(const ScanBreakParams& params) : params_{params} {}
 
-  /// Every scan in order: does more of its view than usual not follow from the scan before, as if the robot had been
+  /// Every scan in order. Does so much of its view not follow from the scan before that the robot may have been
   /// carried?
   [[nodiscard]] bool observe(const TrackedScan& tracked);
 

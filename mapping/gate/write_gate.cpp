@@ -24,6 +24,8 @@ std::string_view name_of(GateReason reason) {
       return "lost";
     case GateReason::kWrong:
       return "wrong";
+    case GateReason::kRelocalized:
+      return "relocalized";
     case GateReason::kDisbelieved:
       return "disbelieved";
     case GateReason::kConfirming:
@@ -40,7 +42,7 @@ std::string_view name_of(GateReason reason) {
 
 bool proves_wrong(GateReason reason) {
   return reason == GateReason::kSearching || reason == GateReason::kLost || reason == GateReason::kWrong ||
-         reason == GateReason::kDisbelieved;
+         reason == GateReason::kRelocalized || reason == GateReason::kDisbelieved;
 }
 
 double observed_s(const GateTimes& times) { return std::accumulate(times.begin(), times.end(), 0.0); }
@@ -55,12 +57,20 @@ std::map<std::string, double> shut_by_reason(const GateTimes& times) {
   return shut;
 }
 
+bool WriteGate::was_relocalized(const Estimate& estimate) {
+  const bool is_new = relocalizations_ && *relocalizations_ != estimate.relocalizations;
+  relocalizations_ = estimate.relocalizations;
+  return is_new;
+}
+
 GateReason WriteGate::judged(const TrackedScan& tracked) {
   const Estimate& estimate = tracked.estimate;
+  const bool was_elsewhere = was_relocalized(estimate);
   inlier_drop_.observe(tracked);
   if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
   if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
   if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
+  if (was_elsewhere) return GateReason::kRelocalized;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   if (estimate.belief.other_share > params_.most_other_share) return GateReason::kOtherHypothesis;
@@ -80,29 +90,29 @@ void WriteGate::note_break(const TrackedScan& tracked) {
     return;
   }
   if (was_tracking_ && breaks_off) {
-    if (!broken_off_) inlier_drop_.remember();
-    broken_off_ = time;
+    if (!broke_off_at_) inlier_drop_.remember();
+    broke_off_at_ = time;
   }
-  if (!broken_off_) return;
+  if (!broke_off_at_) return;
   if (inlier_drop_.is_worse_than_remembered()) {
     is_confirming_ = true;
     confirms_after_ = GateReason::kConfirming;
-  } else if (seconds(time - *broken_off_) > params_.wary_s) {
+  } else if (seconds(time - *broke_off_at_) > std::max(params_.wary_s, params_.break_settles_s)) {
     forget_break();
   }
 }
 
 void WriteGate::forget_break() {
-  broken_off_.reset();
+  broke_off_at_.reset();
   inlier_drop_.forget();
 }
 
 bool WriteGate::breaks_now(Timestamp time) const {
-  return broken_off_ && seconds(time - *broken_off_) <= params_.break_settles_s;
+  return broke_off_at_ && seconds(time - *broke_off_at_) <= params_.break_settles_s;
 }
 
 bool WriteGate::fits_as_before_break(Timestamp time) const {
-  return !broken_off_ || seconds(time - *broken_off_) > params_.most_unlike_s ||
+  return !broke_off_at_ || seconds(time - *broke_off_at_) > params_.most_unlike_s ||
          !inlier_drop_.is_worse_than_remembered();
 }
 

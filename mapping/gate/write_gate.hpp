@@ -24,13 +24,14 @@ enum class GateReason : std::uint8_t {
   kSearching,        ///< the localizer does not know where the robot is
   kLost,             ///< it has lost its way
   kWrong,            ///< it calls its own pose wrong
+  kRelocalized,      ///< a person has said where the robot is
   kDisbelieved,      ///< P(pose right) is so low that it is rather wrong
   kConfirming,       ///< the pose was wrong a moment ago, or scans broke off, and it has to hold for a while
   kDoubtful,         ///< P(pose right) is low
   kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
   kSpread            ///< the pose is spread too wide, or nothing in view holds it
 };
-inline constexpr std::size_t kGateReasons = 9;
+inline constexpr std::size_t kGateReasons = 10;
 /// For status, report and log: "open", "searching", "lost", …
 [[nodiscard]] std::string_view name_of(GateReason reason);
 /// Does it say that the pose was wrong, and not only that it may be?
@@ -53,7 +54,7 @@ struct WriteGateParams {
   InlierDropParams inlier_drop;
   ScanBreakParams scan_break;
   double break_settles_s = 1.0;  ///< after a break it waits so long to see whether the map still fits; >= 0
-  double wary_s = 5.0;           ///< so long after it a worse fit says that the robot was carried; >= break_settles_s
+  double wary_s = 5.0;           ///< so long after it a worse fit says that the robot was carried; >= 0
   double most_unlike_s = 120.0;  ///< for so long after one as much must fit as before to confirm the pose; >= 0
   ProvisionalParams provisional;
 };
@@ -95,6 +96,7 @@ class WriteGate {
 
  private:
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
+  [[nodiscard]] bool was_relocalized(const Estimate& estimate);
   void note_break(const TrackedScan& tracked);
   void forget_break();
   [[nodiscard]] bool breaks_now(Timestamp time) const;
@@ -104,7 +106,7 @@ class WriteGate {
   WriteGateParams params_;
   InlierDropDetector inlier_drop_;
   ScanBreak scan_break_;
-  std::optional<Timestamp> broken_off_;  // the last break of the scans, until it has been explained
+  std::optional<Timestamp> broke_off_at_;  // the last break of the scans, while a worse fit still tells of it
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
   bool was_tracking_ = false;
@@ -115,6 +117,7 @@ class WriteGate {
   double held_s_ = 0.0;  // of the time that it has been confirmed in, so long nothing spoke against it,
   double held_m_ = 0.0;  // and so far was driven meanwhile
   DrivenWay driven_way_;
+  std::optional<std::uint32_t> relocalizations_;  // that the last scan knew of
   std::optional<Timestamp> trusted_since_;
   std::optional<Timestamp> last_;
   GateTimes times_{};

@@ -204,9 +204,10 @@ TEST(Localizer, FindsItselfAfterBeingCarriedAway) {
 TEST(Localizer, StartsAgainAroundThePoseThatAPersonGives) {
   Drive drive{test::drawn_flat()};
   Localizer localizer = localizer_at_start(small(), test::drawn_flat());
-  for (int i = 0; i < 10; ++i) (void)drive.next(localizer);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(drive.next(localizer).estimate.relocalizations, 0U);
   localizer.relocalize({{1.0, 1.0, 2.0}});
   const Estimate wrong = drive.next(localizer).estimate;
+  EXPECT_EQ(wrong.relocalizations, 1U);
   EXPECT_LT(std::hypot(wrong.map_from_robot.x - 1.0, wrong.map_from_robot.y - 1.0), 0.8);
   localizer.relocalize({drive.truth()});
   TrackedScan tracked;

@@ -138,8 +138,9 @@ TEST(SerialPort, WritesMoreThanTheKernelTakesAtOnce) {
 TEST(SerialPort, TellsOnceWhenTheDeviceHangsUp) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  std::unique_ptr<BytePort> port = open_serial_port(loop, device.path(), 9600).port;
-  ASSERT_TRUE(port);
+  SerialPortAnswer opened = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(opened.port) << opened.refused;
+  std::unique_ptr<BytePort>& port = opened.port;
   int told = 0;
   std::string why;
   port->start({{}, [&](const std::string& reason) {
@@ -170,8 +171,9 @@ TEST(SerialPort, CallsNoHandlerAfterItIsGone) {
 TEST(SerialPort, MayBeDestroyedByItsOwnHandler) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  std::unique_ptr<BytePort> port = open_serial_port(loop, device.path(), 9600).port;
-  ASSERT_TRUE(port);
+  SerialPortAnswer opened = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(opened.port) << opened.refused;
+  std::unique_ptr<BytePort>& port = opened.port;
   port->start({[&](std::span<const std::uint8_t>, Timestamp) { port.reset(); }, {}});
   device.send({1, 2, 3});
   run_until(loop, [&] { return port == nullptr; });

@@ -112,6 +112,18 @@ TEST_F(Sets, WhatWasWrittenLatelyIsOrderedBackOnce) {
   EXPECT_EQ(ordered_back.size(), 1u) << "nothing was written since";
 }
 
+TEST_F(Sets, WhatWasWrittenLatelyIsOrderedBackWhereAPersonSaysWhereTheRobotIs) {
+  (void)on(60.0);
+  end_set(2.0, 1);
+  ASSERT_EQ(on(5.0).size(), 1u);
+  TrackedScan elsewhere = robot.next();
+  ++elsewhere.estimate.relocalizations;
+  std::vector<ScanSet> handed_on;
+  take(elsewhere, handed_on);
+  EXPECT_EQ(ordered_back.size(), 1u);
+  EXPECT_EQ(sets.gate().reason(), GateReason::kRelocalized);
+}
+
 TEST_F(Sets, AnOrderGoesBeforeTheSetsThatItMarks) {
   (void)on(60.0);
   end_set(2.0, 1);

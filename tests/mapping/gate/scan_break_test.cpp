@@ -41,7 +41,7 @@ TrackedScan aisle_scan(StraightDrive& robot, double carried_m, int thing_beams =
 
 TEST(ScanBreak, IsNoneWhereTheRobotDrivesOnItsOwnWheels) {
   StraightDrive robot;
-  ScanBreak scans{{}};
+  ScanBreak scans{{.most = 0.08, .most_one_way = 0.08}};
   for (int i = 0; i < 300; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, 0.0))) << i;
 }
 
@@ -57,7 +57,7 @@ TEST(ScanBreak, IsNoneWhereAThingComesOrGoes) {
   StraightDrive robot;
   ScanBreak scans{{}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
-  for (const int thing_beams : {30, 30, 0}) EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0, thing_beams)));
+  for (const int thing_beams : {45, 45, 0}) EXPECT_FALSE(scans.observe(aisle_scan(robot, 0.0, thing_beams)));
 }
 
 TEST(ScanBreak, IsOneWhereAThirdOfTheViewIsNearer) {
@@ -69,7 +69,7 @@ TEST(ScanBreak, IsOneWhereAThirdOfTheViewIsNearer) {
 
 TEST(ScanBreak, IsNoneWhereTheWheelsHaveSlippedAndTheEstimateHasNot) {
   StraightDrive robot;
-  ScanBreak scans{{}};
+  ScanBreak scans{{.most = 0.08, .most_one_way = 0.08}};
   for (int i = 0; i < 20; ++i) (void)scans.observe(aisle_scan(robot, 0.0));
   robot.map_from_odom.x = -0.6;  // so much the wheels counted and the body did not go
   for (int i = 0; i < 20; ++i) ASSERT_FALSE(scans.observe(aisle_scan(robot, -0.6))) << i;
@@ -154,7 +154,7 @@ class OutOfDate : public testing::Test {
 
 TEST_F(OutOfDate, AThingThatComesLeavesTheGateOpen) {
   for (int i = 0; i < 100; ++i) {
-    gate.observe(fitting(aisle_scan(robot, 0.0, 30), 50, 40));
+    gate.observe(fitting(aisle_scan(robot, 0.0, 45), 50, 40));
     ASSERT_TRUE(gate.is_open()) << i;
   }
 }
@@ -162,6 +162,21 @@ TEST_F(OutOfDate, AThingThatComesLeavesTheGateOpen) {
 TEST_F(OutOfDate, AHallThatIsMoreAndMoreOutOfDateLeavesTheGateOpen) {
   for (int i = 0; i < 100; ++i) {
     gate.observe(fitting(aisle_scan(robot, 0.0), 30, 10));
+    ASSERT_TRUE(gate.is_open()) << i;
+  }
+}
+
+TEST_F(OutOfDate, AWorseFitSoonAfterABreakIsACarriedRobot) {
+  for (int i = 0; i < 30; ++i) gate.observe(fitting(aisle_scan(robot, 2.5), 80, 10));
+  ASSERT_TRUE(gate.is_open());
+  for (int i = 0; i < 15; ++i) gate.observe(fitting(aisle_scan(robot, 2.5), 30, 10));
+  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+}
+
+TEST_F(OutOfDate, AWorseFitLongAfterABreakSaysNothing) {
+  for (int i = 0; i < 70; ++i) gate.observe(fitting(aisle_scan(robot, 2.5), 80, 10));
+  for (int i = 0; i < 50; ++i) {
+    gate.observe(fitting(aisle_scan(robot, 2.5), 30, 10));
     ASSERT_TRUE(gate.is_open()) << i;
   }
 }

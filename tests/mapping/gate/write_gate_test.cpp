@@ -41,6 +41,8 @@ TEST(WriteGate, TellsWhyItIsShut) {
   EXPECT_EQ(reason_after([](Estimate& e) { e.belief.pose_right = 0.6; }), GateReason::kDoubtful);
   EXPECT_EQ(reason_after([](Estimate& e) { e.belief.pose_right = 0.2; }), GateReason::kDisbelieved);
   EXPECT_EQ(reason_after([](Estimate& e) { e.belief.other_share = 0.5; }), GateReason::kOtherHypothesis);
+  EXPECT_EQ(reason_after([](Estimate& e) { ++e.relocalizations; }), GateReason::kRelocalized);
+  EXPECT_EQ(reason_after([](Estimate& e) { e.map_from_robot.x += 1.0; }), GateReason::kOpen) << "the wheels slip";
   EXPECT_EQ(reason_after([](Estimate& e) { e.covariance(1, 1) = 1.0; }), GateReason::kSpread);
   EXPECT_EQ(reason_after([](Estimate& e) { e.belief.elsewhere = {.expected = 2, .fit = 2}; }), GateReason::kSpread);
 }
