@@ -65,12 +65,12 @@ bool WriteGate::was_relocalized(const Estimate& estimate) {
 
 GateReason WriteGate::judged(const TrackedScan& tracked) {
   const Estimate& estimate = tracked.estimate;
-  const bool was_elsewhere = was_relocalized(estimate);
+  const bool relocalized = was_relocalized(estimate);
   inlier_drop_.observe(tracked);
   if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
   if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
   if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
-  if (was_elsewhere) return GateReason::kRelocalized;
+  if (relocalized) return GateReason::kRelocalized;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   if (estimate.belief.other_share > params_.most_other_share) return GateReason::kOtherHypothesis;

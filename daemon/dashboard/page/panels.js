@@ -5,8 +5,9 @@ import { clock, date_and_clock } from "./time_text.js";
 
 const GATE_WORDS = {
   searching: "the robot does not know where it is", lost: "the robot is lost", wrong: "the pose is called wrong",
-  relocalized: "somebody has said where the robot is", disbelieved: "the pose is rather wrong", confirming: "the pose has to hold for a while first",
-  doubtful: "P(pose right) is low", rival: "another place fits as well",
+  relocalized: "somebody has said where the robot is", disbelieved: "the pose is rather wrong",
+  confirming: "the pose has to hold for a while first", doubtful: "P(pose right) is low",
+  rival: "another place fits as well",
   spread: "the pose is too uncertain, or nothing in view holds it",
 };
 const LEVELS = { tracking: "good", global: "warn", lost: "bad", right: "good", undecided: "warn", wrong: "bad" };

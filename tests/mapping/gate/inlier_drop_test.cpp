@@ -8,15 +8,20 @@
 namespace deltamap::mapping::gate {
 namespace {
 
+/// So many scans, all with these beams.
+void show(StraightDrive& robot, InlierDropDetector& inlier_drop, const BeamCounts& beams, int scans = 1) {
+  for (int i = 0; i < scans; ++i) {
+    TrackedScan tracked = robot.next();
+    tracked.estimate.belief.elsewhere = beams;
+    inlier_drop.observe(tracked);
+  }
+}
+
 TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
   StraightDrive robot;
   InlierDropDetector inlier_drop{{}};
   inlier_drop.remember();
-  for (int i = 0; i < 50; ++i) {
-    TrackedScan tracked = robot.next();
-    tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 50, .short_of = 50};
-    inlier_drop.observe(tracked);
-  }
+  show(robot, inlier_drop, {.expected = 100, .fit = 50, .short_of = 50}, 50);
   EXPECT_FALSE(inlier_drop.is_worse_than_remembered());
 }
 
@@ -24,16 +29,10 @@ TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
 bool is_worse_with(std::uint32_t fit) {
   StraightDrive robot;
   InlierDropDetector inlier_drop{{}};
-  for (int i = 0; i < 200; ++i) {
-    TrackedScan tracked = robot.next();
-    tracked.estimate.belief.elsewhere = {.expected = 100, .fit = 100};
-    inlier_drop.observe(tracked);
-  }
+  show(robot, inlier_drop, {.expected = 100, .fit = 100}, 200);
   inlier_drop.remember();
   for (int i = 0; i < 50; ++i) (void)robot.next();
-  TrackedScan tracked = robot.next();
-  tracked.estimate.belief.elsewhere = {.expected = 100, .fit = fit, .short_of = 10, .beyond = 90 - fit};
-  inlier_drop.observe(tracked);
+  show(robot, inlier_drop, {.expected = 100, .fit = fit, .short_of = 10, .beyond = 90 - fit});
   return inlier_drop.is_worse_than_remembered();
 }
 
@@ -45,16 +44,11 @@ TEST(InlierDropDetector, SeesThatTheMapFitsWorseAfterASilenceToo) {
 TEST(InlierDropDetector, HearsNothingFromAFewBeams) {
   StraightDrive robot;
   InlierDropDetector inlier_drop{{}};
-  const auto observe = [&](std::uint32_t expected, std::uint32_t short_of) {
-    TrackedScan tracked = robot.next();
-    tracked.estimate.belief.elsewhere = {.expected = expected, .fit = expected - short_of, .short_of = short_of};
-    inlier_drop.observe(tracked);
-  };
-  for (int i = 0; i < 200; ++i) observe(100, 0);
+  show(robot, inlier_drop, {.expected = 100, .fit = 100}, 200);
   inlier_drop.remember();
-  for (int i = 0; i < 50; ++i) observe(29, 29);
+  show(robot, inlier_drop, {.expected = 29, .short_of = 29}, 50);
   EXPECT_FALSE(inlier_drop.is_worse_than_remembered());
-  for (int i = 0; i < 10; ++i) observe(30, 30);
+  show(robot, inlier_drop, {.expected = 30, .short_of = 30}, 10);
   EXPECT_TRUE(inlier_drop.is_worse_than_remembered());
 }
 
