@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/grid_patch.hpp"
-#include "core/occupancy_grid.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/time.hpp"
 
 namespace deltamap {

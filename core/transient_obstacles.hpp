@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/time.hpp"
 
 namespace deltamap {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/scratch_folder.hpp"
+#include "core/files/scratch_folder.hpp"
 #include "daemon/dashboard/access.hpp"
 #include "daemon/dashboard/server.hpp"
 #include "daemon/first_map.hpp"

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/grid_file.hpp"
-#include "core/grid_file_facts.hpp"
-#include "core/shortest_text.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/files/grid_file_facts.hpp"
+#include "core/files/shortest_text.hpp"
 #include "daemon/settings/settings_error.hpp"
 #include "daemon/start_banner.hpp"
 

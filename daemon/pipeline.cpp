@@ -5,8 +5,8 @@
 #include <atomic>
 
 #include "core/channel.hpp"
-#include "core/file_lock.hpp"
-#include "core/replace_file.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/replace_file.hpp"
 #include "daemon/control/control_desk.hpp"
 #include "daemon/live/dashboard_desk.hpp"
 #include "daemon/live/page_commands.hpp"

@@ -15,8 +15,8 @@
 #include <optional>
 #include <system_error>
 
-#include "core/file_lock.hpp"
-#include "core/grid_file_facts.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/grid_file_facts.hpp"
 #include "daemon/check_config.hpp"
 #include "daemon/console.hpp"
 #include "daemon/control/server.hpp"

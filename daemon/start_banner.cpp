@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/start_banner.hpp"
 
-#include "core/shortest_text.hpp"
+#include "core/files/shortest_text.hpp"
 #include "daemon/settings/provenance.hpp"
 
 namespace deltamap::daemon {

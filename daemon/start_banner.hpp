@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "daemon/settings/settings.hpp"
 
 namespace deltamap::daemon {

@@ -2,7 +2,7 @@
 // Everything that can be set about localization. Each part's own parameters stand beside the part.
 #pragma once
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "localization/belief/fit_monitor.hpp"
 #include "localization/belief/judgement.hpp"

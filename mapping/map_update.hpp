@@ -2,8 +2,8 @@
 // Front door 2 of mapping: (M_{k-1}, S(k)) → M_k, or the reason for refusal. One pure function.
 #pragma once
 
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
 #include "mapping/scan_set/map_change.hpp"
 
 namespace deltamap::mapping {

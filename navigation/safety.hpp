@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "navigation/coasting.hpp"
 #include "navigation/free_path.hpp"

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "core/random.hpp"
 #include "navigation/free_path.hpp"

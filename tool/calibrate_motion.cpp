@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/control/calibration_json.hpp"
 #include "daemon/records/recording_decoder.hpp"
 #include "daemon/settings/settings.hpp"

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/file_lock.hpp"
+#include "core/files/file_lock.hpp"
 
 namespace deltamap::tool {
 

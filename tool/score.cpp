@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/trajectory_score.hpp"
 #include "tool/subcommands.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "simulation/scenario/start_map.hpp"
 #include "tool/live_simulation.hpp"
 #include "tool/scenario_place.hpp"

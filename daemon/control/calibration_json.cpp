@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::daemon::control {
 namespace {

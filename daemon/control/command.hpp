@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::daemon::control {
 

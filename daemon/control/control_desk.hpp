@@ -10,7 +10,7 @@
 #include <string>
 
 #include "core/channel.hpp"
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "daemon/control/command.hpp"
 #include "daemon/control/request.hpp"
 #include "daemon/control/server.hpp"

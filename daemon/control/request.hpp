@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "daemon/telemetry/log_level.hpp"
 
 namespace deltamap::daemon::control {

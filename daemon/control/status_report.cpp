@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "daemon/control/calibration_json.hpp"
 #include "daemon/telemetry/log_level.hpp"
 #include "drivers/pioneer/drive_permission.hpp"

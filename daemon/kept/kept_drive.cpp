@@ -8,7 +8,7 @@
 
 #include "daemon/kept/kept_text.hpp"
 
-#include "core/replace_file.hpp"
+#include "core/files/replace_file.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -4,8 +4,8 @@
 #include <exception>
 #include <utility>
 
-#include "core/grid_file.hpp"
-#include "core/replace_file.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/files/replace_file.hpp"
 
 namespace deltamap::daemon {
 

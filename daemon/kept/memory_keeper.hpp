@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "daemon/control/command.hpp"
 #include "daemon/kept/kept_pose.hpp"
 #include "daemon/kept/kept_stability.hpp"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/dashboard/page_files.hpp"
 #include "daemon/maps/map_picture.hpp"
 

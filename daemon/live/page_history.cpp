@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "daemon/dashboard/cells.hpp"
 #include "daemon/dashboard/wire.hpp"
 

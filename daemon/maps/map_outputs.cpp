@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "mapping/store/database_log.hpp"
 
 namespace deltamap::daemon {

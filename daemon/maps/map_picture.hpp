@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::daemon {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/file_lock.hpp"
+#include "core/files/file_lock.hpp"
 #include "daemon/settings/settings.hpp"
 
 namespace deltamap::daemon {

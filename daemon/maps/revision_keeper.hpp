@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/file_lock.hpp"
+#include "core/files/file_lock.hpp"
 #include "daemon/outputs/retrying_output.hpp"
 #include "daemon/steps/map_step.hpp"
 #include "mapping/store/map_store.hpp"

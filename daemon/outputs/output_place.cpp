@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "core/access.hpp"
-#include "core/file_lock.hpp"
+#include "core/files/access.hpp"
+#include "core/files/file_lock.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/outputs/state_folders.hpp"
 #include "daemon/settings/settings.hpp"

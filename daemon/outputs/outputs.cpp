@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/grid_file.hpp"
-#include "core/replace_file.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/files/replace_file.hpp"
 #include "daemon/settings/provenance.hpp"
 
 namespace deltamap::daemon {

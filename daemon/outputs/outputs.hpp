@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "core/file_lock.hpp"
+#include "core/files/file_lock.hpp"
 #include "core/messages.hpp"
 #include "daemon/outputs/change_note.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"

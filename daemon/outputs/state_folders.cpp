@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "core/access.hpp"
+#include "core/files/access.hpp"
 
 namespace deltamap::daemon {
 namespace {

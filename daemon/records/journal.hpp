@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/pose2.hpp"
 #include "core/messages.hpp"
-#include "core/pose2.hpp"
 #include "daemon/records/map_order.hpp"
 
 namespace deltamap::daemon {

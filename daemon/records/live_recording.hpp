@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/file_lock.hpp"
+#include "core/files/file_lock.hpp"
 #include "daemon/outputs/retrying_output.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 #include "drivers/port/byte_log.hpp"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/maps/revision_keeper.hpp"
 #include "daemon/outputs/line_file.hpp"
 #include "daemon/records/journal.hpp"

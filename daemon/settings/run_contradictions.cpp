@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "core/file_lock.hpp"
-#include "core/grid_file.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "mapping/store/database_log.hpp"
 

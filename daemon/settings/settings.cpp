@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "core/text_of_file.hpp"
+#include "core/files/text_of_file.hpp"
 #include "daemon/settings/fingerprint.hpp"
 #include "daemon/settings/former_keys.hpp"
 #include "daemon/settings/reader/settings_reader.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "daemon/settings/reader/setting_key.hpp"
 #include "daemon/settings/settings_error.hpp"
 #include "drivers/lms200/session.hpp"

@@ -4,7 +4,7 @@
 #include <cinttypes>
 #include <cstdio>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::daemon {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/time.hpp"
 #include "drivers/carmen/carmen_log.hpp"
 #include "drivers/carmen/carmen_survey.hpp"

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 
 namespace deltamap::drivers::carmen {
 namespace {

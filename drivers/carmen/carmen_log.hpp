@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/time.hpp"
 
 namespace deltamap::drivers::carmen {

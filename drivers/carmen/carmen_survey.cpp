@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "drivers/carmen/carmen_words.hpp"
 
 namespace deltamap::drivers::carmen {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/time.hpp"
 #include "drivers/carmen/carmen_log.hpp"
 #include "drivers/lms200/configuration.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/pioneer/extra_packets.hpp"
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "drivers/byte_fields.hpp"
 #include "drivers/pioneer/packet.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "drivers/pioneer/command.hpp"
 #include "drivers/pioneer/config_packet.hpp"
 

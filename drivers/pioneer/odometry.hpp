@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "drivers/pioneer/status.hpp"
 

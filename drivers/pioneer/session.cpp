@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::drivers::pioneer {
 namespace {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "drivers/pioneer/session.hpp"
 
 namespace deltamap::drivers::pioneer {

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "core/access.hpp"
+#include "core/files/access.hpp"
 #include "drivers/port/port_holder.hpp"
 #include "drivers/port/terminal.hpp"
 

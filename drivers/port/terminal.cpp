@@ -16,7 +16,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/access.hpp"
+#include "core/files/access.hpp"
 #include "drivers/port/port_holder.hpp"
 #include "drivers/port/port_permission.hpp"
 

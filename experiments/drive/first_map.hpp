@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "experiments/experiment.hpp"
 #include "simulation/scenario/scenario.hpp"
 

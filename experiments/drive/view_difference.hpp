@@ -2,7 +2,7 @@
 // How much of what a laser sees differs between two worlds: by how many of its beams end on something else.
 #pragma once
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::experiments {

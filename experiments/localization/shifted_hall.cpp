@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "experiments/drive/first_map.hpp"
 #include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"

@@ -7,9 +7,9 @@
 #include <ctime>
 #include <stdexcept>
 
-#include "core/angle.hpp"
-#include "core/grid_file.hpp"
-#include "core/scratch_folder.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/files/scratch_folder.hpp"
+#include "core/geometry/angle.hpp"
 #include "experiments/merge/merge_layouts.hpp"
 #include "mapping/registration/transformed_grid.hpp"
 

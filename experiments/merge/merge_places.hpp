@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/random.hpp"
 #include "mapping/merge/overlay_score.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 
 namespace deltamap::experiments {

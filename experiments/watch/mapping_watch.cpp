@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/near_occupied.hpp"
+#include "core/grid/near_occupied.hpp"
 
 namespace deltamap::experiments {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiments/watch/override_map.hpp"
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 
 namespace deltamap::experiments {
 

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/scratch_folder.hpp"
+#include "core/files/scratch_folder.hpp"
 #include "daemon/maps/store_opening.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/system/used_memory.hpp"

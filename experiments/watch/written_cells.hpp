@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "simulation/score/map_truth.hpp"
 
 namespace deltamap::experiments {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/near_occupied.hpp"
-#include "core/pose_spread.hpp"
+#include "core/geometry/pose_spread.hpp"
+#include "core/grid/near_occupied.hpp"
 #include "localization/sensor/straight_walk.hpp"
 
 namespace deltamap::localization::belief {

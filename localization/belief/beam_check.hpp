@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
 #include "core/transient_obstacles.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 

@@ -5,7 +5,7 @@
 // has driven on.
 #pragma once
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "localization/particles/particle_clusters.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "localization/belief/view_tally.hpp"
 

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "core/block_lattice.hpp"
-#include "core/grid_patch.hpp"
-#include "core/occupancy_grid.hpp"
-#include "core/tiled.hpp"
+#include "core/grid/block_lattice.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
+#include "core/grid/tiled.hpp"
 #include "core/time.hpp"
 
 namespace deltamap::localization::belief {

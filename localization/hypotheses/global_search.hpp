@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "localization/hypotheses/lattice_search.hpp"
 
 namespace deltamap::localization::hypotheses {

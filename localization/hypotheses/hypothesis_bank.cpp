@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/points_in_map.hpp"
+#include "core/geometry/points_in_map.hpp"
 #include "localization/sensor/weighing.hpp"
 
 namespace deltamap::localization::hypotheses {

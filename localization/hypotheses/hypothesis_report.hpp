@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "localization/hypotheses/hypothesis_bank.hpp"
 
 namespace deltamap::localization::hypotheses {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::localization::hypotheses {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::localization::motion {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "core/angle.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/random.hpp"
 #include "core/ziggurat.hpp"
 

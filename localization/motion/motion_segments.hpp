@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/angle.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::localization::motion {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "localization/motion/drive_calibration.hpp"
 

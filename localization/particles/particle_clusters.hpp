@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "core/angle.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/pose2.hpp"
 #include "localization/particles/particle_set.hpp"
 
 namespace deltamap::localization::particles {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "localization/particles/particle_set.hpp"
 
 namespace deltamap::localization::particles {

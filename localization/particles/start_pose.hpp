@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "localization/particles/particle_clusters.hpp"
 
 namespace deltamap::localization::particles {

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "core/block_lattice.hpp"
-#include "core/grid_patch.hpp"
+#include "core/grid/block_lattice.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/block_lattice.hpp"
+#include "core/grid/block_lattice.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {

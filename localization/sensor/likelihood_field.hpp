@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "core/grid_patch.hpp"
-#include "core/occupancy_grid.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::localization::sensor {
 

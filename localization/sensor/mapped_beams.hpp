@@ -3,9 +3,9 @@
 // its end speaks neither for nor against the pose: a robot that drives into a room that was never mapped is not lost.
 #pragma once
 
+#include "core/geometry/pose_spread.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
-#include "core/pose_spread.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 

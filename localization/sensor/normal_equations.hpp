@@ -3,7 +3,7 @@
 // beam weighted by how probably it hit what the map knows. The second hot path after weighing.hpp: four beams at once.
 #pragma once
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 

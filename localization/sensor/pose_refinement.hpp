@@ -3,7 +3,7 @@
 // weighted by the probability that it hit what the map has, with the prior pose and its covariance as a constraint.
 #pragma once
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/likelihood_field.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first cell along a straight line that is not free, by the cell borders that the line crosses (after Amanatides
-// and Woo, 1987, as core/grid_ray.hpp), tile by tile so that a step costs an addition and a byte.
+// and Woo, 1987, as core/grid/grid_ray.hpp), tile by tile so that a step costs an addition and a byte.
 #pragma once
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::localization::sensor {
 

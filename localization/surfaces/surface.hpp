@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/grid_patch.hpp"
-#include "core/occupancy_grid.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::localization::surfaces {
 

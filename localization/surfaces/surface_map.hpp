@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/block_lattice.hpp"
+#include "core/grid/block_lattice.hpp"
 #include "localization/sensor/scan_segments.hpp"
 #include "localization/surfaces/surface.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "core/angle.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/pose2.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 
 namespace deltamap::localization::tracking {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/motion/motion_model.hpp"
 #include "localization/sensor/likelihood_field.hpp"

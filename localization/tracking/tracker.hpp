@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "localization/motion/scan_instant.hpp"
 #include "localization/particles/particle_clusters.hpp"

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/grid/tiled.hpp"
 #include "core/messages.hpp"
-#include "core/tiled.hpp"
 #include "mapping/evidence/evidence_regions.hpp"
 #include "mapping/evidence/passing.hpp"
 #include "mapping/evidence/small_objects.hpp"

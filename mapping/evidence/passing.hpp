@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "mapping/evidence/evidence_regions.hpp"
 #include "mapping/votes/flip_memory.hpp"
 #include "mapping/votes/vote_layer.hpp"

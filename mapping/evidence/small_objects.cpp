@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "mapping/votes/pose_deviation.hpp"
 
 namespace deltamap::mapping::evidence {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "core/grid_patch.hpp"
-#include "core/tiled.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/tiled.hpp"
 #include "mapping/votes/beam_evidence.hpp"
 #include "mapping/votes/pose_deviation.hpp"
 

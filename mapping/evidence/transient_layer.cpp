@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/near_occupied.hpp"
+#include "core/grid/near_occupied.hpp"
 
 namespace deltamap::mapping::evidence {
 namespace {

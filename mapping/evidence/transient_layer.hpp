@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "core/block_lattice.hpp"
-#include "core/occupancy_grid.hpp"
+#include "core/grid/block_lattice.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/transient_obstacles.hpp"
 
 namespace deltamap::mapping::evidence {

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/tiled.hpp"
 #include "core/messages.hpp"
-#include "core/tiled.hpp"
 
 namespace deltamap::mapping::gate {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/pose_spread.hpp"
+#include "core/geometry/pose_spread.hpp"
 
 namespace deltamap::mapping::gate {
 namespace {

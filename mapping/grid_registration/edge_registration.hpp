@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "mapping/merge/overlay_score.hpp"
 
 namespace deltamap::mapping::grid_registration {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/points_in_map.hpp"
+#include "core/geometry/points_in_map.hpp"
 #include "mapping/grid_registration/best_nearby.hpp"
 #include "mapping/grid_registration/border_registration.hpp"
 #include "mapping/grid_registration/edge_registration.hpp"

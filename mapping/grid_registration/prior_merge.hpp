@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "mapping/merge/merge_refusal.hpp"
 #include "mapping/registration/from_pose.hpp"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "mapping/merge/spectrum_peak.hpp"
 
 namespace deltamap::mapping::merge {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "mapping/merge/merge_refusal.hpp"
 #include "mapping/merge/overlay_score.hpp"
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "core/grid_contour.hpp"
-#include "core/occupancy_grid.hpp"
+#include "core/grid/grid_contour.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "mapping/registration/acceptance.hpp"
 
 namespace deltamap::mapping::merge {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 
 namespace deltamap::mapping::paper {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <span>
 
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
 
 namespace deltamap::mapping::paper {
 

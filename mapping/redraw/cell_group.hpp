@@ -2,7 +2,7 @@
 // How much is joined to an occupied cell: a small object, or a surface?
 #pragma once
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::mapping::redraw {
 

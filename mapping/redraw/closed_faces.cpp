@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/grid_ray.hpp"
-#include "core/points_in_map.hpp"
+#include "core/geometry/points_in_map.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "mapping/votes/face_step.hpp"
 
 namespace deltamap::mapping::redraw {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "mapping/redraw/map_draft.hpp"
 #include "mapping/redraw/placed_scan.hpp"
 #include "mapping/redraw/ray_counts.hpp"

@@ -4,8 +4,8 @@
 // have seen become free; free space that new surfaces enclose becomes unknown.
 #pragma once
 
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
 #include "mapping/redraw/placed_scans.hpp"
 #include "mapping/scan_set/map_change.hpp"
 

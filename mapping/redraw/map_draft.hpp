@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/grid_patch.hpp"
-#include "core/occupancy_grid.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::mapping::redraw {
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
-#include "core/block_lattice.hpp"
-#include "core/points_in_map.hpp"
-#include "core/tiled.hpp"
+#include "core/geometry/points_in_map.hpp"
+#include "core/grid/block_lattice.hpp"
+#include "core/grid/tiled.hpp"
 #include "mapping/redraw/ray_counts.hpp"
 #include "mapping/registration/registration.hpp"
 #include "mapping/registration/surface.hpp"

@@ -7,8 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
 #include "mapping/redraw/placed_scan.hpp"
 #include "mapping/registration/from_pose.hpp"
 

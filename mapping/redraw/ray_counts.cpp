@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/grid_ray.hpp"
-#include "core/points_in_map.hpp"
+#include "core/geometry/points_in_map.hpp"
+#include "core/grid/grid_ray.hpp"
 
 namespace deltamap::mapping::redraw {
 namespace {

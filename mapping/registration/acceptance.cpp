@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/registration/acceptance.hpp"
 
-#include "core/near_occupied.hpp"
+#include "core/grid/near_occupied.hpp"
 
 namespace deltamap::mapping::registration {
 

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::mapping::registration {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/tiled.hpp"
+#include "core/grid/tiled.hpp"
 #include "mapping/registration/transformed_grid.hpp"
 
 namespace deltamap::mapping::registration {

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "core/pose_spread.hpp"
+#include "core/geometry/pose_spread.hpp"
 #include "mapping/registration/registration.hpp"
 
 namespace deltamap::mapping::registration {

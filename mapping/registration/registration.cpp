@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/points_in_map.hpp"
+#include "core/geometry/points_in_map.hpp"
 
 namespace deltamap::mapping::registration {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/grid_contour.hpp"
+#include "core/grid/grid_contour.hpp"
 
 namespace deltamap::mapping::registration {
 namespace {

@@ -2,7 +2,7 @@
 // A grid moved rigidly onto the cells of another: T(Δx, Δy, φ) M2 (paper §3.4.1).
 #pragma once
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::mapping::registration {
 

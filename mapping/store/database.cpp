@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/access.hpp"
+#include "core/files/access.hpp"
 #include "mapping/store/database_log.hpp"
 
 namespace deltamap::mapping::store {

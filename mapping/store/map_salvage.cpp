@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "mapping/store/database.hpp"
 #include "mapping/store/map_codec.hpp"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/time.hpp"
 
 namespace deltamap::mapping::store {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
 #include "mapping/store/retention.hpp"
 
 namespace deltamap::mapping::store {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "core/grid_geometry.hpp"
+#include "core/grid/grid_geometry.hpp"
 #include "core/time.hpp"
 #include "mapping/store/database.hpp"
 #include "mapping/store/retention.hpp"

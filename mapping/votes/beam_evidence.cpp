@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "core/near_occupied.hpp"
-#include "core/points_in_map.hpp"
+#include "core/geometry/points_in_map.hpp"
+#include "core/grid/near_occupied.hpp"
 #include "mapping/votes/pose_deviation.hpp"
 
 namespace deltamap::mapping::votes {

@@ -6,8 +6,8 @@
 
 #include <vector>
 
+#include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/occupancy_grid.hpp"
 #include "mapping/votes/clear_space.hpp"
 
 namespace deltamap::mapping::votes {

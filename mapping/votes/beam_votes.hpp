@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/tiled.hpp"
+#include "core/grid/tiled.hpp"
 #include "mapping/votes/beam_evidence.hpp"
 #include "mapping/votes/clear_space.hpp"
 #include "mapping/votes/face_step.hpp"

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <span>
 
-#include "core/grid_patch.hpp"
-#include "core/occupancy_grid.hpp"
-#include "core/tiled.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
+#include "core/grid/tiled.hpp"
 #include "mapping/votes/clear_space.hpp"
 
 namespace deltamap::mapping::votes {

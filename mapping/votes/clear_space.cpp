@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/votes/clear_space.hpp"
 
-#include "core/near_occupied.hpp"
+#include "core/grid/near_occupied.hpp"
 
 namespace deltamap::mapping::votes {
 

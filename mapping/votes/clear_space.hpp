@@ -10,10 +10,10 @@
 #include <limits>
 #include <span>
 
-#include "core/block_lattice.hpp"
-#include "core/grid_patch.hpp"
-#include "core/occupancy_grid.hpp"
-#include "core/tiled.hpp"
+#include "core/grid/block_lattice.hpp"
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
+#include "core/grid/tiled.hpp"
 
 namespace deltamap::mapping::votes {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::mapping::votes {
 

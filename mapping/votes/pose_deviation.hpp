@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "core/geometry/pose_spread.hpp"
 #include "core/messages.hpp"
-#include "core/pose_spread.hpp"
 
 namespace deltamap::mapping::votes {
 

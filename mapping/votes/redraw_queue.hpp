@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
-#include "core/tiled.hpp"
+#include "core/grid/occupancy_grid.hpp"
+#include "core/grid/tiled.hpp"
 
 namespace deltamap::mapping::votes {
 

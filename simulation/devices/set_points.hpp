@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "drivers/pioneer/command.hpp"
 #include "simulation/devices/drive_target.hpp"
 

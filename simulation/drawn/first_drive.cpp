@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/angle.hpp"
-#include "core/grid_ray.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "simulation/scenario/start_map.hpp"
 
 namespace deltamap::simulation::drawn {

@@ -3,7 +3,7 @@
 // each from a pose that is a little wrong.
 #pragma once
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/random.hpp"
 #include "simulation/drawn/drawn.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulation/drawn/layout_builder.hpp"
 
 namespace deltamap::simulation::drawn {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulation/drawn/layout_builder.hpp"
 #include "simulation/world/chance.hpp"
 

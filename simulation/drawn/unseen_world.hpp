@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "simulation/drawn/drawn.hpp"
 #include "simulation/drawn/unseen_kind.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/random.hpp"
 #include "simulation/devices/drive_target.hpp"
 #include "simulation/world/ray_caster.hpp"

@@ -3,7 +3,7 @@
 // lasts for a moment, as a slip does, and does not jump from one report to the next.
 #pragma once
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/random.hpp"
 
 namespace deltamap::simulation {

@@ -2,7 +2,7 @@
 // The sixteen sonars of a P3-DX: where each sits and looks (protocols.md A7).
 #pragma once
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::simulation {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::simulation {

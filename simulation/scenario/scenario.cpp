@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/text_of_file.hpp"
+#include "core/files/text_of_file.hpp"
 #include "simulation/scenario/scenario_actors.hpp"
 #include "simulation/scenario/scenario_world.hpp"
 #include "simulation/scenario/yaml_section.hpp"

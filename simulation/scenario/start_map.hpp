@@ -2,7 +2,7 @@
 // M_0 of a scenario: what a perfect survey of the initial world would have drawn; of any world, for scoring.
 #pragma once
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "simulation/scenario/scenario.hpp"
 
 namespace deltamap::simulation {

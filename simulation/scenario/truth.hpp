@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/time.hpp"
 #include "simulation/changes/change.hpp"
 #include "simulation/movers/movers.hpp"

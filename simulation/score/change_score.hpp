@@ -7,7 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "simulation/scenario/scenario.hpp"
 #include "simulation/scenario/truth.hpp"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/near_occupied.hpp"
+#include "core/grid/near_occupied.hpp"
 #include "simulation/robot/surface_optics.hpp"
 #include "simulation/scenario/start_map.hpp"
 

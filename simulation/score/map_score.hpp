@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::simulation::score {
 

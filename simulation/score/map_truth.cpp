@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "simulation/scenario/start_map.hpp"
 
 namespace deltamap::simulation::score {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 #include "core/time.hpp"
 #include "simulation/scenario/truth.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 
 namespace deltamap::simulation::score {
 namespace {

@@ -8,7 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::simulation::score {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "simulation/world/world.hpp"
 
 namespace deltamap::simulation {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 
 namespace deltamap::simulation {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "simulation/world/bodies.hpp"
 #include "simulation/world/world.hpp"
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::simulation {
 

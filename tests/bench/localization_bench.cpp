@@ -10,8 +10,8 @@
 #include <iostream>
 #include <vector>
 
-#include "core/angle.hpp"
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/geometry/angle.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/sensor/weighing.hpp"

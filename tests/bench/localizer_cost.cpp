@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "tests/bench/timed_hall.hpp"

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "core/random.hpp"
 

@@ -12,8 +12,8 @@
 #include <optional>
 #include <string>
 
-#include "core/grid_file.hpp"
-#include "core/grid_patch.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "daemon/kept/memory_keeper.hpp"
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/maps/newest_map.hpp"

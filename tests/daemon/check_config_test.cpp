@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/dashboard/server.hpp"
 #include "daemon/kept/kept_drive.hpp"
 #include "daemon/kept/kept_pose.hpp"

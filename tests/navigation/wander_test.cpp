@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "navigation/drive_mode.hpp"
 #include "navigation/safety.hpp"
 #include "tests/support/worlds/drawn_grid.hpp"

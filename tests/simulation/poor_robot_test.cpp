@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulation/virtual_drive.hpp"
 #include "simulation/world/passages.hpp"
 #include "tests/support/files/source_tree.hpp"

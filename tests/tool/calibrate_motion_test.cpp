@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/tool_run.hpp"
 #include "tests/support/scans/cast_scan.hpp"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/registration/contour_score.hpp"
 #include "tool/subcommands.hpp"

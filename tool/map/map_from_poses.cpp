@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/grid_file.hpp"
-#include "core/grid_ray.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "drivers/carmen/carmen_log.hpp"
 #include "drivers/carmen/carmen_survey.hpp"
 #include "drivers/carmen/carmen_words.hpp"

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "drivers/carmen/carmen_survey.hpp"
 
 namespace deltamap::tool {

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "core/file_lock.hpp"
-#include "core/grid_file.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/maps/png_bytes.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/store/map_store.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "mapping/grid_registration/global_merge.hpp"
 #include "mapping/grid_registration/prior_merge.hpp"
 #include "mapping/merge/map_merge.hpp"

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/angle.hpp"
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/geometry/angle.hpp"
 #include "daemon/maps/png_bytes.hpp"
 #include "simulation/score/trajectory_score.hpp"
 #include "tool/output_file.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 
 namespace deltamap::tool::picture {
 

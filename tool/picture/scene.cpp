@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "tool/picture/canvas.hpp"
 #include "tool/picture/changed_places.hpp"
 #include "tool/picture/ink.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "tool/picture/raster.hpp"
 
 namespace deltamap::tool::picture {

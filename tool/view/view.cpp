@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/grid_file.hpp"
-#include "core/scratch_folder.hpp"
+#include "core/files/grid_file.hpp"
+#include "core/files/scratch_folder.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/replay_start.hpp"
 #include "tool/subcommands.hpp"

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/shortest_text.hpp"
+#include "core/files/shortest_text.hpp"
 
 namespace deltamap::daemon {
 namespace {

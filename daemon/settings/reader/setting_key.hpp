@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/angle.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::daemon {
 

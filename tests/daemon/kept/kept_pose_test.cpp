@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/kept/memory_keeper.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "tests/support/files/temporary_folder.hpp"

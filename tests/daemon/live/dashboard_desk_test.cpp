@@ -12,7 +12,7 @@
 #include <sstream>
 #include <thread>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "tests/support/bytes/live_decoding.hpp"
 #include "tests/support/daemon/pipeline_fixture.hpp"
 #include "tests/support/daemon/web_client.hpp"

@@ -2,8 +2,8 @@
 // map.newest: the newest revision for other programs. What the store's retention does while the daemon runs.
 #include "daemon/maps/newest_map.hpp"
 
-#include "core/file_lock.hpp"
-#include "core/grid_file.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "mapping/store/map_store.hpp"

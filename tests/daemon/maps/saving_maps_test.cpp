@@ -4,8 +4,8 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
-#include "core/file_lock.hpp"
-#include "core/grid_file.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/maps/store_opening.hpp"
 #include "mapping/store/map_store.hpp"

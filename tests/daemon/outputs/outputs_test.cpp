@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/file_lock.hpp"
+#include "core/files/file_lock.hpp"
 #include "daemon/outputs/line_file.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"

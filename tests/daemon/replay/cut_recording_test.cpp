@@ -3,7 +3,7 @@
 // the cut is told with its place.
 #include <gtest/gtest.h>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/records/recording_decoder.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "drivers/port/byte_log.hpp"

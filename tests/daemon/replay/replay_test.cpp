@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/revision_queue.hpp"
 #include "daemon/replay/transients_queue.hpp"

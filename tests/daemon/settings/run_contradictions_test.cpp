@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/settings/settings_reading.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/text_file.hpp"

@@ -2,7 +2,7 @@
 // Merges that once went wrong in `deltamap experiment merge`.
 #include <gtest/gtest.h>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "experiments/merge/merge_places.hpp"
 #include "mapping/grid_registration/global_merge.hpp"
 #include "mapping/grid_registration/prior_merge.hpp"

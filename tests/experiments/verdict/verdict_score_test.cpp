@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "experiments/verdict/verdict_part.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "core/random.hpp"
 #include "tests/support/worlds/drawn_grid.hpp"
 

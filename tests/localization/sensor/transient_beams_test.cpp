@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "core/near_occupied.hpp"
+#include "core/grid/near_occupied.hpp"
 #include "localization/belief/view_tally.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "localization/motion/deskew.hpp"
 
 namespace deltamap::localization::surfaces {

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/random.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "tests/localization/surfaces/measured_state.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/grid_patch.hpp"
+#include "core/grid/grid_patch.hpp"
 #include "tests/support/worlds/container_hall.hpp"
 
 namespace deltamap::localization::surfaces {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/pillar_room.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "core/random.hpp"
 #include "tests/mapping/grid_registration/wrong_guess.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"

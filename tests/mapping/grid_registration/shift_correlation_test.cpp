@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "core/grid_contour.hpp"
+#include "core/grid/grid_contour.hpp"
 #include "tests/support/merge/merge_trial.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 

@@ -2,7 +2,7 @@
 // Guesses of a place that are wrong by what a prior allows, for tests of the merges that have one.
 #pragma once
 
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::mapping::grid_registration {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::mapping::merge {
 namespace {

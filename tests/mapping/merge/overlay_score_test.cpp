@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "mapping/registration/transformed_grid.hpp"
 #include "tests/support/worlds/drawn_grid.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/random.hpp"
 #include "tests/support/scans/seen_scan.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"

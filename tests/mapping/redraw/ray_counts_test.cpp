@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "core/random.hpp"
 #include "tests/support/scans/seen_scan.hpp"
 #include "tests/support/worlds/drawn_grid.hpp"

@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "core/random.hpp"
 #include "mapping/votes/vote_layer.hpp"
 

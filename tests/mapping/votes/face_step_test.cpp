@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::mapping::votes {
 namespace {

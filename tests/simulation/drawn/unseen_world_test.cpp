@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulation/drawn/shifted_hall.hpp"
 #include "simulation/world/standing_room.hpp"
 

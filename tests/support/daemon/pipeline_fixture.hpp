@@ -9,7 +9,7 @@
 #include <chrono>
 #include <functional>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "tests/support/bytes/scripted_port.hpp"

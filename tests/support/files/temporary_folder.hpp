@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/scratch_folder.hpp"
+#include "core/files/scratch_folder.hpp"
 
 namespace deltamap::test {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "mapping/merge/map_merge.hpp"
 #include "tests/support/merge/merge_trial.hpp"
 

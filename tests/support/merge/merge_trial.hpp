@@ -3,8 +3,8 @@
 // merge on (§3.4.2, Figures 7 and 8).
 #pragma once
 
-#include "core/angle.hpp"
-#include "core/occupancy_grid.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/random.hpp"
 #include "mapping/registration/transformed_grid.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"

@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "core/angle.hpp"
-#include "core/grid_ray.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "core/messages.hpp"
 #include "core/random.hpp"
 

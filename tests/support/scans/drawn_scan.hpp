@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "core/messages.hpp"
 #include "core/random.hpp"
 

@@ -10,9 +10,9 @@
 #include <numbers>
 #include <string>
 
-#include "core/grid_ray.hpp"
-#include "core/occupancy_grid.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
+#include "core/grid/grid_ray.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "core/random.hpp"
 
 namespace deltamap::test {

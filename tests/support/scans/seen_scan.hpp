@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/grid_ray.hpp"
+#include "core/grid/grid_ray.hpp"
 #include "core/messages.hpp"
 #include "core/random.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "tests/support/scans/cast_scan.hpp"
 
 namespace deltamap::test {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/occupancy_grid.hpp"
-#include "core/pose2.hpp"
+#include "core/geometry/pose2.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::test {
 

@@ -2,7 +2,7 @@
 // The same map in a larger rectangle: what it shows stays where it is.
 #pragma once
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 
 namespace deltamap::test {
 

@@ -2,7 +2,7 @@
 // A room small enough to reckon with, which tells all three coordinates of a pose.
 #pragma once
 
-#include "core/occupancy_grid.hpp"
+#include "core/grid/occupancy_grid.hpp"
 #include "tests/support/worlds/drawn_grid.hpp"
 
 namespace deltamap::test {

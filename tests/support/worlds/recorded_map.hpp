@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "tests/support/files/source_tree.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 

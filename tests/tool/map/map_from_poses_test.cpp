@@ -8,7 +8,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tool/run_tool.hpp"
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/file_lock.hpp"
-#include "core/grid_file.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/grid_file.hpp"
 #include "mapping/store/map_store.hpp"
 #include "tests/support/files/not_root.hpp"
 #include "tests/support/files/temporary_folder.hpp"

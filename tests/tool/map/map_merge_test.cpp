@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/tool_run.hpp"
 #include "tests/support/merge/merge_trial.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/grid_file.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/maps/png_bytes.hpp"
 #include "mapping/store/map_store.hpp"
 #include "tests/support/files/temporary_folder.hpp"

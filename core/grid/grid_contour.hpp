@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contour of a map: occupied cells with a free neighbour (of 4), the surface that a laser sees. The inside of a
+// solid block is left out, and so is what lies between occupied and unknown.
+#pragma once
+
+#include <vector>
+
+#include "core/grid/grid_patch.hpp"
+#include "core/grid/occupancy_grid.hpp"
+
+namespace deltamap {
+
+/// Of the whole map, row by row.
+[[nodiscard]] std::vector<Cell> contour_cells(const OccupancyGrid& map);
+/// Of the part in a box, clipped to the map; neighbours outside the box count.
+[[nodiscard]] std::vector<Cell> contour_cells(const OccupancyGrid& map, const CellBox& box);
+
+}  // namespace deltamap
