@@ -12,7 +12,6 @@
 #include <new>
 #include <optional>
 #include <semaphore>
-#include <stop_token>
 #include <utility>
 
 namespace deltamap {
@@ -45,7 +44,7 @@ class Channel {
     return true;
   }
 
-  /// Sender only: what was sent can still be received, then receive() answers nothing.
+  /// Sender only: what was sent can still be received, then nothing comes any more.
   void close() {
     closed_.store(true, std::memory_order_release);
     filled_.release();
@@ -58,22 +57,8 @@ class Channel {
     return item;
   }
 
-  /// Receiver only. Sleeps until there is an item; nothing once the channel is closed and empty, or a stop is
-  /// requested.
-  [[nodiscard]] std::optional<T> receive(const std::stop_token& stop = {}) {
-    const std::stop_callback wake{stop, [this] { filled_.release(); }};
-    for (;;) {
-      if (stop.stop_requested()) return std::nullopt;
-      const bool closed = closed_.load(std::memory_order_acquire);  // before looking: nothing is sent after closing
-      if (auto item = try_receive()) return item;
-      if (closed) return std::nullopt;
-      filled_.acquire();
-      if (auto item = take()) return item;
-    }
-  }
-
-  /// Receiver only. As receive(), but nothing as well where none has come for so long: is_drained() tells the two
-  /// apart.
+  /// Receiver only. Sleeps until there is an item; nothing where none has come for so long, and once the channel is
+  /// closed and empty: is_drained() tells the two apart.
   template <typename Rep, typename Period>
   [[nodiscard]] std::optional<T> receive_within(const std::chrono::duration<Rep, Period>& patience) {
     if (auto item = try_receive()) return item;

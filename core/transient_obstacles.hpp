@@ -21,14 +21,10 @@ struct TransientObstacles {
   std::vector<std::uint32_t> gone;      ///< blocks in which what M_k has was seen gone; indices, ascending
 
   [[nodiscard]] bool empty() const { return standing.empty() && gone.empty(); }
-  [[nodiscard]] bool stands_at(const Point2& point_in_map) const { return holds(standing, point_in_map); }
-  [[nodiscard]] bool is_gone_at(const Point2& point_in_map) const { return holds(gone, point_in_map); }
-
- private:
-  [[nodiscard]] bool holds(const std::vector<std::uint32_t>& indices, const Point2& point_in_map) const {
+  [[nodiscard]] bool stands_at(const Point2& point_in_map) const {
     const Cell block = blocks.cell_at(point_in_map);
-    if (indices.empty() || !blocks.contains(block)) return false;
-    return std::binary_search(indices.begin(), indices.end(), static_cast<std::uint32_t>(blocks.index_of(block)));
+    if (standing.empty() || !blocks.contains(block)) return false;
+    return std::binary_search(standing.begin(), standing.end(), static_cast<std::uint32_t>(blocks.index_of(block)));
   }
 };
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/files/grid_file.hpp"
-#include "core/files/grid_file_facts.hpp"
 #include "core/files/shortest_text.hpp"
 #include "daemon/settings/settings_error.hpp"
 #include "daemon/start_banner.hpp"

@@ -16,7 +16,7 @@
 #include <system_error>
 
 #include "core/files/file_lock.hpp"
-#include "core/files/grid_file_facts.hpp"
+#include "core/files/grid_file.hpp"
 #include "daemon/check_config.hpp"
 #include "daemon/console.hpp"
 #include "daemon/control/server.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes that have arrived but are not yet decoded, with the chunks they came in. It answers when a frame's first byte
 // arrived: a chunk is stamped when read() returned, so its last byte came no later, and each byte before it one
-// character time earlier (CONTRACT "Poses and time", protocols.md B7).
+// character time earlier (docs/frames_and_units.md, protocols.md B7).
 #pragma once
 
 #include <cstddef>

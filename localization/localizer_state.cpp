@@ -263,8 +263,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                      .believed = believed,
                      .state = before,
                      .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
-                     .hypotheses = hypotheses.report(),
-                     .transients = params.temporary.belief ? transients.get() : nullptr});
+                     .hypotheses = hypotheses.report()});
   if (before == LocalizerState::kTracking) {
     stable_support.observe(judgement.belief().stable);
   } else {

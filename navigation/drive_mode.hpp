@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 namespace deltamap::navigation {
@@ -15,13 +14,6 @@ enum class DriveMode : std::uint8_t {
 
 [[nodiscard]] constexpr std::string_view name_of(DriveMode mode) {
   return mode == DriveMode::kWander ? "wander" : "off";
-}
-
-[[nodiscard]] constexpr std::optional<DriveMode> drive_mode_named(std::string_view name) {
-  for (const DriveMode mode : {DriveMode::kOff, DriveMode::kWander}) {
-    if (name == name_of(mode)) return mode;
-  }
-  return std::nullopt;
 }
 
 }  // namespace deltamap::navigation

@@ -14,7 +14,6 @@
 #include "core/messages.hpp"
 #include "navigation/coasting.hpp"
 #include "navigation/free_path.hpp"
-#include "navigation/stop_latch.hpp"
 #include "navigation/stop_reason.hpp"
 
 namespace deltamap::navigation {
@@ -40,6 +39,27 @@ struct AllowedMotion {
   double turn_rate_rad_per_s = 0.0;
   StopReason stop = StopReason::kNone;
   bool brake_hard = false;  ///< as fast as the robot can, not as gently as it is set to
+};
+
+/// A stop that outlives its cause: it holds until the cause is gone and a person has then said drive.
+class StopLatch {
+ public:
+  constexpr explicit StopLatch(StopReason reason) : reason_{reason} {}
+
+  void observe(bool is_present) {
+    is_present_ = is_present;
+    is_held_ = is_held_ || is_present;
+  }
+  /// A person said drive: of no effect while the cause is still there.
+  void release() { is_held_ = is_present_; }
+
+  [[nodiscard]] bool is_held() const { return is_held_; }
+  [[nodiscard]] StopReason reason() const { return reason_; }
+
+ private:
+  StopReason reason_;
+  bool is_present_ = false;
+  bool is_held_ = false;
 };
 
 class Safety {

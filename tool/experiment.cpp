@@ -112,7 +112,7 @@ void add_experiment(CLI::App& app) {
   command.add_flag("--quick", given->options.quick, "fewer and shorter runs: to see that it works");
   command.add_option(
       "--seed", given->options.seed,
-      "first seed (default 1); unseen: 1 to 999 are for development, 1000 to 1059 for closing notes alone");
+      "first seed (default 1); unseen: 1 to 999 are for development, 1000 to 1059 for final figures alone");
   command
       .add_option("--jobs", given->jobs,
                   "runs at once (default: the processors); one where an experiment measures the machine")

@@ -57,7 +57,7 @@ Duration reading_of(clockid_t clock) {
   return std::chrono::seconds{now.tv_sec} + std::chrono::nanoseconds{now.tv_nsec};
 }
 
-/// Monotonic, with its offset to Unix time fixed at the start (CONTRACT.md, Poses and time).
+/// Monotonic, with its offset to Unix time fixed at the start, as of drivers/port/port_clock.hpp.
 class SteadyClock {
  public:
   SteadyClock() : offset_{reading_of(CLOCK_REALTIME) - reading_of(CLOCK_MONOTONIC)} {}

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "core/files/grid_description.hpp"
-#include "core/files/grid_file_facts.hpp"
 #include "core/files/replace_file.hpp"
 #include "core/files/shortest_text.hpp"
 #include "core/files/text_of_file.hpp"
@@ -197,16 +196,12 @@ class PgmWriter {
 
 }  // namespace
 
-std::filesystem::path picture_of(const std::filesystem::path& yaml_file) {
-  return yaml_file.parent_path() / read_grid_description(yaml_file).image;
-}
-
 std::filesystem::path picture_named_in(const std::filesystem::path& yaml_file) {
   constexpr std::uintmax_t kLargest = 1'000'000;
   std::error_code error;
   if (std::filesystem::is_regular_file(yaml_file, error) && std::filesystem::file_size(yaml_file, error) <= kLargest) {
     try {
-      return picture_of(yaml_file);
+      return yaml_file.parent_path() / read_grid_description(yaml_file).image;
     } catch (const std::runtime_error&) {  // whoever reads the map says why
     }
   }

@@ -24,11 +24,7 @@ std::uint64_t word_at(const CellState* cells) {
 }
 
 bool is_contour(const OccupancyGrid& map, Cell cell) {
-  if (map[cell] != CellState::kOccupied) return false;
-  return map.at({cell.column + 1, cell.row}) == CellState::kFree ||
-         map.at({cell.column - 1, cell.row}) == CellState::kFree ||
-         map.at({cell.column, cell.row + 1}) == CellState::kFree ||
-         map.at({cell.column, cell.row - 1}) == CellState::kFree;
+  return map[cell] == CellState::kOccupied && has_free_side(map, cell);
 }
 
 }  // namespace

@@ -10,6 +10,14 @@
 
 namespace deltamap {
 
+/// One of the four cells beside it is free.
+[[nodiscard]] inline bool has_free_side(const OccupancyGrid& map, Cell cell) {
+  return map.at({cell.column + 1, cell.row}) == CellState::kFree ||
+         map.at({cell.column - 1, cell.row}) == CellState::kFree ||
+         map.at({cell.column, cell.row + 1}) == CellState::kFree ||
+         map.at({cell.column, cell.row - 1}) == CellState::kFree;
+}
+
 /// Of the whole map, row by row.
 [[nodiscard]] std::vector<Cell> contour_cells(const OccupancyGrid& map);
 /// Of the part in a box, clipped to the map; neighbours outside the box count.

@@ -40,6 +40,15 @@ struct CellBox {
   [[nodiscard]] bool contains(Cell cell) const {
     return cell.column >= first.column && cell.row >= first.row && cell.column < last.column && cell.row < last.row;
   }
+  [[nodiscard]] std::size_t cell_count() const {
+    return empty() ? 0 : static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+  }
+  /// Row by row.
+  [[nodiscard]] std::size_t index_of(Cell cell) const {
+    assert(contains(cell) && "the cell must lie in the box");
+    return static_cast<std::size_t>(cell.row - first.row) * static_cast<std::size_t>(width()) +
+           static_cast<std::size_t>(cell.column - first.column);
+  }
   friend bool operator==(const CellBox&, const CellBox&) = default;
 };
 

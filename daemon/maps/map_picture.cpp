@@ -21,7 +21,7 @@ std::string map_picture(const OccupancyGrid& map) {
   const CellBox known = grown(known_box(map), kMargin_cells, map.geometry());
   const CellBox box = known.empty() ? map.box() : known;
   std::vector<std::uint8_t> pixels;
-  pixels.reserve(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()));
+  pixels.reserve(box.cell_count());
   for (int row = box.last.row; row-- > box.first.row;) {
     for (int column = box.first.column; column < box.last.column; ++column) {
       pixels.push_back(static_cast<std::uint8_t>(map[{column, row}]));

@@ -25,7 +25,7 @@ constexpr std::array<Section, 29> kFixed{{
     {"localization.field", "unknown_likelihood"},
     {"localization.refinement", "steps prior_share longest_shift_m largest_turn_deg alike_beams"},
     {"localization.track", "agreement"},
-    {"localization.temporary", "least_share_left"},
+    {"localization.temporary", "least_share_left belief"},
     {"localization.hypothesis", "cell_m heading_cell_deg"},
     {"localization.fit",
      "lost_below found_above lost_after_s lost_nowhere_after_s memory_s search_after_s search_after_m "

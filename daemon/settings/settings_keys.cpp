@@ -94,8 +94,9 @@ void add_laser(LaserSettings& laser, double& range_deviation_m, Keys& keys) {
 /// `patrol` has its name already, and nothing behind it.
 SettingKey drive_mode_key(navigation::DriveMode& mode) {
   using navigation::DriveMode;
-  SettingKey key = choice_key("navigation.mode", mode, {{"off", DriveMode::kOff}, {"wander", DriveMode::kWander}},
-                              "who drives; off: the motors are never enabled");
+  std::vector<std::pair<std::string, DriveMode>> modes;
+  for (const DriveMode one : {DriveMode::kOff, DriveMode::kWander}) modes.emplace_back(name_of(one), one);
+  SettingKey key = choice_key("navigation.mode", mode, modes, "who drives; off: the motors are never enabled");
   key.assign = [assign = key.assign](const SettingValue& value) -> std::optional<std::string> {
     const bool is_patrol = value.kind == SettingValue::Kind::kScalar && value.items.front() == "patrol";
     return is_patrol ? "off or wander (patrol does not exist yet)" : assign(value);

@@ -10,7 +10,8 @@ void add_particles(localization::LocalizerParams& localizer, Keys& keys) {
   auto& particles = localizer.particles;
   keys.push_back(whole_key(at + "min", particles.min, "", 10, 200000, "fewest particles"));
   keys.push_back(
-      whole_key(at + "max", particles.max, "", 10, 200000, "most particles: what global localization starts with"));
+      whole_key(at + "max", particles.max, "", 10, 200000,
+                "most particles: so many are drawn where the pose is unsure by more than 0.15 m or 4 degrees"));
   keys.push_back(with_symbol(number_key(at + "resample_below", particles.resample_below, "", 0.0, 1.0,
                                         "N_eff / particles below which the particles are resampled"),
                              "N_eff, Eq. 5"));
@@ -60,12 +61,8 @@ void add_sensor(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(
       flag_key("localization.track.surfaces", localizer.follow_surfaces,
                "whether straight surfaces give the pose where they explain the scans; false: particles always do"));
-  auto& temporary = localizer.temporary;
-  keys.push_back(flag_key("localization.temporary.weighing", temporary.weighing,
+  keys.push_back(flag_key("localization.temporary.weighing", localizer.temporary.weighing,
                           "leave beams that end at a transient obstacle out of the weights of the particles"));
-  keys.push_back(flag_key("localization.temporary.belief", temporary.belief,
-                          "leave beams that end at a transient obstacle out of the evidence against the pose; a wrong "
-                          "pose is noticed later"));
 }
 
 /// What is believed without a given pose, and instead of one.

@@ -21,8 +21,9 @@ void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& long
   keys.push_back(number_key("mapping.persistence_s", evidence.passing.persistence_s, "s", 0.0, 86400.0,
                             "time that a small free-standing object, or what comes and goes, must last to become map"));
   const std::string at = "mapping.evidence.";
-  keys.push_back(number_key(at + "face_persistence_s", evidence.face_persistence_s, "s", 0.0, 86400.0,
-                            "time that any other change must last to become map"));
+  keys.push_back(number_key(
+      at + "face_persistence_s", evidence.face_persistence_s, "s", 0.0, 86400.0,
+      "time that a change must last to become map, unless it is a small free-standing object or comes and goes"));
   keys.push_back(number_key(at + "small_m", evidence.passing.small_m, "m", 0.0, 100.0,
                             "widest free-standing object that counts as small; 0: none is"));
   keys.push_back(most_range_key(at + "most_range_m", evidence.beams.most_range_m, longest_drawn_m));

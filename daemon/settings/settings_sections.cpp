@@ -11,7 +11,7 @@ const std::vector<SettingSection>& setting_sections() {
       {"laser", "the laser: port, line, field of view and where it is mounted"},
       {"laser.mount", "pose of the laser in the robot's frame"},
       {"map", "the first map, and where its revisions are kept"},
-      {"map.retention", "how long single revisions are kept: one of the two rules is enough; without a rule all stay"},
+      {"map.retention", "which old revisions are kept one by one: those that either rule keeps; without a rule all"},
       {"localization", "where the robot is in the map"},
       {"localization.particles", "how many particles there are and when they are resampled"},
       {"localization.update", "when a scan is weighed again"},

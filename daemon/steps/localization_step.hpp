@@ -20,7 +20,7 @@ namespace deltamap::daemon {
 struct StartMap {
   std::shared_ptr<const OccupancyGrid> map;
   std::uint32_t revision = 0;
-  /// map_from_robot at the end of the run before; the settings' pose goes before it.
+  /// map_from_robot at the end of the run before; the settings' pose takes precedence.
   std::optional<Pose2> remembered{};
   std::optional<localization::belief::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
   std::optional<localization::motion::DriveCalibration> calibration{};  ///< and of wheels and mount
@@ -41,7 +41,7 @@ class LocalizationStep {
   void apply(const MapRevision& revision);
   /// What is different from the map for now; null: nothing is known any more.
   void apply(std::shared_ptr<const TransientObstacles> transients);
-  /// Starts again around a pose that a person gave (CONTRACT: σ 0.2 m and 10°). False where nobody can stand there:
+  /// Starts again around a pose that a person gave (σ 0.2 m and 10°). False where nobody can stand there:
   /// the pose stays as it was.
   bool relocalize(const Pose2& map_from_robot);
 

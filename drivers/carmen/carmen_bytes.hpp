@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an LMS200 and a P3-DX would have sent for the scans and poses of a CARMEN log (CONTRACT.md, Bytes: import
-// carmen).
+// What an LMS200 and a P3-DX would have sent for the scans and poses of a CARMEN log (docs/protocols/README.md,
+// CARMEN logs).
 #pragma once
 
 #include <cstdint>

@@ -18,9 +18,8 @@ namespace {
 using drivers::lms200::ScanVariant;
 using drivers::lms200::Units;
 
-constexpr double kNoReturnShare = 0.003;  // CONTRACT.md: of the beams, before the largest values count as no return
-constexpr double kNoReturnWidthM =
-    0.15;  // CONTRACT.md: so far below the largest one; a cluster of codes is 0.11 m wide
+constexpr double kNoReturnShare = 0.003;     // of the beams, before the largest values count as no return
+constexpr double kNoReturnWidthM = 0.15;     // so far below the largest one; a cluster of codes is 0.11 m wide
 constexpr double kDecimalTolerance = 1e-9;   // m
 constexpr double kMultipleTolerance = 1e-6;  // of a centimetre: what parsing decimals may cost
 constexpr std::int64_t kLongestWord = 0x7FFF;

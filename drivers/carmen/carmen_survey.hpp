@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first look at a CARMEN log, before it is turned into bytes: which unit its words need, which value means "no
-// return", where its poses come from, which variant of the LMS200 its scans are like (CONTRACT.md, Bytes: import
-// carmen).
+// return", where its poses come from, which variant of the LMS200 its scans are like (docs/protocols/README.md,
+// CARMEN logs).
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which words an LMS200 would have sent for the ranges of a CARMEN log, and which of those ranges are no return
-// (CONTRACT.md, Bytes: import carmen; the codes are those of protocols.md B4).
+// (docs/protocols/README.md, CARMEN logs; the codes are those of protocols.md B4).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two ports of a recording, played back: what came in, and the notes, in the recorded order. What went out is left
-// out: sessions only listen in a replay (CONTRACT.md, Bytes).
+// out: sessions only listen in a replay.
 #pragma once
 
 #include <filesystem>

@@ -184,8 +184,8 @@ Report report_of(const std::vector<Outcome>& outcomes) {
 Experiment unseen_experiment() {
   return {.name = "unseen",
           .what =
-              "Worlds that nobody has tuned on, another kind for every seed (1-999: development; 1000-1059: closing "
-              "notes)",
+              "Worlds that nobody has tuned on, another kind for every seed (1-999: development; 1000-1059: final "
+              "figures)",
           .runs = runs_of,
           .report = report_of,
           .times = Experiment::Times::kThread};

@@ -16,8 +16,8 @@ namespace {
 
 using simulation::drawn::UnseenKind;
 
-constexpr std::uint64_t kFirstClosing = 1000;  // below: for development
-constexpr std::uint64_t kLastClosing = 1059;
+constexpr std::uint64_t kFirstFinal = 1000;  // below: for development
+constexpr std::uint64_t kLastFinal = 1059;
 
 /// "180/0.5 8m 12.5Hz"
 std::string laser_text(const UnseenKind& kind) {
@@ -57,12 +57,12 @@ void add_kind(Outcome& outcome, const UnseenKind& kind, std::uint64_t seed) {
 }  // namespace
 
 void expect_one_set(std::uint64_t first, std::uint64_t last) {
-  const bool is_development = first >= 1 && last < kFirstClosing;
-  const bool is_closing = first >= kFirstClosing && last <= kLastClosing;
-  if (is_development || is_closing) return;
+  const bool is_development = first >= 1 && last < kFirstFinal;
+  const bool is_final = first >= kFirstFinal && last <= kLastFinal;
+  if (is_development || is_final) return;
   throw daemon::SettingsError(
       "--seed " + std::to_string(first) + " with " + std::to_string(last - first + 1) +
-      " seeds: unseen has seeds 1 to 999 for development and 1000 to 1059 for closing notes alone");
+      " seeds: unseen has seeds 1 to 999 for development and 1000 to 1059 for final figures alone");
 }
 
 Outcome unseen_drive(std::uint64_t seed, double minutes, const localization::LocalizerParams& localizer,

@@ -8,7 +8,7 @@
 
 namespace deltamap::experiments {
 
-/// Seeds 1 to 999 are for development, 1000 to 1059 for closing notes alone; throws SettingsError where `first` to
+/// Seeds 1 to 999 are for development, 1000 to 1059 for final figures alone; throws SettingsError where `first` to
 /// `last` mixes them.
 void expect_one_set(std::uint64_t first, std::uint64_t last);
 

@@ -72,7 +72,7 @@ Outcome merge_often(const std::string& name, bool with_prior, std::uint64_t layo
       });
     } else {
       taken_ms = cpu_ms([&] {
-        const auto merge = mapping::grid_registration::global_merge(place.map, local.grid, {});
+        const auto merge = mapping::grid_registration::global_merge(place.map, local.grid);
         found = merge.map_from_local;
         is_refused = !merge.accepted();
       });
@@ -126,12 +126,11 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
   const PooledRuns all = pooled_merges(outcomes, {{"prior", prior}});
   if (all.empty()) return;  // not asked for
   const std::string what = prior + (prior == "with" ? " prior: " : " a prior: ");
-  const auto add = [&](const std::string& name, const char* number, const char* unit, std::optional<Target> target,
-                       const std::string& peers = "") {
-    report.figures.push_back(all.figure(what + name, number, unit, target, peers));
+  const auto add = [&](const std::string& name, const char* number, const char* unit, std::optional<Target> target) {
+    report.figures.push_back(all.figure(what + name, number, unit, target));
   };
   report.figures.push_back(all.figure_of_extreme(what + "transforms", "transforms"));
-  add("mean acceptance", "acceptance", "", std::nullopt, prior == "with" ? "prototype 0.9994" : "");
+  add("mean acceptance", "acceptance", "", std::nullopt);
   add("surface agreement, mean", "agreement", "", std::nullopt);
   add("acceptance short of the true pose's own, mean", "short_of_truth", "", Target{.most = 0.0003});
   report.figures.push_back(all.figure_of_extreme(what + "acceptance short of the true pose's own, worst",
@@ -143,7 +142,7 @@ void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std
   report.figures.push_back({what + "wrong and not refused, of 10 000",
                             1e4 * all.number("wrong_not_refused") / all.number("transforms"), "", Target{.most = 1.0},
                             "", Certainty{.runs = all.runs().size()}});
-  add("CPU time, mean", "mean_ms", "ms", Target{.most = most_ms}, prior == "with" ? "prototype 2.2" : "prototype 22");
+  add("CPU time, mean", "mean_ms", "ms", Target{.most = most_ms});
   add("CPU time, 99 % within", "p99_ms", "ms", std::nullopt);
 }
 

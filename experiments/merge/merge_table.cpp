@@ -89,17 +89,7 @@ Outcome together(const ScanTable& merges) {
 
 ScanTable merges_of(const std::vector<Outcome>& outcomes,
                     const std::vector<std::pair<std::string, std::string>>& labels) {
-  ScanTable all = empty_merge_table();
-  for (const Outcome& outcome : outcomes) {
-    const bool fits = std::all_of(labels.begin(), labels.end(),
-                                  [&](const auto& label) { return outcome.label(label.first) == label.second; });
-    for (std::size_t row = 0; fits && row < outcome.scans.rows(); ++row) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < all.columns().size(); ++i) values.push_back(outcome.scans.at(row, i));
-      all.add(values);
-    }
-  }
-  return all;
+  return rows_of(runs_with(outcomes, labels));
 }
 
 }  // namespace deltamap::experiments

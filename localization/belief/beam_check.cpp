@@ -38,11 +38,9 @@ class BeamJudge {
         pose_{believed.map_from_robot},
         deviation_{pose_deviation(believed.covariance)} {}
 
-  [[nodiscard]] Point2 end_of(const RayInRobot& ray) const { return pose_ * Point2{ray.end.cast<double>()}; }
-
   [[nodiscard]] CheckedBeam judged(const RayInRobot& ray) const {
     const Point2 from = pose_ * Point2{ray.origin.cast<double>()};
-    const Point2 end = end_of(ray);
+    const Point2 end = pose_ * Point2{ray.end.cast<double>()};
     const double length_m = (end - from).norm();
     const double aside_m = deviation_.aside_m(length_m);
     if (length_m <= kOutOfTheLaserM || aside_m > most_aside_m_) return {};
@@ -91,18 +89,13 @@ class BeamJudge {
 }  // namespace
 
 std::span<const CheckedBeam> BeamCheck::check(const OccupancyGrid& map, const Scan& scan,
-                                              std::span<const RayInRobot> rays, const sensor::RefinedPose& believed,
-                                              const TransientObstacles* transients) {
+                                              std::span<const RayInRobot> rays, const sensor::RefinedPose& believed) {
   const BeamJudge judge{map, believed, scan, params_.most_aside_m};
   const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(1, params_.beams)));
   beams_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = i * rays.size() / count;
     beams_.push_back(scan.beams[at].kind == BeamKind::kRange ? judge.judged(rays[at]) : CheckedBeam{});
-    if (transients == nullptr) continue;
-    CheckedBeam& beam = beams_.back();
-    beam.is_known = (beam.what == BeamFit::kShort && transients->stands_at(judge.end_of(rays[at]))) ||
-                    (beam.what == BeamFit::kBeyond && transients->is_gone_at(map.geometry().centre_of(beam.expected)));
   }
   return beams_;
 }

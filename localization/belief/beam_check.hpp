@@ -10,7 +10,6 @@
 
 #include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
-#include "core/transient_obstacles.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 
 namespace deltamap::localization::belief {
@@ -31,17 +30,15 @@ struct CheckedBeam {
   BeamFit what = BeamFit::kSilent;
   Cell expected;            ///< the obstacle that the map expects the beam to end at
   Point2 normal{0.0, 0.0};  ///< of its surface, towards free space; zero where it has none
-  bool is_known = false;    ///< kShort, kBeyond: by what is known to stand or to be gone there for now
 };
 
 class BeamCheck {
  public:
   explicit BeamCheck(const BeamCheckParams& params) : params_{params} {}
 
-  /// The chosen beams in order of bearing; valid until the next call. `transients` may be null.
+  /// The chosen beams in order of bearing; valid until the next call.
   std::span<const CheckedBeam> check(const OccupancyGrid& map, const Scan& scan, std::span<const RayInRobot> rays,
-                                     const sensor::RefinedPose& believed,
-                                     const TransientObstacles* transients = nullptr);
+                                     const sensor::RefinedPose& believed);
 
  private:
   BeamCheckParams params_;

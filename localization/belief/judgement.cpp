@@ -64,8 +64,7 @@ void Judgement::observe(const View& view) {
   if (!due(view.passed)) return;
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
-  const std::span<const CheckedBeam> beams =
-      check_.check(view.map, view.scan, view.rays, view.believed, view.transients);
+  const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed);
   judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses));
   belief_ = judge_.belief();
   belief_.is_checked = true;

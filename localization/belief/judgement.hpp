@@ -40,7 +40,6 @@ class Judgement {
     LocalizerState state = LocalizerState::kGlobal;
     PoseJudge::Passed passed;  ///< since the last scan
     const hypotheses::HypothesisReport& hypotheses;
-    const TransientObstacles* transients = nullptr;  ///< what is known to be different for now
   };
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
   void observe(const View& view);

@@ -58,7 +58,6 @@ ViewTally tallied(std::span<const CheckedBeam> beams, const Stability& stability
     for (const CheckedBeam& beam : beams.subspan(begin, end - begin)) {
       const bool stable = stability.proven(beam.expected);
       count(what, stable ? tally.stable : tally.elsewhere);
-      if (beam.is_known) continue;  // the map is wrong there, which says nothing about the pose
       std::array<Support, 2>& along = stable ? tally.stable_along : tally.elsewhere_along;
       const double in_first = beam.normal.dot(first) * beam.normal.dot(first);
       add(what, weight * in_first, along[0]);

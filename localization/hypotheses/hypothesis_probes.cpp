@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/hypotheses/hypothesis_probes.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "localization/sensor/weighing.hpp"

@@ -2,7 +2,6 @@
 #include "localization/motion/odometry_buffer.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace deltamap::localization::motion {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Remembers the last odometry and answers where the wheels say the robot was at any beam's time: interpolated between
-// two reports, extrapolated a little past the newest, never waiting (CONTRACT "Poses and time").
+// two reports, extrapolated a little past the newest, never waiting (docs/frames_and_units.md).
 #pragma once
 
 #include <cstddef>

@@ -20,7 +20,7 @@ namespace deltamap::localization::particles {
 
 struct ParticleFilterParams {
   int min = 500;                 ///< fewest particles; 10..max
-  int max = 5000;                ///< most particles: what global localization starts with; min..200000
+  int max = 5000;                ///< most: drawn where the pose is unsure by more than 0.15 m or 4°; min..200000
   double resample_below = 0.5;   ///< share of the particles below which N_eff calls for resampling; 0..1
   double evidence_beams = 20.0;  ///< independent beams that a scan counts as at most; > 0
   double kld_error = 0.05;       ///< bound of the approximation error that sets the number of particles; > 0 (ε)

@@ -24,9 +24,6 @@ struct ParticleSet {
     y_m[i] = map_from_robot.y;
     heading_rad[i] = map_from_robot.theta;
   }
-  void reserve(std::size_t count) {
-    for (auto* column : {&x_m, &y_m, &heading_rad, &log_weight, &weight}) column->reserve(count);
-  }
   /// All equally likely.
   void resize_uniform(std::size_t count) {
     for (auto* column : {&x_m, &y_m, &heading_rad}) column->resize(count);

@@ -3,7 +3,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 namespace deltamap::localization::particles {
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "core/grid/block_lattice.hpp"
+#include "core/grid/grid_contour.hpp"
 
 namespace deltamap::localization::sensor {
 namespace {
@@ -52,13 +53,6 @@ StepTable step_table(const GridGeometry& geometry, const LikelihoodFieldParams& 
   return table;
 }
 
-bool has_free_side(const OccupancyGrid& map, Cell cell) {
-  return map.at({cell.column + 1, cell.row}) == CellState::kFree ||
-         map.at({cell.column - 1, cell.row}) == CellState::kFree ||
-         map.at({cell.column, cell.row + 1}) == CellState::kFree ||
-         map.at({cell.column, cell.row - 1}) == CellState::kFree;
-}
-
 /// A single row or column of cells between unknown space: the face of a thing that stands beside another. Once one of
 /// them is taken away, and not yet off the map, beams end there.
 bool is_thin(const OccupancyGrid& map, Cell cell) {
@@ -87,7 +81,7 @@ class WindowBuilder {
     measure_columns_upwards();
     measure_columns_downwards();
     std::vector<std::uint8_t> bytes;
-    bytes.reserve(static_cast<std::size_t>(window_.width()) * static_cast<std::size_t>(window_.height()));
+    bytes.reserve(window_.cell_count());
     for (int row = window_.first.row; row < window_.last.row; ++row) {
       const int* in_row = row_of_distances(row) + table_.reach_cells;
       for (int column = window_.first.column; column < window_.last.column; ++column, ++in_row) {

@@ -11,10 +11,7 @@
 namespace deltamap::localization::sensor {
 
 struct TransientBeamsParams {
-  bool weighing = true;  ///< leave such beams out where the believed pose is weighed and slid
-  /// And where beams speak for or against it. Off: at a wrong pose all that is seen looks temporary, and who leaves it
-  /// out notices later.
-  bool belief = false;
+  bool weighing = true;           ///< leave such beams out where the believed pose is weighed and slid
   double least_share_left = 0.5;  ///< of a scan's beams: where fewer would be left, all are weighed; 0..1
 };
 

@@ -4,8 +4,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 
 namespace deltamap::localization::surfaces {
 namespace {

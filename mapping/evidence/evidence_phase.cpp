@@ -14,11 +14,6 @@ void sort_unique(std::vector<std::uint32_t>& indices) {
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
-std::vector<std::uint32_t> merged(std::vector<std::uint32_t> all, const std::vector<std::uint32_t>& more) {
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
-}
-
 }  // namespace
 
 EvidencePhase::EvidencePhase(const EvidencePhaseParams& params)
@@ -64,8 +59,6 @@ void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
 }
 
 void EvidencePhase::count_beams() {
-  short_beams_ = 0;
-  through_beams_ = 0;
   for (const votes::BeamVerdict& beam : beams_) {
     short_beams_ += beam.ends_off_map ? 1 : 0;
     through_beams_ += beam.passed.empty() ? 0 : 1;
@@ -238,7 +231,7 @@ std::optional<ScanSet> EvidencePhase::settled_regions(Timestamp time) {
     const Handed handed = hand_on(region, set.verdicts);
     keep_in_view(region, handed);
     first_ms = std::min(first_ms, handed.first_ms);
-    handed_on = merged(std::move(handed_on), handed.blocks);
+    handed_on.insert(handed_on.end(), handed.blocks.begin(), handed.blocks.end());
   }
   sort_unique(handed_on);
   return with_scans(std::move(set), handed_on, first_ms);
@@ -271,9 +264,8 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
 
   beams_ = votes::beam_evidence(*map_, clear_, tracked, params_.beams, std::move(beams_));
   count_beams();
-  const votes::FaceParams face{.bearing_step_rad = tracked.scan.bearing_step_rad};
   const std::vector<Cell> gone = small_objects_.missed(tracked, beams_, params_.beams);
-  const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, face);
+  const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, tracked.scan.bearing_step_rad);
   cast(votes);
   transients_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   keyframes_.keep(tracked, votes.all);

@@ -8,12 +8,8 @@ namespace deltamap::mapping::evidence {
 namespace {
 
 CellBox box_of(const std::vector<ProvenBlock>& region, const votes::VoteLayer& votes) {
-  CellBox box = votes.cells_of(region.front().block);
-  for (const ProvenBlock& proven : region) {
-    const CellBox cells = votes.cells_of(proven.block);
-    box = {{std::min(box.first.column, cells.first.column), std::min(box.first.row, cells.first.row)},
-           {std::max(box.last.column, cells.last.column), std::max(box.last.row, cells.last.row)}};
-  }
+  CellBox box;
+  for (const ProvenBlock& proven : region) box = united(box, votes.cells_of(proven.block));
   return box;
 }
 

@@ -80,6 +80,14 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   return GateReason::kOpen;
 }
 
+double DrivenWay::since_last_m(const TrackedScan& tracked) {
+  const bool follows = last_ && epoch_ == tracked.odometry_epoch;
+  const double way_m = follows ? distance_between(*last_, tracked.odom_from_robot) : 0.0;
+  last_ = tracked.odom_from_robot;
+  epoch_ = tracked.odometry_epoch;
+  return way_m;
+}
+
 /// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
 /// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before.
 void WriteGate::note_break(const TrackedScan& tracked) {
@@ -97,7 +105,7 @@ void WriteGate::note_break(const TrackedScan& tracked) {
   if (inlier_drop_.is_worse_than_remembered()) {
     is_confirming_ = true;
     confirms_after_ = GateReason::kConfirming;
-  } else if (seconds(time - *broke_off_at_) > std::max(params_.wary_s, params_.break_settles_s)) {
+  } else if (seconds(time - *broke_off_at_) > params_.carried_within_s) {
     forget_break();
   }
 }

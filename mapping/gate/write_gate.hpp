@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "core/messages.hpp"
-#include "mapping/gate/driven_way.hpp"
 #include "mapping/gate/inlier_drop.hpp"
 #include "mapping/gate/provisional_window.hpp"
 #include "mapping/gate/scan_break.hpp"
@@ -53,9 +52,9 @@ struct WriteGateParams {
   double hold_other_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
   InlierDropParams inlier_drop;
   ScanBreakParams scan_break;
-  double break_settles_s = 1.0;  ///< after a break it waits so long to see whether the map still fits; >= 0
-  double wary_s = 5.0;           ///< so long after it a worse fit says that the robot was carried; >= 0
-  double most_unlike_s = 120.0;  ///< for so long after one as much must fit as before to confirm the pose; >= 0
+  double break_settles_s = 1.0;   ///< after a break it waits so long to see whether the map still fits; >= 0
+  double carried_within_s = 5.0;  ///< so long after it a worse fit says that the robot was carried; >= 0
+  double most_unlike_s = 120.0;   ///< for so long after one as much must fit as before to confirm the pose; >= 0
   ProvisionalParams provisional;
 };
 
@@ -65,6 +64,17 @@ using GateTimes = std::array<double, kGateReasons>;
 [[nodiscard]] double shut_s(const GateTimes& times);
 /// By name, without those that never were.
 [[nodiscard]] std::map<std::string, double> shut_by_reason(const GateTimes& times);
+
+/// How far the wheels say that the robot has gone from scan to scan; never across a jump of the controller's pose.
+class DrivenWay {
+ public:
+  /// Every scan in order: metres since the last one, 0 where there is none of the same odometry epoch.
+  [[nodiscard]] double since_last_m(const TrackedScan& tracked);
+
+ private:
+  std::optional<Pose2> last_;  // odom_from_robot
+  std::uint32_t epoch_ = 0;
+};
 
 class WriteGate {
  public:

@@ -102,7 +102,6 @@ PriorMerge prior_merge(const OccupancyGrid& map, const OccupancyGrid& local, con
   if (choice.answer == nullptr) return merge;
   merge.covariance = choice.answer->covariance;
   merge.agreement = choice.answer->agreement;
-  merge.chi2 = choice.answer->chi2;
   if (!merge.accepted()) return merge;
 
   merge::CellMotion motion = near(*choice.answer);

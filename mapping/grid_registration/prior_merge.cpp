@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/points_in_map.hpp"
+#include "core/grid/near_occupied.hpp"
 #include "mapping/registration/registration.hpp"
 #include "mapping/registration/surface.hpp"
 
@@ -57,12 +59,11 @@ struct PointInMetres {
 double misfit(const OccupancyGrid& map, std::span<const Point2> points, const registration::NearestSurface& surface,
               const Pose2& pose, const PriorMergeParams& params) {
   const double most2 = params.reach_m * params.reach_m;
-  const double c = std::cos(pose.theta);
-  const double s = std::sin(pose.theta);
+  const PointsInMap in_map{pose};
   double sum = 0.0;
   std::size_t known = 0;
   for (const Point2& point : points) {
-    const Point2 place{pose.x + c * point.x() - s * point.y(), pose.y + s * point.x() + c * point.y()};
+    const Point2 place = in_map(point);
     if (map.at(map.geometry().cell_at(place)) == CellState::kUnknown) continue;
     const registration::SurfacePoint* nearest = surface.nearest(place);
     sum += nearest == nullptr ? most2 : std::min(most2, (place - nearest->position).squaredNorm());
@@ -148,12 +149,7 @@ double agreement(const OccupancyGrid& map, std::span<const Point2> points, const
   std::size_t known = 0;
   for (const Point2& point : points) {
     const Cell cell = map.geometry().cell_at(pose * point);
-    bool near = false;
-    for (int row = -1; row <= 1; ++row) {
-      for (int column = -1; column <= 1; ++column) {
-        near = near || map.at({cell.column + column, cell.row + row}) == CellState::kOccupied;
-      }
-    }
+    const bool near = has_occupied_within(map, cell, 1);
     found += near ? 1 : 0;
     known += near || map.at(cell) != CellState::kUnknown ? 1 : 0;
   }
@@ -228,7 +224,6 @@ PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface
   merge.refusal = refusal_of(best, params);
   merge.covariance = best.covariance;
   merge.agreement = best.agreement;
-  merge.chi2 = best.chi2;
   const bool is_ambiguous = std::any_of(answers.begin() + 1, answers.end(), [&](const PriorAnswer& other) {
     return other.agreement > best.agreement - params.ambiguity_margin && other.cost < best.cost + kRivalCost;
   });

@@ -35,7 +35,6 @@ struct PriorMerge {
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the corrected robot's (x, y, θ), prior included
   double agreement = 0.0;  ///< share of the points within 1 cell of an occupied one after the correction, of those on
                            ///< known cells
-  double chi2 = 0.0;       ///< of the correction under the prior
 
   [[nodiscard]] bool accepted() const { return refusal == merge::MergeRefusal::kNone; }
 };
@@ -45,7 +44,7 @@ struct PriorAnswer {
   Pose2 map_from_guess;
   PoseCovariance covariance = PoseCovariance::Zero();
   double agreement = 0.0;
-  double chi2 = 0.0;
+  double chi2 = 0.0;  ///< of the correction under the prior
   double cost = 0.0;  ///< -2 ln p of the points and of the prior
 };
 /// What prior_merge() chooses among: best first, none beside a better one; none where there are too few points.

@@ -62,20 +62,20 @@ std::vector<double> circular_correlation(std::span<const double> one, std::span<
   return correlation;
 }
 
-std::vector<TurnCandidate> best_turns(std::span<const double> spectrum_one, std::span<const double> spectrum_other,
-                                      int n, bool between_bins) {
+std::vector<double> best_turns(std::span<const double> spectrum_one, std::span<const double> spectrum_other, int n,
+                               bool between_bins) {
   // One half turn holds all there is; the other half repeats it.
   const std::size_t half_turn = spectrum_one.size() / 2;
   const std::vector<double> correlation =
       circular_correlation(spectrum_one.first(half_turn), spectrum_other.first(half_turn));
   const int apart = std::max(1, static_cast<int>(spectrum_one.size() / 120));  // 3°
-  std::vector<TurnCandidate> turns;
+  std::vector<double> turns;
   for (const SpectrumPeak& peak : best_peaks(correlation, n, apart, SpectrumEnds::kJoined)) {
     // other(i + l) fits one(i): the second map stands l bins ahead and has to be turned back by them.
     const double bin = static_cast<double>(peak.index) + (between_bins ? peak.offset : 0.0);
     const double turn_rad = -2.0 * std::numbers::pi * bin / static_cast<double>(spectrum_one.size());
-    turns.push_back({wrapped_angle(turn_rad), peak.value});
-    turns.push_back({wrapped_angle(turn_rad + std::numbers::pi), peak.value});
+    turns.push_back(wrapped_angle(turn_rad));
+    turns.push_back(wrapped_angle(turn_rad + std::numbers::pi));
   }
   return turns;
 }

@@ -17,14 +17,10 @@ namespace deltamap::mapping::merge {
 /// CC(l) = Σ_i HS1(i) HS2(i + l), circular (Eq. 6; printed with HT for HS).
 [[nodiscard]] std::vector<double> circular_correlation(std::span<const double> one, std::span<const double> other);
 
-struct TurnCandidate {
-  double turn_rad = 0.0;  ///< turns the second map onto the first
-  double correlation = 0.0;
-};
-
-/// The n best local maxima of Eq. 6, best first. Each comes twice, 180° apart, for the spectrum cannot tell them.
-/// `between_bins`: place each maximum by a parabola through its neighbours, else at its bin as published.
-[[nodiscard]] std::vector<TurnCandidate> best_turns(std::span<const double> spectrum_one,
-                                                    std::span<const double> spectrum_other, int n, bool between_bins);
+/// The turns of the second map onto the first, rad: the n best local maxima of Eq. 6, best first. Each comes twice,
+/// 180° apart, for the spectrum cannot tell them. `between_bins`: place each maximum by a parabola through its
+/// neighbours, else at its bin as published.
+[[nodiscard]] std::vector<double> best_turns(std::span<const double> spectrum_one,
+                                             std::span<const double> spectrum_other, int n, bool between_bins);
 
 }  // namespace deltamap::mapping::merge

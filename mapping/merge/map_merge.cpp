@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mapping/merge/axis_spectrum.hpp"
 #include "mapping/merge/hough_spectrum.hpp"
@@ -29,13 +28,13 @@ std::vector<CellMotion> spectral_candidates(const OccupancyGrid& map, const Loca
   const int apart = kMaximumWidth_cells * pixels_per_cell;
   const AxisSpectra map_axes = axis_spectra(map, pixels_per_cell);
   std::vector<CellMotion> candidates;
-  for (const TurnCandidate& turn : best_turns(map_spectrum, local_spectrum, params.rotations, params.between_bins)) {
-    const AxisSpectra turned = axis_spectra(local.contour(), turn.turn_rad, pixels_per_cell);
+  for (const double turn_rad : best_turns(map_spectrum, local_spectrum, params.rotations, false)) {
+    const AxisSpectra turned = axis_spectra(local.contour(), turn_rad, pixels_per_cell);
     const std::vector<int> columns = best_shifts(map_axes.x, turned.x, params.shifts, apart);
     const std::vector<int> rows = best_shifts(map_axes.y, turned.y, params.shifts, apart);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       for (std::size_t k = 0; k < rows.size() && (i + 1) * (k + 1) <= kMostRanks; ++k) {
-        candidates.push_back({turn.turn_rad, static_cast<double>(columns[i]) / pixels_per_cell,
+        candidates.push_back({turn_rad, static_cast<double>(columns[i]) / pixels_per_cell,
                               static_cast<double>(rows[k]) / pixels_per_cell});
       }
     }

@@ -3,7 +3,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "mapping/paper/sparse_cholesky.hpp"
@@ -11,18 +10,9 @@
 namespace deltamap::mapping::paper {
 namespace {
 
-Eigen::Vector3d anchor_error(const Pose2& pose, const PoseAnchor& anchor) {
-  return difference(anchor.frame_from_pose, pose);
-}
-
-double mahalanobis2(const Eigen::Vector3d& error, const PoseCovariance& covariance) {
-  return error.dot(covariance.inverse() * error);
-}
-
 struct NetworkSums {
   std::vector<SymmetricBlock> blocks;
   Eigen::VectorXd right_side;
-  double chi2 = 0.0;
 };
 
 /// Σ JᵀC⁻¹J δ = -Σ JᵀC⁻¹e over links and anchors (Lu and Milios' Eq. 6 to 9).
@@ -35,10 +25,9 @@ NetworkSums sums_over_network(const std::vector<Pose2>& poses, std::span<const P
   };
   for (const PoseAnchor& anchor : anchors) {
     const Eigen::Matrix3d information = anchor.covariance.inverse();
-    const Eigen::Vector3d error = anchor_error(poses[anchor.pose], anchor);
+    const Eigen::Vector3d error = difference(anchor.frame_from_pose, poses[anchor.pose]);
     sums.blocks.push_back({anchor.pose, anchor.pose, information});
     right_side_of(anchor.pose) -= information * error;
-    sums.chi2 += error.dot(information * error);
   }
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (is_kept[i] == 0) continue;
@@ -56,7 +45,6 @@ NetworkSums sums_over_network(const std::vector<Pose2>& poses, std::span<const P
     }
     right_side_of(link.from) -= from_weighted * at.error;
     right_side_of(link.to) -= to_weighted * at.error;
-    sums.chi2 += at.error.dot(information * at.error);
   }
   return sums;
 }
@@ -86,7 +74,7 @@ std::size_t worst_link(const std::vector<Pose2>& poses, std::span<const PoseLink
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (is_kept[i] == 0 || !links[i].may_drop) continue;
     const LinkError at = link_error(poses[links[i].from], poses[links[i].to], links[i].from_from_to);
-    const double chi2 = mahalanobis2(at.error, links[i].covariance);
+    const double chi2 = at.error.dot(links[i].covariance.inverse() * at.error);
     if (chi2 > worst_chi2) {
       worst = i;
       worst_chi2 = chi2;
@@ -143,7 +131,6 @@ PoseNetwork solved_network(std::span<const Pose2> initial, std::span<const PoseL
     is_kept[worst] = 0;
     network.dropped.push_back(static_cast<std::uint32_t>(worst));
   }
-  network.chi2 = sums_over_network(poses, links, is_kept, anchors).chi2;
   network.poses = std::move(poses);
   network.covariances = marginal_covariances(network.poses.size(), cholesky);
   network.solved = true;

@@ -40,7 +40,6 @@ struct PoseNetwork {
   std::vector<Pose2> poses;
   std::vector<PoseCovariance> covariances;  ///< marginal, of each pose's (x, y, θ) in the frame
   std::vector<std::uint32_t> dropped;       ///< indices of links, in the order of dropping
-  double chi2 = 0.0;                        ///< of all links and anchors kept
   bool solved = false;  ///< false: not held together, or no convergence; the poses are the initial ones
 };
 

@@ -22,6 +22,7 @@ PoseCovariance diagonal(double position_deviation_m, double heading_deviation_ra
 
 PoseLink odometry_link(std::uint32_t from, const TrackedScan& before, const TrackedScan& after,
                        const ScanAlignmentParams& params) {
+  assert(before.odometry_epoch == after.odometry_epoch && "a set ends where the controller's pose jumps");
   const Pose2 motion = motion_between(before.odom_from_robot, after.odom_from_robot);
   const double driven_m = motion.position().norm();
   const double heading_deviation_rad =
@@ -91,10 +92,6 @@ void keep_group(const std::vector<char>& is_in, std::vector<std::size_t>& scans,
   }
 }
 
-bool odometry_is_usable(const TrackedScan& before, const TrackedScan& after) {
-  return before.odometry_epoch == after.odometry_epoch;
-}
-
 }  // namespace
 
 std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAlignmentParams& params) {
@@ -113,9 +110,7 @@ std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAl
   }
   std::vector<PoseLink> links;
   for (std::uint32_t i = 1; i < count; ++i) {
-    if (odometry_is_usable(scan_at(i - 1), scan_at(i))) {
-      links.push_back(odometry_link(i - 1, scan_at(i - 1), scan_at(i), params));
-    }
+    links.push_back(odometry_link(i - 1, scan_at(i - 1), scan_at(i), params));
     for (const std::uint32_t other : partners(i, guesses, params)) {
       const auto match =
           scan_match(ready[other], ready[i], motion_between(guesses[other], guesses[i]), params.matching);
@@ -133,13 +128,11 @@ std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAl
   std::vector<char> is_matched(guesses.size(), 0);
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (!links[i].may_drop) continue;
-    ++alignment.matches;
     if (std::count(network.dropped.begin(), network.dropped.end(), i) > 0) continue;
     is_matched[links[i].from] = is_matched[links[i].to] = 1;
   }
   const auto matched = static_cast<double>(std::count(is_matched.begin(), is_matched.end(), 1));
   if (matched < params.least_matched_share * count) return std::nullopt;
-  alignment.dropped = network.dropped.size();
   alignment.map_from_robot = std::move(network.poses);
   alignment.covariances = std::move(network.covariances);
   return alignment;

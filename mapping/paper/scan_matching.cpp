@@ -27,10 +27,9 @@ std::optional<ScanMatch> scan_match(const MatchableScan& first, const MatchableS
   if (!found.settled || second.ends.empty()) return std::nullopt;
   ScanMatch match;
   match.first_from_second = found.reference_from_moving;
-  match.overlap = static_cast<double>(found.paired) / static_cast<double>(second.ends.size());
-  match.deviation_m = found.deviation_m;
+  const double overlap = static_cast<double>(found.paired) / static_cast<double>(second.ends.size());
   const Pose2 correction = motion_between(initial_first_from_second, match.first_from_second);
-  if (match.overlap < params.least_overlap || match.deviation_m > params.most_deviation_m ||
+  if (overlap < params.least_overlap || found.deviation_m > params.most_deviation_m ||
       correction.position().norm() > params.most_correction_m ||
       std::abs(correction.theta) > params.most_correction_rad) {
     return std::nullopt;

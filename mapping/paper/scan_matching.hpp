@@ -35,8 +35,6 @@ struct MatchableScan {
 struct ScanMatch {
   Pose2 first_from_second;
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of (x, y, θ) of first_from_second
-  double overlap = 0.0;                                ///< share of the second scan's ends on the first's surface
-  double deviation_m = 0.0;                            ///< root mean square distance of these
 };
 
 /// Nothing where the scans do not overlap enough or do not fit.

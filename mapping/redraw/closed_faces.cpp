@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 
 #include "core/geometry/points_in_map.hpp"
 #include "core/grid/grid_ray.hpp"
@@ -63,7 +62,7 @@ ScanEnds ends_of(const PlacedScan& scan, double longest_m) {
 /// `visit(end, end of the next beam)` for the steps on one face of which any end is drawn, as far as that is known
 /// beforehand: most beams of a scan end elsewhere.
 template <typename IsDrawn, typename Visit>
-void for_each_step_near(const ScanEnds& scan, const votes::FaceParams& face, IsDrawn&& is_near, Visit&& visit) {
+void for_each_step_near(const ScanEnds& scan, double bearing_step_rad, IsDrawn&& is_near, Visit&& visit) {
   const std::vector<Point2>& ends = scan.ends;
   const auto first = std::find_if(ends.begin(), ends.end(), is_near);
   if (first == ends.end()) return;
@@ -73,7 +72,7 @@ void for_each_step_near(const ScanEnds& scan, const votes::FaceParams& face, IsD
   const std::ptrdiff_t end = std::min(std::ssize(ends), last - ends.begin() + 1);
   const auto at = [&](std::size_t i) { return static_cast<std::size_t>(begin) + i; };
   votes::for_each_face_step(
-      static_cast<std::size_t>(end - begin), face, [&](std::size_t i) { return scan.lengths_m[at(i)]; },
+      static_cast<std::size_t>(end - begin), bearing_step_rad, [&](std::size_t i) { return scan.lengths_m[at(i)]; },
       [&](std::size_t i) { return ends[at(i)]; }, [&](std::size_t i) { visit(ends[at(i)], ends[at(i + 1)]); });
 }
 
@@ -100,16 +99,17 @@ MapDraft with_closed_faces(MapDraft draft, const RayCounts& counts, const std::v
            counts[cell].clear_passes < params.free_passes && count_drawn_around(cell, is_drawn) <= 2;
   };
   for (const PlacedScan& scan : scans) {
-    const votes::FaceParams face{.bearing_step_rad = scan.tracked->scan.bearing_step_rad};
-    for_each_step_near(ends_of(scan, params.longest_m), face, may_be_face, [&](const Point2& one, const Point2& next) {
-      if (!is_face(one) || !is_face(next)) return;
-      walk_ray(geometry, one, next, [&](Cell cell, double) {
-        if (!is_gap(cell)) return true;
-        draft.set(cell, CellState::kOccupied);
-        closed.push_back(cell);
-        return true;
-      });
-    });
+    const double bearing_step_rad = scan.tracked->scan.bearing_step_rad;
+    for_each_step_near(ends_of(scan, params.longest_m), bearing_step_rad, may_be_face,
+                       [&](const Point2& one, const Point2& next) {
+                         if (!is_face(one) || !is_face(next)) return;
+                         walk_ray(geometry, one, next, [&](Cell cell, double) {
+                           if (!is_gap(cell)) return true;
+                           draft.set(cell, CellState::kOccupied);
+                           closed.push_back(cell);
+                           return true;
+                         });
+                       });
   }
   for (const Cell& hole : pinholes(map, box, is_gap)) draft.set(hole, CellState::kOccupied);
   return draft;

@@ -32,8 +32,7 @@ class DoubtMask {
     places.reserve(verdicts.size());
     for (const CellVerdict& verdict : verdicts) places.push_back({.cell = verdict.cell});
     box_ = grown(bounding_box(places), std::max(params.added_reach_cells, params.removed_reach_cells), map);
-    flags_.assign(box_.empty() ? 0 : static_cast<std::size_t>(box_.width()) * static_cast<std::size_t>(box_.height()),
-                  0);
+    flags_.assign(box_.cell_count(), 0);
     for (const CellVerdict& verdict : verdicts) {
       const bool added = verdict.state == CellState::kOccupied;
       mark(verdict.cell, added ? params.added_reach_cells : params.removed_reach_cells, added ? kAdded : kRemoved);
@@ -53,17 +52,13 @@ class DoubtMask {
   static constexpr std::uint8_t kRemoved = 2;
   static constexpr std::uint8_t kGone = 4;
 
-  [[nodiscard]] std::size_t index_of(Cell cell) const {
-    return static_cast<std::size_t>(cell.row - box_.first.row) * static_cast<std::size_t>(box_.width()) +
-           static_cast<std::size_t>(cell.column - box_.first.column);
-  }
-  [[nodiscard]] std::uint8_t flags(Cell cell) const { return box_.contains(cell) ? flags_[index_of(cell)] : 0; }
+  [[nodiscard]] std::uint8_t flags(Cell cell) const { return box_.contains(cell) ? flags_[box_.index_of(cell)] : 0; }
 
   void mark(Cell middle, int reach, std::uint8_t flag) {
     for (int row = -reach; row <= reach; ++row) {
       for (int column = -reach; column <= reach; ++column) {
         const Cell cell{middle.column + column, middle.row + row};
-        if (box_.contains(cell)) flags_[index_of(cell)] |= flag;
+        if (box_.contains(cell)) flags_[box_.index_of(cell)] |= flag;
       }
     }
   }
@@ -209,7 +204,7 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
   counts.stop_at(map, [&](Cell cell) {
     return !mask.may_be_removed(cell) && group_size(map, cell, kLeastOpaqueCells) == kLeastOpaqueCells;
   });
-  for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m, params.clear_m);
+  for (const PlacedScan& scan : placement.scans) counts.add(scan, params.longest_m);
   scan_set::MapUpdate update;
   MapDraft draft = with_contradicted_cells(MapDraft{map}, map, counts, mask, params);
   draft = with_closed_faces(std::move(draft), counts, placement.scans, mask.box(),

@@ -21,8 +21,7 @@ struct EvidenceUpdateParams {
   double occupied_hit_share = 0.3;      ///< a cell is occupied from this share of hits on, …
   int occupied_hits = 2;                ///< … and so many hits
   double free_hit_share = 0.1;          ///< an occupied or unknown cell becomes free up to this share of hits, …
-  int free_passes = 3;                  ///< … and from so many passes on that go on for …
-  double clear_m = 0.2;                 ///< … so far: others may have hit what stands there
+  int free_passes = 3;                  ///< … and from so many passes on that end clearly behind it
   int least_group_cells = 3;            ///< smaller groups of new occupied cells that touch nothing are left out
   double least_acceptance = 0.8;        ///< Eq. 11 of local map and updated map below which the update is refused
   PlacementParams placement;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/geometry/points_in_map.hpp"
+#include "core/geometry/pose_spread.hpp"
 #include "core/grid/grid_ray.hpp"
 
 namespace deltamap::mapping::redraw {
@@ -63,7 +64,7 @@ bool touches(const GridGeometry& map, const CellBox& box, const Point2& from, co
 RayCounts::RayCounts(const GridGeometry& map, const CellBox& box)
     : map_{map},
       box_{box},
-      marks_(box.empty() ? 0 : static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()), kUnseen),
+      marks_(box.cell_count(), kUnseen),
       counts_{std::make_unique_for_overwrite<Count[]>(marks_.size())},
       seen_{std::make_unique_for_overwrite<std::uint32_t[]>(marks_.size())} {}
 
@@ -82,7 +83,7 @@ void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end
   bool stopped = false;
   walk_ray(map_, from, end, [&](Cell cell, double entered_m) {
     if (cell == last || !box_.contains(cell)) return true;
-    const std::size_t index = index_of(cell);
+    const std::size_t index = box_.index_of(cell);
     see(index);
     if (entered_m >= clear_end_m) {
       ++counts_[index].late_passes;
@@ -93,15 +94,15 @@ void RayCounts::add_beam(const Point2& from, const Point2& end, double clear_end
     return !stopped;
   });
   if (stopped || !hits || !box_.contains(last)) return;
-  const std::size_t index = index_of(last);
+  const std::size_t index = box_.index_of(last);
   see(index);
   ++counts_[index].hits;
 }
 
-void RayCounts::add(const PlacedScan& scan, double longest_m, double clear_m) {
+void RayCounts::add(const PlacedScan& scan, double longest_m) {
   for_each_beam(scan, longest_m, [&](const BeamInMap& beam) {
     if (part_ && !touches(map_, *part_, beam.from, beam.end)) return;
-    add_beam(beam.from, beam.end, beam.length_m - clear_m, beam.hits);
+    add_beam(beam.from, beam.end, beam.length_m - kClearlyBeyondM, beam.hits);
   });
 }
 

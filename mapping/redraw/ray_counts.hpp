@@ -39,13 +39,13 @@ class RayCounts {
   void look_at(const CellBox& part) { part_ = part; }
 
   /// Counts the beams that have a range; those longer than `longest_m` only as passing, up to there. A pass is clear
-  /// where the beam goes on for `clear_m`.
-  void add(const PlacedScan& scan, double longest_m, double clear_m);
+  /// where the beam goes on for kClearlyBeyondM.
+  void add(const PlacedScan& scan, double longest_m);
 
   [[nodiscard]] const CellBox& box() const { return box_; }
   /// `cell` must lie in the box.
   [[nodiscard]] RayCount operator[](Cell cell) const {
-    const std::size_t index = index_of(cell);
+    const std::size_t index = box_.index_of(cell);
     return marks_[index] == kUnseen ? RayCount{} : count_at(index);
   }
 
@@ -69,10 +69,6 @@ class RayCounts {
     std::uint16_t hits, clear_passes, late_passes;  // a set has some 10 000 beams at most
   };
 
-  [[nodiscard]] std::size_t index_of(Cell cell) const {
-    return static_cast<std::size_t>(cell.row - box_.first.row) * static_cast<std::size_t>(box_.width()) +
-           static_cast<std::size_t>(cell.column - box_.first.column);
-  }
   [[nodiscard]] Cell cell_of(std::size_t index) const {
     const auto width = static_cast<std::size_t>(box_.width());
     return {box_.first.column + static_cast<int>(index % width), box_.first.row + static_cast<int>(index / width)};

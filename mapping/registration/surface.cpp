@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "core/grid/grid_contour.hpp"
@@ -105,12 +104,9 @@ std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& bo
   const CellBox wide = grown(box, kAround, map.geometry());
   if (wide.empty()) return {};
   const auto width = static_cast<std::size_t>(wide.width());
-  std::vector<char> is_on_contour(width * static_cast<std::size_t>(wide.height()), 0);
+  std::vector<char> is_on_contour(wide.cell_count(), 0);
   const std::vector<Cell> contour = contour_cells(map, wide);
-  for (const Cell& cell : contour) {
-    is_on_contour[static_cast<std::size_t>(cell.row - wide.first.row) * width +
-                  static_cast<std::size_t>(cell.column - wide.first.column)] = 1;
-  }
+  for (const Cell& cell : contour) is_on_contour[wide.index_of(cell)] = 1;
   std::vector<SurfacePoint> surface;
   for (const Cell& cell : contour) {
     if (!is_wanted(cell)) continue;

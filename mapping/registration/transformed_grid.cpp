@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/registration/transformed_grid.hpp"
 
-#include <algorithm>
-
 namespace deltamap::mapping::registration {
 
 OccupancyGrid transformed_grid(const OccupancyGrid& source, const Pose2& target_from_source,

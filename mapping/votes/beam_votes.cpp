@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/grid/grid_ray.hpp"
+#include "mapping/votes/face_step.hpp"
 
 namespace deltamap::mapping::votes {
 
@@ -33,10 +34,10 @@ void BeamVotes::mark_beam(const BeamVerdict& beam, const VotedMap& map) {
 }
 
 /// Far away, neighbouring beams end blocks apart: what lies between them on one new face is as new.
-void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face) {
+void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, double bearing_step_rad) {
   const auto length_m = [&](std::size_t i) { return beams[i].ends_off_map ? beams[i].length_m : 0.0; };
   const auto end = [&](std::size_t i) -> const Point2& { return beams[i].end; };
-  for_each_face_step(beams.size(), face, length_m, end, [&](std::size_t i) {
+  for_each_face_step(beams.size(), bearing_step_rad, length_m, end, [&](std::size_t i) {
     walk_ray(blocks, end(i), end(i + 1), [&](Cell block, double) {
       if (blocks.contains(block)) mark(block, kNewHere);
       return true;
@@ -45,7 +46,7 @@ void BeamVotes::mark_faces(std::span<const BeamVerdict> beams, const GridGeometr
 }
 
 /// Far away, neighbouring beams pass a face blocks apart: what lies between them on the face is as gone.
-void BeamVotes::mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face) {
+void BeamVotes::mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, double bearing_step_rad) {
   const GridGeometry& blocks = map.layer.blocks();
   const auto squared_blocks = [](Cell a, Cell b) {
     const int columns = a.column - b.column;
@@ -60,7 +61,7 @@ void BeamVotes::mark_gone_faces(std::span<const BeamVerdict> beams, const VotedM
         return squared_blocks(map.layer.block_of(a), to) < squared_blocks(map.layer.block_of(b), to);
       });
       const Cell from = map.layer.block_of(*nearest);
-      const double step_m = face.slant * (blocks.centre_of(to) - beams[i + 1].from).norm() * face.bearing_step_rad;
+      const double step_m = kFaceSlant * (blocks.centre_of(to) - beams[i + 1].from).norm() * bearing_step_rad;
       const double apart_m = blocks.resolution_m * std::sqrt(squared_blocks(from, to));
       if (apart_m <= step_m + blocks.resolution_m) mark_gone_between(from, to, map.clear);
     }
@@ -103,7 +104,7 @@ void BeamVotes::collect() {
 }
 
 const Votes& BeamVotes::of(std::span<const BeamVerdict> beams, std::span<const Cell> gone, const VotedMap& map,
-                           const FaceParams& face) {
+                           double bearing_step_rad) {
   const GridGeometry& blocks = map.layer.blocks();
   if (!(blocks == blocks_)) {
     blocks_ = blocks;
@@ -113,8 +114,8 @@ const Votes& BeamVotes::of(std::span<const BeamVerdict> beams, std::span<const C
     if (beam.length_m > 0.0) mark_beam(beam, map);  // else silent
   }
   for (const Cell& cell : gone) mark(map.layer.block_of(cell), kGone);
-  mark_faces(beams, blocks, face);
-  mark_gone_faces(beams, map, face);
+  mark_faces(beams, blocks, bearing_step_rad);
+  mark_gone_faces(beams, map, bearing_step_rad);
   collect();
   return votes_;
 }

@@ -11,7 +11,6 @@
 #include "core/grid/tiled.hpp"
 #include "mapping/votes/beam_evidence.hpp"
 #include "mapping/votes/clear_space.hpp"
-#include "mapping/votes/face_step.hpp"
 #include "mapping/votes/redraw_queue.hpp"
 #include "mapping/votes/vote_layer.hpp"
 
@@ -39,7 +38,7 @@ class BeamVotes {
   /// `gone`: cells of small things that the beams together have shown to be gone. The votes stand until the next
   /// scan's.
   [[nodiscard]] const Votes& of(std::span<const BeamVerdict> beams, std::span<const Cell> gone, const VotedMap& map,
-                                const FaceParams& face);
+                                double bearing_step_rad);
 
  private:
   using Marks = std::uint8_t;  // a bit each of the following
@@ -58,8 +57,8 @@ class BeamVotes {
   }
   void mark_beam(const BeamVerdict& beam, const VotedMap& map);
   void mark_still_there(Cell end, const ClearSpace& clear);
-  void mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, const FaceParams& face);
-  void mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, const FaceParams& face);
+  void mark_faces(std::span<const BeamVerdict> beams, const GridGeometry& blocks, double bearing_step_rad);
+  void mark_gone_faces(std::span<const BeamVerdict> beams, const VotedMap& map, double bearing_step_rad);
   void mark_gone_between(Cell from, Cell to, const ClearSpace& clear);
   void collect();
 

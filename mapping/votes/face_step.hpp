@@ -12,22 +12,20 @@
 
 namespace deltamap::mapping::votes {
 
-struct FaceParams {
-  double slant = 3.0;           ///< 1 over the sine of the least angle at which a face is met; >= 1
-  double most_bend_rad = 0.45;  ///< between neighbouring pieces of one face (26°): corners are not cut
-  double bearing_step_rad;      ///< between neighbouring beams
-};
+/// 1 over the sine of the least angle at which a face is met.
+inline constexpr double kFaceSlant = 3.0;
 
-/// `visit(i)` for each i whose end and that of beam i + 1 lie on one face. `length_m(i)`: of the beam, <= 0 where it
-/// does not count; `end(i)`: in any one frame.
+/// `visit(i)` for each i whose end and that of beam i + 1, `bearing_step_rad` apart, lie on one face. `length_m(i)`: of
+/// the beam, <= 0 where it does not count; `end(i)`: in any one frame.
 template <typename Length, typename End, typename Visit>
-void for_each_face_step(std::size_t beams, const FaceParams& params, Length&& length_m, End&& end, Visit&& visit) {
-  constexpr double kNoise_m = 0.04;  // of the readings and of what they meet
+void for_each_face_step(std::size_t beams, double bearing_step_rad, Length&& length_m, End&& end, Visit&& visit) {
+  constexpr double kMostBendRad = 0.45;  // between neighbouring pieces of one face (26°): corners are not cut
+  constexpr double kNoise_m = 0.04;      // of the readings and of what they meet
   const auto is_step = [&](std::size_t i) {
     const double a = length_m(i);
     const double b = length_m(i + 1);
     if (a <= 0.0 || b <= 0.0) return false;
-    return (end(i + 1) - end(i)).norm() <= params.slant * std::min(a, b) * params.bearing_step_rad + kNoise_m;
+    return (end(i + 1) - end(i)).norm() <= kFaceSlant * std::min(a, b) * bearing_step_rad + kNoise_m;
   };
   const auto bend_rad = [&](std::size_t i, std::size_t j) {
     const Point2 a = end(i + 1) - end(i);
@@ -36,9 +34,7 @@ void for_each_face_step(std::size_t beams, const FaceParams& params, Length&& le
   };
   for (std::size_t i = 0; i + 1 < beams; ++i) {
     if (!is_step(i)) continue;
-    const auto goes_on = [&](std::size_t beside) {
-      return is_step(beside) && bend_rad(i, beside) <= params.most_bend_rad;
-    };
+    const auto goes_on = [&](std::size_t beside) { return is_step(beside) && bend_rad(i, beside) <= kMostBendRad; };
     if (i > 0 && i + 2 < beams && goes_on(i - 1) && goes_on(i + 1)) visit(i);
   }
 }

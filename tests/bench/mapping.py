@@ -53,7 +53,7 @@ def measured(what, *arguments):
 def rows_of(where, measure):
     awareness, update, updates, scans = measure
     both = awareness + update
-    return [row("awareness a scan, " + where, "%.0f thousand instructions" % (awareness / 1e3), "", None, "prototype 1.08 million"),
+    return [row("awareness a scan, " + where, "%.0f thousand instructions" % (awareness / 1e3)),
             row("updates of the map, averaged over the scans, " + where,
                 "%.0f thousand instructions (%d sets in %d scans)" % (update / 1e3, updates, scans)),
             row("both together, " + where, "%.0f thousand instructions" % (both / 1e3), "≤ 500 thousand", both <= MOST)]

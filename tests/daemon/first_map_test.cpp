@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "core/files/grid_file.hpp"
-#include "core/files/grid_file_facts.hpp"
 #include "tests/support/files/source_tree.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/text_file.hpp"

@@ -91,7 +91,7 @@ TEST_F(RestartTest, WhatItBeganFromIsUsedWithOtherSettingsToo) {
   settings_.initial_pose = Pose2{2.0, 2.0, 0.0};
   const RunReport elsewhere = replay("live.pcapng", "elsewhere");
   EXPECT_EQ(elsewhere.journal, "not obeyed: other settings or map");
-  EXPECT_GT(starts_off_m("elsewhere"), 3.0) << "a pose that is given goes before it";
+  EXPECT_GT(starts_off_m("elsewhere"), 3.0) << "a pose that is given takes precedence";
 }
 
 TEST_F(RestartTest, OnAnotherMapNothingOfItIsUsedAndThatIsSaid) {

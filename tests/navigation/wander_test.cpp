@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/grid/grid_ray.hpp"
-#include "navigation/drive_mode.hpp"
 #include "navigation/safety.hpp"
 #include "tests/support/worlds/drawn_grid.hpp"
 
@@ -161,13 +160,6 @@ TEST(Wander, DrivesTheSameWayAgainFromTheSameSeed) {
   const Course other = driven(grid, {3.0, 3.0, 0.3}, 120.0, 10);
   EXPECT_EQ(one.poses, two.poses);
   EXPECT_NE(one.poses, other.poses);
-}
-
-TEST(DriveMode, IsKnownByItsNameInTheSettings) {
-  EXPECT_EQ(drive_mode_named("off"), DriveMode::kOff);
-  EXPECT_EQ(drive_mode_named("wander"), DriveMode::kWander);
-  EXPECT_EQ(drive_mode_named("patrol"), std::nullopt);
-  EXPECT_EQ(drive_mode_named("Wander"), std::nullopt);
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ def of_intel(intel):
             "the other side of a threshold another vote, and each revision of the map changes what later scans are held against. amd64 does the same to itself: with its",
             "start %g m aside, two, and so on (the width of an atom), it makes %s revisions in place of %d, and its poses get as far apart (rows below)." % (
                 STEP_M, ", ".join(str(one["revisions"][0]) for one in own), found["revisions"][1]),
-            "Asked for there: i386 no farther from amd64 than %g times the farthest that amd64 gets from itself, and its mean error against the reference within %g mm of" % (MOST_OF_OWN, 1000 * MOST_ERROR_M),
+            "Target there: i386 no farther from amd64 than %g times the farthest that amd64 gets from itself, and its mean error against the reference within %g mm of" % (MOST_OF_OWN, 1000 * MOST_ERROR_M),
             "those of amd64. Mean error, mapping on: i386 %s mm, amd64 %s mm; off: i386 %s mm, amd64 %s mm." % (
                 in_mm([found["error_m"]]), in_mm([found["error_of_amd64_m"]] + [one["error_m"] for one in own]),
                 in_mm([still["error_m"]]), in_mm([still["error_of_amd64_m"]] + [one["error_m"] for one in still_own]))]
@@ -169,7 +169,7 @@ def intel_rows(intel):
 
 def section(seed, room, intel):
     lines = ["The same bytes, seed (%d) and settings, replayed by the amd64 programs and by those of the i386 package. The C library computes" % seed,
-             "angles and exponentials with other last digits there; the sums of a scan's weights are whole numbers. Asked for in the room: half of all poses within",
+             "angles and exponentials with other last digits there; the sums of a scan's weights are whole numbers. Target in the simulated room: half of all poses within",
              "%g mm, 99 %% within %g mm, and at most %g %% of the known cells different." % (1000 * MOST_MEDIAN_M, 1000 * MOST_P99_M, 100 * MOST_CELLS)]
     if intel:
         lines += of_intel(intel)

@@ -29,7 +29,7 @@ namespace {
 namespace lms200 = drivers::lms200;
 namespace pioneer = drivers::pioneer;
 
-constexpr double kTimeToleranceS = 1e-6;  // CONTRACT.md, Bytes
+constexpr double kTimeToleranceS = 1e-6;
 constexpr double kHalfMillimetre = 0.0005 + 1e-9;
 constexpr double kHalfHeadingUnit = std::numbers::pi / 4096.0 + 1e-9;
 

@@ -60,7 +60,7 @@ Result merged_with_prior(const OccupancyGrid& map, const OccupancyGrid& local, c
 
 Result merged_without_prior(const OccupancyGrid& map, const OccupancyGrid& local, const std::string& method) {
   if (method == "global") {
-    const mapping::merge::MapMerge merged = mapping::grid_registration::global_merge(map, local, {});
+    const mapping::merge::MapMerge merged = mapping::grid_registration::global_merge(map, local);
     return {merged.map_from_local, merged.refusal, 0.0};
   }
   mapping::merge::MapMergeParams params;

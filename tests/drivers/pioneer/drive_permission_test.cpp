@@ -180,7 +180,7 @@ TEST(DrivePermissionTable, HasTheDocumentsColumns) {
   EXPECT_NE(document().find(head + "\n"), std::string::npos) << head;
 }
 
-/// The issue's own three: each enabled the motors again.
+/// After each of these three the motors were once enabled again.
 TEST(DrivePermission, WhatAPersonSwitchedOffStaysOffThroughSilencesResetsAndRestartsOneAfterAnother) {
   const std::vector<std::function<void(Rig&)>> switch_off{
       [](Rig& rig) { rig.press_motors(); }, [](Rig& rig) { rig.press_stop(); }, [](Rig& rig) { rig.say(false); }};

@@ -27,10 +27,10 @@ TEST(Ablation, SwitchesMechanismsOffAndKeysToTheirOtherWord) {
   const auto changes = switched_off({});
   daemon::Settings settings;
   change_named(changes, "off-mapping.gate.enabled").apply(settings);
-  change_named(changes, "on-localization.temporary.belief").apply(settings);
+  change_named(changes, "off-localization.temporary.weighing").apply(settings);
   change_named(changes, "off-refinement").apply(settings);
   EXPECT_FALSE(settings.mapping.store_scan.gate.enabled);
-  EXPECT_TRUE(settings.localizer.temporary.belief);
+  EXPECT_FALSE(settings.localizer.temporary.weighing);
   EXPECT_EQ(settings.localizer.refinement.steps, 0);
 }
 

@@ -190,7 +190,7 @@ TEST(Unseen, NeverUpdatesTheMapWhereMappingIsSwitchedOff) {
   EXPECT_NE(answer.output.find("error_rms_m, median"), std::string::npos);
 }
 
-TEST(Unseen, MixesNoDevelopmentSeedsWithThoseOfClosingNotes) {
+TEST(Unseen, MixesNoDevelopmentSeedsWithThoseOfFinalFigures) {
   const test::TemporaryFolder folder;
   for (const std::vector<std::string>& seeds : {std::vector<std::string>{"--seed", "0", "--repeats", "1"},
                                                 {"--seed", "990", "--repeats", "20"},

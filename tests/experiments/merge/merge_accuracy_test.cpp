@@ -19,7 +19,7 @@ TEST(GlobalMerge, FindsTheTruePlaceAmongRacksThatRepeat) {
   for (int i = 0; i < 7; ++i) {
     const LocalMap local = turned_local(place, false, random);
     if (i != 0 && i != 6) continue;
-    const mapping::merge::MapMerge merge = mapping::grid_registration::global_merge(place.map, local.grid, {});
+    const mapping::merge::MapMerge merge = mapping::grid_registration::global_merge(place.map, local.grid);
     EXPECT_TRUE(merge.accepted()) << i;
     EXPECT_LT(measured(place, local, merge.map_from_local).off_cells, kRight_cells) << i;
   }

@@ -99,13 +99,5 @@ TEST(ViewTally, HearsNothingFromSilentBeamsWhichEndARun) {
   EXPECT_NEAR(tally.elsewhere_along[0].short_of + tally.elsewhere_along[1].short_of, 12.0, kExact);
 }
 
-TEST(ViewTally, HoldsWhatIsKnownToStandOrToBeGoneAgainstNoPose) {
-  std::vector<CheckedBeam> known = run(BeamFit::kShort, 5);
-  for (CheckedBeam& beam : known) beam.is_known = true;
-  const ViewTally tally = tallied(known, kNothingProven);
-  EXPECT_EQ(tally.elsewhere.short_of, 5u);
-  EXPECT_EQ(tally.elsewhere_along[0].expected() + tally.elsewhere_along[1].expected(), 0.0);
-}
-
 }  // namespace
 }  // namespace deltamap::localization::belief

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <numbers>
 
 #include "core/grid/near_occupied.hpp"
-#include "localization/belief/view_tally.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
@@ -98,37 +98,13 @@ TEST(TransientBeams, ALocalizerThatIsToldOfACrowdIsNoWorseThanOneThatIsNot) {
 
 TEST(TransientBeams, AreWeighedAllWhereTooFewWouldBeLeft) {
   LocalizerParams careful;
-  careful.temporary = {.weighing = true, .belief = false, .least_share_left = 1.0};
+  careful.temporary = {.weighing = true, .least_share_left = 1.0};
   LocalizerParams off;
-  off.temporary = {.weighing = false, .belief = false};
+  off.temporary = {.weighing = false};
   EXPECT_EQ(driven(careful, true).mean_m, driven(off, true).mean_m);
   LocalizerParams on;
-  on.temporary = {.weighing = true, .belief = false};
+  on.temporary = {.weighing = true};
   EXPECT_NE(driven(on, true).mean_m, driven(off, true).mean_m);
-}
-
-TEST(TransientBeams, DoNotHideAWrongPoseFromTheJudge) {
-  const OccupancyGrid map = test::drawn_flat();
-  const OccupancyGrid world = crowded();
-  const auto transients = transients_of(world, map);
-  Random random{3};
-  const Scan scan = test::cast_scan(world, kTruth, timestamp_from_ns(1), {}, random);
-  const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
-  const RefinedPose right{kTruth, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal()};
-  const belief::Stability stability{map.geometry(), {}};
-  const auto against = [&](const RefinedPose& believed, const TransientObstacles* known) {
-    belief::BeamCheck check{{}};
-    const belief::ViewTally tally = belief::tallied(check.check(map, scan, rays, believed, known), stability);
-    double sum = 0.0;
-    for (const belief::Support& along : tally.elsewhere_along) sum += along.short_of + along.beyond;
-    return sum;
-  };
-  EXPECT_GT(against(right, nullptr), 1.0);
-  EXPECT_LT(against(right, transients.get()), 0.3 * against(right, nullptr));
-  RefinedPose wrong = right;
-  wrong.map_from_robot = {4.9, 2.4, std::numbers::pi + 0.4};
-  EXPECT_GT(against(wrong, transients.get()), 0.7 * against(wrong, nullptr));
-  EXPECT_GT(against(wrong, transients.get()), 3.0);
 }
 
 }  // namespace

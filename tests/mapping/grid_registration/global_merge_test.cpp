@@ -10,7 +10,7 @@ namespace deltamap::mapping::grid_registration {
 namespace {
 
 auto merging_onto(const OccupancyGrid& map) {
-  return [&map](const OccupancyGrid& local) { return global_merge(map, local, {}); };
+  return [&map](const OccupancyGrid& local) { return global_merge(map, local); };
 }
 
 int trials_or(int fewer) {
@@ -46,21 +46,21 @@ TEST(GlobalMerge, RefusesAPeriodicHall) {
   OccupancyGrid hall{{300, 100, 0.1, {0.0, 0.0}}, CellState::kFree};
   for (double x = 1.0; x < 29.0; x += 3.0) test::fill(hall, {x, 2.0}, {x + 1.2, 5.0}, CellState::kOccupied);
   const OccupancyGrid part = test::part_of(hall, 0.3, 0.65);
-  EXPECT_EQ(global_merge(hall, part, {}).refusal, merge::MergeRefusal::kAmbiguous);
+  EXPECT_EQ(global_merge(hall, part).refusal, merge::MergeRefusal::kAmbiguous);
 }
 
 TEST(GlobalMerge, RefusesMapsWithoutSurfaceAndOfOtherPlaces) {
   const OccupancyGrid hall = test::drawn_hall();
-  EXPECT_EQ(global_merge(hall, OccupancyGrid{hall.geometry(), CellState::kFree}, {}).refusal,
+  EXPECT_EQ(global_merge(hall, OccupancyGrid{hall.geometry(), CellState::kFree}).refusal,
             merge::MergeRefusal::kTooFewPoints);
-  EXPECT_EQ(global_merge(OccupancyGrid{hall.geometry()}, hall, {}).refusal, merge::MergeRefusal::kLowAgreement);
+  EXPECT_EQ(global_merge(OccupancyGrid{hall.geometry()}, hall).refusal, merge::MergeRefusal::kLowAgreement);
   OccupancyGrid other{{100, 100, 0.1, {0.0, 0.0}}, CellState::kFree};
   Random random{3};
   for (int i = 0; i < 400; ++i) {
     other.set({static_cast<int>(random.index_below(100)), static_cast<int>(random.index_below(100))},
               CellState::kOccupied);
   }
-  EXPECT_EQ(global_merge(hall, other, {}).refusal, merge::MergeRefusal::kLowAgreement);
+  EXPECT_EQ(global_merge(hall, other).refusal, merge::MergeRefusal::kLowAgreement);
 }
 
 }  // namespace

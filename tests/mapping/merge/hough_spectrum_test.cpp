@@ -55,11 +55,11 @@ TEST(BestTurns, TurnTheSecondMapOntoTheFirst) {
     const auto second = hough_spectrum(line_at(radians(20.0 - turn_deg), 5.0F), 360);
     const auto turns = best_turns(first, second, 1, false);
     ASSERT_EQ(turns.size(), 2U) << "a line cannot tell a half turn";
-    const bool found = std::any_of(turns.begin(), turns.end(), [&](const TurnCandidate& turn) {
-      return std::abs(turn_between(turn.turn_rad, radians(turn_deg))) < radians(0.6);
+    const bool found = std::any_of(turns.begin(), turns.end(), [&](double turn_rad) {
+      return std::abs(turn_between(turn_rad, radians(turn_deg))) < radians(0.6);
     });
     EXPECT_TRUE(found) << turn_deg;
-    EXPECT_NEAR(std::abs(turn_between(turns[0].turn_rad, turns[1].turn_rad)), std::numbers::pi, 1e-9);
+    EXPECT_NEAR(std::abs(turn_between(turns[0], turns[1])), std::numbers::pi, 1e-9);
   }
 }
 

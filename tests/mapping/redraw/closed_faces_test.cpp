@@ -36,7 +36,7 @@ class DottedWall {
       if (scan_.scan.beams[i].kind != BeamKind::kRange) continue;
       draft.set(kField.cell_at(kRobot * Point2{scan_.rays[i].end.cast<double>()}), CellState::kOccupied);
     }
-    counts.add(placed(), kLongestBeam_m, 0.2);
+    counts.add(placed(), kLongestBeam_m);
   }
 
   [[nodiscard]] PlacedScan placed() const { return {&scan_, kRobot}; }
@@ -75,7 +75,7 @@ TEST(ClosedFaces, LeaveAGapThatBeamsHaveGoneThrough) {
     through.scan.beams.push_back({3.0F, 0.0F, BeamKind::kRange});
   }
   const Point2 below = kField.centre_of({gap, kWallRow - 15});
-  wall.counts.add({&through, {below.x(), below.y(), 0.5 * std::numbers::pi}}, kLongestBeam_m, 0.2);
+  wall.counts.add({&through, {below.x(), below.y(), 0.5 * std::numbers::pi}}, kLongestBeam_m);
   EXPECT_EQ(wall.gaps_after_closing(anywhere), std::vector<int>{gap});
 }
 

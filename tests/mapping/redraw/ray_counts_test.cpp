@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/pose_spread.hpp"
 #include "core/grid/grid_ray.hpp"
 #include "core/random.hpp"
 #include "tests/support/scans/seen_scan.hpp"
@@ -13,7 +14,6 @@ namespace deltamap::mapping::redraw {
 namespace {
 
 constexpr double kLongest_m = 6.0;
-constexpr double kClear_m = 0.2;
 const GridGeometry kMap{80, 60, 0.1, {-3.0, 1.0}};
 
 TrackedScan random_scan(Random& random) {
@@ -54,7 +54,7 @@ std::vector<RayCount> plain_counts(const PlacedScan& scan, const OccupancyGrid& 
       if (!kMap.contains(cell)) return true;
       RayCount& count = counts[kMap.index_of(cell)];
       ++count.passes;
-      if (entered_m >= length_m - kClear_m) return true;
+      if (entered_m >= length_m - kClearlyBeyondM) return true;
       ++count.clear_passes;
       stopped = walls[cell] == CellState::kOccupied && is_opaque(cell);
       return !stopped;
@@ -68,7 +68,7 @@ std::vector<RayCount> plain_counts(const PlacedScan& scan, const OccupancyGrid& 
 void expect_plain_counts(const PlacedScan& placed, const OccupancyGrid& walls) {
   RayCounts counts{kMap, box_seen(kMap, {&placed, 1}, kLongest_m)};
   counts.stop_at(walls, is_opaque);
-  counts.add(placed, kLongest_m, kClear_m);
+  counts.add(placed, kLongest_m);
   const std::vector<RayCount> plain = plain_counts(placed, walls);
   for (std::size_t i = 0; i < plain.size(); ++i) {
     const Cell cell = kMap.cell_of(i);
@@ -119,7 +119,7 @@ TEST(RayCounts, OfAPartAreThoseOfTheWholeThere) {
     RayCounts counts{kMap, box_seen(kMap, {&placed, 1}, kLongest_m, part)};
     counts.stop_at(walls, is_opaque);
     counts.look_at(part);
-    counts.add(placed, kLongest_m, kClear_m);
+    counts.add(placed, kLongest_m);
     const std::vector<RayCount> plain = plain_counts(placed, walls);
     for (int row = part.first.row; row < part.last.row; ++row) {
       for (int column = part.first.column; column < part.last.column; ++column) {
@@ -143,7 +143,7 @@ TEST(RayCounts, OfAPartLeaveOutTheBeamsBesideIt) {
   const CellBox part{{20, 0}, {25, 1}};  // ahead of the laser
   RayCounts counts{kMap, box_seen(kMap, {&placed, 1}, kLongest_m)};
   counts.look_at(part);
-  counts.add(placed, kLongest_m, kClear_m);
+  counts.add(placed, kLongest_m);
   EXPECT_EQ((counts[{22, 0}].passes), 1);
   EXPECT_EQ((counts[{0, 20}].passes), 0);
   EXPECT_EQ(box_seen(kMap, {&placed, 1}, kLongest_m, part).last.row, 1);
@@ -158,7 +158,7 @@ TEST(RayCounts, CountNothingBehindAnOpaqueCell) {
   scan.rays[90].end = {1.1F, 0.0F};
   const CellBox all{{0, 0}, {12, 1}};
   RayCounts open{world.geometry(), all};
-  open.add({&scan, scan.estimate.map_from_robot}, 20.0, 0.2);
+  open.add({&scan, scan.estimate.map_from_robot}, 20.0);
   EXPECT_GT((open[{11, 0}].hits), 0);
   EXPECT_GT((open[{8, 0}].passes), 0);
   RayCounts shut{world.geometry(), all};
@@ -166,7 +166,7 @@ TEST(RayCounts, CountNothingBehindAnOpaqueCell) {
   walls.set({5, 0}, CellState::kOccupied);
   walls.set({3, 0}, CellState::kOccupied);
   shut.stop_at(walls, [](Cell cell) { return cell.column == 5; });
-  shut.add({&scan, scan.estimate.map_from_robot}, 20.0, 0.2);
+  shut.add({&scan, scan.estimate.map_from_robot}, 20.0);
   EXPECT_EQ((shut[{11, 0}].hits), 0);
   EXPECT_EQ((shut[{8, 0}].passes), 0);
   EXPECT_GT((shut[{5, 0}].passes), 0);

@@ -16,9 +16,8 @@ TEST(BeamVotes, TakeForGoneTheWholeFaceBetweenTheBeamsThatPassIt) {
   VoteLayer layer{{}, face.geometry()};
   const RedrawQueue watched{{}, layer.blocks()};
   BeamVotes votes;
-  const FaceParams params{.bearing_step_rad = seen.tracked.scan.bearing_step_rad};
-  const Blocks gone =
-      votes.of(seen.beams, {}, {seen.clear, layer, watched}, params).yes[static_cast<int>(Question::kRemoved)];
+  const Blocks gone = votes.of(seen.beams, {}, {seen.clear, layer, watched}, seen.tracked.scan.bearing_step_rad)
+                          .yes[static_cast<int>(Question::kRemoved)];
   int in_the_middle = 0;  // beams are 13 cm apart there, blocks 10 cm wide
   for (const std::uint32_t block : gone) {
     const Point2 centre = layer.blocks().centre_of(layer.blocks().cell_of(block));
@@ -38,9 +37,9 @@ TEST(BeamVotes, TakeNothingForGoneBetweenBeamsThatPassTwoDifferentThings) {
   VoteLayer layer{{}, map.geometry()};
   const RedrawQueue watched{{}, layer.blocks()};
   BeamVotes votes;
-  const FaceParams params{.bearing_step_rad = seen.tracked.scan.bearing_step_rad};
   for (const std::uint32_t block :
-       votes.of(seen.beams, {}, {seen.clear, layer, watched}, params).yes[static_cast<int>(Question::kRemoved)]) {
+       votes.of(seen.beams, {}, {seen.clear, layer, watched}, seen.tracked.scan.bearing_step_rad)
+           .yes[static_cast<int>(Question::kRemoved)]) {
     const Point2 centre = layer.blocks().centre_of(layer.blocks().cell_of(block));
     EXPECT_GT(std::abs(centre.x() - 6.55), 0.1);
   }

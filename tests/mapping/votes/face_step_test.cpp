@@ -13,7 +13,7 @@ namespace {
 std::vector<std::size_t> face_steps(const std::vector<Point2>& ends) {
   std::vector<std::size_t> steps;
   for_each_face_step(
-      ends.size(), FaceParams{.bearing_step_rad = radians(1.0)}, [&](std::size_t i) { return ends[i].norm(); },
+      ends.size(), radians(1.0), [&](std::size_t i) { return ends[i].norm(); },
       [&](std::size_t i) -> const Point2& { return ends[i]; }, [&](std::size_t i) { steps.push_back(i); });
   return steps;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Feeds a localizer from a CARMEN log as the drivers would: a report of the wheels exactly at each scan's first beam
-// and others in gaps over 100 ms, from the poses that the scan lines carry (CONTRACT "Bytes"). Without units or bytes
-// between.
+// and others in gaps over 100 ms, from the poses that the scan lines carry (docs/protocols/README.md). Without units or
+// bytes between.
 #pragma once
 
 #include <cmath>
