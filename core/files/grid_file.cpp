@@ -5,7 +5,6 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -35,7 +34,7 @@ std::ifstream open_file(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file, told_below)) refuse(file, "is a directory");
   if (std::filesystem::is_other(file, told_below)) refuse(file, "is no plain file");  // a pipe may say nothing for ever
   std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(file, std::strerror(errno));
+  if (!in) refuse(file, std::generic_category().message(errno));
   return in;
 }
 

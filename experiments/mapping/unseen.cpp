@@ -100,6 +100,7 @@ TextTable shut_while_right(const std::vector<Outcome>& outcomes) {
 /// The values of all seeds in order of size: how long the tail is.
 Chart chart_of(const std::string& what, const std::string& number, const std::vector<Outcome>& outcomes) {
   std::vector<double> values;
+  values.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) values.push_back(outcome.number(number));
   std::erase_if(values, [](double value) { return std::isnan(value); });
   std::sort(values.begin(), values.end());
@@ -116,6 +117,7 @@ std::vector<const Outcome*> worst_of(const std::vector<Outcome>& outcomes) {
     return std::isnan(rms_m) ? std::numeric_limits<double>::infinity() : rms_m;
   };
   std::vector<const Outcome*> worst;
+  worst.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) worst.push_back(&outcome);
   std::stable_sort(worst.begin(), worst.end(),
                    [&](const Outcome* a, const Outcome* b) { return error_m(*a) > error_m(*b); });

@@ -177,7 +177,7 @@ Report report_of(const std::vector<Outcome>& outcomes) {
       }
       table.rows.push_back(std::move(row));
       const std::vector<double> shortfall = shortfalls(merges);
-      Series series{place + ", " + prior, {}};
+      Series series{std::string{place}.append(", ").append(prior), {}};
       for (int percent = 1; percent <= 99; ++percent)
         series.points.emplace_back(0.01 * percent, quantile(shortfall, 0.01 * percent));
       chart.series.push_back(std::move(series));
