@@ -128,6 +128,7 @@ std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAl
   std::vector<char> is_matched(guesses.size(), 0);
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (!links[i].may_drop) continue;
+    ++alignment.matches;
     if (std::count(network.dropped.begin(), network.dropped.end(), i) > 0) continue;
     is_matched[links[i].from] = is_matched[links[i].to] = 1;
   }

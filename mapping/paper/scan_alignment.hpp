@@ -35,6 +35,7 @@ struct ScanAlignment {
   std::vector<std::size_t> scans;           ///< indices of the scans used, in order
   std::vector<Pose2> map_from_robot;        ///< of each used scan
   std::vector<PoseCovariance> covariances;  ///< of these
+  std::size_t matches = 0;                  ///< pairs that were matched
 };
 
 /// Nothing where the network does not settle or too few scans match.

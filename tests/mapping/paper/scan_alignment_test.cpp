@@ -38,6 +38,7 @@ TEST(ScanAlignment, BringsScansTogetherBetterThanTheLocalizerHadThem) {
   const auto alignment = scan_alignment(test::kept(scans), {});
   ASSERT_TRUE(alignment);
   ASSERT_EQ(alignment->scans.size(), scans.size());
+  EXPECT_GE(alignment->matches, 2 * scans.size());
   // Relative to the first pose, which holds the network.
   const Pose2 truth_from_aligned = truth[0] * inverse(alignment->map_from_robot[0]);
   double before = 0.0;
