@@ -10,10 +10,10 @@
 
 #include "core/messages.hpp"
 #include "core/transient_obstacles.hpp"
-#include "localization/belief/stability.hpp"
+#include "localization/belief/stability_record.hpp"
 #include "localization/localizer_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
-#include "localization/particles/start_pose.hpp"
+#include "localization/particles/initial_pose.hpp"
 
 namespace deltamap::localization {
 
@@ -46,7 +46,7 @@ class Localizer {
   /// What is different from M_k for now, from the next scan on; null: nothing is known. Never localized on.
   void apply(std::shared_ptr<const TransientObstacles> transients);
 
-  /// Starts again around a pose: one that a person gave is believed, a remembered one checked (start_pose.hpp). False
+  /// Starts again around a pose: one that a person gave is believed, a remembered one checked (particles/start_pose.hpp). False
   /// where nobody can stand there: all stays as it was.
   bool relocalize(const particles::InitialPose& pose);
 

@@ -22,7 +22,7 @@ constexpr double kScansCeaseS = 5.0;  // without a scan: the particles go along 
 
 constexpr double kBlindlyM = 1.0;  // deviation up to which the wheels alone may carry a pose
 
-constexpr double kClearlyBetter = 0.15;  // share of the ends that one place explains beyond another
+constexpr double kClearlyBetter = 0.15;  // share of the ends that one hypothesis explains beyond another
 
 // A search has only begun: the whole map has been looked at twice at most.
 constexpr double kSearchBeginsM = 1.0;

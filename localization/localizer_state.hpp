@@ -51,10 +51,10 @@ struct Localizer::State {
     Pose2 continuous_odom_from_robot;
   };
   std::optional<GivenUp> given_up;   ///< where the robot was last believed to be, while a search has only begun
-  particles::ParticleCluster best;   ///< of the particles, or the place that leads a search
+  particles::ParticleCluster best;   ///< of the particles, or the hypothesis that leads a search
   double w_avg = 1.0;                ///< of that; before any scan nothing speaks against the pose
   std::optional<double> newest_fit;  ///< explained_share() of the newest scan at the estimate
-  double n_eff = 0.0;                ///< of the particles, or of a search's places
+  double n_eff = 0.0;                ///< of the particles, or of a search's hypotheses
   belief::StableSupport stable_support;
 
   // How a pose comes to be believed, and ceases to be.
@@ -62,7 +62,7 @@ struct Localizer::State {
   void start_anywhere();
   /// The particles stay where they are, but must prove themselves.
   void check_pose();
-  /// The particles start anew around a place that has won.
+  /// The particles start anew around a hypothesis that has won.
   sensor::RefinedPose believe_in(const Pose2& hypothesis, const motion::ScanInstant& now);
   /// The robot is not where it was believed to be; before another pose is believed, the whole map is searched.
   void doubt(const Pose2& map_from_believed, const motion::ScanInstant& now);
@@ -96,7 +96,7 @@ struct Localizer::State {
   const motion::BeamEnds& weighing_ends(const motion::ScanInstant& now);
   /// The best pose that a slip may have led to and that explains at least this share of the ends; nothing without one.
   [[nodiscard]] std::optional<Pose2> explained_nearby(const Pose2& believed, double share) const;
-  /// A place that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
+  /// A hypothesis that holds nearly all belief, for long enough, and that explains the scan, or does so clearly better.
   [[nodiscard]] bool has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const;
   /// No pose is believed, nor one being checked.
   [[nodiscard]] bool searches() const;

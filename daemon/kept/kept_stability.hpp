@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "localization/belief/stability.hpp"
+#include "localization/belief/stability_record.hpp"
 
 namespace deltamap::daemon {
 

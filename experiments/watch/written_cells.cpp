@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRightShare = 0.8;  // of a written thing's cells
 constexpr int kThingReach = 2;       // cells; written cells so near are one thing
-constexpr std::size_t kSpeck = 3;    // smaller groups are not counted as things
+constexpr std::size_t kLeastCells = 3;    // smaller groups are not counted as things
 
 /// Written cells that are near each other.
 std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {
@@ -48,7 +48,7 @@ bool agrees(const CellChange& change, const OccupancyGrid& map, const OccupancyG
 template <typename IsRight>
 void WrittenCells::count_things(const std::vector<CellChange>& written, IsRight&& is_right) {
   for (const std::vector<CellChange>& thing : things_of(written)) {
-    if (thing.size() < kSpeck) continue;
+    if (thing.size() < kLeastCells) continue;
     ++things_;
     const auto right = static_cast<double>(std::count_if(thing.begin(), thing.end(), is_right));
     things_wrong_ += right < kRightShare * static_cast<double>(thing.size()) ? 1 : 0;

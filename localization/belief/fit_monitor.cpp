@@ -45,7 +45,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
   turned_in_state_rad_ += std::abs(scan.turned_rad);
   count(scan);
   const bool fits = mean_fit_ > params_.found_above && distrusted_s_ == 0.0 && wrong_s_ == 0.0;
-  const bool held = scan.verdict == PoseVerdict::kRight || scan.trust >= 1.0 - params_.distrust;
+  const bool is_supported = scan.verdict == PoseVerdict::kRight || scan.trust >= 1.0 - params_.distrust;
   switch (state_) {
     case LocalizerState::kGlobal:
       if (converged(best) && (fits || driven_in_state_m_ >= params_.converged_unfit_after_m)) {
@@ -57,7 +57,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
       beaten_ = scan.beaten;
       break;
     case LocalizerState::kLost:
-      if (fits || held) {
+      if (fits || is_supported) {
         enter(LocalizerState::kTracking);
       } else if (beaten_ || (in_state_s_ >= params_.search_after_s && driven_in_state_m_ >= params_.search_after_m)) {
         start(LocalizerState::kGlobal);

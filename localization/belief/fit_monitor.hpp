@@ -67,7 +67,7 @@ class FitMonitor {
   double misfit_s_ = 0.0;      ///< unbroken
   double wrong_s_ = 0.0;       ///< unbroken
   double distrusted_s_ = 0.0;  ///< unbroken
-  bool beaten_ = false;        ///< lost to another place
+  bool beaten_ = false;        ///< lost to another hypothesis
   double mean_fit_ = 0.5;      ///< running mean
   bool any_fit_ = false;
 };

@@ -8,8 +8,8 @@
 namespace deltamap::localization::belief {
 namespace {
 
-constexpr double kOtherView = 0.25;    // a hold that has changed so much is a new view, whatever odometry says
-constexpr double kBeamsOfDoubt = 3.0;  // few beams leave a hold near one half
+constexpr double kOtherView = 0.25;    // a support that has changed so much is a new view, whatever odometry says
+constexpr double kBeamsOfDoubt = 3.0;  // few beams leave the support near one half
 constexpr double kLeastProven = 0.25;  // what unproven tiles may say against a pose
 constexpr double kMapMemoryViews = 3.0;
 constexpr double kMapSteepness = 22.0;  // log-odds a unit of the share of beams off the map
@@ -17,8 +17,8 @@ constexpr double kMapSteepness = 22.0;  // log-odds a unit of the share of beams
 double probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
 
-/// Share of the beams that hold the pose in a direction; nothing where too few tell of it.
-std::optional<double> hold_along(const Support& stable, const Support& elsewhere, const PoseVerdictParams& params) {
+/// Share of the beams that support the pose in a direction; nothing where too few tell of it.
+std::optional<double> support_along(const Support& stable, const Support& elsewhere, const PoseVerdictParams& params) {
   const double others = params.unproven_weight;
   if (stable.expected() + others * elsewhere.expected() < params.least_beams) return std::nullopt;
   return (stable.fit + others * elsewhere.fit + 0.5 * kBeamsOfDoubt) /
@@ -30,20 +30,20 @@ bool is_proof(const ViewTally& view, const PoseVerdictParams& params) {
   return view.stable_along[0].expected() >= params.least_beams && view.stable_along[1].expected() >= params.least_beams;
 }
 
-/// ln p(hold | right) - ln p(hold | wrong) of one new view, halved because views of one drive are alike. From drives
+/// ln p(support | right) - ln p(support | wrong) of one new view, halved because views of one drive are alike. From drives
 /// in the paper's hall at right poses (unchanged, 10 %, 50 % changed) and wrong ones; docs/decisions/two-answers.md.
-double evidence_of(double hold) {
+double evidence_of(double support) {
   constexpr std::array<double, 11> kByTenths{-2.6, -2.6, -2.0, -1.1, -0.2, 0.25, 0.5, 0.75, 1.0, 1.2, 1.2};
-  const double at = 10.0 * std::clamp(hold, 0.0, 1.0);
+  const double at = 10.0 * std::clamp(support, 0.0, 1.0);
   const std::size_t below = std::min<std::size_t>(9, static_cast<std::size_t>(at));
   const double share = at - static_cast<double>(below);
   return kByTenths[below] + share * (kByTenths[below + 1] - kByTenths[below]);
 }
 
-/// What the weaker direction says, and how well it holds the pose; what has not proven to stay speaks little against
+/// What the weaker direction says, and how well it supports the pose; what has not proven to stay speaks little against
 /// it.
 struct Weakest {
-  double hold = 0.0;
+  double support = 0.0;
   double evidence = 0.0;
 };
 std::optional<Weakest> weakest_direction(const ViewTally& view, const PoseVerdictParams& params) {
@@ -51,11 +51,11 @@ std::optional<Weakest> weakest_direction(const ViewTally& view, const PoseVerdic
   for (std::size_t i = 0; i < view.stable_along.size(); ++i) {
     const Support& stable = view.stable_along[i];
     const Support& elsewhere = view.elsewhere_along[i];
-    const std::optional<double> hold = hold_along(stable, elsewhere, params);
-    if (!hold) continue;
+    const std::optional<double> support = support_along(stable, elsewhere, params);
+    if (!support) continue;
     const double proven_share = stable.expected() / (stable.expected() + elsewhere.expected());
-    const double evidence = evidence_of(*hold);
-    const Weakest found{*hold, evidence < 0.0 ? evidence * std::max(kLeastProven, proven_share) : evidence};
+    const double evidence = evidence_of(*support);
+    const Weakest found{*support, evidence < 0.0 ? evidence * std::max(kLeastProven, proven_share) : evidence};
     if (!weakest || found.evidence < weakest->evidence) weakest = found;
   }
   return weakest;
@@ -68,14 +68,14 @@ void PoseJudge::start(double pose_right, bool found) {
   right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
   proof_ = 0.0;
   any_view_ = false;
-  last_hold_.reset();
+  last_support_.reset();
   belief_ = {};
   trust_ = belief_.pose_right = pose_right;
 }
 
-double PoseJudge::novelty(const Passed& passed, std::optional<double> hold) {
-  const bool other = hold && last_hold_ && std::abs(*hold - *last_hold_) > kOtherView;
-  last_hold_ = hold;
+double PoseJudge::novelty(const Passed& passed, std::optional<double> support) {
+  const bool other = support && last_support_ && std::abs(*support - *last_support_) > kOtherView;
+  last_support_ = support;
   if (other || !any_view_) return 1.0;
   return std::min(
       1.0, passed.driven_m / params_.view_m + passed.turned_rad / params_.view_rad + passed.time_s / params_.view_s);
@@ -89,7 +89,7 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
 
   const std::optional<Weakest> weakest = weakest_direction(view, params_);
   const bool proven = is_proof(view, params_);
-  const double fresh = novelty(passed, weakest ? std::optional{weakest->hold} : std::nullopt);
+  const double fresh = novelty(passed, weakest ? std::optional{weakest->support} : std::nullopt);
   const double still_right = probability(right_log_odds_) * (1.0 - fresh * params_.lost_in_a_view);
   right_log_odds_ = log_odds(std::clamp(still_right, params_.least_wrong, 1.0 - params_.least_wrong));
   if (weakest) right_log_odds_ += fresh * told_by(weakest->evidence);
@@ -98,7 +98,7 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   decide(shares);
 }
 
-/// A place that a search has chosen because it fits proves less by fitting: a wrong one is an alias of the right one.
+/// A hypothesis that a search has chosen because it fits proves less by fitting: a wrong one is an alias of the right one.
 /// What does not fit speaks against it as against any other.
 double PoseJudge::told_by(double evidence) const {
   return found_ && evidence > 0.0 ? std::max(0.0, evidence - params_.doubt_after_search) : evidence;

@@ -19,13 +19,13 @@ struct PoseVerdictParams {
   double view_s = 5.0;               ///< or waiting, s; > 0
   double least_beams = 3.0;          ///< that must tell of a direction before it counts; > 0
   double unproven_weight = 0.5;      ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
-  double doubt_after_search = 0.35;  ///< taken from what a view says for a place that was found by its fit; >= 0
+  double doubt_after_search = 0.35;  ///< taken from what a view says for a hypothesis that was found by its fit; >= 0
   double lost_in_a_view = 0.002;     ///< P(the pose has become wrong since the last new view); 0..0.1
   double least_wrong = 0.0005;       ///< P(wrong) that no evidence ever undercuts; 0..0.1
   double right_above = 0.9;          ///< P(pose right) from which the verdict is right; 0.5..1
   double wrong_below = 0.1;          ///< P(pose right) below which the verdict is wrong; 0..0.5
   double unproven_limit = 0.85;      ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
-  double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles held the pose; > 0
+  double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles supported the pose; > 0
   double changed_above = 0.1;        ///< share of beams off the map from which it is rather wrong than right; 0..1
 };
 
@@ -42,12 +42,12 @@ class PoseJudge {
     double turned_rad = 0.0;  ///< either way
     double time_s = 0.0;
   };
-  /// How the belief is shared between the places in the map that may be it.
+  /// How the belief is shared between the pose hypotheses.
   struct Shares {
     double believed = 1.0;
     double best_other = 0.0;
     Pose2 map_from_other{};
-    bool searching = false;  ///< no place is believed yet: `believed` is the best one's
+    bool searching = false;  ///< no hypothesis is believed yet: `believed` is the best one's
     bool beaten = true;      ///< another hypothesis explains the recent scans clearly better
   };
   void observe(const ViewTally& view, const Passed& passed, const Shares& shares);
@@ -57,7 +57,7 @@ class PoseJudge {
   [[nodiscard]] double trust() const { return trust_; }
 
  private:
-  [[nodiscard]] double novelty(const Passed& passed, std::optional<double> hold);
+  [[nodiscard]] double novelty(const Passed& passed, std::optional<double> support);
   [[nodiscard]] double told_by(double evidence) const;
   void judge_map(const ViewTally& view, double novelty);
   void decide(const Shares& shares);
@@ -69,7 +69,7 @@ class PoseJudge {
   double proof_ = 0.0;         ///< 1 where proven tiles are in view; fades
   double misfit_share_ = 0.0;  ///< running mean over the last views
   bool any_view_ = false;
-  std::optional<double> last_hold_;
+  std::optional<double> last_support_;
   Belief belief_;
 };
 

@@ -14,6 +14,7 @@
 #include "core/grid/occupancy_grid.hpp"
 #include "core/grid/tiled.hpp"
 #include "core/time.hpp"
+#include "localization/belief/stability_record.hpp"
 
 namespace deltamap::localization::belief {
 
@@ -22,14 +23,6 @@ struct StabilityParams {
   double apart_s = 20.0;  ///< a confirmation counts only so long after the last one, s; > 0
   double apart_m = 1.0;   ///< and from so far away from where that was made, m; > 0
   int proven_after = 6;   ///< counted confirmations that prove a tile; 1..60: with apart_s two minutes at least
-};
-
-/// What is kept across restarts.
-struct StabilityRecord {
-  static constexpr std::size_t kBytesATile = 4;
-  GridGeometry geometry;  ///< of the map
-  int cells_a_tile = 0;
-  std::vector<std::uint8_t> bytes;  ///< row by row
 };
 
 class Stability {

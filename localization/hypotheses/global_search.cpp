@@ -10,7 +10,7 @@
 namespace deltamap::localization::hypotheses {
 namespace {
 
-constexpr std::size_t kKeptForEach = 6;  // candidates for each place: neighbours in the lattice fit alike
+constexpr std::size_t kKeptForEach = 6;  // candidates for each pose that is refined: neighbours in the lattice fit alike
 
 }  // namespace
 
@@ -41,7 +41,7 @@ Pose2 settled(const sensor::LikelihoodField& field, const motion::BeamEnds& ends
 }
 
 GlobalSearch::GlobalSearch(const GlobalSearchParams& params, int headings)
-    : params_{params}, lattice_{headings, kKeptForEach * static_cast<std::size_t>(std::max(1, params.places))} {}
+    : params_{params}, lattice_{headings, kKeptForEach * static_cast<std::size_t>(std::max(1, params.refined))} {}
 
 void GlobalSearch::start() { stage_ = Stage::kBegin; }
 
@@ -68,14 +68,14 @@ std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, con
     lattice_.look(coarse, ends_, now);
     left_ -= now;
     if (left_ > 0) return hypotheses_;
-    candidates_ = lattice_.best_apart(static_cast<std::size_t>(params_.places));
+    candidates_ = lattice_.best_apart(static_cast<std::size_t>(params_.refined));
     next_ = 0;
     stage_ = Stage::kSliding;
     return hypotheses_;
   }
   // Carried along by the wheels since the scan that found them, and slid to where the newest scan fits.
   const Pose2 motion = motion_between(continuous_odom_from_robot_, continuous_odom_from_robot);
-  const std::size_t until = std::min(candidates_.size(), next_ + share_of(params_.places_a_scan));
+  const std::size_t until = std::min(candidates_.size(), next_ + share_of(params_.refined_a_scan));
   for (; next_ < until; ++next_) {
     hypotheses_.push_back(settled(field, ends.all, candidates_[next_].map_from_robot * motion));
   }

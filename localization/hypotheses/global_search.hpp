@@ -14,8 +14,8 @@ namespace deltamap::localization::hypotheses {
 
 struct GlobalSearchParams {
   int candidates_a_scan = 100000;          ///< poses looked at in one scan; > 0
-  int places = 600;                        ///< candidates that are slid to their best fit; > 0
-  int places_a_scan = 200;                 ///< of these in one scan; > 0
+  int refined = 600;                       ///< candidates that are slid to their best fit; > 0
+  int refined_a_scan = 200;                ///< of these in one scan; > 0
   double again_after_m = 0.5;              ///< driven until the whole map is looked at again, m; > 0
   double again_after_rad = radians(30.0);  ///< or heading turned until then, rad; > 0
 };
@@ -37,7 +37,7 @@ class GlobalSearch {
     const motion::BeamEnds& near;  ///< that a coarse lattice of headings can place; may be all
   };
 
-  /// One scan's share of the work. Answers places where this scan fits; valid until the next call.
+  /// One scan's share of the work. Answers poses at which this scan fits; valid until the next call.
   /// `pace`: how much of a full share, (0, 1].
   [[nodiscard]] std::span<const Pose2> look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
                                             const Ends& ends, const Pose2& continuous_odom_from_robot,

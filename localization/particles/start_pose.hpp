@@ -7,17 +7,10 @@
 #include <memory>
 
 #include "core/grid/occupancy_grid.hpp"
+#include "localization/particles/initial_pose.hpp"
 #include "localization/particles/particle_clusters.hpp"
 
 namespace deltamap::localization::particles {
-
-/// Where the robot's frame lies in the map at the first scan, and how far to trust it.
-struct InitialPose {
-  Pose2 map_from_robot;
-  double position_deviation_m = 0.2;
-  double heading_deviation_rad = 0.17453292519943295;  // 10°
-  bool remembered = false;  ///< believed only once the first scans fit; where they do not, the whole map is searched
-};
 
 enum class StartKind : std::uint8_t {
   kBelieve,  ///< a person says so

@@ -19,7 +19,7 @@ constexpr double kSearchStep_m = 0.15;       // well inside the reach of the clo
 constexpr double kMostSearchPoses = 3000.0;  // coarser steps above
 constexpr std::size_t kMostSearchPoints = 80;
 constexpr std::size_t kStarts = 4;  // poses of the search that are brought to the end
-constexpr double kRivalCost = 6.0;  // above the best one's
+constexpr double kAmbiguousCost = 6.0;  // above the best one's
 constexpr double kApart_m = 0.15;   // starts and answers nearer than this are the same
 
 /// The points about the robot, so that a change of heading turns them about it.
@@ -225,7 +225,7 @@ PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface
   merge.covariance = best.covariance;
   merge.agreement = best.agreement;
   const bool is_ambiguous = std::any_of(answers.begin() + 1, answers.end(), [&](const PriorAnswer& other) {
-    return other.agreement > best.agreement - params.ambiguity_margin && other.cost < best.cost + kRivalCost;
+    return other.agreement > best.agreement - params.ambiguity_margin && other.cost < best.cost + kAmbiguousCost;
   });
   if (merge.accepted() && is_ambiguous) merge.refusal = merge::MergeRefusal::kAmbiguous;
   if (merge.accepted()) merge.map_from_guess = best.map_from_guess;

@@ -94,14 +94,21 @@ def filled(template, values):
     return re.sub(r"\{(.+?):([^:{}]+)\}", text, template)
 
 
+def told_once(parts):
+    """Runs, first seed and commit of each experiment in the table, in one sentence for those that share seed and commit."""
+    groups = {}
+    for name in dict.fromkeys(row[-1] for row in ROWS):
+        summary = parts[name]["summary"]
+        groups.setdefault((summary["seed"], summary.get("commit", parts[name]["revision"])), []).append("%s %d" % (name, summary["runs"]))
+    return "\n".join("Runs from seed %d, at %s: %s." % (seed, commit, ", ".join(names)) for (seed, commit), names in groups.items())
+
+
 def table(parts):
     lines = ["| figure | paper | ours | `deltamap experiment` |", "|---|---|---|---|"]
     for what, papers, ours, name in ROWS:
-        summary = parts[name]["summary"]
-        values = values_of(summary)
-        how = "%s, %d runs from seed %d, at %s" % (name, summary["runs"], summary["seed"], summary.get("commit", parts[name]["revision"]))
-        lines.append("| %s | %s | %s | %s |" % (filled(what, values), papers, filled(ours, values), how))
-    return "\n".join(lines)
+        values = values_of(parts[name]["summary"])
+        lines.append("| %s | %s | %s | %s |" % (filled(what, values), papers, filled(ours, values), name))
+    return "\n".join(lines) + "\n\n" + told_once(parts)
 
 
 def with_figures(page, parts):

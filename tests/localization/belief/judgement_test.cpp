@@ -6,7 +6,7 @@
 namespace deltamap::localization::belief {
 namespace {
 
-/// A place is believed, and none beside it is followed.
+/// A hypothesis is believed, and none beside it is followed.
 hypotheses::HypothesisReport believed_with(double own_share) {
   hypotheses::HypothesisReport report;
   report.own_known = true;
@@ -15,7 +15,7 @@ hypotheses::HypothesisReport believed_with(double own_share) {
   return report;
 }
 
-/// Seen by a scan without beams, beside a believed place that has no rivals of its own.
+/// Seen by a scan without beams, at a believed pose that has no other hypothesis beside it.
 Judgement judged_with(const hypotheses::HypothesisReport& hypotheses, double pose_right = 0.9) {
   const OccupancyGrid map{GridGeometry{20, 20, 0.1, {0.0, 0.0}}, CellState::kFree};
   Judgement judgement{map, {}};

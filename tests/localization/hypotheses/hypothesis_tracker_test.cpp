@@ -21,9 +21,9 @@ class Round {
  public:
   Round(const OccupancyGrid& map, const OccupancyGrid& world, const Pose2& truth, std::uint64_t seed,
         const HypothesisTrackerParams& params = {})
-      : world_{world}, truth_{truth}, random_{seed}, field_{map, {}}, rivals_{params, {}, {}, map, field_, seed} {}
+      : world_{world}, truth_{truth}, random_{seed}, field_{map, {}}, tracker_{params, {}, {}, map, field_, seed} {}
 
-  [[nodiscard]] HypothesisTracker& others() { return rivals_; }
+  [[nodiscard]] HypothesisTracker& others() { return tracker_; }
   [[nodiscard]] const Pose2& truth() const { return truth_; }
 
   void carry_to(const Pose2& truth) { truth_ = truth; }
@@ -32,7 +32,7 @@ class Round {
     const Pose2 motion = kMotion;
     truth_ = truth_ * motion;
     joined_ = joined_ * motion;
-    return rivals_.observe(field_, {.ends = test::cast_ends(world_, truth_, {}, random_),
+    return tracker_.observe(field_, {.ends = test::cast_ends(world_, truth_, {}, random_),
                                     .continuous_odom_from_robot = joined_,
                                     .map_from_believed = believed,
                                     .stable_support = held});
@@ -44,7 +44,7 @@ class Round {
   Pose2 joined_;
   Random random_;
   sensor::LikelihoodField field_;
-  HypothesisTracker rivals_;
+  HypothesisTracker tracker_;
 };
 
 bool near(const Pose2& a, const Pose2& b) {
