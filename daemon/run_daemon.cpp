@@ -110,7 +110,7 @@ void remember_stability(const Settings& settings, const mapping::store::MapStore
     console.log(LogLevel::kWarn, std::string("stability is earned anew: ") + error.what());
     return;
   }
-  options.start.stability = without(answer.kept->record, settings.localizer.judgement.stability, changes);
+  options.start.stability = without(answer.kept->record, changes);
   options.memory ^= answer.fingerprint;
 }
 

@@ -7,7 +7,6 @@
 #include "localization/belief/fit_monitor.hpp"
 #include "localization/belief/judgement.hpp"
 #include "localization/hypotheses/global_search.hpp"
-#include "localization/hypotheses/hypothesis_bank.hpp"
 #include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/motion/odometry_buffer.hpp"
 #include "localization/sensor/likelihood_field.hpp"
@@ -24,7 +23,6 @@ struct LocalizerParams : tracking::TrackerParams {
   sensor::LikelihoodFieldParams field;
   hypotheses::GlobalSearchParams global;
   hypotheses::HypothesisTrackerParams hypothesis_tracker;
-  hypotheses::HypothesisBankParams hypothesis_bank;
   belief::FitParams fit;
   belief::JudgementParams judgement;
   sensor::TransientBeamsParams temporary;

@@ -39,8 +39,7 @@ Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const Occu
       tracker{given, map, seed},
       monitor{given.fit},
       judgement{*map, given.judgement},
-      hypotheses{given.hypothesis_tracker, given.hypothesis_bank, given.global, *map, field, seed ^ kSeedOfHypotheses} {
-}
+      hypotheses{given.hypothesis_tracker, given.global, *map, field, seed ^ kSeedOfHypotheses} {}
 
 void Localizer::State::start_at(const particles::InitialPose& given) {
   was_found = false;
@@ -199,7 +198,7 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
               .unknown_s = tracked.unknown_s});
   if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.others.front().map_from_robot;
-  if (lost || distance_between(winner, tracked.believed.map_from_robot) < params.hypothesis_tracker.nearby_m) {
+  if (lost || distance_between(winner, tracked.believed.map_from_robot) < hypotheses::kNearbyM) {
     ++counts.recoveries;
     return believe_in(winner, now);
   }
@@ -236,8 +235,7 @@ const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstan
 }
 
 bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const {
-  if (hypothesis.share_around < params.hypothesis_tracker.winning_share ||
-      hypothesis.followed_m < params.hypothesis_tracker.wins_after_m)
+  if (hypothesis.share_around < hypotheses::kWinningShare || hypothesis.followed_m < hypotheses::kWinsAfterM)
     return false;
   if (ends.size() == 0 || tracker.is_fixed_by_surfaces()) return false;
   const double fit = sensor::explained_share(field, ends, hypothesis.map_from_robot);

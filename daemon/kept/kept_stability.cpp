@@ -5,6 +5,7 @@
 
 #include "daemon/kept/kept_text.hpp"
 #include "daemon/settings/fingerprint.hpp"
+#include "localization/belief/stability.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -81,9 +82,8 @@ KeptStabilityAnswer read_kept_stability(const std::filesystem::path& file, std::
 }
 
 localization::belief::StabilityRecord without(const localization::belief::StabilityRecord& record,
-                                              const localization::belief::StabilityParams& params,
                                               std::span<const CellChange> changes) {
-  localization::belief::Stability stability{record.geometry, params};
+  localization::belief::Stability stability{record.geometry};
   if (!stability.restore(record)) return record;  // a record of other tiles: the localizer will refuse it too
   stability.forget(changes);
   return stability.record();

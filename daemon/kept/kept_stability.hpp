@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "core/grid/grid_patch.hpp"
 #include "localization/belief/stability_record.hpp"
 
 namespace deltamap::daemon {
@@ -31,7 +33,6 @@ struct KeptStabilityAnswer {
 
 /// The same record where these cells have been rewritten since.
 [[nodiscard]] localization::belief::StabilityRecord without(const localization::belief::StabilityRecord& record,
-                                                            const localization::belief::StabilityParams& params,
                                                             std::span<const CellChange> changes);
 
 }  // namespace deltamap::daemon

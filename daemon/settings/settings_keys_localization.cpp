@@ -45,8 +45,8 @@ void add_wheels(localization::LocalizerParams& localizer, Keys& keys) {
                              "√α_4"));
   keys.push_back(number_key(at + "slip_probability", motion.slip_probability, "", 0.0, 0.1,
                             "probability of a step that the wheels slip or someone pushes the robot; 0: never"));
-  keys.push_back(number_key("localization.wheels.learning_share", localizer.pose_filter.wheels.learning_share, "", 0.0,
-                            0.9, "weight of the newest stretch in the learned noise of the wheels; 0: never learn"));
+  keys.push_back(number_key("localization.wheels.learning_share", localizer.wheels.learning_share, "", 0.0, 0.9,
+                            "weight of the newest stretch in the learned noise of the wheels; 0: never learn"));
 }
 
 void add_sensor(localization::LocalizerParams& localizer, Keys& keys) {

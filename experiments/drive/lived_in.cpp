@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "localization/belief/stability.hpp"
+
 namespace deltamap::experiments {
 
 simulation::ForkliftParams busy_forklift(double change_every_s) {
@@ -32,7 +34,7 @@ const localization::belief::StabilityRecord& LivedIn::stability() {
 }
 
 std::size_t LivedIn::proven_tiles() {
-  localization::belief::Stability learned{map_->geometry(), localizer_.judgement.stability};
+  localization::belief::Stability learned{map_->geometry()};
   return learned.restore(stability()) ? learned.proven_tiles() : 0;
 }
 

@@ -29,7 +29,7 @@ constexpr std::array kOfLocalization{
     Mechanism{"refinement-prior", "the particles' covariance in the refinement",
               [](Settings& s) { s.localizer.refinement.prior_share = 0.0; }},
     Mechanism{"learned-wheels", "noise of the wheels learned while driving",
-              [](Settings& s) { s.localizer.pose_filter.wheels.learning_share = 0.0; }},
+              [](Settings& s) { s.localizer.wheels.learning_share = 0.0; }},
     Mechanism{"slips", "particles that slip", [](Settings& s) { s.localizer.motion.slip_probability = 0.0; }},
     Mechanism{"probes", "probes of the whole map while tracking",
               [](Settings& s) { s.localizer.hypothesis_tracker.probes = 0; }},

@@ -10,6 +10,9 @@
 namespace deltamap::localization::belief {
 namespace {
 
+constexpr std::size_t kBeams = 72;   // of a scan that are looked at, evenly chosen
+constexpr double kMostAsideM = 0.3;  // a beam whose place is less certain says nothing
+
 using sensor::first_met;
 using sensor::kOutOfTheLaserM;
 using sensor::Met;
@@ -30,11 +33,10 @@ Point2 surface_normal(const OccupancyGrid& map, Cell at) {
 
 class BeamJudge {
  public:
-  BeamJudge(const OccupancyGrid& map, const sensor::RefinedPose& believed, const Scan& scan, double most_aside_m)
+  BeamJudge(const OccupancyGrid& map, const sensor::RefinedPose& believed, const Scan& scan)
       : map_{map},
         max_range_m_{scan.max_range_m},
         range_deviation_m_{scan.range_deviation_m},
-        most_aside_m_{most_aside_m},
         pose_{believed.map_from_robot},
         deviation_{pose_deviation(believed.covariance)} {}
 
@@ -43,7 +45,7 @@ class BeamJudge {
     const Point2 end = pose_ * Point2{ray.end.cast<double>()};
     const double length_m = (end - from).norm();
     const double aside_m = deviation_.aside_m(length_m);
-    if (length_m <= kOutOfTheLaserM || aside_m > most_aside_m_) return {};
+    if (length_m <= kOutOfTheLaserM || aside_m > kMostAsideM) return {};
     const double slack_m = expected_within_m(aside_m, range_deviation_m_) + map_.resolution_m();
     const Point2 along = (end - from) / length_m;
 
@@ -81,7 +83,6 @@ class BeamJudge {
   const OccupancyGrid& map_;
   const double max_range_m_;
   const double range_deviation_m_;
-  const double most_aside_m_;
   const Pose2 pose_;
   const PoseDeviation deviation_;
 };
@@ -90,8 +91,8 @@ class BeamJudge {
 
 std::span<const CheckedBeam> BeamCheck::check(const OccupancyGrid& map, const Scan& scan,
                                               std::span<const RayInRobot> rays, const sensor::RefinedPose& believed) {
-  const BeamJudge judge{map, believed, scan, params_.most_aside_m};
-  const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(1, params_.beams)));
+  const BeamJudge judge{map, believed, scan};
+  const std::size_t count = std::min(rays.size(), kBeams);
   beams_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = i * rays.size() / count;

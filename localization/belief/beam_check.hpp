@@ -14,11 +14,6 @@
 
 namespace deltamap::localization::belief {
 
-struct BeamCheckParams {
-  int beams = 72;             ///< of a scan that are looked at, evenly chosen; 8..1000
-  double most_aside_m = 0.3;  ///< a beam whose place is less certain says nothing, m; > 0
-};
-
 enum class BeamFit : std::uint8_t {
   kSilent,  ///< no range, off the map, or too uncertain
   kFit,     ///< ended at a surface of the map
@@ -34,14 +29,11 @@ struct CheckedBeam {
 
 class BeamCheck {
  public:
-  explicit BeamCheck(const BeamCheckParams& params) : params_{params} {}
-
   /// The chosen beams in order of bearing; valid until the next call.
   std::span<const CheckedBeam> check(const OccupancyGrid& map, const Scan& scan, std::span<const RayInRobot> rays,
                                      const sensor::RefinedPose& believed);
 
  private:
-  BeamCheckParams params_;
   std::vector<CheckedBeam> beams_;
 };
 

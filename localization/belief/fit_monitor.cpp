@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "localization/belief/pose_verdict.hpp"
+#include "localization/hypotheses/hypothesis_report.hpp"
+
 namespace deltamap::localization::belief {
 
 void FitMonitor::start(LocalizerState state) {
@@ -23,7 +26,7 @@ void FitMonitor::enter(LocalizerState state) {
 bool FitMonitor::converged(const particles::ParticleCluster& best) const {
   const bool seen_enough =
       driven_in_state_m_ >= params_.converged_after_m || turned_in_state_rad_ >= params_.converged_after_rad;
-  return seen_enough && best.weight >= params_.converged_share &&
+  return seen_enough && best.weight >= hypotheses::kWinningShare &&
          best.covariance(0, 0) + best.covariance(1, 1) <= params_.converged_m * params_.converged_m &&
          best.covariance(2, 2) <= params_.converged_rad * params_.converged_rad;
 }
@@ -36,7 +39,7 @@ void FitMonitor::count(const Observation& scan) {
   const bool misfit = mean_fit_ < params_.lost_below && scan.verdict != PoseVerdict::kRight;
   misfit_s_ = grown_while(misfit, misfit_s_);
   wrong_s_ = grown_while(scan.verdict == PoseVerdict::kWrong, wrong_s_);
-  distrusted_s_ = grown_while(scan.trust <= params_.distrust, distrusted_s_);
+  distrusted_s_ = grown_while(scan.trust <= kSure, distrusted_s_);
 }
 
 LocalizerState FitMonitor::observe(const Observation& scan, const particles::ParticleCluster& best) {
@@ -45,7 +48,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
   turned_in_state_rad_ += std::abs(scan.turned_rad);
   count(scan);
   const bool fits = mean_fit_ > params_.found_above && distrusted_s_ == 0.0 && wrong_s_ == 0.0;
-  const bool is_supported = scan.verdict == PoseVerdict::kRight || scan.trust >= 1.0 - params_.distrust;
+  const bool is_supported = scan.verdict == PoseVerdict::kRight || scan.trust >= 1.0 - kSure;
   switch (state_) {
     case LocalizerState::kGlobal:
       if (converged(best) && (fits || driven_in_state_m_ >= params_.converged_unfit_after_m)) {

@@ -21,10 +21,8 @@ struct FitParams {
   double lost_after_s = 90.0;            ///< unbroken misfit until lost, s; > 0: for so long a stale map may not fit
   double suspicious_below = 0.85;        ///< mean fit that is a reason to look elsewhere too; 0..1
   double lost_by_verdict_s = 1.5;        ///< unbroken verdict "wrong" until lost, s; >= 0
-  double distrust = 0.1;                 ///< P(pose right) by all beams, proven or not; 0..0.5
   double search_after_s = 10.0;          ///< lost until the whole map is searched, s; >= 0
   double search_after_m = 2.0;           ///< driven while lost until then, m; >= 0: someone may stand in the way
-  double converged_share = 0.98;         ///< weight of the best hypothesis that ends global localization; 0.5..1
   double converged_m = 0.3;              ///< deviation of position that ends global localization, m; > 0
   double converged_rad = radians(10.0);  ///< deviation of heading that ends global localization, rad; > 0
   double converged_after_m = 2.0;        ///< driven before it may end, m; >= 0: one view may look like another

@@ -29,7 +29,7 @@ PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
 }  // namespace
 
 Judgement::Judgement(const OccupancyGrid& map, const JudgementParams& params)
-    : params_{params}, stability_{map.geometry(), params.stability}, check_{params.beams}, judge_{params.verdict} {}
+    : params_{params}, stability_{map.geometry()}, judge_{params.verdict} {}
 
 void Judgement::start(double pose_right, bool found) {
   judge_.start(pose_right, found);
@@ -73,7 +73,7 @@ void Judgement::observe(const View& view) {
 
 void Judgement::earn(std::span<const CheckedBeam> beams, const View& view) {
   const PoseCovariance& c = view.believed.covariance;
-  const bool sure = view.state == LocalizerState::kTracking && judge_.trust() >= params_.earn_right_above &&
+  const bool sure = view.state == LocalizerState::kTracking && judge_.trust() >= 1.0 - kSure &&
                     std::sqrt(std::max(c(0, 0), c(1, 1))) <= params_.earn_deviation_m;
   if (!sure) return;
   const Point2 seen_from = view.believed.map_from_robot.position();
@@ -87,7 +87,7 @@ void Judgement::forget(const OccupancyGrid& before, const OccupancyGrid& next) {
   if (before.geometry() == next.geometry()) {
     stability_.forget(changes_between(before, next));
   } else {
-    stability_ = Stability{next.geometry(), params_.stability};
+    stability_ = Stability{next.geometry()};
   }
 }
 

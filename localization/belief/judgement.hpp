@@ -15,14 +15,11 @@
 namespace deltamap::localization::belief {
 
 struct JudgementParams {
-  StabilityParams stability;
-  BeamCheckParams beams;
   PoseVerdictParams verdict;
   double check_m = 0.1;             ///< beams are checked again after so much driving, m; >= 0
   double check_rad = radians(2.0);  ///< or turning, rad; >= 0
   double check_s = 0.4;             ///< or waiting, s; >= 0
-  double earn_right_above = 0.9;    ///< P(pose right) above which tiles earn stability; 0.5..1
-  double earn_deviation_m = 0.1;    ///< the pose's σ below which they do, m; > 0
+  double earn_deviation_m = 0.1;  ///< the σ below which a pose that is surely right lets tiles earn stability, m; > 0
 };
 
 class Judgement {

@@ -30,8 +30,9 @@ bool is_proof(const ViewTally& view, const PoseVerdictParams& params) {
   return view.stable_along[0].expected() >= params.least_beams && view.stable_along[1].expected() >= params.least_beams;
 }
 
-/// ln p(support | right) - ln p(support | wrong) of one new view, halved because views of one drive are alike. From drives
-/// in the paper's hall at right poses (unchanged, 10 %, 50 % changed) and wrong ones; docs/decisions/two-answers.md.
+/// ln p(support | right) - ln p(support | wrong) of one new view, halved because views of one drive are alike. From
+/// drives in the paper's hall at right poses (unchanged, 10 %, 50 % changed) and wrong ones;
+/// docs/decisions/two-answers.md.
 double evidence_of(double support) {
   constexpr std::array<double, 11> kByTenths{-2.6, -2.6, -2.0, -1.1, -0.2, 0.25, 0.5, 0.75, 1.0, 1.2, 1.2};
   const double at = 10.0 * std::clamp(support, 0.0, 1.0);
@@ -98,8 +99,8 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   decide(shares);
 }
 
-/// A hypothesis that a search has chosen because it fits proves less by fitting: a wrong one is an alias of the right one.
-/// What does not fit speaks against it as against any other.
+/// A hypothesis that a search has chosen because it fits proves less by fitting: a wrong one is an alias of the right
+/// one. What does not fit speaks against it as against any other.
 double PoseJudge::told_by(double evidence) const {
   return found_ && evidence > 0.0 ? std::max(0.0, evidence - params_.doubt_after_search) : evidence;
 }
@@ -124,8 +125,8 @@ void PoseJudge::decide(const Shares& shares) {
     belief_.verdict = PoseVerdict::kUndecided;
     return;
   }
-  const bool right = belief_.pose_right >= params_.right_above;
-  const bool wrong = belief_.pose_right <= params_.wrong_below && shares.beaten;
+  const bool right = belief_.pose_right >= 1.0 - kSure;
+  const bool wrong = belief_.pose_right <= kSure && shares.beaten;
   belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
 }
 

@@ -13,6 +13,9 @@
 
 namespace deltamap::localization::belief {
 
+/// P(pose right) up to which a pose counts as surely wrong; as surely right from one minus this.
+inline constexpr double kSure = 0.1;
+
 struct PoseVerdictParams {
   double view_m = 0.5;               ///< a view is new after so much driving, m; > 0
   double view_rad = radians(20.0);   ///< or turning, rad; > 0
@@ -22,8 +25,6 @@ struct PoseVerdictParams {
   double doubt_after_search = 0.35;  ///< taken from what a view says for a hypothesis that was found by its fit; >= 0
   double lost_in_a_view = 0.002;     ///< P(the pose has become wrong since the last new view); 0..0.1
   double least_wrong = 0.0005;       ///< P(wrong) that no evidence ever undercuts; 0..0.1
-  double right_above = 0.9;          ///< P(pose right) from which the verdict is right; 0.5..1
-  double wrong_below = 0.1;          ///< P(pose right) below which the verdict is wrong; 0..0.5
   double unproven_limit = 0.85;      ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
   double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles supported the pose; > 0
   double changed_above = 0.1;        ///< share of beams off the map from which it is rather wrong than right; 0..1

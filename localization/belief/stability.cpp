@@ -9,13 +9,17 @@
 namespace deltamap::localization::belief {
 namespace {
 
-constexpr int kMostLevels = 4;       // of proven_after: three counted refutations undo the longest history
-constexpr int kLeastUnitsApart = 3;  // of half a distance or time: surely more than one whole
+constexpr double kTileM = 0.2;
+constexpr double kApartS = 20.0;              // a confirmation counts only so long after the last one,
+constexpr double kApartM = 1.0;               // and from so far away from where that was made
+constexpr int kProvenAfter = 6;               // counted confirmations: with kApartS two minutes at least
+constexpr int kMostLevel = 4 * kProvenAfter;  // three counted refutations undo the longest history
+constexpr int kLeastUnitsApart = 3;           // of half a distance or time: surely more than one whole
 
-/// 16 units of half `apart_m` in x and y; farther places may look alike, which only delays a count.
-std::uint8_t place_of(const Point2& seen_from, double apart_m) {
+/// 16 units of half kApartM in x and y; farther places may look alike, which only delays a count.
+std::uint8_t place_of(const Point2& seen_from) {
   const auto nibble = [&](double along_m) {
-    return static_cast<unsigned>(static_cast<std::int64_t>(std::floor(2.0 * along_m / apart_m)) & 15);
+    return static_cast<unsigned>(static_cast<std::int64_t>(std::floor(2.0 * along_m / kApartM)) & 15);
   };
   return static_cast<std::uint8_t>(nibble(seen_from.x()) << 4U | nibble(seen_from.y()));
 }
@@ -25,9 +29,9 @@ int units_apart(unsigned a, unsigned b, unsigned cycle) {
   return static_cast<int>(std::min(ahead, cycle - ahead));
 }
 
-std::uint8_t moment_of(Timestamp time, double apart_s) {
-  const auto half_ns = static_cast<std::int64_t>(0.5e9 * apart_s);
-  return static_cast<std::uint8_t>((time.time_since_epoch().count() / std::max<std::int64_t>(1, half_ns)) & 255);
+std::uint8_t moment_of(Timestamp time) {
+  constexpr auto kHalfNs = static_cast<std::int64_t>(0.5e9 * kApartS);
+  return static_cast<std::uint8_t>((time.time_since_epoch().count() / kHalfNs) & 255);
 }
 
 std::uint8_t direction_bit(const Point2& from, const Point2& to) {
@@ -37,10 +41,9 @@ std::uint8_t direction_bit(const Point2& from, const Point2& to) {
 
 }  // namespace
 
-Stability::Stability(const GridGeometry& geometry, const StabilityParams& params)
+Stability::Stability(const GridGeometry& geometry)
     : geometry_{geometry},
-      params_{params},
-      lattice_{geometry, std::max(1, static_cast<int>(std::lround(params.tile_m / geometry.resolution_m)))},
+      lattice_{geometry, std::max(1, static_cast<int>(std::lround(kTileM / geometry.resolution_m)))},
       tiles_{lattice_.blocks().width, lattice_.blocks().height, Tile{}} {}
 
 std::optional<Cell> Stability::tile_of(Cell cell) const {
@@ -48,8 +51,8 @@ std::optional<Cell> Stability::tile_of(Cell cell) const {
 }
 
 bool Stability::counts(Tile& tile, const Point2& seen_from, Timestamp time) const {
-  const std::uint8_t place = place_of(seen_from, params_.apart_m);
-  const std::uint8_t moment = moment_of(time, params_.apart_s);
+  const std::uint8_t place = place_of(seen_from);
+  const std::uint8_t moment = moment_of(time);
   const bool first = tile.directions == 0;
   const bool elsewhere = units_apart(place >> 4U, tile.place >> 4U, 16) >= kLeastUnitsApart ||
                          units_apart(place & 15U, tile.place & 15U, 16) >= kLeastUnitsApart;
@@ -64,7 +67,7 @@ void Stability::confirm(Cell cell, const Point2& seen_from, Timestamp time) {
   if (!place) return;
   Tile tile = tiles_[*place];
   if (!counts(tile, seen_from, time)) return;
-  tile.level = static_cast<std::uint8_t>(std::min(kMostLevels * params_.proven_after, tile.level + 1));
+  tile.level = static_cast<std::uint8_t>(std::min(kMostLevel, tile.level + 1));
   tile.directions = static_cast<std::uint8_t>(tile.directions | direction_bit(geometry_.centre_of(cell), seen_from));
   tiles_.set(*place, tile);
 }
@@ -88,7 +91,7 @@ void Stability::forget(std::span<const CellChange> changes) {
 }
 
 bool Stability::is_proven(const Tile& tile) const {
-  return tile.level >= params_.proven_after && std::popcount(tile.directions) >= 2;
+  return tile.level >= kProvenAfter && std::popcount(tile.directions) >= 2;
 }
 
 bool Stability::proven(Cell cell) const {
@@ -124,7 +127,7 @@ bool Stability::restore(const StabilityRecord& record) {
       record.bytes.size() != StabilityRecord::kBytesATile * places.cell_count()) {
     return false;
   }
-  const int most = kMostLevels * params_.proven_after;
+  const int most = kMostLevel;
   for (std::size_t i = 0; i < places.cell_count(); ++i) {
     const std::uint8_t* const kept = record.bytes.data() + StabilityRecord::kBytesATile * i;
     tiles_.set(places.cell_of(i), {static_cast<std::uint8_t>(std::min<int>(most, kept[0])), kept[1], kept[2], kept[3]});

@@ -18,16 +18,9 @@
 
 namespace deltamap::localization::belief {
 
-struct StabilityParams {
-  double tile_m = 0.2;    ///< side of a tile, m; > 0, at least a cell
-  double apart_s = 20.0;  ///< a confirmation counts only so long after the last one, s; > 0
-  double apart_m = 1.0;   ///< and from so far away from where that was made, m; > 0
-  int proven_after = 6;   ///< counted confirmations that prove a tile; 1..60: with apart_s two minutes at least
-};
-
 class Stability {
  public:
-  Stability(const GridGeometry& geometry, const StabilityParams& params);
+  explicit Stability(const GridGeometry& geometry);
 
   /// A beam from `seen_from` has ended where the map has this cell. Call only while the pose is well known.
   void confirm(Cell cell, const Point2& seen_from, Timestamp time);
@@ -46,10 +39,10 @@ class Stability {
 
  private:
   struct Tile {
-    std::uint8_t level = 0;       ///< counted confirmations, at most kMostLevels · proven_after
+    std::uint8_t level = 0;       ///< counted confirmations, up to four times what proves a tile
     std::uint8_t directions = 0;  ///< a bit for each eighth of the circle that it was confirmed from
-    std::uint8_t place = 0;       ///< of the last count: 4 bits of column and row in units of apart_m / 2
-    std::uint8_t moment = 0;      ///< of the last count, in units of apart_s / 2
+    std::uint8_t place = 0;   ///< of the last count: 4 bits of column and row in units of half the distance that counts
+    std::uint8_t moment = 0;  ///< of the last count, in units of half the time that counts
     friend bool operator==(const Tile&, const Tile&) = default;
   };
   [[nodiscard]] bool is_proven(const Tile& tile) const;
@@ -59,7 +52,6 @@ class Stability {
   [[nodiscard]] std::optional<Cell> tile_of(Cell cell) const;
 
   GridGeometry geometry_;
-  StabilityParams params_;
   BlockLattice lattice_;
   Tiled<Tile> tiles_;
 };

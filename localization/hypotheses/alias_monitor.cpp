@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "localization/hypotheses/global_search.hpp"
+#include "localization/hypotheses/hypothesis_report.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {
@@ -13,8 +14,7 @@ constexpr int kRightAngles = 4;
 
 }  // namespace
 
-AliasMonitor::AliasMonitor(const HypothesisBankParams& bank, const Effort& effort)
-    : effort_{effort}, bank_{bank}, lattice_{kRightAngles} {}
+AliasMonitor::AliasMonitor(const Effort& effort) : effort_{effort}, lattice_{kRightAngles} {}
 
 void AliasMonitor::observe(const Seen& seen) {
   bank_.believe(seen.map_from_believed);
@@ -47,10 +47,10 @@ void AliasMonitor::probe(const Seen& seen) {
 
 void AliasMonitor::admit(const Pose2& rough, const Seen& seen) {
   const Pose2 pose = settled(seen.field, seen.ends, rough);
-  if (bank_.knows(pose) || is_within(pose, seen.map_from_believed, effort_.nearby_m, effort_.nearby_rad)) return;
+  if (bank_.knows(pose) || is_nearby(pose, seen.map_from_believed)) return;
   if (mean_log_likelihood(seen.field, seen.ends, pose) < own_fit_ - kFitsNearlyAsWell) return;
   const Comparison lately = seen.stack.compared_lately(
-      seen.field, pose, seen.map_from_believed, seen.continuous_odom_from_robot, bank_.params().evidence_of_a_beam());
+      seen.field, pose, seen.map_from_believed, seen.continuous_odom_from_robot, HypothesisBank::kEvidenceOfABeam);
   bank_.admit({.map_from_robot = pose,
                .log_evidence = bank_.hypotheses().front().log_evidence + lately.ahead(),
                .log_prior = std::log(effort_.prior),

@@ -17,13 +17,11 @@ namespace deltamap::localization::hypotheses {
 class AliasMonitor {
  public:
   struct Effort {
-    int probes;         ///< poses turned by right angles that are looked at in a scan; >= 0
-    int slid;           ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
-    double nearby_m;    ///< no alias of the believed pose but a slip, m; > 0
-    double nearby_rad;  ///< and turned less; > 0
-    double prior;       ///< odds of one against the believed pose, before any scan; 0..1
+    int probes;    ///< poses turned by right angles that are looked at in a scan; >= 0
+    int slid;      ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
+    double prior;  ///< odds of one against the believed pose, before any scan; 0..1
   };
-  AliasMonitor(const HypothesisBankParams& bank, const Effort& effort);
+  explicit AliasMonitor(const Effort& effort);
 
   void clear() { bank_.clear(); }
   void predict(const Pose2& motion) { bank_.predict(motion); }

@@ -10,6 +10,10 @@
 namespace deltamap::localization::hypotheses {
 namespace {
 
+constexpr std::size_t kMostWhileBelieving = 24;
+constexpr double kKept = 1.0 - 1.0 / 40.0;  // of the evidence from one decorrelated scan to the next
+constexpr double kHopeless = 14.0;          // behind the best one by so much log evidence a hypothesis is given up
+
 double odds_of(const PoseHypothesis& hypothesis) { return hypothesis.log_evidence + hypothesis.log_prior; }
 
 std::uint8_t steps_at_end(const sensor::LikelihoodField& field, const PointsInMap& in_map, const motion::BeamEnds& ends,
@@ -47,13 +51,18 @@ Comparison compared(const sensor::LikelihoodField& field, const motion::BeamEnds
   return {of_a_step * result.gained, of_a_step * result.lost};
 }
 
+bool is_same(const Pose2& a, const Pose2& b) {
+  constexpr double kSameM = 0.3;
+  const double x_m = a.x - b.x;
+  const double y_m = a.y - b.y;
+  return x_m * x_m + y_m * y_m < kSameM * kSameM && std::abs(turn_between(a.theta, b.theta)) < radians(10.0);
+}
+
 bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad) {
   return distance_between(pose, other) < distance_m && std::abs(turn_between(pose.theta, other.theta)) < turn_rad;
 }
 
-HypothesisBank::HypothesisBank(const HypothesisBankParams& params) : params_{params} {
-  hypotheses_.reserve(static_cast<std::size_t>(std::max(params.most, params.most_while_believing)) + 1);
-}
+HypothesisBank::HypothesisBank() { hypotheses_.reserve(kMost + 1); }
 
 void HypothesisBank::clear() {
   hypotheses_.clear();
@@ -71,7 +80,7 @@ void HypothesisBank::believe(const Pose2& map_from_robot) {
 
 void HypothesisBank::believe_among(const Pose2& map_from_robot) {
   auto chosen = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const PoseHypothesis& hypothesis) {
-    return same(hypothesis.map_from_robot, map_from_robot);
+    return is_same(hypothesis.map_from_robot, map_from_robot);
   });
   if (chosen == hypotheses_.end()) return believe(map_from_robot);
   std::swap(hypotheses_.front(), *chosen);
@@ -131,35 +140,26 @@ void HypothesisBank::slide_others(const sensor::LikelihoodField& field, const mo
 
 void HypothesisBank::weigh(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
                            std::span<const float> weights, double evidence_weight) {
-  const double kept = 1.0 - 1.0 / params_.memory_steps;
-  const double of_a_beam = params_.evidence_of_a_beam();
   double of_believed = 0.0;
   for (PoseHypothesis& hypothesis : hypotheses_) {
-    const double says = of_a_beam * weighted_log_likelihood(field, ends, weights, hypothesis.map_from_robot);
-    hypothesis.log_evidence = kept * hypothesis.log_evidence + says;
+    const double says = kEvidenceOfABeam * weighted_log_likelihood(field, ends, weights, hypothesis.map_from_robot);
+    hypothesis.log_evidence = kKept * hypothesis.log_evidence + says;
     if (&hypothesis == &hypotheses_.front()) of_believed = says;
-    const double since_kidnapping = kept * hypothesis.since_kidnapping + evidence_weight * (says - of_believed);
+    const double since_kidnapping = kKept * hypothesis.since_kidnapping + evidence_weight * (says - of_believed);
     hypothesis.since_kidnapping = believing_ ? std::max(0.0, since_kidnapping) : 0.0;
     if (hypothesis.since_kidnapping == 0.0) {
       hypothesis.lost_since = 0.0;
     } else {
-      const Comparison beside =
-          compared(field, ends, weights, hypothesis.map_from_robot, hypotheses_.front().map_from_robot, of_a_beam);
-      hypothesis.lost_since = kept * hypothesis.lost_since + evidence_weight * beside.lost;
+      const Comparison beside = compared(field, ends, weights, hypothesis.map_from_robot,
+                                         hypotheses_.front().map_from_robot, kEvidenceOfABeam);
+      hypothesis.lost_since = kKept * hypothesis.lost_since + evidence_weight * beside.lost;
     }
   }
 }
 
-bool HypothesisBank::same(const Pose2& a, const Pose2& b) const {
-  const double x_m = a.x - b.x;
-  const double y_m = a.y - b.y;
-  return x_m * x_m + y_m * y_m < params_.same_m * params_.same_m &&
-         std::abs(turn_between(a.theta, b.theta)) < params_.same_rad;
-}
-
 bool HypothesisBank::knows(const Pose2& pose) const {
   return std::any_of(hypotheses_.begin(), hypotheses_.end(),
-                     [&](const PoseHypothesis& hypothesis) { return same(hypothesis.map_from_robot, pose); });
+                     [&](const PoseHypothesis& hypothesis) { return is_same(hypothesis.map_from_robot, pose); });
 }
 
 const PoseHypothesis* HypothesisBank::reference() const {
@@ -171,7 +171,7 @@ const PoseHypothesis* HypothesisBank::reference() const {
 
 void HypothesisBank::admit(const PoseHypothesis& hypothesis) {
   if (knows(hypothesis.map_from_robot)) return;
-  const auto room = static_cast<std::size_t>(believing_ && !roomy_ ? params_.most_while_believing : params_.most);
+  const auto room = believing_ && !roomy_ ? kMostWhileBelieving : kMost;
   const std::size_t first = believing_ ? 1 : 0;
   if (hypotheses_.size() < room + first) {
     hypotheses_.push_back(hypothesis);
@@ -186,13 +186,13 @@ void HypothesisBank::admit(const PoseHypothesis& hypothesis) {
 void HypothesisBank::settle() {
   const PoseHypothesis* const held_against = reference();
   if (held_against == nullptr) return;
-  const double hopeless = held_against->log_evidence - params_.hopeless;
+  const double hopeless = held_against->log_evidence - kHopeless;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const bool believed = believing_ && i == 0;
     if (!believed && hypotheses_[i].log_evidence < hopeless) continue;
     std::size_t twin = 0;
-    while (twin < kept && !same(hypotheses_[twin].map_from_robot, hypotheses_[i].map_from_robot)) ++twin;
+    while (twin < kept && !is_same(hypotheses_[twin].map_from_robot, hypotheses_[i].map_from_robot)) ++twin;
     if (twin == kept) {
       hypotheses_[kept++] = hypotheses_[i];
     } else if (!(believing_ && twin == 0) && odds_of(hypotheses_[twin]) < odds_of(hypotheses_[i])) {

@@ -4,7 +4,6 @@
 // say, with a memory that fades over metres. Hypotheses that meet are joined, hopeless ones are given up.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -15,23 +14,6 @@
 #include "localization/sensor/pose_refinement.hpp"
 
 namespace deltamap::localization::hypotheses {
-
-struct HypothesisBankParams {
-  int most = 200;                   ///< hypotheses while nothing is believed; 1..1000
-  int most_while_believing = 24;    ///< and beside a believed pose; 1..most
-  int beams = 60;                   ///< of a scan that judge a hypothesis; > 0
-  double evidence_beams = 12.0;     ///< independent beams that so many count as if each hit a new surface; fewer count
-                                    ///< as less, no scan as more than a quarter; > 0
-  double step_m = 0.2;              ///< driven until a scan tells something new, m; > 0
-  double step_rad = radians(15.0);  ///< or heading turned until then, rad; > 0
-  double memory_steps = 40.0;       ///< scans that count until their evidence has faded to 1/e; > 1
-  double hopeless = 14.0;           ///< behind the best one by this log evidence a hypothesis is given up; > 0
-  double same_m = 0.3;              ///< two hypotheses nearer than this are one, m; > 0
-  double same_rad = radians(10.0);  ///< and turned less, rad; > 0
-
-  /// Independent beams that one of a scan's counts as.
-  [[nodiscard]] double evidence_of_a_beam() const { return evidence_beams / std::max(1, beams); }
-};
 
 struct PoseHypothesis {
   Pose2 map_from_robot;
@@ -66,11 +48,21 @@ struct Comparison {
 
 [[nodiscard]] bool is_within(const Pose2& pose, const Pose2& other, double distance_m, double turn_rad);
 
+/// Two hypotheses so near each other are one.
+[[nodiscard]] bool is_same(const Pose2& a, const Pose2& b);
+
 class HypothesisBank {
  public:
-  explicit HypothesisBank(const HypothesisBankParams& params);
+  static constexpr std::size_t kMost = 200;  ///< hypotheses while nothing is believed
+  static constexpr std::size_t kBeams = 60;  ///< of a scan, at most, that judge a hypothesis
+  /// Independent beams that each of them counts as where it hits a new surface.
+  static constexpr double kEvidenceOfABeam = 0.2;
+  /// Driven or turned until a scan tells something new.
+  static constexpr double kStepM = 0.2;
+  static constexpr double kStepRad = radians(15.0);
 
-  [[nodiscard]] const HypothesisBankParams& params() const { return params_; }
+  HypothesisBank();
+
   [[nodiscard]] std::span<const PoseHypothesis> hypotheses() const { return hypotheses_; }
   /// Without the believed one.
   [[nodiscard]] std::span<const PoseHypothesis> others() const {
@@ -79,7 +71,7 @@ class HypothesisBank {
   /// The one that is believed, if any; always the first.
   [[nodiscard]] bool believing() const { return believing_; }
 
-  /// Room for `most` hypotheses beside a believed one too, as long as it is wanted.
+  /// Room for kMost hypotheses beside a believed one too, as long as it is wanted.
   void make_room(bool wanted) { roomy_ = wanted; }
 
   void clear();
@@ -123,11 +115,9 @@ class HypothesisBank {
   [[nodiscard]] bool knows(const Pose2& pose) const;
 
  private:
-  [[nodiscard]] bool same(const Pose2& a, const Pose2& b) const;
   void slide(PoseHypothesis& hypothesis, const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
              double unknown_s) const;
 
-  HypothesisBankParams params_;
   std::vector<PoseHypothesis> hypotheses_;
   bool believing_ = false;
   bool roomy_ = false;

@@ -28,10 +28,10 @@ void list(const PoseHypothesis& hypothesis, HypothesisReport& report) {
 
 }  // namespace
 
-double share_around(const HypothesisBank& bank, const Pose2& pose, double turn_rad) {
+double share_around(const HypothesisBank& bank, const Pose2& pose) {
   double share = 0.0;
   for (const PoseHypothesis& hypothesis : bank.others()) {
-    if (is_within(hypothesis.map_from_robot, pose, kAroundM, turn_rad)) share += hypothesis.share;
+    if (is_within(hypothesis.map_from_robot, pose, kAroundM, kNearbyRad)) share += hypothesis.share;
   }
   return share;
 }
@@ -45,7 +45,7 @@ HypothesisReport report_on(const HypothesisBank& bank, const HypothesisBank& wat
   report.effective_hypotheses = squared_shares > 0.0 ? 1.0 / squared_shares : 1.0;
   for (const PoseHypothesis& hypothesis : bank.others()) list(hypothesis, report);
   for (std::size_t i = 0; i < report.listed; ++i) {
-    report.others[i].share_around = share_around(bank, report.others[i].map_from_robot, rules.nearby_rad);
+    report.others[i].share_around = share_around(bank, report.others[i].map_from_robot);
   }
   if (!report.own_known || report.followed == 0) return report;
 
@@ -53,14 +53,14 @@ HypothesisReport report_on(const HypothesisBank& bank, const HypothesisBank& wat
   report.own_share = own.share;
   for (const PoseHypothesis& hypothesis : bank.others()) {
     const double ahead = hypothesis.log_evidence - own.log_evidence;
-    if (ahead <= rules.beats_by || hypothesis.followed_m < rules.wins_after_m) continue;
+    if (ahead <= rules.beats_by || hypothesis.followed_m < kWinsAfterM) continue;
     report.beaten = true;
     report.beaten_for_m = std::max(report.beaten_for_m, hypothesis.followed_m);
   }
   const PoseHypothesis* kidnapped = nullptr;
   for (const HypothesisBank* hypotheses : {&bank, &watched}) {
     for (const PoseHypothesis& hypothesis : hypotheses->others()) {
-      if (is_within(hypothesis.map_from_robot, own.map_from_robot, rules.nearby_m, rules.nearby_rad)) continue;
+      if (is_nearby(hypothesis.map_from_robot, own.map_from_robot)) continue;
       if (kidnapped == nullptr || says(hypothesis) > says(*kidnapped)) kidnapped = &hypothesis;
     }
   }

@@ -6,10 +6,22 @@
 #include <array>
 #include <cstddef>
 
+#include "core/geometry/angle.hpp"
 #include "core/geometry/pose2.hpp"
 #include "localization/hypotheses/hypothesis_bank.hpp"
 
 namespace deltamap::localization::hypotheses {
+
+// A hypothesis so near the believed one is a slip.
+inline constexpr double kNearbyM = 1.5;
+inline constexpr double kNearbyRad = radians(20.0);
+[[nodiscard]] inline bool is_nearby(const Pose2& pose, const Pose2& believed) {
+  return is_within(pose, believed, kNearbyM, kNearbyRad);
+}
+
+// When a hypothesis is believed.
+inline constexpr double kWinningShare = 0.98;  ///< of the belief, at least
+inline constexpr double kWinsAfterM = 1.0;     ///< driven since it was found beside a believed pose, at least
 
 /// A hypothesis that is not believed, with what speaks for it.
 struct ReportedHypothesis {
@@ -36,11 +48,8 @@ struct HypothesisReport {
 
 /// The limits that the report is drawn by.
 struct ReportRules {
-  double nearby_m;             ///< a hypothesis within this of the believed one is a slip; > 0
-  double nearby_rad;           ///< and turned less; > 0
   double kidnapped_now_prior;  ///< odds that the robot has just been carried to a pose that fits from then on; 0..1
   double beats_by;             ///< log evidence of clearly better, proven tiles counted in; > 0
-  double wins_after_m;         ///< driven since such a hypothesis was found, m; >= 0
 };
 
 /// `watched`: aliases of the believed pose, of which only is told whether the robot may have been carried to one.
@@ -48,6 +57,6 @@ struct ReportRules {
                                          const ReportRules& rules);
 
 /// Share of the belief of all hypotheses about the pose, the believed one left out.
-[[nodiscard]] double share_around(const HypothesisBank& bank, const Pose2& pose, double turn_rad);
+[[nodiscard]] double share_around(const HypothesisBank& bank, const Pose2& pose);
 
 }  // namespace deltamap::localization::hypotheses

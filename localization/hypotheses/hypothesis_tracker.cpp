@@ -14,20 +14,13 @@ constexpr double kFarthestBehind = 6.0;  // log evidence: the stack may hold sca
 
 }  // namespace
 
-HypothesisTracker::HypothesisTracker(const HypothesisTrackerParams& params, const HypothesisBankParams& bank,
-                                     const GlobalSearchParams& search, const OccupancyGrid& map,
-                                     const sensor::LikelihoodField& field, std::uint64_t seed)
+HypothesisTracker::HypothesisTracker(const HypothesisTrackerParams& params, const GlobalSearchParams& search,
+                                     const OccupancyGrid& map, const sensor::LikelihoodField& field, std::uint64_t seed)
     : params_{params},
       coarse_{map, field, params.block_m},
       probes_{params.headings, seed},
-      alias_monitor_{bank,
-                     {.probes = params.probes / 2,
-                      .slid = params.refined_a_scan,
-                      .nearby_m = params.nearby_m,
-                      .nearby_rad = params.nearby_rad,
-                      .prior = params.kidnapped_now_prior}},
+      alias_monitor_{{.probes = params.probes / 2, .slid = params.refined_a_scan, .prior = params.kidnapped_now_prior}},
       search_{search, params.headings},
-      bank_{bank},
       elsewhere_prior_{params.elsewhere_prior} {}
 
 void HypothesisTracker::start_believing() {
@@ -53,8 +46,7 @@ void HypothesisTracker::forget_kidnapping() {
 }
 
 bool HypothesisTracker::has_jumped(const Pose2& map_from_believed) const {
-  return last_believed_ &&
-         !is_within(map_from_believed, *last_believed_, bank_.params().same_m, bank_.params().same_rad);
+  return last_believed_ && !is_same(map_from_believed, *last_believed_);
 }
 
 void HypothesisTracker::start_believing_in(const Pose2& found) {
@@ -93,7 +85,7 @@ void HypothesisTracker::start_anywhere() {
 }
 
 bool HypothesisTracker::is_near_believed(const Pose2& pose) const {
-  return last_believed_ && is_within(pose, *last_believed_, params_.nearby_m, params_.nearby_rad);
+  return last_believed_ && is_nearby(pose, *last_believed_);
 }
 
 double HypothesisTracker::log_prior_unbelieved(const Pose2& pose) const {
@@ -104,7 +96,7 @@ std::optional<PoseHypothesis> HypothesisTracker::best_hypothesis() const {
   const PoseHypothesis* const best = bank_.reference();
   if (best == nullptr) return std::nullopt;
   PoseHypothesis found = *best;
-  found.share = share_around(bank_, best->map_from_robot, params_.nearby_rad);
+  found.share = share_around(bank_, best->map_from_robot);
   return found;
 }
 
@@ -118,8 +110,7 @@ void HypothesisTracker::apply(const OccupancyGrid& map, const sensor::Likelihood
 }
 
 void HypothesisTracker::thin(const Seen& seen) {
-  const auto most = static_cast<std::size_t>(std::max(1, bank_.params().beams));
-  const std::size_t count = std::min(most, seen.ends.size());
+  const std::size_t count = std::min(HypothesisBank::kBeams, seen.ends.size());
   ends_.range_deviation_m = seen.ends.range_deviation_m;
   ends_.x_m.resize(count);
   ends_.y_m.resize(count);
@@ -156,7 +147,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   thin(seen);
   if (ends_.size() == 0) return report_;
 
-  const auto slid = static_cast<std::size_t>(believing_ ? params_.refined_a_scan : bank_.params().most);
+  const auto slid = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;
   bank_.slide(field, ends_, slid, seen.unknown_s);
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
@@ -176,11 +167,10 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
 
 HypothesisTracker::Odds HypothesisTracker::odds_beside_believed(const ScanStack::Sums& its,
                                                                 const ScanStack::Sums& others) const {
-  const double of_a_beam = bank_.params().evidence_of_a_beam();
   double lately = 0.0;
   double in_all = 0.0;
   for (std::size_t k = 0; k < stack_.size(); ++k) {
-    in_all = of_a_beam * (its[k] - others[k]);
+    in_all = HypothesisBank::kEvidenceOfABeam * (its[k] - others[k]);
     lately = std::max(lately, in_all);
   }
   const Odds kidnapped{std::min(lately, params_.most_ahead), std::log(params_.elsewhere_prior)};
@@ -191,14 +181,14 @@ HypothesisTracker::Odds HypothesisTracker::odds_beside_believed(const ScanStack:
 HypothesisTracker::Odds HypothesisTracker::odds_unbelieved(const Pose2& pose, const ScanStack::Sums& its,
                                                            const ScanStack::Sums& others) const {
   const std::size_t scans = stack_.size();
-  const double ahead = scans == 0 ? 0.0 : bank_.params().evidence_of_a_beam() * (its[scans - 1] - others[scans - 1]);
+  const double ahead = scans == 0 ? 0.0 : HypothesisBank::kEvidenceOfABeam * (its[scans - 1] - others[scans - 1]);
   return {ahead, log_prior_unbelieved(pose)};
 }
 
 Comparison HypothesisTracker::brought_by(const sensor::LikelihoodField& field, const Pose2& pose,
                                          const Pose2& odom) const {
   if (!believing_ || bank_.hypotheses().empty()) return {};
-  const double of_a_beam = outlier_rate_.evidence_weight() * bank_.params().evidence_of_a_beam();
+  const double of_a_beam = outlier_rate_.evidence_weight() * HypothesisBank::kEvidenceOfABeam;
   return stack_.compared_lately(field, pose, bank_.hypotheses().front().map_from_robot, odom, of_a_beam);
 }
 
@@ -229,7 +219,7 @@ void HypothesisTracker::admit_all(const sensor::LikelihoodField& field, std::spa
 void HypothesisTracker::weigh(const sensor::LikelihoodField& field, const Seen& seen) {
   const bool believes = believing_ && !bank_.hypotheses().empty();
   std::span<const float> weights;
-  if (since_step_m_ >= bank_.params().step_m || since_step_rad_ >= bank_.params().step_rad) {
+  if (since_step_m_ >= HypothesisBank::kStepM || since_step_rad_ >= HypothesisBank::kStepRad) {
     weights = decorrelation_.weights(ends_, seen.continuous_odom_from_robot);
     if (believes)
       outlier_rate_.observe(1.0 - sensor::explained_share(field, ends_, bank_.hypotheses().front().map_from_robot));
@@ -257,9 +247,9 @@ void HypothesisTracker::probe(const sensor::LikelihoodField& field, const Pose2&
   const Pose2 believed = bank_.hypotheses().front().map_from_robot;
   const double own_fit = mean_log_likelihood(field, ends_, believed);
   const std::optional<Pose2> found =
-      probe_nearby_next_ ? probes_.best_nearby(field, ends_, bank_, {believed, params_.nearby_m, params_.nearby_rad},
-                                               params_.probes_nearby)
-                         : probes_.best_anywhere(own_fit - kFitsNearlyAsWell);
+      probe_nearby_next_
+          ? probes_.best_nearby(field, ends_, bank_, {believed, kNearbyM, kNearbyRad}, params_.probes_nearby)
+          : probes_.best_anywhere(own_fit - kFitsNearlyAsWell);
   if (found) admit_beside_believed(field, *found, odom, own_fit);
 }
 
@@ -271,9 +261,9 @@ void HypothesisTracker::admit_beside_believed(const sensor::LikelihoodField& fie
   if (bank_.knows(pose)) return;
   const double gain = mean_log_likelihood(field, ends_, pose) - own_fit;
   if (gain < -kFitsNearlyAsWell) return;
-  const bool nearby = is_within(pose, own.map_from_robot, params_.nearby_m, params_.nearby_rad);
+  const bool nearby = is_nearby(pose, own.map_from_robot);
   if (nearby) {  // a slip lies behind it: before that, the scans say nothing of it
-    const double beams = bank_.params().evidence_of_a_beam() * static_cast<double>(ends_.size());
+    const double beams = HypothesisBank::kEvidenceOfABeam * static_cast<double>(ends_.size());
     const double ahead = std::clamp(beams * gain, -kFarthestBehind, 0.0);
     return bank_.admit({.map_from_robot = pose,
                         .log_evidence = own.log_evidence + ahead,
@@ -292,11 +282,7 @@ void HypothesisTracker::admit_beside_believed(const sensor::LikelihoodField& fie
 
 void HypothesisTracker::write_report() {
   report_ = report_on(bank_, alias_monitor_.hypotheses(),
-                      {.nearby_m = params_.nearby_m,
-                       .nearby_rad = params_.nearby_rad,
-                       .kidnapped_now_prior = params_.kidnapped_now_prior,
-                       .beats_by = params_.beats_by + held_by_,
-                       .wins_after_m = params_.wins_after_m});
+                      {.kidnapped_now_prior = params_.kidnapped_now_prior, .beats_by = params_.beats_by + held_by_});
 }
 
 }  // namespace deltamap::localization::hypotheses

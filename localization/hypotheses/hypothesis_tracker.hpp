@@ -24,17 +24,13 @@ namespace deltamap::localization::hypotheses {
 struct HypothesisTrackerParams {
   int probes = 800;                    ///< poses of the whole map that are looked at in a scan while tracking; >= 0
   int probes_nearby = 60;              ///< and around the believed pose: slips; >= 0
-  double nearby_m = 1.5;               ///< how far "around" is in position, m; > 0
-  double nearby_rad = radians(20.0);   ///< and in heading, rad; > 0
   double nearby_prior = 1e-3;          ///< odds of such a hypothesis against the believed one, before any scan; 0..1
   double elsewhere_prior = 1e-5;       ///< odds of any other hypothesis: nobody carries robots about; 0..1
   double kidnapped_now_prior = 0.003;  ///< odds that it has just been carried to one that fits from then on; 0..1
   double prior_after_search = 0.3;     ///< the same where the believed pose was not given but found; 0..1
   double kidnapped_prior =
-      0.001;  ///< odds of being elsewhere against near, where the believed pose has proven wrong; 0..1
-  double winning_share = 0.98;        ///< of the belief at which another hypothesis is believed instead; 0.5..1
-  double wins_after_m = 1.0;          ///< driven since it was found before another hypothesis may win, m; >= 0
-  double beats_by = 12.0;             ///< log evidence of clearly better, whatever the odds before; > 0
+      0.001;               ///< odds of being elsewhere against near, where the believed pose has proven wrong; 0..1
+  double beats_by = 12.0;  ///< log evidence of clearly better, whatever the odds before; > 0
   double stable_support_nats = 16.0;  ///< more log evidence against a pose that proven tiles support; >= 0
   double most_ahead = 10.0;      ///< log evidence that a hypothesis may be found with ahead of the believed one; >= 0
   int refined_a_scan = 4;        ///< hypotheses that are slid to their best fit at a scan while tracking; >= 0
@@ -45,9 +41,8 @@ struct HypothesisTrackerParams {
 
 class HypothesisTracker {
  public:
-  HypothesisTracker(const HypothesisTrackerParams& params, const HypothesisBankParams& bank,
-                    const GlobalSearchParams& search, const OccupancyGrid& map, const sensor::LikelihoodField& field,
-                    std::uint64_t seed);
+  HypothesisTracker(const HypothesisTrackerParams& params, const GlobalSearchParams& search, const OccupancyGrid& map,
+                    const sensor::LikelihoodField& field, std::uint64_t seed);
 
   /// From now on the pose given with each scan is believed; all others are forgotten.
   void start_believing();

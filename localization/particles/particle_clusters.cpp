@@ -6,9 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/angle.hpp"
+
 namespace deltamap::localization::particles {
 namespace {
 
+constexpr double kCellsPerMetre = 2.0;
+constexpr int kHeadings = 24;  // of 15°
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 /// std::floor without a call, where the processor has no instruction for it (SSE2).
@@ -40,10 +44,6 @@ ParticleCluster moments(const ParticleSet& particles, std::span<const std::uint3
 
 }  // namespace
 
-int ParticleClusterFinder::heading_cells() const {
-  return std::max(4, static_cast<int>(std::lround(2.0 * std::numbers::pi / params_.heading_cell_rad)));
-}
-
 std::size_t ParticleClusterFinder::slot_of(int column, int row, int heading) const {
   const auto mixed = static_cast<std::uint32_t>(column) * 0x9E3779B1u ^ static_cast<std::uint32_t>(row) * 0x85EBCA77u ^
                      static_cast<std::uint32_t>(heading) * 0xC2B2AE3Du;
@@ -61,15 +61,13 @@ void ParticleClusterFinder::sort_into_cells(const ParticleSet& particles) {
   cells_.clear();
   cell_of_particle_.resize(particles.size());
   slots_.assign(std::bit_ceil(2 * particles.size() + 1), 0);
-  const int headings = heading_cells();
-  const double headings_per_rad = headings / (2.0 * std::numbers::pi);
-  const double cells_per_m = 1.0 / params_.cell_m;
+  constexpr double kHeadingsPerRad = kHeadings / (2.0 * std::numbers::pi);
   std::uint32_t cell = kNone;  // of the particle before
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    const int column = floored(particles.x_m[i] * cells_per_m);
-    const int row = floored(particles.y_m[i] * cells_per_m);
+    const int column = floored(particles.x_m[i] * kCellsPerMetre);
+    const int row = floored(particles.y_m[i] * kCellsPerMetre);
     const int heading =
-        std::clamp(static_cast<int>((particles.heading_rad[i] + std::numbers::pi) * headings_per_rad), 0, headings - 1);
+        std::clamp(static_cast<int>((particles.heading_rad[i] + std::numbers::pi) * kHeadingsPerRad), 0, kHeadings - 1);
     if (cell != kNone && cells_[cell].holds(column, row, heading)) {  // neighbours in the list often are in space
       cells_[cell].weight += particles.weight[i];
       cell_of_particle_[i] = cell;
@@ -94,10 +92,9 @@ std::uint32_t ParticleClusterFinder::speaker_of(std::uint32_t cell) const {
 }
 
 void ParticleClusterFinder::join_neighbours() {
-  const int headings = heading_cells();
   for (std::uint32_t i = 0; i < cells_.size(); ++i) {
     for (int step = 0; step < 27; ++step) {
-      const int heading = (cells_[i].heading + step % 3 - 1 + headings) % headings;
+      const int heading = (cells_[i].heading + step % 3 - 1 + kHeadings) % kHeadings;
       const std::uint32_t other =
           find_or_none(cells_[i].column + step / 9 - 1, cells_[i].row + step / 3 % 3 - 1, heading);
       if (other == kNone || other >= i) continue;  // the later of two cells joins them

@@ -8,16 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/angle.hpp"
 #include "core/geometry/pose2.hpp"
 #include "localization/particles/particle_set.hpp"
 
 namespace deltamap::localization::particles {
-
-struct ParticleClusterParams {
-  double cell_m = 0.5;                      ///< side of a cell, m; > 0
-  double heading_cell_rad = radians(15.0);  ///< height of a cell, rad; > 0, at most π/2
-};
 
 struct ParticleCluster {
   Pose2 map_from_robot;                                ///< weighted mean
@@ -28,8 +22,6 @@ struct ParticleCluster {
 /// Finds the heaviest cluster; keeps its working memory from scan to scan.
 class ParticleClusterFinder {
  public:
-  explicit ParticleClusterFinder(const ParticleClusterParams& params) : params_{params} {}
-
   /// The particles must not be empty and their weights sum to 1.
   [[nodiscard]] ParticleCluster best(const ParticleSet& particles);
 
@@ -53,9 +45,7 @@ class ParticleClusterFinder {
   [[nodiscard]] std::uint32_t find_or_none(int column, int row, int heading) const;
   [[nodiscard]] std::size_t slot_of(int column, int row, int heading) const;
   [[nodiscard]] std::uint32_t speaker_of(std::uint32_t cell) const;
-  [[nodiscard]] int heading_cells() const;
 
-  ParticleClusterParams params_;
   std::vector<CellOfParticles> cells_;
   std::vector<std::uint32_t> cell_of_particle_;
   std::vector<std::uint32_t> slots_;  ///< hash table with open addressing: cell + 1, 0 = empty

@@ -17,7 +17,6 @@ constexpr double kDoubtsAgainM = 1.0;  // driven between two looks for a slip th
 constexpr int kMisfitsOfAChange = 3;   // in a row: it was moved while in view
 constexpr std::size_t kMostFollowed = 32;
 constexpr std::size_t kMostSightings = 24;
-constexpr double kUnknownM = 0.3;    // deviation of a place that no visit has told of
 constexpr double kReassignM = 0.02;  // a keyframe that moves the pose further is read once more
 constexpr double kReassignRad = 0.005;
 constexpr double kFarthestRad = 0.18;        // that ends on no surface may turn the pose
@@ -141,7 +140,7 @@ void OffsetFilter::cease_where_long_unseen() {
 std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& field, const FacedScan& scan,
                                              const Pose2& at) {
   return finder_.find(map_, field, scan, at, [&](const SurfaceRecord& record) -> SurfacePlace {
-    if (record.followed_as == SurfaceRecord::kNotFollowed) return {record.offset_m, 0.0, kUnknownM};
+    if (record.followed_as == SurfaceRecord::kNotFollowed) return {record.offset_m, 0.0, sensor::kMovedM};
     const Eigen::Index offset = OffsetState::offset_of(static_cast<std::size_t>(record.followed_as));
     return {state_.mean()[offset], state_.mean()[offset + 1],
             std::sqrt(std::max(0.0, state_.covariance()(offset, offset)))};
@@ -151,7 +150,7 @@ std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& fiel
 std::span<const Sighting> OffsetFilter::find_by_map(const sensor::LikelihoodField& field, const FacedScan& scan,
                                                     const Pose2& at) {
   return finder_.find(map_, field, scan, at, [](const SurfaceRecord& record) {
-    return SurfacePlace{record.offset_m, 0.0, kUnknownM};
+    return SurfacePlace{record.offset_m, 0.0, sensor::kMovedM};
   });
 }
 
@@ -216,7 +215,7 @@ std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, 
                         .record_of = [&](SurfaceMap::Id id) -> const SurfaceRecord& { return map_.record(id); }};
   std::optional<Slip> slip = is_strange ? slip_just_now(scene) : std::nullopt;
   std::optional<Slip> behind = doubts_again ? slip_behind(scene) : std::nullopt;
-  if (is_strange || doubts_again) since_doubt_m_ = 0.0;
+  since_doubt_m_ = 0.0;
   if (behind && (!slip || behind->gained > slip->gained)) slip = std::move(behind);
   if (!slip) return std::nullopt;
   for (std::size_t i = slip->read_wrong.size(); i-- > 0;) drop(slip->read_wrong[i]);

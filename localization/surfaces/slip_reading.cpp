@@ -51,7 +51,7 @@ SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch
         {.usual = usual_stand(of.surface, of.usual_m),
          .last = {state.mean()[at], state.mean()[at + 1], variance_beside_pose(at), variance_beside_pose(at + 1)},
          .cost_of_moved = cost_of_moved(of.prior),
-         .share_of_face = 1.0 / static_cast<double>(std::max<std::ptrdiff_t>(1, pieces))});
+         .share_of_face = 1.0 / static_cast<double>(pieces)});
   }
   std::iota(latest_first_.begin(), latest_first_.end(), std::size_t{0});
   std::stable_sort(latest_first_.begin(), latest_first_.end(),
@@ -93,7 +93,7 @@ double SlipReading::log_share_of_spread(const Answer& answer) const {
 double SlipReading::weight_of(const Sighting& sighting, std::span<const Sighting> all) {
   const auto pieces = std::count_if(
       all.begin(), all.end(), [&](const Sighting& other) { return move_as_one(sighting.surface, other.surface); });
-  return 1.0 / static_cast<double>(std::max<std::ptrdiff_t>(1, pieces));
+  return 1.0 / static_cast<double>(pieces);
 }
 
 void SlipReading::add_new(Answer& answer, const Sighting& sighting, const SurfaceRecord& record, double weight) const {

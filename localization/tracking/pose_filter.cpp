@@ -7,6 +7,7 @@
 namespace deltamap::localization::tracking {
 namespace {
 
+constexpr double kAgreement = 3.0;      // deviations of the particles; beyond, they are right and the filter is wrong
 constexpr double kLeastSpreadM = 0.01;  // of the particles, when the track is held against them
 constexpr double kLeastSpreadRad = 0.003;
 constexpr double kMargin = 1.5;      // of the particles' noise over what the wheels have shown
@@ -45,7 +46,7 @@ sensor::RefinedPose PoseFilter::before_scan(const motion::ScanInstant& now,
                                             const particles::ParticleCluster& particles) {
   if (!last_) return {particles.map_from_robot, particles.covariance};
   sensor::RefinedPose expected = expected_at(now);
-  if (disagreement(expected.map_from_robot, particles) <= params_.agreement * params_.agreement) return expected;
+  if (disagreement(expected.map_from_robot, particles) <= kAgreement * kAgreement) return expected;
   odometry_noise_.forget_stretch();
   return {particles.map_from_robot, particles.covariance};
 }

@@ -14,15 +14,10 @@
 
 namespace deltamap::localization::tracking {
 
-struct PoseFilterParams {
-  double agreement = 3.0;  ///< deviations of the particles within which the filter goes on; beyond, they are right; > 0
-  OdometryNoiseParams wheels;
-};
-
 class PoseFilter {
  public:
-  PoseFilter(const PoseFilterParams& params, const motion::MotionModelParams& motion)
-      : params_{params}, motion_{motion}, odometry_noise_{params.wheels} {}
+  PoseFilter(const OdometryNoiseParams& wheels, const motion::MotionModelParams& motion)
+      : motion_{motion}, odometry_noise_{wheels} {}
 
   /// The pose was set, not driven to.
   void forget();
@@ -52,7 +47,6 @@ class PoseFilter {
   /// The last estimate, predicted by the wheels, and as unsure as they are.
   [[nodiscard]] sensor::RefinedPose expected_at(const motion::ScanInstant& now) const;
 
-  PoseFilterParams params_;
   motion::MotionModelParams motion_;
   OdometryNoiseEstimator odometry_noise_;
   std::optional<Last> last_;

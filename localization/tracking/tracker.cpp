@@ -22,12 +22,11 @@ constexpr double kAroundSlip = 0.1;  // of a usual slip: how far particles are s
 Tracker::Tracker(const TrackerParams& params, std::shared_ptr<const OccupancyGrid> map, std::uint64_t seed)
     : params_{params},
       filter_{params.particles, seed},
-      pose_filter_{params.pose_filter, params.motion},
-      clusters_{params.clusters},
+      pose_filter_{params.wheels, params.motion},
       slip_finder_{params.motion, params.refinement} {
   if (!params.follow_surfaces) return;
-  surfaces_ = std::make_unique<SurfaceTracker>(params.pose_filter.wheels, params.motion,
-                                               params.particles.evidence_beams, std::move(map));
+  surfaces_ =
+      std::make_unique<SurfaceTracker>(params.wheels, params.motion, params.particles.evidence_beams, std::move(map));
 }
 
 Tracker::~Tracker() = default;

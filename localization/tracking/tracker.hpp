@@ -35,9 +35,8 @@ struct UpdateParams {
 struct TrackerParams {
   particles::ParticleFilterParams particles;
   motion::MotionModelParams motion;
-  particles::ParticleClusterParams clusters;
   sensor::RefinementParams refinement;
-  PoseFilterParams pose_filter;
+  OdometryNoiseParams wheels;
   UpdateParams update;
   bool follow_surfaces = true;  ///< where straight surfaces explain the scans they lead, and the particles rest
 };

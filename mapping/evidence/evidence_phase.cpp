@@ -19,17 +19,13 @@ void sort_unique(std::vector<std::uint32_t>& indices) {
 EvidencePhase::EvidencePhase(const EvidencePhaseParams& params)
     : params_{params}, keyframes_{params.keyframes}, small_objects_{params.small_objects} {}
 
-double EvidencePhase::least_share(votes::Question question) const {
-  return question == votes::Question::kAdded ? params_.least_added_share : params_.least_removed_share;
-}
-
 bool EvidencePhase::is_proven(votes::Question question, Cell block) const {
   const votes::Ballot ballot = layer_.ballot(question, block, now_ms_);
   const bool is_changed_this_run =
       question == votes::Question::kRemoved && changed_this_run_.is_changed_this_run(block);
   const double least_span_s = is_changed_this_run ? params_.changed_this_run_persistence_s : params_.face_persistence_s;
   return ballot.yes >= static_cast<float>(params_.least_votes) && ballot.span_s() >= least_span_s &&
-         ballot.share() >= least_share(question);
+         ballot.share() >= params_.least_share;
 }
 
 /// Votes were cast against the map of their time: where it has changed they are void.
@@ -91,7 +87,7 @@ std::vector<Cell> EvidencePhase::with_joining_blocks(const std::vector<ProvenBlo
   };
   const auto is_voted_for = [&](Cell block) {
     const votes::Ballot ballot = layer_.ballot(question, block, now_ms_);
-    return ballot.yes >= static_cast<float>(least_votes) && ballot.share() >= least_share(question);
+    return ballot.yes >= static_cast<float>(least_votes) && ballot.share() >= params_.least_share;
   };
   for (const ProvenBlock& proven : region) join(proven.block);
   std::size_t next = 0;

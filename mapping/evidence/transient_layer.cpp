@@ -36,9 +36,7 @@ std::vector<std::uint32_t> shown(const Entries& entries) {
 }  // namespace
 
 TransientLayer::TransientLayer(const TransientLayerParams& params, const BlockLattice& lattice)
-    : params_{params}, lattice_{lattice} {
-  params_.most_votes = std::max(params_.most_votes, params_.least_votes);
-}
+    : params_{params}, lattice_{lattice} {}
 
 void TransientLayer::observe(const Votes& votes, Timestamp time, std::uint32_t now_ms) {
   vote_no(standing_, votes.not_added, now_ms);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mapping/gate/usual_view.hpp"
+
 namespace deltamap::mapping::gate {
 namespace {
 
@@ -57,7 +59,7 @@ std::optional<ScanBreak::Shares> ScanBreak::compared(const TrackedScan& tracked,
     shares.nearer += longest_m < expected_m - least_m ? 1.0 : 0.0;
     shares.farther += shortest_m > expected_m + least_m ? 1.0 : 0.0;
   }
-  if (compared < params_.least_compared) return std::nullopt;
+  if (compared < kLeastCompared) return std::nullopt;
   return Shares{shares.nearer / compared, shares.farther / compared};
 }
 
@@ -102,7 +104,7 @@ bool ScanBreak::observe(const TrackedScan& tracked) {
   const Shares more{now->nearer - usual.nearer, now->farther - usual.farther};
   const double most = std::min(more.nearer, more.farther) >= params_.each_way ? params_.most : params_.most_one_way;
   if (more.nearer + more.farther > most) return true;
-  const double weight = std::min(1.0, passed_s / params_.usual_s);
+  const double weight = std::min(1.0, passed_s / kUsualS);
   usual_ = Shares{usual.nearer + weight * (now->nearer - usual.nearer),
                   usual.farther + weight * (now->farther - usual.farther)};
   return false;

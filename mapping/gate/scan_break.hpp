@@ -15,17 +15,15 @@
 namespace deltamap::mapping::gate {
 
 struct ScanBreakParams {
-  double most = 0.2;                ///< of the beams that may suddenly be nearer or farther away, beyond what is usual;
-                                    ///< [0, 1]
+  double most = 0.2;                ///< of the beams that may suddenly be nearer or farther away, beyond what is usual
+                                    ///< (odometry may be poor, edges many); [0, 1]
   double each_way = 0.05;           ///< of them at least so many each way; a break that is larger than
   double most_one_way = 0.3;        ///< is one whichever way; both [0, 1]
   double least_m = 0.25;            ///< a smaller difference of range is none; > 0
   double wheels_rad_per_m = 0.05;   ///< that odometry may have turned unnoticed, for each metre; >= 0
   double wheels_rad_per_rad = 0.1;  ///< and for each radian that it tells of; >= 0
-  double usual_s = 10.0;            ///< over which what is usual is averaged: odometry may be poor, edges are many
   double most_way_m = 1.0;          ///< scans farther apart are not compared; > 0
   double most_turn_rad = 0.5;       ///< nor are scans that are turned farther; > 0
-  std::uint32_t least_compared = 30;  ///< beams; fewer say nothing
 };
 
 class ScanBreak {

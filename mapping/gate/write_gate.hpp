@@ -50,7 +50,6 @@ struct WriteGateParams {
   double confirm_followed_m = 4.0;  ///< which an alias cannot explain: seconds and metres; >= 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
   double hold_other_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
-  InlierDropParams inlier_drop;
   ScanBreakParams scan_break;
   double break_settles_s = 1.0;   ///< after a break it waits so long to see whether the map still fits; >= 0
   double carried_within_s = 5.0;  ///< so long after it a worse fit says that the robot was carried; >= 0
@@ -79,10 +78,7 @@ class DrivenWay {
 class WriteGate {
  public:
   explicit WriteGate(const WriteGateParams& params)
-      : params_{params},
-        inlier_drop_{params.inlier_drop},
-        scan_break_{params.scan_break},
-        provisional_{params.provisional} {}
+      : params_{params}, scan_break_{params.scan_break}, provisional_{params.provisional} {}
 
   /// Every tracked scan in order.
   void observe(const TrackedScan& tracked);

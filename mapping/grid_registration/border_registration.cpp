@@ -88,7 +88,7 @@ merge::CellMotion border_registration(const OccupancyGrid& map, std::span<const 
     const double acceptance = sums.acceptance.value();
     if (acceptance > best_acceptance) best_acceptance = acceptance, best = motion;
     if (sums.acceptance.disagreeing == 0 || sums.equations.paired < kLeastPaired) break;
-    const Eigen::Vector3d step = observed_step(sums.equations, params.least_observed);
+    const Eigen::Vector3d step = observed_step(sums.equations);
     if (step.cwiseAbs().maxCoeff() < params.settled_cells) break;
     motion = moved(motion, step, lever_cells);
   }

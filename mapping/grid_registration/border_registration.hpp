@@ -13,9 +13,8 @@ namespace deltamap::mapping::grid_registration {
 
 struct BorderRegistrationParams {
   int most_iterations = 8;
-  double margin_cells = 0.15;     ///< agreeing cells nearer than this to the other state are pushed inwards; [0, 0.5)
-  double settled_cells = 0.01;    ///< a step below this (at the lever arm, if a turn) ends the iteration; > 0
-  double least_observed = 0.002;  ///< axes with less than this share of the best one's curvature stay as they are
+  double margin_cells = 0.15;   ///< agreeing cells nearer than this to the other state are pushed inwards; [0, 0.5)
+  double settled_cells = 0.01;  ///< a step below this (at the lever arm, if a turn) ends the iteration; > 0
 };
 
 /// The pose on the way with the best Eq. 11 over the edges; `start`, within half a cell of the answer, among them.

@@ -122,7 +122,7 @@ merge::CellMotion edge_registration(const OccupancyGrid& map, std::span<const Ed
   for (int i = 0; i < params.most_iterations; ++i) {
     const MotionEquations sums = motion_equations(map, edges, motion, lever_cells);
     if (sums.paired < kLeastPaired) return start;
-    const Eigen::Vector3d step = observed_step(sums, params.least_observed);
+    const Eigen::Vector3d step = observed_step(sums);
     motion = moved(motion, step, lever_cells);
     const double turned_cells = lever_cells * std::abs(motion.turn_rad - start.turn_rad);
     const double moved_cells = std::hypot(motion.column - start.column, motion.row - start.row);

@@ -16,7 +16,6 @@ struct EdgeRegistrationParams {
   int most_iterations = 10;
   double settled_cells = 0.003;        ///< a step below this (at the lever arm, if a turn) ends the iteration; > 0
   double most_correction_cells = 2.0;  ///< farther than this from where it began the answer is not trusted; > 0
-  double least_observed = 0.002;       ///< axes with less than this share of the best one's curvature stay as they are
 };
 
 /// A known cell on or beside the contour, about the local map's middle.

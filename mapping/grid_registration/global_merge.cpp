@@ -15,7 +15,6 @@
 namespace deltamap::mapping::grid_registration {
 namespace {
 
-constexpr int kHoughBins = 360;   // over a turn; even
 constexpr int kRotations = 6;     // maxima of Eq. 6; each is also tried half a turn on
 constexpr int kShifts = 12;       // best shifts for each rotation: racks repeat
 constexpr double kPixelM = 0.4;   // of the correlated pictures, at least
@@ -139,9 +138,9 @@ merge::MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& loca
   const merge::LocalCells sample = cells.thinned(kSampleCells);
   const int cells_per_pixel = std::max(1, static_cast<int>(std::lround(kPixelM / map.resolution_m())));
   const ShiftCorrelation correlation{map, contour, cells, cells_per_pixel, kMostPixels};
-  const std::vector<double> turns_rad = merge::best_turns(
-      merge::hough_spectrum(merge::about_centre(merge::thinned_to(contour, kSpectrumPoints), map), kHoughBins),
-      merge::hough_spectrum(merge::thinned_to(cells.contour(), kSpectrumPoints), kHoughBins), kRotations, true);
+  const std::vector<double> turns_rad =
+      merge::best_turns(merge::hough_spectrum(merge::about_centre(merge::thinned_to(contour, kSpectrumPoints), map)),
+                        merge::hough_spectrum(merge::thinned_to(cells.contour(), kSpectrumPoints)), kRotations, true);
   const LineRegistration lines{map, cells, map.resolution_m() * correlation.cells_per_pixel()};
   std::vector<merge::ScoredMotion> candidates;
   for (std::size_t i = 0; i < turns_rad.size(); i += 2) {  // the half turns come with them

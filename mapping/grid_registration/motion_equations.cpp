@@ -7,12 +7,13 @@
 
 namespace deltamap::mapping::grid_registration {
 
-Eigen::Vector3d observed_step(const MotionEquations& sums, double least_observed) {
+Eigen::Vector3d observed_step(const MotionEquations& sums) {
+  constexpr double kLeastObserved = 0.002;  // share of the best axis' curvature
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{sums.matrix};
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const double curvature = axes.eigenvalues()[i];
-    if (curvature <= least_observed * axes.eigenvalues()[2]) continue;
+    if (curvature <= kLeastObserved * axes.eigenvalues()[2]) continue;
     const Eigen::Vector3d axis = axes.eigenvectors().col(i);
     step += axis.dot(sums.right_side) / curvature * axis;
   }

@@ -18,8 +18,8 @@ struct MotionEquations {
   int paired = 0;  ///< cells that they were summed over
 };
 
-/// The step along the axes of which they observe at least this share of the best one's curvature.
-[[nodiscard]] Eigen::Vector3d observed_step(const MotionEquations& sums, double least_observed);
+/// The step along the axes that the cells tell of.
+[[nodiscard]] Eigen::Vector3d observed_step(const MotionEquations& sums);
 
 /// How far a turn of 1 rad moves the edges, root mean square.
 [[nodiscard]] double lever_of(std::span<const EdgeCell> edges);

@@ -9,6 +9,7 @@
 
 #include "core/geometry/points_in_map.hpp"
 #include "core/grid/near_occupied.hpp"
+#include "mapping/merge/overlay_score.hpp"
 #include "mapping/registration/registration.hpp"
 #include "mapping/registration/surface.hpp"
 
@@ -18,9 +19,9 @@ namespace {
 constexpr double kSearchStep_m = 0.15;       // well inside the reach of the closest lines
 constexpr double kMostSearchPoses = 3000.0;  // coarser steps above
 constexpr std::size_t kMostSearchPoints = 80;
-constexpr std::size_t kStarts = 4;  // poses of the search that are brought to the end
+constexpr std::size_t kStarts = 4;      // poses of the search that are brought to the end
 constexpr double kAmbiguousCost = 6.0;  // above the best one's
-constexpr double kApart_m = 0.15;   // starts and answers nearer than this are the same
+constexpr double kApart_m = 0.15;       // starts and answers nearer than this are the same
 
 /// The points about the robot, so that a change of heading turns them about it.
 std::vector<Point2> about(const Point2& position_in_map, std::span<const Point2> points_in_map) {
@@ -142,9 +143,8 @@ std::vector<Start> search(std::span<const Point2> points, const registration::Ne
   return best;
 }
 
-/// Of the points that lie on known cells; 0 where fewer than `least_points` do.
-double agreement(const OccupancyGrid& map, std::span<const Point2> points, const Pose2& pose,
-                 std::size_t least_points) {
+/// Of the points that lie on known cells; 0 where those are too few.
+double agreement(const OccupancyGrid& map, std::span<const Point2> points, const Pose2& pose) {
   std::size_t found = 0;
   std::size_t known = 0;
   for (const Point2& point : points) {
@@ -153,20 +153,20 @@ double agreement(const OccupancyGrid& map, std::span<const Point2> points, const
     found += near ? 1 : 0;
     known += near || map.at(cell) != CellState::kUnknown ? 1 : 0;
   }
-  return known < least_points ? 0.0 : static_cast<double>(found) / static_cast<double>(known);
+  return known < merge::kLeastContour ? 0.0 : static_cast<double>(found) / static_cast<double>(known);
 }
 
 }  // namespace
 
 merge::MergeRefusal refusal_of(const PriorAnswer& answer, const PriorMergeParams& params) {
   if (answer.agreement < params.least_agreement) return merge::MergeRefusal::kLowAgreement;
-  if (answer.chi2 > params.most_chi2) return merge::MergeRefusal::kImplausible;
+  if (answer.chi2 > kMostChi2) return merge::MergeRefusal::kImplausible;
   return merge::MergeRefusal::kNone;
 }
 
 std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
                                        const PosePrior& prior, const PriorMergeParams& params) {
-  if (surface_points_in_map_guess.size() < std::max(1U, params.least_points)) return {};
+  if (surface_points_in_map_guess.size() < merge::kLeastContour) return {};
   const std::vector<Point2> points = about(prior.position_in_map, surface_points_in_map_guess);
   const double lever_m = lever_arm_m(points);
   const PoseCovariance covariance = registration::floored(prior.covariance, params);
@@ -196,7 +196,7 @@ std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map, std::span<const
     ends.push_back({pose,
                     {.map_from_guess = pose * inverse(guess),
                      .covariance = (end.information + belief.information).inverse(),
-                     .agreement = agreement(map, points, pose, std::max(1U, params.least_points)),
+                     .agreement = agreement(map, points, pose),
                      .chi2 = chi2,
                      .cost = shared * misfit(map, points, surface, pose, params) + chi2}});
   }

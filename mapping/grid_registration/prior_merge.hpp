@@ -21,10 +21,9 @@ struct PosePrior {
 };
 
 struct PriorMergeParams : registration::FromPoseParams {
-  double search_deviations = 3.0;   ///< half width of the search in σ along each axis of the prior; > 0
-  double most_search_m = 1.0;       ///< bound of the half width in position
-  double most_search_rad = 0.35;    ///< bound of the half width in heading (20°)
-  std::uint32_t least_points = 20;  ///< fewer, or fewer on known cells, are refused
+  double search_deviations = 3.0;  ///< half width of the search in σ along each axis of the prior; > 0
+  double most_search_m = 1.0;      ///< bound of the half width in position
+  double most_search_rad = 0.35;   ///< bound of the half width in heading (20°)
   double least_agreement = 0.5;  ///< share of points within 1 cell of an occupied one, of those on known cells; [0, 1]
   double ambiguity_margin = 0.03;  ///< a second pose whose agreement comes this near is one too many; [0, 1]
 };

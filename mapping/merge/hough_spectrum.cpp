@@ -21,17 +21,17 @@ float radius_of(std::span<const PointInCells> points) {
 
 }  // namespace
 
-std::vector<double> hough_spectrum(std::span<const PointInCells> contour, int bins_per_turn) {
-  assert(bins_per_turn > 0 && bins_per_turn % 2 == 0 && "the half turn must fall on a bin");
+std::vector<double> hough_spectrum(std::span<const PointInCells> contour) {
+  static_assert(kHoughBins % 2 == 0, "the half turn must fall on a bin");
   // A point is shared between the two nearest bins of ρ: whole cells in one bin would make the lattice's own directions
   // stand out in every spectrum, whatever the walls do.
   constexpr std::uint32_t kWhole = 16;
   const float bound = std::ceil(radius_of(contour)) + 2.0F;
   std::vector<std::uint32_t> transform(static_cast<std::size_t>(2.0F * bound) + 2);
-  std::vector<double> spectrum(static_cast<std::size_t>(bins_per_turn), 0.0);
+  std::vector<double> spectrum(kHoughBins, 0.0);
   const std::size_t half_turn = spectrum.size() / 2;
   for (std::size_t l = 0; l < half_turn; ++l) {
-    const double theta_rad = 2.0 * std::numbers::pi * static_cast<double>(l) / bins_per_turn;
+    const double theta_rad = 2.0 * std::numbers::pi * static_cast<double>(l) / kHoughBins;
     const auto c = static_cast<float>(std::cos(theta_rad));
     const auto s = static_cast<float>(std::sin(theta_rad));
     std::fill(transform.begin(), transform.end(), 0U);

@@ -10,9 +10,12 @@
 
 namespace deltamap::mapping::merge {
 
-/// θ_S = `bins_per_turn` values (even, > 0) over [0°, 360°), 1 cell a bin of ρ. Lines have no direction: the period is
+/// θ_S: values of a spectrum.
+inline constexpr int kHoughBins = 360;
+
+/// θ_S values over [0°, 360°), 1 cell a bin of ρ. Lines have no direction: the period is
 /// 180°.
-[[nodiscard]] std::vector<double> hough_spectrum(std::span<const PointInCells> contour, int bins_per_turn);
+[[nodiscard]] std::vector<double> hough_spectrum(std::span<const PointInCells> contour);
 
 /// CC(l) = Σ_i HS1(i) HS2(i + l), circular (Eq. 6; printed with HT for HS).
 [[nodiscard]] std::vector<double> circular_correlation(std::span<const double> one, std::span<const double> other);

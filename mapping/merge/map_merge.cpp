@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/angle.hpp"
 #include "mapping/merge/axis_spectrum.hpp"
 #include "mapping/merge/hough_spectrum.hpp"
 
@@ -17,13 +18,12 @@ constexpr std::size_t kMoreCells = 3000;
 constexpr int kMaximumWidth_cells = 3;        // a wall a few cells thick makes one maximum
 constexpr std::size_t kMostRanks = 120;       // ranks of a column's and a row's maximum, multiplied: 1 is the best
 constexpr std::size_t kFinalCandidates = 16;  // scored with every cell
-constexpr double kQuarterDegree_rad = 0.25 * 0.017453292519943295;
 
 /// Every rotation with the pairs of shifts of which one at least stands out.
 std::vector<CellMotion> spectral_candidates(const OccupancyGrid& map, const LocalCells& local,
                                             const MapMergeParams& params) {
-  const std::vector<double> map_spectrum = hough_spectrum(about_centre(contour_cells(map), map), params.hough_bins);
-  const std::vector<double> local_spectrum = hough_spectrum(local.contour(), params.hough_bins);
+  const std::vector<double> map_spectrum = hough_spectrum(about_centre(contour_cells(map), map));
+  const std::vector<double> local_spectrum = hough_spectrum(local.contour());
   const int pixels_per_cell = params.pixels_per_cell;
   const int apart = kMaximumWidth_cells * pixels_per_cell;
   const AxisSpectra map_axes = axis_spectra(map, pixels_per_cell);
@@ -81,7 +81,7 @@ std::vector<CellMotion> neighbours(const CellMotion& motion, MergeMethod method)
   for (int turn = -turns; turn <= turns; ++turn) {
     for (int column = -shifts; column <= shifts; ++column) {
       for (int row = -shifts; row <= shifts; ++row) {
-        all.push_back({motion.turn_rad + turn * kQuarterDegree_rad, motion.column + column, motion.row + row});
+        all.push_back({motion.turn_rad + turn * radians(0.25), motion.column + column, motion.row + row});
       }
     }
   }

@@ -33,7 +33,6 @@ struct ChoiceParams {
 
 struct MapMergeParams {
   MergeMethod method = MergeMethod::kMa1;
-  int hough_bins = 360;     ///< θ_S, a turn's worth; even
   int rotations = 4;        ///< n: maxima of Eq. 6; each is also tried half a turn on
   int shifts = 40;          ///< maxima of Eq. 10 along each axis
   int pixels_per_cell = 2;  ///< of the images whose X- and Y-spectra are taken; >= 1

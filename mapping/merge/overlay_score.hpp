@@ -26,7 +26,7 @@ struct PointInCells {
   float y = 0.0F;
 };
 
-/// Cells of a contour; fewer make no line.
+/// Cells or points of a contour; fewer make no line.
 inline constexpr std::size_t kLeastContour = 20;
 
 /// Mean of the cells, in cells from the grid's corner; the grid's own middle where there are none.

@@ -76,7 +76,7 @@ OccupancyGrid local_map(std::span<const TrackedScan* const> scans, std::span<con
     const double looks = hits[i] + crossings[i];
     if (hits[i] > 0 && hits[i] >= params.least_hit_share * looks) {
       map.set(geometry.cell_of(i), CellState::kOccupied);
-    } else if (crossings[i] >= params.least_crossings) {
+    } else if (crossings[i] > 0) {
       map.set(geometry.cell_of(i), CellState::kFree);
     }
   }

@@ -11,9 +11,8 @@
 namespace deltamap::mapping::paper {
 
 struct LocalMapParams {
-  double longest_m = 12.0;            ///< beyond, neighbouring beams leave cells out; > 0
-  double least_hit_share = 0.25;      ///< hits / (hits + crossings) from which a cell is occupied; (0, 1]
-  std::uint32_t least_crossings = 1;  ///< from which a cell without enough hits is free; > 0
+  double longest_m = 12.0;        ///< beyond, neighbouring beams leave cells out; > 0
+  double least_hit_share = 0.25;  ///< hits / (hits + crossings) from which a cell is occupied; (0, 1]
 };
 
 /// One pose for each scan. The cells are those of `lattice` (its resolution and the phase of its borders), as many as

@@ -53,8 +53,7 @@ scan_set::MapUpdate paper_update(const OccupancyGrid& map, const ScanSet& set, c
   const OccupancyGrid moved = registration::transformed_grid(local, merged.map_from_local, map.geometry());
   update.acceptance = registration::acceptance(map, moved).value();
   if (update.acceptance < params.least_acceptance) return refused(scan_set::Refusal::kLowAcceptance);
-  if (params.refuse_implausible &&
-      chi2_of(merged.map_from_local, *aligned, map.resolution_m(), params) > params.most_chi2) {
+  if (params.refuse_implausible && chi2_of(merged.map_from_local, *aligned, map.resolution_m(), params) > kMostChi2) {
     return refused(scan_set::Refusal::kImplausible);
   }
   update.changes = changes_between(map, registration::overridden(map, moved));

@@ -27,7 +27,6 @@ struct PaperUpdateParams {
   std::size_t least_scans = 3;         ///< fewer draw no map
   double least_acceptance = 0.9;       ///< Eq. 11 of the local map and the map; [0, 1]
   bool refuse_implausible = true;      ///< the χ² test below (not published)
-  double most_chi2 = kMostChi2;        ///< of the merge under the pose's covariance
   double merge_deviation_cells = 1.0;  ///< σ of the merge's shift, along each axis
   double merge_deviation_rad = 0.009;  ///< σ of the merge's rotation (half a Hough bin)
 };

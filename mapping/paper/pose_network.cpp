@@ -68,9 +68,9 @@ bool settle(std::vector<Pose2>& poses, std::span<const PoseLink> links, const st
 
 /// The link that contradicts the solution most, or links.size() where all are within bounds.
 std::size_t worst_link(const std::vector<Pose2>& poses, std::span<const PoseLink> links,
-                       const std::vector<char>& is_kept, double most_chi2) {
+                       const std::vector<char>& is_kept) {
   std::size_t worst = links.size();
-  double worst_chi2 = most_chi2;
+  double worst_chi2 = kMostChi2;
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (is_kept[i] == 0 || !links[i].may_drop) continue;
     const LinkError at = link_error(poses[links[i].from], poses[links[i].to], links[i].from_from_to);
@@ -125,7 +125,7 @@ PoseNetwork solved_network(std::span<const Pose2> initial, std::span<const PoseL
   std::vector<Pose2> poses = network.poses;
   for (int round = 0;; ++round) {
     if (!settle(poses, links, is_kept, anchors, params, cholesky)) return network;
-    const std::size_t worst = worst_link(poses, links, is_kept, params.most_chi2);
+    const std::size_t worst = worst_link(poses, links, is_kept);
     if (worst == links.size()) break;
     if (round == params.most_dropping_rounds) return network;
     is_kept[worst] = 0;

@@ -31,9 +31,8 @@ struct PoseAnchor {
 
 struct PoseNetworkParams {
   int most_iterations = 10;
-  double settled = 1e-6;         ///< a step below this (m and rad) ends the iteration
-  double most_chi2 = kMostChi2;  ///< of one link after solving; above, the worst is dropped
-  int most_dropping_rounds = 20;
+  double settled = 1e-6;          ///< a step below this (m and rad) ends the iteration
+  int most_dropping_rounds = 20;  ///< of the worst link whose χ² is above kMostChi2
 };
 
 struct PoseNetwork {

@@ -108,7 +108,7 @@ Placement placed_scans(const OccupancyGrid& map, const KeptScans& scans, const s
       continue;
     }
     const Eigen::Vector3d moved = difference(guess.map_from_robot, pose);
-    if (moved.dot(belief.information * moved) > params.most_chi2 ||
+    if (moved.dot(belief.information * moved) > kMostChi2 ||
         static_cast<double>(found.paired) < params.least_agreement * static_cast<double>(near)) {
       ++placement.implausible;
       continue;

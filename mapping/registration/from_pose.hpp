@@ -16,7 +16,6 @@ struct FromPoseParams {
   double least_position_deviation_m = 0.03;     ///< floor of the pose's σ: particle filters are too sure of themselves
   double least_heading_deviation_rad = 0.0087;  ///< floor of the heading's σ (0.5°)
   double independent_points = 60.0;  ///< at most so many points' worth of information: cell noise is shared; > 0
-  double most_chi2 = kMostChi2;      ///< of a correction under the pose's covariance
 };
 
 [[nodiscard]] PoseCovariance floored(PoseCovariance covariance, const FromPoseParams& params);

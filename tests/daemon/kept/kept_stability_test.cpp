@@ -3,20 +3,20 @@
 
 #include <gtest/gtest.h>
 
+#include "localization/belief/stability.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 using localization::belief::Stability;
-using localization::belief::StabilityParams;
 
 constexpr Cell kProven{10, 10};
 const GridGeometry kGeometry{40, 30, 0.05, {-1.0, 2.0}};
 
 /// One tile that was confirmed from all around, for long enough.
 Stability with_a_proven_tile() {
-  Stability stability{kGeometry, StabilityParams{}};
+  Stability stability{kGeometry};
   for (int i = 0; i < 40; ++i) {
     const double angle = 0.7 * i;
     stability.confirm(kProven, {3.0 * std::cos(angle), 3.0 * std::sin(angle)}, timestamp_from_ns(i * 60'000'000'000));
@@ -34,7 +34,7 @@ TEST(KeptStability, ComesBackAsItWas) {
   ASSERT_TRUE(answer.kept) << answer.why_not;
   EXPECT_EQ(answer.kept->revision, 3u);
   EXPECT_NE(answer.fingerprint, 0u);
-  Stability restored{kGeometry, StabilityParams{}};
+  Stability restored{kGeometry};
   ASSERT_TRUE(restored.restore(answer.kept->record));
   EXPECT_TRUE(restored.proven(kProven));
   EXPECT_EQ(restored.proven_tiles(), 1u);
@@ -67,8 +67,8 @@ TEST(KeptStability, OfAnotherMapIsNotUsedAndWithoutAFileThereIsNothingToSay) {
 
 TEST(KeptStability, CellsThatWereRewrittenSinceBeginAgain) {
   const CellChange rewritten{kProven, CellState::kOccupied, CellState::kFree};
-  const auto record = without(with_a_proven_tile().record(), StabilityParams{}, std::span{&rewritten, 1});
-  Stability restored{kGeometry, StabilityParams{}};
+  const auto record = without(with_a_proven_tile().record(), std::span{&rewritten, 1});
+  Stability restored{kGeometry};
   ASSERT_TRUE(restored.restore(record));
   EXPECT_FALSE(restored.proven(kProven));
 }

@@ -23,7 +23,7 @@ Counted checked(const OccupancyGrid& world, const Pose2& believed, const PoseCov
   Random random{3};
   const Scan scan = test::cast_scan(world, kTruth, timestamp_from_ns(1), {}, random);
   const std::vector<RayInRobot> rays = motion::deskewed(scan, {});
-  BeamCheck check{{}};
+  BeamCheck check;
   Counted counted;
   for (const CheckedBeam& beam : check.check(test::drawn_flat(), scan, rays, {believed, covariance})) {
     counted.fit += beam.what == BeamFit::kFit ? 1 : 0;

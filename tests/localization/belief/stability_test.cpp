@@ -20,7 +20,7 @@ Timestamp after(double passed_s) { return kStart + duration_from_seconds(passed_
 
 /// Every half minute from another end of a lane below the wall.
 Stability lived_in(int visits) {
-  Stability stability{kGeometry, {}};
+  Stability stability{kGeometry};
   for (int i = 0; i < visits; ++i) stability.confirm(kWall, {i % 2 == 0 ? 0.1 : 4.9, 0.2}, after(30.0 * i));
   return stability;
 }
@@ -33,19 +33,19 @@ TEST(Stability, IsEarnedAndNotAssumed) {
 }
 
 TEST(Stability, IsNotEarnedInAMoment) {
-  Stability stability{kGeometry, {}};
+  Stability stability{kGeometry};
   for (int i = 0; i < 300; ++i) stability.confirm(kWall, {i % 2 == 0 ? 0.1 : 4.9, 0.2}, after(0.2 * i));
   EXPECT_FALSE(stability.proven(kWall));
 }
 
 TEST(Stability, IsNotEarnedFromOnePlace) {
-  Stability stability{kGeometry, {}};
+  Stability stability{kGeometry};
   for (int i = 0; i < 300; ++i) stability.confirm(kWall, {0.1, 0.2}, after(60.0 * i));
   EXPECT_FALSE(stability.proven(kWall));
 }
 
 TEST(Stability, IsNotEarnedFromOneDirection) {
-  Stability stability{{1000, 60, 0.05, {0.0, 0.0}}, {}};
+  Stability stability{{1000, 60, 0.05, {0.0, 0.0}}};
   for (int i = 0; i < 300; ++i) stability.confirm(kWall, {i % 2 == 0 ? 20.1 : 23.4, 1.5}, after(60.0 * i));
   EXPECT_FALSE(stability.proven(kWall));
 }
@@ -68,13 +68,13 @@ TEST(Stability, BeginsAgainWhereARevisionRewritesAnObstacle) {
 
 TEST(Stability, IsKeptByARecordAndRefusesTheRecordOfAnotherMap) {
   const StabilityRecord record = lived_in(6).record();
-  Stability again{kGeometry, {}};
+  Stability again{kGeometry};
   EXPECT_TRUE(again.restore(record));
   EXPECT_TRUE(again.proven(kWall));
 
-  Stability wider{{101, 60, 0.05, {0.0, 0.0}}, {}};
+  Stability wider{{101, 60, 0.05, {0.0, 0.0}}};
   EXPECT_FALSE(wider.restore(record));
-  Stability moved{{100, 60, 0.05, {0.1, 0.0}}, {}};
+  Stability moved{{100, 60, 0.05, {0.1, 0.0}}};
   EXPECT_FALSE(moved.restore(record));
   StabilityRecord cut = record;
   cut.bytes.pop_back();
@@ -83,7 +83,7 @@ TEST(Stability, IsKeptByARecordAndRefusesTheRecordOfAnotherMap) {
 }
 
 TEST(Stability, IgnoresWhatLiesOutsideTheMap) {
-  Stability stability{kGeometry, {}};
+  Stability stability{kGeometry};
   stability.confirm({-1, 5}, {0.1, 0.2}, kStart);
   stability.refute({100, 5}, {0.1, 0.2}, kStart);
   EXPECT_FALSE(stability.proven({100, 60}));

@@ -15,7 +15,7 @@ constexpr Cell kFace{40, 30};
 const Point2 kNorth{0.0, 1.0};
 const Point2 kEast{1.0, 0.0};
 
-const Stability kNothingProven{kHall, {}};
+const Stability kNothingProven{kHall};
 
 std::vector<CheckedBeam> run(BeamFit what, std::size_t beams, const Point2& normal = kNorth) {
   return {beams, {.what = what, .expected = kFace, .normal = normal}};

@@ -13,7 +13,7 @@ const Pose2 kTruth{4.5, 2.0, 1.1};
 
 /// Three hypotheses beside a believed one, all with the same odds before any scan.
 HypothesisBank bank_with_three(double log_prior) {
-  HypothesisBank bank{{}};
+  HypothesisBank bank;
   bank.believe(kTruth);
   for (const double y : {1.0, 2.0, 3.0}) bank.admit({.map_from_robot = {1.5, y, 1.1}, .log_prior = log_prior});
   return bank;
@@ -52,7 +52,7 @@ double falls_behind_by(int beams) {
   Random random{3};
   const motion::BeamEnds ends = test::cast_ends(map, kTruth, {}, random, beams);
   const std::vector<float> each_new(ends.size(), 1.0F);
-  HypothesisBank bank{{}};
+  HypothesisBank bank;
   bank.believe(kTruth);
   bank.admit({.map_from_robot = {1.5, 1.0, 1.1}});
   bank.weigh(field, ends, each_new, 1.0);

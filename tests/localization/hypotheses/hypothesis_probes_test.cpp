@@ -45,7 +45,7 @@ TEST_F(Probes, FindNothingAnywhereThatCannotFitSoWell) {
 TEST_F(Probes, FindABetterPoseAroundTheBelievedOne) {
   const Pose2 believed{kTruePlace.x + 0.4, kTruePlace.y - 0.3, kTruePlace.theta + 0.2};
   const HypothesisProbes::Around around{believed, 0.6, 0.3};
-  const std::optional<Pose2> found = probes.best_nearby(field, ends, HypothesisBank{{}}, around, 300);
+  const std::optional<Pose2> found = probes.best_nearby(field, ends, HypothesisBank{}, around, 300);
   ASSERT_TRUE(found);
   EXPECT_LE(std::abs(found->x - believed.x), 0.6);
   EXPECT_LE(std::abs(found->y - believed.y), 0.6);
@@ -54,7 +54,7 @@ TEST_F(Probes, FindABetterPoseAroundTheBelievedOne) {
 }
 
 TEST_F(Probes, FindNothingAroundThatTheBankKnows) {
-  HypothesisBank bank{{}};
+  HypothesisBank bank;
   bank.believe(kTruePlace);
   EXPECT_FALSE(probes.best_nearby(field, ends, bank, {kTruePlace, 0.1, 0.05}, 50));
 }

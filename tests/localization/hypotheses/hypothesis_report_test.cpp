@@ -8,7 +8,7 @@ namespace {
 
 /// Beside a hypothesis that is believed.
 HypothesisBank bank_with(const PoseHypothesis& other) {
-  HypothesisBank bank{{}};
+  HypothesisBank bank;
   bank.believe({});
   bank.admit(other);
   bank.settle();
@@ -16,13 +16,12 @@ HypothesisBank bank_with(const PoseHypothesis& other) {
 }
 
 HypothesisBank believing_bank() {
-  HypothesisBank bank{{}};
+  HypothesisBank bank;
   bank.believe({});
   return bank;
 }
 
-constexpr ReportRules kRules{
-    .nearby_m = 1.5, .nearby_rad = 0.35, .kidnapped_now_prior = 0.003, .beats_by = 12.0, .wins_after_m = 1.0};
+constexpr ReportRules kRules{.kidnapped_now_prior = 0.003, .beats_by = 12.0};
 
 TEST(HypothesisReport, SaysWhereTheRobotMayHaveBeenCarried) {
   const PoseHypothesis other{.map_from_robot = {15.0, 0.0, 0.0}, .since_kidnapping = 7.0};

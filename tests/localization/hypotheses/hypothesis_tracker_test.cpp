@@ -21,7 +21,7 @@ class Round {
  public:
   Round(const OccupancyGrid& map, const OccupancyGrid& world, const Pose2& truth, std::uint64_t seed,
         const HypothesisTrackerParams& params = {})
-      : world_{world}, truth_{truth}, random_{seed}, field_{map, {}}, tracker_{params, {}, {}, map, field_, seed} {}
+      : world_{world}, truth_{truth}, random_{seed}, field_{map, {}}, tracker_{params, {}, map, field_, seed} {}
 
   [[nodiscard]] HypothesisTracker& others() { return tracker_; }
   [[nodiscard]] const Pose2& truth() const { return truth_; }
@@ -33,9 +33,9 @@ class Round {
     truth_ = truth_ * motion;
     joined_ = joined_ * motion;
     return tracker_.observe(field_, {.ends = test::cast_ends(world_, truth_, {}, random_),
-                                    .continuous_odom_from_robot = joined_,
-                                    .map_from_believed = believed,
-                                    .stable_support = held});
+                                     .continuous_odom_from_robot = joined_,
+                                     .map_from_believed = believed,
+                                     .stable_support = held});
   }
 
  private:
@@ -292,7 +292,7 @@ TEST(PoseHypotheses, SettleOnTheOneHypothesisThatFitsWhereNothingIsBelieved) {
 TEST(PoseHypotheses, LearnNothingWhileTheRobotStands) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
-  HypothesisTracker others{{}, {}, {}, map, field, 1};
+  HypothesisTracker others{{}, {}, map, field, 1};
   others.start_believing();
   Random random{1};
   const Pose2 truth{1.6, 1.0, 0.0};

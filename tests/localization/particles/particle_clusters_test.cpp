@@ -19,7 +19,7 @@ ParticleSet particles_at(const std::vector<Pose2>& poses, const std::vector<doub
 }
 
 TEST(ParticleClusters, TellsTwoPlacesApartAndTakesTheHeavier) {
-  ParticleClusterFinder finder{{}};
+  ParticleClusterFinder finder;
   const ParticleCluster best = finder.best(
       particles_at({{0.0, 0.0, 0.0}, {10.0, 5.0, 1.0}, {10.2, 5.0, 1.0}, {0.1, 0.0, 0.0}}, {0.3, 0.2, 0.4, 0.1}));
   EXPECT_NEAR(best.weight, 0.6, 1e-12);
@@ -30,14 +30,14 @@ TEST(ParticleClusters, TellsTwoPlacesApartAndTakesTheHeavier) {
 }
 
 TEST(ParticleClusters, TellsTwoHeadingsAtOnePlaceApart) {
-  ParticleClusterFinder finder{{}};
+  ParticleClusterFinder finder;
   const ParticleCluster best = finder.best(particles_at({{1.0, 1.0, 0.0}, {1.0, 1.0, 3.0}}, {0.45, 0.55}));
   EXPECT_NEAR(best.map_from_robot.theta, 3.0, 1e-12);
   EXPECT_NEAR(best.weight, 0.55, 1e-12);
 }
 
 TEST(ParticleClusters, TakesTheMeanHeadingAcrossTheSeam) {
-  ParticleClusterFinder finder{{}};
+  ParticleClusterFinder finder;
   const ParticleCluster best = finder.best(particles_at({{0.0, 0.0, 3.1}, {0.0, 0.0, -3.1}}, {}));
   EXPECT_NEAR(best.weight, 1.0, 1e-12);
   EXPECT_NEAR(std::abs(best.map_from_robot.theta), std::numbers::pi, 1e-9);
@@ -48,7 +48,7 @@ TEST(ParticleClusters, JoinsAChainOfNeighbours) {
   std::vector<Pose2> chain;
   chain.reserve(40);
   for (int i = 0; i < 40; ++i) chain.push_back({-8.0 + 0.4 * i, 0.3, 0.0});
-  ParticleClusterFinder finder{{.cell_m = 0.5}};
+  ParticleClusterFinder finder;
   const ParticleCluster best = finder.best(particles_at(chain, {}));
   EXPECT_NEAR(best.weight, 1.0, 1e-9);
   EXPECT_EQ(finder.members().size(), chain.size());
@@ -61,7 +61,7 @@ TEST(ParticleClusters, StatesTheMomentsOfANormalCloud) {
     const double x_m = 4.0 + random.normal(0.1);
     cloud.push_back({x_m, 2.0 + 0.5 * (x_m - 4.0) + random.normal(0.05), random.normal(0.02)});
   }
-  ParticleClusterFinder finder{{}};
+  ParticleClusterFinder finder;
   const ParticleCluster best = finder.best(particles_at(cloud, {}));
   EXPECT_NEAR(best.map_from_robot.x, 4.0, 0.003);
   EXPECT_NEAR(best.covariance(0, 0), 0.01, 0.0005);
@@ -71,7 +71,7 @@ TEST(ParticleClusters, StatesTheMomentsOfANormalCloud) {
 }
 
 TEST(ParticleClusters, StandsAtTheOnlyParticle) {
-  ParticleClusterFinder finder{{}};
+  ParticleClusterFinder finder;
   const ParticleCluster best = finder.best(particles_at({{-3.0, 7.0, 2.0}}, {}));
   EXPECT_EQ(best.map_from_robot.x, -3.0);
   EXPECT_EQ(best.covariance, PoseCovariance::Zero());

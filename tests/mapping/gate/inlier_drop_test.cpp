@@ -19,7 +19,7 @@ void show(StraightDrive& robot, InlierDropDetector& inlier_drop, const BeamCount
 
 TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
   StraightDrive robot;
-  InlierDropDetector inlier_drop{{}};
+  InlierDropDetector inlier_drop;
   inlier_drop.remember();
   show(robot, inlier_drop, {.expected = 100, .fit = 50, .short_of = 50}, 50);
   EXPECT_FALSE(inlier_drop.is_worse_than_remembered());
@@ -28,7 +28,7 @@ TEST(InlierDropDetector, CannotBeWorseThanBeforeWhereNothingWasKnownBefore) {
 /// After 20 s in which all beams fit and a silence, a scan of which so many of 100 do.
 bool is_worse_with(std::uint32_t fit) {
   StraightDrive robot;
-  InlierDropDetector inlier_drop{{}};
+  InlierDropDetector inlier_drop;
   show(robot, inlier_drop, {.expected = 100, .fit = 100}, 200);
   inlier_drop.remember();
   for (int i = 0; i < 50; ++i) (void)robot.next();
@@ -43,7 +43,7 @@ TEST(InlierDropDetector, SeesThatTheMapFitsWorseAfterASilenceToo) {
 
 TEST(InlierDropDetector, HearsNothingFromAFewBeams) {
   StraightDrive robot;
-  InlierDropDetector inlier_drop{{}};
+  InlierDropDetector inlier_drop;
   show(robot, inlier_drop, {.expected = 100, .fit = 100}, 200);
   inlier_drop.remember();
   show(robot, inlier_drop, {.expected = 29, .short_of = 29}, 50);

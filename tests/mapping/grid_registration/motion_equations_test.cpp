@@ -12,13 +12,13 @@ TEST(MotionEquations, AreSolvedAlongTheAxesThatTheyObserve) {
   MotionEquations sums;
   sums.matrix = Eigen::Vector3d{4.0, 1e-6, 2.0}.asDiagonal();
   sums.right_side = {8.0, 5.0, 2.0};
-  EXPECT_TRUE(observed_step(sums, 0.002).isApprox(Eigen::Vector3d{2.0, 0.0, 1.0}, 1e-9));
+  EXPECT_TRUE(observed_step(sums).isApprox(Eigen::Vector3d{2.0, 0.0, 1.0}, 1e-9));
   sums.matrix(1, 1) = 1.0;
-  EXPECT_TRUE(observed_step(sums, 0.002).isApprox(Eigen::Vector3d{2.0, 5.0, 1.0}, 1e-9));
+  EXPECT_TRUE(observed_step(sums).isApprox(Eigen::Vector3d{2.0, 5.0, 1.0}, 1e-9));
 }
 
 TEST(MotionEquations, AnswerNoStepWhereTheyObserveNothing) {
-  EXPECT_EQ(observed_step({}, 0.002), Eigen::Vector3d(0.0, 0.0, 0.0));
+  EXPECT_EQ(observed_step({}), Eigen::Vector3d(0.0, 0.0, 0.0));
 }
 
 TEST(MotionEquations, CountATurnAsWhatItMovesACellAtTheLeverArm) {

@@ -26,7 +26,7 @@ std::vector<PointInCells> line_at(double direction_rad, float distance) {
 
 TEST(HoughSpectrum, IsLargestAtTheNormalOfALineWhereverItLies) {
   for (const float distance : {0.0F, 7.3F, -22.0F}) {
-    const std::vector<double> spectrum = hough_spectrum(line_at(radians(30.0), distance), 360);
+    const std::vector<double> spectrum = hough_spectrum(line_at(radians(30.0), distance));
     ASSERT_EQ(spectrum.size(), 360U);
     const auto largest = std::max_element(spectrum.begin(), spectrum.end()) - spectrum.begin();
     EXPECT_EQ(largest % 180, 120);
@@ -37,7 +37,7 @@ TEST(HoughSpectrum, IsLargestAtTheNormalOfALineWhereverItLies) {
 TEST(HoughSpectrum, EqualsTheSumOfSquaresCountedByHand) {
   // Three points on the line x = 2: at θ = 0 all vote for ρ = 2, at θ = 90° each for its own ρ.
   const std::vector<PointInCells> points{{2.0F, -1.0F}, {2.0F, 0.0F}, {2.0F, 1.0F}};
-  const std::vector<double> spectrum = hough_spectrum(points, 360);
+  const std::vector<double> spectrum = hough_spectrum(points);
   EXPECT_NEAR(spectrum[0], 9.0, 1e-6);
   EXPECT_NEAR(spectrum[90], 3.0, 0.3);
 }
@@ -51,8 +51,8 @@ TEST(CircularCorrelation, EqualsEquation6ByHand) {
 
 TEST(BestTurns, TurnTheSecondMapOntoTheFirst) {
   for (const double turn_deg : {0.0, 17.0, -49.0, 88.0, 151.0}) {
-    const auto first = hough_spectrum(line_at(radians(20.0), 5.0F), 360);
-    const auto second = hough_spectrum(line_at(radians(20.0 - turn_deg), 5.0F), 360);
+    const auto first = hough_spectrum(line_at(radians(20.0), 5.0F));
+    const auto second = hough_spectrum(line_at(radians(20.0 - turn_deg), 5.0F));
     const auto turns = best_turns(first, second, 1, false);
     ASSERT_EQ(turns.size(), 2U) << "a line cannot tell a half turn";
     const bool found = std::any_of(turns.begin(), turns.end(), [&](double turn_rad) {
