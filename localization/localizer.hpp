@@ -46,8 +46,8 @@ class Localizer {
   /// What is different from M_k for now, from the next scan on; null: nothing is known. Never localized on.
   void apply(std::shared_ptr<const TransientObstacles> transients);
 
-  /// Starts again around a pose: one that a person gave is believed, a remembered one checked (particles/start_pose.hpp). False
-  /// where nobody can stand there: all stays as it was.
+  /// Starts again around a pose: one that a person gave is believed, a remembered one checked
+  /// (particles/start_pose.hpp). False where nobody can stand there: all stays as it was.
   bool relocalize(const particles::InitialPose& pose);
 
   [[nodiscard]] const LocalizerCounts& counts() const;

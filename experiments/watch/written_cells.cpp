@@ -10,9 +10,9 @@
 namespace deltamap::experiments {
 namespace {
 
-constexpr double kRightShare = 0.8;  // of a written thing's cells
-constexpr int kThingReach = 2;       // cells; written cells so near are one thing
-constexpr std::size_t kLeastCells = 3;    // smaller groups are not counted as things
+constexpr double kRightShare = 0.8;     // of a written thing's cells
+constexpr int kThingReach = 2;          // cells; written cells so near are one thing
+constexpr std::size_t kLeastCells = 3;  // smaller groups are not counted as things
 
 /// Written cells that are near each other.
 std::vector<std::vector<CellChange>> things_of(std::vector<CellChange> left) {

@@ -39,7 +39,7 @@ void FitMonitor::count(const Observation& scan) {
   const bool misfit = mean_fit_ < params_.lost_below && scan.verdict != PoseVerdict::kRight;
   misfit_s_ = grown_while(misfit, misfit_s_);
   wrong_s_ = grown_while(scan.verdict == PoseVerdict::kWrong, wrong_s_);
-  distrusted_s_ = grown_while(scan.trust <= kSure, distrusted_s_);
+  distrusted_s_ = grown_while(scan.trust <= kSurelyWrong, distrusted_s_);
 }
 
 LocalizerState FitMonitor::observe(const Observation& scan, const particles::ParticleCluster& best) {
@@ -48,7 +48,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
   turned_in_state_rad_ += std::abs(scan.turned_rad);
   count(scan);
   const bool fits = mean_fit_ > params_.found_above && distrusted_s_ == 0.0 && wrong_s_ == 0.0;
-  const bool is_supported = scan.verdict == PoseVerdict::kRight || scan.trust >= 1.0 - kSure;
+  const bool is_supported = scan.verdict == PoseVerdict::kRight || scan.trust >= kSurelyRight;
   switch (state_) {
     case LocalizerState::kGlobal:
       if (converged(best) && (fits || driven_in_state_m_ >= params_.converged_unfit_after_m)) {

@@ -73,7 +73,7 @@ void Judgement::observe(const View& view) {
 
 void Judgement::earn(std::span<const CheckedBeam> beams, const View& view) {
   const PoseCovariance& c = view.believed.covariance;
-  const bool sure = view.state == LocalizerState::kTracking && judge_.trust() >= 1.0 - kSure &&
+  const bool sure = view.state == LocalizerState::kTracking && judge_.trust() >= kSurelyRight &&
                     std::sqrt(std::max(c(0, 0), c(1, 1))) <= params_.earn_deviation_m;
   if (!sure) return;
   const Point2 seen_from = view.believed.map_from_robot.position();

@@ -125,8 +125,8 @@ void PoseJudge::decide(const Shares& shares) {
     belief_.verdict = PoseVerdict::kUndecided;
     return;
   }
-  const bool right = belief_.pose_right >= 1.0 - kSure;
-  const bool wrong = belief_.pose_right <= kSure && shares.beaten;
+  const bool right = belief_.pose_right >= kSurelyRight;
+  const bool wrong = belief_.pose_right <= kSurelyWrong && shares.beaten;
   belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
 }
 

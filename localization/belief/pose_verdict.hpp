@@ -13,8 +13,9 @@
 
 namespace deltamap::localization::belief {
 
-/// P(pose right) up to which a pose counts as surely wrong; as surely right from one minus this.
-inline constexpr double kSure = 0.1;
+/// P(pose right) up to which a pose counts as surely wrong, and from which as surely right.
+inline constexpr double kSurelyWrong = 0.1;
+inline constexpr double kSurelyRight = 1.0 - kSurelyWrong;
 
 struct PoseVerdictParams {
   double view_m = 0.5;               ///< a view is new after so much driving, m; > 0

@@ -127,10 +127,10 @@ bool Stability::restore(const StabilityRecord& record) {
       record.bytes.size() != StabilityRecord::kBytesATile * places.cell_count()) {
     return false;
   }
-  const int most = kMostLevel;
   for (std::size_t i = 0; i < places.cell_count(); ++i) {
     const std::uint8_t* const kept = record.bytes.data() + StabilityRecord::kBytesATile * i;
-    tiles_.set(places.cell_of(i), {static_cast<std::uint8_t>(std::min<int>(most, kept[0])), kept[1], kept[2], kept[3]});
+    tiles_.set(places.cell_of(i),
+               {static_cast<std::uint8_t>(std::min<int>(kMostLevel, kept[0])), kept[1], kept[2], kept[3]});
   }
   return true;
 }

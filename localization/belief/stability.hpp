@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "core/grid/block_lattice.hpp"
 #include "core/grid/grid_patch.hpp"
@@ -39,7 +38,7 @@ class Stability {
 
  private:
   struct Tile {
-    std::uint8_t level = 0;       ///< counted confirmations, up to four times what proves a tile
+    std::uint8_t level = 0;       ///< counted confirmations, up to kMostLevel
     std::uint8_t directions = 0;  ///< a bit for each eighth of the circle that it was confirmed from
     std::uint8_t place = 0;   ///< of the last count: 4 bits of column and row in units of half the distance that counts
     std::uint8_t moment = 0;  ///< of the last count, in units of half the time that counts

@@ -10,7 +10,7 @@
 namespace deltamap::localization::hypotheses {
 namespace {
 
-constexpr std::size_t kKeptForEach = 6;  // candidates for each pose that is refined: neighbours in the lattice fit alike
+constexpr std::size_t kKeptForEach = 6;  // candidates for each refined pose: neighbours in the lattice fit alike
 
 }  // namespace
 

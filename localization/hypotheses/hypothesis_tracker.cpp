@@ -142,8 +142,8 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
     bank_.believe(*seen.map_from_believed);
   }
   if (believing_) last_believed_ = seen.map_from_believed;
-  held_by_ = believing_ ? params_.stable_support_nats * seen.stable_support : 0.0;
-  bank_.set_believed_prior(held_by_);
+  support_nats_ = believing_ ? params_.stable_support_nats * seen.stable_support : 0.0;
+  bank_.set_believed_prior(support_nats_);
   thin(seen);
   if (ends_.size() == 0) return report_;
 
@@ -281,8 +281,9 @@ void HypothesisTracker::admit_beside_believed(const sensor::LikelihoodField& fie
 }
 
 void HypothesisTracker::write_report() {
-  report_ = report_on(bank_, alias_monitor_.hypotheses(),
-                      {.kidnapped_now_prior = params_.kidnapped_now_prior, .beats_by = params_.beats_by + held_by_});
+  report_ =
+      report_on(bank_, alias_monitor_.hypotheses(),
+                {.kidnapped_now_prior = params_.kidnapped_now_prior, .beats_by = params_.beats_by + support_nats_});
 }
 
 }  // namespace deltamap::localization::hypotheses

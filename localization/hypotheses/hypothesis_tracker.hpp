@@ -124,7 +124,7 @@ class HypothesisTracker {
   double since_step_m_ = 0.0;
   double since_step_rad_ = 0.0;
   HypothesisReport report_;
-  double held_by_ = 0.0;
+  double support_nats_ = 0.0;
 };
 
 }  // namespace deltamap::localization::hypotheses

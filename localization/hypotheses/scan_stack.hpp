@@ -38,9 +38,9 @@ class ScanStack {
   [[nodiscard]] Sums log_likelihoods(const sensor::LikelihoodField& field, const Pose2& map_from_robot,
                                      const Pose2& continuous_odom_from_robot) const;
 
-  /// What the newest scans say of a hypothesis beside another, since when they speak for it most; nothing where they never
-  /// do. Older ones lie too far back for a robot that has just been carried, and among hundreds of hypotheses chance
-  /// favours one.
+  /// What the newest scans say of a hypothesis beside another, since when they speak for it most; nothing where they
+  /// never do. Older ones lie too far back for a robot that has just been carried, and among hundreds of hypotheses
+  /// chance favours one.
   [[nodiscard]] Comparison compared_lately(const sensor::LikelihoodField& field, const Pose2& hypothesis,
                                            const Pose2& other, const Pose2& continuous_odom_from_robot,
                                            double of_a_beam) const;

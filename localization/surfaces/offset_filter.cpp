@@ -140,7 +140,7 @@ void OffsetFilter::cease_where_long_unseen() {
 std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& field, const FacedScan& scan,
                                              const Pose2& at) {
   return finder_.find(map_, field, scan, at, [&](const SurfaceRecord& record) -> SurfacePlace {
-    if (record.followed_as == SurfaceRecord::kNotFollowed) return {record.offset_m, 0.0, sensor::kMovedM};
+    if (record.followed_as == SurfaceRecord::kNotFollowed) return {record.offset_m, 0.0, sighting::kMostDeviationM};
     const Eigen::Index offset = OffsetState::offset_of(static_cast<std::size_t>(record.followed_as));
     return {state_.mean()[offset], state_.mean()[offset + 1],
             std::sqrt(std::max(0.0, state_.covariance()(offset, offset)))};
@@ -150,7 +150,7 @@ std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& fiel
 std::span<const Sighting> OffsetFilter::find_by_map(const sensor::LikelihoodField& field, const FacedScan& scan,
                                                     const Pose2& at) {
   return finder_.find(map_, field, scan, at, [](const SurfaceRecord& record) {
-    return SurfacePlace{record.offset_m, 0.0, sensor::kMovedM};
+    return SurfacePlace{record.offset_m, 0.0, sighting::kMostDeviationM};
   });
 }
 

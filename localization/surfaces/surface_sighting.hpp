@@ -97,8 +97,12 @@ inline constexpr double kFarthestM = 1.5;       // from where the map has it
 inline constexpr double kFacingCosine = 0.86;   // 30°: between an end's normal and its surface's
 inline constexpr double kBesideM = 0.4;         // beyond a surface's end: things are pushed along their faces too
 inline constexpr double kExplainedCells = 1.6;  // from a contour
+/// Of an offset: a larger one widens the search no further, as does one that no visit has told of.
+inline constexpr double kMostDeviationM = 0.05;
 /// How far from a surface's place an end may lie that the map explains.
-[[nodiscard]] inline double known_within_m(double deviation_m) { return 0.15 + 3.0 * std::min(0.05, deviation_m); }
+[[nodiscard]] inline double known_within_m(double deviation_m) {
+  return 0.15 + 3.0 * std::min(kMostDeviationM, deviation_m);
+}
 [[nodiscard]] bool is_on_contour(const sensor::LikelihoodField& field, const Point2& at);
 /// Does a face of the map end there too?
 [[nodiscard]] bool ends_face(const sensor::LikelihoodField& field, const Point2& at, const Point2& outward);

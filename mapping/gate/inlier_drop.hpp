@@ -17,7 +17,7 @@ class InlierDropDetector {
   /// What is usual now is what has to come back; nothing where that is not known yet: a moment is no usual view.
   void remember();
   void forget() { remembered_.reset(); }
-  /// Do fewer beams fit than was usual when it was remembered, by a fifth of the beams?
+  /// Do fewer beams fit than was usual when it was remembered, by more than kMostDrop?
   [[nodiscard]] bool is_worse_than_remembered() const;
 
  private:

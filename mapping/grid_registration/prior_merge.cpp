@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/points_in_map.hpp"
+#include "core/geometry/pose_spread.hpp"
 #include "core/grid/near_occupied.hpp"
 #include "mapping/merge/overlay_score.hpp"
 #include "mapping/registration/registration.hpp"

@@ -46,7 +46,8 @@ struct PriorAnswer {
   double chi2 = 0.0;  ///< of the correction under the prior
   double cost = 0.0;  ///< -2 ln p of the points and of the prior
 };
-/// What prior_merge() chooses among: best first, none beside a better one; none where there are too few points.
+/// What prior_merge() chooses among: best first, none beside a better one; none where there are fewer points
+/// than make a contour; of fewer on known cells the agreement is 0.
 [[nodiscard]] std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map,
                                                      std::span<const Point2> surface_points_in_map_guess,
                                                      const PosePrior& prior, const PriorMergeParams& params);

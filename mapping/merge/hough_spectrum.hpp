@@ -13,8 +13,7 @@ namespace deltamap::mapping::merge {
 /// θ_S: values of a spectrum.
 inline constexpr int kHoughBins = 360;
 
-/// θ_S values over [0°, 360°), 1 cell a bin of ρ. Lines have no direction: the period is
-/// 180°.
+/// θ_S values over [0°, 360°), 1 cell a bin of ρ. Lines have no direction: the period is 180°.
 [[nodiscard]] std::vector<double> hough_spectrum(std::span<const PointInCells> contour);
 
 /// CC(l) = Σ_i HS1(i) HS2(i + l), circular (Eq. 6; printed with HT for HS).

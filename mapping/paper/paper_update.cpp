@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 
+#include "core/geometry/pose_spread.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/registration/transformed_grid.hpp"
 

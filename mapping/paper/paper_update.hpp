@@ -4,7 +4,6 @@
 // pose are ours: in a hall that repeats itself a merge without prior is sure and wrong.
 #pragma once
 
-#include "core/geometry/pose_spread.hpp"
 #include "mapping/merge/map_merge.hpp"
 #include "mapping/paper/local_map.hpp"
 #include "mapping/paper/scan_alignment.hpp"

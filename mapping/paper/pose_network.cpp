@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/pose_spread.hpp"
 #include "mapping/paper/sparse_cholesky.hpp"
 
 namespace deltamap::mapping::paper {

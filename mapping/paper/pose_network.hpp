@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/pose_spread.hpp"
+#include "core/geometry/pose2.hpp"
 
 namespace deltamap::mapping::paper {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/geometry/points_in_map.hpp"
+#include "core/geometry/pose_spread.hpp"
 #include "core/grid/block_lattice.hpp"
 #include "core/grid/tiled.hpp"
 #include "mapping/redraw/ray_counts.hpp"

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "core/geometry/pose_spread.hpp"
+#include "core/geometry/pose2.hpp"
 #include "mapping/registration/registration.hpp"
 
 namespace deltamap::mapping::registration {

@@ -95,11 +95,11 @@ def filled(template, values):
 
 
 def told_once(parts):
-    """Runs, first seed and commit of each experiment in the table, in one sentence for those that share seed and commit."""
+    """Runs, first seed and commit of each experiment in the table, a line for those that share seed and commit."""
     groups = {}
     for name in dict.fromkeys(row[-1] for row in ROWS):
         summary = parts[name]["summary"]
-        groups.setdefault((summary["seed"], summary.get("commit", parts[name]["revision"])), []).append("%s %d" % (name, summary["runs"]))
+        groups.setdefault((summary["seed"], summary.get("commit", parts[name]["revision"])), []).append("%s (%d)" % (name, summary["runs"]))
     return "\n".join("Runs from seed %d, at %s: %s." % (seed, commit, ", ".join(names)) for (seed, commit), names in groups.items())
 
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"

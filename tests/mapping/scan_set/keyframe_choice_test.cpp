@@ -16,7 +16,7 @@ bool follows(const ScanPlace& now) { return is_next_keyframe(kParams, scan_at({1
 
 TEST(KeyframeChoice, WantsWayTurnOrTime) {
   EXPECT_FALSE(follows(scan_at({1.1, 2.0, 3.0}, 0.4)));
-  EXPECT_TRUE(follows(scan_at({1.0, 1.85, 3.1})));
+  EXPECT_TRUE(follows(scan_at({1.0, 1.84, 3.1})));
   EXPECT_TRUE(follows(scan_at({1.0, 2.0, 3.1}, 0.5)));
 }
 
