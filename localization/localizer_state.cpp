@@ -84,7 +84,7 @@ sensor::RefinedPose Localizer::State::believe_in(const Pose2& hypothesis, const 
   sensor::RefinedPose believed = tracker.start_around(around, now);
   start_tracking();
   if (!hypotheses.is_near_believed(hypothesis)) {
-    judgement.start(kTrustInASearch, true);
+    judgement.start(kTrustInASearch);
     was_found = true;
   }
   hypotheses.start_believing_in(hypothesis);

@@ -50,8 +50,6 @@ constexpr std::array kOfLocalization{
               [](Settings& s) { s.localizer.judgement.verdict.unproven_weight = 1.0; }},
     Mechanism{"unproven-limit", "limit of P(pose right) without proven tiles",
               [](Settings& s) { s.localizer.judgement.verdict.unproven_limit = 1.0; }},
-    Mechanism{"doubt-after-search", "doubt of a pose that a search has found",
-              [](Settings& s) { s.localizer.judgement.verdict.doubt_after_search = 0.0; }},
     Mechanism{"changed-map", "map called wrong rather than right where many beams miss it",
               [](Settings& s) { s.localizer.judgement.verdict.changed_above = 1.0; }},
 };

@@ -31,8 +31,8 @@ PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
 Judgement::Judgement(const OccupancyGrid& map, const JudgementParams& params)
     : params_{params}, stability_{map.geometry()}, judge_{params.verdict} {}
 
-void Judgement::start(double pose_right, bool found) {
-  judge_.start(pose_right, found);
+void Judgement::start(double pose_right) {
+  judge_.start(pose_right);
   since_check_.reset();
   belief_ = judge_.belief();
   fixed_by_surfaces_ = false;

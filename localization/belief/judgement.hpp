@@ -27,7 +27,7 @@ class Judgement {
   Judgement(const OccupancyGrid& map, const JudgementParams& params);
 
   /// Begins anew at a pose that is right with this probability.
-  void start(double pose_right, bool found = false);
+  void start(double pose_right);
 
   struct View {
     const OccupancyGrid& map;

@@ -64,8 +64,7 @@ std::optional<Weakest> weakest_direction(const ViewTally& view, const PoseVerdic
 
 }  // namespace
 
-void PoseJudge::start(double pose_right, bool found) {
-  found_ = found;
+void PoseJudge::start(double pose_right) {
   right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
   proof_ = 0.0;
   any_view_ = false;
@@ -93,16 +92,10 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   const double fresh = novelty(passed, weakest ? std::optional{weakest->support} : std::nullopt);
   const double still_right = probability(right_log_odds_) * (1.0 - fresh * params_.lost_in_a_view);
   right_log_odds_ = log_odds(std::clamp(still_right, params_.least_wrong, 1.0 - params_.least_wrong));
-  if (weakest) right_log_odds_ += fresh * told_by(weakest->evidence);
+  if (weakest) right_log_odds_ += fresh * weakest->evidence;
   judge_map(view, fresh);
   proof_ = proven ? 1.0 : proof_ * std::exp(-fresh / params_.proof_memory_views);
   decide(shares);
-}
-
-/// A hypothesis that a search has chosen because it fits proves less by fitting: a wrong one is an alias of the right
-/// one. What does not fit speaks against it as against any other.
-double PoseJudge::told_by(double evidence) const {
-  return found_ && evidence > 0.0 ? std::max(0.0, evidence - params_.doubt_after_search) : evidence;
 }
 
 void PoseJudge::judge_map(const ViewTally& view, double fresh) {

@@ -18,17 +18,16 @@ inline constexpr double kSurelyWrong = 0.1;
 inline constexpr double kSurelyRight = 1.0 - kSurelyWrong;
 
 struct PoseVerdictParams {
-  double view_m = 0.5;               ///< a view is new after so much driving, m; > 0
-  double view_rad = radians(20.0);   ///< or turning, rad; > 0
-  double view_s = 5.0;               ///< or waiting, s; > 0
-  double least_beams = 3.0;          ///< that must tell of a direction before it counts; > 0
-  double unproven_weight = 0.5;      ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
-  double doubt_after_search = 0.35;  ///< taken from what a view says for a hypothesis that was found by its fit; >= 0
-  double lost_in_a_view = 0.002;     ///< P(the pose has become wrong since the last new view); 0..0.1
-  double least_wrong = 0.0005;       ///< P(wrong) that no evidence ever undercuts; 0..0.1
-  double unproven_limit = 0.85;      ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
-  double proof_memory_views = 4.0;   ///< for so many views it still counts that proven tiles supported the pose; > 0
-  double changed_above = 0.1;        ///< share of beams off the map from which it is rather wrong than right; 0..1
+  double view_m = 0.5;              ///< a view is new after so much driving, m; > 0
+  double view_rad = radians(20.0);  ///< or turning, rad; > 0
+  double view_s = 5.0;              ///< or waiting, s; > 0
+  double least_beams = 3.0;         ///< that must tell of a direction before it counts; > 0
+  double unproven_weight = 0.5;     ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
+  double lost_in_a_view = 0.002;    ///< P(the pose has become wrong since the last new view); 0..0.1
+  double least_wrong = 0.0005;      ///< P(wrong) that no evidence ever undercuts; 0..0.1
+  double unproven_limit = 0.85;     ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
+  double proof_memory_views = 4.0;  ///< for so many views it still counts that proven tiles supported the pose; > 0
+  double changed_above = 0.1;       ///< share of beams off the map from which it is rather wrong than right; 0..1
 };
 
 class PoseJudge {
@@ -36,8 +35,7 @@ class PoseJudge {
   explicit PoseJudge(const PoseVerdictParams& params) : params_{params} {}
 
   /// Begins anew at a pose that is right with this probability.
-  /// `found`: by a search, which has chosen it because it fits.
-  void start(double pose_right, bool found);
+  void start(double pose_right);
 
   struct Passed {
     double driven_m = 0.0;
@@ -60,14 +58,12 @@ class PoseJudge {
 
  private:
   [[nodiscard]] double novelty(const Passed& passed, std::optional<double> support);
-  [[nodiscard]] double told_by(double evidence) const;
   void judge_map(const ViewTally& view, double novelty);
   void decide(const Shares& shares);
 
   PoseVerdictParams params_;
   double right_log_odds_ = 0.0;
   double trust_ = 0.5;
-  bool found_ = false;
   double proof_ = 0.0;         ///< 1 where proven tiles are in view; fades
   double misfit_share_ = 0.0;  ///< running mean over the last views
   bool any_view_ = false;
