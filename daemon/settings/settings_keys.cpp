@@ -18,6 +18,19 @@ SettingKey not_for_results(SettingKey key) {
   return key;
 }
 
+}  // namespace
+
+SettingKey of_both(SettingKey key, const double& value, double& other) {
+  key.assign = [assign = std::move(key.assign), &value, &other](const SettingValue& given) {
+    auto needed = assign(given);
+    other = value;
+    return needed;
+  };
+  return key;
+}
+
+namespace {
+
 /// A number that the driver keeps as one of several words.
 SettingKey baud_key(std::string name, unsigned& field, std::vector<std::pair<std::string, unsigned>> bauds,
                     std::string meaning) {
@@ -111,8 +124,10 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
                "drive also while the pose is unknown, lost or called wrong; a robot that must find itself needs it"));
   const auto first_live = static_cast<std::ptrdiff_t>(keys.size());
   auto& safety = settings.safety;
-  add(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
-                 "radius of the circle that the hull sweeps around the middle of the axle"));
+  auto& wander = settings.wander;
+  add(of_both(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
+                         "radius of the circle that the hull sweeps around the middle of the axle"),
+              safety.robot_radius_m, wander.robot_radius_m));
   add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0,
                  "distance kept between the hull and everything"));
   add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s^2", 0.05, 5.0,
@@ -121,9 +136,9 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
                  "speed at most, whatever the pilot wants"));
   add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,
                   "turn rate at most, whatever the pilot wants"));
-  add(number_key("navigation.safety.hidden_width_m", safety.obstacles.hidden_width_m, "m", 0.01, 2.0,
-                 "width of an obstacle that a gap of beams without answer may hide"));
-  auto& wander = settings.wander;
+  add(of_both(number_key("navigation.safety.hidden_width_m", safety.obstacles.hidden_width_m, "m", 0.01, 2.0,
+                         "width of an obstacle that a gap of beams without answer may hide"),
+              safety.obstacles.hidden_width_m, wander.obstacles.hidden_width_m));
   add(number_key("navigation.wander.speed_m_per_s", wander.speed_m_per_s, "m/s", 0.01, 2.2,
                  "speed where the way is clear"));
   add(degrees_key("navigation.wander.turn_rate_deg_per_s", wander.turn_rate_rad_per_s, 1.0, 500.0,

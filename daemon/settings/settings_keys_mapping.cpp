@@ -5,18 +5,6 @@
 namespace deltamap::daemon {
 namespace {
 
-/// One range for both: what a beam says nothing about it must not draw.
-SettingKey most_range_key(std::string name, double& judged_m, double& drawn_m) {
-  SettingKey key =
-      number_key(std::move(name), judged_m, "m", 0.1, 100.0, "range beyond which a beam neither votes nor draws");
-  key.assign = [assign = std::move(key.assign), &judged_m, &drawn_m](const SettingValue& value) {
-    auto needed = assign(value);
-    drawn_m = judged_m;
-    return needed;
-  };
-  return key;
-}
-
 void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& longest_drawn_m, Keys& keys) {
   keys.push_back(number_key("mapping.persistence_s", evidence.passing.persistence_s, "s", 0.0, 86400.0,
                             "time that a small free-standing object, or what comes and goes, must last to become map"));
@@ -26,7 +14,11 @@ void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& long
       "time that a change must last to become map, unless it is a small free-standing object or comes and goes"));
   keys.push_back(number_key(at + "small_m", evidence.passing.small_m, "m", 0.0, 100.0,
                             "widest free-standing object that counts as small; 0: none is"));
-  keys.push_back(most_range_key(at + "most_range_m", evidence.beams.most_range_m, longest_drawn_m));
+  // What a beam says nothing about it must not draw.
+  double& judged_m = evidence.beams.most_range_m;
+  keys.push_back(of_both(
+      number_key(at + "most_range_m", judged_m, "m", 0.1, 100.0, "range beyond which a beam neither votes nor draws"),
+      judged_m, longest_drawn_m));
 }
 
 void add_paper(mapping::paper::DivergenceRatioParams& ratio, mapping::paper::DeltaPhaseParams& phase, Keys& keys) {

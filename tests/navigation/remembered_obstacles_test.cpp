@@ -53,6 +53,8 @@ TEST(RememberedObstacles, StayWhereABeamBringsNothingBack) {
 TEST(RememberedObstacles, AreNoneFarAwayUnderTheHullOrWithoutAPose) {
   EXPECT_TRUE(remembered_obstacles(thing_at({9.0, 0.5}), open_view(), {}).empty());
   EXPECT_TRUE(remembered_obstacles(thing_at({3.05, 1.95}), open_view(), {}).empty());
+  EXPECT_EQ(remembered_obstacles(thing_at({3.0, 1.6}), open_view(), {}).size(), 1u);
+  EXPECT_TRUE(remembered_obstacles(thing_at({3.0, 1.6}), open_view(), {.hull_m = 0.5}).empty()) << "a wider robot";
   TrackedScan lost = open_view();
   lost.estimate.state = LocalizerState::kLost;
   EXPECT_TRUE(remembered_obstacles(thing_at({3.02, 1.01}), lost, {}).empty());

@@ -63,6 +63,17 @@ TEST(Settings, OneKeySaysHowFarABeamSaysAndDrawsSomething) {
   EXPECT_EQ(Settings{}.mapping.store_scan.evidence.beams.most_range_m, Settings{}.mapping.update.evidence.longest_m);
 }
 
+TEST(Settings, OneKeySaysHowWideTheRobotIsForSafetyAndForWandering) {
+  const Settings settings = parse_settings("navigation: {safety: {robot_radius_m: 0.4, hidden_width_m: 0.2}}", "f");
+  EXPECT_EQ(settings.navigation.safety.robot_radius_m, 0.4);
+  EXPECT_EQ(settings.navigation.wander.robot_radius_m, 0.4);
+  EXPECT_EQ(settings.navigation.safety.obstacles.hidden_width_m, 0.2);
+  EXPECT_EQ(settings.navigation.wander.obstacles.hidden_width_m, 0.2);
+  const NavigationSettings delivered;
+  EXPECT_EQ(delivered.safety.robot_radius_m, delivered.wander.robot_radius_m);
+  EXPECT_EQ(delivered.safety.obstacles.hidden_width_m, delivered.wander.obstacles.hidden_width_m);
+}
+
 TEST(Settings, AnUnknownKeyIsNamedWithFileLineAndTheNearestKnownOne) {
   EXPECT_EQ(error_of("seed: 1\nlaser:\n  prot: /dev/ttyS0\n"),
             "robot.yaml:3:3: laser.prot: unknown key (nearest key laser.port)");
