@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """A document that several programs write, each its own section."""
-import pathlib, sys, tempfile, unittest
+import json, pathlib, sys, tempfile, unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import project
@@ -29,6 +29,13 @@ class Sections(unittest.TestCase):
         before = self.file.read_text()
         project.write_section(self.file, "Crashes", ["some", "", "### below", "", "more"])
         self.assertEqual(self.file.read_text(), before)
+
+    def test_settings_tell_of_no_place_on_the_machine(self):
+        report = self.file.parent / "demo-1" / "run" / "report.json"
+        report.parent.mkdir(parents=True)
+        changed = {"dashboard.token_file": "/home/robot/token", "map.store": "/home/robot/maps", "navigation.mode": "wander"}
+        report.write_text(json.dumps({"settings": {"changed": changed}}))
+        self.assertEqual(project.settings_section([report])[-1], '- demo-1 (seeds 1): navigation.mode: "wander"')
 
 
 if __name__ == "__main__":
