@@ -37,6 +37,7 @@ class Wander {
   /// that the scan saw.
   [[nodiscard]] DriveCommand step(const TrackedScan& tracked, std::span<const Point2> also_in_robot = {});
 
+  [[nodiscard]] const WanderParams& params() const { return params_; }
   /// In the middle of a run: from the next step on. A turn or a leg that was begun is ended.
   void set_params(const WanderParams& params) { params_ = params; }
 

@@ -36,7 +36,6 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
                                      Wiring wiring)
     : wiring_{std::move(wiring)},
       step_{settings, start},
-      hull_m_{settings.navigation.wander.robot_radius_m},
       drives_without_pose_{settings.navigation.drive_without_pose},
       mapping_enabled_{settings.mapping.enabled},
       first_revision_{start.revision},
@@ -62,7 +61,6 @@ void LocalizationStage::run() {
     auto message = wiring_.sensors.receive_within(kLookEvery);
     while (const auto params = wiring_.wander.try_receive()) {
       if (pilot_) pilot_->set_params(*params);
-      hull_m_ = params->robot_radius_m;
     }
     if (seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s) take_commands_without_scan();
     if (!message) continue;
@@ -154,7 +152,7 @@ void LocalizationStage::pilot(const TrackedScan& tracked) {
 
 std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& tracked) const {
   if (transients_ == nullptr) return {};
-  return navigation::remembered_obstacles(*transients_, tracked, {.hull_m = hull_m_});
+  return navigation::remembered_obstacles(*transients_, tracked, {.hull_m = pilot_->params().robot_radius_m});
 }
 
 // --- the operator ---

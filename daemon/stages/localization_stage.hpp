@@ -82,7 +82,6 @@ class LocalizationStage {
   Wiring wiring_;
   LocalizationStep step_;
   std::optional<navigation::Wander> pilot_;
-  double hull_m_;  // radius of the circle that the robot sweeps
   bool drives_without_pose_;
   LatencyHistogram latency_;
   Pulse pulse_;

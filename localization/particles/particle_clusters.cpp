@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <numbers>
 
 #include "core/geometry/angle.hpp"

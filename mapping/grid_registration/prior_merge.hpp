@@ -4,7 +4,6 @@
 // by the prior; a correction that the prior finds implausible (χ²) is refused.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
