@@ -99,6 +99,9 @@ struct Belief {
   bool is_checked = false;   ///< the counts are of this scan; else of the last one that was held against the map
   double other_share = 0.0;  ///< of the belief that the best other pose hypothesis holds, [0, 1]
   Pose2 map_from_other;      ///< that hypothesis; of no meaning where its share is 0
+  /// The last scan at a tracked pose that did not follow from the one before; none: each has.
+  std::optional<Timestamp> broke_off_at{};
+  bool fits_worse = false;  ///< the map, than before scans broke off: the robot was carried, by all signs
 };
 
 /// What the localizer believes at one scan.

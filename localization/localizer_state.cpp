@@ -237,7 +237,7 @@ const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstan
 bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const {
   if (hypothesis.share_around < hypotheses::kWinningShare || hypothesis.followed_m < hypotheses::kWinsAfterM)
     return false;
-  if (ends.size() == 0 || tracker.is_fixed_by_surfaces()) return false;
+  if (ends.size() == 0) return false;
   const double fit = sensor::explained_share(field, ends, hypothesis.map_from_robot);
   return fit >= params.fit.found_above || fit >= sensor::explained_share(field, ends, believed) + kClearlyBetter;
 }
@@ -253,6 +253,12 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
   newest_fit = blind ? std::nullopt : std::optional{seen.fit};
   judgement.fix_by_surfaces(!searches() && tracker.is_fixed_by_surfaces());
+  judgement.follow({.scan = scan,
+                    .rays = rays,
+                    .odom_from_robot = last_odom,
+                    .odometry_epoch = last_epoch.value_or(0),
+                    .map_from_robot = believed.map_from_robot},
+                   is_tracking);
   if (check.under_way()) return blind ? void() : judge_start(seen.fit);
   const LocalizerState before = monitor.state();
   judgement.observe({.map = *map,

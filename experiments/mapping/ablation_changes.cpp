@@ -87,9 +87,9 @@ constexpr std::array kOfMapping{
               [](Settings& s) { s.mapping.update.evidence.most_enclosed_m2 = 0.0; }},
     Mechanism{"small-groups", "small groups of new occupied cells left out",
               [](Settings& s) { s.mapping.update.evidence.least_group_cells = 1; }},
-    Mechanism{"scan-break", "write gate: break between scans",
+    Mechanism{"scan-break", "signs of a carried robot: break between scans",
               [](Settings& s) {
-                auto& scan_break = s.mapping.store_scan.gate.scan_break;
+                auto& scan_break = s.localizer.judgement.scan_break;
                 scan_break.most = scan_break.most_one_way = 1.0;
               }},
     Mechanism{"other-share", "write gate: share of another pose hypothesis",

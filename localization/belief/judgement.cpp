@@ -7,7 +7,8 @@
 namespace deltamap::localization::belief {
 namespace {
 
-constexpr double kTrustInSurfaces = 0.5;  // P(pose right) at least, whatever the beams say
+constexpr double kTrustInSurfaces = 0.5;   // P(pose right) at least, whatever the beams say
+constexpr double kTrustWhenCarried = 0.5;  // P(pose right) as soon as the robot was carried, by all signs
 
 PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
@@ -29,10 +30,11 @@ PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
 }  // namespace
 
 Judgement::Judgement(const OccupancyGrid& map, const JudgementParams& params)
-    : params_{params}, stability_{map.geometry()}, judge_{params.verdict} {}
+    : params_{params}, stability_{map.geometry()}, judge_{params.verdict}, continuity_{params.scan_break} {}
 
 void Judgement::start(double pose_right) {
   judge_.start(pose_right);
+  continuity_.start();
   since_check_.reset();
   belief_ = judge_.belief();
   fixed_by_surfaces_ = false;
@@ -40,15 +42,15 @@ void Judgement::start(double pose_right) {
 
 Belief Judgement::belief() const {
   Belief belief = belief_;
-  if (!fixed_by_surfaces_) return belief;
-  belief.verdict = PoseVerdict::kRight;
-  belief.pose_right = std::max(belief.pose_right, 1.0 - belief.other_share);
+  belief.broke_off_at = continuity_.broke_off_at();
+  belief.fits_worse = continuity_.fits_worse();
+  if (!is_fixed()) return belief;
+  belief.pose_right = 1.0 - belief.other_share;
+  belief.verdict = belief.pose_right >= kSurelyRight ? PoseVerdict::kRight : PoseVerdict::kUndecided;
   return belief;
 }
 
-double Judgement::trust() const {
-  return fixed_by_surfaces_ ? std::max(judge_.trust(), kTrustInSurfaces) : judge_.trust();
-}
+double Judgement::trust() const { return is_fixed() ? std::max(judge_.trust(), kTrustInSurfaces) : judge_.trust(); }
 
 bool Judgement::due(const PoseJudge::Passed& passed) {
   if (!since_check_) return true;
@@ -57,6 +59,10 @@ bool Judgement::due(const PoseJudge::Passed& passed) {
   since_check_->time_s += passed.time_s;
   return since_check_->driven_m >= params_.check_m || since_check_->turned_rad >= params_.check_rad ||
          since_check_->time_s >= params_.check_s;
+}
+
+void Judgement::follow(const FollowedScan& scan, bool is_tracking) {
+  if (continuity_.observe(scan, belief_, is_tracking)) judge_.start(kTrustWhenCarried);
 }
 
 void Judgement::observe(const View& view) {

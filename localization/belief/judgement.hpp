@@ -7,6 +7,7 @@
 #include <span>
 
 #include "localization/belief/beam_check.hpp"
+#include "localization/belief/continuity.hpp"
 #include "localization/belief/pose_verdict.hpp"
 #include "localization/belief/stability.hpp"
 #include "localization/belief/view_tally.hpp"
@@ -16,6 +17,7 @@ namespace deltamap::localization::belief {
 
 struct JudgementParams {
   PoseVerdictParams verdict;
+  ScanBreakParams scan_break;
   double check_m = 0.1;             ///< beams are checked again after so much driving, m; >= 0
   double check_rad = radians(2.0);  ///< or turning, rad; >= 0
   double check_s = 0.4;             ///< or waiting, s; >= 0
@@ -29,6 +31,9 @@ class Judgement {
   /// Begins anew at a pose that is right with this probability.
   void start(double pose_right);
 
+  /// Every scan, before it is observed: was the robot carried?
+  void follow(const FollowedScan& scan, bool is_tracking);
+
   struct View {
     const OccupancyGrid& map;
     const Scan& scan;
@@ -40,8 +45,8 @@ class Judgement {
   };
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
   void observe(const View& view);
-  /// Do surfaces of the map fix the pose at this scan? Then nothing but another pose speaks against it, however many
-  /// beams end elsewhere. Holds until the next call or start().
+  /// Do surfaces of the map fix the pose at this scan? Where it has been followed without a break, nothing but another
+  /// pose speaks against it then, however many beams end elsewhere. Holds until the next call or start().
   void fix_by_surfaces(bool fixed) { fixed_by_surfaces_ = fixed; }
 
   [[nodiscard]] Belief belief() const;
@@ -57,13 +62,16 @@ class Judgement {
   [[nodiscard]] bool restore(const StabilityRecord& record) { return stability_.restore(record); }
 
  private:
+  [[nodiscard]] bool is_fixed() const { return fixed_by_surfaces_ && continuity_.is_unbroken(); }
   [[nodiscard]] bool due(const PoseJudge::Passed& passed);
+  void check(const View& view);
   void earn(std::span<const CheckedBeam> beams, const View& view);
 
   JudgementParams params_;
   Stability stability_;
   BeamCheck check_;
   PoseJudge judge_;
+  Continuity continuity_;
   std::optional<PoseJudge::Passed> since_check_;  ///< none: nothing checked yet
   Belief belief_;                                 ///< by the beams
   bool fixed_by_surfaces_ = false;

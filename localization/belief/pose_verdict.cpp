@@ -111,7 +111,8 @@ void PoseJudge::judge_map(const ViewTally& view, double fresh) {
 void PoseJudge::decide(const Shares& shares) {
   trust_ = probability(right_log_odds_) * shares.believed;
   const double limit = 1.0 - (1.0 - proof_) * (1.0 - params_.unproven_limit);
-  belief_.pose_right = std::clamp(trust_, 1.0 - limit, limit);
+  const double by_beams = std::clamp(trust_, 1.0 - limit, limit);
+  belief_.pose_right = std::min(by_beams, 1.0 - shares.best_other);
   const double wrong_if_right = probability(kMapSteepness * (misfit_share_ - params_.changed_above));
   belief_.map_wrong = belief_.pose_right * wrong_if_right + 0.5 * (1.0 - belief_.pose_right);
   if (shares.searching) {
@@ -119,7 +120,7 @@ void PoseJudge::decide(const Shares& shares) {
     return;
   }
   const bool right = belief_.pose_right >= kSurelyRight;
-  const bool wrong = belief_.pose_right <= kSurelyWrong && shares.beaten;
+  const bool wrong = by_beams <= kSurelyWrong && shares.beaten;  // not for an alias that is only monitored
   belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
 }
 

@@ -25,7 +25,7 @@ struct PoseVerdictParams {
   double unproven_weight = 0.5;     ///< of a beam on a tile that has not proven to stay, against one that has; 0..1
   double lost_in_a_view = 0.002;    ///< P(the pose has become wrong since the last new view); 0..0.1
   double least_wrong = 0.0005;      ///< P(wrong) that no evidence ever undercuts; 0..0.1
-  double unproven_limit = 0.85;     ///< without proven tiles P(pose right) stays within this and 1 - this; 0.5..1
+  double unproven_limit = 0.85;     ///< without proven tiles the beams leave P(right) within this and 1 - this; 0.5..1
   double proof_memory_views = 4.0;  ///< for so many views it still counts that proven tiles supported the pose; > 0
   double changed_above = 0.1;       ///< share of beams off the map from which it is rather wrong than right; 0..1
 };

@@ -6,7 +6,7 @@
 namespace deltamap::mapping::gate {
 namespace {
 
-constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late
+constexpr double kSure = 0.95;  // P(pose right) of a scan that may vote late, were the other hypothesis ruled out
 
 }  // namespace
 
@@ -32,7 +32,8 @@ void GatedSets::withdraw(const TrackedScan& tracked) {
 /// Not where the pose itself may be off or is spread wide: such scans would draw beside what is there.
 bool GatedSets::waits_to_vote(const Estimate& estimate) const {
   const GateReason why = gate_.reason();
-  return !lets_vote() && !gate_.is_distrusted() && estimate.belief.pose_right >= kSure &&
+  const Belief& belief = estimate.belief;
+  return !lets_vote() && !gate_.is_distrusted() && belief.pose_right >= kSure * (1.0 - belief.other_share) &&
          (why == GateReason::kConfirming || why == GateReason::kOtherHypothesis);
 }
 

@@ -66,14 +66,13 @@ bool WriteGate::was_relocalized(const Estimate& estimate) {
 GateReason WriteGate::judged(const TrackedScan& tracked) {
   const Estimate& estimate = tracked.estimate;
   const bool relocalized = was_relocalized(estimate);
-  inlier_drop_.observe(tracked);
   if (estimate.state == LocalizerState::kGlobal) return GateReason::kSearching;
   if (estimate.state == LocalizerState::kLost) return GateReason::kLost;
   if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
   if (relocalized) return GateReason::kRelocalized;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
-  if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   if (estimate.belief.other_share > params_.most_other_share) return GateReason::kOtherHypothesis;
+  if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   const bool is_held = estimate.belief.stable.expected + estimate.belief.elsewhere.expected >= params_.least_expected;
   if (!is_held || widest_deviation_m(estimate.noise_covariance()) > params_.most_deviation_m)
     return GateReason::kSpread;
@@ -88,48 +87,32 @@ double DrivenWay::since_last_m(const TrackedScan& tracked) {
   return way_m;
 }
 
-/// A break alone may be a thing that somebody has moved. A break after which the map fits worse too is a robot that has
-/// been carried: its own estimate goes on as if nothing had been, so as much has to fit again as did before.
+/// The estimate of a robot that has been carried goes on as if nothing had been.
 void WriteGate::note_break(const TrackedScan& tracked) {
-  const Timestamp time = tracked.scan.time;
-  const bool breaks_off = scan_break_.observe(tracked);
+  const Belief& belief = tracked.estimate.belief;
+  const bool breaks_off = belief.broke_off_at != broke_off_at_;
+  broke_off_at_ = belief.broke_off_at;
   if (is_confirming_) {
     if (breaks_off) held_s_ = held_m_ = 0.0;  // whoever was carried once may be carried again
     return;
   }
-  if (was_tracking_ && breaks_off) {
-    if (!broke_off_at_) inlier_drop_.remember();
-    broke_off_at_ = time;
-  }
-  if (!broke_off_at_) return;
-  if (inlier_drop_.is_worse_than_remembered()) {
-    is_confirming_ = true;
-    confirms_after_ = GateReason::kConfirming;
-  } else if (seconds(time - *broke_off_at_) > params_.carried_within_s) {
-    forget_break();
-  }
-}
-
-void WriteGate::forget_break() {
-  broke_off_at_.reset();
-  inlier_drop_.forget();
+  if (!belief.fits_worse) return;
+  is_confirming_ = true;
+  confirms_after_ = GateReason::kConfirming;
 }
 
 bool WriteGate::breaks_now(Timestamp time) const {
-  return broke_off_at_ && seconds(time - *broke_off_at_) <= params_.break_settles_s;
-}
-
-bool WriteGate::fits_as_before_break(Timestamp time) const {
-  return !broke_off_at_ || seconds(time - *broke_off_at_) > params_.most_unlike_s ||
-         !inlier_drop_.is_worse_than_remembered();
+  if (!broke_off_at_) return false;
+  const double since_s = seconds(time - *broke_off_at_);
+  return since_s >= 0.0 && since_s <= params_.break_settles_s;
 }
 
 /// Has the pose held for long and far enough? A moment of doubt only holds that up; a proof that the pose was wrong
 /// takes back all that has spoken for it.
-bool WriteGate::holds(GateReason judgement, Timestamp time, double passed_s, double driven_m) {
+bool WriteGate::holds(GateReason judgement, bool fits_worse, double passed_s, double driven_m) {
   if (proves_wrong(judgement)) {
     held_s_ = held_m_ = 0.0;
-  } else if (judgement == GateReason::kOpen && fits_as_before_break(time)) {
+  } else if (judgement == GateReason::kOpen && !fits_worse) {
     held_s_ += passed_s;
     held_m_ += driven_m;
   }
@@ -158,10 +141,9 @@ void WriteGate::observe(const TrackedScan& tracked) {
     if (!is_confirming_ || !may_be_another(confirms_after_)) confirms_after_ = judgement;
     is_confirming_ = true;
   }
-  if (is_confirming_ && holds(judgement, time, passed_s, driven_m)) {
+  if (is_confirming_ && holds(judgement, tracked.estimate.belief.fits_worse, passed_s, driven_m)) {
     is_confirming_ = false;
     held_s_ = held_m_ = 0.0;
-    forget_break();
   }
   const bool confirms = is_confirming_ || breaks_now(time);
   reason_ = confirms && judgement == GateReason::kOpen ? GateReason::kConfirming : judgement;

@@ -12,9 +12,7 @@
 #include <string_view>
 
 #include "core/messages.hpp"
-#include "mapping/gate/inlier_drop.hpp"
 #include "mapping/gate/provisional_window.hpp"
-#include "mapping/gate/scan_break.hpp"
 
 namespace deltamap::mapping::gate {
 
@@ -50,10 +48,7 @@ struct WriteGateParams {
   double confirm_followed_m = 4.0;  ///< which an alias cannot explain: seconds and metres; >= 0
   double hold_s = 1.5;              ///< a set waits so long for a sign that its last scans were wrong; >= 0
   double hold_other_share = 0.005;  ///< of the belief: while another pose hypothesis holds more, it waits on; [0, 1]
-  ScanBreakParams scan_break;
-  double break_settles_s = 1.0;   ///< after a break it waits so long to see whether the map still fits; >= 0
-  double carried_within_s = 5.0;  ///< so long after it a worse fit says that the robot was carried; >= 0
-  double most_unlike_s = 120.0;   ///< for so long after one as much must fit as before to confirm the pose; >= 0
+  double break_settles_s = 1.0;     ///< after scans broke off it waits so long to see whether the map still fits; >= 0
   ProvisionalParams provisional;
 };
 
@@ -77,8 +72,7 @@ class DrivenWay {
 
 class WriteGate {
  public:
-  explicit WriteGate(const WriteGateParams& params)
-      : params_{params}, scan_break_{params.scan_break}, provisional_{params.provisional} {}
+  explicit WriteGate(const WriteGateParams& params) : params_{params}, provisional_{params.provisional} {}
 
   /// Every tracked scan in order.
   void observe(const TrackedScan& tracked);
@@ -104,15 +98,11 @@ class WriteGate {
   [[nodiscard]] GateReason judged(const TrackedScan& tracked);
   [[nodiscard]] bool was_relocalized(const Estimate& estimate);
   void note_break(const TrackedScan& tracked);
-  void forget_break();
   [[nodiscard]] bool breaks_now(Timestamp time) const;
-  [[nodiscard]] bool fits_as_before_break(Timestamp time) const;
-  [[nodiscard]] bool holds(GateReason judgement, Timestamp time, double passed_s, double driven_m);
+  [[nodiscard]] bool holds(GateReason judgement, bool fits_worse, double passed_s, double driven_m);
 
   WriteGateParams params_;
-  InlierDropDetector inlier_drop_;
-  ScanBreak scan_break_;
-  std::optional<Timestamp> broke_off_at_;  // the last break of the scans, while a worse fit still tells of it
+  std::optional<Timestamp> broke_off_at_;  // the last break that the belief has told of
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
   bool was_tracking_ = false;

@@ -35,6 +35,29 @@ TEST(Recovery, FindsARobotThatSlippedAMetre) {
   }
 }
 
+TEST(Recovery, TellsWithinASecondThatTheRobotWasCarriedAndCallsThePoseRightNoMore) {
+  Tour tour{1};
+  Localizer localizer = localizer_after(150, tour, 1);
+  ASSERT_FALSE(tour.next(localizer).estimate.belief.broke_off_at);
+  tour.carry_to({14.0, 7.0, 2.5});
+  const Timestamp carried_after = tour.odometry().time;
+  TrackedScan tracked = tour.next(localizer);
+  EXPECT_GT(tracked.estimate.belief.broke_off_at, carried_after);
+  for (int i = 0; i < 4; ++i) tracked = tour.next(localizer);
+  EXPECT_TRUE(tracked.estimate.belief.fits_worse);
+  EXPECT_NE(tracked.estimate.belief.verdict, PoseVerdict::kRight);
+  EXPECT_LE(tracked.estimate.belief.pose_right, 0.5);
+}
+
+TEST(Recovery, TellsOfNoCarriedRobotWhereScansComeWithoutOdometry) {
+  Tour tour{1};
+  Localizer localizer = localizer_after(150, tour, 1);
+  for (int i = 0; i < 20; ++i) {
+    tour.wait(kScanPeriodS);
+    EXPECT_FALSE(localizer.observe(tour.scan()).estimate.belief.broke_off_at) << i;
+  }
+}
+
 TEST(Recovery, NeverJumpsWhileAllIsWell) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Tour tour{seed};

@@ -52,9 +52,33 @@ TEST(Judgement, BelievesAPoseThatSurfacesFixAsFarAsNoOtherSpeaksAgainstIt) {
   EXPECT_NE(judgement.belief().verdict, PoseVerdict::kRight);
   EXPECT_LT(judgement.trust(), 0.1);
   judgement.fix_by_surfaces(true);
-  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kRight);
+  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kUndecided) << "an alias is too probable";
   EXPECT_DOUBLE_EQ(judgement.belief().pose_right, 0.8);
   EXPECT_DOUBLE_EQ(judgement.trust(), 0.5);
+}
+
+TEST(Judgement, CallsAPoseThatSurfacesFixRightWhereNoOtherSpeaksAgainstIt) {
+  Judgement judgement = judged_with(believed_with(1.0), 0.05);
+  judgement.fix_by_surfaces(true);
+  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kRight);
+  EXPECT_DOUBLE_EQ(judgement.belief().pose_right, 1.0);
+}
+
+TEST(Judgement, HearsNothingOfSurfacesOnceAnotherPoseWasRatherRight) {
+  hypotheses::HypothesisReport report = believed_with(1.0);
+  report.kidnapped_share = 0.6;
+  Judgement judgement = judged_with(report, 0.05);
+  const Scan scan;
+  judgement.follow({.scan = scan, .rays = {}, .odom_from_robot = {}, .map_from_robot = {}}, true);
+  judgement.fix_by_surfaces(true);
+  EXPECT_LT(judgement.trust(), 0.1);
+  EXPECT_NE(judgement.belief().verdict, PoseVerdict::kRight);
+}
+
+TEST(Judgement, GivesAPoseNoMoreBeliefThanAnotherLeavesIt) {
+  hypotheses::HypothesisReport report = believed_with(1.0);
+  report.kidnapped_share = 0.7;
+  EXPECT_DOUBLE_EQ(judged_with(report, 0.99).belief().pose_right, 0.3);
 }
 
 TEST(Judgement, ForgetsAtAStartThatSurfacesHaveFixedThePose) {

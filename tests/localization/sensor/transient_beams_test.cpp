@@ -90,7 +90,7 @@ TEST(TransientBeams, ALocalizerThatIsToldOfACrowdIsNoWorseThanOneThatIsNot) {
   const Errors told = driven({}, true);
   const Errors untold = driven({}, false);
   EXPECT_LE(told.mean_m, untold.mean_m + 0.002);
-  EXPECT_GE(told.trust, untold.trust - 0.01);
+  EXPECT_GE(told.trust, untold.trust - 0.03) << "an alias may hold a little for a moment";
   EXPECT_EQ(told.untracked, 0u);
   EXPECT_LT(told.mean_m, 0.05);
   EXPECT_GT(untold.mean_m, 0.1) << "the goods must pull, or nothing is shown";

@@ -184,20 +184,76 @@ TEST(WriteGate, AStandingRobotConfirmsNothing) {
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
 }
 
-/// Of 150 beams that the map expects to end somewhere.
-TrackedScan seeing(TrackedScan tracked, std::uint32_t short_of, std::uint32_t beyond) {
-  tracked.estimate.belief.elsewhere = {150, 150 - short_of - beyond, short_of, beyond};
+/// Scans broke off at this time, and the map fits worse since then or not.
+TrackedScan broken_off(TrackedScan tracked, Timestamp at, bool fits_worse = false) {
+  tracked.estimate.belief.broke_off_at = at;
+  tracked.estimate.belief.fits_worse = fits_worse;
   return tracked;
 }
+void drive_on(StraightDrive& robot, WriteGate& gate, double duration_s, Timestamp broke_off_at) {
+  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) gate.observe(broken_off(robot.next(), broke_off_at));
+}
 
-TEST(WriteGate, StaysOpenWhereScansStopFittingAndNothingBreaksOff) {
+TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
   StraightDrive robot;
   WriteGate gate{{}};
-  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
-  for (int i = 0; i < 20; ++i) {
-    gate.observe(seeing(robot.next(), 60, 40));
-    EXPECT_TRUE(gate.is_open());
+  drive(robot, gate, 10.0);
+  const Timestamp at = robot.now();
+  drive_on(robot, gate, 0.9, at);
+  EXPECT_EQ(gate.reason(), GateReason::kConfirming);
+  drive_on(robot, gate, 0.4, at);
+  EXPECT_TRUE(gate.is_open());
+  EXPECT_FALSE(gate.trusted_since());  // nothing has proven wrong
+}
+
+TEST(WriteGate, ABreakThatLiesAheadIsNoneWhereTheClockHasFallenBack) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  drive_on(robot, gate, 1.0, robot.now() + duration_from_seconds(3600.0));
+  EXPECT_TRUE(gate.is_open());
+}
+
+TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  const Timestamp at = robot.now();
+  for (int i = 0; i < 400; ++i) {
+    gate.observe(broken_off(robot.next(), at, true));
+    ASSERT_FALSE(gate.is_open()) << i;
   }
+  EXPECT_EQ(gate.confirms_after(), GateReason::kConfirming);
+  drive_on(robot, gate, 7.7, at);
+  EXPECT_FALSE(gate.is_open());
+  drive_on(robot, gate, 0.6, at);
+  EXPECT_TRUE(gate.is_open());
+}
+
+TEST(WriteGate, ARobotThatIsCarriedWhileItsPoseIsConfirmedBeginsAnew) {
+  StraightDrive robot;
+  WriteGate gate{{}};
+  drive(robot, gate, 10.0);
+  disbelieve(robot, gate);
+  drive(robot, gate, 7.0);
+  const Timestamp at = robot.now();
+  drive_on(robot, gate, 7.9, at);
+  EXPECT_FALSE(gate.is_open());
+  drive_on(robot, gate, 0.6, at);
+  EXPECT_TRUE(gate.is_open());
+}
+
+TEST(WriteGate, NamesTheOtherHypothesisThatLeavesThePoseDoubtful) {
+  EXPECT_EQ(reason_after([](Estimate& e) {
+              e.belief.pose_right = 0.6;
+              e.belief.other_share = 0.4;
+            }),
+            GateReason::kOtherHypothesis);
+  EXPECT_EQ(reason_after([](Estimate& e) {
+              e.belief.pose_right = 0.2;
+              e.belief.other_share = 0.8;
+            }),
+            GateReason::kDisbelieved);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class GoneWhileShut {
       const Pose2 pose = test::below_the_containers(time_s_);
       TrackedScan tracked = test::drawn_scan(world, map, pose, time_s_, random_);
       tracked.estimate.state = state;
-      tracked.estimate.belief.pose_right = 0.95;
+      tracked.estimate.belief.pose_right = is_unique ? 0.95 : 0.7;
       tracked.estimate.belief.stable = {100, 97, 1, 2};
       tracked.estimate.belief.other_share = is_unique ? 0.0 : 0.3;
       const auto set = test::set_in(store_.observe(tracked));

@@ -8,11 +8,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/messages.hpp"
 
-namespace deltamap::mapping::gate {
+namespace deltamap::localization::belief {
 
 struct ScanBreakParams {
   double most = 0.2;                ///< of the beams that may suddenly be nearer or farther away, beyond what is usual
@@ -26,13 +27,22 @@ struct ScanBreakParams {
   double most_turn_rad = 0.5;       ///< nor are scans that are turned farther; > 0
 };
 
+/// A scan with where the robot was at it, by the wheels and by the estimate.
+struct FollowedScan {
+  const Scan& scan;
+  std::span<const RayInRobot> rays;  ///< one for each beam
+  Pose2 odom_from_robot;             ///< in one frame over all epochs
+  std::uint32_t odometry_epoch = 0;
+  Pose2 map_from_robot;
+};
+
 class ScanBreak {
  public:
   explicit ScanBreak(const ScanBreakParams& params) : params_{params} {}
 
   /// Every scan in order. Does so much of its view not follow from the scan before that the robot may have been
   /// carried?
-  [[nodiscard]] bool observe(const TrackedScan& tracked);
+  [[nodiscard]] bool observe(const FollowedScan& now);
 
  private:
   struct Shares {
@@ -40,10 +50,10 @@ class ScanBreak {
     double farther = 0.0;
   };
   /// Of the beams that can be compared; nothing where those are too few.
-  [[nodiscard]] std::optional<Shares> compared(const TrackedScan& tracked, const Pose2& now_from_last) const;
-  [[nodiscard]] std::optional<Shares> least_compared(const TrackedScan& tracked) const;
-  [[nodiscard]] bool was_blind(const TrackedScan& tracked) const;
-  void keep(const TrackedScan& tracked);
+  [[nodiscard]] std::optional<Shares> compared(const FollowedScan& now, const Pose2& now_from_last) const;
+  [[nodiscard]] std::optional<Shares> least_compared(const FollowedScan& now) const;
+  [[nodiscard]] bool was_blind(const FollowedScan& now) const;
+  void keep(const FollowedScan& now);
 
   ScanBreakParams params_;
   std::vector<Eigen::Vector2f> ends_;  // of the last scan, robot frame; those that have a range
@@ -54,4 +64,4 @@ class ScanBreak {
   std::optional<Shares> usual_;
 };
 
-}  // namespace deltamap::mapping::gate
+}  // namespace deltamap::localization::belief

@@ -7,16 +7,18 @@
 
 #include "core/messages.hpp"
 
-namespace deltamap::mapping::gate {
+namespace deltamap::localization::belief {
 
 class InlierDropDetector {
  public:
   /// Every scan in order. Shares are averaged over time: what the last checked scan has told holds until the next one.
-  void observe(const TrackedScan& tracked);
+  void observe(const Belief& belief, Timestamp time);
 
   /// What is usual now is what has to come back; nothing where that is not known yet: a moment is no usual view.
   void remember();
   void forget() { remembered_.reset(); }
+  /// Another pose is believed: that it fits as usual is believed too, until scans have been seen from it.
+  void start() { present_ = remembered_.value_or(usual_); }
   /// Do fewer beams fit than was usual when it was remembered, by more than kMostDrop?
   [[nodiscard]] bool is_worse_than_remembered() const;
 
@@ -28,4 +30,4 @@ class InlierDropDetector {
   std::optional<double> remembered_;
 };
 
-}  // namespace deltamap::mapping::gate
+}  // namespace deltamap::localization::belief

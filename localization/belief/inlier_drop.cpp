@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/gate/inlier_drop.hpp"
+#include "localization/belief/inlier_drop.hpp"
 
 #include <algorithm>
 
-#include "mapping/gate/usual_view.hpp"
+#include "localization/belief/usual_view.hpp"
 
-namespace deltamap::mapping::gate {
+namespace deltamap::localization::belief {
 namespace {
 
 constexpr double kPresentS = 0.35;     // over which the present share is averaged
@@ -16,17 +16,16 @@ double approached(double mean, double value, double by) { return mean + std::min
 
 }  // namespace
 
-void InlierDropDetector::observe(const TrackedScan& tracked) {
-  const Belief& belief = tracked.estimate.belief;
+void InlierDropDetector::observe(const Belief& belief, Timestamp time) {
   const std::uint32_t expected = belief.stable.expected + belief.elsewhere.expected;
   if (expected < kLeastCompared) return;
   const std::uint32_t missed =
       belief.stable.short_of + belief.elsewhere.short_of + belief.stable.beyond + belief.elsewhere.beyond;
   const double now = static_cast<double>(missed) / expected;
   if (!last_) usual_ = present_ = now;
-  const double since_last_s = last_ ? seconds(tracked.scan.time - *last_) : 0.0;
+  const double since_last_s = last_ ? seconds(time - *last_) : 0.0;
   const double passed_s = std::clamp(since_last_s, 0.0, kMostOfAScanS);
-  last_ = tracked.scan.time;
+  last_ = time;
   known_for_s_ += passed_s;
   usual_ = approached(usual_, now, passed_s / kUsualS);
   present_ = approached(present_, now, passed_s / kPresentS);
@@ -38,4 +37,4 @@ void InlierDropDetector::remember() {
 
 bool InlierDropDetector::is_worse_than_remembered() const { return remembered_ && present_ - *remembered_ > kMostDrop; }
 
-}  // namespace deltamap::mapping::gate
+}  // namespace deltamap::localization::belief

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/belief/continuity.hpp"
+
+namespace deltamap::localization::belief {
+namespace {
+
+constexpr double kCarriedWithinS = 5.0;  // after a break: so long a worse fit says that the robot was carried,
+constexpr double kMostUnlikeS = 120.0;   // and then so long as much must fit as before
+constexpr double kMostOtherShare = 0.5;  // another hypothesis that holds more is rather right
+
+}  // namespace
+
+bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool is_tracking) {
+  const Timestamp time = scan.scan.time;
+  inlier_drop_.observe(believed, time);
+  if (scan_break_.observe(scan) && is_tracking) {
+    broke_off_at_ = time;
+    if (!suspected_since_) inlier_drop_.remember();
+    if (!was_carried_) suspected_since_ = time;
+  }
+  if (suspected_since_) {
+    const double since_s = seconds(time - *suspected_since_);
+    if (since_s < 0.0 || since_s > (was_carried_ ? kMostUnlikeS : kCarriedWithinS)) forget_suspicion();
+  }
+  const bool is_news = fits_worse() && !was_carried_;
+  was_carried_ = was_carried_ || is_news;
+  if (fits_worse() || believed.other_share > kMostOtherShare) {
+    is_unbroken_ = false;
+  } else if (believed.verdict == PoseVerdict::kRight) {
+    if (was_carried_) forget_suspicion();
+    is_unbroken_ = true;
+  }
+  return is_news;
+}
+
+void Continuity::forget_suspicion() {
+  suspected_since_.reset();
+  was_carried_ = false;
+  inlier_drop_.forget();
+}
+
+}  // namespace deltamap::localization::belief
