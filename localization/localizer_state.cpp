@@ -14,8 +14,7 @@ namespace {
 
 constexpr std::uint64_t kSeedOfHypotheses = 0x52697661;
 constexpr double kTrustAtStart = 0.9;    // P(pose right) at a pose that a person gave,
-constexpr double kTrustInASearch = 0.5;  // at one that a search has found,
-constexpr double kTrustInNothing = 0.1;  // and before there is any
+constexpr double kTrustInNothing = 0.1;  // and before there is any; one that a search has found is as right as wrong
 
 constexpr double kScansLagS = 0.5;    // a scan is at most so much older than the newest report of the wheels
 constexpr double kScansCeaseS = 5.0;  // without a scan: the particles go along with the wheels, step by step
@@ -64,7 +63,7 @@ void Localizer::State::start_tracking() {
 void Localizer::State::check_pose() {
   forget_expected();
   monitor.start(LocalizerState::kGlobal);
-  judgement.start(kTrustInASearch);
+  judgement.start(belief::kAsRightAsWrong);
   check.start();
 }
 
@@ -84,7 +83,7 @@ sensor::RefinedPose Localizer::State::believe_in(const Pose2& hypothesis, const 
   sensor::RefinedPose believed = tracker.start_around(around, now);
   start_tracking();
   if (!hypotheses.is_near_believed(hypothesis)) {
-    judgement.start(kTrustInASearch);
+    judgement.start(belief::kAsRightAsWrong);
     was_found = true;
   }
   hypotheses.start_believing_in(hypothesis);

@@ -52,6 +52,11 @@ constexpr std::array kOfLocalization{
               [](Settings& s) { s.localizer.judgement.verdict.unproven_limit = 1.0; }},
     Mechanism{"changed-map", "map called wrong rather than right where many beams miss it",
               [](Settings& s) { s.localizer.judgement.verdict.changed_above = 1.0; }},
+    Mechanism{"scan-break", "signs of a carried robot: break between scans",
+              [](Settings& s) {
+                auto& scan_break = s.localizer.judgement.scan_break;
+                scan_break.most = scan_break.most_one_way = 1.0;
+              }},
 };
 
 constexpr std::array kOfMapping{
@@ -87,11 +92,6 @@ constexpr std::array kOfMapping{
               [](Settings& s) { s.mapping.update.evidence.most_enclosed_m2 = 0.0; }},
     Mechanism{"small-groups", "small groups of new occupied cells left out",
               [](Settings& s) { s.mapping.update.evidence.least_group_cells = 1; }},
-    Mechanism{"scan-break", "signs of a carried robot: break between scans",
-              [](Settings& s) {
-                auto& scan_break = s.localizer.judgement.scan_break;
-                scan_break.most = scan_break.most_one_way = 1.0;
-              }},
     Mechanism{"other-share", "write gate: share of another pose hypothesis",
               [](Settings& s) { s.mapping.store_scan.gate.most_other_share = 1.0; }},
     Mechanism{"spread", "write gate: a pose that is spread wide or that nothing in view holds",

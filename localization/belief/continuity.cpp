@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/belief/continuity.hpp"
 
+#include "localization/belief/pose_verdict.hpp"
+
 namespace deltamap::localization::belief {
 namespace {
 
 constexpr double kCarriedWithinS = 5.0;  // after a break: so long a worse fit says that the robot was carried,
 constexpr double kMostUnlikeS = 120.0;   // and then so long as much must fit as before
-constexpr double kMostOtherShare = 0.5;  // another hypothesis that holds more is rather right
 
 }  // namespace
 
@@ -24,7 +25,7 @@ bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool 
   }
   const bool is_news = fits_worse() && !was_carried_;
   was_carried_ = was_carried_ || is_news;
-  if (fits_worse() || believed.other_share > kMostOtherShare) {
+  if (fits_worse() || believed.other_share > kAsRightAsWrong) {
     is_unbroken_ = false;
   } else if (believed.verdict == PoseVerdict::kRight) {
     if (was_carried_) forget_suspicion();

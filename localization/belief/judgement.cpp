@@ -7,9 +7,6 @@
 namespace deltamap::localization::belief {
 namespace {
 
-constexpr double kTrustInSurfaces = 0.5;   // P(pose right) at least, whatever the beams say
-constexpr double kTrustWhenCarried = 0.5;  // P(pose right) as soon as the robot was carried, by all signs
-
 PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
   if (report.own_known) {
@@ -50,7 +47,7 @@ Belief Judgement::belief() const {
   return belief;
 }
 
-double Judgement::trust() const { return is_fixed() ? std::max(judge_.trust(), kTrustInSurfaces) : judge_.trust(); }
+double Judgement::trust() const { return is_fixed() ? std::max(judge_.trust(), kAsRightAsWrong) : judge_.trust(); }
 
 bool Judgement::due(const PoseJudge::Passed& passed) {
   if (!since_check_) return true;
@@ -62,7 +59,7 @@ bool Judgement::due(const PoseJudge::Passed& passed) {
 }
 
 void Judgement::follow(const FollowedScan& scan, bool is_tracking) {
-  if (continuity_.observe(scan, belief_, is_tracking)) judge_.start(kTrustWhenCarried);
+  if (continuity_.observe(scan, belief_, is_tracking)) judge_.start(kAsRightAsWrong);
 }
 
 void Judgement::observe(const View& view) {

@@ -31,7 +31,7 @@ class Judgement {
   /// Begins anew at a pose that is right with this probability.
   void start(double pose_right);
 
-  /// Every scan, before it is observed: was the robot carried?
+  /// Every scan, before it is observed: was the robot carried? Then the pose is as right as wrong.
   void follow(const FollowedScan& scan, bool is_tracking);
 
   struct View {

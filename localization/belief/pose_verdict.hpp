@@ -16,6 +16,8 @@ namespace deltamap::localization::belief {
 /// P(pose right) up to which a pose counts as surely wrong, and from which as surely right.
 inline constexpr double kSurelyWrong = 0.1;
 inline constexpr double kSurelyRight = 1.0 - kSurelyWrong;
+/// Of a pose that nothing speaks for or against.
+inline constexpr double kAsRightAsWrong = 0.5;
 
 struct PoseVerdictParams {
   double view_m = 0.5;              ///< a view is new after so much driving, m; > 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows the aliases of the believed pose, so that the write gate learns at once when the robot may have been carried
-// to one. It examines poses whose heading differs from the believed one by right angles: most aliases in buildings do.
+// Follows the aliases of the believed pose, so that P(pose right) falls at once when the robot may have been carried to
+// one. It examines poses whose heading differs from the believed one by right angles: most aliases in buildings do.
 // It collects evidence only; no alias is believed because it is monitored, since among poses that are examined again
 // and again one would sooner or later win by chance.
 #pragma once

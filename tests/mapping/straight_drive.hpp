@@ -19,7 +19,7 @@ class StraightDrive {
     tracked.scan.time = at(time_s_);
     tracked.odom_from_robot = {way_m_, 0.0, 0.0};
     tracked.estimate.time = tracked.scan.time;
-    tracked.estimate.map_from_robot = map_from_odom * tracked.odom_from_robot;
+    tracked.estimate.map_from_robot = tracked.odom_from_robot;
     tracked.estimate.covariance = PoseCovariance{Eigen::Vector3d{4e-4, 4e-4, 1e-4}.asDiagonal()};
     tracked.estimate.state = LocalizerState::kTracking;
     tracked.estimate.belief.pose_right = 0.9;
@@ -31,7 +31,6 @@ class StraightDrive {
   [[nodiscard]] Timestamp now() const { return at(time_s_); }
 
   double speed_m_per_s = kSpeed_m_per_s;
-  Pose2 map_from_odom;
 
  private:
   double time_s_ = 0.0;

@@ -4,14 +4,32 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "tests/mapping/straight_drive.hpp"
 
 namespace deltamap::mapping::gate {
 namespace {
 
-void drive(StraightDrive& robot, WriteGate& gate, double duration_s) {
-  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) gate.observe(robot.next());
+/// Scans broke off at this time, and the map fits worse since then or not.
+TrackedScan broken_off(TrackedScan tracked, std::optional<Timestamp> at, bool fits_worse = false) {
+  tracked.estimate.belief.broke_off_at = at;
+  tracked.estimate.belief.fits_worse = fits_worse;
+  return tracked;
 }
+
+void drive(StraightDrive& robot, WriteGate& gate, double duration_s, std::optional<Timestamp> broke_off_at = {}) {
+  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) gate.observe(broken_off(robot.next(), broke_off_at));
+}
+
+/// After 10 s at a sure pose.
+class DrivenGate : public testing::Test {
+ protected:
+  void SetUp() override { drive(robot, gate, 10.0); }
+
+  StraightDrive robot;
+  WriteGate gate{{}};
+};
 
 template <typename Change>
 GateReason reason_after(Change change) {
@@ -55,10 +73,7 @@ TEST(WriteGate, SeesTheSpreadAlongASlantingAxis) {
             GateReason::kSpread);
 }
 
-TEST(WriteGate, DoubtShutsItAndProvesNothing) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, DoubtShutsItAndProvesNothing) {
   TrackedScan tracked = robot.next();
   tracked.estimate.belief.pose_right = 0.6;
   gate.observe(tracked);
@@ -69,10 +84,7 @@ TEST(WriteGate, DoubtShutsItAndProvesNothing) {
   EXPECT_FALSE(gate.trusted_since());
 }
 
-TEST(WriteGate, AWrongPoseIsToldOnceAndHasToHoldBeforeItOpensAgain) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, AWrongPoseIsToldOnceAndHasToHoldBeforeItOpensAgain) {
   int told = 0;
   for (int i = 0; i < 20; ++i) {
     TrackedScan tracked = robot.next();
@@ -110,10 +122,7 @@ void disbelieve(StraightDrive& robot, WriteGate& gate) {
   gate.observe(tracked);
 }
 
-TEST(WriteGate, APoseThatWasFollowedAllAlongIsConfirmedSoonerThanOneThatWasFound) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, APoseThatWasFollowedAllAlongIsConfirmedSoonerThanOneThatWasFound) {
   disbelieve(robot, gate);
   drive(robot, gate, 7.7);
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
@@ -122,10 +131,7 @@ TEST(WriteGate, APoseThatWasFollowedAllAlongIsConfirmedSoonerThanOneThatWasFound
   EXPECT_TRUE(gate.is_open());
 }
 
-TEST(WriteGate, WhatASearchHasFoundRemainsFoundWhateverSpeaksAgainstItLater) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, WhatASearchHasFoundRemainsFoundWhateverSpeaksAgainstItLater) {
   TrackedScan tracked = robot.next();
   tracked.estimate.state = LocalizerState::kGlobal;
   gate.observe(tracked);
@@ -138,10 +144,7 @@ TEST(WriteGate, WhatASearchHasFoundRemainsFoundWhateverSpeaksAgainstItLater) {
   EXPECT_TRUE(gate.is_open());
 }
 
-TEST(WriteGate, ADoubtForAMomentHoldsUpAConfirmationAndAProofBeginsItAnew) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, ADoubtForAMomentHoldsUpAConfirmationAndAProofBeginsItAnew) {
   disbelieve(robot, gate);
   drive(robot, gate, 5.0);
   doubt(robot, gate, 2.0);
@@ -172,10 +175,7 @@ TEST(WriteGate, SearchingAtTheStartProvesNothing) {
   EXPECT_EQ(gate.shut_for_s(), 0.0);
 }
 
-TEST(WriteGate, AStandingRobotConfirmsNothing) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, AStandingRobotConfirmsNothing) {
   TrackedScan tracked = robot.next();
   tracked.estimate.state = LocalizerState::kLost;
   gate.observe(tracked);
@@ -184,62 +184,56 @@ TEST(WriteGate, AStandingRobotConfirmsNothing) {
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
 }
 
-/// Scans broke off at this time, and the map fits worse since then or not.
-TrackedScan broken_off(TrackedScan tracked, Timestamp at, bool fits_worse = false) {
-  tracked.estimate.belief.broke_off_at = at;
-  tracked.estimate.belief.fits_worse = fits_worse;
+/// Of 150 beams that the map expects to end somewhere.
+TrackedScan seeing(TrackedScan tracked, std::uint32_t short_of, std::uint32_t beyond) {
+  tracked.estimate.belief.elsewhere = {150, 150 - short_of - beyond, short_of, beyond};
   return tracked;
 }
-void drive_on(StraightDrive& robot, WriteGate& gate, double duration_s, Timestamp broke_off_at) {
-  for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) gate.observe(broken_off(robot.next(), broke_off_at));
-}
 
-TEST(WriteGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
+TEST(WriteGate, StaysOpenWhereScansStopFittingAndNothingBreaksOff) {
   StraightDrive robot;
   WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+  for (int i = 0; i < 100; ++i) gate.observe(seeing(robot.next(), 5, 5));
+  for (int i = 0; i < 20; ++i) {
+    gate.observe(seeing(robot.next(), 60, 40));
+    EXPECT_TRUE(gate.is_open());
+  }
+}
+
+TEST_F(DrivenGate, ABreakOfTheScansShutsItForAMomentWhereTheMapStillFits) {
   const Timestamp at = robot.now();
-  drive_on(robot, gate, 0.9, at);
+  drive(robot, gate, 0.9, at);
   EXPECT_EQ(gate.reason(), GateReason::kConfirming);
-  drive_on(robot, gate, 0.4, at);
+  drive(robot, gate, 0.4, at);
   EXPECT_TRUE(gate.is_open());
   EXPECT_FALSE(gate.trusted_since());  // nothing has proven wrong
 }
 
-TEST(WriteGate, ABreakThatLiesAheadIsNoneWhereTheClockHasFallenBack) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
-  drive_on(robot, gate, 1.0, robot.now() + duration_from_seconds(3600.0));
+TEST_F(DrivenGate, ABreakThatLiesAheadIsNoneWhereTheClockHasFallenBack) {
+  drive(robot, gate, 1.0, robot.now() + duration_from_seconds(3600.0));
   EXPECT_TRUE(gate.is_open());
 }
 
-TEST(WriteGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, ACarriedRobotWritesNothingUntilAsMuchFitsAsBefore) {
   const Timestamp at = robot.now();
   for (int i = 0; i < 400; ++i) {
     gate.observe(broken_off(robot.next(), at, true));
     ASSERT_FALSE(gate.is_open()) << i;
   }
   EXPECT_EQ(gate.confirms_after(), GateReason::kConfirming);
-  drive_on(robot, gate, 7.7, at);
+  drive(robot, gate, 7.7, at);
   EXPECT_FALSE(gate.is_open());
-  drive_on(robot, gate, 0.6, at);
+  drive(robot, gate, 0.6, at);
   EXPECT_TRUE(gate.is_open());
 }
 
-TEST(WriteGate, ARobotThatIsCarriedWhileItsPoseIsConfirmedBeginsAnew) {
-  StraightDrive robot;
-  WriteGate gate{{}};
-  drive(robot, gate, 10.0);
+TEST_F(DrivenGate, ARobotThatIsCarriedWhileItsPoseIsConfirmedBeginsAnew) {
   disbelieve(robot, gate);
   drive(robot, gate, 7.0);
   const Timestamp at = robot.now();
-  drive_on(robot, gate, 7.9, at);
+  drive(robot, gate, 7.9, at);
   EXPECT_FALSE(gate.is_open());
-  drive_on(robot, gate, 0.6, at);
+  drive(robot, gate, 0.6, at);
   EXPECT_TRUE(gate.is_open());
 }
 
