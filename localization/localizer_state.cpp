@@ -145,7 +145,7 @@ void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const 
     return;
   has_gone_through = has_gone_through || meets_obstacle(last_believed->position(), expected->position());
   has_gone_through = has_gone_through && sensor::explained_share(field, ends, *expected) < params.fit.found_above;
-  if (has_gone_through) return;
+  if (has_gone_through || judgement.belief().fits_worse) return;
   const sensor::MappedBeams mapped{*map, field, {*expected, best.covariance}, robot_from_laser};
   std::size_t mapped_ends = 0;
   while (mapped_ends < ends.size() && mapped.tells({ends.x_m[mapped_ends], ends.y_m[mapped_ends]})) ++mapped_ends;
@@ -194,7 +194,8 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
               .continuous_odom_from_robot = continuous_odom_at(now),
               .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
               .stable_support = stable_support.share(),
-              .unknown_s = tracked.unknown_s});
+              .unknown_s = tracked.unknown_s,
+              .carried = judgement.belief().fits_worse});
   if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.others.front().map_from_robot;
   if (lost || distance_between(winner, tracked.believed.map_from_robot) < hypotheses::kNearbyM) {
@@ -276,6 +277,8 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.verdict = judgement.belief().verdict;
   seen.trust = judgement.trust();
   seen.beaten = hypotheses.report().beaten;
+  seen.is_held = judgement.is_held();
+  seen.carried = judgement.belief().fits_worse;
   const LocalizerState after = monitor.observe(seen, best);
   hypotheses.suspect(monitor.suspicious());
   if (before != after) enter(after, before, believed.map_from_robot, now);

@@ -73,8 +73,9 @@ struct Localizer::State {
   // One scan, in this order.
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
   void note_oddities(const motion::ScanInstant& now);
-  /// While a given pose is believed: beams that the map says nothing about there. A robot drives through no wall: a
-  /// pose that does is held against all beams.
+  /// While a given pose is believed: beams that the map says nothing about there. A pose that was carried, by all
+  /// signs, is held against all beams, or it could hide where the map knows nothing; so is one that has gone through a
+  /// wall.
   void leave_out_unmapped(const Point2& robot_from_laser, const motion::ScanInstant& now);
   sensor::RefinedPose believed(const motion::ScanInstant& now);
   void judge(const Scan& scan, std::span<const RayInRobot> rays, const motion::ScanInstant& now,

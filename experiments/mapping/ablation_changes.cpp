@@ -41,7 +41,7 @@ constexpr std::array kOfLocalization{
               [](Settings& s) { s.localizer.hypothesis_tracker.stable_support_nats = 0.0; }},
     Mechanism{"kidnapped-share", "write gate: odds of having just been kidnapped",
               [](Settings& s) { s.localizer.hypothesis_tracker.kidnapped_now_prior = 0.0; }},
-    Mechanism{"suspicious-search", "search of the whole map beside a believed pose",
+    Mechanism{"suspicious-search", "search of the whole map beside a pose that fits badly",
               [](Settings& s) { s.localizer.fit.suspicious_below = 0.0; }},
     Mechanism{"lost-by-verdict", "lost by the verdict wrong",
               [](Settings& s) { s.localizer.fit.lost_by_verdict_s = kNever; }},

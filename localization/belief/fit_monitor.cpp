@@ -7,6 +7,11 @@
 #include "localization/hypotheses/hypothesis_report.hpp"
 
 namespace deltamap::localization::belief {
+namespace {
+
+bool is_right(const FitMonitor::Observation& scan) { return scan.verdict == PoseVerdict::kRight || scan.is_held; }
+
+}  // namespace
 
 void FitMonitor::start(LocalizerState state) {
   enter(state);
@@ -36,10 +41,11 @@ void FitMonitor::count(const Observation& scan) {
   mean_fit_ += share * (scan.fit - mean_fit_);
   any_fit_ = true;
   const auto grown_while = [&](bool so, double so_far_s) { return so ? so_far_s + scan.passed_s : 0.0; };
-  const bool misfit = mean_fit_ < params_.lost_below && scan.verdict != PoseVerdict::kRight;
+  const bool misfit = mean_fit_ < params_.lost_below && !is_right(scan);
   misfit_s_ = grown_while(misfit, misfit_s_);
   wrong_s_ = grown_while(scan.verdict == PoseVerdict::kWrong, wrong_s_);
   distrusted_s_ = grown_while(scan.trust <= kSurelyWrong, distrusted_s_);
+  carried_ = scan.carried;
 }
 
 LocalizerState FitMonitor::observe(const Observation& scan, const particles::ParticleCluster& best) {
@@ -48,7 +54,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
   turned_in_state_rad_ += std::abs(scan.turned_rad);
   count(scan);
   const bool fits = mean_fit_ > params_.found_above && distrusted_s_ == 0.0 && wrong_s_ == 0.0;
-  const bool is_supported = scan.verdict == PoseVerdict::kRight || scan.trust >= kSurelyRight;
+  const bool is_supported = is_right(scan) || scan.trust >= kSurelyRight;
   switch (state_) {
     case LocalizerState::kGlobal:
       if (converged(best) && (fits || driven_in_state_m_ >= params_.converged_unfit_after_m)) {
@@ -71,7 +77,8 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
 }
 
 bool FitMonitor::suspicious() const {
-  return state_ == LocalizerState::kTracking && (mean_fit_ < params_.suspicious_below || distrusted_s_ > 0.0);
+  return state_ == LocalizerState::kTracking &&
+         (mean_fit_ < params_.suspicious_below || distrusted_s_ > 0.0 || carried_);
 }
 
 }  // namespace deltamap::localization::belief

@@ -42,7 +42,7 @@ Belief Judgement::belief() const {
   belief.broke_off_at = continuity_.broke_off_at();
   belief.fits_worse = continuity_.fits_worse();
   if (!is_fixed()) return belief;
-  belief.pose_right = 1.0 - belief.other_share;
+  belief.pose_right = std::min(judge_.limit(), 1.0 - belief.other_share);
   belief.verdict = belief.pose_right >= kSurelyRight ? PoseVerdict::kRight : PoseVerdict::kUndecided;
   return belief;
 }

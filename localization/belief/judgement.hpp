@@ -46,8 +46,13 @@ class Judgement {
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
   void observe(const View& view);
   /// Do surfaces of the map fix the pose at this scan? Where it has been followed without a break, nothing but another
-  /// pose speaks against it then, however many beams end elsewhere. Holds until the next call or start().
+  /// pose speaks against it then, however many beams end elsewhere; it is surely right only where proven tiles have
+  /// told of it lately (PoseJudge::limit). Holds until the next call or start().
   void fix_by_surfaces(bool fixed) { fixed_by_surfaces_ = fixed; }
+
+  /// Surfaces fix the pose, and no other hypothesis speaks against it: to be surely right it lacks proven tiles at
+  /// most.
+  [[nodiscard]] bool is_held() const { return is_fixed() && 1.0 - belief_.other_share >= kSurelyRight; }
 
   [[nodiscard]] Belief belief() const;
   /// P(pose right) by all beams, whether on proven tiles or not; at least one half where surfaces fix the pose. Tiles

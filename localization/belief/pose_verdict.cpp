@@ -108,10 +108,11 @@ void PoseJudge::judge_map(const ViewTally& view, double fresh) {
   any_view_ = true;
 }
 
+double PoseJudge::limit() const { return 1.0 - (1.0 - proof_) * (1.0 - params_.unproven_limit); }
+
 void PoseJudge::decide(const Shares& shares) {
   trust_ = probability(right_log_odds_) * shares.believed;
-  const double limit = 1.0 - (1.0 - proof_) * (1.0 - params_.unproven_limit);
-  const double by_beams = std::clamp(trust_, 1.0 - limit, limit);
+  const double by_beams = std::clamp(trust_, 1.0 - limit(), limit());
   belief_.pose_right = std::min(by_beams, 1.0 - shares.best_other);
   const double wrong_if_right = probability(kMapSteepness * (misfit_share_ - params_.changed_above));
   belief_.map_wrong = belief_.pose_right * wrong_if_right + 0.5 * (1.0 - belief_.pose_right);

@@ -57,6 +57,8 @@ class PoseJudge {
   [[nodiscard]] const Belief& belief() const { return belief_; }
   /// P(pose right) by all that is in view, proven or not: what stability is earned by.
   [[nodiscard]] double trust() const { return trust_; }
+  /// As much as P(pose right) may be: less than surely right where no proven tiles have told of the pose lately.
+  [[nodiscard]] double limit() const;
 
  private:
   [[nodiscard]] double novelty(const Passed& passed, std::optional<double> support);

@@ -144,6 +144,8 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   if (believing_) last_believed_ = seen.map_from_believed;
   support_nats_ = believing_ ? params_.stable_support_nats * seen.stable_support : 0.0;
   bank_.set_believed_prior(support_nats_);
+  if (seen.carried && !carried_) search_.start();  // not with a scan from before
+  carried_ = seen.carried;
   thin(seen);
   if (ends_.size() == 0) return report_;
 
@@ -156,7 +158,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   if (!believing_ || suspicious_) {
     const std::span<const Pose2> found =
         search_.look(coarse_, field, {ends_, near_ends_}, seen.continuous_odom_from_robot,
-                     believing_ ? params_.suspicious_pace : 1.0);
+                     believing_ && !carried_ ? params_.suspicious_pace : 1.0);
     if (!found.empty()) admit_all(field, found, seen.continuous_odom_from_robot);
   }
   bank_.settle();

@@ -20,9 +20,10 @@ constexpr double kScanPeriodS = 0.2;
 /// A robot that begins at a pose that the localizer is given, and is moved from scan to scan.
 class Walk {
  public:
-  Walk(OccupancyGrid world, const OccupancyGrid& map, const Pose2& begin, double max_range_m, std::uint64_t seed)
+  Walk(OccupancyGrid world, const OccupancyGrid& map, const Pose2& begin, double max_range_m, std::uint64_t seed,
+       const LocalizerParams& params = small())
       : world_{std::move(world)},
-        localizer_{small(), std::make_shared<const OccupancyGrid>(map), particles::InitialPose{begin}, 1},
+        localizer_{params, std::make_shared<const OccupancyGrid>(map), particles::InitialPose{begin}, 1},
         scanner_{.max_range_m = max_range_m},
         random_{seed},
         truth_{begin} {
@@ -42,7 +43,6 @@ class Walk {
   [[nodiscard]] Localizer& localizer() { return localizer_; }
   [[nodiscard]] const Pose2& truth() const { return truth_; }
 
- private:
   static LocalizerParams small() {
     LocalizerParams params;
     params.particles.min = 300;
@@ -50,6 +50,7 @@ class Walk {
     return params;
   }
 
+ private:
   OccupancyGrid world_;
   Localizer localizer_;
   test::CastScanner scanner_;
@@ -123,6 +124,36 @@ TEST(UnmappedSpace, IsNoExcuseForAPoseThatHasGoneThroughAWall) {
   for (int i = 0; i < 10; ++i) (void)walk.next({});
   (void)walk.next({}, {2.0, 0.0, 0.0});
   EXPECT_TRUE(walk.localizer().fit().has_value());
+}
+
+/// Carried from a small room into a hall: by its wheels the robot leaves the room for a corridor that nobody has
+/// mapped.
+TEST(UnmappedSpace, IsNoHidingPlaceForAPoseThatIsRatherWrong) {
+  OccupancyGrid map{{560, 200, 0.05, {-1.0, -1.0}}};
+  test::fill_box(map, {-0.2, -0.2}, {4.2, 4.2}, CellState::kOccupied);
+  test::fill_box(map, {0.0, 0.0}, {4.0, 4.0}, CellState::kFree);
+  test::fill_box(map, {4.0, 1.0}, {4.2, 3.0}, CellState::kFree);
+  test::fill_box(map, {13.8, -0.2}, {26.2, 8.2}, CellState::kOccupied);
+  test::fill_box(map, {14.0, 0.0}, {26.0, 8.0}, CellState::kFree);
+  test::fill_box(map, {19.0, 5.5}, {21.0, 8.0}, CellState::kOccupied);
+  LocalizerParams slow = Walk::small();
+  slow.hypothesis_tracker.probes = 0;
+  slow.global.candidates_a_scan = 4000;
+  Walk walk{map, map, {1.0, 2.0, 0.0}, 8.0, 9, slow};
+  for (int i = 0; i < 60; ++i) (void)walk.next({0.01, 0.0, 0.0});
+  walk.carry_to({15.0, 3.0, 0.2});
+  Estimate estimate;
+  int beyond = 0;
+  for (int i = 0; i < 75; ++i) {
+    estimate = walk.next(there_and_back(i, 50));
+    ASSERT_EQ(estimate.state, LocalizerState::kTracking) << i;
+    if (estimate.map_from_robot.x < 4.5) continue;
+    ++beyond;
+    EXPECT_TRUE(walk.localizer().fit().has_value()) << i;
+  }
+  EXPECT_GT(beyond, 40);
+  EXPECT_LT(distance_between(estimate.belief.map_from_other, walk.truth()), 0.1);
+  EXPECT_GT(estimate.belief.other_share, 0.5);
 }
 
 /// Along a corridor of which the map shows the first metres alone, until the wheels may be off by metres.

@@ -51,6 +51,32 @@ TEST(FitMonitor, BlamesTheMapForAMisfitOfAMinute) {
   EXPECT_NE(after(monitor, 60.0, 0.15, 0.4, false), LocalizerState::kTracking) << "nothing has fitted for long";
 }
 
+TEST(FitMonitor, IsNeverLostByMisfitWhileSurfacesHoldThePose) {
+  FitMonitor monitor = tracking();
+  for (int i = 0; i < 1000; ++i) (void)monitor.observe({.passed_s = 0.2, .fit = 0.1, .is_held = true}, certain());
+  EXPECT_EQ(monitor.state(), LocalizerState::kTracking);
+  for (int i = 0; i < 1000; ++i) (void)monitor.observe({.passed_s = 0.2, .fit = 0.1}, certain());
+  EXPECT_EQ(monitor.state(), LocalizerState::kLost);
+}
+
+TEST(FitMonitor, SuspectsAPoseThatIsSurelyWrong) {
+  FitMonitor monitor = tracking();
+  EXPECT_FALSE(monitor.suspicious());
+  (void)monitor.observe({.passed_s = 0.2, .fit = 0.9, .trust = 0.01}, certain());
+  EXPECT_TRUE(monitor.suspicious());
+  (void)monitor.observe({.passed_s = 0.2, .fit = 0.9, .trust = 0.5}, certain());
+  EXPECT_FALSE(monitor.suspicious());
+}
+
+TEST(FitMonitor, SuspectsThePoseOfARobotThatWasCarriedWhileItIsTracked) {
+  FitMonitor monitor = tracking();
+  (void)monitor.observe({.passed_s = 0.2, .fit = 0.9, .carried = true}, certain());
+  EXPECT_TRUE(monitor.suspicious());
+  monitor.start(LocalizerState::kGlobal);
+  (void)monitor.observe({.passed_s = 0.2, .fit = 0.1, .carried = true}, certain());
+  EXPECT_FALSE(monitor.suspicious()) << "the whole map is searched all the same";
+}
+
 TEST(FitMonitor, TracksAgainWhereTheViewFitsAgain) {
   FitMonitor monitor = tracking();
   EXPECT_EQ(after(monitor, 95.0, 0.1, 0.0, false), LocalizerState::kLost);

@@ -53,15 +53,17 @@ TEST(Judgement, BelievesAPoseThatSurfacesFixAsFarAsNoOtherSpeaksAgainstIt) {
   EXPECT_LT(judgement.trust(), 0.1);
   judgement.fix_by_surfaces(true);
   EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kUndecided) << "an alias is too probable";
+  EXPECT_FALSE(judgement.is_held());
   EXPECT_DOUBLE_EQ(judgement.belief().pose_right, 0.8);
   EXPECT_DOUBLE_EQ(judgement.trust(), 0.5);
 }
 
-TEST(Judgement, CallsAPoseThatSurfacesFixRightWhereNoOtherSpeaksAgainstIt) {
+TEST(Judgement, BelievesAPoseThatSurfacesFixNoMoreThanTilesMaySayThatHaveNotBeenProven) {
   Judgement judgement = judged_with(believed_with(1.0), 0.05);
   judgement.fix_by_surfaces(true);
-  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kRight);
-  EXPECT_DOUBLE_EQ(judgement.belief().pose_right, 1.0);
+  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kUndecided);
+  EXPECT_DOUBLE_EQ(judgement.belief().pose_right, PoseVerdictParams{}.unproven_limit);
+  EXPECT_TRUE(judgement.is_held());
 }
 
 TEST(Judgement, HearsNothingOfSurfacesOnceAnotherPoseWasRatherRight) {

@@ -66,6 +66,15 @@ TEST(PoseVerdict, GrowsNoMoreCertainByStandingStillThanByDriving) {
   EXPECT_LT(after(standing, 4.0, view_of(0.8, 0.8), 0.0).pose_right, after(driving, 4.0, view_of(0.8, 0.8)).pose_right);
 }
 
+TEST(PoseVerdict, IsLimitedWhereNoProvenTilesHaveToldOfThePoseLately) {
+  PoseJudge judge = sure();
+  EXPECT_DOUBLE_EQ(judge.limit(), 1.0);
+  (void)after(judge, 120.0, view_of(1.0, 1.0, false));
+  EXPECT_NEAR(judge.limit(), PoseVerdictParams{}.unproven_limit, 1e-3);
+  judge.start(0.9);
+  EXPECT_DOUBLE_EQ(judge.limit(), PoseVerdictParams{}.unproven_limit);
+}
+
 TEST(PoseVerdict, IsUndecidedWhereNothingHasProvenStable) {
   PoseJudge judge{{}};
   judge.start(0.9);

@@ -29,6 +29,7 @@ class Round {
   [[nodiscard]] const Pose2& truth() const { return truth_; }
 
   void carry_to(const Pose2& truth) { truth_ = truth; }
+  void tell_that_it_was_carried() { is_told_ = true; }
 
   const HypothesisReport& step(std::optional<Pose2> believed, double held = 0.0) {
     const Pose2 motion = kMotion;
@@ -37,13 +38,15 @@ class Round {
     return tracker_.observe(field_, {.ends = test::cast_ends(world_, truth_, {}, random_),
                                      .continuous_odom_from_robot = joined_,
                                      .map_from_believed = believed,
-                                     .stable_support = held});
+                                     .stable_support = held,
+                                     .carried = is_told_});
   }
 
  private:
   const OccupancyGrid& world_;
   Pose2 truth_;
   Pose2 joined_;
+  bool is_told_ = false;
   Random random_;
   sensor::LikelihoodField field_;
   HypothesisTracker tracker_;
@@ -217,6 +220,35 @@ TEST(PoseHypotheses, TellThatTheRobotMayHaveBeenCarriedLongBeforeTheyWin) {
   HypothesisReport report;
   EXPECT_LT(share_when_heard_of(round, report), 0.5);
   EXPECT_TRUE(near(report.map_from_kidnapped, round.truth()));
+}
+
+/// Scans until the true pose is heard of in the whole map, which is searched as the robot is carried.
+int scans_until_found(bool is_told) {
+  HypothesisTrackerParams params;
+  params.probes = 0;
+  params.probes_nearby = 0;
+  const OccupancyGrid map = test::drawn_flat();
+  Round round{map, map, {1.6, 1.0, 0.0}, 1, params};
+  round.others().start_believing();
+  for (int i = 0; i < 30; ++i) (void)round.step(round.truth() * kMotion);
+  round.others().suspect(true);
+  Pose2 believed = round.truth() * kMotion;
+  (void)round.step(believed);
+  round.carry_to({7.5, 3.0, 1.5});
+  if (is_told) round.tell_that_it_was_carried();
+  for (int i = 1; i < 100; ++i) {
+    believed = believed * kMotion;
+    const HypothesisReport& report = round.step(believed);
+    for (std::size_t k = 0; k < report.listed; ++k) {
+      if (near(report.others[k].map_from_robot, round.truth())) return i;
+    }
+  }
+  return 100;
+}
+
+TEST(PoseHypotheses, AreLookedForAsFastAsFromNowhereOnceTheRobotWasCarried) {
+  EXPECT_LT(scans_until_found(true), 8);
+  EXPECT_GT(scans_until_found(false), 2 * scans_until_found(true));
 }
 
 TEST(PoseHypotheses, WinOverAWrongPoseWithinMetresAndLeadTheSearchToTheTruth) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/surfaces/offset_filter.hpp"
+#include "localization/belief/stability.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,6 +28,19 @@ class Drive {
   void go(double metres, double turn_rad) {
     const int steps = static_cast<int>(std::ceil(std::max(metres / 0.05, std::abs(turn_rad) / radians(3.0))));
     for (int i = 0; i < steps; ++i) step({metres / steps, 0.0, turn_rad / steps});
+  }
+  /// All that the map shows has proven to stay.
+  void live_there() {
+    const GridGeometry& geometry = map()->geometry();
+    belief::Stability stability{geometry};
+    for (int look = 0; look < 12; ++look) {
+      const Timestamp time = timestamp_from_ns(0) + duration_from_seconds(60.0 * look);
+      const Point2 from{look % 2 == 0 ? -20.0 - 2.0 * look : 40.0 + 2.0 * look, 1.0};
+      for (int row = 0; row < geometry.height; ++row) {
+        for (int column = 0; column < geometry.width; ++column) stability.confirm({column, row}, from, time);
+      }
+    }
+    ASSERT_TRUE(localizer_.restore(stability.record()));
   }
   void rearrange(const test::Containers& containers) { world_ = test::world_of(containers); }
   /// Neither scans nor odometry for so long, in which it moves on.
@@ -102,7 +116,15 @@ TEST(SurfaceTracker, HoldsThePoseInAHallThatIsAsItWas) {
   drive.forget_worst();
   drive.go(5.0, 0.0);
   EXPECT_LT(drive.worst_m(), 0.03);
+  EXPECT_GE(drive.estimate().belief.pose_right, 0.84) << "as much as tiles may say that have not been proven yet";
+}
+
+TEST(SurfaceTracker, IsSurelyRightWhereWallsThatHaveProvenToStayTellOfThePose) {
+  Drive drive{test::containers_in_order(), true};
+  drive.live_there();
+  drive.go(8.0, 0.0);
   EXPECT_EQ(drive.estimate().belief.verdict, PoseVerdict::kRight);
+  EXPECT_GT(drive.estimate().belief.pose_right, 0.95);
 }
 
 TEST(SurfaceTracker, SeesAtTheNextScanThatOneWheelHasSlippedAndStaysAsSureAlongTheAisle) {
