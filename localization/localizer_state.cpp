@@ -278,7 +278,6 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.trust = judgement.trust();
   seen.beaten = hypotheses.report().beaten;
   seen.is_held = judgement.is_held();
-  seen.carried = judgement.belief().fits_worse;
   const LocalizerState after = monitor.observe(seen, best);
   hypotheses.suspect(monitor.suspicious());
   if (before != after) enter(after, before, believed.map_from_robot, now);

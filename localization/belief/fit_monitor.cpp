@@ -45,7 +45,6 @@ void FitMonitor::count(const Observation& scan) {
   misfit_s_ = grown_while(misfit, misfit_s_);
   wrong_s_ = grown_while(scan.verdict == PoseVerdict::kWrong, wrong_s_);
   distrusted_s_ = grown_while(scan.trust <= kSurelyWrong, distrusted_s_);
-  carried_ = scan.carried;
 }
 
 LocalizerState FitMonitor::observe(const Observation& scan, const particles::ParticleCluster& best) {
@@ -77,8 +76,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
 }
 
 bool FitMonitor::suspicious() const {
-  return state_ == LocalizerState::kTracking &&
-         (mean_fit_ < params_.suspicious_below || distrusted_s_ > 0.0 || carried_);
+  return state_ == LocalizerState::kTracking && (mean_fit_ < params_.suspicious_below || distrusted_s_ > 0.0);
 }
 
 }  // namespace deltamap::localization::belief

@@ -45,14 +45,12 @@ class FitMonitor {
     double trust = 0.5;    ///< P(pose right) by all beams, whether on proven tiles or not
     bool beaten = false;   ///< another hypothesis explains the recent scans clearly better
     bool is_held = false;  ///< by surfaces, however badly the scan fits (Judgement)
-    bool carried = false;  ///< the robot was carried, by all signs (Continuity)
   };
   /// The state after this scan. kGlobal after kLost: the whole map is to be searched.
   LocalizerState observe(const Observation& scan, const particles::ParticleCluster& best);
 
   [[nodiscard]] LocalizerState state() const { return state_; }
-  /// Nothing speaks for the tracked pose at present, or the robot was carried: time to look elsewhere, not yet to give
-  /// it up.
+  /// Nothing speaks for the pose at present: time to look elsewhere, not yet to give it up.
   [[nodiscard]] bool suspicious() const;
 
  private:
@@ -69,7 +67,6 @@ class FitMonitor {
   double wrong_s_ = 0.0;       ///< unbroken
   double distrusted_s_ = 0.0;  ///< unbroken
   bool beaten_ = false;        ///< lost to another hypothesis
-  bool carried_ = false;       ///< by the last scan
   double mean_fit_ = 0.5;      ///< running mean
   bool any_fit_ = false;
 };

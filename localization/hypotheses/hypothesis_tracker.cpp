@@ -75,7 +75,6 @@ void HypothesisTracker::stop_believing() {
 void HypothesisTracker::suspect(bool suspicious) {
   if (suspicious && !suspicious_ && !search_.under_way()) search_.start();
   suspicious_ = suspicious;
-  bank_.make_room(suspicious);
 }
 
 void HypothesisTracker::start_anywhere() {
@@ -146,6 +145,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   bank_.set_believed_prior(support_nats_);
   if (seen.carried && !carried_) search_.start();  // not with a scan from before
   carried_ = seen.carried;
+  bank_.make_room(suspicious_ || carried_);
   thin(seen);
   if (ends_.size() == 0) return report_;
 
@@ -155,7 +155,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   since_step_rad_ += std::abs(motion.theta);
   weigh(field, seen);
   if (believing_) probe(field, seen.continuous_odom_from_robot);
-  if (!believing_ || suspicious_) {
+  if (!believing_ || suspicious_ || carried_) {
     const std::span<const Pose2> found =
         search_.look(coarse_, field, {ends_, near_ends_}, seen.continuous_odom_from_robot,
                      believing_ && !carried_ ? params_.suspicious_pace : 1.0);

@@ -51,8 +51,7 @@ class HypothesisTracker {
   void start_believing_in(const Pose2& found);
   /// From now on nothing is believed and the whole map is searched; known hypotheses keep what speaks for them.
   void stop_believing();
-  /// While true, the whole map is searched beside the believed pose: slowly, or as fast as where none is believed once
-  /// the robot was carried (Seen::carried).
+  /// While true, the whole map is searched beside the believed pose, slowly.
   void suspect(bool suspicious);
   /// As stop_believing(), and forgets all hypotheses.
   void start_anywhere();
@@ -63,7 +62,7 @@ class HypothesisTracker {
     std::optional<Pose2> map_from_believed{};  ///< where the robot is believed to be, if anywhere
     double stable_support = 0.0;               ///< how far proven tiles support that pose (StableSupport), [0, 1]
     double unknown_s = 0.0;                    ///< seconds since the last scan that odometry does not cover
-    bool carried = false;                      ///< the robot was carried lately, by all signs (belief::Continuity)
+    bool carried = false;                      ///< lately, by all signs (Continuity): it is searched for at full pace
   };
   const HypothesisReport& observe(const sensor::LikelihoodField& field, const Seen& seen);
 

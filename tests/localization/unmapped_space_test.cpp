@@ -128,7 +128,7 @@ TEST(UnmappedSpace, IsNoExcuseForAPoseThatHasGoneThroughAWall) {
 
 /// Carried from a small room into a hall: by its wheels the robot leaves the room for a corridor that nobody has
 /// mapped.
-TEST(UnmappedSpace, IsNoHidingPlaceForAPoseThatIsRatherWrong) {
+TEST(UnmappedSpace, IsNoHidingPlaceForARobotThatWasCarried) {
   OccupancyGrid map{{560, 200, 0.05, {-1.0, -1.0}}};
   test::fill_box(map, {-0.2, -0.2}, {4.2, 4.2}, CellState::kOccupied);
   test::fill_box(map, {0.0, 0.0}, {4.0, 4.0}, CellState::kFree);

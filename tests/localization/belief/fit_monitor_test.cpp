@@ -68,15 +68,6 @@ TEST(FitMonitor, SuspectsAPoseThatIsSurelyWrong) {
   EXPECT_FALSE(monitor.suspicious());
 }
 
-TEST(FitMonitor, SuspectsThePoseOfARobotThatWasCarriedWhileItIsTracked) {
-  FitMonitor monitor = tracking();
-  (void)monitor.observe({.passed_s = 0.2, .fit = 0.9, .carried = true}, certain());
-  EXPECT_TRUE(monitor.suspicious());
-  monitor.start(LocalizerState::kGlobal);
-  (void)monitor.observe({.passed_s = 0.2, .fit = 0.1, .carried = true}, certain());
-  EXPECT_FALSE(monitor.suspicious()) << "the whole map is searched all the same";
-}
-
 TEST(FitMonitor, TracksAgainWhereTheViewFitsAgain) {
   FitMonitor monitor = tracking();
   EXPECT_EQ(after(monitor, 95.0, 0.1, 0.0, false), LocalizerState::kLost);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/surfaces/offset_filter.hpp"
-#include "localization/belief/stability.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "localization/belief/stability.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/tracking/surface_tracker.hpp"
