@@ -71,6 +71,7 @@ int run_tool(int argc, const char* const* argv) {
   add_score(app);
   add_sim(app);
   CLI::App& map = *app.add_subcommand("map", "make, compare, merge and look at maps")->require_subcommand(1);
+  add_map_build(map);
   add_map_compare(map);
   add_map_film(map);
   add_map_from_poses(map);

@@ -25,6 +25,7 @@ void add_replay(CLI::App& app);
 void add_view(CLI::App& app);
 
 // under `deltamap map`
+void add_map_build(CLI::App& map);
 void add_map_compare(CLI::App& map);
 void add_map_film(CLI::App& map);
 void add_map_from_poses(CLI::App& map);

@@ -10,16 +10,16 @@
 namespace deltamap::mapping::paper {
 namespace {
 
-OccupancyGrid drawn(const ScanSet& set, const ScanAlignment& aligned, const GridGeometry& lattice,
-                    const LocalMapParams& params) {
+OccupancyGrid drawn(const ScanSet& set, const alignment::ScanAlignment& aligned, const GridGeometry& lattice,
+                    const alignment::LocalMapParams& params) {
   std::vector<const TrackedScan*> scans;
   scans.reserve(aligned.scans.size());
   for (const std::size_t scan : aligned.scans) scans.push_back(set.scans[scan].get());
-  return local_map(scans, aligned.map_from_robot, lattice, params);
+  return alignment::local_map(scans, aligned.map_from_robot, lattice, params);
 }
 
 /// χ² of the merge's correction at the middle one of the aligned poses.
-double chi2_of(const Pose2& map_from_local, const ScanAlignment& aligned, double resolution_m,
+double chi2_of(const Pose2& map_from_local, const alignment::ScanAlignment& aligned, double resolution_m,
                const PaperUpdateParams& params) {
   const std::size_t middle = aligned.scans.size() / 2;
   const Pose2& before = aligned.map_from_robot[middle];
@@ -43,7 +43,7 @@ scan_set::MapUpdate paper_update(const OccupancyGrid& map, const ScanSet& set, c
     return update;
   };
   if (set.scans.size() < params.least_scans) return refused(scan_set::Refusal::kTooFewScans);
-  const auto aligned = scan_alignment(set.scans, params.alignment);
+  const auto aligned = alignment::scan_alignment(set.scans, params.alignment);
   if (!aligned || aligned->scans.size() < params.least_scans) return refused(scan_set::Refusal::kNoAlignment);
 
   const OccupancyGrid local = drawn(set, *aligned, map.geometry(), params.local_map);

@@ -4,9 +4,9 @@
 // pose are ours: in a hall that repeats itself a merge without prior is sure and wrong.
 #pragma once
 
+#include "mapping/alignment/local_map.hpp"
+#include "mapping/alignment/scan_alignment.hpp"
 #include "mapping/merge/map_merge.hpp"
-#include "mapping/paper/local_map.hpp"
-#include "mapping/paper/scan_alignment.hpp"
 #include "mapping/scan_set/map_change.hpp"
 
 namespace deltamap::mapping::paper {
@@ -20,8 +20,8 @@ namespace deltamap::mapping::paper {
 }
 
 struct PaperUpdateParams {
-  ScanAlignmentParams alignment;
-  LocalMapParams local_map;
+  alignment::ScanAlignmentParams alignment;
+  alignment::LocalMapParams local_map;
   merge::MapMergeParams merge = paper_merge_params();
   std::size_t least_scans = 3;         ///< fewer draw no map
   double least_acceptance = 0.9;       ///< Eq. 11 of the local map and the map; [0, 1]

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/pose_network.hpp"
+#include "mapping/alignment/pose_network.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "core/geometry/pose_spread.hpp"
-#include "mapping/paper/sparse_cholesky.hpp"
+#include "mapping/alignment/sparse_cholesky.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 struct NetworkSums {
@@ -133,9 +133,9 @@ PoseNetwork solved_network(std::span<const Pose2> initial, std::span<const PoseL
     network.dropped.push_back(static_cast<std::uint32_t>(worst));
   }
   network.poses = std::move(poses);
-  network.covariances = marginal_covariances(network.poses.size(), cholesky);
+  if (params.wants_covariances) network.covariances = marginal_covariances(network.poses.size(), cholesky);
   network.solved = true;
   return network;
 }
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/sparse_cholesky.hpp"
+#include "mapping/alignment/sparse_cholesky.hpp"
 
 #include <cholmod.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 
 struct SparseCholesky::State {
   cholmod_common common{};
@@ -98,4 +98,4 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& right_sides) const 
   return result;
 }
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/scan_alignment.hpp"
+#include "mapping/alignment/scan_alignment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "tests/support/scans/seen_scan.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 /// A drive through the hall; the localizer errs by a few centimetres, odometry drifts.
@@ -94,4 +94,4 @@ TEST(ScanAlignment, HasNoAnswerForScansThatDoNotOverlap) {
 }
 
 }  // namespace
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

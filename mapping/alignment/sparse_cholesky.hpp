@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 
 /// A block of the symmetric matrix, at block row >= block column; several at one place are added.
 struct SymmetricBlock {
@@ -35,4 +35,4 @@ class SparseCholesky {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/scan_matching.hpp"
+#include "mapping/alignment/scan_matching.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "tests/support/scans/seen_scan.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 TEST(ScanMatch, FindsTheMotionBetweenTwoScansWithinItsCovariance) {
@@ -68,4 +68,4 @@ TEST(ScanMatch, HasNoAnswerForScansOfDifferentPlaces) {
 }
 
 }  // namespace
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

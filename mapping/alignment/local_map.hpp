@@ -8,11 +8,12 @@
 #include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 
 struct LocalMapParams {
   double longest_m = 12.0;        ///< beyond, neighbouring beams leave cells out; > 0
   double least_hit_share = 0.25;  ///< hits / (hits + crossings) from which a cell is occupied; (0, 1]
+  int least_hits = 1;             ///< and at least so many: one alone may be a passer-by; >= 1
 };
 
 /// One pose for each scan. The cells are those of `lattice` (its resolution and the phase of its borders), as many as
@@ -20,4 +21,4 @@ struct LocalMapParams {
 [[nodiscard]] OccupancyGrid local_map(std::span<const TrackedScan* const> scans, std::span<const Pose2> map_from_robot,
                                       const GridGeometry& lattice, const LocalMapParams& params);
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

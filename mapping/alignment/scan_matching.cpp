@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/scan_matching.hpp"
+#include "mapping/alignment/scan_matching.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 constexpr double kTableCell_m = 0.1;
@@ -43,4 +43,4 @@ std::optional<ScanMatch> scan_match(const MatchableScan& first, const MatchableS
   return match;
 }
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

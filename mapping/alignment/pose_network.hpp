@@ -11,7 +11,7 @@
 
 #include "core/geometry/pose2.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 
 /// The pose of `to` as seen from `from`, measured.
 struct PoseLink {
@@ -33,6 +33,7 @@ struct PoseNetworkParams {
   int most_iterations = 10;
   double settled = 1e-6;          ///< a step below this (m and rad) ends the iteration
   int most_dropping_rounds = 20;  ///< of the worst link whose χ² is above kMostChi2
+  bool wants_covariances = true;  ///< false: left empty; they cost as much as all else in a large network
 };
 
 struct PoseNetwork {
@@ -54,4 +55,4 @@ struct LinkError {
 };
 [[nodiscard]] LinkError link_error(const Pose2& from, const Pose2& to, const Pose2& measured_from_from_to);
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

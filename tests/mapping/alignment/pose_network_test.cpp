@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/pose_network.hpp"
+#include "mapping/alignment/pose_network.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/random.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 Pose2 moved(const Pose2& pose, int axis, double step) {
@@ -155,4 +155,4 @@ TEST(PoseNetwork, IsNotSolvedWhereNothingHoldsAPose) {
 }
 
 }  // namespace
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

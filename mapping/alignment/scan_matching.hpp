@@ -9,7 +9,7 @@
 
 #include "mapping/registration/registration.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 
 struct ScanMatchingParams {
   double longest_m = 15.0;                ///< longer ranges are left out: their ends lie too far apart; > 0
@@ -42,4 +42,4 @@ struct ScanMatch {
                                                   const Pose2& initial_first_from_second,
                                                   const ScanMatchingParams& params);
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/local_map.hpp"
+#include "mapping/alignment/local_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/scans/seen_scan.hpp"
 #include "tests/support/worlds/drawn_hall.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 TEST(LocalMap, DrawsWhatTheScansSawOnTheMapsLattice) {
@@ -42,4 +42,4 @@ TEST(LocalMap, FreesNothingAlongBeamsWithoutRange) {
 }
 
 }  // namespace
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/sparse_cholesky.hpp"
+#include "mapping/alignment/sparse_cholesky.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 TEST(SparseCholesky, EqualsTheDenseSolutionAndRefusesWhatIsNotPositive) {
@@ -21,4 +21,4 @@ TEST(SparseCholesky, EqualsTheDenseSolutionAndRefusesWhatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

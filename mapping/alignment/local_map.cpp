@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/local_map.hpp"
+#include "mapping/alignment/local_map.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -7,7 +7,7 @@
 
 #include "core/grid/grid_ray.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 struct RayInMap {
@@ -74,7 +74,7 @@ OccupancyGrid local_map(std::span<const TrackedScan* const> scans, std::span<con
   }
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const double looks = hits[i] + crossings[i];
-    if (hits[i] > 0 && hits[i] >= params.least_hit_share * looks) {
+    if (hits[i] >= params.least_hits && hits[i] >= params.least_hit_share * looks) {
       map.set(geometry.cell_of(i), CellState::kOccupied);
     } else if (crossings[i] > 0) {
       map.set(geometry.cell_of(i), CellState::kFree);
@@ -83,4 +83,4 @@ OccupancyGrid local_map(std::span<const TrackedScan* const> scans, std::span<con
   return map;
 }
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

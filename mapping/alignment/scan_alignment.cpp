@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapping/paper/scan_alignment.hpp"
+#include "mapping/alignment/scan_alignment.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 namespace {
 
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
@@ -24,12 +24,7 @@ PoseLink odometry_link(std::uint32_t from, const TrackedScan& before, const Trac
                        const ScanAlignmentParams& params) {
   assert(before.odometry_epoch == after.odometry_epoch && "a set ends where the controller's pose jumps");
   const Pose2 motion = motion_between(before.odom_from_robot, after.odom_from_robot);
-  const double driven_m = motion.position().norm();
-  const double heading_deviation_rad =
-      std::max(params.odometry_least_rad,
-               params.odometry_rad_per_m * driven_m + params.odometry_rad_per_rad * std::abs(motion.theta));
-  return {from, from + 1, motion,
-          diagonal(std::max(params.odometry_least_m, params.odometry_per_m * driven_m), heading_deviation_rad), false};
+  return {from, from + 1, motion, odometry_covariance(motion, params), false};
 }
 
 /// The scan before, and the nearest of the earlier ones within reach.
@@ -94,6 +89,14 @@ void keep_group(const std::vector<char>& is_in, std::vector<std::size_t>& scans,
 
 }  // namespace
 
+PoseCovariance odometry_covariance(const Pose2& motion, const ScanAlignmentParams& params) {
+  const double driven_m = motion.position().norm();
+  const double heading_deviation_rad =
+      std::max(params.odometry_least_rad,
+               params.odometry_rad_per_m * driven_m + params.odometry_rad_per_rad * std::abs(motion.theta));
+  return diagonal(std::max(params.odometry_least_m, params.odometry_per_m * driven_m), heading_deviation_rad);
+}
+
 std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAlignmentParams& params) {
   assert(params.matches_per_scan > 0 && params.most_scans > 1 && "parameters out of range");
   ScanAlignment alignment;
@@ -139,4 +142,4 @@ std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAl
   return alignment;
 }
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

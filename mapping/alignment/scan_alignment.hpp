@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/messages.hpp"
-#include "mapping/paper/pose_network.hpp"
-#include "mapping/paper/scan_matching.hpp"
+#include "mapping/alignment/pose_network.hpp"
+#include "mapping/alignment/scan_matching.hpp"
 
-namespace deltamap::mapping::paper {
+namespace deltamap::mapping::alignment {
 
 struct ScanAlignmentParams {
   ScanMatchingParams matching;
@@ -38,7 +38,10 @@ struct ScanAlignment {
   std::size_t matches = 0;                  ///< pairs that were matched
 };
 
+/// Of a motion that the wheels counted, (x, y, θ).
+[[nodiscard]] PoseCovariance odometry_covariance(const Pose2& motion, const ScanAlignmentParams& params);
+
 /// Nothing where the network does not settle or too few scans match.
 [[nodiscard]] std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAlignmentParams& params);
 
-}  // namespace deltamap::mapping::paper
+}  // namespace deltamap::mapping::alignment

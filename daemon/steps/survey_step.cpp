@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/steps/survey_step.hpp"
+
+#include <utility>
+
+#include "localization/motion/deskew.hpp"
+
+namespace deltamap::daemon {
+
+SurveyStep::SurveyStep(const Settings& settings) : settings_{settings}, odometry_{settings.localizer.odometry} {}
+
+void SurveyStep::begin_drive() {
+  odometry_ = localization::motion::OdometryBuffer{settings_.localizer.odometry};
+  slam_.begin_drive();
+}
+
+bool SurveyStep::observe(Scan scan) {
+  const auto wheels = odometry_.at(scan.time);
+  if (!wheels) return false;
+  TrackedScan tracked;
+  scan.range_deviation_m = settings_.localizer.range_deviation_m;
+  tracked.rays = localization::motion::deskewed(scan, odometry_.velocity_at(scan.time));
+  tracked.odom_from_robot = wheels->continuous_odom_from_robot;
+  tracked.odometry_epoch = wheels->epoch;
+  const Timestamp time = scan.time;
+  tracked.scan = std::move(scan);
+  slam_.observe(std::move(tracked));
+  const auto& keyframes = slam_.survey().keyframes;
+  scans_.push_back({time, static_cast<std::uint32_t>(keyframes.size() - 1),
+                    motion_between(keyframes.back().tracked->odom_from_robot, wheels->continuous_odom_from_robot)});
+  return true;
+}
+
+std::vector<TrajectoryPoint> SurveyStep::trajectory() const {
+  std::vector<TrajectoryPoint> points;
+  points.reserve(scans_.size());
+  for (const SurveyedScan& scan : scans_) {
+    points.push_back({scan.time, slam_.survey().poses[scan.keyframe] * scan.keyframe_from_robot});
+  }
+  return points;
+}
+
+}  // namespace deltamap::daemon

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/slam/drawn_map.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "mapping/alignment/local_map.hpp"
+
+namespace deltamap::mapping::slam {
+namespace {
+
+constexpr double kLongestDrawnM = 25.0;  // beyond, neighbouring beams leave cells out
+
+}  // namespace
+
+double turn_to_axes(const Survey& survey) {
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (std::size_t node = 0; node < survey.keyframes.size(); ++node) {
+    for (const registration::SurfacePoint& point : survey.keyframes[node].surface) {
+      const double angle = survey.poses[node].theta + std::atan2(point.normal.y(), point.normal.x());
+      sine += std::sin(4.0 * angle);
+      cosine += std::cos(4.0 * angle);
+    }
+  }
+  return -std::atan2(sine, cosine) / 4.0;
+}
+
+OccupancyGrid drawn_map(const Survey& survey, const Pose2& map_from_survey, double resolution_m) {
+  std::vector<const TrackedScan*> scans;
+  std::vector<Pose2> poses;
+  for (std::uint32_t node = 0; node < survey.keyframes.size(); ++node) {
+    if (survey.component_of(node) != 0) continue;
+    scans.push_back(survey.keyframes[node].tracked.get());
+    poses.push_back(map_from_survey * survey.poses[node]);
+  }
+  return alignment::local_map(scans, poses, {0, 0, resolution_m, {0.0, 0.0}},
+                              {.longest_m = kLongestDrawnM, .least_hits = 2});
+}
+
+}  // namespace deltamap::mapping::slam

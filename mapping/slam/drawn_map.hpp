@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The grid that keyframes draw at their poses.
+#pragma once
+
+#include "core/grid/occupancy_grid.hpp"
+#include "mapping/slam/survey.hpp"
+
+namespace deltamap::mapping::slam {
+
+/// By how much to turn the frame so that most surfaces lie along an axis of the grid, in (-45°, 45°], rad.
+[[nodiscard]] double turn_to_axes(const Survey& survey);
+
+/// Of the drives that are joined to the first. A cell is occupied where a quarter of its beams, and two at least, ended
+/// in it. Borders of cells lie on multiples of the resolution; `resolution_m` > 0.
+[[nodiscard]] OccupancyGrid drawn_map(const Survey& survey, const Pose2& map_from_survey, double resolution_m);
+
+}  // namespace deltamap::mapping::slam

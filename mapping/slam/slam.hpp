@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first map of a building: simultaneous localization and mapping (SLAM) over one or several drives, off line. Each
+// keyframe is matched against the last metres of its drive, places that the robot comes back to are found again, and
+// the graph of all these measurements gives the poses. drawn_map.hpp draws the grid from them.
+#pragma once
+
+#include <cstddef>
+
+#include "core/messages.hpp"
+#include "mapping/slam/drive_joining.hpp"
+#include "mapping/slam/loop_closing.hpp"
+#include "mapping/slam/survey.hpp"
+
+namespace deltamap::mapping::slam {
+
+class Slam {
+ public:
+  Slam() : loops_{survey_}, joining_{survey_} {}
+  Slam(const Slam&) = delete;
+  Slam& operator=(const Slam&) = delete;
+
+  /// What follows belongs to another drive, begun anywhere.
+  void begin_drive();
+  /// Scans of one drive in order of time; those that are no keyframe are passed over. The estimate in it is not looked
+  /// at: rays, beams and odometry are.
+  void observe(TrackedScan tracked);
+  /// After the last scan: all poses at once.
+  void finish();
+
+  [[nodiscard]] const Survey& survey() const { return survey_; }
+  [[nodiscard]] const LoopClosing& loops() const { return loops_; }
+  /// Is the drive in the first one's frame?
+  [[nodiscard]] bool is_joined(std::uint32_t drive) const { return survey_.component[drive] == 0; }
+  /// Keyframes that were held to the one before by scan matching; the others stand where the wheels put them.
+  [[nodiscard]] std::size_t matched() const { return matched_; }
+
+ private:
+  void end_drive();
+  void follow(Keyframe next);
+  [[nodiscard]] alignment::PoseLink followed(std::uint32_t node, bool& is_matched) const;
+
+  Survey survey_;
+  LoopClosing loops_;
+  DriveJoining joining_;
+  std::size_t matched_ = 0;
+  bool begins_ = true;
+  Pose2 odom_from_robot_;  // of the newest scan
+  double driven_m_ = 0.0;  // in this drive
+};
+
+}  // namespace deltamap::mapping::slam

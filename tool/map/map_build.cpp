@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap map build`: the first map of a building from recordings of the drives through it.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/files/grid_file.hpp"
+#include "core/files/replace_file.hpp"
+#include "daemon/records/recording_decoder.hpp"
+#include "daemon/settings/settings.hpp"
+#include "daemon/steps/survey_step.hpp"
+#include "drivers/port/replay_port.hpp"
+#include "mapping/slam/drawn_map.hpp"
+#include "tool/output_file.hpp"
+#include "tool/progress.hpp"
+#include "tool/subcommands.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct BuildOptions {
+  std::vector<std::string> files;  // recordings, and the map last
+  std::string config;
+  std::vector<std::string> overrides;
+  std::string trajectory;
+  double resolution_m = 0.05;
+  bool keep_frame = false;
+  bool json = false;
+
+  [[nodiscard]] std::vector<std::string> recordings() const { return {files.begin(), files.end() - 1}; }
+  [[nodiscard]] const std::string& map() const { return files.back(); }
+};
+
+struct SurveyedDrive {
+  std::string recording;
+  std::size_t scans = 0;
+  std::optional<drivers::port::LogCut> cut{};  ///< the recording ends there
+};
+
+SurveyedDrive surveyed(const std::string& recording, const daemon::Settings& settings, daemon::SurveyStep& survey) {
+  SurveyedDrive drive{recording};
+  drivers::port::ReplayPort port{recording, {}};
+  daemon::RecordingDecoder decoder{settings};
+  survey.begin_drive();
+  const daemon::RecordingDecoder::Sinks sinks{
+      [&](Odometry&& odometry, std::uint32_t) { survey.observe(odometry); },
+      [&](Scan&& scan) { drive.scans += survey.observe(std::move(scan)) ? 1 : 0; }};
+  Progress progress{"surveying " + fs::path{recording}.filename().string(), port.size_bytes()};
+  while (const auto replayed = port.next()) {
+    decoder.feed(replayed->record, sinks);
+    progress.show(port.read_bytes());
+  }
+  drive.cut = port.cut();
+  if (drive.scans == 0) throw std::runtime_error(recording + ": no scan for which odometry is known");
+  return drive;
+}
+
+/// Nothing is written of drives that hang together by guesswork.
+void require_joined(const std::vector<SurveyedDrive>& drives, const mapping::slam::Slam& slam) {
+  for (std::uint32_t i = 0; i < drives.size(); ++i) {
+    if (slam.is_joined(i)) continue;
+    throw std::runtime_error(
+        drives[i].recording +
+        ": not found in what the drives before it have seen, or in several places of it; let it begin "
+        "where one of them has been, or leave it out");
+  }
+}
+
+void write_trajectory(const std::string& file, const daemon::SurveyStep& survey, const Pose2& map_from_survey) {
+  std::string lines;
+  for (const daemon::TrajectoryPoint& point : survey.trajectory()) {
+    lines += daemon::tum_line({point.time, map_from_survey * point.map_from_robot});
+  }
+  replace_file(file, lines);
+}
+
+/// "x,y,deg", as --initial-pose takes it.
+std::string pose_text(const Pose2& pose) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3) << pose.x << ',' << pose.y << ',' << std::setprecision(2)
+       << degrees(pose.theta);
+  return text.str();
+}
+
+void print_built(const BuildOptions& options, const std::vector<SurveyedDrive>& drives, const daemon::SurveyStep& step,
+                 const Pose2& map_from_survey, const OccupancyGrid& grid) {
+  const mapping::slam::Survey& survey = step.slam().survey();
+  const auto loops = static_cast<std::size_t>(
+      std::count_if(survey.links.begin(), survey.links.end(), [](const auto& link) { return link.may_drop; }));
+  const std::size_t unmatched = survey.keyframes.size() - drives.size() - step.slam().matched();
+  Json json_drives = Json::array();
+  std::uint32_t node = 0;
+  for (std::uint32_t i = 0; i < drives.size(); ++i) {
+    while (survey.keyframes[node].drive != i) ++node;
+    const std::uint32_t last = mapping::slam::on_by(survey, node, std::numeric_limits<double>::infinity());
+    json_drives.push_back({{"recording", drives[i].recording},
+                           {"scans", drives[i].scans},
+                           {"keyframes", last - node + 1},
+                           {"driven_m", survey.keyframes[last].driven_m},
+                           {"start", pose_text(map_from_survey * survey.poses[node])},
+                           {"end", pose_text(map_from_survey * survey.poses[last])}});
+  }
+  if (options.json) {
+    std::cout << Json{{"map", options.map()},
+                      {"width", grid.width()},
+                      {"height", grid.height()},
+                      {"resolution_m", grid.resolution_m()},
+                      {"occupied_cells", count_of(grid, CellState::kOccupied)},
+                      {"free_cells", count_of(grid, CellState::kFree)},
+                      {"keyframes", survey.keyframes.size()},
+                      {"keyframes_by_wheels_alone", unmatched},
+                      {"loops", loops},
+                      {"loops_contradicted", step.slam().loops().contradicted()},
+                      {"drives", json_drives}}
+                     .dump(2)
+              << '\n';
+    return;
+  }
+  std::cout << options.map() << ": " << grid.width() << " x " << grid.height() << " cells of " << grid.resolution_m()
+            << " m, from " << survey.keyframes.size() << " keyframes (" << unmatched
+            << " placed by the wheels alone) and " << loops << " loops\n";
+  for (const Json& drive : json_drives) {
+    std::cout << drive["recording"].get<std::string>() << ": " << drive["scans"] << " scans, " << std::fixed
+              << std::setprecision(1) << drive["driven_m"].get<double>() << " m, from "
+              << drive["start"].get<std::string>() << " to " << drive["end"].get<std::string>() << " (x,y,deg)\n";
+  }
+  if (loops == 0) std::cout << "no place was seen twice: where the way was long the map may be bent\n";
+}
+
+void run_build(const BuildOptions& options) {
+  for (const std::string& recording : options.recordings()) {
+    require_output_beside(options.map(), recording);
+    if (!options.trajectory.empty()) require_output_beside(options.trajectory, recording);
+  }
+  const daemon::Settings settings = options.config.empty() ? daemon::parse_settings("", "defaults", options.overrides)
+                                                           : daemon::read_settings(options.config, options.overrides);
+  daemon::SurveyStep step{settings};
+  std::vector<SurveyedDrive> drives;
+  for (const std::string& recording : options.recordings()) drives.push_back(surveyed(recording, settings, step));
+  step.finish();
+  for (const SurveyedDrive& drive : drives) {
+    if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
+  }
+  require_joined(drives, step.slam());
+  const mapping::slam::Survey& survey = step.slam().survey();
+  const Pose2 map_from_survey{0.0, 0.0, options.keep_frame ? 0.0 : mapping::slam::turn_to_axes(survey)};
+  const OccupancyGrid grid = mapping::slam::drawn_map(survey, map_from_survey, options.resolution_m);
+  if (count_of(grid, CellState::kFree) == 0) {
+    throw std::runtime_error(drives.front().recording + ": no scan has a valid range");
+  }
+  write_grid(grid, options.map());
+  if (!options.trajectory.empty()) write_trajectory(options.trajectory, step, map_from_survey);
+  print_built(options, drives, step, map_from_survey, grid);
+}
+
+}  // namespace
+
+void add_map_build(CLI::App& map) {
+  auto options = std::make_shared<BuildOptions>();
+  CLI::App& command = *map.add_subcommand("build", "the first map of a building, from recordings of drives through it");
+  command.add_option("FILES", options->files, "REC.pcapng ... OUT.yaml: recordings, and the map to write")
+      ->required()
+      ->expected(2, -1);
+  command.add_option("--config", options->config, "settings, YAML");
+  command.add_option("--set", options->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+  command.add_option("--resolution", options->resolution_m, "side of a cell, m")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command.add_option("--trajectory", options->trajectory, "where every scan was taken, to write (TUM)");
+  command.add_flag("--keep-frame", options->keep_frame,
+                   "x points to where the robot looked at first; else along most of the walls");
+  command.add_flag("--json", options->json, "print the result as JSON");
+  command.callback([options] {
+    const fs::path ending = fs::path(options->map()).extension();
+    if (ending != ".yaml" && ending != ".yml") {
+      throw CLI::ValidationError("FILES", options->map() + ": the last one is the map to write and must end in .yaml");
+    }
+    run_build(*options);
+  });
+}
+
+}  // namespace deltamap::tool
