@@ -204,9 +204,10 @@ void LoopClosing::match_neighbours() {
   for (const alignment::PoseLink& link : found) survey_.add(link);
 }
 
-/// The worst quarter first: they bend the others.
+/// The worst quarter first: they bend the others, so much that the graph may not settle before they are gone.
 void LoopClosing::drop_contradicted() {
-  while (survey_.solve()) {
+  for (;;) {
+    (void)survey_.solve();
     std::vector<std::pair<double, std::uint32_t>> wrong;
     for (std::uint32_t place = 0; place < survey_.links.size(); ++place) {
       const alignment::PoseLink& link = survey_.links[place];

@@ -2,6 +2,7 @@
 // `deltamap map build`: the first map of a building from recordings of the drives through it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -87,9 +88,10 @@ void write_trajectory(const std::string& file, const daemon::SurveyStep& survey,
 
 /// "x,y,deg", as --initial-pose takes it.
 std::string pose_text(const Pose2& pose) {
+  const auto rounded = [](double value, double unit) { return std::round(value / unit) * unit + 0.0; };  // no "-0"
   std::ostringstream text;
-  text << std::fixed << std::setprecision(3) << pose.x << ',' << pose.y << ',' << std::setprecision(2)
-       << degrees(pose.theta);
+  text << std::fixed << std::setprecision(3) << rounded(pose.x, 1e-3) << ',' << rounded(pose.y, 1e-3) << ','
+       << std::setprecision(2) << rounded(degrees(pose.theta), 1e-2);
   return text.str();
 }
 
