@@ -237,7 +237,7 @@ const motion::BeamEnds& Localizer::State::weighing_ends(const motion::ScanInstan
 bool Localizer::State::has_won(const hypotheses::ReportedHypothesis& hypothesis, const Pose2& believed) const {
   if (hypothesis.share_around < hypotheses::kWinningShare || hypothesis.followed_m < hypotheses::kWinsAfterM)
     return false;
-  if (ends.size() == 0) return false;
+  if (ends.size() == 0 || judgement.is_fixed()) return false;
   const double fit = sensor::explained_share(field, ends, hypothesis.map_from_robot);
   return fit >= params.fit.found_above || fit >= sensor::explained_share(field, ends, believed) + kClearlyBetter;
 }

@@ -25,7 +25,7 @@ bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool 
   }
   const bool is_news = fits_worse() && !was_carried_;
   was_carried_ = was_carried_ || is_news;
-  if (fits_worse() || believed.other_share > kAsRightAsWrong) {
+  if (fits_worse()) {
     is_unbroken_ = false;
   } else if (believed.verdict == PoseVerdict::kRight) {
     if (was_carried_) forget_suspicion();

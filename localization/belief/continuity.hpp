@@ -2,7 +2,7 @@
 // Has the believed pose been followed without a break? A robot that is carried goes on believing where its wheels say
 // it is. Its scans break off there, and afterwards the map fits worse: a break alone may be a thing that somebody has
 // moved. From then on the pose has to be found right anew by what is in view, and as much has to fit as before. Another
-// hypothesis that is rather right breaks it too.
+// hypothesis alone does not break it: where things have been moved together, the pose that follows them fits best.
 #pragma once
 
 #include <optional>

@@ -50,6 +50,8 @@ class Judgement {
   /// told of it lately (PoseJudge::limit). Holds until the next call or start().
   void fix_by_surfaces(bool fixed) { fixed_by_surfaces_ = fixed; }
 
+  /// Surfaces fix the pose, and it has been followed without a break.
+  [[nodiscard]] bool is_fixed() const { return fixed_by_surfaces_ && continuity_.is_unbroken(); }
   /// Surfaces fix the pose, and no other hypothesis speaks against it: to be surely right it lacks proven tiles at
   /// most.
   [[nodiscard]] bool is_held() const { return is_fixed() && 1.0 - belief_.other_share >= kSurelyRight; }
@@ -67,7 +69,6 @@ class Judgement {
   [[nodiscard]] bool restore(const StabilityRecord& record) { return stability_.restore(record); }
 
  private:
-  [[nodiscard]] bool is_fixed() const { return fixed_by_surfaces_ && continuity_.is_unbroken(); }
   [[nodiscard]] bool due(const PoseJudge::Passed& passed);
   void check(const View& view);
   void earn(std::span<const CheckedBeam> beams, const View& view);
