@@ -60,9 +60,8 @@ void expect_one_set(std::uint64_t first, std::uint64_t last) {
   const bool is_development = first >= 1 && last < kFirstFinal;
   const bool is_final = first >= kFirstFinal && last <= kLastFinal;
   if (is_development || is_final) return;
-  throw daemon::SettingsError(
-      "--seed " + std::to_string(first) + " with " + std::to_string(last - first + 1) +
-      " seeds: unseen has seeds 1 to 999 for development and 1000 to 1059 for final figures alone");
+  throw daemon::SettingsError("--seed " + std::to_string(first) + " with " + std::to_string(last - first + 1) +
+                              " seeds: 1 to 999 for development and 1000 to 1059 for final figures alone");
 }
 
 Outcome unseen_drive(std::uint64_t seed, double minutes, const localization::LocalizerParams& localizer,
