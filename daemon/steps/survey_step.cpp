@@ -6,6 +6,11 @@
 #include "localization/motion/deskew.hpp"
 
 namespace deltamap::daemon {
+namespace {
+
+constexpr double kMostUncoveredS = 1.0;  // between a scan and the nearest report of the wheels
+
+}  // namespace
 
 SurveyStep::SurveyStep(const Settings& settings) : settings_{settings}, odometry_{settings.localizer.odometry} {}
 
@@ -15,8 +20,9 @@ void SurveyStep::begin_drive() {
 }
 
 bool SurveyStep::observe(Scan scan) {
+  if (!scans_.empty() && scan.time < scans_.back().time) odometry_.clock_fell_back(scans_.back().time);
   const auto wheels = odometry_.at(scan.time);
-  if (!wheels) return false;
+  if (!wheels || wheels->uncovered_s > kMostUncoveredS) return false;
   TrackedScan tracked;
   scan.range_deviation_m = settings_.localizer.range_deviation_m;
   tracked.rays = localization::motion::deskewed(scan, odometry_.velocity_at(scan.time));

@@ -22,13 +22,12 @@ class SurveyStep {
   void observe(const Odometry& odometry) { odometry_.add(odometry); }
   /// False: no odometry is known for the scan, it is left out.
   bool observe(Scan scan);
-  /// After the last scan.
-  void finish() { slam_.finish(); }
+  /// After the last scan. False: the measurements do not settle, the poses are worth nothing.
+  [[nodiscard]] bool finish() { return slam_.finish(); }
 
   [[nodiscard]] const mapping::slam::Slam& slam() const { return slam_; }
-  /// Scans that have been observed and not left out, of all drives.
-  [[nodiscard]] std::size_t scans() const { return scans_.size(); }
-  /// Where each of them was taken, in the survey's frame: at a keyframe, or from there on by the wheels.
+  /// Where each scan that was not left out was taken, in the survey's frame: at a keyframe, or from there on by the
+  /// wheels.
   [[nodiscard]] std::vector<TrajectoryPoint> trajectory() const;
 
  private:

@@ -4,6 +4,7 @@
 // meanwhile.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "daemon/steps/survey_step.hpp"
@@ -92,7 +93,7 @@ void survey_world(std::uint64_t seed, double minutes, Surveyed& surveyed) {
     }
   }
   const daemon::CpuTimer timer{surveyed.cpu_s};
-  surveyed.step.finish();
+  if (!surveyed.step.finish()) throw std::runtime_error("first-map: the pose graph of a seed does not settle");
 }
 
 /// Loops, and those of them that the truth contradicts.

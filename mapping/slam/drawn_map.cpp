@@ -16,7 +16,8 @@ constexpr double kLongestDrawnM = 25.0;  // beyond, neighbouring beams leave cel
 double turn_to_axes(const Survey& survey) {
   double sine = 0.0;
   double cosine = 0.0;
-  for (std::size_t node = 0; node < survey.keyframes.size(); ++node) {
+  for (std::uint32_t node = 0; node < survey.keyframes.size(); ++node) {
+    if (survey.component_of(node) != 0) continue;
     for (const registration::SurfacePoint& point : survey.keyframes[node].surface) {
       const double angle = survey.poses[node].theta + std::atan2(point.normal.y(), point.normal.x());
       sine += std::sin(4.0 * angle);

@@ -7,7 +7,7 @@
 
 namespace deltamap::mapping::slam {
 
-/// By how much to turn the frame so that most surfaces lie along an axis of the grid, in (-45°, 45°], rad.
+/// By how much to turn the frame so that most surfaces lie along an axis of the grid, in [-45°, 45°), rad.
 [[nodiscard]] double turn_to_axes(const Survey& survey);
 
 /// Of the drives that are joined to the first. A cell is occupied where a quarter of its beams, and two at least, ended

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/slam/drive_joining.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace deltamap::mapping::slam {
@@ -17,13 +19,20 @@ constexpr double kEverywhereM = 100.0;
 constexpr double kMostContradicted = 0.15;  // share of the beams
 constexpr double kAgreeM = 1.0;             // between what two looks say of where the drive lies
 constexpr double kAgreeRad = 0.1;
-constexpr std::ptrdiff_t kFewestVotes = 4;
-constexpr double kVotesShare = 0.75;  // of all looks that found the drive somewhere
+constexpr std::size_t kFewestVotes = 3;  // places looked from
+constexpr double kVotesShare = 0.75;     // of those from which it was found somewhere
 constexpr SubmapMatchParams kJoining{.least_score = 0.6,
                                      .least_paired = 0.5,
                                      .ambiguous_share = 0.9,
                                      .inner_deviation_m = 0.03,
                                      .inner_deviation_rad = 0.006};
+
+/// Of a pose whose frame is turned.
+PoseCovariance turned(const PoseCovariance& covariance, double turn_rad) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd{turn_rad}.toRotationMatrix();
+  return turn * covariance * turn.transpose();
+}
 
 std::vector<std::uint32_t> joined_nodes(const Survey& survey) {
   std::vector<std::uint32_t> nodes;
@@ -62,7 +71,8 @@ void DriveJoining::search(std::uint32_t node, double length_m) {
     return;
   }
   const Pose2& map_from_submap = survey_.poses[joined_->nodes.front()];
-  found_.push_back({middle, map_from_submap * match->submap_from_scan, match->covariance, match->score});
+  found_.push_back({node, middle, map_from_submap * match->submap_from_scan,
+                    turned(match->covariance, map_from_submap.theta), match->score});
 }
 
 bool DriveJoining::agree(const Found& a, const Found& b) const {
@@ -75,21 +85,28 @@ std::optional<alignment::PoseLink> DriveJoining::link() {
   const std::vector<Found> found = std::exchange(found_, {});
   const std::unique_ptr<const Joined> joined = std::move(joined_);
   if (found.empty()) return std::nullopt;
-  const auto votes = [&](const Found& one) {
-    return std::count_if(found.begin(), found.end(), [&](const Found& other) { return agree(one, other); });
+  // One vote for each place from which it was looked for, however long the way was that was held against the others.
+  const auto places = [&](auto&& counts) {
+    std::set<std::uint32_t> distinct;
+    for (const Found& one : found) {
+      if (counts(one)) distinct.insert(one.from);
+    }
+    return distinct.size();
   };
+  const auto votes = [&](const Found& one) { return places([&](const Found& other) { return agree(one, other); }); };
   const Found& best = *std::max_element(found.begin(), found.end(), [&](const Found& a, const Found& b) {
     return std::pair{votes(a), a.score} < std::pair{votes(b), b.score};
   });
-  const auto most = votes(best);
-  if (most < kFewestVotes || static_cast<double>(most) < kVotesShare * static_cast<double>(found.size())) {
+  const std::size_t most = votes(best);
+  const std::size_t all = places([](const Found&) { return true; });
+  if (most < kFewestVotes || static_cast<double>(most) < kVotesShare * static_cast<double>(all)) {
     return std::nullopt;
   }
   const auto away_m = [&](std::uint32_t node) { return distance_between(survey_.poses[node], best.map_from_node); };
   const std::uint32_t nearest = *std::min_element(joined->nodes.begin(), joined->nodes.end(),
                                                   [&](auto a, auto b) { return away_m(a) < away_m(b); });
   return alignment::PoseLink{nearest, best.node, motion_between(survey_.poses[nearest], best.map_from_node),
-                             best.covariance, true};
+                             turned(best.covariance, -survey_.poses[nearest].theta), false};
 }
 
 }  // namespace deltamap::mapping::slam

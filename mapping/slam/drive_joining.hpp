@@ -32,7 +32,8 @@ class DriveJoining {
   };
   /// One look.
   struct Found {
-    std::uint32_t node = 0;
+    std::uint32_t from = 0;  ///< keyframe after which it was looked for
+    std::uint32_t node = 0;  ///< whose pose was found
     Pose2 map_from_node;
     PoseCovariance covariance;
     double score = 0.0;

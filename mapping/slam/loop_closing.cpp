@@ -170,12 +170,12 @@ void LoopClosing::join(const alignment::PoseLink& link) {
   search_all(drive);
 }
 
-void LoopClosing::finish() {
-  drop_contradicted();
+bool LoopClosing::finish() {
+  (void)drop_contradicted();
   search_all({});
-  drop_contradicted();
+  (void)drop_contradicted();
   match_neighbours();
-  drop_contradicted();
+  return drop_contradicted();
 }
 
 void LoopClosing::match_neighbours() {
@@ -205,9 +205,10 @@ void LoopClosing::match_neighbours() {
 }
 
 /// The worst quarter first: they bend the others, so much that the graph may not settle before they are gone.
-void LoopClosing::drop_contradicted() {
+bool LoopClosing::drop_contradicted() {
+  unsolved_ = 0;
   for (;;) {
-    (void)survey_.solve();
+    const bool is_settled = survey_.solve();
     std::vector<std::pair<double, std::uint32_t>> wrong;
     for (std::uint32_t place = 0; place < survey_.links.size(); ++place) {
       const alignment::PoseLink& link = survey_.links[place];
@@ -216,7 +217,7 @@ void LoopClosing::drop_contradicted() {
       const double chi2 = chi2_of(at.error, link.covariance);
       if (chi2 > kMostChi2) wrong.emplace_back(chi2, place);
     }
-    if (wrong.empty()) break;
+    if (wrong.empty()) return is_settled;
     std::sort(wrong.rbegin(), wrong.rend());
     wrong.resize((wrong.size() + 3) / 4);
     std::vector<std::uint32_t> places;
@@ -225,7 +226,6 @@ void LoopClosing::drop_contradicted() {
     survey_.remove(places);
     contradicted_ += places.size();
   }
-  unsolved_ = 0;
 }
 
 }  // namespace deltamap::mapping::slam

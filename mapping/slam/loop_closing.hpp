@@ -21,8 +21,9 @@ class LoopClosing {
   /// A link between two drives, the first that joins the later one (link.to) to those before it.
   void join(const alignment::PoseLink& link);
   /// At the end: loops are searched for once more, keyframes of different ways that lie close by each other are
-  /// matched, and links that contradict the others are taken out.
-  void finish();
+  /// matched, and links that contradict the others are taken out. False: the graph does not settle, its poses are
+  /// worth nothing.
+  [[nodiscard]] bool finish();
 
   /// Loops that were taken out again.
   [[nodiscard]] std::size_t contradicted() const { return contradicted_; }
@@ -37,7 +38,7 @@ class LoopClosing {
   void consider(const alignment::PoseLink& loop);
   void believe(const alignment::PoseLink& loop);
   void match_neighbours();
-  void drop_contradicted();
+  bool drop_contradicted();
 
   Survey& survey_;
   std::vector<alignment::PoseLink> waiting_;  // for another that says the same

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/slam/seen_space.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/geometry/points_in_map.hpp"
@@ -44,7 +45,8 @@ double SeenSpace::contradicted(const Survey& survey, std::span<const std::uint32
     const TrackedScan& tracked = *survey.keyframes[node].tracked;
     const PointsInMap in_seen{seen_from_frame_of_nodes *
                               motion_between(survey.poses[frame_of_nodes], survey.poses[node])};
-    for (std::size_t i = 0; i < tracked.rays.size(); i += kEachBeam) {
+    const std::size_t beams = std::min(tracked.rays.size(), tracked.scan.beams.size());
+    for (std::size_t i = 0; i < beams; i += kEachBeam) {
       if (tracked.scan.beams[i].kind != BeamKind::kRange || tracked.scan.beams[i].range_m > kSeenLongestM) continue;
       const Point2 origin = in_seen(tracked.rays[i].origin);
       const Point2 end = in_seen(tracked.rays[i].end);

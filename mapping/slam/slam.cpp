@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -30,9 +31,13 @@ constexpr SubmapMatchParams kAfterGap{.least_score = 0.5,
                                       .inner_deviation_m = 0.01,
                                       .inner_deviation_rad = 0.002};
 
+/// The controller has begun anew: what the robot did meanwhile is known to nobody.
+const PoseCovariance kAnywhereNear = Eigen::Vector3d{0.25, 0.25, 0.09}.asDiagonal();
+
 }  // namespace
 
 void Slam::begin_drive() {
+  if (begins_ && !survey_.component.empty()) return;  // of the last one nothing has been seen yet
   end_drive();
   begins_ = true;
   driven_m_ = 0.0;
@@ -40,6 +45,7 @@ void Slam::begin_drive() {
 }
 
 void Slam::observe(TrackedScan tracked) {
+  assert(!survey_.component.empty() && "a drive has begun");
   const Pose2 odom_from_robot = tracked.odom_from_robot;
   if (!begins_) {
     driven_m_ += distance_between(odom_from_robot_, odom_from_robot);
@@ -73,7 +79,8 @@ alignment::PoseLink Slam::followed(std::uint32_t node, bool& is_matched) const {
   const Keyframe& here = survey_.keyframes[node];
   const Pose2 driven =
       motion_between(survey_.keyframes[before].tracked->odom_from_robot, here.tracked->odom_from_robot);
-  const PoseCovariance by_wheels = alignment::odometry_covariance(driven, {});
+  const bool is_known = survey_.keyframes[before].tracked->odometry_epoch == here.tracked->odometry_epoch;
+  const PoseCovariance by_wheels = is_known ? alignment::odometry_covariance(driven, {}) : kAnywhereNear;
   const SearchWindow window{
       driven, kWheelDeviations * std::sqrt(by_wheels(0, 0)) + kLeastFollowedM,
       std::min(kMostFollowedRad, kWheelDeviations * std::sqrt(by_wheels(2, 2)) + kLeastFollowedRad)};
@@ -81,7 +88,7 @@ alignment::PoseLink Slam::followed(std::uint32_t node, bool& is_matched) const {
                               window.position_m};
   const auto match =
       matcher.match(here.ends, here.tracked->scan.range_deviation_m, window, {driven, by_wheels.inverse()},
-                    driven.position().norm() > kGapM ? kAfterGap : kFollowing);
+                    !is_known || driven.position().norm() > kGapM ? kAfterGap : kFollowing);
   is_matched = match.has_value();
   if (!match) return {before, node, driven, by_wheels, false};
   return {before, node, match->submap_from_scan, match->covariance, false};
@@ -91,9 +98,9 @@ void Slam::end_drive() {
   if (const auto link = joining_.link()) loops_.join(*link);
 }
 
-void Slam::finish() {
+bool Slam::finish() {
   end_drive();
-  loops_.finish();
+  return survey_.keyframes.empty() || loops_.finish();
 }
 
 }  // namespace deltamap::mapping::slam

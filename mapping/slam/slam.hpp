@@ -24,8 +24,8 @@ class Slam {
   /// Scans of one drive in order of time; those that are no keyframe are passed over. The estimate in it is not looked
   /// at: rays, beams and odometry are.
   void observe(TrackedScan tracked);
-  /// After the last scan: all poses at once.
-  void finish();
+  /// After the last scan: all poses at once. False: the measurements do not settle, the poses are worth nothing.
+  [[nodiscard]] bool finish();
 
   [[nodiscard]] const Survey& survey() const { return survey_; }
   [[nodiscard]] const LoopClosing& loops() const { return loops_; }

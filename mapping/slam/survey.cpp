@@ -65,7 +65,9 @@ bool Survey::solve() {
     if (!held.insert(component_of(node)).second) continue;
     anchors.push_back({node, poses[node], kAnchorVariance * PoseCovariance::Identity()});
   }
-  alignment::PoseNetwork network = alignment::solved_network(poses, links, anchors, kSolving);
+  std::vector<alignment::PoseLink> all = links;  // which of them are wrong is not for the solver to say
+  for (alignment::PoseLink& link : all) link.may_drop = false;
+  alignment::PoseNetwork network = alignment::solved_network(poses, all, anchors, kSolving);
   if (network.solved) poses = std::move(network.poses);
   return network.solved;
 }

@@ -67,14 +67,33 @@ SurveyedDrive surveyed(const std::string& recording, const daemon::Settings& set
   return drive;
 }
 
+/// No recording counts twice, and nothing is written over what is read or over another output.
+void require_files_apart(const BuildOptions& options) {
+  std::vector<std::string> read = options.recordings();
+  for (auto file = read.begin(); file != read.end(); ++file) {
+    if (std::find(read.begin(), file, *file) != file) throw std::runtime_error(*file + ": given twice");
+  }
+  if (!options.config.empty()) read.push_back(options.config);
+  const std::string picture = fs::path{options.map()}.replace_extension(".pgm").string();
+  std::vector<std::string> outputs{options.map(), picture};
+  if (!options.trajectory.empty()) outputs.push_back(options.trajectory);
+  for (const std::string& output : outputs) {
+    for (const std::string& file : read) require_output_beside(output, file);
+  }
+  const auto place = [](const std::string& file) { return fs::weakly_canonical(file); };
+  if (outputs.size() > 2 && (place(outputs[2]) == place(outputs[0]) || place(outputs[2]) == place(outputs[1]))) {
+    throw std::runtime_error(options.trajectory + ": is a file of the map; give another name");
+  }
+}
+
 /// Nothing is written of drives that hang together by guesswork.
 void require_joined(const std::vector<SurveyedDrive>& drives, const mapping::slam::Slam& slam) {
   for (std::uint32_t i = 0; i < drives.size(); ++i) {
     if (slam.is_joined(i)) continue;
     throw std::runtime_error(
         drives[i].recording +
-        ": not found in what the drives before it have seen, or in several places of it; let it begin "
-        "where one of them has been, or leave it out");
+        ": not found in what the drives before it have seen, or in several places of it; let it go "
+        "for 30 m where they have been, or leave it out");
   }
 }
 
@@ -141,16 +160,13 @@ void print_built(const BuildOptions& options, const std::vector<SurveyedDrive>& 
 }
 
 void run_build(const BuildOptions& options) {
-  for (const std::string& recording : options.recordings()) {
-    require_output_beside(options.map(), recording);
-    if (!options.trajectory.empty()) require_output_beside(options.trajectory, recording);
-  }
+  require_files_apart(options);
   const daemon::Settings settings = options.config.empty() ? daemon::parse_settings("", "defaults", options.overrides)
                                                            : daemon::read_settings(options.config, options.overrides);
   daemon::SurveyStep step{settings};
   std::vector<SurveyedDrive> drives;
   for (const std::string& recording : options.recordings()) drives.push_back(surveyed(recording, settings, step));
-  step.finish();
+  if (!step.finish()) throw std::runtime_error(options.recordings().front() + ": what was measured does not settle");
   for (const SurveyedDrive& drive : drives) {
     if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
   }
@@ -161,8 +177,8 @@ void run_build(const BuildOptions& options) {
   if (count_of(grid, CellState::kFree) == 0) {
     throw std::runtime_error(drives.front().recording + ": no scan has a valid range");
   }
-  write_grid(grid, options.map());
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, step, map_from_survey);
+  write_grid(grid, options.map());
   print_built(options, drives, step, map_from_survey, grid);
 }
 

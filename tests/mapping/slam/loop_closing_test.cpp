@@ -55,13 +55,13 @@ class BentWay : public testing::Test {
 TEST_F(BentWay, IsStraightenedWhereTheRobotComesBack) {
   drive(test::rounds_of_the_hall(2), 0.0015);
   EXPECT_GT(loops_in_graph(), 10U);
-  loops.finish();
+  ASSERT_TRUE(loops.finish());
   EXPECT_LT(farthest_off_m(), 0.25) << "0.8 m without loops";
 }
 
 TEST_F(BentWay, HasNoLoopsBeforeTheRobotComesBack) {
   drive(test::way_along({{1.5, 1.2}, {18.7, 1.2}, {18.7, 7.0}}), 0.0);
-  loops.finish();
+  ASSERT_TRUE(loops.finish());
   EXPECT_EQ(loops_in_graph(), 0U);
 }
 
@@ -70,7 +70,7 @@ TEST_F(BentWay, LosesALinkThatAllOthersContradict) {
   const std::size_t before = loops_in_graph();
   const auto last = static_cast<std::uint32_t>(survey.keyframes.size() - 1);
   survey.add({last / 4, last, {3.0, 1.0, 0.5}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal(), true});
-  loops.finish();
+  ASSERT_TRUE(loops.finish());
   EXPECT_GE(loops.contradicted(), 1U);
   EXPECT_GE(loops_in_graph(), before) << "and no other";
   EXPECT_LT(farthest_off_m(), 0.1);

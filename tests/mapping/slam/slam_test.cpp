@@ -39,7 +39,7 @@ class SlamInTheHall : public testing::Test {
 
 TEST_F(SlamInTheHall, IsWhereTheRobotWasThoughItsWheelsAreMetresOff) {
   EXPECT_GT(drive(test::rounds_of_the_hall(2), 8.0), 5.0);
-  slam.finish();
+  ASSERT_TRUE(slam.finish());
   EXPECT_GT(slam.survey().keyframes.size(), 250U);
   EXPECT_GT(slam.matched() + 5, slam.survey().keyframes.size());
   EXPECT_LT(farthest_off_m(slam, truth), 0.10);
@@ -55,7 +55,7 @@ TEST_F(SlamInTheHall, KeepsAScanEveryQuarterOfAMetreAndPassesOverAStandingRobot)
 TEST_F(SlamInTheHall, JoinsADriveThatBeganElsewhere) {
   (void)drive(test::rounds_of_the_hall(1));
   (void)drive(test::way_along({{18.7, 6.8}, {2.0, 6.8}, {1.6, 1.4}, {12.0, 1.4}}));
-  slam.finish();
+  ASSERT_TRUE(slam.finish());
   ASSERT_TRUE(slam.is_joined(1));
   EXPECT_LT(farthest_off_m(slam, truth), 0.10);
 }
@@ -67,19 +67,46 @@ TEST_F(SlamInTheHall, DoesNotJoinADriveThroughAnotherBuilding) {
   for (double y = 1.0; y < 24.0; y += 4.3) test::fill(other, {20.0, y}, {20.3, y + 2.0}, CellState::kOccupied);
   hall = other;
   (void)drive(test::way_along({{2.0, 5.0}, {18.0, 5.0}, {18.0, 20.0}}));
-  slam.finish();
+  ASSERT_TRUE(slam.finish());
   EXPECT_TRUE(slam.is_joined(0));
   EXPECT_FALSE(slam.is_joined(1));
 }
 
 TEST_F(SlamInTheHall, HasNothingToSayOfNothing) {
-  slam.finish();
+  ASSERT_TRUE(slam.finish());
   EXPECT_TRUE(slam.survey().keyframes.empty());
   slam.begin_drive();
   slam.begin_drive();
   (void)drive({{1.5, 7.0, 0.0}});
-  slam.finish();
+  ASSERT_TRUE(slam.finish());
   EXPECT_EQ(slam.survey().keyframes.size(), 1U);
+}
+
+TEST_F(SlamInTheHall, PassesOverADriveOfWhichNothingWasSeen) {
+  slam.begin_drive();
+  slam.begin_drive();
+  (void)drive(test::rounds_of_the_hall(1));
+  ASSERT_TRUE(slam.finish());
+  EXPECT_EQ(slam.survey().component.size(), 1U);
+  EXPECT_LT(farthest_off_m(slam, truth), 0.10);
+}
+
+TEST_F(SlamInTheHall, IsNotMisledByAControllerThatBeginsAnewElsewhere) {
+  const std::vector<Pose2> way = test::way_along({{1.5, 7.0}, {16.0, 7.0}});
+  std::vector<TrackedScan> scans = test::surveyed(hall, way, random);
+  const std::size_t middle = scans.size() / 2;
+  const Pose2 pushed = scans[middle].odom_from_robot * Pose2{-0.5, 0.3, 0.2} * inverse(scans[middle].odom_from_robot);
+  for (std::size_t i = middle; i < scans.size(); ++i) {
+    scans[i].odometry_epoch = 1;
+    scans[i].odom_from_robot = pushed * scans[i].odom_from_robot;
+  }
+  slam.begin_drive();
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    slam.observe(scans[i]);
+    if (truth.size() < slam.survey().keyframes.size()) truth.push_back(way[i]);
+  }
+  ASSERT_TRUE(slam.finish());
+  EXPECT_LT(farthest_off_m(slam, truth), 0.15);
 }
 
 }  // namespace

@@ -52,6 +52,14 @@ TEST(Survey, SolvesEachFrameByItself) {
   }
 }
 
+TEST(Survey, SettlesWithAllItsLinksHoweverManyAreWrong) {
+  Survey survey = two_drives();
+  for (int i = 0; i < 30; ++i) survey.add({0, 2, {2.6, 0.0, 0.0}, tight(), true});
+  ASSERT_TRUE(survey.solve());
+  EXPECT_GT(survey.poses[2].x, 2.3) << "they all pull";
+  EXPECT_EQ(survey.links.size(), 34U);
+}
+
 TEST(Survey, JoinsADriveWhereALinkSays) {
   Survey survey = two_drives();
   survey.join({1, 4, {0.0, 2.0, 1.0}, tight(), true});
