@@ -41,4 +41,16 @@ std::vector<Figure> spread_figures(const std::vector<SpreadAsked>& asked, const 
   return figures;
 }
 
+Chart chart_in_order(const std::string& what, const std::string& number, const std::vector<Outcome>& outcomes) {
+  std::vector<double> values;
+  values.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) values.push_back(outcome.number(number));
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  std::sort(values.begin(), values.end());
+  Series series{number, {}};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    series.points.emplace_back(static_cast<double>(i + 1) / static_cast<double>(values.size()), values[i]);
+  return {what + ", seeds in order", "share of the seeds", what, {series}};
+}
+
 }  // namespace deltamap::experiments

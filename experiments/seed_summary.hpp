@@ -34,4 +34,8 @@ struct SpreadAsked {
 [[nodiscard]] std::vector<Figure> spread_figures(const std::vector<SpreadAsked>& asked,
                                                  const std::vector<Outcome>& outcomes);
 
+/// The values of all runs in order of size: how long the tail is.
+[[nodiscard]] Chart chart_in_order(const std::string& what, const std::string& number,
+                                   const std::vector<Outcome>& outcomes);
+
 }  // namespace deltamap::experiments

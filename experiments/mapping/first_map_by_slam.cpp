@@ -159,7 +159,7 @@ Outcome survey_run(std::uint64_t seed, double minutes, const Options& options) {
                                            static_cast<double>(survey.keyframes.size())},
                      {"loops", static_cast<double>(loops)},
                      {"wrong_loops_share", loops == 0 ? 0.0 : static_cast<double>(wrong_loops) / loops},
-                     {"slam_cpu_s", surveyed.cpu_s},
+                     {"slam_cpu_ms", 1e3 * surveyed.cpu_s},
                      {"speed_m_per_s", kind.speed_m_per_s},
                      {"people", kind.people.all}};
   return outcome;
@@ -190,10 +190,12 @@ Report report_of(const std::vector<Outcome>& outcomes) {
                                         {"contour_f1", "", Better::kMore},
                                         {"matched_share", "", Better::kMore},
                                         {"wrong_loops_share"},
-                                        {"slam_cpu_s", "s"}},
+                                        {"slam_cpu_ms", "ms"}},
                                        outcomes)) {
     report.figures.push_back(std::move(figure));
   }
+  report.charts.push_back(chart_in_order("RMSE of the keyframes, m", "error_rms_m", outcomes));
+  report.charts.push_back(chart_in_order("contour F1", "contour_f1", outcomes));
   return report;
 }
 

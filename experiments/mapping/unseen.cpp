@@ -97,19 +97,6 @@ TextTable shut_while_right(const std::vector<Outcome>& outcomes) {
   return table;
 }
 
-/// The values of all seeds in order of size: how long the tail is.
-Chart chart_of(const std::string& what, const std::string& number, const std::vector<Outcome>& outcomes) {
-  std::vector<double> values;
-  values.reserve(outcomes.size());
-  for (const Outcome& outcome : outcomes) values.push_back(outcome.number(number));
-  std::erase_if(values, [](double value) { return std::isnan(value); });
-  std::sort(values.begin(), values.end());
-  Series series{number, {}};
-  for (std::size_t i = 0; i < values.size(); ++i)
-    series.points.emplace_back(static_cast<double>(i + 1) / static_cast<double>(values.size()), values[i]);
-  return {what + ", seeds in order", "share of the seeds", what, {series}};
-}
-
 /// By RMSE of the pose, the worst first: those whose start was never found.
 std::vector<const Outcome*> worst_of(const std::vector<Outcome>& outcomes) {
   const auto error_m = [](const Outcome& outcome) {
@@ -166,10 +153,10 @@ Report report_of(const std::vector<Outcome>& outcomes) {
   count("seeds whose start was not found", [](const Outcome& o) { return o.number("start_found") == 0.0; });
   count("seeds that failed in any way", [](const Outcome& o) { return !failure_of(o).empty(); });
   for (Figure& figure : spread_figures(asked(), outcomes)) report.figures.push_back(std::move(figure));
-  report.charts.push_back(chart_of("RMSE of the pose, m", "error_rms_m", outcomes));
-  report.charts.push_back(chart_of("skill of the map", "skill", outcomes));
+  report.charts.push_back(chart_in_order("RMSE of the pose, m", "error_rms_m", outcomes));
+  report.charts.push_back(chart_in_order("skill of the map", "skill", outcomes));
   report.charts.push_back(
-      chart_of("gate shut while the pose is right, share of the time", "gate_shut_while_right", outcomes));
+      chart_in_order("gate shut while the pose is right, share of the time", "gate_shut_while_right", outcomes));
   const std::vector<const Outcome*> worst = worst_of(outcomes);
   report.charts.push_back(error_chart(worst));
   for (const Outcome* outcome : worst) {

@@ -66,15 +66,19 @@ TEST(Judgement, BelievesAPoseThatSurfacesFixNoMoreThanTilesMaySayThatHaveNotBeen
   EXPECT_TRUE(judgement.is_held());
 }
 
-TEST(Judgement, HearsNothingOfSurfacesOnceAnotherPoseWasRatherRight) {
+/// Where things have been moved together, the pose that follows them fits best: it takes the belief, not the pose.
+TEST(Judgement, CallsAPoseThatSurfacesFixNotRightWhereAnotherIsRatherRightAndKeepsIt) {
   hypotheses::HypothesisReport report = believed_with(1.0);
   report.kidnapped_share = 0.6;
   Judgement judgement = judged_with(report, 0.05);
   const Scan scan;
   judgement.follow({.scan = scan, .rays = {}, .odom_from_robot = {}, .map_from_robot = {}}, true);
   judgement.fix_by_surfaces(true);
-  EXPECT_LT(judgement.trust(), 0.1);
-  EXPECT_NE(judgement.belief().verdict, PoseVerdict::kRight);
+  EXPECT_TRUE(judgement.is_fixed());
+  EXPECT_FALSE(judgement.is_held());
+  EXPECT_DOUBLE_EQ(judgement.trust(), 0.5);
+  EXPECT_DOUBLE_EQ(judgement.belief().pose_right, 0.4);
+  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kUndecided);
 }
 
 TEST(Judgement, GivesAPoseNoMoreBeliefThanAnotherLeavesIt) {
