@@ -27,6 +27,7 @@ std::vector<Figure> spread_figures(const std::vector<SpreadAsked>& asked, const 
   std::vector<Figure> figures;
   for (const SpreadAsked& one : asked) {
     std::vector<double> values;
+    values.reserve(outcomes.size());
     for (const Outcome& outcome : outcomes) values.push_back(outcome.number(one.number));
     if (std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); })) continue;
     const Spread spread = spread_of(values, one.better);

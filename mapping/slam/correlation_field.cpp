@@ -2,7 +2,6 @@
 #include "mapping/slam/correlation_field.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace deltamap::mapping::slam {
@@ -121,6 +120,18 @@ class BranchAndBound {
   std::vector<Rotation> rotations_;
 };
 
+/// Values around an end, row by row.
+std::vector<std::uint8_t> stamp_of_an_end() {
+  std::vector<std::uint8_t> stamp;
+  for (int y = -kStampCells; y <= kStampCells; ++y) {
+    for (int x = -kStampCells; x <= kStampCells; ++x) {
+      const double value = 255.0 * std::exp(-0.5 * (x * x + y * y) / (kDeviationCells * kDeviationCells));
+      stamp.push_back(static_cast<std::uint8_t>(std::lround(value)));
+    }
+  }
+  return stamp;
+}
+
 }  // namespace
 
 CorrelationField::CorrelationField(std::span<const Point2> ends, double resolution_m, int levels)
@@ -129,21 +140,17 @@ CorrelationField::CorrelationField(std::span<const Point2> ends, double resoluti
   if (!ends.empty()) {
     Point2 low = ends.front();
     Point2 high = low;
-    for (const Point2& end : ends) low = low.cwiseMin(end), high = high.cwiseMax(end);
+    for (const Point2& end : ends) {
+      low = low.cwiseMin(end);
+      high = high.cwiseMax(end);
+    }
     corner_ = low - Point2::Constant(kStampCells * resolution_m);
     const Cell last = cell_at(high + Point2::Constant(kStampCells * resolution_m));
     finest.width = last.column + 1;
     finest.height = last.row + 1;
   }
   finest.values.assign(static_cast<std::size_t>(finest.width) * static_cast<std::size_t>(finest.height), 0);
-  std::array<std::uint8_t, (2 * kStampCells + 1) * (2 * kStampCells + 1)> stamp{};
-  for (int y = -kStampCells; y <= kStampCells; ++y) {
-    for (int x = -kStampCells; x <= kStampCells; ++x) {
-      const double value = 255.0 * std::exp(-0.5 * (x * x + y * y) / (kDeviationCells * kDeviationCells));
-      stamp[static_cast<std::size_t>((y + kStampCells) * (2 * kStampCells + 1) + x + kStampCells)] =
-          static_cast<std::uint8_t>(std::lround(value));
-    }
-  }
+  const std::vector<std::uint8_t> stamp = stamp_of_an_end();
   for (const Point2& end : ends) {
     const Cell cell = cell_at(end);
     const std::uint8_t* from = stamp.data();
