@@ -183,8 +183,16 @@ sensor::RefinedPose Localizer::State::search(const motion::ScanInstant& now) {
 }
 
 sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
-  const tracking::Tracker::Answer tracked =
-      tracker.observe({.now = now, .ends = weighing_ends(now), .field = field, .faces = faces, .velocity = velocity});
+  const auto poses_within = [this](const sensor::RefinedPose& prior) {
+    return hypotheses.poses_within(prior, field, ends);
+  };
+  const tracking::Tracker::Answer tracked = tracker.observe({.now = now,
+                                                             .ends = weighing_ends(now),
+                                                             .field = field,
+                                                             .faces = faces,
+                                                             .velocity = velocity,
+                                                             .poses_within = poses_within});
+  if (tracked.looked_around) judgement.start(belief::kAsRightAsWrong);
   best = tracker.best();
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);

@@ -8,12 +8,6 @@
 #include "localization/sensor/weighing.hpp"
 
 namespace deltamap::localization::hypotheses {
-namespace {
-
-constexpr std::size_t kKeptForEach = 6;  // candidates for each refined pose: neighbours in the lattice fit alike
-
-}  // namespace
-
 Pose2 settled(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, const Pose2& pose) {
   // The field pulls over two or three decimetres; a heading between two of the lattice may be farther off.
   constexpr double kStepM = 0.1;
@@ -41,7 +35,8 @@ Pose2 settled(const sensor::LikelihoodField& field, const motion::BeamEnds& ends
 }
 
 GlobalSearch::GlobalSearch(const GlobalSearchParams& params, int headings)
-    : params_{params}, lattice_{headings, kKeptForEach * static_cast<std::size_t>(std::max(1, params.refined))} {}
+    : params_{params},
+      lattice_{headings, LatticeSearch::kKeptForEach * static_cast<std::size_t>(std::max(1, params.refined))} {}
 
 void GlobalSearch::start() { stage_ = Stage::kBegin; }
 

@@ -108,15 +108,15 @@ void HypothesisTracker::apply(const OccupancyGrid& map, const sensor::Likelihood
   }
 }
 
-void HypothesisTracker::thin(const Seen& seen) {
-  const std::size_t count = std::min(HypothesisBank::kBeams, seen.ends.size());
-  ends_.range_deviation_m = seen.ends.range_deviation_m;
+void HypothesisTracker::thin(const motion::BeamEnds& ends) {
+  const std::size_t count = std::min(HypothesisBank::kBeams, ends.size());
+  ends_.range_deviation_m = ends.range_deviation_m;
   ends_.x_m.resize(count);
   ends_.y_m.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t from = i * seen.ends.size() / count;
-    ends_.x_m[i] = seen.ends.x_m[from];
-    ends_.y_m[i] = seen.ends.y_m[from];
+    const std::size_t from = i * ends.size() / count;
+    ends_.x_m[i] = ends.x_m[from];
+    ends_.y_m[i] = ends.y_m[from];
   }
   keep_near_ends();
 }
@@ -128,6 +128,13 @@ void HypothesisTracker::keep_near_ends() {
   motion::keep_ends(
       ends_, [](const Point2& end) { return end.norm() <= kNear_m; }, near_ends_);
   if (near_ends_.size() < kEnough) near_ends_ = ends_;
+}
+
+std::vector<sensor::ProposedPose> HypothesisTracker::poses_within(const sensor::RefinedPose& prior,
+                                                                  const sensor::LikelihoodField& field,
+                                                                  const motion::BeamEnds& ends) {
+  thin(ends);
+  return hypotheses::poses_within(prior, coarse_, field, {ends_, near_ends_}, params_.headings);
 }
 
 const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField& field, const Seen& seen) {
@@ -146,7 +153,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   if (seen.carried && !carried_) search_.start();  // not with a scan from before
   carried_ = seen.carried;
   bank_.make_room(suspicious_ || carried_);
-  thin(seen);
+  thin(seen.ends);
   if (ends_.size() == 0) return report_;
 
   const auto slid = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;

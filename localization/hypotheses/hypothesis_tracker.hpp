@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "localization/hypotheses/alias_monitor.hpp"
 #include "localization/hypotheses/beam_decorrelation.hpp"
@@ -16,6 +17,7 @@
 #include "localization/hypotheses/hypothesis_probes.hpp"
 #include "localization/hypotheses/hypothesis_report.hpp"
 #include "localization/hypotheses/outlier_rate.hpp"
+#include "localization/hypotheses/prior_search.hpp"
 #include "localization/hypotheses/scan_stack.hpp"
 #include "localization/sensor/coarse_field.hpp"
 
@@ -73,6 +75,11 @@ class HypothesisTracker {
   /// Is the pose about where the robot was last believed to be, predicted by odometry?
   [[nodiscard]] bool is_near_believed(const Pose2& pose) const;
 
+  /// Where the scan fits within a wide prior of the pose (prior_search.hpp).
+  [[nodiscard]] std::vector<sensor::ProposedPose> poses_within(const sensor::RefinedPose& prior,
+                                                               const sensor::LikelihoodField& field,
+                                                               const motion::BeamEnds& ends);
+
   /// The map has changed within the box (all of it: a box of the whole map).
   void apply(const OccupancyGrid& map, const sensor::LikelihoodField& field, const CellBox& changed);
 
@@ -81,7 +88,7 @@ class HypothesisTracker {
   void forget_kidnapping();
   /// Otherwise than odometry says, by more than joins two hypotheses.
   [[nodiscard]] bool has_jumped(const Pose2& map_from_believed) const;
-  void thin(const Seen& seen);
+  void thin(const motion::BeamEnds& ends);
   void weigh(const sensor::LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
   void probe(const sensor::LikelihoodField& field, const Pose2& odom);

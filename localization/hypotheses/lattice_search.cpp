@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/hypotheses/lattice_search.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "core/geometry/angle.hpp"
 
@@ -26,6 +28,32 @@ std::size_t spreading_stride(std::size_t headings) {
 std::uint32_t next_row(std::uint32_t block, int columns) {
   const auto width = static_cast<std::uint32_t>(columns);
   return (block / width + 1) * width;
+}
+
+constexpr double kWithinDeviations = 4.0;
+
+/// A pose stands for all in its block and about its heading.
+PoseCovariance of_the_lattice(double block_m, std::size_t headings) {
+  const double step_rad = 2.0 * std::numbers::pi / static_cast<double>(headings);
+  return (Eigen::Vector3d{block_m * block_m, block_m * block_m, step_rad * step_rad} / 12.0).asDiagonal();
+}
+
+struct Interval {
+  double from_m = 0.0;
+  double to_m = 0.0;
+};
+
+/// The x, as offsets from the middle, that lie within the deviations with this y and heading; nothing where none does.
+std::optional<Interval> within(const Eigen::Matrix3d& information, double y_m, double turned_rad) {
+  const double square = information(0, 0);
+  const double linear = information(0, 1) * y_m + information(0, 2) * turned_rad;
+  const Eigen::Vector2d others{y_m, turned_rad};
+  const double constant =
+      others.dot(information.bottomRightCorner<2, 2>() * others) - kWithinDeviations * kWithinDeviations;
+  const double discriminant = linear * linear - square * constant;
+  if (discriminant < 0.0) return std::nullopt;
+  const double half_m = std::sqrt(discriminant) / square;
+  return Interval{-linear / square - half_m, -linear / square + half_m};
 }
 
 }  // namespace
@@ -57,33 +85,58 @@ void LatticeSearch::keep(const Candidate& candidate) {
   std::push_heap(best_.begin(), best_.end(), fits_better);
 }
 
+void LatticeSearch::judge(const sensor::CoarseField& field, const sensor::TurnedBeams& beams, std::size_t nth_heading,
+                          std::size_t from, std::size_t until) {
+  const std::span<const std::uint32_t> blocks = field.free_blocks();
+  const double heading = heading_rad(nth_heading);
+  while (from < until) {
+    const std::uint32_t first = blocks[from];
+    const std::uint32_t beyond = std::min(first + sensor::CoarseField::kAtOnce, next_row(first, field.columns()));
+    const sensor::CoarseMisfits misfits = sensor::coarse_misfits(field, beams, first);
+    for (; from < until && blocks[from] < beyond; ++from) {
+      const std::int32_t misfit = misfits[blocks[from] - first];
+      if (best_.size() == most_ && misfit >= best_.front().misfit) continue;
+      const Point2 at = field.centre_of(blocks[from]);
+      keep({{at.x(), at.y(), heading},
+            misfit,
+            static_cast<std::uint32_t>(nth_heading * blocks.size() + from),
+            static_cast<std::uint32_t>(beams.count)});
+    }
+  }
+}
+
 void LatticeSearch::look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count) {
   const std::span<const std::uint32_t> blocks = field.free_blocks();
   if (blocks.empty() || ends.size() == 0) return;
   next_block_ = std::min(next_block_, blocks.size() - 1);  // the map may have changed
   while (count > 0) {
-    const double heading = heading_rad(next_heading_);
-    const sensor::TurnedBeams beams = sensor::turned_beams(ends, heading, field.block_m());
+    const sensor::TurnedBeams beams = sensor::turned_beams(ends, heading_rad(next_heading_), field.block_m());
     const std::size_t until = std::min(blocks.size(), next_block_ + count);
+    judge(field, beams, next_heading_, next_block_, until);
     count -= until - next_block_;
-    while (next_block_ < until) {
-      const std::uint32_t first = blocks[next_block_];
-      const std::uint32_t beyond = std::min(first + sensor::CoarseField::kAtOnce, next_row(first, field.columns()));
-      const sensor::CoarseMisfits misfits = sensor::coarse_misfits(field, beams, first);
-      for (; next_block_ < until && blocks[next_block_] < beyond; ++next_block_) {
-        const std::int32_t misfit = misfits[blocks[next_block_] - first];
-        if (best_.size() == most_ && misfit >= best_.front().misfit) continue;
-        const Point2 at = field.centre_of(blocks[next_block_]);
-        keep({{at.x(), at.y(), heading},
-              misfit,
-              static_cast<std::uint32_t>(next_heading_ * blocks.size() + next_block_),
-              static_cast<std::uint32_t>(beams.count)});
-      }
-    }
+    next_block_ = until;
     if (next_block_ < blocks.size()) continue;
     next_block_ = 0;
     next_heading_ = (next_heading_ + 1) % headings_;
     if (next_heading_ == 0) return;
+  }
+}
+
+void LatticeSearch::look_within(const sensor::CoarseField& field, const motion::BeamEnds& ends,
+                                const sensor::RefinedPose& prior) {
+  if (ends.size() == 0) return;
+  const Pose2& middle = prior.map_from_robot;
+  const PoseCovariance covariance = prior.covariance + of_the_lattice(field.block_m(), headings_);
+  const Eigen::Matrix3d information = covariance.inverse();
+  for (std::size_t nth = 0; nth < headings_; ++nth) {
+    const double turned_rad = turn_between(middle.theta, heading_rad(nth));
+    const sensor::TurnedBeams beams = sensor::turned_beams(ends, heading_rad(nth), field.block_m());
+    for (int row = 0; row < field.rows(); ++row) {
+      const std::optional<Interval> along = within(information, field.middle_of_row(row) - middle.y, turned_rad);
+      if (!along) continue;
+      const auto blocks = field.free_in_row(row, middle.x + along->from_m, middle.x + along->to_m);
+      judge(field, beams, nth, blocks.first, blocks.past);
+    }
   }
 }
 

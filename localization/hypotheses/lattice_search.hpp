@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "localization/sensor/coarse_field.hpp"
+#include "localization/sensor/pose_refinement.hpp"
 
 namespace deltamap::localization::hypotheses {
 
@@ -29,6 +30,8 @@ inline constexpr double kFitsNearlyAsWell = 0.15;
 class LatticeSearch {
  public:
   static constexpr std::size_t kFew = 8;  ///< enough where one newcomer is taken at a time
+  /// To be kept for each candidate that is slid to its best fit: neighbours in the lattice fit alike.
+  static constexpr std::size_t kKeptForEach = 6;
 
   /// `most` are kept of each look; > 0.
   explicit LatticeSearch(int headings, std::size_t most = kFew);
@@ -39,6 +42,9 @@ class LatticeSearch {
   /// Judges the next `count` poses by the scan, but none beyond the lattice's last: the next one is the first again.
   void look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count);
 
+  /// Judges the poses that the prior does not exclude, wherever it stopped: within four deviations of it.
+  void look_within(const sensor::CoarseField& field, const motion::BeamEnds& ends, const sensor::RefinedPose& prior);
+
   /// The best of all looks since clear(), the best first; each half a metre or 15° away from those before.
   [[nodiscard]] std::vector<Candidate> best_apart(std::size_t count);
 
@@ -48,6 +54,9 @@ class LatticeSearch {
 
  private:
   [[nodiscard]] double heading_rad(std::size_t nth) const;
+  /// The free blocks [from, until) with the nth heading.
+  void judge(const sensor::CoarseField& field, const sensor::TurnedBeams& beams, std::size_t nth_heading,
+             std::size_t from, std::size_t until);
   void keep(const Candidate& candidate);
 
   std::size_t headings_;

@@ -24,9 +24,6 @@ Eigen::Matrix3d root_of(const PoseCovariance& covariance) {
   return factors.matrixL();
 }
 
-/// Of a normal kernel for so many samples of three dimensions, against their standard deviation.
-double kernel_width(std::size_t samples) { return std::pow(0.8 / static_cast<double>(samples), 1.0 / 7.0); }
-
 Pose2 drawn_slip(const motion::MotionModelParams& model, double share, Random& random) {
   return {random.normal(share * model.slip_m), random.normal(share * motion::kSlipSideways * model.slip_m),
           random.normal(share * model.slip_rad)};
@@ -55,10 +52,12 @@ void ParticleFilter::start_around(const Pose2& map_from_robot, const PoseCovaria
   for (std::size_t i = 0; i < count; ++i) particles_.set_pose(i, beside(map_from_robot, root));
 }
 
-void ParticleFilter::draw_smoothed(const PoseCovariance& covariance, std::size_t count) {
-  const Eigen::Matrix3d root = kernel_width(particles_.size()) * root_of(covariance);
-  draw(count);
-  for (std::size_t i = 0; i < count; ++i) particles_.set_pose(i, beside(particles_.pose(i), root));
+void ParticleFilter::propose(std::span<const sensor::ProposedPose> poses) {
+  const std::size_t count = std::min(poses.size(), particles_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    particles_.set_pose(i, poses[i].map_from_robot);
+    particles_.log_weight[i] += poses[i].log_prior;
+  }
 }
 
 void ParticleFilter::move(const Pose2& motion, double unknown_s, const motion::MotionModelParams& model) {

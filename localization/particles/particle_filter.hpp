@@ -14,6 +14,7 @@
 #include "localization/motion/motion_model.hpp"
 #include "localization/particles/particle_set.hpp"
 #include "localization/sensor/likelihood_field.hpp"
+#include "localization/sensor/proposed_pose.hpp"
 #include "localization/sensor/scan_segments.hpp"
 
 namespace deltamap::localization::particles {
@@ -36,10 +37,8 @@ class ParticleFilter {
 
   void move(const Pose2& motion, double unknown_s, const motion::MotionModelParams& model);
 
-  /// Draws `count` anew by the weights and moves each by a normal kernel: few particles that lie far apart stand for
-  /// all poses between them (Musso, Oudjane and Le Gland, "Improving Regularised Particle Filters", 2001, Eq. 12.2.7,
-  /// whose width is Silverman's). `covariance`: of the particles, x, y and heading in the map frame.
-  void draw_smoothed(const PoseCovariance& covariance, std::size_t count);
+  /// Moves some there, one to each pose; to be called before they are weighed.
+  void propose(std::span<const sensor::ProposedPose> poses);
 
   /// Accumulates the scan into the weights, by segments. Answers each particle's misfit, the sum over all ends
   /// (weighing.hpp); valid until the next call. `ends` must not be empty.

@@ -88,6 +88,17 @@ Point2 CoarseField::centre_of(std::uint32_t block) const {
   return {origin_.x() + (column + 0.5) * block_m_, origin_.y() + (row + 0.5) * block_m_};
 }
 
+CoarseField::Run CoarseField::free_in_row(int row, double from_m, double to_m) const {
+  const auto first_beyond = [&](double x_m) {
+    const double columns =
+        std::clamp(std::ceil((x_m - origin_.x()) / block_m_ - 0.5), 0.0, static_cast<double>(columns_));
+    const auto block = static_cast<std::uint32_t>(row * columns_ + static_cast<int>(columns));
+    return static_cast<std::size_t>(std::lower_bound(free_blocks_.begin(), free_blocks_.end(), block) -
+                                    free_blocks_.begin());
+  };
+  return {first_beyond(from_m), first_beyond(to_m)};
+}
+
 TurnedBeams turned_beams(const motion::BeamEnds& ends, double heading_rad, double block_m) {
   TurnedBeams beams;
   beams.count = std::min(ends.size(), TurnedBeams::kMost);

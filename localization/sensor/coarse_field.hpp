@@ -38,6 +38,14 @@ class CoarseField {
   /// Blocks in whose middle a robot may stand: one of the cells there is free. Rising.
   [[nodiscard]] std::span<const std::uint32_t> free_blocks() const { return free_blocks_; }
   [[nodiscard]] Point2 centre_of(std::uint32_t block) const;
+  [[nodiscard]] double middle_of_row(int row) const { return origin_.y() + (row + 0.5) * block_m_; }
+  /// Places in free_blocks(), from `first` to before `past`.
+  struct Run {
+    std::size_t first = 0;
+    std::size_t past = 0;
+  };
+  /// The free blocks of a row whose middles lie between these x, m.
+  [[nodiscard]] Run free_in_row(int row, double from_m, double to_m) const;
   [[nodiscard]] double block_m() const { return block_m_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }

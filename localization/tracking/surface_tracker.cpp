@@ -130,6 +130,12 @@ void SurfaceTracker::predict(const motion::ScanInstant& now) {
   if (last_) step_to(now, last_->velocity);
 }
 
+std::optional<sensor::RefinedPose> SurfaceTracker::predicted(const motion::ScanInstant& now) {
+  if (!last_) return std::nullopt;
+  predict(now);
+  return filter_.believed();
+}
+
 sensor::RefinedPose SurfaceTracker::observe(const SeenScan& seen) {
   step_to(seen.now, seen.velocity);
   if (!is_one_place(filter_.believed().covariance)) {

@@ -46,6 +46,8 @@ class SurfaceTracker {
   sensor::RefinedPose observe(const SeenScan& seen);
   /// No scan has come for long: predicts by the wheels.
   void predict(const motion::ScanInstant& now);
+  /// What the wheels, as they have been calibrated, tell of the pose; nothing where no scan came before.
+  [[nodiscard]] std::optional<sensor::RefinedPose> predicted(const motion::ScanInstant& now);
 
   /// Before the first scan: what an earlier run has learned.
   void restore(const motion::DriveCalibration& learned) { filter_.restore(learned); }

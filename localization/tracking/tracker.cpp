@@ -125,10 +125,12 @@ Tracker::Answer Tracker::led_by_surfaces(const SeenScan& seen) {
   answer.believed = surfaces_->observe(seen);
   const Pose2& pose = answer.believed.map_from_robot;
   if (!surfaces_->leads()) {
-    (void)start_around(answer.believed);
-    last_update_ = seen.now;
-    return update(seen, {});
+    const bool looked_around = start_within(answer.believed, seen);
+    answer = update(seen, {});
+    answer.looked_around = looked_around;
+    return answer;
   }
+  has_driven_blind_ = has_driven_blind_ && seen.ends.size() == 0;
   answer.n_eff = static_cast<double>(particle_count());
   if (seen.ends.size() > 0) answer.w_avg = sensor::mean_likelihood(seen.field, seen.ends, pose);
   best_ = {pose, answer.believed.covariance, 1.0};
@@ -148,6 +150,7 @@ void Tracker::predict(const motion::ScanInstant& now) {
   if (surfaces_) surfaces_->predict(now);
   if (surfaces_ && surfaces_->leads()) {
     last_update_ = now;
+    has_driven_blind_ = true;
     return;
   }
   const motion::MotionSince since = motion::motion_since(*last_update_, now, params_.update.time_s);
@@ -168,10 +171,10 @@ bool Tracker::update_due(const motion::MotionSince& since) const {
 /// Moves and weighs the particles; they may be drawn anew afterwards.
 Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
-  if (sees && has_driven_blind_) fill_in();
   if (last_update_) filter_.move(since.motion, since.unknown_s, pose_filter_.particle_motion());
   last_update_ = seen.now;
-  has_driven_blind_ = false;
+  const bool looked_around = sees && has_driven_blind_ && gather(seen);
+  has_driven_blind_ = has_driven_blind_ && !sees;
   const std::span<const Pose2> slips_that_fit = sees ? slips(seen) : std::span<const Pose2>{};
   filter_.propose_slips(slips_that_fit);
   std::span<const std::int32_t> misfits;
@@ -181,6 +184,7 @@ Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince&
     misfits = filter_.weigh(seen.field, seen.ends);
   }
   Answer answer;
+  answer.looked_around = looked_around;
   answer.n_eff = filter_.n_eff();
   best_ = clusters_.best(filter_.particles());
   answer.believed = pose_filter_.before_scan(seen.now, best_);
@@ -191,10 +195,27 @@ Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince&
   return answer;
 }
 
-/// A drive without scans has drawn the particles apart.
-void Tracker::fill_in() {
-  const PoseCovariance spread = clusters_.best(filter_.particles()).covariance;
-  if (!SurfaceTracker::is_one_place(spread)) filter_.draw_smoothed(spread, particles_for(spread));
+/// A drive without scans may have drawn the particles apart: they begin anew where the wheels, as they have been
+/// calibrated, tell that the robot may be. True where that is more than one place.
+bool Tracker::gather(const SeenScan& seen) {
+  const particles::ParticleCluster apart = clusters_.best(filter_.particles());
+  if (SurfaceTracker::is_one_place(apart.covariance)) return false;
+  const std::optional<sensor::RefinedPose> by_wheels = surfaces_ ? surfaces_->predicted(seen.now) : std::nullopt;
+  return start_within(by_wheels.value_or(sensor::RefinedPose{apart.map_from_robot, apart.covariance}), seen);
+}
+
+/// Where no scan has come and the prior is more than one place, particles also begin where the scan fits within it, and
+/// the answer is true. Scans that came and showed nothing do not count: where the map knows nothing, what it knows
+/// elsewhere fits better than the truth.
+bool Tracker::start_within(const sensor::RefinedPose& prior, const SeenScan& seen) {
+  const bool was_blind = has_driven_blind_;
+  const bool sees = seen.ends.size() > 0;
+  (void)start_around(prior);
+  last_update_ = seen.now;
+  has_driven_blind_ = was_blind && !sees;
+  if (!was_blind || !sees || SurfaceTracker::is_one_place(prior.covariance)) return false;
+  if (seen.poses_within) filter_.propose(seen.poses_within(prior));
+  return true;
 }
 
 /// Between updates: the particles stay, the answer follows the wheels and the scan.

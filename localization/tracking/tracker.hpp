@@ -61,6 +61,7 @@ class Tracker {
     std::optional<double> w_avg;  ///< mean likelihood over the believed particles (paper §3.1); none without a return
     std::optional<double> n_eff;  ///< where the scan was an update
     double unknown_s = 0.0;       ///< since the last update, not covered by odometry
+    bool looked_around = false;   ///< the pose was unsure by more than one place: the scan alone says which it is
   };
   Answer observe(const SeenScan& seen);
   /// No scan has come for long: particles and pose filter are predicted by the wheels up to this instant.
@@ -90,7 +91,8 @@ class Tracker {
 
  private:
   Answer update(const SeenScan& seen, const motion::MotionSince& since);
-  void fill_in();
+  bool gather(const SeenScan& seen);
+  bool start_within(const sensor::RefinedPose& prior, const SeenScan& seen);
   Answer follow(const SeenScan& seen, const motion::MotionSince& since);
   Answer led_by_surfaces(const SeenScan& seen);
   sensor::RefinedPose start_around(const sensor::RefinedPose& pose);
@@ -113,7 +115,7 @@ class Tracker {
   sensor::BeamErrors errors_;
   SlipFinder slip_finder_;
   std::optional<motion::ScanInstant> last_update_;
-  bool has_driven_blind_ = false;  ///< the particles have moved since the last update, so that `best_` lies behind
+  bool has_driven_blind_ = false;  ///< no scan came for long, and none has shown anything since
   bool drawn_anew_ = false;        ///< the particles, so that `clusters_` must look at them again
 };
 

@@ -143,6 +143,23 @@ TEST(Silence, InWhichTheRobotWasCarriedOffMakesItSearchedForAtOnce) {
   EXPECT_EQ(localizer.counts().poses_refuted, 1u);
 }
 
+/// The wheels are 2 % off, and nobody knows that yet.
+TEST(Silence, InWhichTheRobotDroveFarMakesItLookedForAllAboutAtTheFirstScan) {
+  int right_at_once = 0;
+  constexpr std::uint64_t kDrives = 8;
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    Tour tour{seed};
+    Localizer localizer = localizer_after(20, tour, seed);
+    tour.drive_unseen(localizer, 60.0);
+    const TrackedScan first = tour.next(localizer);
+    EXPECT_LT(first.estimate.belief.pose_right, 0.84) << "at the border of writing the map";
+    right_at_once += right(first, tour) ? 1 : 0;
+    EXPECT_LT(scans_until_right(localizer, tour, 100), 60) << seed;
+    EXPECT_EQ(localizer.counts().gaps, 0u) << "the wheels have told of it";
+  }
+  EXPECT_GE(right_at_once, 7);
+}
+
 TEST(UnknownPose, IsNotFoundByBlindScansNorBrokenByThem) {
   Tour tour{3};
   Localizer localizer = localizer_at(std::nullopt, 3);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
 #include "localization/sensor/weighing.hpp"
 #include "tests/support/scans/cast_ends.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
@@ -84,11 +88,60 @@ TEST(LatticeSearch, KeepsNoMoreThanItWasToldAndThoseTheBest) {
   EXPECT_EQ(best.front().map_from_robot, many.best_apart(1).front().map_from_robot);
 }
 
+TEST(LatticeSearch, LooksAtThePosesThatAPriorDoesNotExcludeAndAtNoOther) {
+  const OccupancyGrid map = test::drawn_flat();
+  const sensor::CoarseField coarse{map, sensor::LikelihoodField{map, {}}, kBlockM};
+  const Pose2 truth{4.5, 2.0, 1.1};
+  const motion::BeamEnds ends = ends_seen_from(truth);
+  PoseCovariance aslant = Eigen::Vector3d{0.25, 0.09, 0.01}.asDiagonal();  // turned too far: off to the left
+  aslant(0, 2) = aslant(2, 0) = -0.8 * 0.5 * 0.1;
+  const sensor::RefinedPose prior{{4.2, 2.2, 1.1}, aslant};
+  LatticeSearch lattice{kTurns, 100000};
+  lattice.look_within(coarse, ends, prior);
+  const std::vector<Candidate> found = lattice.best_apart(100000);
+  ASSERT_FALSE(found.empty());
+  const double step_rad = radians(360.0) / kTurns;
+  const PoseCovariance of_lattice =
+      (Eigen::Vector3d{kBlockM * kBlockM, kBlockM * kBlockM, step_rad * step_rad} / 12.0).asDiagonal();
+  const Eigen::Matrix3d information = (aslant + of_lattice).inverse();
+  const auto deviations = [&](const Pose2& pose) {
+    const Eigen::Vector3d off = difference(prior.map_from_robot, pose);
+    return std::sqrt(off.dot(information * off));
+  };
+  for (const Candidate& candidate : found) EXPECT_LE(deviations(candidate.map_from_robot), 4.0 + 1e-6);
+
+  LatticeSearch whole{kTurns, 100000};
+  whole.look(coarse, ends, whole.poses(coarse));
+  const std::vector<Candidate> all = whole.best_apart(100000);
+  const auto best = std::find_if(
+      all.begin(), all.end(), [&](const Candidate& candidate) { return deviations(candidate.map_from_robot) < 4.0; });
+  ASSERT_NE(best, all.end());
+  EXPECT_EQ(found.front().map_from_robot, best->map_from_robot) << "as a look at the whole map finds it";
+}
+
+TEST(LatticeSearch, ALookWithinAPriorStandsBesideTheLookAtTheWholeMap) {
+  const OccupancyGrid map = test::drawn_flat();
+  const sensor::CoarseField coarse{map, sensor::LikelihoodField{map, {}}, kBlockM};
+  const motion::BeamEnds ends = ends_seen_from({4.5, 2.0, 1.1});
+  const sensor::RefinedPose prior{{4.2, 2.2, 1.1}, Eigen::Vector3d{0.25, 0.09, 0.01}.asDiagonal()};
+  LatticeSearch alone{kTurns, 100};
+  alone.look(coarse, ends, 777);
+  alone.clear();
+  LatticeSearch broken{kTurns, 100};
+  broken.look(coarse, ends, 777);
+  broken.look_within(coarse, ends, prior);
+  broken.clear();
+  alone.look(coarse, ends, 777);
+  broken.look(coarse, ends, 777);
+  EXPECT_EQ(alone.best_apart(1).front().map_from_robot, broken.best_apart(1).front().map_from_robot);
+}
+
 TEST(LatticeSearch, FindsNothingWhereThereIsNothingToSee) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::CoarseField coarse{map, sensor::LikelihoodField{map, {}}, kBlockM};
   LatticeSearch lattice{kTurns};
   lattice.look(coarse, {}, 1);
+  lattice.look_within(coarse, {}, {{4.5, 2.0, 1.1}, PoseCovariance::Identity()});
   EXPECT_TRUE(lattice.best_apart(1).empty());
 }
 

@@ -48,18 +48,31 @@ TEST(ParticleFilter, StartsAsACovarianceHasIt) {
   EXPECT_NEAR(found(1, 2) / std::sqrt(found(1, 1) * found(2, 2)), 0.9, 0.02);
 }
 
-TEST(ParticleFilter, ADrawThatIsSmoothedFillsWhatLiesBetweenTheParticles) {
-  ParticleFilter filter{{}, 1};
-  const Pose2 around{2.0, 1.0, -3.1};
-  filter.start_around(around, spread(1.0, 0.1), 200);
-  const PoseCovariance before = covariance_of(filter.particles(), around);
-  filter.draw_smoothed(before, 5000);
-  const PoseCovariance after = covariance_of(filter.particles(), around);
-  EXPECT_EQ(filter.particles().size(), 5000u);
-  EXPECT_GT(after(0, 0), before(0, 0));
-  EXPECT_LT(after(0, 0), 1.4 * before(0, 0)) << "the kernel is narrow beside the particles";
-  const std::set<double> different{filter.particles().x_m.begin(), filter.particles().x_m.end()};
-  EXPECT_GT(different.size(), 4900u) << "no copies";
+TEST(ParticleFilter, WeighsProposedPosesByTheirPriorAndByTheScan) {
+  const OccupancyGrid map = room();
+  const sensor::LikelihoodField field{map, {}};
+  const Pose2 truth{2.0, 2.0, 0.5};
+  const Pose2 elsewhere{1.2, 1.0, -0.5};
+  const auto weight_of_first = [&](double log_prior) {
+    ParticleFilter filter{{.min = 10, .max = 10}, 1};
+    filter.start_around(elsewhere, spread(0.01, 0.01), 10);
+    const std::vector<sensor::ProposedPose> poses{{truth, log_prior}, {elsewhere, 0.0}};
+    filter.propose(poses);
+    EXPECT_EQ(filter.particles().pose(0), truth);
+    EXPECT_EQ(filter.particles().pose(1), elsewhere);
+    (void)filter.weigh(field, test::cast_ends(map, truth));
+    return filter.particles().weight[0];
+  };
+  EXPECT_GT(weight_of_first(0.0), 0.9) << "the scan tells where it is";
+  EXPECT_LT(weight_of_first(-100.0), 0.01) << "but the wheels exclude it";
+}
+
+TEST(ParticleFilter, TakesNoMoreProposalsThanItHasParticles) {
+  ParticleFilter filter{{.min = 10, .max = 10}, 1};
+  filter.start_around({1.0, 1.0, 0.0}, spread(0.1, 0.1), 10);
+  filter.propose(std::vector<sensor::ProposedPose>(20, {{2.0, 1.0, 0.0}, 0.0}));
+  EXPECT_EQ(filter.particles().size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(filter.particles().pose(i), (Pose2{2.0, 1.0, 0.0}));
 }
 
 TEST(ParticleFilter, StartsAroundAPose) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "tests/support/scans/cast_ends.hpp"
@@ -31,6 +32,27 @@ TEST(CoarseField, IsAsGoodInEachBlockAsItsBestCell) {
       }
       ASSERT_EQ(*coarse.from(column, row), best) << column << ' ' << row;
     }
+  }
+}
+
+TEST(CoarseField, FindsTheFreeBlocksOfARowBetweenTwoPlaces) {
+  const OccupancyGrid map = test::drawn_flat();
+  const CoarseField coarse{map, LikelihoodField{map, {}}, kBlock_m};
+  const double from_m = 3.1;
+  const double to_m = 6.4;
+  for (int row = 0; row < coarse.rows(); ++row) {
+    const CoarseField::Run run = coarse.free_in_row(row, from_m, to_m);
+    for (std::size_t i = 0; i < coarse.free_blocks().size(); ++i) {
+      const Point2 middle = coarse.centre_of(coarse.free_blocks()[i]);
+      const bool lies_between =
+          std::abs(middle.y() - coarse.middle_of_row(row)) < 1e-9 && middle.x() >= from_m && middle.x() < to_m;
+      EXPECT_EQ(i >= run.first && i < run.past, lies_between) << row << ' ' << middle.x();
+    }
+    const CoarseField::Run all = coarse.free_in_row(row, -1e6, 1e6);
+    EXPECT_LE(all.first, run.first);
+    EXPECT_GE(all.past, run.past);
+    const CoarseField::Run beyond = coarse.free_in_row(row, 1e6, 2e6);
+    EXPECT_EQ(beyond.first, beyond.past);
   }
 }
 

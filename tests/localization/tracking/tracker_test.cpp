@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "localization/motion/deskew.hpp"
 #include "tests/support/worlds/drawn_flat.hpp"
@@ -26,6 +30,11 @@ class FlatDrive {
     step(motion, 0.1);
     tracker_.predict(now());
   }
+  /// Where a look around shall find the scan; of what prior it was asked.
+  void let_find(std::function<Pose2(const Pose2& truth)> find) { find_ = std::move(find); }
+  [[nodiscard]] const std::optional<sensor::RefinedPose>& asked() const { return asked_; }
+  [[nodiscard]] const Pose2& truth() const { return truth_; }
+  void slip(const Pose2& by) { truth_ = truth_ * by; }
   void set_clock_back(double by_s) { time_ -= duration_from_seconds(by_s); }
 
   [[nodiscard]] Tracker& tracker() { return tracker_; }
@@ -48,13 +57,21 @@ class FlatDrive {
     if (sees) ends = motion::scoring_ends(scan, rays, 0);
     surfaces::FaceFinder faces;
     if (sees) faces.begin(scan, rays);
-    return tracker_.observe({.now = now(), .ends = ends, .field = field_, .faces = faces});
+    const auto poses_within = [this](const sensor::RefinedPose& prior) {
+      asked_ = prior;
+      return std::vector<sensor::ProposedPose>{{find_(truth_), 0.0}};
+    };
+    tracking::SeenScan seen{.now = now(), .ends = ends, .field = field_, .faces = faces};
+    if (find_) seen.poses_within = poses_within;
+    return tracker_.observe(seen);
   }
   [[nodiscard]] motion::ScanInstant now() const { return {time_, motion::OdometryAt{odom_, 0, odom_}}; }
 
   std::shared_ptr<const OccupancyGrid> map_ = std::make_shared<const OccupancyGrid>(test::drawn_flat());
   sensor::LikelihoodField field_{*map_, {}};
   Tracker tracker_;
+  std::function<Pose2(const Pose2& truth)> find_;
+  std::optional<sensor::RefinedPose> asked_;
   Pose2 truth_ = kStart;
   Pose2 odom_;
   Timestamp time_ = timestamp_from_ns(1'700'000'000'000'000'000);
@@ -135,6 +152,68 @@ TEST(Tracker, GoesAlongWithTheWheelsWhileNoScanComesAndIsLessSure) {
   EXPECT_LT(drive.error_m(blind), 0.3);
   EXPECT_GT(blind.believed.covariance(0, 0), 4.0 * before_m2);
   EXPECT_LT(drive.error_m(drive.next({})), 0.05);
+}
+
+/// Round and round without a scan, until the wheels leave the pose open by metres.
+void drive_far_unseen(FlatDrive& drive) {
+  for (int i = 0; i < 1200; ++i) drive.drive_unseen({0.05, 0.0, 0.1});
+}
+
+TEST(Tracker, LooksAllAboutForTheFirstScanAfterALongDriveWithoutAny) {
+  FlatDrive drive{particles_alone()};
+  for (int i = 0; i < 10; ++i) (void)drive.next({0.05, 0.0, 0.01});
+  drive.let_find([](const Pose2& truth) { return truth; });
+  drive_far_unseen(drive);
+  drive.slip({1.5, 0.4, 0.5});
+  const Tracker::Answer answer = drive.next({});
+  EXPECT_TRUE(answer.looked_around);
+  ASSERT_TRUE(drive.asked());
+  EXPECT_GT(drive.asked()->covariance(0, 0), 0.15 * 0.15);
+  EXPECT_LT(drive.error_m(answer), 0.05);
+  EXPECT_FALSE(drive.next({}).looked_around) << "once";
+}
+
+TEST(Tracker, LooksAroundOnlyOnceAScanShowsSomething) {
+  FlatDrive drive{particles_alone()};
+  (void)drive.next({});
+  drive.let_find([](const Pose2& truth) { return truth; });
+  drive_far_unseen(drive);
+  EXPECT_FALSE(drive.next_blind({}).looked_around);
+  EXPECT_FALSE(drive.asked());
+  EXPECT_TRUE(drive.next({}).looked_around);
+}
+
+TEST(Tracker, DoesNotLookAroundAfterAShortDriveWithoutScans) {
+  FlatDrive drive{particles_alone()};
+  for (int i = 0; i < 10; ++i) (void)drive.next({0.05, 0.0, 0.01});
+  drive.let_find([](const Pose2& truth) { return truth; });
+  for (int i = 0; i < 5; ++i) drive.drive_unseen({0.05, 0.0, 0.0});
+  EXPECT_FALSE(drive.next({}).looked_around);
+  EXPECT_FALSE(drive.asked());
+}
+
+TEST(Tracker, AsksWhereTheCalibratedWheelsLeadWhereSurfacesHaveLed) {
+  FlatDrive drive{{}};
+  for (int i = 0; i < 60; ++i) (void)drive.next({0.05, 0.0, i < 30 ? 0.02 : -0.02});
+  ASSERT_EQ(drive.tracker().particles(), nullptr);
+  drive.let_find([](const Pose2& truth) { return truth; });
+  drive_far_unseen(drive);
+  const Pose2 by_wheels = drive.truth();
+  drive.slip({0.6, 0.2, 0.1});
+  const Tracker::Answer answer = drive.next({});
+  EXPECT_TRUE(answer.looked_around);
+  ASSERT_TRUE(drive.asked());
+  EXPECT_LT(distance_between(drive.asked()->map_from_robot, by_wheels), 0.5);
+  EXPECT_LT(drive.error_m(answer), 0.05);
+}
+
+TEST(Tracker, LooksAroundOnlyOnceAScanShowsSomethingWhereSurfacesHaveLed) {
+  FlatDrive drive{{}};
+  for (int i = 0; i < 60; ++i) (void)drive.next({0.05, 0.0, i < 30 ? 0.02 : -0.02});
+  drive.let_find([](const Pose2& truth) { return truth; });
+  drive_far_unseen(drive);
+  EXPECT_FALSE(drive.next_blind({}).looked_around);
+  EXPECT_TRUE(drive.next({}).looked_around);
 }
 
 TEST(Tracker, WeighsAgainASecondAfterTheClockHasFallenBack) {
