@@ -42,6 +42,12 @@ std::vector<Figure> spread_figures(const std::vector<SpreadAsked>& asked, const 
   return figures;
 }
 
+Figure count_of_seeds(const std::string& name, const std::vector<Outcome>& outcomes,
+                      const std::function<bool(const Outcome&)>& holds, const std::optional<Target>& target) {
+  const auto found = std::count_if(outcomes.begin(), outcomes.end(), holds);
+  return {name, static_cast<double>(found), "", target, "", Certainty{.runs = outcomes.size()}};
+}
+
 Chart chart_in_order(const std::string& what, const std::string& number, const std::vector<Outcome>& outcomes) {
   std::vector<double> values;
   values.reserve(outcomes.size());

@@ -2,6 +2,8 @@
 // What a figure is over many seeds: its median, what nine of ten reach, and the worst.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,11 @@ struct SpreadAsked {
 /// Three figures of each number.
 [[nodiscard]] std::vector<Figure> spread_figures(const std::vector<SpreadAsked>& asked,
                                                  const std::vector<Outcome>& outcomes);
+
+/// In how many runs something holds.
+[[nodiscard]] Figure count_of_seeds(const std::string& name, const std::vector<Outcome>& outcomes,
+                                    const std::function<bool(const Outcome&)>& holds,
+                                    const std::optional<Target>& target = {});
 
 /// The values of all runs in order of size: how long the tail is.
 [[nodiscard]] Chart chart_in_order(const std::string& what, const std::string& number,

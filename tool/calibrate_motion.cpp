@@ -10,12 +10,10 @@
 
 #include "core/files/grid_file.hpp"
 #include "daemon/control/calibration_json.hpp"
-#include "daemon/records/recording_decoder.hpp"
 #include "daemon/settings/settings.hpp"
-#include "drivers/port/replay_port.hpp"
 #include "localization/localizer.hpp"
 #include "localization/motion/motion_calibration.hpp"
-#include "tool/progress.hpp"
+#include "tool/recorded_messages.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
@@ -72,8 +70,6 @@ Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) 
   localization::motion::MotionSegments pairs{
       {.step_m = std::max(1e-3, update.distance_m), .step_rad = std::max(1e-3, update.turn_rad)}};
   Drive drive;
-  drivers::port::ReplayPort port{options.recording, {}};
-  daemon::RecordingDecoder decoder{settings};
   const daemon::RecordingDecoder::Sinks sinks{
       [&](Odometry&& odometry, std::uint32_t) {
         as_set.observe(odometry);
@@ -87,13 +83,8 @@ Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) 
         drive.sure_scans += sure ? 1 : 0;
         pairs.observe({tracked.odom_from_robot, tracked.odometry_epoch, tracked.estimate.map_from_robot, sure});
       }};
-  Progress progress{"calibrate", port.size_bytes()};
-  while (const auto replayed = port.next()) {
-    decoder.feed(replayed->record, sinks);
-    progress.show(port.read_bytes());
-  }
+  drive.cut = read_messages(options.recording, settings, sinks, "calibrate");
   drive.learned = as_set.calibration();
-  drive.cut = port.cut();
   drive.segments = pairs.segments();
   for (const auto& segment : drive.segments) {
     drive.driven_m += segment.driven_m;
@@ -200,8 +191,7 @@ void require_enough(const Drive& drive, const std::string& recording) {
 void run_calibration(CalibrateOptions& options) {
   if (!options.initial_pose.empty())
     options.overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
-  const daemon::Settings settings = options.config.empty() ? daemon::parse_settings("", "defaults", options.overrides)
-                                                           : daemon::read_settings(options.config, options.overrides);
+  const daemon::Settings settings = daemon::settings_or_defaults(options.config, options.overrides);
   const Drive drive = driven(options, settings);
   if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
   require_enough(drive, options.recording);

@@ -72,8 +72,7 @@ void write(const experiments::Results& results, const ExperimentOptions& given) 
 void run_experiment(const ExperimentOptions& given) {
   const experiments::Experiment chosen = experiment_named(given.name);
   experiments::Options options = given.options;
-  const daemon::Settings settings = given.config.empty() ? daemon::parse_settings("", "--set", given.overrides)
-                                                         : daemon::read_settings(given.config, given.overrides);
+  const daemon::Settings settings = daemon::settings_or_defaults(given.config, given.overrides);
   options.localizer = settings.localizer;
   options.mapping = settings.mapping;
   experiments::expect_writable(given.out);

@@ -59,6 +59,10 @@ Settings read_settings(const std::filesystem::path& file, const std::vector<std:
   return parse_settings(text_of_settings(file), file.string(), overrides);
 }
 
+Settings settings_or_defaults(const std::string& file, const std::vector<std::string>& overrides) {
+  return file.empty() ? parse_settings("", "--set", overrides) : read_settings(file, overrides);
+}
+
 SettingsReading look_at_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return reading_of(text_of_settings(file), file.string(), overrides, Use::kRun);
 }

@@ -115,6 +115,8 @@ struct Contradiction {
 /// `overrides` are "key=value" as given to --set, in order, after the file. Throws SettingsError with all
 /// mistakes of both.
 [[nodiscard]] Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// The same where a file need not be given: as delivered where it is empty.
+[[nodiscard]] Settings settings_or_defaults(const std::string& file, const std::vector<std::string>& overrides);
 /// The same from text; `name` stands for the file in errors.
 [[nodiscard]] Settings parse_settings(const std::string& yaml, const std::string& name,
                                       const std::vector<std::string>& overrides = {});

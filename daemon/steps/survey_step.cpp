@@ -12,10 +12,13 @@ constexpr double kMostUncoveredS = 1.0;  // between a scan and the nearest repor
 
 }  // namespace
 
-SurveyStep::SurveyStep(const Settings& settings) : settings_{settings}, odometry_{settings.localizer.odometry} {}
+SurveyStep::SurveyStep(const Settings& settings)
+    : odometry_params_{settings.localizer.odometry},
+      range_deviation_m_{settings.localizer.range_deviation_m},
+      odometry_{odometry_params_} {}
 
 void SurveyStep::begin_drive() {
-  odometry_ = localization::motion::OdometryBuffer{settings_.localizer.odometry};
+  odometry_ = localization::motion::OdometryBuffer{odometry_params_};
   slam_.begin_drive();
 }
 
@@ -24,7 +27,7 @@ bool SurveyStep::observe(Scan scan) {
   const auto wheels = odometry_.at(scan.time);
   if (!wheels || wheels->uncovered_s > kMostUncoveredS) return false;
   TrackedScan tracked;
-  scan.range_deviation_m = settings_.localizer.range_deviation_m;
+  scan.range_deviation_m = range_deviation_m_;
   tracked.rays = localization::motion::deskewed(scan, odometry_.velocity_at(scan.time));
   tracked.odom_from_robot = wheels->continuous_odom_from_robot;
   tracked.odometry_epoch = wheels->epoch;

@@ -37,7 +37,8 @@ class SurveyStep {
     Pose2 keyframe_from_robot;
   };
 
-  Settings settings_;
+  localization::motion::OdometryBufferParams odometry_params_;
+  double range_deviation_m_;
   localization::motion::OdometryBuffer odometry_;
   mapping::slam::Slam slam_;
   std::vector<SurveyedScan> scans_;

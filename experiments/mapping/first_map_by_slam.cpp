@@ -127,8 +127,7 @@ Outcome survey_run(std::uint64_t seed, double minutes, const Options& options) {
   const Survey& survey = surveyed.step.slam().survey();
   std::vector<Pose2> estimated;
   std::vector<Pose2> truth;
-  for (std::uint32_t node = 0; node < survey.keyframes.size(); ++node) {
-    if (survey.component_of(node) != 0) continue;
+  for (const std::uint32_t node : survey.joined_nodes()) {
     estimated.push_back(survey.poses[node]);
     truth.push_back(surveyed.truth[node]);
   }
@@ -166,24 +165,16 @@ Outcome survey_run(std::uint64_t seed, double minutes, const Options& options) {
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto seeds = static_cast<std::uint64_t>(options.repeats.value_or(options.quick ? kQuickSeeds : kSeeds));
-  const double minutes = options.minutes.value_or(options.quick ? kQuickMinutes : kMinutes);
-  expect_one_set(options.seed, options.seed + seeds - 1);
-  std::vector<Run> runs;
-  for (std::uint64_t seed = options.seed; seed < options.seed + seeds; ++seed) {
-    runs.push_back({"seed" + std::to_string(seed), [=] { return survey_run(seed, minutes, options); }});
-  }
-  return runs;
+  return unseen_runs(options, {kSeeds, kQuickSeeds, kMinutes, kQuickMinutes},
+                     [options](std::uint64_t seed, double minutes) { return survey_run(seed, minutes, options); });
 }
 
 Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
-  const auto count = [&](const std::string& name, const auto& holds) {
-    const auto found = std::count_if(outcomes.begin(), outcomes.end(), holds);
-    report.figures.push_back({name, static_cast<double>(found), "", {}, "", Certainty{.runs = outcomes.size()}});
-  };
-  count("seeds whose second drive was joined to the first", [](const Outcome& o) { return o.number("joined") > 0.0; });
-  count("seeds off by more than 1 m anywhere", [](const Outcome& o) { return o.number("error_most_m") > 1.0; });
+  report.figures = {count_of_seeds("seeds whose second drive was joined to the first", outcomes,
+                                   [](const Outcome& o) { return o.number("joined") > 0.0; }),
+                    count_of_seeds("seeds off by more than 1 m anywhere", outcomes,
+                                   [](const Outcome& o) { return o.number("error_most_m") > 1.0; })};
   for (Figure& figure : spread_figures({{"error_rms_m", "m"},
                                         {"error_most_m", "m"},
                                         {"heading_rms_deg", "°"},

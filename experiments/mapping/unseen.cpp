@@ -130,28 +130,21 @@ Chart error_chart(const std::vector<const Outcome*>& worst) {
 }
 
 std::vector<Run> runs_of(const Options& options) {
-  const auto seeds = static_cast<std::uint64_t>(options.repeats.value_or(options.quick ? kQuickSeeds : kSeeds));
-  const double minutes = options.minutes.value_or(options.quick ? kQuickMinutes : kMinutes);
-  expect_one_set(options.seed, options.seed + seeds - 1);
-  std::vector<Run> runs;
-  for (std::uint64_t seed = options.seed; seed < options.seed + seeds; ++seed) {
-    runs.push_back({"seed" + std::to_string(seed),
-                    [=] { return unseen_drive(seed, minutes, options.localizer, options.mapping); }});
-  }
-  return runs;
+  return unseen_runs(options, {kSeeds, kQuickSeeds, kMinutes, kQuickMinutes},
+                     [options](std::uint64_t seed, double minutes) {
+                       return unseen_drive(seed, minutes, options.localizer, options.mapping);
+                     });
 }
 
 Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
-  const auto count = [&](const std::string& name, const auto& holds, const std::optional<Target>& target = {}) {
-    const auto found = std::count_if(outcomes.begin(), outcomes.end(), holds);
-    report.figures.push_back({name, static_cast<double>(found), "", target, "", Certainty{.runs = outcomes.size()}});
-  };
-  count(
-      "seeds off by more than 0.5 m for more than 5 s",
-      [](const Outcome& o) { return o.number("stretches_off") > 0.0; }, Target{.most = 1.0});
-  count("seeds whose start was not found", [](const Outcome& o) { return o.number("start_found") == 0.0; });
-  count("seeds that failed in any way", [](const Outcome& o) { return !failure_of(o).empty(); });
+  report.figures = {count_of_seeds(
+                        "seeds off by more than 0.5 m for more than 5 s", outcomes,
+                        [](const Outcome& o) { return o.number("stretches_off") > 0.0; }, Target{.most = 1.0}),
+                    count_of_seeds("seeds whose start was not found", outcomes,
+                                   [](const Outcome& o) { return o.number("start_found") == 0.0; }),
+                    count_of_seeds("seeds that failed in any way", outcomes,
+                                   [](const Outcome& o) { return !failure_of(o).empty(); })};
   for (Figure& figure : spread_figures(asked(), outcomes)) report.figures.push_back(std::move(figure));
   report.charts.push_back(chart_in_order("RMSE of the pose, m", "error_rms_m", outcomes));
   report.charts.push_back(chart_in_order("skill of the map", "skill", outcomes));

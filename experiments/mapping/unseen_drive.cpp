@@ -64,6 +64,19 @@ void expect_one_set(std::uint64_t first, std::uint64_t last) {
                               " seeds: 1 to 999 for development and 1000 to 1059 for final figures alone");
 }
 
+std::vector<Run> unseen_runs(const Options& options, const UnseenRuns& usual,
+                             const std::function<Outcome(std::uint64_t seed, double minutes)>& drive) {
+  const auto seeds =
+      static_cast<std::uint64_t>(options.repeats.value_or(options.quick ? usual.quick_seeds : usual.seeds));
+  const double minutes = options.minutes.value_or(options.quick ? usual.quick_minutes : usual.minutes);
+  expect_one_set(options.seed, options.seed + seeds - 1);
+  std::vector<Run> runs;
+  for (std::uint64_t seed = options.seed; seed < options.seed + seeds; ++seed) {
+    runs.push_back({"seed" + std::to_string(seed), [=] { return drive(seed, minutes); }});
+  }
+  return runs;
+}
+
 Outcome unseen_drive(std::uint64_t seed, double minutes, const localization::LocalizerParams& localizer,
                      const daemon::MappingSettings& mapping) {
   const UnseenKind kind = simulation::drawn::unseen_kind(seed);

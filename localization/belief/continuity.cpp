@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/belief/continuity.hpp"
 
-#include "localization/belief/pose_verdict.hpp"
-
 namespace deltamap::localization::belief {
 namespace {
 

@@ -74,8 +74,7 @@ std::size_t worst_link(const std::vector<Pose2>& poses, std::span<const PoseLink
   double worst_chi2 = kMostChi2;
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (is_kept[i] == 0 || !links[i].may_drop) continue;
-    const LinkError at = link_error(poses[links[i].from], poses[links[i].to], links[i].from_from_to);
-    const double chi2 = at.error.dot(links[i].covariance.inverse() * at.error);
+    const double chi2 = link_chi2(links[i], poses);
     if (chi2 > worst_chi2) {
       worst = i;
       worst_chi2 = chi2;
@@ -116,6 +115,11 @@ LinkError link_error(const Pose2& from, const Pose2& to, const Pose2& measured_f
   return at;
 }
 
+double link_chi2(const PoseLink& link, std::span<const Pose2> poses) {
+  const Eigen::Vector3d error = link_error(poses[link.from], poses[link.to], link.from_from_to).error;
+  return error.dot(link.covariance.inverse() * error);
+}
+
 PoseNetwork solved_network(std::span<const Pose2> initial, std::span<const PoseLink> links,
                            std::span<const PoseAnchor> anchors, const PoseNetworkParams& params) {
   PoseNetwork network;
@@ -126,7 +130,7 @@ PoseNetwork solved_network(std::span<const Pose2> initial, std::span<const PoseL
   std::vector<Pose2> poses = network.poses;
   for (int round = 0;; ++round) {
     if (!settle(poses, links, is_kept, anchors, params, cholesky)) return network;
-    const std::size_t worst = worst_link(poses, links, is_kept);
+    const std::size_t worst = params.most_dropping_rounds == 0 ? links.size() : worst_link(poses, links, is_kept);
     if (worst == links.size()) break;
     if (round == params.most_dropping_rounds) return network;
     is_kept[worst] = 0;

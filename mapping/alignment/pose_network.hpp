@@ -32,7 +32,7 @@ struct PoseAnchor {
 struct PoseNetworkParams {
   int most_iterations = 10;
   double settled = 1e-6;          ///< a step below this (m and rad) ends the iteration
-  int most_dropping_rounds = 20;  ///< of the worst link whose χ² is above kMostChi2
+  int most_dropping_rounds = 20;  ///< of the worst link whose χ² is above kMostChi2; 0: all links hold
   bool wants_covariances = true;  ///< false: left empty; they cost as much as all else in a large network
 };
 
@@ -54,5 +54,7 @@ struct LinkError {
   Eigen::Matrix3d by_to = Eigen::Matrix3d::Zero();
 };
 [[nodiscard]] LinkError link_error(const Pose2& from, const Pose2& to, const Pose2& measured_from_from_to);
+/// Squared deviations between a link and the poses that it joins; above kMostChi2 it contradicts them.
+[[nodiscard]] double link_chi2(const PoseLink& link, std::span<const Pose2> poses);
 
 }  // namespace deltamap::mapping::alignment

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "mapping/alignment/local_map.hpp"
-
 namespace deltamap::mapping::slam {
 namespace {
 
@@ -16,8 +14,7 @@ constexpr double kLongestDrawnM = 25.0;  // beyond, neighbouring beams leave cel
 double turn_to_axes(const Survey& survey) {
   double sine = 0.0;
   double cosine = 0.0;
-  for (std::uint32_t node = 0; node < survey.keyframes.size(); ++node) {
-    if (survey.component_of(node) != 0) continue;
+  for (const std::uint32_t node : survey.joined_nodes()) {
     for (const registration::SurfacePoint& point : survey.keyframes[node].surface) {
       const double angle = survey.poses[node].theta + std::atan2(point.normal.y(), point.normal.x());
       sine += std::sin(4.0 * angle);
@@ -27,16 +24,20 @@ double turn_to_axes(const Survey& survey) {
   return -std::atan2(sine, cosine) / 4.0;
 }
 
-OccupancyGrid drawn_map(const Survey& survey, const Pose2& map_from_survey, double resolution_m) {
+OccupancyGrid drawn_map(const Survey& survey, std::span<const std::uint32_t> nodes, const Pose2& map_from_survey,
+                        double resolution_m, const alignment::LocalMapParams& params) {
   std::vector<const TrackedScan*> scans;
   std::vector<Pose2> poses;
-  for (std::uint32_t node = 0; node < survey.keyframes.size(); ++node) {
-    if (survey.component_of(node) != 0) continue;
+  for (const std::uint32_t node : nodes) {
     scans.push_back(survey.keyframes[node].tracked.get());
     poses.push_back(map_from_survey * survey.poses[node]);
   }
-  return alignment::local_map(scans, poses, {0, 0, resolution_m, {0.0, 0.0}},
-                              {.longest_m = kLongestDrawnM, .least_hits = 2});
+  return alignment::local_map(scans, poses, {0, 0, resolution_m, {0.0, 0.0}}, params);
+}
+
+OccupancyGrid drawn_map(const Survey& survey, const Pose2& map_from_survey, double resolution_m) {
+  return drawn_map(survey, survey.joined_nodes(), map_from_survey, resolution_m,
+                   {.longest_m = kLongestDrawnM, .least_hits = 2});
 }
 
 }  // namespace deltamap::mapping::slam

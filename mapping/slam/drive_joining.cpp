@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/slam/drive_joining.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
 #include <utility>
+
+#include "mapping/slam/relative_covariance.hpp"
 
 namespace deltamap::mapping::slam {
 namespace {
@@ -27,25 +28,10 @@ constexpr SubmapMatchParams kJoining{.least_score = 0.6,
                                      .inner_deviation_m = 0.03,
                                      .inner_deviation_rad = 0.006};
 
-/// Of a pose whose frame is turned.
-PoseCovariance turned(const PoseCovariance& covariance, double turn_rad) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd{turn_rad}.toRotationMatrix();
-  return turn * covariance * turn.transpose();
-}
-
-std::vector<std::uint32_t> joined_nodes(const Survey& survey) {
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t node = 0; node < survey.keyframes.size(); ++node) {
-    if (survey.component_of(node) == 0) nodes.push_back(node);
-  }
-  return nodes;
-}
-
 }  // namespace
 
 DriveJoining::Joined::Joined(const Survey& survey)
-    : nodes{joined_nodes(survey)},
+    : nodes{survey.joined_nodes()},
       matcher{submap(survey, nodes, nodes.front(), 0.0), kEverywhereM},
       space{survey, nodes, nodes.front()} {}
 
@@ -61,8 +47,9 @@ void DriveJoining::search_from(std::uint32_t node) {
 }
 
 void DriveJoining::search(std::uint32_t node, double length_m) {
-  std::vector<std::uint32_t> nodes(node - back_by(survey_, node, length_m) + 1);
-  std::iota(nodes.begin(), nodes.end(), back_by(survey_, node, length_m));
+  const std::uint32_t first = back_by(survey_, node, length_m);
+  std::vector<std::uint32_t> nodes(node - first + 1);
+  std::iota(nodes.begin(), nodes.end(), first);
   const std::uint32_t middle = nodes[nodes.size() / 2];
   const auto match = joined_->matcher.match(submap(survey_, nodes, middle, kEndEachM).ends,
                                             survey_.keyframes[node].tracked->scan.range_deviation_m,
@@ -72,7 +59,7 @@ void DriveJoining::search(std::uint32_t node, double length_m) {
   }
   const Pose2& map_from_submap = survey_.poses[joined_->nodes.front()];
   found_.push_back({node, middle, map_from_submap * match->submap_from_scan,
-                    turned(match->covariance, map_from_submap.theta), match->score});
+                    turned_covariance(match->covariance, map_from_submap.theta), match->score});
 }
 
 bool DriveJoining::agree(const Found& a, const Found& b) const {
@@ -106,7 +93,7 @@ std::optional<alignment::PoseLink> DriveJoining::link() {
   const std::uint32_t nearest = *std::min_element(joined->nodes.begin(), joined->nodes.end(),
                                                   [&](auto a, auto b) { return away_m(a) < away_m(b); });
   return alignment::PoseLink{nearest, best.node, motion_between(survey_.poses[nearest], best.map_from_node),
-                             turned(best.covariance, -survey_.poses[nearest].theta), false};
+                             turned_covariance(best.covariance, -survey_.poses[nearest].theta), false};
 }
 
 }  // namespace deltamap::mapping::slam

@@ -213,8 +213,7 @@ bool LoopClosing::drop_contradicted() {
     for (std::uint32_t place = 0; place < survey_.links.size(); ++place) {
       const alignment::PoseLink& link = survey_.links[place];
       if (!link.may_drop) continue;
-      const auto at = alignment::link_error(survey_.poses[link.from], survey_.poses[link.to], link.from_from_to);
-      const double chi2 = chi2_of(at.error, link.covariance);
+      const double chi2 = alignment::link_chi2(link, survey_.poses);
       if (chi2 > kMostChi2) wrong.emplace_back(chi2, place);
     }
     if (wrong.empty()) return is_settled;

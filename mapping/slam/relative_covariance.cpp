@@ -33,7 +33,12 @@ PoseCovariance composed_covariance(const Pose2& a_from_b, const PoseCovariance& 
   Eigen::Matrix3d by_first = Eigen::Matrix3d::Identity();
   by_first(0, 2) = -arm.y();
   by_first(1, 2) = arm.x();
-  return by_first * of_a_from_b * by_first.transpose() + turn * of_b_from_c * turn.transpose();
+  return by_first * of_a_from_b * by_first.transpose() + turned_covariance(of_b_from_c, a_from_b.theta);
+}
+
+PoseCovariance turned_covariance(const PoseCovariance& covariance, double turn_rad) {
+  const Eigen::Matrix3d turn = turned_by(turn_rad);
+  return turn * covariance * turn.transpose();
 }
 
 PoseCovariance inverted_covariance(const Pose2& a_from_b, const PoseCovariance& of_a_from_b) {

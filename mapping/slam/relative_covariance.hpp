@@ -18,6 +18,8 @@ namespace deltamap::mapping::slam {
 /// Of a from b times b from c, where both are measured independently.
 [[nodiscard]] PoseCovariance composed_covariance(const Pose2& a_from_b, const PoseCovariance& of_a_from_b,
                                                  const Pose2& b_from_c, const PoseCovariance& of_b_from_c);
+/// Of a pose in a frame that is turned by so much.
+[[nodiscard]] PoseCovariance turned_covariance(const PoseCovariance& covariance, double turn_rad);
 /// Of b from a, from that of a from b.
 [[nodiscard]] PoseCovariance inverted_covariance(const Pose2& a_from_b, const PoseCovariance& of_a_from_b);
 

@@ -2,11 +2,10 @@
 #include "mapping/slam/seen_space.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/geometry/points_in_map.hpp"
 #include "core/grid/grid_ray.hpp"
-#include "mapping/alignment/local_map.hpp"
+#include "mapping/slam/drawn_map.hpp"
 
 namespace deltamap::mapping::slam {
 namespace {
@@ -18,15 +17,8 @@ constexpr double kBeforeEndM = 0.3;     // a beam may touch what it ends on
 
 }  // namespace
 
-SeenSpace::SeenSpace(const Survey& survey, std::span<const std::uint32_t> nodes, std::uint32_t frame) {
-  std::vector<const TrackedScan*> scans;
-  std::vector<Pose2> poses;
-  for (const std::uint32_t node : nodes) {
-    scans.push_back(survey.keyframes[node].tracked.get());
-    poses.push_back(motion_between(survey.poses[frame], survey.poses[node]));
-  }
-  seen_ = alignment::local_map(scans, poses, {0, 0, kSeenCellM, {0.0, 0.0}}, {.longest_m = kSeenLongestM});
-}
+SeenSpace::SeenSpace(const Survey& survey, std::span<const std::uint32_t> nodes, std::uint32_t frame)
+    : seen_{drawn_map(survey, nodes, inverse(survey.poses[frame]), kSeenCellM, {.longest_m = kSeenLongestM})} {}
 
 bool SeenSpace::is_solid_near(Cell cell) const {
   for (int row = cell.row - 1; row <= cell.row + 1; ++row) {

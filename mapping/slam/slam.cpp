@@ -34,64 +34,74 @@ constexpr SubmapMatchParams kAfterGap{.least_score = 0.5,
 /// The controller has begun anew: what the robot did meanwhile is known to nobody.
 const PoseCovariance kAnywhereNear = Eigen::Vector3d{0.25, 0.25, 0.09}.asDiagonal();
 
+bool begins_anew(const std::vector<Keyframe>& keyframes, std::uint32_t node) {
+  return keyframes[node - 1].tracked->odometry_epoch != keyframes[node].tracked->odometry_epoch;
+}
+
+/// From the keyframe before.
+alignment::PoseLink wheels_link(const std::vector<Keyframe>& keyframes, std::uint32_t node) {
+  const Pose2 driven =
+      motion_between(keyframes[node - 1].tracked->odom_from_robot, keyframes[node].tracked->odom_from_robot);
+  const PoseCovariance covariance =
+      begins_anew(keyframes, node) ? kAnywhereNear : alignment::odometry_covariance(driven, {});
+  return {node - 1, node, driven, covariance, false};
+}
+
 }  // namespace
 
+bool Slam::begins() const {
+  return survey_.keyframes.empty() || survey_.keyframes.back().drive + 1 != survey_.component.size();
+}
+
 void Slam::begin_drive() {
-  if (begins_ && !survey_.component.empty()) return;  // of the last one nothing has been seen yet
+  if (begins() && !survey_.component.empty()) return;
   end_drive();
-  begins_ = true;
   driven_m_ = 0.0;
   survey_.component.push_back(static_cast<std::uint32_t>(survey_.component.size()));
 }
 
 void Slam::observe(TrackedScan tracked) {
   assert(!survey_.component.empty() && "a drive has begun");
-  const Pose2 odom_from_robot = tracked.odom_from_robot;
-  if (!begins_) {
-    driven_m_ += distance_between(odom_from_robot_, odom_from_robot);
-    const Pose2 moved = motion_between(survey_.keyframes.back().tracked->odom_from_robot, odom_from_robot);
-    odom_from_robot_ = odom_from_robot;
+  const bool is_first = begins();
+  if (!is_first) driven_m_ += distance_between(odom_from_robot_, tracked.odom_from_robot);
+  odom_from_robot_ = tracked.odom_from_robot;
+  if (!is_first) {
+    const Pose2 moved = motion_between(survey_.keyframes.back().tracked->odom_from_robot, odom_from_robot_);
     if (moved.position().norm() < kKeyframeM && std::abs(moved.theta) < kKeyframeRad) return;
   }
-  odom_from_robot_ = odom_from_robot;
-  begins_ = false;
   follow(keyframe(std::make_shared<const TrackedScan>(std::move(tracked)),
-                  static_cast<std::uint32_t>(survey_.component.size() - 1), driven_m_));
+                  static_cast<std::uint32_t>(survey_.component.size() - 1), driven_m_),
+         is_first);
 }
 
-void Slam::follow(Keyframe next) {
+void Slam::follow(Keyframe next, bool is_first) {
   const auto node = static_cast<std::uint32_t>(survey_.keyframes.size());
-  const bool is_first = node == 0 || survey_.keyframes.back().drive != next.drive;
   survey_.add(std::move(next));
   if (is_first) return;
-  bool is_matched = false;
-  const alignment::PoseLink link = followed(node, is_matched);
-  matched_ += is_matched ? 1 : 0;
+  const alignment::PoseLink by_wheels = wheels_link(survey_.keyframes, node);
+  const std::optional<alignment::PoseLink> matched = matched_link(by_wheels);
+  const alignment::PoseLink& link = matched ? *matched : by_wheels;
+  matched_ += matched ? 1 : 0;
   survey_.poses[node] = survey_.poses[node - 1] * link.from_from_to;
   survey_.add(link);
   loops_.search_from(node);
   if (survey_.component_of(node) != 0) joining_.search_from(node);
 }
 
-/// From the keyframe before.
-alignment::PoseLink Slam::followed(std::uint32_t node, bool& is_matched) const {
-  const std::uint32_t before = node - 1;
-  const Keyframe& here = survey_.keyframes[node];
-  const Pose2 driven =
-      motion_between(survey_.keyframes[before].tracked->odom_from_robot, here.tracked->odom_from_robot);
-  const bool is_known = survey_.keyframes[before].tracked->odometry_epoch == here.tracked->odometry_epoch;
-  const PoseCovariance by_wheels = is_known ? alignment::odometry_covariance(driven, {}) : kAnywhereNear;
-  const SearchWindow window{
-      driven, kWheelDeviations * std::sqrt(by_wheels(0, 0)) + kLeastFollowedM,
-      std::min(kMostFollowedRad, kWheelDeviations * std::sqrt(by_wheels(2, 2)) + kLeastFollowedRad)};
-  const SubmapMatcher matcher{submap(survey_, back_by(survey_, before, kFollowedM), before, before, 0.0),
-                              window.position_m};
-  const auto match =
-      matcher.match(here.ends, here.tracked->scan.range_deviation_m, window, {driven, by_wheels.inverse()},
-                    !is_known || driven.position().norm() > kGapM ? kAfterGap : kFollowing);
-  is_matched = match.has_value();
-  if (!match) return {before, node, driven, by_wheels, false};
-  return {before, node, match->submap_from_scan, match->covariance, false};
+/// By the last metres, about where the wheels say.
+std::optional<alignment::PoseLink> Slam::matched_link(const alignment::PoseLink& by_wheels) const {
+  const Keyframe& here = survey_.keyframes[by_wheels.to];
+  const Pose2& driven = by_wheels.from_from_to;
+  const PoseCovariance& unsure = by_wheels.covariance;
+  const SearchWindow window{driven, kWheelDeviations * std::sqrt(unsure(0, 0)) + kLeastFollowedM,
+                            std::min(kMostFollowedRad, kWheelDeviations * std::sqrt(unsure(2, 2)) + kLeastFollowedRad)};
+  const std::uint32_t first = back_by(survey_, by_wheels.from, kFollowedM);
+  const SubmapMatcher matcher{submap(survey_, first, by_wheels.from, by_wheels.from, 0.0), window.position_m};
+  const bool is_after_gap = begins_anew(survey_.keyframes, by_wheels.to) || driven.position().norm() > kGapM;
+  const auto match = matcher.match(here.ends, here.tracked->scan.range_deviation_m, window, {driven, unsure.inverse()},
+                                   is_after_gap ? kAfterGap : kFollowing);
+  if (!match) return std::nullopt;
+  return alignment::PoseLink{by_wheels.from, by_wheels.to, match->submap_from_scan, match->covariance, false};
 }
 
 void Slam::end_drive() {

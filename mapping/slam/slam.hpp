@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "core/messages.hpp"
 #include "mapping/slam/drive_joining.hpp"
@@ -35,15 +36,16 @@ class Slam {
   [[nodiscard]] std::size_t matched() const { return matched_; }
 
  private:
+  /// Has the newest drive shown nothing yet?
+  [[nodiscard]] bool begins() const;
   void end_drive();
-  void follow(Keyframe next);
-  [[nodiscard]] alignment::PoseLink followed(std::uint32_t node, bool& is_matched) const;
+  void follow(Keyframe next, bool is_first);
+  [[nodiscard]] std::optional<alignment::PoseLink> matched_link(const alignment::PoseLink& by_wheels) const;
 
   Survey survey_;
   LoopClosing loops_;
   DriveJoining joining_;
   std::size_t matched_ = 0;
-  bool begins_ = true;
   Pose2 odom_from_robot_;  // of the newest scan
   double driven_m_ = 0.0;  // in this drive
 };

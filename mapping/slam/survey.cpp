@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kLongestM = 80.0;        // as far as an LMS200 sees
 constexpr double kAnchorVariance = 1e-6;  // of the first keyframe of a component: it gives the frame
-constexpr alignment::PoseNetworkParams kSolving{.most_iterations = 30, .settled = 1e-4, .wants_covariances = false};
+/// Which links are wrong is not for the solver to say.
+constexpr alignment::PoseNetworkParams kSolving{
+    .most_iterations = 30, .settled = 1e-4, .most_dropping_rounds = 0, .wants_covariances = false};
 
 }  // namespace
 
@@ -22,6 +24,14 @@ Keyframe keyframe(std::shared_ptr<const TrackedScan> tracked, std::uint32_t driv
   made.ends = registration::ray_ends(*made.tracked, kLongestM);
   made.surface = registration::surface_of(made.ends);
   return made;
+}
+
+std::vector<std::uint32_t> Survey::joined_nodes() const {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t node = 0; node < keyframes.size(); ++node) {
+    if (component_of(node) == 0) nodes.push_back(node);
+  }
+  return nodes;
 }
 
 void Survey::add(Keyframe keyframe) {
@@ -65,9 +75,7 @@ bool Survey::solve() {
     if (!held.insert(component_of(node)).second) continue;
     anchors.push_back({node, poses[node], kAnchorVariance * PoseCovariance::Identity()});
   }
-  std::vector<alignment::PoseLink> all = links;  // which of them are wrong is not for the solver to say
-  for (alignment::PoseLink& link : all) link.may_drop = false;
-  alignment::PoseNetwork network = alignment::solved_network(poses, all, anchors, kSolving);
+  alignment::PoseNetwork network = alignment::solved_network(poses, links, anchors, kSolving);
   if (network.solved) poses = std::move(network.poses);
   return network.solved;
 }

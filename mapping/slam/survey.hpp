@@ -33,6 +33,8 @@ struct Survey {
   std::vector<std::vector<std::uint32_t>> links_of;  ///< of each keyframe, as places in `links`
 
   [[nodiscard]] std::uint32_t component_of(std::uint32_t node) const { return component[keyframes[node].drive]; }
+  /// Keyframes in the frame of the first drive.
+  [[nodiscard]] std::vector<std::uint32_t> joined_nodes() const;
   /// At the origin of its frame.
   void add(Keyframe keyframe);
   void add(const alignment::PoseLink& link);

@@ -15,13 +15,11 @@
 
 #include "core/files/grid_file.hpp"
 #include "core/files/replace_file.hpp"
-#include "daemon/records/recording_decoder.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/survey_step.hpp"
-#include "drivers/port/replay_port.hpp"
 #include "mapping/slam/drawn_map.hpp"
 #include "tool/output_file.hpp"
-#include "tool/progress.hpp"
+#include "tool/recorded_messages.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
@@ -51,18 +49,11 @@ struct SurveyedDrive {
 
 SurveyedDrive surveyed(const std::string& recording, const daemon::Settings& settings, daemon::SurveyStep& survey) {
   SurveyedDrive drive{recording};
-  drivers::port::ReplayPort port{recording, {}};
-  daemon::RecordingDecoder decoder{settings};
   survey.begin_drive();
   const daemon::RecordingDecoder::Sinks sinks{
       [&](Odometry&& odometry, std::uint32_t) { survey.observe(odometry); },
       [&](Scan&& scan) { drive.scans += survey.observe(std::move(scan)) ? 1 : 0; }};
-  Progress progress{"surveying " + fs::path{recording}.filename().string(), port.size_bytes()};
-  while (const auto replayed = port.next()) {
-    decoder.feed(replayed->record, sinks);
-    progress.show(port.read_bytes());
-  }
-  drive.cut = port.cut();
+  drive.cut = read_messages(recording, settings, sinks, "surveying " + fs::path{recording}.filename().string());
   if (drive.scans == 0) throw std::runtime_error(recording + ": no scan for which odometry is known");
   return drive;
 }
@@ -161,8 +152,7 @@ void print_built(const BuildOptions& options, const std::vector<SurveyedDrive>& 
 
 void run_build(const BuildOptions& options) {
   require_files_apart(options);
-  const daemon::Settings settings = options.config.empty() ? daemon::parse_settings("", "defaults", options.overrides)
-                                                           : daemon::read_settings(options.config, options.overrides);
+  const daemon::Settings settings = daemon::settings_or_defaults(options.config, options.overrides);
   daemon::SurveyStep step{settings};
   std::vector<SurveyedDrive> drives;
   for (const std::string& recording : options.recordings()) drives.push_back(surveyed(recording, settings, step));
