@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap score`: holds what the daemon made of a simulation against its truth.
+// `deltamap score`: holds what the daemon made of a simulation against its truth. `score relations`:
+// score_relations.cpp.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iomanip>
@@ -123,17 +124,25 @@ void run_score(const ScoreOptions& options) {
 void add_score(CLI::App& app) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App& command = *app.add_subcommand("score", "a trajectory and a map against the truth of a simulation");
-  command.add_option("--truth", options->truth, "what deltamap sim --truth wrote")->required();
-  command.add_option("--world", options->world, "the scenario that was simulated")->required();
-  command.add_option("--trajectory", options->trajectory, "TUM file")->required();
-  command.add_option("--map", options->map, "the map at the end (YAML)")->required();
-  command.add_option("--start-map", options->start_map, "the map at the start (YAML)")->required();
+  const std::vector<CLI::Option*> needed{
+      command.add_option("--truth", options->truth, "what deltamap sim --truth wrote (required)"),
+      command.add_option("--world", options->world, "the scenario that was simulated (required)"),
+      command.add_option("--trajectory", options->trajectory, "TUM file (required)"),
+      command.add_option("--map", options->map, "the map at the end, YAML (required)"),
+      command.add_option("--start-map", options->start_map, "the map at the start, YAML (required)")};
   command.add_option("--range", options->range_m, "how far the robot sees, m (default: the scenario's laser)")
       ->check(CLI::PositiveNumber);
   command.add_option("--face-beams", options->face_beams, "beams of one scan that make a face seen (default 3)")
       ->check(CLI::PositiveNumber);
   command.add_flag("--json", options->json, "print JSON");
-  command.callback([options] { run_score(*options); });
+  add_score_relations(command);
+  command.callback([options, needed, &command] {
+    if (!command.get_subcommands().empty()) return;
+    for (const CLI::Option* option : needed) {
+      if (option->count() == 0) throw CLI::RequiredError(option->get_name());
+    }
+    run_score(*options);
+  });
 }
 
 }  // namespace deltamap::tool

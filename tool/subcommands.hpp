@@ -24,6 +24,9 @@ void add_import_carmen(CLI::App& import);
 void add_replay(CLI::App& app);
 void add_view(CLI::App& app);
 
+// under `deltamap score`
+void add_score_relations(CLI::App& score);
+
 // under `deltamap map`
 void add_map_build(CLI::App& map);
 void add_map_compare(CLI::App& map);
