@@ -192,11 +192,11 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
                                                              .faces = faces,
                                                              .velocity = velocity,
                                                              .poses_within = poses_within});
-  if (tracked.looked_around) judgement.start(belief::kAsRightAsWrong);
   best = tracker.best();
   w_avg = tracked.w_avg.value_or(w_avg);
   n_eff = tracked.n_eff.value_or(n_eff);
   const bool lost = monitor.state() == LocalizerState::kLost;
+  if (tracked.looked_around && !lost) judgement.start(belief::kAsRightAsWrong);
   const hypotheses::HypothesisReport& report = hypotheses.observe(
       field, {.ends = ends,
               .continuous_odom_from_robot = continuous_odom_at(now),

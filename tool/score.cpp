@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "core/files/grid_file.hpp"
 #include "simulation/score/change_score.hpp"

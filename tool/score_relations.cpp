@@ -2,6 +2,7 @@
 // `deltamap score relations`: how well a trajectory agrees with measured relations between its poses, for comparing
 // maps of recorded logs.
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <memory>

@@ -51,7 +51,7 @@ std::optional<Interval> within(const Eigen::Matrix3d& information, double y_m, d
   const double constant =
       others.dot(information.bottomRightCorner<2, 2>() * others) - kWithinDeviations * kWithinDeviations;
   const double discriminant = linear * linear - square * constant;
-  if (discriminant < 0.0) return std::nullopt;
+  if (!(discriminant >= 0.0)) return std::nullopt;
   const double half_m = std::sqrt(discriminant) / square;
   return Interval{-linear / square - half_m, -linear / square + half_m};
 }

@@ -10,9 +10,9 @@
 namespace deltamap::localization::hypotheses {
 namespace {
 
-constexpr std::size_t kSlid = 200;       // candidates that are slid to their best fit
-constexpr std::size_t kKeptForEach = 6;  // of the lattice, for each of them: neighbours fit alike
-constexpr std::size_t kMostProposed = 64;
+constexpr std::size_t kSlid =
+    200;  // candidates that are slid to their best fit: as many as in a scan of a global search
+constexpr std::size_t kMostProposed = 64;  // each takes the place of a particle, of 500 at least
 
 }  // namespace
 

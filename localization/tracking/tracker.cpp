@@ -130,7 +130,7 @@ Tracker::Answer Tracker::led_by_surfaces(const SeenScan& seen) {
     answer.looked_around = looked_around;
     return answer;
   }
-  has_driven_blind_ = has_driven_blind_ && seen.ends.size() == 0;
+  has_driven_blind_ = false;
   answer.n_eff = static_cast<double>(particle_count());
   if (seen.ends.size() > 0) answer.w_avg = sensor::mean_likelihood(seen.field, seen.ends, pose);
   best_ = {pose, answer.believed.covariance, 1.0};
@@ -173,8 +173,9 @@ Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince&
   const bool sees = seen.ends.size() > 0;
   if (last_update_) filter_.move(since.motion, since.unknown_s, pose_filter_.particle_motion());
   last_update_ = seen.now;
+  if (!sees && surfaces_) surfaces_->predict(seen.now);
   const bool looked_around = sees && has_driven_blind_ && gather(seen);
-  has_driven_blind_ = has_driven_blind_ && !sees;
+  has_driven_blind_ = false;
   const std::span<const Pose2> slips_that_fit = sees ? slips(seen) : std::span<const Pose2>{};
   filter_.propose_slips(slips_that_fit);
   std::span<const std::int32_t> misfits;
@@ -212,7 +213,6 @@ bool Tracker::start_within(const sensor::RefinedPose& prior, const SeenScan& see
   const bool sees = seen.ends.size() > 0;
   (void)start_around(prior);
   last_update_ = seen.now;
-  has_driven_blind_ = was_blind && !sees;
   if (!was_blind || !sees || SurfaceTracker::is_one_place(prior.covariance)) return false;
   if (seen.poses_within) filter_.propose(seen.poses_within(prior));
   return true;

@@ -61,7 +61,8 @@ class Tracker {
     std::optional<double> w_avg;  ///< mean likelihood over the believed particles (paper §3.1); none without a return
     std::optional<double> n_eff;  ///< where the scan was an update
     double unknown_s = 0.0;       ///< since the last update, not covered by odometry
-    bool looked_around = false;   ///< the pose was unsure by more than one place: the scan alone says which it is
+    bool looked_around =
+        false;  ///< the pose was open by more than one place after a silence; the scan was looked for in it
   };
   Answer observe(const SeenScan& seen);
   /// No scan has come for long: particles and pose filter are predicted by the wheels up to this instant.
@@ -115,7 +116,7 @@ class Tracker {
   sensor::BeamErrors errors_;
   SlipFinder slip_finder_;
   std::optional<motion::ScanInstant> last_update_;
-  bool has_driven_blind_ = false;  ///< no scan came for long, and none has shown anything since
+  bool has_driven_blind_ = false;  ///< the particles have moved, or the surfaces' pose, since the last scan that came
   bool drawn_anew_ = false;        ///< the particles, so that `clusters_` must look at them again
 };
 

@@ -12,7 +12,10 @@
 namespace deltamap::simulation::score {
 namespace {
 
-/// Nothing outside of the trajectory.
+constexpr double kLongestGapS =
+    5.0;  // between two scans: what the robot did in a longer one the trajectory does not tell
+
+/// Nothing outside of the trajectory, nor in a gap of it.
 std::optional<Pose2> pose_at(const std::vector<StampedPose>& trajectory, Timestamp time) {
   const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time,
                                       [](const StampedPose& pose, Timestamp t) { return pose.time < t; });
@@ -20,11 +23,9 @@ std::optional<Pose2> pose_at(const std::vector<StampedPose>& trajectory, Timesta
   if (after->time == time) return after->map_from_robot;
   if (after == trajectory.begin()) return std::nullopt;
   const StampedPose& before = *(after - 1);
+  if (seconds(after->time - before.time) > kLongestGapS) return std::nullopt;
   const double share = seconds(time - before.time) / seconds(after->time - before.time);
-  const Pose2& from = before.map_from_robot;
-  const Pose2& to = after->map_from_robot;
-  return Pose2{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y),
-               wrapped_angle(from.theta + share * turn_between(from.theta, to.theta))};
+  return interpolated(before.map_from_robot, after->map_from_robot, share);
 }
 
 MeanAndDeviation mean_and_deviation(const std::vector<double>& values) {

@@ -30,8 +30,8 @@ struct MeanAndDeviation {
 };
 
 struct RelationScore {
-  std::size_t relations = 0;         ///< both times lie within the trajectory; all figures are of these
-  std::size_t outside = 0;           ///< the others
+  std::size_t relations = 0;  ///< both times lie within the trajectory, not in a gap of 5 s; all figures are of these
+  std::size_t outside = 0;    ///< the others
   MeanAndDeviation translation_m;    ///< absolute errors
   MeanAndDeviation translation2_m2;  ///< squared errors
   MeanAndDeviation rotation_rad;

@@ -173,14 +173,30 @@ TEST(Tracker, LooksAllAboutForTheFirstScanAfterALongDriveWithoutAny) {
   EXPECT_FALSE(drive.next({}).looked_around) << "once";
 }
 
-TEST(Tracker, LooksAroundOnlyOnceAScanShowsSomething) {
-  FlatDrive drive{particles_alone()};
-  (void)drive.next({});
+TEST(Tracker, DoesNotLookAroundAfterScansThatShowedNothing) {
+  for (const bool surfaces : {false, true}) {
+    TrackerParams params;
+    params.follow_surfaces = surfaces;
+    FlatDrive drive{params};
+    for (int i = 0; i < 10; ++i) (void)drive.next({0.05, 0.0, 0.01});
+    drive.let_find([](const Pose2& truth) { return truth; });
+    drive_far_unseen(drive);
+    EXPECT_FALSE(drive.next_blind({}).looked_around);
+    EXPECT_FALSE(drive.next({}).looked_around);
+    EXPECT_FALSE(drive.asked());
+  }
+}
+
+TEST(Tracker, LooksWhereItWasDrivenWhileScansShowedNothingToo) {
+  FlatDrive drive{{}};
+  for (int i = 0; i < 10; ++i) (void)drive.next({0.05, 0.0, 0.01});
   drive.let_find([](const Pose2& truth) { return truth; });
-  drive_far_unseen(drive);
-  EXPECT_FALSE(drive.next_blind({}).looked_around);
-  EXPECT_FALSE(drive.asked());
-  EXPECT_TRUE(drive.next({}).looked_around);
+  for (int i = 0; i < 1200; ++i) (void)drive.next_blind({0.05, 0.0, 0.1});
+  for (int i = 0; i < 3; ++i) drive.drive_unseen({0.05, 0.0, 0.1});
+  drive.slip({0.6, 0.4, 0.15});
+  const Tracker::Answer answer = drive.next({});
+  EXPECT_TRUE(answer.looked_around);
+  EXPECT_LT(drive.error_m(answer), 0.05);
 }
 
 TEST(Tracker, DoesNotLookAroundAfterAShortDriveWithoutScans) {
@@ -205,15 +221,6 @@ TEST(Tracker, AsksWhereTheCalibratedWheelsLeadWhereSurfacesHaveLed) {
   ASSERT_TRUE(drive.asked());
   EXPECT_LT(distance_between(drive.asked()->map_from_robot, by_wheels), 0.5);
   EXPECT_LT(drive.error_m(answer), 0.05);
-}
-
-TEST(Tracker, LooksAroundOnlyOnceAScanShowsSomethingWhereSurfacesHaveLed) {
-  FlatDrive drive{{}};
-  for (int i = 0; i < 60; ++i) (void)drive.next({0.05, 0.0, i < 30 ? 0.02 : -0.02});
-  drive.let_find([](const Pose2& truth) { return truth; });
-  drive_far_unseen(drive);
-  EXPECT_FALSE(drive.next_blind({}).looked_around);
-  EXPECT_TRUE(drive.next({}).looked_around);
 }
 
 TEST(Tracker, WeighsAgainASecondAfterTheClockHasFallenBack) {

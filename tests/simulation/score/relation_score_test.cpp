@@ -65,6 +65,14 @@ TEST(RelationScore, LeavesOutWhatLiesOutsideOfTheTrajectory) {
   EXPECT_EQ(relation_score(circle({}), {between(70, 80)}).relations, 0u);
 }
 
+TEST(RelationScore, LeavesOutWhatLiesInAGapOfTheTrajectory) {
+  std::vector<StampedPose> with_gap = circle({});
+  with_gap.erase(with_gap.begin() + 20, with_gap.begin() + 40);
+  const RelationScore score = relation_score(with_gap, {between(10, 30), between(10, 50)});
+  EXPECT_EQ(score.relations, 1u);
+  EXPECT_EQ(score.outside, 1u);
+}
+
 TEST(RelationScore, PutsTheDrivesOfATrajectoryInOrderOfTime) {
   std::vector<StampedPose> later_first = circle({});
   std::rotate(later_first.begin(), later_first.begin() + 30, later_first.end());
@@ -95,7 +103,7 @@ TEST(ReadRelations, NamesFileAndLineOfWhatIsWrong) {
     return "";
   };
   EXPECT_NE(error_of("1 2 0 0 0 0 0 0\n1 2 0 0\n").find("bad.relations: line 2: not a relation"), std::string::npos);
-  EXPECT_NE(error_of("1 2 0 0 0 0 0 nan x\n1 2 x\n").find("line "), std::string::npos);
+  EXPECT_NE(error_of("1 2 0 0 0 0 0 nan x\n1 2 x\n").find("line 1: not"), std::string::npos);
   EXPECT_NE(error_of("# nothing\n").find("holds no relation"), std::string::npos);
   EXPECT_THROW((void)read_relations(folder.path()), std::runtime_error);
   EXPECT_THROW((void)read_relations(folder.path() / "none"), std::runtime_error);
