@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "core/files/grid_file.hpp"
 #include "simulation/score/change_score.hpp"
@@ -125,24 +124,22 @@ void run_score(const ScoreOptions& options) {
 void add_score(CLI::App& app) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App& command = *app.add_subcommand("score", "a trajectory and a map against the truth of a simulation");
-  const std::vector<CLI::Option*> needed{
-      command.add_option("--truth", options->truth, "what deltamap sim --truth wrote (required)"),
-      command.add_option("--world", options->world, "the scenario that was simulated (required)"),
-      command.add_option("--trajectory", options->trajectory, "TUM file (required)"),
-      command.add_option("--map", options->map, "the map at the end, YAML (required)"),
-      command.add_option("--start-map", options->start_map, "the map at the start, YAML (required)")};
+  command.add_option("--truth", options->truth, "what deltamap sim --truth wrote")->required();
+  command.add_option("--world", options->world, "the scenario that was simulated")->required();
+  command.add_option("--trajectory", options->trajectory, "TUM file")->required();
+  command.add_option("--map", options->map, "the map at the end (YAML)")->required();
+  command.add_option("--start-map", options->start_map, "the map at the start (YAML)")->required();
   command.add_option("--range", options->range_m, "how far the robot sees, m (default: the scenario's laser)")
       ->check(CLI::PositiveNumber);
   command.add_option("--face-beams", options->face_beams, "beams of one scan that make a face seen (default 3)")
       ->check(CLI::PositiveNumber);
   command.add_flag("--json", options->json, "print JSON");
   add_score_relations(command);
-  command.callback([options, needed, &command] {
-    if (!command.get_subcommands().empty()) return;
-    for (const CLI::Option* option : needed) {
-      if (option->count() == 0) throw CLI::RequiredError(option->get_name());
-    }
-    run_score(*options);
+  command.get_subcommand("relations")->preparse_callback([&command](std::size_t) {
+    for (CLI::Option* option : command.get_options()) option->required(false);
+  });
+  command.callback([options, &command] {
+    if (command.get_subcommands().empty()) run_score(*options);
   });
 }
 

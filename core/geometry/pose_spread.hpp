@@ -2,6 +2,7 @@
 // How far a pose may be off, by its covariance, and the beams that are read from it.
 #pragma once
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +12,12 @@ namespace deltamap {
 
 /// Squared deviations of (x, y, θ) that 99.9 % of poses stay within: χ² of 3 degrees of freedom.
 inline constexpr double kMostChi2 = 16.27;
+
+/// Squared deviations of a pose that is off by (x, y, θ); above kMostChi2 the covariance does not explain it. The
+/// covariance is positive definite.
+[[nodiscard]] inline double squared_deviations(const Eigen::Vector3d& off, const PoseCovariance& covariance) {
+  return off.dot(covariance.inverse() * off);
+}
 
 /// σ of the position along the longest axis of its ellipse, m.
 [[nodiscard]] inline double widest_deviation_m(const PoseCovariance& covariance) {

@@ -4,20 +4,18 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "localization/hypotheses/global_search.hpp"
 #include "localization/hypotheses/hypothesis_bank.hpp"
 
 namespace deltamap::localization::hypotheses {
 namespace {
 
-constexpr std::size_t kSlid =
-    200;  // candidates that are slid to their best fit: as many as in a scan of a global search
-constexpr std::size_t kMostProposed = 64;  // each takes the place of a particle, of 500 at least
+constexpr std::size_t kSlid = 200;         // to their best fit: as many as in a scan of a global search
+constexpr std::size_t kMostProposed = 64;  // each takes the place of a particle
 
 }  // namespace
 
 std::vector<sensor::ProposedPose> poses_within(const sensor::RefinedPose& prior, const sensor::CoarseField& coarse,
-                                               const sensor::LikelihoodField& field, const PriorSearchScan& ends,
+                                               const sensor::LikelihoodField& field, const GlobalSearch::Ends& ends,
                                                int headings) {
   LatticeSearch lattice{headings, LatticeSearch::kKeptForEach * kSlid};
   lattice.look_within(coarse, ends.near, prior);

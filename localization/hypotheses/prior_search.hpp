@@ -6,21 +6,17 @@
 
 #include <vector>
 
+#include "localization/hypotheses/global_search.hpp"
 #include "localization/sensor/coarse_field.hpp"
 #include "localization/sensor/pose_refinement.hpp"
 #include "localization/sensor/proposed_pose.hpp"
 
 namespace deltamap::localization::hypotheses {
 
-struct PriorSearchScan {
-  const motion::BeamEnds& all;
-  const motion::BeamEnds& near;  ///< that a coarse lattice of headings can place; may be all
-};
-
 /// Poses at which the scan fits, the likeliest first. `headings`: of the lattice.
 [[nodiscard]] std::vector<sensor::ProposedPose> poses_within(const sensor::RefinedPose& prior,
                                                              const sensor::CoarseField& coarse,
                                                              const sensor::LikelihoodField& field,
-                                                             const PriorSearchScan& ends, int headings);
+                                                             const GlobalSearch::Ends& ends, int headings);
 
 }  // namespace deltamap::localization::hypotheses

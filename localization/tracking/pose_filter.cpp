@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/tracking/pose_filter.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
+
+#include "core/geometry/pose_spread.hpp"
 
 namespace deltamap::localization::tracking {
 namespace {
@@ -19,7 +20,7 @@ double disagreement(const Pose2& pose, const particles::ParticleCluster& particl
   const Eigen::Vector3d least{kLeastSpreadM * kLeastSpreadM, kLeastSpreadM * kLeastSpreadM,
                               kLeastSpreadRad * kLeastSpreadRad};
   const Eigen::Matrix3d spread = particles.covariance + least.asDiagonal().toDenseMatrix();
-  return off.dot(spread.inverse() * off);
+  return squared_deviations(off, spread);
 }
 
 }  // namespace

@@ -116,8 +116,7 @@ LinkError link_error(const Pose2& from, const Pose2& to, const Pose2& measured_f
 }
 
 double link_chi2(const PoseLink& link, std::span<const Pose2> poses) {
-  const Eigen::Vector3d error = link_error(poses[link.from], poses[link.to], link.from_from_to).error;
-  return error.dot(link.covariance.inverse() * error);
+  return squared_deviations(link_error(poses[link.from], poses[link.to], link.from_from_to).error, link.covariance);
 }
 
 PoseNetwork solved_network(std::span<const Pose2> initial, std::span<const PoseLink> links,

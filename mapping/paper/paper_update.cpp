@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/paper/paper_update.hpp"
 
-#include <Eigen/LU>
-
 #include "core/geometry/pose_spread.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/registration/transformed_grid.hpp"
@@ -30,8 +28,7 @@ double chi2_of(const Pose2& map_from_local, const alignment::ScanAlignment& alig
       aligned.covariances[middle] +
       PoseCovariance{
           Eigen::Vector3d{shift2, shift2, params.merge_deviation_rad * params.merge_deviation_rad}.asDiagonal()};
-  const Eigen::Vector3d moved = difference(before, after);
-  return moved.dot(covariance.inverse() * moved);
+  return squared_deviations(difference(before, after), covariance);
 }
 
 }  // namespace

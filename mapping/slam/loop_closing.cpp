@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/slam/loop_closing.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -39,10 +38,6 @@ constexpr SubmapMatchParams kNeighbour{.least_score = 0.45,
                                        .most_deviation_m = 0.06,
                                        .inner_deviation_m = 0.01,
                                        .inner_deviation_rad = 0.003};
-
-double chi2_of(const Eigen::Vector3d& error, const PoseCovariance& covariance) {
-  return error.dot(covariance.inverse() * error);
-}
 
 }  // namespace
 
@@ -103,7 +98,7 @@ void LoopClosing::search(std::uint32_t node) {
         matcher.match(seen.ends, survey_.keyframes[node].tracked->scan.range_deviation_m, window, {}, kLoop);
     if (!match) continue;
     const Eigen::Vector3d innovation = difference(expected, match->submap_from_scan);
-    if (chi2_of(innovation, unsure + match->covariance) > kMostChi2) continue;
+    if (squared_deviations(innovation, unsure + match->covariance) > kMostChi2) continue;
     consider({other, node, match->submap_from_scan, match->covariance, true});
   }
 }

@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
-#include <sstream>
-#include <stdexcept>
-#include <string>
+
+#include "simulation/score/number_lines.hpp"
 
 namespace deltamap::simulation::score {
 namespace {
 
-constexpr double kLongestGapS =
-    5.0;  // between two scans: what the robot did in a longer one the trajectory does not tell
+constexpr double kLongestGapS = 5.0;  // between two scans: of what the robot did in a longer one nothing is told
 
 /// Nothing outside of the trajectory, nor in a gap of it.
 std::optional<Pose2> pose_at(const std::vector<StampedPose>& trajectory, Timestamp time) {
@@ -47,23 +44,11 @@ std::vector<double> squared(std::vector<double> values) {
 }  // namespace
 
 std::vector<Relation> read_relations(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file)) throw std::runtime_error(file.string() + ": cannot be read");
   std::vector<Relation> relations;
-  int number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (line.empty() || line.front() == '#') continue;
-    std::istringstream fields(line);
-    double t1 = 0.0, t2 = 0.0, x = 0.0, y = 0.0, z = 0.0, roll = 0.0, pitch = 0.0, yaw = 0.0;
-    if (!(fields >> t1 >> t2 >> x >> y >> z >> roll >> pitch >> yaw)) {
-      throw std::runtime_error(file.string() + ": line " + std::to_string(number) +
-                               ": not a relation (t1 t2 x y z roll pitch yaw)");
-    }
+  for (const auto& [t1, t2, x, y, z, roll, pitch, yaw] : number_lines(file, "relation", "t1 t2 x y z roll pitch yaw")) {
     relations.push_back(
         {Timestamp{duration_from_seconds(t1)}, Timestamp{duration_from_seconds(t2)}, {x, y, wrapped_angle(yaw)}});
   }
-  if (relations.empty()) throw std::runtime_error(file.string() + ": line 1: holds no relation");
   return relations;
 }
 

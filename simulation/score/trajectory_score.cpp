@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
+
+#include "simulation/score/number_lines.hpp"
 
 namespace deltamap::simulation::score {
 namespace {
@@ -22,22 +21,10 @@ double quantile(const std::vector<double>& sorted, double share) {
 }  // namespace
 
 std::vector<StampedPose> read_trajectory(const std::filesystem::path& tum_file) {
-  std::ifstream in(tum_file);
-  if (!in || std::filesystem::is_directory(tum_file)) throw std::runtime_error(tum_file.string() + ": cannot be read");
   std::vector<StampedPose> trajectory;
-  int number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (line.empty() || line.front() == '#') continue;
-    std::istringstream fields(line);
-    double t = 0.0, x = 0.0, y = 0.0, z = 0.0, qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;
-    if (!(fields >> t >> x >> y >> z >> qx >> qy >> qz >> qw)) {
-      throw std::runtime_error(tum_file.string() + ": line " + std::to_string(number) +
-                               ": not a pose (t x y z qx qy qz qw)");
-    }
+  for (const auto& [t, x, y, z, qx, qy, qz, qw] : number_lines(tum_file, "pose", "t x y z qx qy qz qw")) {
     trajectory.push_back({Timestamp{duration_from_seconds(t)}, {x, y, wrapped_angle(2.0 * std::atan2(qz, qw))}});
   }
-  if (trajectory.empty()) throw std::runtime_error(tum_file.string() + ": line 1: holds no pose");
   return trajectory;
 }
 

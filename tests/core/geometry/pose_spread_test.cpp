@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace deltamap {
 namespace {
 
@@ -11,6 +13,17 @@ TEST(PoseSpread, IsAsWideAsTheLongestAxisOfTheEllipse) {
   covariance(0, 0) = covariance(1, 1) = 0.05;
   covariance(0, 1) = covariance(1, 0) = 0.04;  // turned by 45°: 0.09 along, 0.01 across
   EXPECT_NEAR(widest_deviation_m(covariance), 0.3, 1e-12);
+}
+
+TEST(PoseSpread, CountsWhatAPoseIsOffInDeviationsAlongTheAxesOfTheEllipse) {
+  PoseCovariance covariance = PoseCovariance::Zero();
+  covariance(0, 0) = covariance(1, 1) = 0.05;
+  covariance(0, 1) = covariance(1, 0) = 0.04;  // turned by 45°: σ is 0.3 along, 0.1 across
+  covariance(2, 2) = 0.01;
+  const double along = 0.6 / std::sqrt(2.0);
+  EXPECT_NEAR(squared_deviations({along, along, 0.0}, covariance), 4.0, 1e-9);
+  EXPECT_NEAR(squared_deviations({along, -along, 0.0}, covariance), 36.0, 1e-9);
+  EXPECT_NEAR(squared_deviations({0.0, 0.0, -0.1}, covariance), 1.0, 1e-9);
 }
 
 TEST(PoseSpread, OfAPoseThatCallsItselfExactKeepsAFloor) {
