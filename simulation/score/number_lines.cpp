@@ -20,8 +20,9 @@ std::vector<std::array<double, 8>> number_lines(const std::filesystem::path& fil
     std::istringstream fields(line);
     std::array<double, 8> values{};
     if (!std::all_of(values.begin(), values.end(), [&](double& value) { return !!(fields >> value); })) {
-      throw std::runtime_error(file.string() + ": line " + std::to_string(number) + ": not a " + what + " (" + columns +
-                               ")");
+      std::ostringstream error;
+      error << file.string() << ": line " << number << ": not a " << what << " (" << columns << ')';
+      throw std::runtime_error(error.str());
     }
     lines.push_back(values);
   }
