@@ -135,7 +135,11 @@ void add_score(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command.add_flag("--json", options->json, "print JSON");
   add_score_relations(command);
-  command.get_subcommand("relations")->preparse_callback([&command](std::size_t) {
+  CLI::App& relations = *command.get_subcommand("relations");
+  for (CLI::Option* option : command.get_options()) {
+    if (option != command.get_help_ptr()) relations.excludes(option);  // its own come after its name
+  }
+  relations.preparse_callback([&command](std::size_t) {
     for (CLI::Option* option : command.get_options()) option->required(false);
   });
   command.callback([options, &command] {

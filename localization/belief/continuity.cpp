@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/belief/continuity.hpp"
 
+#include <cmath>
+
 namespace deltamap::localization::belief {
 namespace {
 
@@ -30,6 +32,10 @@ bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool 
     is_unbroken_ = true;
   }
   return is_news;
+}
+
+bool Continuity::broke_off_lately(Timestamp now) const {
+  return !is_unbroken_ || (broke_off_at_ && std::abs(seconds(now - *broke_off_at_)) <= kMostUnlikeS);
 }
 
 void Continuity::forget_suspicion() {

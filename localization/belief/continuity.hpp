@@ -31,6 +31,8 @@ class Continuity {
   [[nodiscard]] bool fits_worse() const { return suspected_since_ && inlier_drop_.is_worse_than_remembered(); }
   /// The last scan at a tracked pose that did not follow from the one before.
   [[nodiscard]] const std::optional<Timestamp>& broke_off_at() const { return broke_off_at_; }
+  /// Within so long that the robot, had it been carried then, might still be believed where it was.
+  [[nodiscard]] bool broke_off_lately(Timestamp now) const;
 
  private:
   void forget_suspicion();

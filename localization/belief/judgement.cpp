@@ -7,13 +7,22 @@
 namespace deltamap::localization::belief {
 namespace {
 
-PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report) {
+// Share of all carryings after which the scans go on as if there had been none: only where it looks just the same.
+constexpr double kCarriedWithoutABreak = 0.01;
+
+/// The share of the belief that is left to a hypothesis which is so much less likely.
+double with_less_odds(double share, double times) { return times * share / (1.0 - share + times * share); }
+
+PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report, bool broke_off_lately) {
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
   if (report.own_known) {
     const hypotheses::ReportedHypothesis& other = report.others.front();
-    const bool kidnapped = report.kidnapped_share > other.share;
+    const double carried =
+        broke_off_lately ? report.kidnapped_share : with_less_odds(report.kidnapped_share, kCarriedWithoutABreak);
+    const bool kidnapped = carried > other.share;
     return {.believed = report.own_share,
-            .best_other = std::max(other.share, report.kidnapped_share),  // one of them may be watched, not listed
+            .best_other = std::max(other.share, carried),  // one of them may be watched, not listed
+            .if_carried = report.kidnapped_share,
             .map_from_other = kidnapped ? report.map_from_kidnapped : other.map_from_robot,
             .beaten = report.beaten};
   }
@@ -43,7 +52,7 @@ Belief Judgement::belief() const {
   belief.fits_worse = continuity_.fits_worse();
   if (!is_fixed()) return belief;
   belief.pose_right = std::min(judge_.limit(), 1.0 - belief.other_share);
-  belief.verdict = belief.pose_right >= kSurelyRight ? PoseVerdict::kRight : PoseVerdict::kUndecided;
+  belief.verdict = judge_.is_surely_right(belief.pose_right) ? PoseVerdict::kRight : PoseVerdict::kUndecided;
   return belief;
 }
 
@@ -68,7 +77,8 @@ void Judgement::observe(const View& view) {
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
   const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed);
-  judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses));
+  judge_.observe(tallied(beams, stability_), passed,
+                 shares_in(view.hypotheses, continuity_.broke_off_lately(view.scan.time)));
   belief_ = judge_.belief();
   belief_.is_checked = true;
   earn(beams, view);

@@ -67,6 +67,7 @@ std::optional<Weakest> weakest_direction(const ViewTally& view, const PoseVerdic
 void PoseJudge::start(double pose_right) {
   right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
   proof_ = 0.0;
+  if_carried_ = 0.0;
   any_view_ = false;
   last_support_.reset();
   belief_ = {};
@@ -111,6 +112,7 @@ void PoseJudge::judge_map(const ViewTally& view, double fresh) {
 double PoseJudge::limit() const { return 1.0 - (1.0 - proof_) * (1.0 - params_.unproven_limit); }
 
 void PoseJudge::decide(const Shares& shares) {
+  if_carried_ = shares.if_carried;
   trust_ = probability(right_log_odds_) * shares.believed;
   const double by_beams = std::clamp(trust_, 1.0 - limit(), limit());
   belief_.pose_right = std::min(by_beams, 1.0 - shares.best_other);
@@ -120,7 +122,7 @@ void PoseJudge::decide(const Shares& shares) {
     belief_.verdict = PoseVerdict::kUndecided;
     return;
   }
-  const bool right = belief_.pose_right >= kSurelyRight;
+  const bool right = is_surely_right(belief_.pose_right);
   const bool wrong = by_beams <= kSurelyWrong && shares.beaten;  // not for an alias that is only monitored
   belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
 }

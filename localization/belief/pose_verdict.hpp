@@ -5,6 +5,7 @@
 // view counts by how new it is: standing still, or people who walk by, add no certainty.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "core/geometry/angle.hpp"
@@ -48,6 +49,7 @@ class PoseJudge {
   struct Shares {
     double believed = 1.0;
     double best_other = 0.0;
+    double if_carried = 0.0;  ///< of an alias, were carryings after which no scan breaks off as likely as others
     Pose2 map_from_other{};
     bool searching = false;  ///< no hypothesis is believed yet: `believed` is the best one's
     bool beaten = true;      ///< another hypothesis explains the recent scans clearly better
@@ -59,6 +61,11 @@ class PoseJudge {
   [[nodiscard]] double trust() const { return trust_; }
   /// As much as P(pose right) may be: less than surely right where no proven tiles have told of the pose lately.
   [[nodiscard]] double limit() const;
+  /// May a pose be called right that is right with this probability? Not where the robot may have been carried to an
+  /// alias by someone who chose it.
+  [[nodiscard]] bool is_surely_right(double pose_right) const {
+    return std::min(pose_right, 1.0 - if_carried_) >= kSurelyRight;
+  }
 
  private:
   [[nodiscard]] double novelty(const Passed& passed, std::optional<double> support);
@@ -69,6 +76,7 @@ class PoseJudge {
   double right_log_odds_ = 0.0;
   double trust_ = 0.5;
   double proof_ = 0.0;         ///< 1 where proven tiles are in view; fades
+  double if_carried_ = 0.0;    ///< Shares::if_carried
   double misfit_share_ = 0.0;  ///< running mean over the last views
   bool any_view_ = false;
   std::optional<double> last_support_;

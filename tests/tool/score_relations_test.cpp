@@ -54,6 +54,13 @@ TEST_F(ScoreRelations, SaysInOneLineWhyItCannot) {
   EXPECT_NE(error_.find("no relation lies within the time of"), std::string::npos) << error_;
 }
 
+TEST_F(ScoreRelations, RefusesOptionsOfTheScoreOfASimulation) {
+  const char* arguments[] = {"deltamap", "score", "--json", "relations", "drive.tum", "some.relations"};
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run_tool(6, arguments), 2);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("relations excludes --json"), std::string::npos);
+}
+
 TEST_F(ScoreRelations, LeavesTheScoreOfASimulationAsItWas) {
   const char* arguments[] = {"deltamap", "score", "--world", "hall.yaml"};
   testing::internal::CaptureStderr();

@@ -40,6 +40,15 @@ TEST_F(FollowedPose, IsUnbrokenWhereAThingComes) {
   EXPECT_FALSE(has_broken);
 }
 
+TEST_F(FollowedPose, BrokeOffLatelyUntilTwoMinutesAfterABreak) {
+  EXPECT_FALSE(continuity.broke_off_lately(robot.now()));
+  robot.carried_m = 2.5;
+  see(fitting(80, 10), 1150);
+  EXPECT_TRUE(continuity.broke_off_lately(robot.now()));
+  see(fitting(80, 10), 100);
+  EXPECT_FALSE(continuity.broke_off_lately(robot.now()));
+}
+
 TEST_F(FollowedPose, IsUnbrokenInAHallThatIsMoreAndMoreOutOfDate) {
   see(fitting(30, 10), 100);
   EXPECT_FALSE(has_broken);
@@ -51,6 +60,7 @@ TEST_F(FollowedPose, IsUnbrokenWhereScansBreakOffAndTheMapFitsAsBefore) {
   see(fitting(80, 10), 1);
   EXPECT_EQ(continuity.broke_off_at(), robot.now());
   see(fitting(80, 10), 100);
+  EXPECT_TRUE(continuity.broke_off_lately(robot.now()));
   EXPECT_LT(continuity.broke_off_at(), robot.now());
   EXPECT_FALSE(continuity.fits_worse());
   EXPECT_FALSE(has_broken);
@@ -85,6 +95,7 @@ TEST_F(FollowedPose, IsUnbrokenAgainWhereItIsFoundRightAndAsMuchFitsAsBefore) {
   see(fitting(30, 10), 50);
   see(fitting(30, 10, PoseVerdict::kRight), 50);
   EXPECT_FALSE(continuity.is_unbroken()) << "it may be an alias";
+  EXPECT_TRUE(continuity.broke_off_lately(robot.now()));
   see(fitting(80, 10), 50);
   EXPECT_FALSE(continuity.is_unbroken()) << "nothing says that it is right";
   see(fitting(80, 10, PoseVerdict::kRight), 1);

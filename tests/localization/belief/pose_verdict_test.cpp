@@ -84,15 +84,26 @@ TEST(PoseVerdict, IsUndecidedWhereNothingHasProvenStable) {
 
 TEST(PoseVerdict, IsUndecidedWhereAnotherPlaceFitsAsWell) {
   PoseJudge judge = sure();
-  const Belief& belief = after(judge, 10.0, view_of(1.0, 1.0), 0.5, {0.5, 0.5, {30.0, 30.0, 0.0}});
+  const Belief& belief = after(judge, 10.0, view_of(1.0, 1.0), 0.5,
+                               {.believed = 0.5, .best_other = 0.5, .map_from_other = {30.0, 30.0, 0.0}});
   EXPECT_EQ(belief.verdict, PoseVerdict::kUndecided);
   EXPECT_EQ(belief.other_share, 0.5);
   EXPECT_EQ(belief.map_from_other, (Pose2{30.0, 30.0, 0.0}));
 }
 
+TEST(PoseVerdict, IsUndecidedWhereARobotThatWasCarriedWouldSeeTheSame) {
+  PoseJudge judge = sure();
+  const Belief& belief = after(judge, 10.0, view_of(1.0, 1.0), 0.5, {.best_other = 0.01, .if_carried = 0.5});
+  EXPECT_EQ(belief.verdict, PoseVerdict::kUndecided);
+  EXPECT_GT(belief.pose_right, 0.95) << "robots are seldom carried unseen";
+  judge.start(0.99);
+  EXPECT_TRUE(judge.is_surely_right(0.99)) << "forgotten";
+}
+
 TEST(PoseVerdict, IsWrongWhereAnotherPlaceHasWon) {
   PoseJudge judge = sure();
-  EXPECT_EQ(after(judge, 1.0, view_of(0.7, 0.6), 0.5, {0.02, 0.98, {}}).verdict, PoseVerdict::kWrong);
+  EXPECT_EQ(after(judge, 1.0, view_of(0.7, 0.6), 0.5, {.believed = 0.02, .best_other = 0.98}).verdict,
+            PoseVerdict::kWrong);
 }
 
 TEST(PoseVerdict, IsUndecidedWhileNoPlaceIsBelieved) {
