@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/belief/continuity.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 namespace deltamap::localization::belief {
 namespace {
@@ -14,7 +14,11 @@ constexpr double kMostUnlikeS = 120.0;   // and then so long as much must fit as
 bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool is_tracking) {
   const Timestamp time = scan.scan.time;
   inlier_drop_.observe(believed, time);
-  if (scan_break_.observe(scan) && is_tracking) {
+  const bool breaks_off = scan_break_.observe(scan);
+  const bool follows = is_tracking && scan_break_.has_compared() && !breaks_off;
+  followed_s_ = follows && last_ ? followed_s_ + std::max(0.0, seconds(time - *last_)) : 0.0;
+  last_ = time;
+  if (breaks_off && is_tracking) {
     broke_off_at_ = time;
     if (!suspected_since_) inlier_drop_.remember();
     if (!was_carried_) suspected_since_ = time;
@@ -34,9 +38,7 @@ bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool 
   return is_news;
 }
 
-bool Continuity::broke_off_lately(Timestamp now) const {
-  return !is_unbroken_ || (broke_off_at_ && std::abs(seconds(now - *broke_off_at_)) <= kMostUnlikeS);
-}
+bool Continuity::may_have_been_carried() const { return !is_unbroken_ || followed_s_ < kMostUnlikeS; }
 
 void Continuity::forget_suspicion() {
   suspected_since_.reset();

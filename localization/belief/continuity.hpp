@@ -21,6 +21,7 @@ class Continuity {
   void start() {
     inlier_drop_.start();
     is_unbroken_ = true;
+    followed_s_ = 0.0;
   }
 
   /// Every scan in order, with what is believed without it. True at the scan that tells that the robot was carried.
@@ -31,8 +32,9 @@ class Continuity {
   [[nodiscard]] bool fits_worse() const { return suspected_since_ && inlier_drop_.is_worse_than_remembered(); }
   /// The last scan at a tracked pose that did not follow from the one before.
   [[nodiscard]] const std::optional<Timestamp>& broke_off_at() const { return broke_off_at_; }
-  /// Within so long that the robot, had it been carried then, might still be believed where it was.
-  [[nodiscard]] bool broke_off_lately(Timestamp now) const;
+  /// Has one of the scans of the last minutes not followed from the one before, or did none tell? A robot that was
+  /// carried then might still be believed where it was.
+  [[nodiscard]] bool may_have_been_carried() const;
 
  private:
   void forget_suspicion();
@@ -43,6 +45,8 @@ class Continuity {
   std::optional<Timestamp> suspected_since_;  ///< the last break, or the one after which the map fitted worse
   bool was_carried_ = false;                  ///< it did fit worse since then
   bool is_unbroken_ = true;
+  std::optional<Timestamp> last_;
+  double followed_s_ = 0.0;  ///< so long each scan of the tracked pose has followed from the one before
 };
 
 }  // namespace deltamap::localization::belief

@@ -7,18 +7,18 @@
 namespace deltamap::localization::belief {
 namespace {
 
-// Share of all carryings after which the scans go on as if there had been none: only where it looks just the same.
-constexpr double kCarriedWithoutABreak = 0.01;
+// Share of all carryings after which the scans go on as if there had been none: where the new place looks the same.
+constexpr double kCarriedWithoutABreak = 0.1;
 
 /// The share of the belief that is left to a hypothesis which is so much less likely.
 double with_less_odds(double share, double times) { return times * share / (1.0 - share + times * share); }
 
-PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report, bool broke_off_lately) {
+PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report, bool may_have_been_carried) {
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
   if (report.own_known) {
     const hypotheses::ReportedHypothesis& other = report.others.front();
     const double carried =
-        broke_off_lately ? report.kidnapped_share : with_less_odds(report.kidnapped_share, kCarriedWithoutABreak);
+        may_have_been_carried ? report.kidnapped_share : with_less_odds(report.kidnapped_share, kCarriedWithoutABreak);
     const bool kidnapped = carried > other.share;
     return {.believed = report.own_share,
             .best_other = std::max(other.share, carried),  // one of them may be watched, not listed
@@ -77,8 +77,7 @@ void Judgement::observe(const View& view) {
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
   const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed);
-  judge_.observe(tallied(beams, stability_), passed,
-                 shares_in(view.hypotheses, continuity_.broke_off_lately(view.scan.time)));
+  judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses, continuity_.may_have_been_carried()));
   belief_ = judge_.belief();
   belief_.is_checked = true;
   earn(beams, view);

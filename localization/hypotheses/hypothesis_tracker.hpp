@@ -28,7 +28,7 @@ struct HypothesisTrackerParams {
   int probes_nearby = 60;              ///< and around the believed pose: slips; >= 0
   double nearby_prior = 1e-3;          ///< odds of such a hypothesis against the believed one, before any scan; 0..1
   double elsewhere_prior = 1e-5;       ///< odds of any other hypothesis: nobody carries robots about; 0..1
-  double kidnapped_now_prior = 0.003;  ///< odds that it has just been carried to one that fits from then on; 0..1
+  double kidnapped_now_prior = 0.003;  ///< odds that it was just carried to one that fits, if a scan broke off; 0..1
   double prior_after_search = 0.3;     ///< the same where the believed pose was not given but found; 0..1
   double kidnapped_prior =
       0.001;               ///< odds of being elsewhere against near, where the believed pose has proven wrong; 0..1

@@ -35,13 +35,14 @@ class AisleDrive {
       rays_.push_back({{0.0F, 0.0F}, (range_m * along).cast<float>()});
     }
     const Pose2 odom_from_robot{way_m_, 0.0, 0.0};
-    return {scan_, rays_, odom_from_robot, 0, map_from_odom * odom_from_robot};
+    return {scan_, rays_, odom_from_robot, epoch, map_from_odom * odom_from_robot};
   }
 
   [[nodiscard]] Timestamp now() const { return timestamp_from_ns(0) + duration_from_seconds(time_s_); }
   void set_back(double back_s) { time_s_ -= back_s; }
 
   double speed_m_per_s = 0.5;
+  std::uint32_t epoch = 0;
   double carried_m = 0.0;  ///< ahead of where the wheels say it is
   Pose2 map_from_odom;     ///< that the estimate has
 

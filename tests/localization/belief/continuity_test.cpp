@@ -40,13 +40,34 @@ TEST_F(FollowedPose, IsUnbrokenWhereAThingComes) {
   EXPECT_FALSE(has_broken);
 }
 
-TEST_F(FollowedPose, BrokeOffLatelyUntilTwoMinutesAfterABreak) {
-  EXPECT_FALSE(continuity.broke_off_lately(robot.now()));
+TEST_F(FollowedPose, MayHaveBeenCarriedUntilScansHaveFollowedForTwoMinutes) {
+  robot.speed_m_per_s = 0.05;
+  EXPECT_TRUE(continuity.may_have_been_carried()) << "20 s after the start";
+  see(fitting(80, 10), 1050);
+  EXPECT_FALSE(continuity.may_have_been_carried());
   robot.carried_m = 2.5;
   see(fitting(80, 10), 1150);
-  EXPECT_TRUE(continuity.broke_off_lately(robot.now()));
+  EXPECT_TRUE(continuity.may_have_been_carried());
+  robot.set_back(3600.0);
   see(fitting(80, 10), 100);
-  EXPECT_FALSE(continuity.broke_off_lately(robot.now()));
+  EXPECT_FALSE(continuity.may_have_been_carried());
+}
+
+TEST_F(FollowedPose, MayHaveBeenCarriedWhereNoScanTells) {
+  robot.speed_m_per_s = 0.05;
+  see(fitting(80, 10), 1050);
+  robot.epoch = 1;
+  see(fitting(80, 10), 1);
+  EXPECT_TRUE(continuity.may_have_been_carried()) << "odometry began anew";
+  see(fitting(80, 10), 1250);
+  EXPECT_FALSE(continuity.may_have_been_carried());
+  is_tracking = false;
+  see(fitting(80, 10), 1);
+  EXPECT_TRUE(continuity.may_have_been_carried()) << "no pose is tracked";
+  is_tracking = true;
+  see(fitting(80, 10), 1250);
+  continuity.start();
+  EXPECT_TRUE(continuity.may_have_been_carried()) << "another pose is believed";
 }
 
 TEST_F(FollowedPose, IsUnbrokenInAHallThatIsMoreAndMoreOutOfDate) {
@@ -60,7 +81,6 @@ TEST_F(FollowedPose, IsUnbrokenWhereScansBreakOffAndTheMapFitsAsBefore) {
   see(fitting(80, 10), 1);
   EXPECT_EQ(continuity.broke_off_at(), robot.now());
   see(fitting(80, 10), 100);
-  EXPECT_TRUE(continuity.broke_off_lately(robot.now()));
   EXPECT_LT(continuity.broke_off_at(), robot.now());
   EXPECT_FALSE(continuity.fits_worse());
   EXPECT_FALSE(has_broken);
@@ -95,7 +115,6 @@ TEST_F(FollowedPose, IsUnbrokenAgainWhereItIsFoundRightAndAsMuchFitsAsBefore) {
   see(fitting(30, 10), 50);
   see(fitting(30, 10, PoseVerdict::kRight), 50);
   EXPECT_FALSE(continuity.is_unbroken()) << "it may be an alias";
-  EXPECT_TRUE(continuity.broke_off_lately(robot.now()));
   see(fitting(80, 10), 50);
   EXPECT_FALSE(continuity.is_unbroken()) << "nothing says that it is right";
   see(fitting(80, 10, PoseVerdict::kRight), 1);
