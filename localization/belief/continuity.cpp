@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/belief/continuity.hpp"
 
-#include <algorithm>
-
 namespace deltamap::localization::belief {
 namespace {
 
@@ -15,9 +13,8 @@ bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool 
   const Timestamp time = scan.scan.time;
   inlier_drop_.observe(believed, time);
   const bool breaks_off = scan_break_.observe(scan);
-  const bool follows = is_tracking && scan_break_.has_compared() && !breaks_off;
-  followed_s_ = follows && last_ ? followed_s_ + std::max(0.0, seconds(time - *last_)) : 0.0;
-  last_ = time;
+  const std::optional<double> compared_over_s = scan_break_.compared_over_s();
+  followed_s_ = is_tracking && compared_over_s && !breaks_off ? followed_s_ + *compared_over_s : 0.0;
   if (breaks_off && is_tracking) {
     broke_off_at_ = time;
     if (!suspected_since_) inlier_drop_.remember();

@@ -45,7 +45,6 @@ class Continuity {
   std::optional<Timestamp> suspected_since_;  ///< the last break, or the one after which the map fitted worse
   bool was_carried_ = false;                  ///< it did fit worse since then
   bool is_unbroken_ = true;
-  std::optional<Timestamp> last_;
   double followed_s_ = 0.0;  ///< so long each scan of the tracked pose has followed from the one before
 };
 

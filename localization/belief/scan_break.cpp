@@ -100,7 +100,7 @@ bool ScanBreak::observe(const FollowedScan& now) {
   const bool blind = was_blind(now);
   const double passed_s = last_ ? std::max(0.0, seconds(now.scan.time - *last_)) : 0.0;
   keep(now);
-  has_compared_ = shares.has_value();
+  compared_over_s_ = shares ? std::optional{passed_s} : std::nullopt;
   if (!shares) return blind;
   const Shares usual = usual_.value_or(Shares{});
   const Shares more{shares->nearer - usual.nearer, shares->farther - usual.farther};

@@ -43,8 +43,9 @@ class ScanBreak {
   /// Every scan in order. Does so much of its view not follow from the scan before that the robot may have been
   /// carried?
   [[nodiscard]] bool observe(const FollowedScan& now);
-  /// Could that scan be held against the one before? Not after a way without scans, nor where too little is in view.
-  [[nodiscard]] bool has_compared() const { return has_compared_; }
+  /// Seconds from the scan before to that one, where it could be held against it: not after a way without scans, nor
+  /// where too little is in view.
+  [[nodiscard]] std::optional<double> compared_over_s() const { return compared_over_s_; }
 
  private:
   struct Shares {
@@ -64,7 +65,7 @@ class ScanBreak {
   std::uint32_t epoch_ = 0;
   std::optional<Timestamp> last_;
   std::optional<Shares> usual_;
-  bool has_compared_ = false;
+  std::optional<double> compared_over_s_;
 };
 
 }  // namespace deltamap::localization::belief

@@ -39,19 +39,29 @@ hypotheses::HypothesisReport believed_if_not_carried(double share) {
 
 OccupancyGrid an_empty_map() { return OccupancyGrid{GridGeometry{20, 20, 0.1, {0.0, 0.0}}, CellState::kFree}; }
 
-/// A scan without beams, a new view.
-void see_nothing(Judgement& judgement, const hypotheses::HypothesisReport& hypotheses, Timestamp time) {
-  const OccupancyGrid map = an_empty_map();
-  Scan scan;
-  scan.time = time;
-  const sensor::RefinedPose believed{};
+/// A new view, while tracking.
+void see(Judgement& judgement, const OccupancyGrid& map, const Scan& scan, const sensor::RefinedPose& believed,
+         const hypotheses::HypothesisReport& hypotheses) {
   judgement.observe({.map = map,
                      .scan = scan,
-                     .rays = {},
+                     .rays = motion::deskewed(scan, {}),
                      .believed = believed,
                      .state = LocalizerState::kTracking,
                      .passed = {.driven_m = 1.0},
                      .hypotheses = hypotheses});
+}
+
+/// The same by a scan without beams.
+void see_nothing(Judgement& judgement, const hypotheses::HypothesisReport& hypotheses, Timestamp time) {
+  Scan scan;
+  scan.time = time;
+  see(judgement, an_empty_map(), scan, {}, hypotheses);
+}
+
+/// Each scan follows from the one before, for so long that the robot has not been carried.
+void follow_for_two_minutes(Judgement& judgement, AisleDrive& robot) {
+  robot.speed_m_per_s = 0.05;
+  for (int i = 0; i < 1250; ++i) judgement.follow(robot.next(), true);
 }
 
 /// Seen by a scan without beams, at a believed pose that has no other hypothesis beside it.
@@ -71,8 +81,7 @@ TEST(Judgement, HearsOfAnAliasThatTheRobotMayHaveBeenCarriedTo) {
 TEST(Judgement, HearsLessOfAnAliasWhereScansHaveFollowedEachOther) {
   Judgement judgement = judged_with(believed_with(1.0));
   AisleDrive robot;
-  robot.speed_m_per_s = 0.05;
-  for (int i = 0; i < 1250; ++i) judgement.follow(robot.next(), true);
+  follow_for_two_minutes(judgement, robot);
   see_nothing(judgement, believed_if_not_carried(0.9), robot.now());
   EXPECT_NEAR(judgement.belief().other_share, 0.09 / 0.19, 1e-9);
   EXPECT_DOUBLE_EQ(judgement.belief().map_from_other.x, 15.0);
@@ -109,18 +118,10 @@ TEST(Judgement, CallsNoPoseRightThatSomebodyMayHaveCarriedTheRobotFrom) {
   ASSERT_TRUE(judgement.restore(lived_in(map)));
   judgement.start(0.9);
   AisleDrive robot;
-  robot.speed_m_per_s = 0.05;
-  for (int i = 0; i < 1250; ++i) judgement.follow(robot.next(), true);
+  follow_for_two_minutes(judgement, robot);
   for (const double if_carried : {0.0, 0.3, 0.0}) {
     const Scan scan = test::cast_scan(map, believed.map_from_robot, robot.now(), {}, random);
-    const hypotheses::HypothesisReport report = believed_if_not_carried(if_carried);
-    judgement.observe({.map = map,
-                       .scan = scan,
-                       .rays = motion::deskewed(scan, {}),
-                       .believed = believed,
-                       .state = LocalizerState::kTracking,
-                       .passed = {.driven_m = 1.0},
-                       .hypotheses = report});
+    see(judgement, map, scan, believed, believed_if_not_carried(if_carried));
     for (const bool fixed : {false, true}) {
       judgement.fix_by_surfaces(fixed);
       const Belief belief = judgement.belief();
