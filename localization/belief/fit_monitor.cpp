@@ -9,7 +9,10 @@
 namespace deltamap::localization::belief {
 namespace {
 
-bool is_right(const FitMonitor::Observation& scan) { return scan.verdict == PoseVerdict::kRight || scan.is_held; }
+/// However badly the scan fits. What may make a robot lost and what finds it again must not hold at once.
+bool is_supported(const FitMonitor::Observation& scan) {
+  return scan.verdict == PoseVerdict::kRight || scan.is_held || scan.trust >= kSurelyRight;
+}
 
 }  // namespace
 
@@ -41,7 +44,7 @@ void FitMonitor::count(const Observation& scan) {
   mean_fit_ += share * (scan.fit - mean_fit_);
   any_fit_ = true;
   const auto grown_while = [&](bool so, double so_far_s) { return so ? so_far_s + scan.passed_s : 0.0; };
-  const bool misfit = mean_fit_ < params_.lost_below && !is_right(scan);
+  const bool misfit = mean_fit_ < params_.lost_below && !is_supported(scan);
   misfit_s_ = grown_while(misfit, misfit_s_);
   wrong_s_ = grown_while(scan.verdict == PoseVerdict::kWrong, wrong_s_);
   distrusted_s_ = grown_while(scan.trust <= kSurelyWrong, distrusted_s_);
@@ -53,7 +56,6 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
   turned_in_state_rad_ += std::abs(scan.turned_rad);
   count(scan);
   const bool fits = mean_fit_ > params_.found_above && distrusted_s_ == 0.0 && wrong_s_ == 0.0;
-  const bool is_supported = is_right(scan) || scan.trust >= kSurelyRight;
   switch (state_) {
     case LocalizerState::kGlobal:
       if (converged(best) && (fits || driven_in_state_m_ >= params_.converged_unfit_after_m)) {
@@ -65,7 +67,7 @@ LocalizerState FitMonitor::observe(const Observation& scan, const particles::Par
       beaten_ = scan.beaten;
       break;
     case LocalizerState::kLost:
-      if (fits || is_supported) {
+      if (fits || is_supported(scan)) {
         enter(LocalizerState::kTracking);
       } else if (beaten_ || (in_state_s_ >= params_.search_after_s && driven_in_state_m_ >= params_.search_after_m)) {
         start(LocalizerState::kGlobal);

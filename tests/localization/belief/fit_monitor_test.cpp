@@ -59,6 +59,14 @@ TEST(FitMonitor, IsNeverLostByMisfitWhileSurfacesHoldThePose) {
   EXPECT_EQ(monitor.state(), LocalizerState::kLost);
 }
 
+TEST(FitMonitor, IsNotLostByMisfitWhereAllBeamsTogetherSupportThePose) {
+  FitMonitor monitor = tracking();
+  const FitMonitor::Observation scan{.passed_s = 0.2, .fit = 0.35, .trust = 0.95};
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(monitor.observe(scan, certain()), LocalizerState::kTracking) << "after " << 0.2 * i << " s";
+  }
+}
+
 TEST(FitMonitor, SuspectsAPoseThatIsSurelyWrong) {
   FitMonitor monitor = tracking();
   EXPECT_FALSE(monitor.suspicious());
