@@ -4,8 +4,8 @@
 namespace deltamap::localization::belief {
 namespace {
 
-constexpr double kCarriedWithinS = 5.0;  // after a break: so long a worse fit says that the robot was carried,
-constexpr double kMostUnlikeS = 120.0;   // and then so long as much must fit as before
+constexpr double kKidnappedWithinS = 5.0;  // after a break: so long a worse fit says that the robot was carried,
+constexpr double kMostUnlikeS = 120.0;     // and then so long as much must fit as before
 
 }  // namespace
 
@@ -18,28 +18,28 @@ bool Continuity::observe(const FollowedScan& scan, const Belief& believed, bool 
   if (breaks_off && is_tracking) {
     broke_off_at_ = time;
     if (!suspected_since_) inlier_drop_.remember();
-    if (!was_carried_) suspected_since_ = time;
+    if (!was_kidnapped_) suspected_since_ = time;
   }
   if (suspected_since_) {
     const double since_s = seconds(time - *suspected_since_);
-    if (since_s < 0.0 || since_s > (was_carried_ ? kMostUnlikeS : kCarriedWithinS)) forget_suspicion();
+    if (since_s < 0.0 || since_s > (was_kidnapped_ ? kMostUnlikeS : kKidnappedWithinS)) forget_suspicion();
   }
-  const bool is_news = fits_worse() && !was_carried_;
-  was_carried_ = was_carried_ || is_news;
+  const bool is_news = fits_worse() && !was_kidnapped_;
+  was_kidnapped_ = was_kidnapped_ || is_news;
   if (fits_worse()) {
     is_unbroken_ = false;
   } else if (believed.verdict == PoseVerdict::kRight) {
-    if (was_carried_) forget_suspicion();
+    if (was_kidnapped_) forget_suspicion();
     is_unbroken_ = true;
   }
   return is_news;
 }
 
-bool Continuity::may_have_been_carried() const { return !is_unbroken_ || followed_s_ < kMostUnlikeS; }
+bool Continuity::may_have_been_kidnapped() const { return !is_unbroken_ || followed_s_ < kMostUnlikeS; }
 
 void Continuity::forget_suspicion() {
   suspected_since_.reset();
-  was_carried_ = false;
+  was_kidnapped_ = false;
   inlier_drop_.forget();
 }
 

@@ -34,7 +34,7 @@ class Continuity {
   [[nodiscard]] const std::optional<Timestamp>& broke_off_at() const { return broke_off_at_; }
   /// Has one of the scans of the last minutes not followed from the one before, or did none tell? A robot that was
   /// carried then might still be believed where it was.
-  [[nodiscard]] bool may_have_been_carried() const;
+  [[nodiscard]] bool may_have_been_kidnapped() const;
 
  private:
   void forget_suspicion();
@@ -43,7 +43,7 @@ class Continuity {
   InlierDropDetector inlier_drop_;
   std::optional<Timestamp> broke_off_at_;
   std::optional<Timestamp> suspected_since_;  ///< the last break, or the one after which the map fitted worse
-  bool was_carried_ = false;                  ///< it did fit worse since then
+  bool was_kidnapped_ = false;                ///< it did fit worse since then
   bool is_unbroken_ = true;
   double followed_s_ = 0.0;  ///< so long each scan of the tracked pose has followed from the one before
 };

@@ -2,27 +2,28 @@
 #include "localization/belief/judgement.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/geometry/pose_spread.hpp"
 
 namespace deltamap::localization::belief {
 namespace {
 
-// Share of all carryings after which the scans go on as if there had been none: where the new place looks the same.
-constexpr double kCarriedWithoutABreak = 0.1;
+// Share of all kidnappings after which the scans go on as if there had been none: where the new place looks the same.
+constexpr double kKidnappedWithoutABreak = 0.1;
 
 /// The share of the belief that is left to a hypothesis which is so much less likely.
 double with_less_odds(double share, double times) { return times * share / (1.0 - share + times * share); }
 
-PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report, bool may_have_been_carried) {
+PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report, bool may_have_been_kidnapped) {
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
   if (report.own_known) {
     const hypotheses::ReportedHypothesis& other = report.others.front();
-    const double carried =
-        may_have_been_carried ? report.kidnapped_share : with_less_odds(report.kidnapped_share, kCarriedWithoutABreak);
+    const double carried = may_have_been_kidnapped ? report.kidnapped_share
+                                                   : with_less_odds(report.kidnapped_share, kKidnappedWithoutABreak);
     const bool kidnapped = carried > other.share;
     return {.believed = report.own_share,
             .best_other = std::max(other.share, carried),  // one of them may be watched, not listed
-            .if_carried = report.kidnapped_share,
+            .if_kidnapped = report.kidnapped_share,
             .map_from_other = kidnapped ? report.map_from_kidnapped : other.map_from_robot,
             .beaten = report.beaten};
   }
@@ -42,17 +43,15 @@ void Judgement::start(double pose_right) {
   judge_.start(pose_right);
   continuity_.start();
   since_check_.reset();
-  belief_ = judge_.belief();
+  is_checked_ = false;
   fixed_by_surfaces_ = false;
 }
 
 Belief Judgement::belief() const {
-  Belief belief = belief_;
+  Belief belief = is_fixed() ? judge_.belief_if_fixed() : judge_.belief();
+  belief.is_checked = is_checked_;
   belief.broke_off_at = continuity_.broke_off_at();
   belief.fits_worse = continuity_.fits_worse();
-  if (!is_fixed()) return belief;
-  belief.pose_right = std::min(judge_.limit(), 1.0 - belief.other_share);
-  belief.verdict = judge_.is_surely_right(belief.pose_right) ? PoseVerdict::kRight : PoseVerdict::kUndecided;
   return belief;
 }
 
@@ -68,25 +67,23 @@ bool Judgement::due(const PoseJudge::Passed& passed) {
 }
 
 void Judgement::follow(const FollowedScan& scan, bool is_tracking) {
-  if (continuity_.observe(scan, belief_, is_tracking)) judge_.start(kAsRightAsWrong);
+  if (continuity_.observe(scan, judge_.belief(), is_tracking)) judge_.start(kAsRightAsWrong);
 }
 
 void Judgement::observe(const View& view) {
-  belief_.is_checked = false;
+  is_checked_ = false;
   if (!due(view.passed)) return;
   const PoseJudge::Passed passed = since_check_.value_or(PoseJudge::Passed{});
   since_check_ = PoseJudge::Passed{};
   const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed);
-  judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses, continuity_.may_have_been_carried()));
-  belief_ = judge_.belief();
-  belief_.is_checked = true;
+  judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses, continuity_.may_have_been_kidnapped()));
+  is_checked_ = true;
   earn(beams, view);
 }
 
 void Judgement::earn(std::span<const CheckedBeam> beams, const View& view) {
-  const PoseCovariance& c = view.believed.covariance;
   const bool sure = view.state == LocalizerState::kTracking && judge_.trust() >= kSurelyRight &&
-                    std::sqrt(std::max(c(0, 0), c(1, 1))) <= params_.earn_deviation_m;
+                    widest_deviation_m(view.believed.covariance) <= params_.earn_deviation_m;
   if (!sure) return;
   const Point2 seen_from = view.believed.map_from_robot.position();
   for (const CheckedBeam& beam : beams) {

@@ -54,7 +54,7 @@ class Judgement {
   [[nodiscard]] bool is_fixed() const { return fixed_by_surfaces_ && continuity_.is_unbroken(); }
   /// Surfaces fix the pose, and no other hypothesis speaks against it: to be surely right it lacks proven tiles at
   /// most.
-  [[nodiscard]] bool is_held() const { return is_fixed() && judge_.is_surely_right(1.0 - belief_.other_share); }
+  [[nodiscard]] bool is_held() const { return is_fixed() && judge_.is_surely_right(1.0 - judge_.belief().other_share); }
 
   [[nodiscard]] Belief belief() const;
   /// P(pose right) by all beams, whether on proven tiles or not; at least one half where surfaces fix the pose. Tiles
@@ -79,7 +79,7 @@ class Judgement {
   PoseJudge judge_;
   Continuity continuity_;
   std::optional<PoseJudge::Passed> since_check_;  ///< none: nothing checked yet
-  Belief belief_;                                 ///< by the beams
+  bool is_checked_ = false;                       ///< Belief::is_checked
   bool fixed_by_surfaces_ = false;
 };
 

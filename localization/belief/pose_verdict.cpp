@@ -67,7 +67,7 @@ std::optional<Weakest> weakest_direction(const ViewTally& view, const PoseVerdic
 void PoseJudge::start(double pose_right) {
   right_log_odds_ = log_odds(std::clamp(pose_right, params_.least_wrong, 1.0 - params_.least_wrong));
   proof_ = 0.0;
-  if_carried_ = 0.0;
+  shares_ = {};
   any_view_ = false;
   last_support_.reset();
   belief_ = {};
@@ -85,6 +85,7 @@ double PoseJudge::novelty(const Passed& passed, std::optional<double> support) {
 void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Shares& shares) {
   belief_.stable = view.stable;
   belief_.elsewhere = view.elsewhere;
+  shares_ = shares;
   belief_.other_share = shares.best_other;
   belief_.map_from_other = shares.map_from_other;
 
@@ -96,7 +97,8 @@ void PoseJudge::observe(const ViewTally& view, const Passed& passed, const Share
   if (weakest) right_log_odds_ += fresh * weakest->evidence;
   judge_map(view, fresh);
   proof_ = proven ? 1.0 : proof_ * std::exp(-fresh / params_.proof_memory_views);
-  decide(shares);
+  trust_ = probability(right_log_odds_) * shares.believed;
+  belief_ = judged(std::clamp(trust_, 1.0 - limit(), limit()));
 }
 
 void PoseJudge::judge_map(const ViewTally& view, double fresh) {
@@ -111,20 +113,18 @@ void PoseJudge::judge_map(const ViewTally& view, double fresh) {
 
 double PoseJudge::limit() const { return 1.0 - (1.0 - proof_) * (1.0 - params_.unproven_limit); }
 
-void PoseJudge::decide(const Shares& shares) {
-  if_carried_ = shares.if_carried;
-  trust_ = probability(right_log_odds_) * shares.believed;
-  const double by_beams = std::clamp(trust_, 1.0 - limit(), limit());
-  belief_.pose_right = std::min(by_beams, 1.0 - shares.best_other);
+/// The belief of this view, were the pose right with this probability by all but the other hypotheses.
+Belief PoseJudge::judged(double right_by_beams) const {
+  Belief belief = belief_;
+  belief.pose_right = std::min(right_by_beams, 1.0 - shares_.best_other);
   const double wrong_if_right = probability(kMapSteepness * (misfit_share_ - params_.changed_above));
-  belief_.map_wrong = belief_.pose_right * wrong_if_right + 0.5 * (1.0 - belief_.pose_right);
-  if (shares.searching) {
-    belief_.verdict = PoseVerdict::kUndecided;
-    return;
-  }
-  const bool right = is_surely_right(belief_.pose_right);
-  const bool wrong = by_beams <= kSurelyWrong && shares.beaten;  // not for an alias that is only monitored
-  belief_.verdict = right ? PoseVerdict::kRight : wrong ? PoseVerdict::kWrong : PoseVerdict::kUndecided;
+  belief.map_wrong = belief.pose_right * wrong_if_right + 0.5 * (1.0 - belief.pose_right);
+  belief.verdict = PoseVerdict::kUndecided;
+  if (shares_.searching) return belief;
+  if (is_surely_right(belief.pose_right)) belief.verdict = PoseVerdict::kRight;
+  const bool is_beaten = shares_.beaten;  // not by an alias that is only monitored
+  if (right_by_beams <= kSurelyWrong && is_beaten) belief.verdict = PoseVerdict::kWrong;
+  return belief;
 }
 
 }  // namespace deltamap::localization::belief

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// P(pose right) and P(map wrong), accumulated over the views of a drive. Beams on proven tiles are evidence about the
-// pose: it must be supported in both directions, for along a wall every pose fits. All beams together are evidence
-// about the map, given that the pose is right. Other pose hypotheses that explain the scans as well take belief away. A
-// view counts by how new it is: standing still, or people who walk by, add no certainty.
+// P(pose right) and P(map wrong), accumulated over the views of a drive. Beams on proven tiles, and with less weight
+// all others, are evidence about the pose: it must be supported in both directions, for along a wall every pose fits.
+// All beams together are evidence about the map, given that the pose is right. Other pose hypotheses that explain the
+// scans as well take belief away. A view counts by how new it is: standing still, or people who walk by, add no
+// certainty.
 #pragma once
 
 #include <algorithm>
@@ -49,14 +50,17 @@ class PoseJudge {
   struct Shares {
     double believed = 1.0;
     double best_other = 0.0;
-    double if_carried = 0.0;  ///< of an alias, were carryings after which no scan breaks off as likely as others
+    double if_kidnapped = 0.0;  ///< of an alias, were kidnappings after which no scan breaks off as likely as others
     Pose2 map_from_other{};
     bool searching = false;  ///< no hypothesis is believed yet: `believed` is the best one's
     bool beaten = true;      ///< another hypothesis explains the recent scans clearly better
   };
   void observe(const ViewTally& view, const Passed& passed, const Shares& shares);
 
+  /// By the beams, as they were last held against the map.
   [[nodiscard]] const Belief& belief() const { return belief_; }
+  /// Where surfaces fix the pose: nothing but another pose speaks against it, however many beams end elsewhere.
+  [[nodiscard]] Belief belief_if_fixed() const { return judged(limit()); }
   /// P(pose right) by all that is in view, proven or not: what stability is earned by.
   [[nodiscard]] double trust() const { return trust_; }
   /// As much as P(pose right) may be: less than surely right where no proven tiles have told of the pose lately.
@@ -64,22 +68,22 @@ class PoseJudge {
   /// May a pose be called right that is right with this probability? Not where the robot may have been carried to an
   /// alias by someone who chose it.
   [[nodiscard]] bool is_surely_right(double pose_right) const {
-    return std::min(pose_right, 1.0 - if_carried_) >= kSurelyRight;
+    return std::min(pose_right, 1.0 - shares_.if_kidnapped) >= kSurelyRight;
   }
 
  private:
   [[nodiscard]] double novelty(const Passed& passed, std::optional<double> support);
   void judge_map(const ViewTally& view, double novelty);
-  void decide(const Shares& shares);
+  [[nodiscard]] Belief judged(double right_by_beams) const;
 
   PoseVerdictParams params_;
   double right_log_odds_ = 0.0;
   double trust_ = 0.5;
   double proof_ = 0.0;         ///< 1 where proven tiles are in view; fades
-  double if_carried_ = 0.0;    ///< Shares::if_carried
   double misfit_share_ = 0.0;  ///< running mean over the last views
   bool any_view_ = false;
   std::optional<double> last_support_;
+  Shares shares_;  ///< at the last view
   Belief belief_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which tiles of the map have proven to stay. A tile rises by a confirmation from a new position after a while, falls
 // where a beam goes through it, and begins again where a revision rewrites it; nothing is assumed of the first map.
-// Beams on proven tiles are evidence about the pose, all others about the map.
+// Beams on proven tiles tell more of the pose than others do (pose_verdict.hpp).
 #pragma once
 
 #include <cstdint>

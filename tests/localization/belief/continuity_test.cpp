@@ -42,15 +42,15 @@ TEST_F(FollowedPose, IsUnbrokenWhereAThingComes) {
 
 TEST_F(FollowedPose, MayHaveBeenCarriedUntilScansHaveFollowedForTwoMinutes) {
   robot.speed_m_per_s = 0.05;
-  EXPECT_TRUE(continuity.may_have_been_carried()) << "20 s after the start";
+  EXPECT_TRUE(continuity.may_have_been_kidnapped()) << "20 s after the start";
   see(fitting(80, 10), 1050);
-  EXPECT_FALSE(continuity.may_have_been_carried());
+  EXPECT_FALSE(continuity.may_have_been_kidnapped());
   robot.carried_m = 2.5;
   see(fitting(80, 10), 1150);
-  EXPECT_TRUE(continuity.may_have_been_carried());
+  EXPECT_TRUE(continuity.may_have_been_kidnapped());
   robot.set_back(3600.0);
   see(fitting(80, 10), 100);
-  EXPECT_FALSE(continuity.may_have_been_carried());
+  EXPECT_FALSE(continuity.may_have_been_kidnapped());
 }
 
 TEST_F(FollowedPose, MayHaveBeenCarriedWhereNoScanTells) {
@@ -58,16 +58,16 @@ TEST_F(FollowedPose, MayHaveBeenCarriedWhereNoScanTells) {
   see(fitting(80, 10), 1050);
   robot.epoch = 1;
   see(fitting(80, 10), 1);
-  EXPECT_TRUE(continuity.may_have_been_carried()) << "odometry began anew";
+  EXPECT_TRUE(continuity.may_have_been_kidnapped()) << "odometry began anew";
   see(fitting(80, 10), 1250);
-  EXPECT_FALSE(continuity.may_have_been_carried());
+  EXPECT_FALSE(continuity.may_have_been_kidnapped());
   is_tracking = false;
   see(fitting(80, 10), 1);
-  EXPECT_TRUE(continuity.may_have_been_carried()) << "no pose is tracked";
+  EXPECT_TRUE(continuity.may_have_been_kidnapped()) << "no pose is tracked";
   is_tracking = true;
   see(fitting(80, 10), 1250);
   continuity.start();
-  EXPECT_TRUE(continuity.may_have_been_carried()) << "another pose is believed";
+  EXPECT_TRUE(continuity.may_have_been_kidnapped()) << "another pose is believed";
 }
 
 TEST_F(FollowedPose, IsUnbrokenInAHallThatIsMoreAndMoreOutOfDate) {

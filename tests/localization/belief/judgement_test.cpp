@@ -30,7 +30,7 @@ hypotheses::HypothesisReport believed_beside(double other_share) {
 }
 
 /// The same with none beside it, but for one that had this share if the robot had been carried there.
-hypotheses::HypothesisReport believed_if_not_carried(double share) {
+hypotheses::HypothesisReport believed_if_not_kidnapped(double share) {
   hypotheses::HypothesisReport report = believed_with(1.0);
   report.kidnapped_share = share;
   report.map_from_kidnapped = {15.0, 0.0, 0.0};
@@ -73,7 +73,7 @@ Judgement judged_with(const hypotheses::HypothesisReport& hypotheses, double pos
 }
 
 TEST(Judgement, HearsOfAnAliasThatTheRobotMayHaveBeenCarriedTo) {
-  const Judgement judgement = judged_with(believed_if_not_carried(0.9));
+  const Judgement judgement = judged_with(believed_if_not_kidnapped(0.9));
   EXPECT_DOUBLE_EQ(judgement.belief().other_share, 0.9);
   EXPECT_DOUBLE_EQ(judgement.belief().map_from_other.x, 15.0);
 }
@@ -82,16 +82,16 @@ TEST(Judgement, HearsLessOfAnAliasWhereScansHaveFollowedEachOther) {
   Judgement judgement = judged_with(believed_with(1.0));
   AisleDrive robot;
   follow_for_two_minutes(judgement, robot);
-  see_nothing(judgement, believed_if_not_carried(0.9), robot.now());
+  see_nothing(judgement, believed_if_not_kidnapped(0.9), robot.now());
   EXPECT_NEAR(judgement.belief().other_share, 0.09 / 0.19, 1e-9);
   EXPECT_DOUBLE_EQ(judgement.belief().map_from_other.x, 15.0);
-  see_nothing(judgement, believed_if_not_carried(0.3), robot.now());
+  see_nothing(judgement, believed_if_not_kidnapped(0.3), robot.now());
   EXPECT_LT(judgement.belief().other_share, 0.05);
   judgement.fix_by_surfaces(true);
   EXPECT_FALSE(judgement.is_held()) << "somebody may have chosen the place";
   robot.carried_m = 2.5;
   for (int i = 0; i < 10; ++i) judgement.follow(robot.next(), true);
-  see_nothing(judgement, believed_if_not_carried(0.3), robot.now());
+  see_nothing(judgement, believed_if_not_kidnapped(0.3), robot.now());
   EXPECT_DOUBLE_EQ(judgement.belief().other_share, 0.3) << "a scan has broken off";
 }
 
@@ -119,16 +119,44 @@ TEST(Judgement, CallsNoPoseRightThatSomebodyMayHaveCarriedTheRobotFrom) {
   judgement.start(0.9);
   AisleDrive robot;
   follow_for_two_minutes(judgement, robot);
-  for (const double if_carried : {0.0, 0.3, 0.0}) {
+  for (const double if_kidnapped : {0.0, 0.3, 0.0}) {
     const Scan scan = test::cast_scan(map, believed.map_from_robot, robot.now(), {}, random);
-    see(judgement, map, scan, believed, believed_if_not_carried(if_carried));
+    see(judgement, map, scan, believed, believed_if_not_kidnapped(if_kidnapped));
     for (const bool fixed : {false, true}) {
       judgement.fix_by_surfaces(fixed);
       const Belief belief = judgement.belief();
-      EXPECT_GT(belief.pose_right, kSurelyRight) << if_carried;
-      EXPECT_EQ(belief.verdict, if_carried > 0.1 ? PoseVerdict::kUndecided : PoseVerdict::kRight) << if_carried;
+      EXPECT_GT(belief.pose_right, kSurelyRight) << if_kidnapped;
+      EXPECT_EQ(belief.verdict, if_kidnapped > 0.1 ? PoseVerdict::kUndecided : PoseVerdict::kRight) << if_kidnapped;
     }
   }
+}
+
+TEST(Judgement, IsAsRightAsWrongFromTheScanOnThatTellsOfAKidnapping) {
+  const OccupancyGrid map = test::drawn_flat();
+  const sensor::RefinedPose believed{{4.0, 1.6, 0.1}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal()};
+  Random random{3};
+  Judgement judgement{map, {}};
+  ASSERT_TRUE(judgement.restore(lived_in(map)));
+  judgement.start(0.9);
+  AisleDrive robot;
+  const auto see_from = [&](const Pose2& map_from_robot) {
+    const Scan scan = test::cast_scan(map, map_from_robot, robot.now(), {}, random);
+    see(judgement, map, scan, believed, believed_with(1.0));
+  };
+  for (int i = 0; i < 150; ++i) {
+    judgement.follow(robot.next(), true);
+    see_from(believed.map_from_robot);
+  }
+  ASSERT_EQ(judgement.belief().verdict, PoseVerdict::kRight);
+  robot.carried_m = 2.5;
+  judgement.follow(robot.next(), true);
+  for (int i = 0; i < 50 && !judgement.belief().fits_worse; ++i) {
+    see_from({6.0, 2.0, 2.0});
+    judgement.follow(robot.next(), true);
+  }
+  ASSERT_TRUE(judgement.belief().fits_worse);
+  EXPECT_DOUBLE_EQ(judgement.belief().pose_right, kAsRightAsWrong) << "before it is held against the map again";
+  EXPECT_EQ(judgement.belief().verdict, PoseVerdict::kUndecided);
 }
 
 TEST(Judgement, HearsOfNoPlaceWhereNoneIsKnown) {

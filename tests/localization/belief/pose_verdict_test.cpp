@@ -47,6 +47,17 @@ TEST(PoseVerdict, StaysRightWhereHalfOfTheHallHasChangedAndBlamesTheMap) {
   EXPECT_GT(belief.map_wrong, 0.9);
 }
 
+TEST(PoseVerdict, BlamesTheMapWhereSurfacesFixAPoseThatFewBeamsSupport) {
+  PoseJudge judge{{}};
+  judge.start(0.9);
+  const Belief by_beams = after(judge, 60.0, view_of(0.1, 0.1, false));
+  const Belief fixed = judge.belief_if_fixed();
+  EXPECT_LT(by_beams.pose_right, 0.2);
+  EXPECT_DOUBLE_EQ(fixed.pose_right, judge.limit());
+  EXPECT_NEAR(by_beams.map_wrong, 0.5, 0.1) << "the pose may be wrong, and then nothing is known of the map";
+  EXPECT_GT(fixed.map_wrong, 0.9);
+}
+
 TEST(PoseVerdict, IsNotTakenInByACorridorsWalls) {
   PoseJudge judge = sure();
   EXPECT_NE(after(judge, 3.0, view_of(1.0, 0.05)).verdict, PoseVerdict::kRight) << "within five seconds";
@@ -93,7 +104,7 @@ TEST(PoseVerdict, IsUndecidedWhereAnotherPlaceFitsAsWell) {
 
 TEST(PoseVerdict, IsUndecidedWhereARobotThatWasCarriedWouldSeeTheSame) {
   PoseJudge judge = sure();
-  const Belief& belief = after(judge, 10.0, view_of(1.0, 1.0), 0.5, {.best_other = 0.01, .if_carried = 0.5});
+  const Belief& belief = after(judge, 10.0, view_of(1.0, 1.0), 0.5, {.best_other = 0.01, .if_kidnapped = 0.5});
   EXPECT_EQ(belief.verdict, PoseVerdict::kUndecided);
   EXPECT_GT(belief.pose_right, 0.95) << "robots are seldom carried unseen";
   judge.start(0.99);
