@@ -224,11 +224,11 @@ std::optional<Pose2> Localizer::State::explained_nearby(const Pose2& believed, d
   const PoseCovariance spread = motion::slip_covariance(params.motion, believed.theta);
   std::optional<Pose2> nearest;
   for (const Pose2& from : motion::slips_around(params.motion, believed)) {
-    const Pose2 slid = sensor::refined(field, ends, {from, spread}, 1.0, params.refinement).map_from_robot;
-    const double explained = sensor::explained_share(field, ends, slid);
+    const Pose2 refined = sensor::refined(field, ends, {from, spread}, 1.0, params.refinement).map_from_robot;
+    const double explained = sensor::explained_share(field, ends, refined);
     if (explained < share) continue;
     share = explained;
-    nearest = slid;
+    nearest = refined;
   }
   return nearest;
 }

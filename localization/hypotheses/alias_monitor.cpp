@@ -19,7 +19,7 @@ AliasMonitor::AliasMonitor(const Effort& effort) : effort_{effort}, lattice_{kRi
 void AliasMonitor::observe(const Seen& seen) {
   bank_.believe(seen.map_from_believed);
   own_fit_ = mean_log_likelihood(seen.field, seen.ends, seen.map_from_believed);
-  bank_.slide_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.slid)), seen.unknown_s);
+  bank_.refine_others(seen.field, seen.ends, static_cast<std::size_t>(std::max(0, effort_.refined)), seen.unknown_s);
   if (!seen.weights.empty()) bank_.weigh(seen.field, seen.ends, seen.weights, seen.evidence_weight);
   probe(seen);
   bank_.settle();

@@ -18,7 +18,7 @@ class AliasMonitor {
  public:
   struct Effort {
     int probes;    ///< poses turned by right angles that are looked at in a scan; >= 0
-    int slid;      ///< hypotheses that are slid to their best fit in a scan, beside those that come close; >= 0
+    int refined;   ///< hypotheses that are refined to their best fit in a scan, beside those that come close; >= 0
     double prior;  ///< odds of one against the believed pose, before any scan; 0..1
   };
   explicit AliasMonitor(const Effort& effort);
@@ -31,7 +31,7 @@ class AliasMonitor {
     const sensor::CoarseField& coarse;
     const motion::BeamEnds& ends;
     const motion::BeamEnds& near_ends;  ///< that a coarse lattice can place
-    Pose2 map_from_believed;            ///< slid to where the scan fits, as its aliases will be
+    Pose2 map_from_believed;            ///< refined to where the scan fits, as its aliases will be
     Pose2 continuous_odom_from_robot;
     const ScanStack& stack;
     double evidence_weight = 1.0;      ///< how much beams that miss say, [0, 1]

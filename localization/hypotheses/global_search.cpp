@@ -28,10 +28,10 @@ Pose2 settled(const sensor::LikelihoodField& field, const motion::BeamEnds& ends
       }
     }
   }
-  const sensor::RefinementParams sliding{
+  const sensor::RefinementParams refinement{
       .steps = 6, .prior_share = 1.0, .longest_shift_m = 0.6, .largest_turn_rad = 0.35};
   const PoseCovariance loose = Eigen::Vector3d{0.09, 0.09, 0.03}.asDiagonal();
-  return sensor::refined(field, ends, {best, loose}, 1.0, sliding).map_from_robot;
+  return sensor::refined(field, ends, {best, loose}, 1.0, refinement).map_from_robot;
 }
 
 GlobalSearch::GlobalSearch(const GlobalSearchParams& params, int headings)
@@ -68,7 +68,7 @@ std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, con
     stage_ = Stage::kSliding;
     return hypotheses_;
   }
-  // Carried along by the wheels since the scan that found them, and slid to where the newest scan fits.
+  // Carried along by the wheels since the scan that found them, and refined to where the newest scan fits.
   const Pose2 motion = motion_between(continuous_odom_from_robot_, continuous_odom_from_robot);
   const std::size_t until = std::min(candidates_.size(), next_ + share_of(params_.refined_a_scan));
   for (; next_ < until; ++next_) {

@@ -14,7 +14,7 @@ namespace deltamap::localization::hypotheses {
 
 struct GlobalSearchParams {
   int candidates_a_scan = 100000;          ///< poses looked at in one scan; > 0
-  int refined = 600;                       ///< candidates that are slid to their best fit; > 0
+  int refined = 600;                       ///< candidates that are refined to their best fit; > 0
   int refined_a_scan = 200;                ///< of these in one scan; > 0
   double again_after_m = 0.5;              ///< driven until the whole map is looked at again, m; > 0
   double again_after_rad = radians(30.0);  ///< or heading turned until then, rad; > 0
@@ -54,7 +54,7 @@ class GlobalSearch {
   Pose2 continuous_odom_from_robot_;  // where it was taken
   std::size_t left_ = 0;              // poses to look at
   std::vector<Candidate> candidates_;
-  std::size_t next_ = 0;  // candidate to slide
+  std::size_t next_ = 0;  // candidate to refine
   std::vector<Pose2> hypotheses_;
 };
 

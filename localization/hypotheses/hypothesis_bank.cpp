@@ -101,29 +101,29 @@ void HypothesisBank::predict(const Pose2& motion) {
   }
 }
 
-void HypothesisBank::slide(PoseHypothesis& hypothesis, const sensor::LikelihoodField& field,
-                           const motion::BeamEnds& ends, double unknown_s) const {
-  const sensor::RefinementParams sliding{.steps = 2, .prior_share = 1.0};
+void HypothesisBank::refine(PoseHypothesis& hypothesis, const sensor::LikelihoodField& field,
+                            const motion::BeamEnds& ends, double unknown_s) const {
+  const sensor::RefinementParams refinement{.steps = 2, .prior_share = 1.0};
   const double loose_m = 0.06 + 0.3 * unknown_s;
   const double loose_rad = radians(3.0) + 0.3 * unknown_s;
   const PoseCovariance loose =
       Eigen::Vector3d{loose_m * loose_m, loose_m * loose_m, loose_rad * loose_rad}.asDiagonal();
   const double beam_share = std::min(1.0, 20.0 / static_cast<double>(ends.size()));
-  const sensor::RefinedPose slid =
-      sensor::refined(field, ends, {hypothesis.map_from_robot, loose}, beam_share, sliding);
-  hypothesis.map_from_robot = slid.map_from_robot;
-  hypothesis.covariance = slid.covariance;
+  const sensor::RefinedPose refined =
+      sensor::refined(field, ends, {hypothesis.map_from_robot, loose}, beam_share, refinement);
+  hypothesis.map_from_robot = refined.map_from_robot;
+  hypothesis.covariance = refined.covariance;
 }
 
-void HypothesisBank::slide(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count,
-                           double unknown_s) {
-  // The believed one too: hypotheses slid to their best fit would beat it by a hair at each scan.
-  if (believing_ && !hypotheses_.empty() && ends.size() > 0) slide(hypotheses_.front(), field, ends, unknown_s);
-  slide_others(field, ends, count, unknown_s);
+void HypothesisBank::refine(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count,
+                            double unknown_s) {
+  // The believed one too: hypotheses refined to their best fit would beat it by a hair at each scan.
+  if (believing_ && !hypotheses_.empty() && ends.size() > 0) refine(hypotheses_.front(), field, ends, unknown_s);
+  refine_others(field, ends, count, unknown_s);
 }
 
-void HypothesisBank::slide_others(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count,
-                                  double unknown_s) {
+void HypothesisBank::refine_others(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
+                                   std::size_t count, double unknown_s) {
   constexpr double kClose = 5.0;
   const std::size_t first = believing_ ? 1 : 0;
   if (hypotheses_.empty() || ends.size() == 0) return;
@@ -131,11 +131,11 @@ void HypothesisBank::slide_others(const sensor::LikelihoodField& field, const mo
   const std::size_t others = hypotheses_.size() - first;
   if (others == 0) return;
   for (std::size_t i = 0; i < others; ++i) {
-    const std::size_t after = (i + others - next_to_slide_ % others) % others;  // how soon its turn comes
+    const std::size_t after = (i + others - next_to_refine_ % others) % others;  // how soon its turn comes
     PoseHypothesis& hypothesis = hypotheses_[first + i];
-    if (after < count || odds_of(hypothesis) > close) slide(hypothesis, field, ends, unknown_s);
+    if (after < count || odds_of(hypothesis) > close) refine(hypothesis, field, ends, unknown_s);
   }
-  next_to_slide_ = (next_to_slide_ + count) % others;
+  next_to_refine_ = (next_to_refine_ + count) % others;
 }
 
 void HypothesisBank::weigh(const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
@@ -171,7 +171,7 @@ const PoseHypothesis* HypothesisBank::reference() const {
 
 void HypothesisBank::admit(const PoseHypothesis& hypothesis) {
   if (knows(hypothesis.map_from_robot)) return;
-  const auto room = believing_ && !roomy_ ? kMostWhileBelieving : kMost;
+  const auto room = believing_ && !has_more_room_ ? kMostWhileBelieving : kMost;
   const std::size_t first = believing_ ? 1 : 0;
   if (hypotheses_.size() < room + first) {
     hypotheses_.push_back(hypothesis);

@@ -72,7 +72,7 @@ class HypothesisBank {
   [[nodiscard]] bool believing() const { return believing_; }
 
   /// Room for kMost hypotheses beside a believed one too, as long as it is wanted.
-  void make_room(bool wanted) { roomy_ = wanted; }
+  void make_room(bool wanted) { has_more_room_ = wanted; }
 
   void clear();
   /// The first hypothesis from now on; its pose is given, not followed.
@@ -97,10 +97,10 @@ class HypothesisBank {
   void predict(const Pose2& motion);
   /// Slides `count` hypotheses, a round after the other, those that come close to the best one and the believed one
   /// always.
-  void slide(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count, double unknown_s);
+  void refine(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count, double unknown_s);
   /// The same for all but the believed one.
-  void slide_others(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count,
-                    double unknown_s);
+  void refine_others(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count,
+                     double unknown_s);
   /// Once for each decorrelated scan. `evidence_weight`: how much of it counts as evidence since the robot may have
   /// been carried, [0, 1].
   void weigh(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::span<const float> weights,
@@ -115,13 +115,13 @@ class HypothesisBank {
   [[nodiscard]] bool knows(const Pose2& pose) const;
 
  private:
-  void slide(PoseHypothesis& hypothesis, const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
-             double unknown_s) const;
+  void refine(PoseHypothesis& hypothesis, const sensor::LikelihoodField& field, const motion::BeamEnds& ends,
+              double unknown_s) const;
 
   std::vector<PoseHypothesis> hypotheses_;
   bool believing_ = false;
-  bool roomy_ = false;
-  std::size_t next_to_slide_ = 0;
+  bool has_more_room_ = false;
+  std::size_t next_to_refine_ = 0;
 };
 
 }  // namespace deltamap::localization::hypotheses

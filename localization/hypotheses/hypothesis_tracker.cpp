@@ -19,7 +19,8 @@ HypothesisTracker::HypothesisTracker(const HypothesisTrackerParams& params, cons
     : params_{params},
       coarse_{map, field, params.block_m},
       probes_{params.headings, seed},
-      alias_monitor_{{.probes = params.probes / 2, .slid = params.refined_a_scan, .prior = params.kidnapped_now_prior}},
+      alias_monitor_{
+          {.probes = params.probes / 2, .refined = params.refined_a_scan, .prior = params.kidnapped_now_prior}},
       search_{search, params.headings},
       elsewhere_prior_{params.elsewhere_prior} {}
 
@@ -156,8 +157,8 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   thin(seen.ends);
   if (ends_.size() == 0) return report_;
 
-  const auto slid = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;
-  bank_.slide(field, ends_, slid, seen.unknown_s);
+  const auto refined = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;
+  bank_.refine(field, ends_, refined, seen.unknown_s);
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
   weigh(field, seen);

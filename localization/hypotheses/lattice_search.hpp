@@ -23,14 +23,14 @@ struct Candidate {
 /// Mean ln p(z) that a newcomer may fit worse by than the believed pose.
 inline constexpr double kFitsNearlyAsWell = 0.15;
 
-/// May the scan fit so well (mean ln p(z)) about there? Few poses, slid to their best, fit much better than their
-/// block.
+/// May the scan fit so well (mean ln p(z)) about there? Few poses, refined to their best fit, fit much better than
+/// their block.
 [[nodiscard]] bool may_reach(const Candidate& candidate, double fit);
 
 class LatticeSearch {
  public:
   static constexpr std::size_t kFew = 8;  ///< enough where one newcomer is taken at a time
-  /// To be kept for each candidate that is slid to its best fit: neighbours in the lattice fit alike.
+  /// To be kept for each candidate that is refined to its best fit: neighbours in the lattice fit alike.
   static constexpr std::size_t kKeptForEach = 6;
 
   /// `most` are kept of each look; > 0.

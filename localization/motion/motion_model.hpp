@@ -39,7 +39,7 @@ inline constexpr std::array kSlipsAhead{0.0, -0.75, 0.75, -1.5, 1.5};
 /// Of a robot's pose in the map once its wheels have slipped, by the model.
 [[nodiscard]] PoseCovariance slip_covariance(const MotionModelParams& params, double heading_rad);
 
-/// Poses about one, as far apart as slips may take the robot: to slide from.
+/// Poses about one, as far apart as slips may take the robot: to refine from.
 [[nodiscard]] std::vector<Pose2> slips_around(const MotionModelParams& params, const Pose2& pose);
 
 /// Added to a pose by so many seconds without odometry, by the model: variances.

@@ -11,7 +11,7 @@
 namespace deltamap::localization::sensor {
 
 struct TransientBeamsParams {
-  bool weighing = true;           ///< leave such beams out where the believed pose is weighed and slid
+  bool weighing = true;           ///< leave such beams out where the believed pose is weighed and refined
   double least_share_left = 0.5;  ///< of a scan's beams: where fewer would be left, all are weighed; 0..1
 };
 

@@ -177,7 +177,7 @@ std::vector<bool> OffsetFilter::fit_of(std::span<const Sighting> sightings, cons
         covariance_of(seen.turn, seen.turn, state_.covariance()) + (seen.has_turn ? seen.turn_variance : 1.0);
     const Eigen::Vector2d off{seen.distance_m + expected(seen.distance, state_.mean(), here),
                               seen.turn_rad + expected(seen.turn, state_.mean(), here)};
-    fits.push_back(off.dot(spread.inverse() * off) <= kStrange);
+    fits.push_back(off.dot(spread.inverse() * off) <= kInnovationGate);
   }
   return fits;
 }
@@ -203,9 +203,9 @@ std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, 
                                           std::span<const Sighting> sightings,
                                           const motion::MotionModelParams& motion) {
   const std::vector<bool> fits = fit_of(sightings, state_.pose().map_from_robot);
-  const bool is_strange = std::find(fits.begin(), fits.end(), false) != fits.end();
+  const bool is_unexplained = std::find(fits.begin(), fits.end(), false) != fits.end();
   const bool doubts_again = since_doubt_m_ >= kDoubtsAgainM;
-  if (!is_strange && !doubts_again) return std::nullopt;
+  if (!is_unexplained && !doubts_again) return std::nullopt;
   const SlipScene scene{.state = state_,
                         .switches = switches_,
                         .sightings = sightings,
@@ -213,7 +213,7 @@ std::optional<Slip> OffsetFilter::slip_of(const sensor::LikelihoodField& field, 
                         .seen_as_followed = [&](const Pose2& at) { return find(field, scan, at); },
                         .seen_as_mapped = [&](const Pose2& at) { return find_by_map(field, scan, at); },
                         .record_of = [&](SurfaceMap::Id id) -> const SurfaceRecord& { return map_.record(id); }};
-  std::optional<Slip> slip = is_strange ? slip_just_now(scene) : std::nullopt;
+  std::optional<Slip> slip = is_unexplained ? slip_just_now(scene) : std::nullopt;
   std::optional<Slip> behind = doubts_again ? slip_behind(scene) : std::nullopt;
   since_doubt_m_ = 0.0;
   if (behind && (!slip || behind->gained > slip->gained)) slip = std::move(behind);
@@ -308,7 +308,7 @@ void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::v
   }
 }
 
-/// Ends on no surface correct the pose alone, as pose_refinement.hpp does: slid to where they fit, held by the rest.
+/// Ends on no surface correct the pose alone, as pose_refinement.hpp does: refined to where they fit, held by the rest.
 /// `mount`: as the scan was corrected by.
 void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double share, const Eigen::Vector3d& mount) {
   if (finder_.rest().size() == 0) return;
@@ -353,7 +353,7 @@ UnknownOfCells OffsetFilter::unknown_of_cells() const {
     faces.push_back({.normal = of.surface.normal,
                      .cells_m = of.surface.offset_deviation_m,
                      .off_m = state_.mean()[OffsetState::offset_of(i)] - of.usual_m,
-                     .witnesses = of.holds * of.share});
+                     .weight = of.holds * of.share});
   }
   return surfaces::unknown_of_cells(faces);
 }

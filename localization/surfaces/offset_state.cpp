@@ -141,7 +141,7 @@ bool OffsetState::update(const sensor::RefinedPose& seen) {
   const Eigen::Vector3d innovation = difference(pose().map_from_robot, seen.map_from_robot);
   const Eigen::Matrix<double, Eigen::Dynamic, kPose> cross = covariance_.leftCols<kPosed>() * by.transpose();
   const PoseCovariance inverse = (by * cross.topRows<kPosed>() + seen.covariance).inverse();
-  if (innovation.dot(inverse * innovation) > kStrange) return false;
+  if (innovation.dot(inverse * innovation) > kInnovationGate) return false;
   mean_ += cross * (inverse * innovation);
   covariance_ -= (cross * inverse * cross.transpose()).eval();
   return true;

@@ -14,7 +14,7 @@
 namespace deltamap::localization::surfaces {
 
 /// Squared deviations beyond which a measurement is of something else than was expected.
-inline constexpr double kStrange = 16.0;
+inline constexpr double kInnovationGate = 16.0;
 
 /// A row of a measurement's Jacobian: most of it is zero.
 struct SparseRow {

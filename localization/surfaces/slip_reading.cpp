@@ -99,7 +99,7 @@ double SlipReading::weight_of(const Sighting& sighting, std::span<const Sighting
 void SlipReading::add_new(Answer& answer, const Sighting& sighting, const SurfaceRecord& record, double weight) const {
   const SurfaceMeasurement seen = measurement_of(sighting, answer.pose, 0);
   const SurfaceStand stand = usual_stand(sighting.surface, record.offset_m);
-  add(answer, seen, stand, -0.5 * seen.strangeness(stand),
+  add(answer, seen, stand, -0.5 * seen.mahalanobis_squared(stand),
       cost_of_moved(record.usually_holds()) - lost_by_bluntness(seen), weight);
 }
 
@@ -108,9 +108,9 @@ void SlipReading::add_followed(Answer& answer, const Sighting& sighting, std::si
   const Followed& followed = followed_[number];
   // One that only this pose has in view may be another thing that stands there by chance.
   const double gain = (in_view_[number] ? cost_of_moved_now(number) : followed.cost_of_moved) - lost_by_bluntness(seen);
-  const double as_last = -0.5 * seen.strangeness(followed.last);
+  const double as_last = -0.5 * seen.mahalanobis_squared(followed.last);
   if (when_ == SlipTime::kNow) return add(answer, seen, followed.last, as_last, gain, weight);
-  const double holds = -0.5 * seen.strangeness(followed.usual);
+  const double holds = -0.5 * seen.mahalanobis_squared(followed.usual);
   const double moved = as_last - followed.cost_of_moved * (1.0 - switches_[number].holds);
   if (holds > std::max(moved, -gain) && switches_[number].holds < 0.5) answer.read_wrong.push_back(number);
   add(answer, seen, holds > moved ? followed.usual : followed.last, std::max(holds, moved), gain, weight);

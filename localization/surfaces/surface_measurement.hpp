@@ -32,7 +32,7 @@ struct SurfaceMeasurement {
             distance_variance + stand.offset_m2 + along_m * along_m * stand.turn_rad2, turn_variance + stand.turn_rad2};
   }
   /// The same in squared deviations.
-  [[nodiscard]] double strangeness(const SurfaceStand& stand) const {
+  [[nodiscard]] double mahalanobis_squared(const SurfaceStand& stand) const {
     const SurfaceStand by = off(stand);
     const double by_turn = has_turn ? by.turn_rad * by.turn_rad / by.turn_rad2 : 0.0;
     return by.offset_m * by.offset_m / by.offset_m2 + by_turn;

@@ -55,7 +55,7 @@ std::vector<SupportingFace> supporting_faces(std::span<const Sighting> sightings
   const std::vector<std::size_t> body =
       bodies(faces.size(), [&](std::size_t a, std::size_t b) { return are_one_face(*surfaces[a], *surfaces[b]); });
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    faces[i].witnesses = 1.0 / static_cast<double>(std::count(body.begin(), body.end(), body[i]));
+    faces[i].weight = 1.0 / static_cast<double>(std::count(body.begin(), body.end(), body[i]));
   }
   return faces;
 }

@@ -105,7 +105,7 @@ void settle(std::vector<SurfaceSwitch>& switches, OffsetState& state) {
     for (std::size_t i = 0; i < switches.size(); ++i) {
       look(i);
       if (!cavities[i].is_proper) continue;
-      // One witness for a body: the piece that is known best speaks for all.
+      // One observation for a body: the piece that is known best speaks for all.
       std::size_t speaker = i;
       for (std::size_t k = 0; k < switches.size(); ++k) {
         const bool speaks = body[k] == body[i] && cavities[k].is_proper;

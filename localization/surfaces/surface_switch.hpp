@@ -25,7 +25,7 @@ struct SurfaceSwitch {
   double usual_m = 0.0;                  ///< its offset while it holds
   double prior = sensor::kUsuallyHolds;  ///< P(holds) before it was in view
   double holds = 0.5;                    ///< P(holds) now
-  double share = 1.0;                    ///< of what its face tells, that is one witness in several pieces
+  double share = 1.0;                    ///< of what its face tells, that is one observation in several pieces
   double unseen_m = 0.0;                 ///< driven since it was last in view
   /// What the switch adds to the Gaussian: precision and precision · mean of offset and turn.
   Eigen::Matrix2d precision = Eigen::Matrix2d::Zero();

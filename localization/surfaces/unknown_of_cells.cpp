@@ -11,7 +11,7 @@ UnknownOfCells unknown_of_cells(std::span<const SupportingFace> faces) {
   Point2 pull{0.0, 0.0};
   double cells_m2 = 0.0;  // what one surface leaves open
   for (const SupportingFace& face : faces) {
-    const Point2 counted = face.witnesses * face.normal;
+    const Point2 counted = face.weight * face.normal;
     cells_m2 = std::max(cells_m2, face.cells_m * face.cells_m);
     normals += counted * face.normal.transpose();
     pull += counted * face.off_m;
@@ -25,7 +25,7 @@ UnknownOfCells unknown_of_cells(std::span<const SupportingFace> faces) {
   double scatter_m2 = kOfPosition * cells_m2;
   for (const SupportingFace& face : faces) {
     const double own_m = face.off_m - face.normal.dot(common_m);
-    scatter_m2 += face.witnesses * own_m * own_m;
+    scatter_m2 += face.weight * own_m * own_m;
   }
   scatter_m2 /= std::max(kOfPosition, normals.trace());
 

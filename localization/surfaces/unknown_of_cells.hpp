@@ -15,8 +15,7 @@ struct SupportingFace {
   Point2 normal;         ///< map frame
   double cells_m = 0.0;  ///< deviation of the surface in its cells
   double off_m = 0.0;    ///< along the normal: how far it stands from where the map has it
-  double witnesses =
-      1.0;  ///< as how many it counts, [0, 1]: less where it may have moved, or is a piece of a longer one
+  double weight = 1.0;   ///< as how many it counts, [0, 1]: less where it may have moved, or is a piece of a longer one
 };
 
 /// Covariances of the position, map frame, m²; zero where it rests on no surface.

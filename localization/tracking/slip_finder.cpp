@@ -9,7 +9,7 @@ namespace {
 constexpr double kSuddenBelow = 0.85;  // of the usual fit
 constexpr double kFitsAgainAbove = 0.9;
 constexpr double kNewestFit = 0.1;                                                    // share in the usual one
-constexpr double kTurnsOfSlip[] = {0.0, -0.3, 0.3, -0.6, 0.6, -1.0, 1.0, -1.6, 1.6};  // deviations, to slide from
+constexpr double kTurnsOfSlip[] = {0.0, -0.3, 0.3, -0.6, 0.6, -1.0, 1.0, -1.6, 1.6};  // deviations, to refine from
 
 }  // namespace
 
@@ -22,8 +22,8 @@ std::span<const Pose2> SlipFinder::slips(const sensor::LikelihoodField& field, c
   for (const double turn : kTurnsOfSlip) {
     const double heading = wrapped_angle(by_wheels.theta + turn * motion_.slip_rad);
     const sensor::RefinedPose from{{by_wheels.x, by_wheels.y, heading}, spread};
-    const Pose2 slid = sensor::refined(field, ends, from, beam_share, refinement_).map_from_robot;
-    if (sensor::mean_likelihood(field, ends, slid) >= kFitsAgainAbove * usual_fit_) slips_.push_back(slid);
+    const Pose2 refined = sensor::refined(field, ends, from, beam_share, refinement_).map_from_robot;
+    if (sensor::mean_likelihood(field, ends, refined) >= kFitsAgainAbove * usual_fit_) slips_.push_back(refined);
   }
   return slips_;
 }

@@ -17,7 +17,7 @@ namespace deltamap::localization::tracking {
 
 class SlipFinder {
  public:
-  /// `refinement` says how a pose slides to where the scan fits.
+  /// `refinement` says how a pose is refined to where the scan fits.
   SlipFinder(const motion::MotionModelParams& motion, const sensor::RefinementParams& refinement)
       : motion_{motion}, refinement_{refinement} {}
 

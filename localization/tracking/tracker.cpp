@@ -191,7 +191,7 @@ Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince&
   answer.believed = pose_filter_.before_scan(seen.now, best_);
   if (!sees) return answer;
   answer.w_avg = mean_over_members(misfits, seen.ends.size());
-  answer.believed = slid(seen, answer.believed);
+  answer.believed = refined(seen, answer.believed);
   draw_anew_if_needed();
   return answer;
 }
@@ -228,7 +228,7 @@ Tracker::Answer Tracker::follow(const SeenScan& seen, const motion::MotionSince&
   if (drawn_anew_) best_.weight = clusters_.best(filter_.particles()).weight;
   drawn_anew_ = false;
   answer.w_avg = mean_over_some_members(seen, since.motion);
-  answer.believed = slid(seen, answer.believed);
+  answer.believed = refined(seen, answer.believed);
   return answer;
 }
 
@@ -258,7 +258,7 @@ double Tracker::mean_over_some_members(const SeenScan& seen, const Pose2& motion
 }
 
 /// The pose where the scan fits best.
-sensor::RefinedPose Tracker::slid(const SeenScan& seen, const sensor::RefinedPose& prior) {
+sensor::RefinedPose Tracker::refined(const SeenScan& seen, const sensor::RefinedPose& prior) {
   const sensor::Refinement found =
       sensor::refined(seen.field, seen.ends, prior, best_.covariance, errors_, beam_share(seen), params_.refinement);
   errors_ = found.errors;

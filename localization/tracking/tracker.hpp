@@ -104,7 +104,7 @@ class Tracker {
   [[nodiscard]] double beam_share(const SeenScan& seen) const;
   [[nodiscard]] double mean_over_members(std::span<const std::int32_t> misfits, std::size_t beams) const;
   [[nodiscard]] double mean_over_some_members(const SeenScan& seen, const Pose2& motion) const;
-  [[nodiscard]] sensor::RefinedPose slid(const SeenScan& seen, const sensor::RefinedPose& prior);
+  [[nodiscard]] sensor::RefinedPose refined(const SeenScan& seen, const sensor::RefinedPose& prior);
   void draw_anew_if_needed();
 
   TrackerParams params_;

@@ -78,16 +78,17 @@ std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, do
     found->field_from_scan = window.centre;
   }
   // Ends share errors: what was known before weighs as much more.
-  const registration::Registration slid = registration::registration(
+  const registration::Registration refined = registration::registration(
       ends, surface_, found->field_from_scan, {known.pose, known.information / kIndependentShare},
       {.first_reach_m = kReachM, .last_reach_m = kLastReachM, .point_deviation_m = range_deviation_m});
-  const Pose2 correction = motion_between(found->field_from_scan, slid.reference_from_moving);
-  const bool fits = slid.settled &&
-                    static_cast<double>(slid.paired) >= params.least_paired * static_cast<double>(ends.size()) &&
-                    slid.deviation_m <= params.most_deviation_m && correction.position().norm() <= kMostCorrectionM &&
+  const Pose2 correction = motion_between(found->field_from_scan, refined.reference_from_moving);
+  const bool fits = refined.settled &&
+                    static_cast<double>(refined.paired) >= params.least_paired * static_cast<double>(ends.size()) &&
+                    refined.deviation_m <= params.most_deviation_m &&
+                    correction.position().norm() <= kMostCorrectionM &&
                     std::abs(correction.theta) <= kMostCorrectionRad;
   if (!fits) return std::nullopt;
-  return SubmapMatch{slid.reference_from_moving, covariance_of(slid.information, known.information, params),
+  return SubmapMatch{refined.reference_from_moving, covariance_of(refined.information, known.information, params),
                      found->score};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a scan lies on a submap: the best pose of a window by correlation, then slid onto the surfaces by closest
+// Where a scan lies on a submap: the best pose of a window by correlation, then refined onto the surfaces by closest
 // lines.
 #pragma once
 

@@ -34,7 +34,6 @@ Point2 anywhere_in(const Bounds& bounds, Random& random) {
 ReachableFloor main_floor(const World& world, double clearance_m, Random& random) {
   const auto& outline = std::get<Polyline>(world.objects.front().shape).points;
   const Bounds bounds = bounds_of(world);
-  const RayCaster surfaces{world};
   ReachableFloor largest;
   std::ptrdiff_t most = 0;
   for (int i = 0; i < kStarts; ++i) {

@@ -39,7 +39,7 @@ class WatchedRound {
   sensor::LikelihoodField field_;
   sensor::CoarseField coarse_;
   ScanStack stack_;
-  AliasMonitor alias_monitor_{{.probes = 400, .slid = 4, .prior = 0.003}};
+  AliasMonitor alias_monitor_{{.probes = 400, .refined = 4, .prior = 0.003}};
 };
 
 TEST(AliasMonitor, HoldsAliasesForAsUnlikelyAsThatSomebodyCarriesRobots) {

@@ -19,14 +19,14 @@ HypothesisBank bank_with_three(double log_prior) {
   return bank;
 }
 
-/// Which of the hypotheses were moved by sliding one in turn.
-std::vector<bool> slid(HypothesisBank& bank) {
+/// Which of the hypotheses were moved by refining one in turn.
+std::vector<bool> refined(HypothesisBank& bank) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
   Random random{3};
   const motion::BeamEnds ends = test::cast_ends(map, kTruth, {}, random, 60);
   const std::vector<PoseHypothesis> before{bank.hypotheses().begin(), bank.hypotheses().end()};
-  bank.slide_others(field, ends, 1, 0.0);
+  bank.refine_others(field, ends, 1, 0.0);
   std::vector<bool> moved;
   for (std::size_t i = 0; i < before.size(); ++i) {
     moved.push_back(bank.hypotheses()[i].map_from_robot != before[i].map_from_robot);
@@ -36,13 +36,13 @@ std::vector<bool> slid(HypothesisBank& bank) {
 
 TEST(HypothesisBank, SlidesHypothesesFarBehindInTurn) {
   HypothesisBank bank = bank_with_three(std::log(0.003));
-  EXPECT_EQ(slid(bank), (std::vector<bool>{false, true, false, false}));
-  EXPECT_EQ(slid(bank), (std::vector<bool>{false, false, true, false}));
+  EXPECT_EQ(refined(bank), (std::vector<bool>{false, true, false, false}));
+  EXPECT_EQ(refined(bank), (std::vector<bool>{false, false, true, false}));
 }
 
 TEST(HypothesisBank, SlidesAtEachScanWhatComesClose) {
   HypothesisBank bank = bank_with_three(0.0);
-  EXPECT_EQ(slid(bank), (std::vector<bool>{false, true, true, true}));
+  EXPECT_EQ(refined(bank), (std::vector<bool>{false, true, true, true}));
 }
 
 /// How far a wrong hypothesis falls behind the believed one by one scan with so many ends.

@@ -62,8 +62,8 @@ TEST(SurfaceMeasurement, IsStrangeWhereTheWallIsExpectedElsewhereThanItStands) {
                                                  kBesideIt, OffsetState::offset_of(0));
   EXPECT_NEAR(seen.off(moved).offset_m, 0.0, 1e-9);
   EXPECT_NEAR(seen.off(moved).turn_rad, 0.0, 1e-5);
-  EXPECT_LT(seen.strangeness(moved), 0.01);
-  EXPECT_GT(seen.strangeness({.offset_m2 = 1e-4, .turn_rad2 = 1e-5}), kStrange);
+  EXPECT_LT(seen.mahalanobis_squared(moved), 0.01);
+  EXPECT_GT(seen.mahalanobis_squared({.offset_m2 = 1e-4, .turn_rad2 = 1e-5}), kInnovationGate);
 }
 
 TEST(SurfaceMeasurement, TellsNoTurnWhereTheBeamsLieTooCloseTogether) {
@@ -71,7 +71,7 @@ TEST(SurfaceMeasurement, TellsNoTurnWhereTheBeamsLieTooCloseTogether) {
       measurement_of(sighted(kWallAhead, kBesideIt, 0.0, 0.0, 0.02), kBesideIt, OffsetState::offset_of(0));
   EXPECT_FALSE(seen.has_turn);
   const SurfaceStand turned{.turn_rad = 0.3, .offset_m2 = 1.0, .turn_rad2 = 1e-6};
-  EXPECT_LT(seen.strangeness(turned), 1.0);
+  EXPECT_LT(seen.mahalanobis_squared(turned), 1.0);
 }
 
 TEST(SurfaceMeasurement, MovesWithThePoseAndTheMountAsItsRowsSay) {

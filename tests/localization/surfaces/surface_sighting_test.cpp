@@ -135,9 +135,9 @@ TEST(SupportingFaces, CountThePiecesOfOneFaceAsOneWitness) {
                                    sighting_of({6.0, 9.0}, 0.0)};
   const std::vector<SupportingFace> faces = supporting_faces(seen, {}, 0.08);
   ASSERT_EQ(faces.size(), 3U);
-  EXPECT_DOUBLE_EQ(faces[0].witnesses, 0.5);
-  EXPECT_DOUBLE_EQ(faces[1].witnesses, 0.5);
-  EXPECT_DOUBLE_EQ(faces[2].witnesses, 1.0);
+  EXPECT_DOUBLE_EQ(faces[0].weight, 0.5);
+  EXPECT_DOUBLE_EQ(faces[1].weight, 0.5);
+  EXPECT_DOUBLE_EQ(faces[2].weight, 1.0);
   EXPECT_NEAR(faces[0].off_m, 0.02, 1e-12);
 }
 

@@ -69,7 +69,7 @@ TEST_F(Walls, DoNotCountWhereTheyWereMoved) {
   stand(kAlongY, kScattered);
   const double before_m2 = unknown()(0, 0);
   stand(kAlongX, {0.4, -0.5, 0.6});
-  for (std::size_t i = faces.size() - 3; i < faces.size(); ++i) faces[i].witnesses = 0.0;
+  for (std::size_t i = faces.size() - 3; i < faces.size(); ++i) faces[i].weight = 0.0;
   EXPECT_NEAR(unknown()(0, 0), before_m2, 1e-12);
 }
 
