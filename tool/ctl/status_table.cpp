@@ -80,6 +80,20 @@ std::string scans_line(const Json& s) {
               number(s, "/localized"), drops, number(s, "/latency_ms"));
 }
 
+/// What driving has told of the wheels and of the laser's mount, with deviations.
+std::string wheels_lines(const Json& s) {
+  if (!s.contains("calibration") || !s["calibration"].is_object()) return line("wheels", "%s", "nothing found yet");
+  const auto found = [&](const char* what) { return number(s["calibration"], what); };
+  const Json deviations = s["calibration"].value("deviations", Json::object());
+  const auto unsure = [&](const char* what) { return number(deviations, what); };
+  return line("wheels", "distance %+.2f ± %.2f %%, turn %+.2f ± %.2f %%, drift %+.3f ± %.3f deg/m, lag %.0f ± %.0f ms",
+              found("/distance_percent"), unsure("/distance_percent"), found("/turn_percent"), unsure("/turn_percent"),
+              found("/drift_deg_per_m"), unsure("/drift_deg_per_m"), found("/lag_ms"), unsure("/lag_ms")) +
+         line("laser mount", "off by x %+.0f ± %.0f, y %+.0f ± %.0f mm, yaw %+.2f ± %.2f deg", found("/mount/x_mm"),
+              unsure("/mount/x_mm"), found("/mount/y_mm"), unsure("/mount/y_mm"), found("/mount/yaw_deg"),
+              unsure("/mount/yaw_deg"));
+}
+
 std::string utc_clock(double unix_s) {
   const auto whole = static_cast<std::time_t>(unix_s);
   std::tm calendar{};
@@ -118,6 +132,7 @@ std::string status_table(const std::string& reply_line) {
   text += map_line(s);
   text += gate_line(s);
   text += scans_line(s);
+  text += wheels_lines(s);
   text += line("ports", "robot %s (%.1f V), laser %s", word(s, "/ports/robot").c_str(), number(s, "/battery_v"),
                word(s, "/ports/laser").c_str());
   text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),

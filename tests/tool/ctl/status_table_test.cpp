@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tool/ctl/status_table.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap::tool {
+namespace {
+
+void expect_line(const std::string& reply, const std::string& expected) {
+  const std::string table = status_table(reply);
+  EXPECT_NE(table.find(expected + "\n"), std::string::npos) << expected << "\nis not in\n" << table;
+}
+
+TEST(StatusTable, TellsWhatDrivingHasToldOfWheelsAndMount) {
+  const std::string reply =
+      R"({"state":"tracking","calibration":{"distance_percent":-1.04,"turn_percent":1.9,"drift_deg_per_m":0.17,)"
+      R"("lag_ms":41.6,"mount":{"x_mm":-3.2,"y_mm":8.0,"yaw_deg":0.25},"deviations":{"distance_percent":0.02,)"
+      R"("turn_percent":0.1,"drift_deg_per_m":0.01,"lag_ms":2.2,"mount":{"x_mm":1.0,"y_mm":2.0,"yaw_deg":0.03}}}})";
+  expect_line(reply,
+              "wheels       distance -1.04 ± 0.02 %, turn +1.90 ± 0.10 %, drift +0.170 ± 0.010 deg/m, lag 42 ± 2 ms");
+  expect_line(reply, "laser mount  off by x -3 ± 1, y +8 ± 2 mm, yaw +0.25 ± 0.03 deg");
+}
+
+TEST(StatusTable, SaysWhereDrivingHasToldNothingYet) {
+  for (const char* reply : {R"({"state":"global","calibration":null})", "{}", "no json"}) {
+    expect_line(reply, "wheels       nothing found yet");
+  }
+  expect_line(R"({"calibration":{"lag_ms":40}})",
+              "wheels       distance +0.00 ± 0.00 %, turn +0.00 ± 0.00 %, drift +0.000 ± 0.000 deg/m, lag 40 ± 0 ms");
+}
+
+}  // namespace
+}  // namespace deltamap::tool
