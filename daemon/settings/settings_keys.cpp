@@ -131,7 +131,7 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
   add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0,
                  "distance kept between the hull and everything"));
   add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s^2", 0.05, 5.0,
-                 "deceleration counted on at most; the controller's own where that is less"));
+                 "deceleration that safe speeds are computed with; the controller's own where that is less"));
   add(number_key("navigation.safety.max_speed_m_per_s", safety.max_speed_m_per_s, "m/s", 0.01, 2.2,
                  "speed at most, whatever the pilot wants"));
   add(degrees_key("navigation.safety.max_turn_rate_deg_per_s", safety.max_turn_rate_rad_per_s, 1.0, 500.0,
@@ -139,8 +139,9 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
   add(of_both(number_key("navigation.safety.hidden_width_m", safety.obstacles.hidden_width_m, "m", 0.01, 2.0,
                          "width of an obstacle that a gap of beams without answer may hide"),
               safety.obstacles.hidden_width_m, wander.obstacles.hidden_width_m));
-  add(number_key("navigation.wander.speed_m_per_s", wander.speed_m_per_s, "m/s", 0.01, 2.2,
-                 "speed where the way is clear"));
+  add(number_key(
+      "navigation.wander.speed_m_per_s", wander.speed_m_per_s, "m/s", 0.01, 2.2,
+      "speed where the way is clear; never above robot.max_speed_m_per_s and navigation.safety.max_speed_m_per_s"));
   add(degrees_key("navigation.wander.turn_rate_deg_per_s", wander.turn_rate_rad_per_s, 1.0, 500.0,
                   "turn rate on the spot"));
   add(number_key("navigation.wander.side_clearance_m", wander.side_clearance_m, "m", 0.0, 5.0,
@@ -153,10 +154,10 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
 }
 
 void add_memory(MemorySettings& memory, Keys& keys) {
-  keys.push_back(not_for_results(
-      number_key("localization.memory.pose_period_s", memory.pose_period_s, "s", 0.1, 3600.0,
-                 "time between two writings of the pose beside map.store; twelve times as long for what has proven to "
-                 "stay")));
+  keys.push_back(
+      not_for_results(number_key("localization.memory.pose_period_s", memory.pose_period_s, "s", 0.1, 3600.0,
+                                 "time between two writings of the pose beside map.store; what has proven to stay is "
+                                 "written every twelfth time")));
 }
 
 void add_dashboard(DashboardSettings& dashboard, Keys& keys) {

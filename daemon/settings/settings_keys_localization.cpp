@@ -43,18 +43,19 @@ void add_wheels(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(with_symbol(number_key(at + "metre_per_turn_m", motion.metre_per_turn_m, "m/rad", 0.0, 10.0,
                                         "standard deviation of a distance, per radian of turn"),
                              "√α_4"));
-  keys.push_back(number_key(at + "slip_probability", motion.slip_probability, "", 0.0, 0.1,
-                            "probability of a step that the wheels slip or someone pushes the robot; 0: never"));
+  keys.push_back(number_key(
+      at + "slip_probability", motion.slip_probability, "", 0.0, 0.1,
+      "probability that the wheels slip, or someone pushes the robot, in one step of the motion model; 0: never"));
   keys.push_back(number_key("localization.wheels.learning_share", localizer.wheels.learning_share, "", 0.0, 0.9,
                             "weight of the newest stretch in the learned noise of the wheels; 0: never learn"));
 }
 
 void add_sensor(localization::LocalizerParams& localizer, Keys& keys) {
   auto& field = localizer.field;
-  keys.push_back(
-      with_symbol(number_key("localization.field.hit_deviation_m", field.hit_deviation_m, "m", 0.001, 2.0,
-                             "standard deviation of a range, laser and map together; at least 0.7 cells are used"),
-                  "σ_hit"));
+  keys.push_back(with_symbol(number_key("localization.field.hit_deviation_m", field.hit_deviation_m, "m", 0.001, 2.0,
+                                        "how far from a wall of the map a beam may end and still fit, standard "
+                                        "deviation; at least 0.7 cells are used"),
+                             "σ_hit"));
   keys.push_back(with_symbol(number_key("localization.field.random_share", field.random_share, "", 0.02,
                                         field.unknown_likelihood, "share of beams that hit what no map knows"),
                              "z_rand"));
