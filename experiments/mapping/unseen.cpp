@@ -43,6 +43,18 @@ std::vector<SpreadAsked> asked() {
           {"mapping_cpu_ms", "ms a scan"}};
 }
 
+/// What kept the gate shut longest while the pose was right.
+std::string longest_shut_by(const Outcome& outcome) {
+  std::string longest;
+  double most_s = 0.0;
+  for (const std::string& why : all_whys_shut()) {
+    const double shut_s = outcome.number(shut_number(why));
+    if (shut_s > most_s) longest = why;
+    most_s = std::max(most_s, shut_s);
+  }
+  return longest;
+}
+
 /// Why a drive counts as failed; empty where it does not.
 std::string failure_of(const Outcome& outcome) {
   std::string failure;
@@ -53,11 +65,14 @@ std::string failure_of(const Outcome& outcome) {
   add(outcome.number("stretches_off") > 0.0, "off for " + text_of(outcome.number("longest_off_s")) + " s");
   add(outcome.number("jumps") > 0.0, text_of(outcome.number("jumps")) + " jumps");
   add(outcome.number("error_rms_m") > 0.10, "RMSE " + text_of(outcome.number("error_rms_m")) + " m");
-  add(outcome.number("gate_shut_while_right") > 0.15, "gate shut " + text_of(outcome.number("gate_shut_while_right")));
+  add(outcome.number("gate_shut_while_right") > 0.15,
+      "gate shut " + text_of(outcome.number("gate_shut_while_right")) + ", longest: " + longest_shut_by(outcome));
   add(outcome.number("cells_written_astray") > 0.0,
       text_of(outcome.number("cells_written_astray")) + " cells written astray");
   add(outcome.number("skill") < 0.7, "skill " + text_of(outcome.number("skill")));
   add(outcome.number("recall") < 0.9, "recall " + text_of(outcome.number("recall")));
+  add(outcome.number("precision") < 0.9, "precision " + text_of(outcome.number("precision")));
+  add(outcome.number("wall_drift_m") > 0.02, "walls drifted " + text_of(outcome.number("wall_drift_m")) + " m");
   return failure;
 }
 

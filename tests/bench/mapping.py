@@ -12,7 +12,7 @@ from on_intel import KNOWN_START, missing_data, recording
 
 AWARENESS = "deltamap::mapping::StoreScan::observe("
 UPDATE = "deltamap::daemon::MapStep::update("
-MOST = 500e3
+MOST = {"simulated hall": 280e3, "`intel`": 510e3}  # before maps were kept in tiles
 
 
 def costs(profile):
@@ -56,7 +56,7 @@ def rows_of(where, measure):
     return [row("awareness a scan, " + where, "%.0f thousand instructions" % (awareness / 1e3)),
             row("updates of the map, averaged over the scans, " + where,
                 "%.0f thousand instructions (%d sets in %d scans)" % (update / 1e3, updates, scans)),
-            row("both together, " + where, "%.0f thousand instructions" % (both / 1e3), "≤ 500 thousand", both <= MOST)]
+            row("both together, " + where, "%.0f thousand instructions" % (both / 1e3), "≤ %.0f thousand" % (MOST[where] / 1e3), both <= MOST[where])]
 
 
 def intel():
