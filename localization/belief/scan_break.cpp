@@ -77,8 +77,9 @@ void ScanBreak::keep(const FollowedScan& now) {
 /// By the wheels or by the estimate, whichever explains the scan better.
 std::optional<ScanBreak::Shares> ScanBreak::least_compared(const FollowedScan& now) const {
   const auto by_wheels = compared(now, inverse(now.odom_from_robot) * odom_from_robot_);
+  if (!by_wheels || by_wheels->nearer + by_wheels->farther == 0.0) return by_wheels;
   const auto by_estimate = compared(now, inverse(now.map_from_robot) * map_from_robot_);
-  if (!by_wheels || !by_estimate) return by_wheels;
+  if (!by_estimate) return by_wheels;
   const bool estimate_is_better = by_estimate->nearer + by_estimate->farther < by_wheels->nearer + by_wheels->farther;
   return estimate_is_better ? by_estimate : by_wheels;
 }
