@@ -113,7 +113,9 @@ struct Estimate {
   PoseCovariance bias_covariance = PoseCovariance::Zero();
   LocalizerState state = LocalizerState::kGlobal;
   std::uint32_t relocalizations = 0;  ///< grows when a person says where the robot is: it was believed elsewhere
-  double n_eff = 0.0;                 ///< effective sample size before resampling, Eq. 5; in [1, particles]
+  /// Effective sample size before resampling, Eq. 5; in [1, particles]. While surfaces lead no particle is weighed, and
+  /// it is `particles`.
+  double n_eff = 0.0;
   std::uint32_t particles = 0;
   Belief belief{};     ///< how right the pose is, and how wrong the map
   double w_avg = 0.0;  ///< exp of the mean log-likelihood of the used beams, averaged over the heaviest cluster; (0, 1]

@@ -126,13 +126,9 @@ bool SurfaceTracker::is_due(const SeenScan& seen) const {
   return explained < since_->explained - kSuddenly;
 }
 
-void SurfaceTracker::predict(const motion::ScanInstant& now) {
-  if (last_) step_to(now, last_->velocity);
-}
-
-std::optional<sensor::RefinedPose> SurfaceTracker::predicted(const motion::ScanInstant& now) {
+std::optional<sensor::RefinedPose> SurfaceTracker::predict(const motion::ScanInstant& now) {
   if (!last_) return std::nullopt;
-  predict(now);
+  step_to(now, last_->velocity);
   return filter_.believed();
 }
 

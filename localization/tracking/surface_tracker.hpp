@@ -44,10 +44,8 @@ class SurfaceTracker {
 
   /// The pose at one more scan. It may have ceased to lead.
   sensor::RefinedPose observe(const SeenScan& seen);
-  /// No scan has come for long: predicts by the wheels.
-  void predict(const motion::ScanInstant& now);
-  /// What the wheels, as they have been calibrated, tell of the pose; nothing where no scan came before.
-  [[nodiscard]] std::optional<sensor::RefinedPose> predicted(const motion::ScanInstant& now);
+  /// No scan tells of the pose: predicts by the calibrated wheels. None where no scan came before.
+  std::optional<sensor::RefinedPose> predict(const motion::ScanInstant& now);
 
   /// Before the first scan: what an earlier run has learned.
   void restore(const motion::DriveCalibration& learned) { filter_.restore(learned); }
@@ -84,8 +82,8 @@ class SurfaceTracker {
   };
   std::optional<SinceKeyframe> since_;       // none: no keyframe yet
   surfaces::UnknownOfCells unknown_by_map_;  // while the particles lead: by the last scan
-  double straight_ = 0.0;                    // running means over keyframes, shares of ends
-  double holding_ = 0.0;
+  double straight_ = 0.0;  // share of ends: running mean over keyframes, over scans while the particles lead
+  double holding_ = 0.0;   // share of ends: running mean over keyframes
   double since_held_m_ = surfaces::kForgottenAfterM;  // driven since surfaces held the pose; they have followed it
   double surprise_m_ = 1.0;  // squared corrections as multiples of what was expected, running means
   double surprise_rad_ = 1.0;

@@ -201,7 +201,7 @@ Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince&
 bool Tracker::gather(const SeenScan& seen) {
   const particles::ParticleCluster apart = clusters_.best(filter_.particles());
   if (SurfaceTracker::is_one_place(apart.covariance)) return false;
-  const std::optional<sensor::RefinedPose> by_wheels = surfaces_ ? surfaces_->predicted(seen.now) : std::nullopt;
+  const std::optional<sensor::RefinedPose> by_wheels = surfaces_ ? surfaces_->predict(seen.now) : std::nullopt;
   return start_within(by_wheels.value_or(sensor::RefinedPose{apart.map_from_robot, apart.covariance}), seen);
 }
 

@@ -59,7 +59,7 @@ class Tracker {
   struct Answer {
     sensor::RefinedPose believed;
     std::optional<double> w_avg;  ///< mean likelihood over the believed particles (paper §3.1); none without a return
-    std::optional<double> n_eff;  ///< where the scan was an update
+    std::optional<double> n_eff;  ///< where the scan was an update; while surfaces lead the number of particles
     double unknown_s = 0.0;       ///< since the last update, not covered by odometry
     bool looked_around =
         false;  ///< the pose was open by more than one place after a silence; the scan was looked for in it
