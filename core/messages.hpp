@@ -94,9 +94,10 @@ struct Belief {
   double pose_right = 0.5;  ///< P(the robot is where the estimate says), [0, 1]
   double map_wrong = 0.5;   ///< P(what is in view differs from the map), [0, 1]
   PoseVerdict verdict = PoseVerdict::kUndecided;
-  BeamCounts stable;         ///< beams on tiles that have long proven stable: they tell most of the pose
-  BeamCounts elsewhere;      ///< all others: of the pose they tell half as much, against it less
-  bool is_checked = false;   ///< the counts are of this scan; else of the last one that was held against the map
+  BeamCounts stable;     ///< beams on tiles that have long proven stable: they tell most of the pose
+  BeamCounts elsewhere;  ///< all others: of the pose they tell half as much, against it less
+  bool is_checked =
+      false;  ///< the counts are of this scan; else of the last one held against the map, none since a kidnapping
   double other_share = 0.0;  ///< of the belief that the best other pose hypothesis holds, [0, 1]
   Pose2 map_from_other;      ///< that hypothesis; of no meaning where its share is 0
   /// The last scan at a tracked pose that did not follow from the one before; none: each has.

@@ -203,7 +203,7 @@ sensor::RefinedPose Localizer::State::track(const motion::ScanInstant& now) {
               .map_from_believed = lost ? std::nullopt : std::optional{tracked.believed.map_from_robot},
               .stable_support = stable_support.share(),
               .unknown_s = tracked.unknown_s,
-              .carried = judgement.belief().fits_worse});
+              .kidnapped = judgement.belief().fits_worse});
   if (report.listed == 0 || !has_won(report.others.front(), tracked.believed.map_from_robot)) return tracked.believed;
   const Pose2 winner = report.others.front().map_from_robot;
   if (lost || distance_between(winner, tracked.believed.map_from_robot) < hypotheses::kNearbyM) {

@@ -21,7 +21,7 @@ namespace deltamap::navigation {
 struct SafetyParams {
   double robot_radius_m = 0.26;          ///< swing circle of the P3-DX around its axle; > 0
   double margin_m = 0.08;                ///< kept between the hull and everything; >= 0
-  double deceleration_m_per_s2 = 0.3;    ///< counted on at most (P3-DX flash default); > 0
+  double deceleration_m_per_s2 = 0.3;    ///< that safe speeds are computed with (P3-DX flash default); > 0
   double reaction_s = 0.1;               ///< from this decision to the wheels: one controller cycle; >= 0
   double command_life_s = 0.3;           ///< a command older than that is void; > 0
   double nominal_scan_period_s = 0.107;  ///< laser stale after three of these; 180/1° at 38400 (protocols.md B7); > 0

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state machine of the localizer: global, tracking or lost. A changed map makes scans fit worse for long, so a bad
-// fit alone does not make the robot lost. It is lost where the verdict stays "wrong", or where the pose has not fitted
-// for very long. A lost robot searches the whole map anew where another hypothesis has beaten the pose, else once it
-// has driven on.
+// fit alone does not make the robot lost. It is lost where the verdict stays "wrong", or where for very long the pose
+// has not fitted and nothing has supported it. A lost robot searches the whole map anew where another hypothesis has
+// beaten the pose, else once it has driven on.
 #pragma once
 
 #include "core/geometry/angle.hpp"

@@ -18,11 +18,12 @@ PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report, bool may
   if (report.followed == 0) return {.searching = !report.own_known, .beaten = false};
   if (report.own_known) {
     const hypotheses::ReportedHypothesis& other = report.others.front();
-    const double carried = may_have_been_kidnapped ? report.kidnapped_share
-                                                   : with_less_odds(report.kidnapped_share, kKidnappedWithoutABreak);
-    const bool kidnapped = carried > other.share;
+    const double kidnapped_share = may_have_been_kidnapped
+                                       ? report.kidnapped_share
+                                       : with_less_odds(report.kidnapped_share, kKidnappedWithoutABreak);
+    const bool kidnapped = kidnapped_share > other.share;
     return {.believed = report.own_share,
-            .best_other = std::max(other.share, carried),  // one of them may be watched, not listed
+            .best_other = std::max(other.share, kidnapped_share),  // one of them may be watched, not listed
             .if_kidnapped = report.kidnapped_share,
             .map_from_other = kidnapped ? report.map_from_kidnapped : other.map_from_robot,
             .beaten = report.beaten};

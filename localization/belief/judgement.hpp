@@ -43,7 +43,8 @@ class Judgement {
     PoseJudge::Passed passed;  ///< since the last scan
     const hypotheses::HypothesisReport& hypotheses;
   };
-  /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked).
+  /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked),
+  /// unless follow() tells of a kidnapping.
   void observe(const View& view);
   /// Do surfaces of the map fix the pose at this scan? Where it has been followed without a break, nothing but another
   /// pose speaks against it then, however many beams end elsewhere; it is surely right only where proven tiles have

@@ -95,7 +95,7 @@ class HypothesisBank {
   void stop_believing() { believing_ = false; }
 
   void predict(const Pose2& motion);
-  /// Slides `count` hypotheses, a round after the other, those that come close to the best one and the believed one
+  /// Refines `count` hypotheses, a round after the other, those that come close to the best one and the believed one
   /// always.
   void refine(const sensor::LikelihoodField& field, const motion::BeamEnds& ends, std::size_t count, double unknown_s);
   /// The same for all but the believed one.

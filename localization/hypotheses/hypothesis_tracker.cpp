@@ -151,22 +151,22 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   if (believing_) last_believed_ = seen.map_from_believed;
   support_nats_ = believing_ ? params_.stable_support_nats * seen.stable_support : 0.0;
   bank_.set_believed_prior(support_nats_);
-  if (seen.carried && !carried_) search_.start();  // not with a scan from before
-  carried_ = seen.carried;
-  bank_.make_room(suspicious_ || carried_);
+  if (seen.kidnapped && !kidnapped_) search_.start();  // not with a scan from before
+  kidnapped_ = seen.kidnapped;
+  bank_.make_room(suspicious_ || kidnapped_);
   thin(seen.ends);
   if (ends_.size() == 0) return report_;
 
-  const auto refined = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;
-  bank_.refine(field, ends_, refined, seen.unknown_s);
+  const auto how_many = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;
+  bank_.refine(field, ends_, how_many, seen.unknown_s);
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
   weigh(field, seen);
   if (believing_) probe(field, seen.continuous_odom_from_robot);
-  if (!believing_ || suspicious_ || carried_) {
+  if (!believing_ || suspicious_ || kidnapped_) {
     const std::span<const Pose2> found =
         search_.look(coarse_, field, {ends_, near_ends_}, seen.continuous_odom_from_robot,
-                     believing_ && !carried_ ? params_.suspicious_pace : 1.0);
+                     believing_ && !kidnapped_ ? params_.suspicious_pace : 1.0);
     if (!found.empty()) admit_all(field, found, seen.continuous_odom_from_robot);
   }
   bank_.settle();

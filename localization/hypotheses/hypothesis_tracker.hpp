@@ -64,7 +64,7 @@ class HypothesisTracker {
     std::optional<Pose2> map_from_believed{};  ///< where the robot is believed to be, if anywhere
     double stable_support = 0.0;               ///< how far proven tiles support that pose (StableSupport), [0, 1]
     double unknown_s = 0.0;                    ///< seconds since the last scan that odometry does not cover
-    bool carried = false;                      ///< lately, by all signs (Continuity): it is searched for at full pace
+    bool kidnapped = false;                    ///< lately, by all signs (Continuity): it is searched for at full pace
   };
   const HypothesisReport& observe(const sensor::LikelihoodField& field, const Seen& seen);
 
@@ -126,7 +126,7 @@ class HypothesisTracker {
   std::optional<Pose2> last_odom_;
   bool believing_ = false;
   bool suspicious_ = false;
-  bool carried_ = false;
+  bool kidnapped_ = false;
   double elsewhere_prior_;
   std::optional<Pose2> last_believed_;  // predicted by odometry
   bool probe_nearby_next_ = false;

@@ -50,7 +50,7 @@ struct Sighting {
 };
 
 /// What a pose rests on: the surfaces that stand within `within_m` of where the map has them, pieces of one face as one
-/// witness. Corners are none: they stand where their faces do.
+/// observation. Corners are none: they stand where their faces do.
 [[nodiscard]] std::vector<SupportingFace> supporting_faces(std::span<const Sighting> sightings,
                                                            const Pose2& map_from_robot, double within_m);
 

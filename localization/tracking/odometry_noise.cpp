@@ -11,15 +11,16 @@ namespace {
 
 constexpr double kLeastScale2 = 0.002;  // wheels are never quite right
 constexpr double kMostScale2 = 9.0;
-constexpr double kMostSquaredInnovation = 9.0;  // squared deviations: a slip is no measure of how the wheels usually do
-constexpr double kLeastSharpness = 0.5;         // of a comparison: below it the scans say too little
+constexpr double kMostNormalizedInnovation =
+    9.0;                                 // squared deviations: a slip is no measure of how the wheels usually do
+constexpr double kLeastSharpness = 0.5;  // of a comparison: below it the scans say too little
 
 /// What a squared difference says about the scale of the variance that should explain it.
 double learned(double scale2, double difference2, double wheels_variance, double start_variance, double end_variance,
                double share) {
   const double gained = start_variance + scale2 * wheels_variance - end_variance;
   if (gained < kLeastSharpness * (start_variance + scale2 * wheels_variance)) return scale2;
-  const double surprise = std::min(difference2 / gained, kMostSquaredInnovation);
+  const double surprise = std::min(difference2 / gained, kMostNormalizedInnovation);
   return std::clamp(scale2 * (1.0 + share * (surprise - 1.0)), kLeastScale2, kMostScale2);
 }
 

@@ -75,7 +75,7 @@ Written by `./dev experiments --only unseen --seed 1000`, or from what `deltamap
 %s.
 
 Every seed is another kind of building, first map, laser, robot and life in it ([what is drawn](../experiments.md)). Seeds 1 to
-999 are for development; 1000 to 1059 are driven for this page alone. Why figures are missed:
+999 are for development; 1000 to 1059 for final figures. Why figures are missed:
 [what falls short](../decisions/what-falls-short.md).
 """
 

@@ -12,7 +12,7 @@ from on_intel import KNOWN_START, missing_data, recording
 
 AWARENESS = "deltamap::mapping::StoreScan::observe("
 UPDATE = "deltamap::daemon::MapStep::update("
-MOST = {"simulated hall": 280e3, "`intel`": 510e3}  # before maps were kept in tiles
+MOST = {"simulated hall": 280e3, "`intel`": 510e3}  # what it cost before maps were kept in tiles
 
 
 def costs(profile):

@@ -123,7 +123,8 @@ std::string outputs_lines(const Json& s) {
 }  // namespace
 
 std::string status_table(const std::string& reply_line) {
-  const Json s = Json::parse(reply_line, nullptr, false);
+  const Json reply = Json::parse(reply_line, nullptr, false);
+  const Json s = reply.is_object() ? reply : Json::object();
   std::string text = line("state", "%s", word(s, "/state").c_str());
   text += pose_line(s);
   text += belief_lines(s);

@@ -34,13 +34,13 @@ std::vector<bool> refined(HypothesisBank& bank) {
   return moved;
 }
 
-TEST(HypothesisBank, SlidesHypothesesFarBehindInTurn) {
+TEST(HypothesisBank, RefinesHypothesesFarBehindInTurn) {
   HypothesisBank bank = bank_with_three(std::log(0.003));
   EXPECT_EQ(refined(bank), (std::vector<bool>{false, true, false, false}));
   EXPECT_EQ(refined(bank), (std::vector<bool>{false, false, true, false}));
 }
 
-TEST(HypothesisBank, SlidesAtEachScanWhatComesClose) {
+TEST(HypothesisBank, RefinesAtEachScanWhatComesClose) {
   HypothesisBank bank = bank_with_three(0.0);
   EXPECT_EQ(refined(bank), (std::vector<bool>{false, true, true, true}));
 }

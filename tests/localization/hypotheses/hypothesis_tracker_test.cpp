@@ -39,7 +39,7 @@ class Round {
                                      .continuous_odom_from_robot = joined_,
                                      .map_from_believed = believed,
                                      .stable_support = held,
-                                     .carried = is_told_});
+                                     .kidnapped = is_told_});
   }
 
  private:

@@ -187,7 +187,7 @@ TEST(ParticleFilter, CountsAScanTheSameWhateverItsNumberOfBeams) {
 }
 
 /// Share of the weight on the particles near the truth, where as many stand where a moved box would have the robot.
-TEST(ParticleFilter, HoldsAMovedThingForOneWitnessHoweverManyBeamsMeetIt) {
+TEST(ParticleFilter, HoldsAMovedThingForOneObservationHoweverManyBeamsMeetIt) {
   OccupancyGrid map{{200, 200, 0.05, {0.0, 0.0}}, CellState::kFree};
   OccupancyGrid world = map;
   for (OccupancyGrid* grid : {&map, &world}) {

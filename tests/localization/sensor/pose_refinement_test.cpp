@@ -15,7 +15,7 @@ motion::BeamEnds ends_from(const OccupancyGrid& map, const Pose2& map_from_robot
   return test::cast_ends(map, map_from_robot, {.noise_m = 0.005});
 }
 
-TEST(Refinement, SlidesAPoseToWhereTheScanFits) {
+TEST(Refinement, MovesAPoseToWhereTheScanFits) {
   const OccupancyGrid map = test::pillar_room();
   const LikelihoodField field{map, {}};
   const PoseCovariance loose = Eigen::Vector3d{0.04, 0.04, 0.01}.asDiagonal();
@@ -30,7 +30,7 @@ TEST(Refinement, SlidesAPoseToWhereTheScanFits) {
   }
 }
 
-TEST(Refinement, DoesNotSlideAlongACorridorThatShowsNoEnd) {
+TEST(Refinement, DoesNotMoveAlongACorridorThatShowsNoEnd) {
   OccupancyGrid corridor{{800, 60, 0.05, {-20.0, -1.5}}, CellState::kOccupied};
   test::fill_box(corridor, {-20.0, -1.0}, {20.0, 1.0}, CellState::kFree);
   const motion::BeamEnds ends = test::cast_ends(corridor, {0.0, 0.0, 0.0}, {.max_range_m = 8.0});

@@ -56,7 +56,7 @@ TEST(SurfaceMeasurement, FindsNothingWhereTheWallStandsInItsPlace) {
   EXPECT_TRUE(seen.has_turn);
 }
 
-TEST(SurfaceMeasurement, IsStrangeWhereTheWallIsExpectedElsewhereThanItStands) {
+TEST(SurfaceMeasurement, IsFarOffWhereTheWallIsExpectedElsewhereThanItStands) {
   const SurfaceStand moved{.offset_m = 0.2, .turn_rad = 0.01, .offset_m2 = 1e-4, .turn_rad2 = 1e-5};
   const SurfaceMeasurement seen = measurement_of(sighted(kWallAhead, kBesideIt, moved.offset_m, moved.turn_rad, 1.0),
                                                  kBesideIt, OffsetState::offset_of(0));

@@ -130,7 +130,7 @@ Sighting sighting_of(const Point2& centre, double off_m) {
           .scatter = Eigen::Vector2d{0.0, 1.0}.asDiagonal()};
 }
 
-TEST(SupportingFaces, CountThePiecesOfOneFaceAsOneWitness) {
+TEST(SupportingFaces, CountThePiecesOfOneFaceAsOneObservation) {
   const std::vector<Sighting> seen{sighting_of({4.0, 0.0}, 0.02), sighting_of({4.0, 2.0}, 0.01),
                                    sighting_of({6.0, 9.0}, 0.0)};
   const std::vector<SupportingFace> faces = supporting_faces(seen, {}, 0.08);

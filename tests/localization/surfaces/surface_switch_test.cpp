@@ -41,7 +41,7 @@ TEST(SurfaceSwitch, TellsAMovedSurfaceFromOneThatHolds) {
   EXPECT_GT(holds_after(0.15, 0.2), 0.5) << "a pose that may be off explains it as well";
 }
 
-TEST(SurfaceSwitch, TakesTwoHalvesOfOneFaceForOneWitness) {
+TEST(SurfaceSwitch, TakesTwoHalvesOfOneFaceForOneObservation) {
   // Pieces of one face, seen 0.1 m off: whether the pose or the face is off, both halves say the same.
   const auto pose_after = [](int pieces) {
     OffsetState state;

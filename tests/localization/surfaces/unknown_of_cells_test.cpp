@@ -39,7 +39,7 @@ TEST_F(Walls, AverageOutWhereEachStandsOffInItsOwnWay) {
   EXPECT_NEAR(unknown()(1, 1), kCell_m2 / 8.0, 0.3 * kCell_m2 / 8.0);
 }
 
-TEST_F(Walls, AreOneWitnessWhereAllStandOffAlike) {
+TEST_F(Walls, AreOneObservationWhereAllStandOffAlike) {
   stand(kAlongX, std::vector<double>(8, 0.03));
   stand(kAlongY, std::vector<double>(8, -0.02));
   EXPECT_GT(unknown()(0, 0), 0.8 * kCell_m2);
