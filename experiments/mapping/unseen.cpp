@@ -45,14 +45,9 @@ std::vector<SpreadAsked> asked() {
 
 /// What kept the gate shut longest while the pose was right.
 std::string longest_shut_by(const Outcome& outcome) {
-  std::string longest;
-  double most_s = 0.0;
-  for (const std::string& why : all_whys_shut()) {
-    const double shut_s = outcome.number(shut_number(why));
-    if (shut_s > most_s) longest = why;
-    most_s = std::max(most_s, shut_s);
-  }
-  return longest;
+  const std::vector<std::string> whys = all_whys_shut();
+  const auto shut_s = [&](const std::string& why) { return outcome.number(shut_number(why)); };
+  return *std::ranges::max_element(whys, {}, shut_s);
 }
 
 /// Why a drive counts as failed; empty where it does not.

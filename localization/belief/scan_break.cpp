@@ -77,11 +77,9 @@ void ScanBreak::keep(const FollowedScan& now) {
 /// By the wheels or by the estimate, whichever explains the scan better.
 std::optional<ScanBreak::Shares> ScanBreak::least_compared(const FollowedScan& now) const {
   const auto by_wheels = compared(now, inverse(now.odom_from_robot) * odom_from_robot_);
-  if (!by_wheels || by_wheels->nearer + by_wheels->farther == 0.0) return by_wheels;
+  if (!by_wheels || by_wheels->both() == 0.0) return by_wheels;
   const auto by_estimate = compared(now, inverse(now.map_from_robot) * map_from_robot_);
-  if (!by_estimate) return by_wheels;
-  const bool estimate_is_better = by_estimate->nearer + by_estimate->farther < by_wheels->nearer + by_wheels->farther;
-  return estimate_is_better ? by_estimate : by_wheels;
+  return by_estimate && by_estimate->both() < by_wheels->both() ? by_estimate : by_wheels;
 }
 
 /// A heading that is wrong from the start moves the end aside by wheels_rad_per_m · way² / 2.
@@ -106,7 +104,7 @@ bool ScanBreak::observe(const FollowedScan& now) {
   const Shares usual = usual_.value_or(Shares{});
   const Shares more{shares->nearer - usual.nearer, shares->farther - usual.farther};
   const double most = std::min(more.nearer, more.farther) >= params_.each_way ? params_.most : params_.most_one_way;
-  if (more.nearer + more.farther > most) return true;
+  if (more.both() > most) return true;
   const double weight = std::min(1.0, passed_s / kUsualS);
   usual_ = Shares{usual.nearer + weight * (shares->nearer - usual.nearer),
                   usual.farther + weight * (shares->farther - usual.farther)};

@@ -51,6 +51,7 @@ class ScanBreak {
   struct Shares {
     double nearer = 0.0;
     double farther = 0.0;
+    [[nodiscard]] double both() const { return nearer + farther; }
   };
   /// Of the beams that can be compared; nothing where those are too few.
   [[nodiscard]] std::optional<Shares> compared(const FollowedScan& now, const Pose2& now_from_last) const;

@@ -83,9 +83,8 @@ std::string scans_line(const Json& s) {
 /// What driving has told of the wheels and of the laser's mount, with deviations.
 std::string wheels_lines(const Json& s) {
   if (!s.contains("calibration") || !s["calibration"].is_object()) return line("wheels", "%s", "nothing found yet");
-  const auto found = [&](const char* what) { return number(s["calibration"], what); };
-  const Json deviations = s["calibration"].value("deviations", Json::object());
-  const auto unsure = [&](const char* what) { return number(deviations, what); };
+  const auto found = [&](const std::string& what) { return number(s, ("/calibration" + what).c_str()); };
+  const auto unsure = [&](const std::string& what) { return found("/deviations" + what); };
   return line("wheels", "distance %+.2f ± %.2f %%, turn %+.2f ± %.2f %%, drift %+.3f ± %.3f deg/m, lag %.0f ± %.0f ms",
               found("/distance_percent"), unsure("/distance_percent"), found("/turn_percent"), unsure("/turn_percent"),
               found("/drift_deg_per_m"), unsure("/drift_deg_per_m"), found("/lag_ms"), unsure("/lag_ms")) +

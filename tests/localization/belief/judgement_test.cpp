@@ -110,18 +110,30 @@ StabilityRecord lived_in(const OccupancyGrid& map) {
   return stability.record();
 }
 
-TEST(Judgement, CallsNoPoseRightThatSomebodyMayHaveCarriedTheRobotFrom) {
+/// A robot in a flat whose walls have proven to stay.
+class JudgementInAFlat : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(judgement.restore(lived_in(map)));
+    judgement.start(0.9);
+  }
+
+  /// A new view from a pose, which is believed to be `believed`.
+  void see_from(const Pose2& map_from_robot, const hypotheses::HypothesisReport& hypotheses) {
+    see(judgement, map, test::cast_scan(map, map_from_robot, robot.now(), {}, random), believed, hypotheses);
+  }
+
   const OccupancyGrid map = test::drawn_flat();
   const sensor::RefinedPose believed{{4.0, 1.6, 0.1}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal()};
-  Random random{3};
   Judgement judgement{map, {}};
-  ASSERT_TRUE(judgement.restore(lived_in(map)));
-  judgement.start(0.9);
   AisleDrive robot;
+  Random random{3};
+};
+
+TEST_F(JudgementInAFlat, CallsNoPoseRightThatSomebodyMayHaveCarriedTheRobotFrom) {
   follow_for_two_minutes(judgement, robot);
   for (const double if_kidnapped : {0.0, 0.3, 0.0}) {
-    const Scan scan = test::cast_scan(map, believed.map_from_robot, robot.now(), {}, random);
-    see(judgement, map, scan, believed, believed_if_not_kidnapped(if_kidnapped));
+    see_from(believed.map_from_robot, believed_if_not_kidnapped(if_kidnapped));
     for (const bool fixed : {false, true}) {
       judgement.fix_by_surfaces(fixed);
       const Belief belief = judgement.belief();
@@ -131,27 +143,16 @@ TEST(Judgement, CallsNoPoseRightThatSomebodyMayHaveCarriedTheRobotFrom) {
   }
 }
 
-TEST(Judgement, IsAsRightAsWrongFromTheScanOnThatTellsOfAKidnapping) {
-  const OccupancyGrid map = test::drawn_flat();
-  const sensor::RefinedPose believed{{4.0, 1.6, 0.1}, Eigen::Vector3d{1e-4, 1e-4, 1e-5}.asDiagonal()};
-  Random random{3};
-  Judgement judgement{map, {}};
-  ASSERT_TRUE(judgement.restore(lived_in(map)));
-  judgement.start(0.9);
-  AisleDrive robot;
-  const auto see_from = [&](const Pose2& map_from_robot) {
-    const Scan scan = test::cast_scan(map, map_from_robot, robot.now(), {}, random);
-    see(judgement, map, scan, believed, believed_with(1.0));
-  };
+TEST_F(JudgementInAFlat, IsAsRightAsWrongFromTheScanOnThatTellsOfAKidnapping) {
   for (int i = 0; i < 150; ++i) {
     judgement.follow(robot.next(), true);
-    see_from(believed.map_from_robot);
+    see_from(believed.map_from_robot, believed_with(1.0));
   }
   ASSERT_EQ(judgement.belief().verdict, PoseVerdict::kRight);
   robot.carried_m = 2.5;
   judgement.follow(robot.next(), true);
   for (int i = 0; i < 50 && !judgement.belief().fits_worse; ++i) {
-    see_from({6.0, 2.0, 2.0});
+    see_from({6.0, 2.0, 2.0}, believed_with(1.0));
     judgement.follow(robot.next(), true);
   }
   ASSERT_TRUE(judgement.belief().fits_worse);
