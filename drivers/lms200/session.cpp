@@ -137,6 +137,7 @@ void Lms200Session::take_scan(const Telegram& telegram, Lms200Output& out) {
     ++content_counts_.malformed;
     return;
   }
+  scan->time = scan_times_.next(scan->time, scan->received);
   scan->number = next_scan_number_++;
   out.scans.push_back(std::move(*scan));
 }

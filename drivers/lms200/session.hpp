@@ -19,6 +19,7 @@
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
 #include "drivers/lms200/telegram.hpp"
+#include "drivers/monotonic_times.hpp"
 #include "drivers/session.hpp"
 
 namespace deltamap::drivers::lms200 {
@@ -144,6 +145,7 @@ class Lms200Session {
   LineDiagnosis diagnosis_{Device::kLaser};  // of the line since the laser was last heard
   DecoderCounts content_counts_;             // malformed and unknown, on top of the decoder's own
   std::uint32_t next_scan_number_ = 0;
+  MonotonicTimes scan_times_;
   bool was_told_baud_ = false;  // a recording says it itself
 
   // What the laser said about itself.

@@ -84,7 +84,8 @@ void PioneerSession::take_sip(const Packet& packet, Timestamp now, PioneerOutput
   newest_sip_ = sip;
   if (newest_sip_->sonar_is_cut) ++content_counts_.malformed;
   const std::chrono::milliseconds latency{config_ ? config_->kinematics_delay_ms : 0};
-  Odometry odometry = odometry_.observe(*newest_sip_, packet.first_byte - latency);
+  Odometry odometry =
+      odometry_.observe(*newest_sip_, odometry_times_.next(packet.first_byte - latency, packet.received));
   odometry.low_battery =
       config_ && odometry.battery_v > 0.0 && odometry.battery_v <= kVoltsPerDecivolt * config_->low_battery_decivolts;
   odometry.fault_flags = newest_sip_->fault_flags.value_or(0);

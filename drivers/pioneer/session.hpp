@@ -20,6 +20,7 @@
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
 #include "drivers/line_diagnosis.hpp"
+#include "drivers/monotonic_times.hpp"
 #include "drivers/pioneer/baud_search.hpp"
 #include "drivers/pioneer/command.hpp"
 #include "drivers/pioneer/command_queue.hpp"
@@ -151,6 +152,7 @@ class PioneerSession {
   SessionMode mode_;
   PacketDecoder decoder_;
   OdometryTracker odometry_;
+  MonotonicTimes odometry_times_;
   DecoderCounts content_counts_;  // malformed and unknown, on top of the decoder's own
   std::optional<RobotIdentity> identity_;
   std::optional<ConfigPacket> config_;

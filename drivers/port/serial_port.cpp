@@ -27,7 +27,7 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 using Steady = std::chrono::steady_clock;
 
-constexpr std::size_t kReadBytes = 4096;
+constexpr std::size_t kReadBytes = 65536;  // more than a terminal keeps for a program that stands still
 constexpr auto kDrainPoll = std::chrono::milliseconds(2);
 constexpr auto kDrainMargin = std::chrono::milliseconds(5);   // for what an adapter holds behind the kernel's queue
 constexpr auto kDrainLimit = std::chrono::milliseconds(500);  // then the baud changes, drained or not
@@ -92,17 +92,31 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
                            });
   }
 
+  /// Reads until nothing waits any more, as one chunk: after a standstill the kernel hands over what has come meanwhile
+  /// in pieces of 4 KiB or less, and each byte is dated by those that followed it (received_bytes.hpp).
   void read() {
-    const ssize_t count = ::read(terminal_, input_.data(), input_.size());
-    const Timestamp stamp = port_clock_now();
-    if (count == 0) return fail("the device hung up");
-    if (count < 0 && errno != EAGAIN && errno != EINTR) {
-      return fail("the device is gone (" + std::generic_category().message(errno) + ")");
+    std::size_t count = 0;
+    Timestamp stamp;
+    std::string gone;
+    while (count < input_.size() && gone.empty()) {
+      const ssize_t fresh = ::read(terminal_, input_.data() + count, input_.size() - count);
+      const int error = errno;
+      if (fresh > 0) {
+        stamp = port_clock_now();
+        count += static_cast<std::size_t>(fresh);
+      } else if (fresh == 0) {
+        gone = "the device hung up";
+      } else if (error == EAGAIN) {
+        break;
+      } else if (error != EINTR) {
+        gone = "the device is gone (" + std::generic_category().message(error) + ")";
+      }
     }
     if (count > 0 && handlers_.on_bytes) {
       const auto on_bytes = handlers_.on_bytes;  // the handler may close this port
-      on_bytes({input_.data(), static_cast<std::size_t>(count)}, stamp);
+      on_bytes({input_.data(), count}, stamp);
     }
+    if (!gone.empty()) return fail(gone);
     if (!closed_ && !failed_) wait_for_input();
   }
 

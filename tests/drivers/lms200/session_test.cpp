@@ -44,6 +44,23 @@ class Lms200SessionTest : public testing::Test {
     EXPECT_FLOAT_EQ(line.messages.back().beams[100].range_m, 1.5F);
   }
 
+  void expect_the_recording_to_tell_the_same() {
+    Lms200Session listener{Lms200Params{.units = Units::kCentimetre}, SessionMode::kListenOnly};
+    std::vector<Scan> heard;
+    for (const tests::SentBytes& chunk : line.received) {
+      const Lms200Output out = listener.on_bytes(chunk.bytes, chunk.at);
+      EXPECT_TRUE(out.output.requests.empty());
+      EXPECT_FALSE(out.output.wake_at);
+      heard.insert(heard.end(), out.scans.begin(), out.scans.end());
+    }
+    ASSERT_EQ(heard.size(), line.messages.size());
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+      EXPECT_EQ(heard[i].time, line.messages[i].time);
+      EXPECT_EQ(heard[i].beams[7].range_m, line.messages[i].beams[7].range_m);
+      EXPECT_EQ(heard[i].number, line.messages[i].number);
+    }
+  }
+
   TestedSession session{Lms200Params{}, SessionMode::kLive};
   FakeLaser laser{9600};
   tests::Conversation<TestedSession, FakeLaser> line{session, laser};
@@ -315,20 +332,22 @@ TEST_F(Lms200SessionTest, ListeningToTheRecordingGivesTheSameScansAndWritesNothi
   laser.is_streaming = true;
   ASSERT_TRUE(stream());
   line.run_for(3.0);
-  Lms200Session listener{Lms200Params{.units = Units::kCentimetre}, SessionMode::kListenOnly};
-  std::vector<Scan> heard;
-  for (const tests::SentBytes& chunk : line.received) {
-    const Lms200Output out = listener.on_bytes(chunk.bytes, chunk.at);
-    EXPECT_TRUE(out.output.requests.empty());
-    EXPECT_FALSE(out.output.wake_at);
-    heard.insert(heard.end(), out.scans.begin(), out.scans.end());
+  expect_the_recording_to_tell_the_same();
+}
+
+TEST_F(Lms200SessionTest, GoesOnInOrderAfterAStandstillAndTheRecordingTellsTheSame) {
+  use({.variant = {180, 100}});
+  ASSERT_TRUE(stream());
+  for (const std::size_t piece : {std::size_t{62}, std::size_t{600}, std::size_t{4096}}) {
+    line.run_for(1.0);
+    line.stand_still_for(0.9, piece);
   }
-  ASSERT_EQ(heard.size(), line.messages.size());
-  for (std::size_t i = 0; i < heard.size(); ++i) {
-    EXPECT_EQ(heard[i].time, line.messages[i].time);
-    EXPECT_EQ(heard[i].beams[7].range_m, line.messages[i].beams[7].range_m);
-    EXPECT_EQ(heard[i].number, line.messages[i].number);
+  line.run_for(1.0);
+  EXPECT_GT(line.messages.size(), 40u);
+  for (std::size_t i = 1; i < line.messages.size(); ++i) {
+    EXPECT_GT(line.messages[i].time, line.messages[i - 1].time) << i;
   }
+  expect_the_recording_to_tell_the_same();
 }
 
 TEST(Lms200Listening, AssumesTheWantedModeWhereARecordingNeverTellsIt) {

@@ -316,7 +316,14 @@ TEST_F(PioneerSessionTest, ListeningToTheRecordingGivesTheSameOdometryAndWritesN
   ASSERT_TRUE(connect());
   line.run_for(1.0);
   line.carry_out(session.drive({line.now, 0.3, 0.0}, line.now));
-  line.run_for(2.0);
+  for (const std::size_t piece : {std::size_t{20}, std::size_t{62}, std::size_t{4096}}) {
+    line.run_for(1.0);
+    line.stand_still_for(0.9, piece);
+  }
+  line.run_for(1.0);
+  for (std::size_t i = 1; i < line.messages.size(); ++i) {
+    EXPECT_GT(line.messages[i].time, line.messages[i - 1].time) << i;
+  }
   PioneerSession listener{PioneerParams{.model = "p3dx"}, SessionMode::kListenOnly};
   EXPECT_TRUE(listener.start(line.now).output.requests.empty());
   std::vector<Odometry> heard;

@@ -95,6 +95,19 @@ TEST(SerialPort, CarriesEveryByteValueBothWaysUnchanged) {
   EXPECT_LE(stamp, port_clock_now());
 }
 
+TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 500000);
+  ASSERT_TRUE(port) << refused;
+  std::vector<std::size_t> chunks;
+  port->start({[&](std::span<const std::uint8_t> bytes, Timestamp) { chunks.push_back(bytes.size()); }, {}});
+  constexpr std::size_t kScans = 15;
+  for (std::size_t i = 0; i < kScans; ++i) device.send(Bytes(732, 0x02));  // more than a terminal gives at once
+  run_until(loop, [&] { return !chunks.empty(); });
+  EXPECT_EQ(chunks, std::vector<std::size_t>{kScans * 732});
+}
+
 TEST(SerialPort, ChangesTheBaudAfterTheBytesBeforeAndBeforeTheBytesAfter) {
   PseudoTerminal device;
   boost::asio::io_context loop;

@@ -50,6 +50,26 @@ class Conversation {
     return condition();
   }
 
+  /// Time passes and the device goes on, but whoever feeds the session stands still: what has come meanwhile is handed
+  /// over afterwards, in pieces that are read one right after the other.
+  void stand_still_for(double duration_s, std::size_t piece) {
+    const Timestamp end = now + duration_from_seconds(duration_s);
+    std::vector<std::uint8_t> waiting;
+    while (now < end) {
+      now += std::chrono::milliseconds{1};
+      device_.tick(now);
+      while (!device_.outgoing.empty() && device_.outgoing.front().at <= now) {
+        const std::vector<std::uint8_t> bytes = next_arrived();
+        waiting.insert(waiting.end(), bytes.begin(), bytes.end());
+      }
+    }
+    for (std::size_t begin = 0; begin < waiting.size() && !failed; begin += piece) {
+      const auto from = waiting.begin() + static_cast<std::ptrdiff_t>(begin);
+      hand_over({from, from + static_cast<std::ptrdiff_t>(std::min(piece, waiting.size() - begin))});
+      now += std::chrono::microseconds{20};
+    }
+  }
+
   /// Does what the session asks for; for calls that the test makes itself, too.
   template <typename Output>
   void carry_out(Output output) {
@@ -87,16 +107,24 @@ class Conversation {
     now += std::chrono::milliseconds{1};
     device_.tick(now);
     while (!device_.outgoing.empty() && device_.outgoing.front().at <= now) {
-      std::vector<std::uint8_t> bytes = std::move(device_.outgoing.front().bytes);
-      device_.outgoing.erase(device_.outgoing.begin());
-      if (line_baud != device_.baud()) {
-        for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(byte * 7u + 13u);
-      }
-      received.push_back({now, bytes});
-      carry_out(session_.on_bytes(bytes, now));
+      hand_over(next_arrived());
       if (failed) return;
     }
     if (wake_at && *wake_at <= now) carry_out(session_.on_time(now));
+  }
+
+  std::vector<std::uint8_t> next_arrived() {
+    std::vector<std::uint8_t> bytes = std::move(device_.outgoing.front().bytes);
+    device_.outgoing.erase(device_.outgoing.begin());
+    if (line_baud != device_.baud()) {
+      for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(byte * 7u + 13u);
+    }
+    return bytes;
+  }
+
+  void hand_over(const std::vector<std::uint8_t>& bytes) {
+    received.push_back({now, bytes});
+    carry_out(session_.on_bytes(bytes, now));
   }
 
   template <typename Output>
