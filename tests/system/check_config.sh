@@ -20,13 +20,17 @@ as_other=()
 plain=("${on_the_world[@]}" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser"
   --set map.store= --set recording.file= --set control.socket=)
 # A sound store with its first map, to copy.
-timeout -s TERM 2 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/sound.sqlite" 2>/dev/null || true
+"$bin/deltamapd" "${plain[@]}" --set map.store="$out/sound.sqlite" 2>"$out/sound.log" &
+daemon=$!
+await "no daemon to begin with" said ' robot: .*no_robot' "$out/sound.log"
+kill "$daemon" && wait "$daemon" || fail "the first daemon did not end well"
+daemon=
 [[ -s $out/sound.sqlite && ! -e $out/sound.sqlite-wal ]] || fail "no store to begin with"
 
 # checked OPTION...: the verdict of --check-config; absent devices are no matter here
 checked() {
   local code=0
-  timeout -s KILL 20 "$@" --check-config >"$out/check.log" 2>&1 || code=$?
+  timeout -s KILL 120 "$@" --check-config >"$out/check.log" 2>&1 || code=$?
   [[ $code == 0 || $code == 2 ]] || fail "--check-config ends with $code"
   ((code == 0)) || { echo error; return; }
   grep '^warning' "$out/check.log" | grep -vq '^warning  \(robot\|laser\) ' && echo warning || echo ok
@@ -36,11 +40,8 @@ started() {
   : >"$out/start.log"  # the lines of the start before must not be taken for this one's
   "$@" 2>"$out/start.log" &
   daemon=$!
-  for _ in $(seq 200); do  # the pipeline is up where it looks for the devices
-    grep -q ' robot: .*no_robot' "$out/start.log" && break
-    kill -0 "$daemon" 2>/dev/null || break
-    sleep 0.05
-  done
+  # The pipeline is up where it looks for the devices.
+  until said ' robot: .*no_robot' "$out/start.log" || has_ended "$daemon"; do sleep 0.05; done
   local code=0
   kill -TERM "$daemon" 2>/dev/null || true
   wait "$daemon" || code=$?
@@ -102,7 +103,7 @@ agree error "--out onto the map" -- --set map.file="$place/map.yaml" --out "$pla
 new_place
 "$bin/deltamapd" "${plain[@]}" --set map.store="$place/store.sqlite" --set recording.file="$place/bytes.pcapng" --out "$place/run" 2>"$out/holder.log" &
 holder=$!
-for _ in $(seq 200); do [[ -e $place/run/.lock && -s $place/bytes.pcapng ]] && break; sleep 0.05; done
+await "the daemon that holds all is not up" said ' robot: .*no_robot' "$out/holder.log"
 agree error "a store in use" -- --set map.store="$place/store.sqlite"
 agree error "a recording in use" -- --set recording.file="$place/bytes.pcapng"
 agree error "an --out in use" -- --out "$place/run"

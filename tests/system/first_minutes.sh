@@ -28,12 +28,9 @@ play() {
   cd "$place"
   "$@" bash -eu first >first.log 2>&1 &
   daemon=$!
-  for _ in $(seq 300); do
-    [[ -S run/ctl.sock ]] && break
-    kill -0 "$daemon" 2>/dev/null || fail "the daemon has ended"
-    sleep 0.1
-  done
-  "$@" bash -eu second >second.log 2>&1 || fail "ctl has failed"
+  answers() { "$@" bash -eu second >second.log 2>&1; }
+  await "no socket" test -S run/ctl.sock
+  await "ctl has failed" answers "$@"
   grep -q 'no scan yet' second.log || fail "no status"
   kill -TERM "$daemon"
   wait "$daemon" || fail "the daemon did not end with 0"

@@ -20,19 +20,10 @@ mkdir "$disk/run"
   --set control.socket="$out/ctl.sock" --set localization.memory.pose_period_s=0.5 --set mapping.persistence_s=3 \
   --initial-pose 1,2,0 --out "$disk/run" 2>"$out/daemon.log" &
 daemon=$!
-number() { ctl status --json | grep -o "\"$1\":[0-9]*" | head -n 1 | cut -d: -f2; }
-# reached WHAT N SECONDS: a count of the status
-reached() {
-  for _ in $(seq "$3"); do
-    kill -0 "$daemon" 2>/dev/null || fail "the daemon has ended"
-    [[ $(number "$1" 2>/dev/null || echo 0) -ge $2 ]] && return
-    sleep 1
-  done
-  fail "$1 does not reach $2"
-}
-reached localized 1 60
-ctl drive wander >/dev/null
-reached newest_revision 1 100
+patience_s=600  # a change of the world must lie where the robot comes by
+await "no scan in time" reached localized 1
+await "it does not drive" does drive wander
+await "no revision" reached newest_revision 1
 
 fill() {
   dd if=/dev/zero bs=4k 2>/dev/null >>"$disk/filler" || true
@@ -46,22 +37,17 @@ not_paused() {
   done
 }
 fill
-full_at=$(number newest_revision)
-localized=$(number localized)
-reached newest_revision $((full_at + 2)) 150
-for _ in $(seq 20); do  # a file that is replaced leaves some room for a moment
-  fill
-  [[ -z $(not_paused) ]] && break
-  sleep 1
-done
-[[ -z $(not_paused) ]] || fail "$(not_paused) is not said to pause"
-reached localized $((localized + 100)) 60
+known() { full_at=$(number newest_revision); ((full_at > 0)); }
+await "no status" known
+await "no revision while the disk is full" reached newest_revision $((full_at + 2))
+all_pause() { fill; [[ -z $(not_paused) ]]; }  # a file that is replaced leaves some room for a moment
+await "not all is said to pause" all_pause
+localizes 100
 [[ $(grep -c 'warning saving pauses: store' "$out/daemon.log") == 1 ]] || fail "not one warning of the store"
 
 rm "$disk/filler"
-sleep 12
-ctl status >"$out/status.log"
-grep -q ' not since ' "$out/status.log" && fail "saving does not go on"
+goes_on() { ctl status >"$out/status.log" && ! grep -q ' not since ' "$out/status.log"; }
+await "saving does not go on" goes_on
 kill "$daemon"
 wait "$daemon" || fail "exit code $?"
 daemon=

@@ -3,6 +3,7 @@
 """A planner in another process, with nothing but Python's standard library: the poses of a running daemon, over its socket
 `poses.socket` alone (no page, no control socket). usage: pose_stream.py FOLDER-OF-PROGRAMS"""
 
+import csv
 import json
 import math
 import os
@@ -18,7 +19,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WORLD = ROOT / "config/scenarios/room.yaml"
 SCANS = 40
-PATIENCE_S = 30.0
+PATIENCE_S = 120.0
 
 # The schema of a line (docs/api.md): every key, and what its value may be.
 NUMBER, TEXT, OBJECT = (int, float), str, dict
@@ -68,12 +69,12 @@ def check_pose(pose):
     check(isinstance(pose["gate"]["open"], bool), "the gate is neither open nor shut")
 
 
-def started(bin_folder, place, log):
+def started(bin_folder, place, log, *options):
     settings = {"robot.port": place / "robot", "laser.port": place / "laser", "map.file": place / "m0.yaml", "poses.socket": place / "made/poses.sock",
                 "map.store": "", "control.socket": "", "recording.file": ""}
     words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
     return subprocess.Popen([bin_folder / "deltamapd", "--config", "config/simulation.yaml", "--set", "dashboard.port=0", "--set", "dashboard.control=false",
-                             "--initial-pose", "1,2,0", *words], stdout=log, stderr=log)
+                             "--initial-pose", "1,2,0", *words, *options], stdout=log, stderr=log)
 
 
 def run(bin_folder, place, log):
@@ -94,13 +95,13 @@ def run(bin_folder, place, log):
         poses = [planner.next() for _ in range(SCANS)]
         for pose in poses:
             check_pose(pose)
-        scans = [pose["scan"] for pose in poses]
-        check(scans == list(range(scans[0], scans[0] + SCANS)), f"scans are missing: {scans}")
-        check(all(a["time"] < b["time"] for a, b in zip(poses, poses[1:])), "time steps back")
-        age_s = time.time() - poses[-1]["time"]
-        check(0 < age_s < 5, f"the newest pose is {age_s:.2f} s old")
-        last = poses[-1]
-        check(last["state"] == "tracking", f"the robot is not tracked: {last}")
+        for before, pose in zip(poses, poses[1:]):
+            check(before["scan"] < pose["scan"] and before["time"] < pose["time"], f"time steps back: {before}, {pose}")
+        # A busy machine may be late now and then, but not for ever.
+        last, give_up_at = poses[-1], time.monotonic() + PATIENCE_S
+        while not (0 < time.time() - last["time"] < 5 and last["state"] == "tracking"):
+            check(time.monotonic() < give_up_at, f"at {time.time():.2f} the newest pose is late, or of a robot that is not tracked: {last}")
+            last = planner.next()
         check(math.hypot(last["x_m"] - 1, last["y_m"] - 2) < 0.5, f"the robot stands at 1, 2: {last}")
         # A daemon that was killed leaves its socket: the next one takes it over.
         processes[1].send_signal(signal.SIGKILL)
@@ -108,7 +109,7 @@ def run(bin_folder, place, log):
         while planner.next() is not None:
             pass
         check(path.exists(), "a killed daemon cannot have removed its socket")
-        processes[1] = started(bin_folder, place, log)
+        processes[1] = started(bin_folder, place, log, "--out", place / "run")
         give_up_at = time.monotonic() + PATIENCE_S
         while True:
             check(time.monotonic() < give_up_at, "no poses after the restart")
@@ -117,11 +118,17 @@ def run(bin_folder, place, log):
                 break
             except ConnectionRefusedError:
                 time.sleep(0.05)
-        check(again.next()["type"] == "hello" and again.next()["type"] == "pose", "no poses after the restart")
+        check(again.next()["type"] == "hello", "no poses after the restart")
+        scans = [again.next()["scan"] for _ in range(SCANS)]
         processes[1].terminate()
-        check(processes[1].wait(60) == 0, "the daemon did not end well")
+        check(processes[1].wait(PATIENCE_S) == 0, "the daemon did not end well")
         while again.next() is not None:
             pass
+        # Where a busy machine has left out scans, nobody has their poses.
+        with (place / "run/localization.csv").open() as rows:
+            localized = [int(row["number"]) for row in csv.DictReader(rows)]
+        wanted = [scan for scan in localized if scans[0] <= scan <= scans[-1]]
+        check(scans == wanted, f"scans are missing: {scans} of {wanted}")
         check(not path.exists(), "the socket outlives its daemon")
         stalled.close()
     finally:

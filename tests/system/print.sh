@@ -35,7 +35,7 @@ deltamapd: --set seed=x: seed: needs a whole number (from 0), not 'x'
 END
 for mode in "" --check-config --print-config; do
   code=0
-  timeout -s KILL 20 "$bin/deltamapd" --config "$out/bad.yaml" --set seed=x $mode >"$out/said" 2>"$out/err" || code=$?
+  timeout -s KILL 120 "$bin/deltamapd" --config "$out/bad.yaml" --set seed=x $mode >"$out/said" 2>"$out/err" || code=$?
   [[ $code == 2 ]] || fail "a bad file with '$mode' ends with $code"
   diff "$out/wanted" "$out/err" >&2 || fail "'$mode' tells other mistakes"
 done

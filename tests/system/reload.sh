@@ -13,8 +13,7 @@ write_settings
 setsid "$bin/deltamapd" --config "$out/robot.yaml" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser" --set map.store= --set recording.file= \
   --set control.socket="$out/ctl.sock" 2>"$out/daemon.log" &
 daemon=$!
-for _ in $(seq 100); do ctl status >/dev/null 2>&1 && break; sleep 0.1; done
-ctl status >/dev/null || fail "the daemon does not answer"
+await "the daemon does not answer" does status
 
 # reloads CODE WORDS: by ctl
 reloads() {
@@ -23,11 +22,7 @@ reloads() {
   [[ $code == "$1" ]] || fail "exit code $code in place of $1"
   grep -qF -- "$2" "$out/reload.log" || fail "no line with '$2'"
 }
-# logs WORDS: within three seconds
-logs() {
-  for _ in $(seq 30); do grep -qF -- "$1" "$out/daemon.log" && return; sleep 0.1; done
-  fail "the log has no '$1'"
-}
+logs() { await "the log has no '$1'" grep -qF -- "$1" "$out/daemon.log"; }
 key() { "$bin/deltamapd" --config "$out/robot.yaml" --print-config | grep -c "$1" >/dev/null || fail "the file is not as it should be"; }
 
 reloads 0 "the settings are as they were"

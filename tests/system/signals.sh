@@ -9,10 +9,10 @@ source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 write_first_map
 
 signals_at_start=(--default-signal=HUP,INT,QUIT)
-# started_with PORTS: the words of a daemon's start
+# started_with PORTS [RECORDING]: the words of a daemon's start
 started_with() {
   printf '%s\n' env "${signals_at_start[@]}" "$bin/deltamapd" "${on_the_world[@]}" --set robot.port="$1/robot" --set laser.port="$1/laser" \
-    --set map.store= --set recording.file= --set control.socket="$out/ctl.sock" --initial-pose 1,2,0 --out "$out/run"
+    --set map.store= --set recording.file="${2:-}" --set control.socket="$out/ctl.sock" --initial-pose 1,2,0 --out "$out/run"
 }
 # start PORTS: a daemon that answers, without a terminal
 start() {
@@ -28,22 +28,15 @@ start() {
 start_on_terminal() {
   local words
   rm -rf "$out/run"
-  mapfile -t words < <(started_with "$1")
+  mapfile -t words < <(started_with "$1" "$out/bytes.pcapng")
   printf -v words '%q ' "${words[@]}"
   script --quiet --command "echo \$\$ >$out/pid; exec $words 2>$out/daemon.log" /dev/null >/dev/null 2>&1 </dev/null &
   terminal=$!
-  for _ in $(seq 100); do [[ -s $out/pid ]] && break; sleep 0.1; done
+  await "no daemon on the terminal" test -s "$out/pid"
   daemon=$(<"$out/pid")
   answers
 }
-answers() {
-  for _ in $(seq 100); do
-    ctl status >/dev/null 2>&1 && return
-    kill -0 "$daemon" 2>/dev/null || fail "the daemon has ended"
-    sleep 0.1
-  done
-  fail "the daemon does not answer"
-}
+answers() { await "the daemon does not answer" does status; }
 # stopped SIGNAL: it has ended, and in order
 stopped() {
   local code=0
@@ -68,7 +61,7 @@ signals_at_start=(--ignore-signal=HUP,INT,QUIT)
 start "$out/none"
 for signal in HUP INT QUIT; do kill -s "$signal" "$daemon"; done
 sleep 1.5
-ctl status >/dev/null || fail "a signal that was ignored at the start was not"
+await "a signal that was ignored at the start was not" does status
 kill "$daemon"
 stopped TERM
 signals_at_start=(--default-signal=HUP,INT,QUIT)
@@ -76,24 +69,26 @@ signals_at_start=(--default-signal=HUP,INT,QUIT)
 start "$out/none"
 for signal in PIPE XFSZ TSTP TTIN TTOU; do kill -s "$signal" "$daemon"; done
 sleep 1.5
-ctl status >/dev/null || fail "a signal that is to be ignored was not"
+await "a signal that is to be ignored was not" does status
 kill "$daemon"
 stopped TERM
 
 simulate
 start_on_terminal "$out"
-ctl drive wander >/dev/null
-sleep 8
-[[ $(ctl status --json) == *'"drive":"wander"'* ]] || fail "it does not drive"
+await "it does not drive" does drive wander
+await "nothing says that it drives" tells '"drive":"wander"'
+await "it does not move" moves
 kill -9 "$terminal"
 wait "$terminal" 2>/dev/null || true
-for _ in $(seq 100); do kill -0 "$daemon" 2>/dev/null || break; sleep 0.1; done
-! kill -0 "$daemon" 2>/dev/null || fail "its terminal is gone, and it runs on"
+gone=$daemon
+daemon=
+await "its terminal is gone, and it runs on" has_ended "$gone"
 stopped_in_order HUP
-sleep 0.5
-# The true pose and speed.
-where() { grep -o '"pose":.*' "$out/truth.jsonl" | tail -n 1; }
-before=$(where)
-sleep 1.5
-[[ -n $before && $(where) == "$before" ]] || fail "the robot drives on: $before, then $(where)"
-echo "signals: 14 stop the daemon in order, 5 do nothing, nor do 3 that were ignored at its start; its terminal gone, the robot stands at $before"
+# The speeds that the robot was told, forward (VEL) and turning (RVEL).
+told=$(python3 -c 'import re, sys
+speeds = re.findall(rb"\xfa\xfb\x06[\x0b\x15][\x3b\x1b](..)", open(sys.argv[1], "rb").read(), re.DOTALL)
+print(*(int.from_bytes(speed, "little") for speed in speeds))' "$out/bytes.pcapng")
+[[ $told == *[1-9]* ]] || fail "it was never told to drive: $told"
+[[ $told == *' 0' ]] || fail "the last speed that it was told is none of standing: $told"
+await "the robot drives on" stands
+echo "signals: 14 stop the daemon in order, 5 do nothing, nor do 3 that were ignored at its start; its terminal gone, the robot is told to stand"

@@ -17,7 +17,7 @@ chmod 755 "$out"
 expect() {
   local code=0 wanted=$1 words=$2
   shift 2
-  timeout -s KILL 20 "${as[@]}" "$bin/deltamapd" "${plain[@]}" "$@" 2>"$out/daemon.log" || code=$?
+  timeout -s KILL 120 "${as[@]}" "$bin/deltamapd" "${plain[@]}" "$@" 2>"$out/daemon.log" || code=$?
   [[ $code == "$wanted" ]] || fail "exit code $code in place of $wanted: $*"
   grep '^deltamapd: ' "$out/daemon.log" | grep -q -- "$words" || fail "no line with '$words': $*"
 }
@@ -58,8 +58,7 @@ chmod 755 "$out/forbidden" "$out/mine"
 mkdir "$out/run"
 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/first.log" &
 daemon=$!
-for _ in $(seq 100); do [[ -e $out/run/.lock && -e $out/bytes.pcapng ]] && break; sleep 0.1; done
-sleep 0.5
+await "the first daemon is not up" said ' robot: .*no_robot' "$out/first.log"
 holder="is in use by deltamapd (pid "
 size=$(stat -c %i "$out/bytes.pcapng")
 expect 1 "run: $holder" --out "$out/run"
@@ -78,8 +77,7 @@ rm -f "$out"/store.sqlite-*  # its log holds all of it
 head -c 20000 /dev/urandom >"$out/store.sqlite"
 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/second.log" &
 daemon=$!
-for _ in $(seq 100); do grep -q 'robot' "$out/second.log" && break; sleep 0.1; done
-sleep 0.5
+await "the second daemon is not up" said ' robot: .*no_robot' "$out/second.log"
 kill "$daemon" || fail "the second daemon has ended"
 wait "$daemon" || fail "the second daemon did not end well"
 daemon=

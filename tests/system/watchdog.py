@@ -6,8 +6,10 @@ import concurrent.futures, ctypes, os, pathlib, re, signal, socket, subprocess, 
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STUCK_S = {"io": 10, "localization": 10, "delta": 10, "control": 10, "poses": 10, "map": 100, "recorder": 100}
-SLACK_S = 4.0      # a look a second, and a machine that has other things to do
+EARLY = 0.5        # a look a second, and a machine that has other things to do
+LATE_S = 40.0
 STARVED_S = 16.0   # WatchdogSec of the unit, and a second
+PATIENCE_S = 120.0
 SEIZE, INTERRUPT, DETACH, ALL_CHILDREN = 0x4206, 0x4207, 17, 0x40000000
 libc = ctypes.CDLL(None, use_errno=True)
 libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p]
@@ -55,7 +57,7 @@ class Daemon:
 
 def stuck(daemon, name):
     """What is wrong, or nothing."""
-    if not daemon.is_fed_within(20):
+    if not daemon.is_fed_within(PATIENCE_S):
         return "not fed while everything moves"
     thread = daemon.thread(name)
     trace(SEIZE, thread)
@@ -64,15 +66,15 @@ def stuck(daemon, name):
     began = fed = time.monotonic()
     while daemon.is_fed_within(STARVED_S):
         fed = time.monotonic()
-        if fed - began > STUCK_S[name] + SLACK_S:
+        if fed - began > STUCK_S[name] + LATE_S:
             break
-    if not STUCK_S[name] - SLACK_S < fed - began <= STUCK_S[name] + SLACK_S:
+    if not EARLY * STUCK_S[name] < fed - began <= STUCK_S[name] + LATE_S:
         return "fed for %.1f s after it stood" % (fed - began)
     told = re.findall(r"watchdog is not fed: stage=(\w+) does not move", daemon.log.read_text())
     if not told or set(told) != {name}:
         return "the log names %s" % told
     trace(DETACH, thread)
-    return None if daemon.is_fed_within(STARVED_S) else "not fed when it moves again"
+    return None if daemon.is_fed_within(PATIENCE_S) else "not fed when it moves again"
 
 
 def trial(bin, folder, first_map, name):
