@@ -106,7 +106,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
                [this](bool goes_on, std::uint64_t ticket) {
                  return recorder.from_control().send(RecordOrder{goes_on, ticket});
                },
-           .set_log_level = [this](LogLevel level) { return set_log_level(level); }},
+           .set_log_level = [this](LogLevel level) { return set_log_level(level); },
+           .patience_s = options.control_patience_s},
           options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, page_control(control.get(), io), options.log,
                            options.warn)},

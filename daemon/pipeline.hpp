@@ -30,6 +30,7 @@ class Pipeline {
     std::optional<std::filesystem::path> out;  ///< an existing folder: the files of a replay, while it runs
     PortOpener open;                           ///< empty: the serial devices of the settings
     drivers::SessionMode mode = drivers::SessionMode::kLive;
+    double control_patience_s = 1.0;  ///< with an order of `ctl`; more than it takes to notice that no scan comes
     std::function<void(const std::string&)> log;     ///< any thread: a short line
     std::function<void(const std::string&)> warn{};  ///< any thread: a line on what is degraded; empty: log
     std::function<void(LogLevel)> set_log_level{};   ///< control thread; empty: the log has no levels

@@ -10,12 +10,6 @@ using control::done_line;
 using control::error_line;
 using control::Request;
 
-namespace {
-
-constexpr double kPatience_s = 1.0;  // longer than the localization thread takes to notice that no scan comes
-
-}  // namespace
-
 ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
     : settings_{settings},
       wiring_{std::move(wiring)},
@@ -24,7 +18,7 @@ ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
                .handle = [this](const std::string& line, bool sender_is_gone,
                                 control::Server::Reply reply) { answer(line, sender_is_gone, std::move(reply)); },
                .late_reply = error_line("not answered yet: the daemon is busy, its log will say what became of it"),
-               .patience_s = kPatience_s}} {}
+               .patience_s = wiring_.patience_s}} {}
 
 void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply) {
   const control::RequestAnswer answer = control::request_of_line(line);
@@ -80,7 +74,7 @@ double ControlDesk::silence_s() {
 void ControlDesk::ask(std::string line, control::Server::Reply reply) {
   const Timestamp asked = drivers::port::port_clock_now();
   server_.post([this, asked, line = std::move(line), reply = std::move(reply)]() mutable {
-    const bool is_old = seconds(drivers::port::port_clock_now() - asked) > kPatience_s;
+    const bool is_old = seconds(drivers::port::port_clock_now() - asked) > wiring_.patience_s;
     answer(line, is_old, std::move(reply));
   });
 }

@@ -32,6 +32,7 @@ class ControlDesk {
     std::function<LiveSettings::Outcome()> reload;
     std::function<bool(bool goes_on, std::uint64_t ticket)> record;  ///< false: too busy
     std::function<bool(LogLevel)> set_log_level;                     ///< false: this run's log has no levels
+    double patience_s = 1.0;                                         ///< then a sender is told that the daemon is busy
   };
   /// Listens from now on. Throws sockets::AlreadyServed, or std::runtime_error with one line that names the socket.
   ControlDesk(const Settings& settings, Wiring wiring);

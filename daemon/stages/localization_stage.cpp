@@ -62,16 +62,15 @@ void LocalizationStage::run() {
     while (const auto params = wiring_.wander.try_receive()) {
       if (pilot_) pilot_->set_params(*params);
     }
-    if (seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s) take_commands_without_scan();
-    if (!message) continue;
     // After a stall the queue is drained: all odometry counts, of the scans only the newest.
     batch.clear();
-    batch.push_back(std::move(*message));
-    while (batch.size() < wiring_.sensors.capacity()) {
-      auto more = wiring_.sensors.try_receive();
-      if (!more) break;
-      batch.push_back(std::move(*more));
+    while (message) {
+      batch.push_back(std::move(*message));
+      message = batch.size() < wiring_.sensors.capacity() ? wiring_.sensors.try_receive() : std::nullopt;
     }
+    // Who stood still has heard nothing either: what waits comes before a word on silence.
+    const bool is_silent = seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s;
+    if (is_silent && !newest_scan_in(batch)) take_commands_without_scan();
     work_off(batch);
   }
   if (!pose_kept_) return;

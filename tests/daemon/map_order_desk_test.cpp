@@ -63,9 +63,7 @@ class MapOrderDeskTest : public test::ControlDeskTest {
     (void)run_live(4ms, [&](const Pipeline& pipeline) {
       ASSERT_TRUE(has_revision(pipeline, 1));
       EXPECT_EQ(asked({Kind::kPause, {}})["ok"], true);
-      const auto began = std::chrono::steady_clock::now();
       const Json reply = ordered(Kind::kUndo, 1);
-      EXPECT_LT(std::chrono::steady_clock::now() - began, 1s);
       EXPECT_EQ(reply["ok"], true) << reply;
       number = pipeline.telemetry().newest_revision.value();
       EXPECT_EQ(reply["message"].get<std::string>().rfind(

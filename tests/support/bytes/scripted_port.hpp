@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two ports that play a recording to the live pipeline, in its order, at any pace: what the pseudo-terminals of the
-// simulator do, without the simulator.
+// simulator do, without the simulator. Where somebody keeps them back, no machine is too slow for what they play.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <future>
+#include <utility>
 
 #include "drivers/port/played_ports.hpp"
 #include "drivers/port/replay_port.hpp"
@@ -14,18 +16,30 @@ namespace deltamap::test {
 
 class ScriptedPorts final : public drivers::port::PlayedPorts {
  public:
+  /// Asked before each record, in the io thread; each may be empty.
+  struct Brakes {
+    std::function<bool()> is_behind{};    ///< what was played is not worked off yet: waits
+    std::function<bool()> wants_scans{};  ///< somebody still needs scans: the last third of the recording dawdles
+  };
   /// Waits `pause` after each record.
-  ScriptedPorts(const std::filesystem::path& recording, std::chrono::microseconds pause)
-      : PlayedPorts{500'000}, script_{recording, {}}, pause_{pause} {}
+  ScriptedPorts(const std::filesystem::path& recording, std::chrono::microseconds pause, Brakes brakes)
+      : PlayedPorts{500'000}, script_{recording, {}}, pause_{pause}, brakes_{std::move(brakes)} {}
 
   /// Ready when the last record has been played.
   [[nodiscard]] std::future<void> played() { return played_.get_future(); }
 
  private:
+  [[nodiscard]] std::chrono::microseconds pause() const {
+    constexpr std::chrono::microseconds kDawdling{50'000};
+    const bool is_last_third = 3 * script_.read_bytes() > 2 * script_.size_bytes();
+    return is_last_third && brakes_.wants_scans && brakes_.wants_scans() ? std::max(pause_, kDawdling) : pause_;
+  }
+
   void play() override {
-    timer_->expires_after(pause_);
+    timer_->expires_after(pause());
     timer_->async_wait([this](const boost::system::error_code& error) {
       if (error || !timer_) return;
+      if (brakes_.is_behind && brakes_.is_behind()) return play();
       const auto next = script_.next();
       if (!next) {
         timer_.reset();
@@ -38,6 +52,7 @@ class ScriptedPorts final : public drivers::port::PlayedPorts {
 
   drivers::port::ReplayPort script_;
   std::chrono::microseconds pause_;
+  Brakes brakes_;
   std::promise<void> played_;
 };
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <functional>
 
@@ -52,16 +53,30 @@ class PipelineFixture : public testing::Test {
     options.start.map = std::make_shared<const OccupancyGrid>(read_grid(folder_.path() / "room.yaml"));
     options.first_map = grid_hash(*options.start.map);
     options.live = live_;
+    options.control_patience_s = 60.0;  // this machine may be busy
     options.log = [](const std::string&) {};
     options.failed = [](const std::string& why) { FAIL() << why; };
     return options;
   }
 
-  /// Plays the drive; `meanwhile` is called while it does.
+  /// Plays the drive; `meanwhile` is called while it does. With a pause after each record nothing is played that the
+  /// localizer has no time for, and there are scans for as long as `meanwhile` takes; without one the ports are faster
+  /// than the localizer.
   daemon::RunReport run_live(
       std::chrono::microseconds pause,
       const std::function<void(const daemon::Pipeline&)>& meanwhile = [](const daemon::Pipeline&) {}) {
-    ScriptedPorts ports{folder_.path() / "drive.pcapng", pause};
+    std::atomic<const daemon::Telemetry*> telemetry = nullptr;
+    std::atomic<bool> is_operated = true;
+    ScriptedPorts::Brakes brakes;
+    if (pause.count() > 0) {
+      brakes.is_behind = [&telemetry] {
+        const daemon::Telemetry* seen = telemetry;
+        return seen == nullptr ||
+               seen->scans.value() > seen->localized.value() + seen->dropped.value() + seen->scans_lost.value();
+      };
+      brakes.wants_scans = [&is_operated] { return is_operated.load(); };
+    }
+    ScriptedPorts ports{folder_.path() / "drive.pcapng", pause, brakes};
     auto played = ports.played();
     std::filesystem::create_directories(folder_.path() / "live");
     daemon::Pipeline::Options live = options();
@@ -72,8 +87,10 @@ class PipelineFixture : public testing::Test {
       return ports.open(loop, id);
     };
     daemon::Pipeline pipeline{settings_, std::move(live)};
+    telemetry = &pipeline.telemetry();
     meanwhile(pipeline);
-    EXPECT_EQ(played.wait_for(std::chrono::seconds(200)), std::future_status::ready);
+    is_operated = false;
+    EXPECT_EQ(played.wait_for(std::chrono::seconds(600)), std::future_status::ready);
     return pipeline.stop();
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connected socket that waits at most 20 s for what it reads.
+// A connected socket that waits at most two minutes for what it reads.
 #pragma once
 
 #include <sys/socket.h>
@@ -15,7 +15,7 @@ class StreamSocket {
  public:
   /// Of AF_UNIX, AF_INET. A receive buffer of 0 is the system's.
   explicit StreamSocket(int family, int receive_buffer = 0) : descriptor_{::socket(family, SOCK_STREAM, 0)} {
-    const timeval patience{20, 0};
+    const timeval patience{120, 0};
     (void)::setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     if (receive_buffer <= 0) return;
     (void)::setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);

