@@ -4,7 +4,11 @@
 set -euo pipefail
 
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+end() {
+  for process in $(jobs -p); do kill "$process" 2> /dev/null || true; done
+  rm -rf "$work"
+}
+trap end EXIT
 cd "$work"
 root=$work/root
 libraries=$root/usr/lib/x86_64-linux-gnu:$root/usr/lib
