@@ -5,8 +5,8 @@
 # Seen: cs_compress keeps both. The product with a vector (cs_gaxpy) adds them up, but the Cholesky, LU and QR solvers
 #   take the last one alone, return 1 for success, and the solution is wrong. cs_dupl has to be called in between.
 # Matters: the residual looks right and the pose graph drifts, as each node forgets all its edges but one.
-# Version: CXSparse of SuiteSparse 5.12.0 (1:5.12.0+dfsg-2). Source: cs.h names cs_dupl, no comment asks for it; the book
-#   "Direct Methods for Sparse Linear Systems", section 2.4, leaves duplicates to it.
+# Version: CXSparse of SuiteSparse 5.12.0 (1:5.12.0+dfsg-2). Source: cs.h declares cs_dupl, and nothing in it asks for it;
+#   CHOLMOD's manual says of cholmod_triplet_to_sparse that duplicates are summed.
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
 

@@ -54,7 +54,7 @@ second=1700000000
 binary=$((second << 20))
 python3 stamps.py write binary.pcapng $((0x80 | 20)) $((binary + 12345)) $((binary + 524288)) $((binary + 1000000))
 copy binary.pcapng pass1.pcapng
-for pass in {1..9}; do copy pass$pass.pcapng pass$((pass + 1)).pcapng; done
+for pass in {1..9}; do copy "pass$pass.pcapng" "pass$((pass + 1)).pcapng"; done
 moved() { for tick in $(python3 stamps.py read "$1"); do printf '%d ' $((tick - binary)); done; }
 stated 'ticks of 2^-20 s: 12345 524288 1000000; after 1 and 10 passes' '12344 524288 999999 ; 12335 524288 999990 ' \
   "$(moved pass1.pcapng); $(moved pass10.pcapng)"

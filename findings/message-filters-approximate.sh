@@ -6,8 +6,8 @@
 #   slop that is there when the scan comes: 40 ms off, then 20, 40, though the exact one is the next message.
 # Matters: a localizer that was tried in Python is fed with odometry 40 ms old (4 cm and 2 degrees at 1 m/s and 1 rad/s),
 #   and the error vanishes, or appears, on the way to C++.
-# Version: message_filters 1.15.15 (1.15.15+ds-2). Source: the ROS wiki on message_filters documents both under one
-#   heading, "ApproximateTime Policy"; only the C++ one is specified (it minimizes the interval of each set).
+# Version: message_filters 1.15.15 (1.15.15+ds-2). Source: the ROS wiki on message_filters/ApproximateTime: the best match,
+#   and the output depends on the stamps, not on the arrival; Python's docstring promises neither, under the same name.
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
 

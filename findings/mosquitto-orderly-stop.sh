@@ -6,8 +6,9 @@
 #   the restart the retained connection state of every robot is CONNECTION_BROKEN.
 # Matters: an update of the broker makes a fleet manager count all robots as lost, and a robot that thinks it has told
 #   ONLINE once and for all stays lost: it has to say ONLINE again after each connect, as VDA 5050 has it.
-# Version: mosquitto 2.0.11 (2.0.11-1.2+deb12u2). Source: mosquitto(8) on signals tells of an orderly end, not of wills;
-#   MQTT 3.1.1 section 3.1.2.5 lists the network's, the client's and the server's failures as reasons for a will.
+# Version: mosquitto 2.0.11 (2.0.11-1.2+deb12u2). Source: MQTT 3.1.1, section 3.1.2.5, lists failures of the network and of the
+#   client and errors of protocol as reasons for a will, no end of the server; VDA 5050 2.1.0, section 6.14, has it sent
+#   only when a connection is unexpectedly interrupted; mosquitto(8) does not speak of wills.
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
 

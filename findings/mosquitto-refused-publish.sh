@@ -22,9 +22,9 @@ for _ in {1..100}; do mosquitto_pub "${server[@]}" -t ready -n 2> /dev/null && b
 stdbuf -oL mosquitto_sub "${server[@]}" -t 'open/#' -t 'closed/#' > heard.log &
 touch robot.log
 stdbuf -oL mosquitto_sub "${server[@]}" -d -i robot -t orders --will-topic closed/will --will-payload broken > robot.log &
-robots=$!
+robots=($!)
 mosquitto_sub "${server[@]}" -i other -t orders --will-topic open/will --will-payload broken &
-robots+=" $!"
+robots+=($!)
 for _ in {1..100}; do grep -q SUBACK robot.log && break; sleep 0.1; done
 sleep 0.5
 acknowledged() {  # VERSION TOPIC: the reason code of the PUBACK
@@ -33,7 +33,7 @@ acknowledged() {  # VERSION TOPIC: the reason code of the PUBACK
 stated 'CONNACK for a will on closed' 'CONNACK (0)' "$(grep -o 'CONNACK (.)' robot.log)"
 stated '3.1.1, PUBACK for open and closed' '0 0' "$(acknowledged mqttv311 open/a) $(acknowledged mqttv311 closed/a)"
 stated '5, PUBACK for closed' 135 "$(acknowledged mqttv5 closed/a)"
-kill -KILL $robots
-wait $robots 2> /dev/null || true
+kill -KILL "${robots[@]}"
+wait "${robots[@]}" 2> /dev/null || true
 sleep 1
 stated 'what a listener heard, both robots killed' 'open/a mqttv311,broken' "$(paste -sd , heard.log)"

@@ -7,7 +7,8 @@
 #   where a CRC-16 of 0x8005 misses none.
 # Matters: a disturbed line needs no luck to pass: neighbouring bytes are enough. Ranges that passed the checksum still
 #   want a check of plausibility, and CRC libraries cannot be used for this laser.
-# Version: MRPT 2.5.8 (1:2.5.8+ds-2). Source: SICK, "Telegram listing LMS2xx", CRC calculation; MRPT calls it "the CRC16".
+# Version: MRPT 2.5.8 (1:2.5.8+ds-2). Source: SICK's "Telegrams for Configuring and Operating the LMS2xx", chapter 9, gives
+#   the same steps; MRPT's crc.h calls it "the CRC16 checksum".
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
 

@@ -6,8 +6,8 @@
 #   8-bit grey, a P5 of 16 bit with maximum 1000 is black but for 0 to 3, white included. Pillow scales both.
 # Matters: a map whose white is 100 (grids of 0..100 written as they are) has no free cell left, as 100 of 255 is below every
 #   free threshold: the planner finds no way, and conversion to text "repairs" it.
-# Version: OpenCV 4.6.0 (4.6.0+dfsg-12), Pillow 9.4.0 (9.4.0-1.1+deb12u1). Source: pgm(5): the grey values are
-#   proportional, with the maximum as white; grfmt_pxm.cpp divides by the maximum where it parses text alone.
+# Version: OpenCV 4.6.0 (4.6.0+dfsg-12), Pillow 9.4.0 (9.4.0-1.1+deb12u1). Source: netpbm's pgm(5): grey is proportional, with
+#   the maximum as white; OpenCV's grfmt_pxm.cpp scales by a table in the text branch and copies in the binary one.
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
 

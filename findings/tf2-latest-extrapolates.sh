@@ -7,7 +7,7 @@
 #   is false, though each of the two links alone is answered at ros::Time(0).
 # Matters: a robot whose odometry stops for 10 s is not shown where it stood: its pose is gone, with a message that
 #   blames a request for the past which nobody made.
-# Version: tf2 0.7.6 (libtf2-2d 0.7.6-1+b2). Source: tf2_ros/buffer.h and the tutorials: "0 will get the latest".
+# Version: tf2 0.7.6 (libtf2-2d 0.7.6-1+b2). Source: buffer_core.h, lookupTransform: "0 will get the latest".
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
 

@@ -4,10 +4,10 @@
 #   origin to the millimetre.
 # Seen: it writes three significant digits. An origin of -12.345 becomes -12.3, -123.456 becomes -123, and 1234.5
 #   becomes 1.23e+03. Small numbers (resolution 0.05) show nothing of it.
-# Matters: a map saved by nav2 lies up to 5 cm off beyond 10 m of its origin's corner, half a metre beyond 100 m, against
-#   the map it was saved from and against poses, stations and zones that were taught on that one.
+# Matters: a map saved by nav2 lies up to 5 cm off where its corner is more than 10 m from the origin, half a metre
+#   beyond 100 m, against the map it was saved from and against poses, stations and zones that were taught on that one.
 # Version: yaml-cpp 0.7.0 (0.7.0+dfsg-8+b1). Source: navigation2, nav2_map_server/src/map_io.cpp (Precision(3) before
-#   resolution and origin); yaml-cpp's "How To Emit YAML" calls Precision an output precision and does not say of what.
+#   resolution and origin); yaml-cpp's issue 761 recommends Precision(3) to somebody who asks for decimal places.
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
 
