@@ -28,7 +28,8 @@ enum class LiveChance : std::uint64_t {
   kCreep,
   kChangedStart,
   kActor,
-  kDoor
+  kDoor,
+  kFaults
 };
 
 devices::PioneerSetup pioneer_setup(const RobotSetup& robot) {
@@ -62,9 +63,12 @@ Simulation::Simulation(const Scenario& scenario, const SimulationParams& params)
       surfaces_{scenario.world},
       body_{scenario.robot.body, scenario.robot.map_from_start, random_for(params.seed, LiveChance::kRobot)},
       range_finder_{scenario.laser.optics, random_for(params.seed, LiveChance::kLaser)},
+      faulty_laser_{random_for(params.seed, LiveChance::kFaults)},
+      fault_schedule_{scenario.faults},
       movers_{{scenario.people, scenario.actors, scenario.doors}, chance_of_movers<LiveChance>(params.seed)},
       pioneer_{pioneer_setup(scenario.robot), random_for(params.seed, LiveChance::kPioneer)},
       lms200_{lms200_setup(scenario.laser), params.start, random_for(params.seed, LiveChance::kLms200)},
+      start_{params.start},
       now_{params.start},
       next_truth_{params.start} {
   if (scenario.forklift) {
@@ -103,13 +107,17 @@ void Simulation::advance_to(Timestamp now) {
 
 void Simulation::run_devices(Timestamp now) {
   now_ = std::max(now_, now);
+  fault_schedule_.apply(seconds(now_ - start_), faults_);
+  pioneer_.suffer(faults_.controller);
   pioneer_.advance(now, history_.wheels_at(now), [&](int index) { return sonar_range_m(index, now); });
   lms200_.advance(now, [&](const devices::SweepRequest& request) { return measure(request); });
 }
 
 void Simulation::move(Timestamp from) {
   const double dt_s = seconds(kStep);
+  body_.suffer(faults_.body);
   body_.move(pioneer_.demand(), dt_s, surfaces_, movers_.bodies().obstacles());
+  note_collisions(from + kStep);
   movers_.move(dt_s, surfaces_, robot_body());
   const RobotState& state = body_.state();
   travelled_m_ += state.speed_m_per_s * dt_s;
@@ -117,8 +125,14 @@ void Simulation::move(Timestamp from) {
   history_.add({from + kStep,
                 state.map_from_robot,
                 {state.odom_from_robot, state.speed_m_per_s, state.turn_rate_rad_per_s, travelled_m_, turned_rad_,
-                 state.stalled, state.contact_bearing_rad},
+                 state.stalled, state.contact ? std::optional{state.contact->bearing_rad} : std::nullopt},
                 movers_.bodies()});
+}
+
+void Simulation::note_collisions(Timestamp now) {
+  const std::size_t before = collisions().size();
+  collisions_.observe(now, body_, surfaces_, movers_.bodies().obstacles());
+  truth_.insert(truth_.end(), collisions().begin() + static_cast<std::ptrdiff_t>(before), collisions().end());
 }
 
 /// What happens at the beginning of a step: what changes the world, and a line of truth now and then.
@@ -163,9 +177,13 @@ std::vector<Beam> Simulation::measure(const devices::SweepRequest& request) {
     sweep.offsets_s.push_back(lms200::beam_offset_s(request.variant, beam));
   }
   const auto at = [&](double offset_s) { return request.begin + duration_from_seconds(offset_s); };
-  const auto readings = range_finder_.measure(
-      sweep, request.max_range_m, surfaces_, [&](double offset_s) { return history_.map_from_robot_at(at(offset_s)); },
-      [&](double offset_s) { return history_.bodies_at(at(offset_s)).surfaces(); });
+  const auto bodies_at = [&](double offset_s) { return history_.bodies_at(at(offset_s)).surfaces(); };
+  const auto readings = faulty_laser_.readings(
+      faults_.laser, sweep, request.max_range_m,
+      [&](double offset_s) { return history_.map_from_robot_at(at(offset_s)); },
+      [&](const Sweep& mounted, const RangeFinder::RobotAt& map_from_robot_at) {
+        return range_finder_.measure(mounted, request.max_range_m, surfaces_, map_from_robot_at, bodies_at);
+      });
   const devices::WheelMotion wheels = history_.wheels_at(request.begin);
   truth_.push_back(TruthPose{request.begin, history_.map_from_robot_at(request.begin), wheels.speed_m_per_s, true});
   std::vector<Beam> beams;

@@ -12,6 +12,10 @@
 #include "core/time.hpp"
 #include "simulation/devices/virtual_lms200.hpp"
 #include "simulation/devices/virtual_pioneer.hpp"
+#include "simulation/faults/faults.hpp"
+#include "simulation/faults/named_fault.hpp"
+#include "simulation/robot/collision_watch.hpp"
+#include "simulation/robot/laser_faults.hpp"
 #include "simulation/robot/motion_history.hpp"
 #include "simulation/scenario/scenario.hpp"
 #include "simulation/scenario/truth.hpp"
@@ -46,6 +50,12 @@ class Simulation {
 
   [[nodiscard]] Pose2 map_from_robot() const { return history_.map_from_robot_at(now_); }
   [[nodiscard]] const World& world() const { return world_; }
+  /// What goes wrong from now on; the scenario's own faults set and clear theirs at their times.
+  [[nodiscard]] Faults& faults() { return faults_; }
+  /// Someone carries the robot there, at once; its wheels notice nothing.
+  void carry_robot_to(const Pose2& map_from_robot) { body_.carry_to(map_from_robot); }
+  /// What its body has bumped into so far.
+  [[nodiscard]] const std::vector<Collision>& collisions() const { return collisions_.collisions(); }
   /// To press their buttons and cut their power.
   [[nodiscard]] devices::VirtualPioneer& robot() { return pioneer_; }
   [[nodiscard]] devices::VirtualLms200& laser() { return lms200_; }
@@ -53,6 +63,7 @@ class Simulation {
  private:
   void run_devices(Timestamp now);
   void move(Timestamp from);
+  void note_collisions(Timestamp now);
   void work(Timestamp now);
   void let_forklift_work(Timestamp now);
   void let_containers_creep(Timestamp now);
@@ -66,6 +77,10 @@ class Simulation {
   RayCaster surfaces_;
   Robot body_;
   RangeFinder range_finder_;
+  FaultyLaser faulty_laser_;
+  Faults faults_;
+  FaultSchedule fault_schedule_;
+  CollisionWatch collisions_;
   Movers movers_;
   std::optional<Forklift> forklift_;
   std::optional<Creep> creep_;
@@ -75,6 +90,7 @@ class Simulation {
   devices::VirtualPioneer pioneer_;
   devices::VirtualLms200 lms200_;
   MotionHistory history_;
+  Timestamp start_;
   Timestamp now_;
   Timestamp next_truth_;
   double travelled_m_ = 0.0;

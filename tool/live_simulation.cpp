@@ -10,10 +10,14 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "simulation/devices/pseudo_terminal.hpp"
 #include "simulation/simulation.hpp"
@@ -126,6 +130,34 @@ void sleep_until(Timestamp wake, const SteadyClock& clock, const StopSignals& si
   ::ppoll(watched.data(), count, &timeout, &signals.while_asleep());
 }
 
+std::string what_is(int object, const simulation::World& world) {
+  const simulation::Object* found = world.find(object);
+  if (found == nullptr) return "something that moves";
+  switch (found->kind) {
+    case simulation::ObjectKind::kWall:
+      return "a wall";
+    case simulation::ObjectKind::kContainer:
+      return "a container";
+    case simulation::ObjectKind::kPost:
+      return "a post";
+    case simulation::ObjectKind::kDoor:
+      return "a door";
+  }
+  return "something";
+}
+
+void tell_collisions(const std::vector<simulation::TruthRecord>& records, const simulation::World& world) {
+  for (const auto& record : records) {
+    const auto* collision = std::get_if<simulation::Collision>(&record);
+    if (collision == nullptr) continue;
+    const Pose2& at = collision->map_from_robot;
+    char line[160];
+    (void)std::snprintf(line, sizeof line, "collision with %s at x=%.2f y=%.2f speed=%.2f m/s",
+                        what_is(collision->object, world).c_str(), at.x, at.y, collision->speed_m_per_s);
+    std::cerr << line << '\n';
+  }
+}
+
 }  // namespace
 
 void run_live(const simulation::Scenario& scenario, const LiveSimulationOptions& options) {
@@ -137,6 +169,9 @@ void run_live(const simulation::Scenario& scenario, const LiveSimulationOptions&
   TruthFile truth{options.truth, scenario.file, options.seed};
   const Timestamp start = clock.now();
   simulation::Simulation simulation{scenario, {options.seed, start, options.change_every_s}};
+  for (const simulation::FaultOrder& order : scenario.faults) {
+    std::cerr << "fault " << simulation::described(order) << ": " << order.fault->meaning << '\n';
+  }
   std::cerr << "robot=" << (options.links / "robot").string() << " laser=" << (options.links / "laser").string()
             << " seed=" << options.seed << '\n';
 
@@ -150,9 +185,12 @@ void run_live(const simulation::Scenario& scenario, const LiveSimulationOptions&
     if (!to_laser.empty()) simulation.send_to_laser(to_laser, laser_baud);
     robot_port.write(simulation.bytes_from_robot(robot_baud));
     laser_port.write(simulation.bytes_from_laser(laser_baud));
-    truth.write(simulation.take_truth());
+    const std::vector<simulation::TruthRecord> records = simulation.take_truth();
+    truth.write(records);
+    tell_collisions(records, simulation.world());
     sleep_until(simulation.next_event(), clock, signals, {&robot_port, &laser_port});
   }
+  std::cerr << "collisions=" << simulation.collisions().size() << '\n';
 }
 
 }  // namespace deltamap::tool

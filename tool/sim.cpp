@@ -2,7 +2,11 @@
 // `deltamap sim`: plays a P3-DX and an LMS200 in a simulated world, or draws that world's first map.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/files/grid_file.hpp"
 #include "simulation/scenario/start_map.hpp"
@@ -17,13 +21,36 @@ struct SimOptions {
   std::string world;
   std::filesystem::path write_map;
   double resolution_m = 0.05;
+  std::string subtype;
+  std::vector<std::string> faults;
+  double fault_after_s = 0.0;
+  std::optional<double> fault_lasts_s;
   LiveSimulationOptions live;
 };
 
+simulation::Scenario wanted_scenario(const SimOptions& options) {
+  simulation::Scenario scenario = simulation::read_scenario(scenario_file(options.world));
+  if (!options.subtype.empty()) scenario = simulation::with_robot(std::move(scenario), options.subtype);
+  for (const std::string& fault : options.faults) {
+    scenario.faults.push_back(simulation::fault_order(fault, options.fault_after_s, options.fault_lasts_s));
+  }
+  return scenario;
+}
+
 void simulate(const SimOptions& options) {
-  const simulation::Scenario scenario = simulation::read_scenario(scenario_file(options.world));
+  const simulation::Scenario scenario = wanted_scenario(options);
   if (options.write_map.empty()) return run_live(scenario, options.live);
   write_grid(simulation::start_map(scenario, options.resolution_m), options.write_map);
+}
+
+/// For wrong usage; empty: none.
+std::string complaint_about_fault(const std::string& text) {
+  try {
+    (void)simulation::fault_order(text);
+    return {};
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
 }
 
 }  // namespace
@@ -37,6 +64,13 @@ void add_sim(CLI::App& app) {
   sim.add_option("--truth", options->live.truth, "write the true pose and every change, JSON lines");
   sim.add_option("--for", options->live.run_s, "end after so many seconds")->check(CLI::PositiveNumber);
   sim.add_option("--change-every", options->live.change_every_s, "seconds between changes, in place of the scenario's")
+      ->check(CLI::PositiveNumber);
+  sim.add_option("--subtype", options->subtype, "the robot that it is, in place of the scenario's: p3dx, p3at, ...");
+  sim.add_option("--fault", options->faults, "something that goes wrong, NAME or NAME=NUMBER; several may be given")
+      ->check(CLI::Validator{[](const std::string& text) { return complaint_about_fault(text); }, "FAULT"});
+  sim.add_option("--fault-after", options->fault_after_s, "seconds from the start until then (default 0)")
+      ->check(CLI::NonNegativeNumber);
+  sim.add_option("--fault-for", options->fault_lasts_s, "seconds that it lasts (default: for ever)")
       ->check(CLI::PositiveNumber);
   sim.add_option("--write-map", options->write_map, "write the map of the world at the start (YAML) and end");
   sim.add_option("--resolution", options->resolution_m, "of that map, m a cell (default 0.05)")

@@ -24,6 +24,22 @@ double braking_speed(double distance, double deceleration, double most) {
 
 }  // namespace
 
+bool SetPoints::is_set_point(CommandNumber number) {
+  switch (number) {
+    case CommandNumber::kVel:
+    case CommandNumber::kRotate:
+    case CommandNumber::kRvel:
+    case CommandNumber::kVel2:
+    case CommandNumber::kMove:
+    case CommandNumber::kHead:
+    case CommandNumber::kDhead:
+    case CommandNumber::kStop:
+      return true;
+    default:
+      return false;
+  }
+}
+
 bool SetPoints::take(const Command& command, const WheelMotion& motion) {
   const int value = command.integer_or(0);
   const auto set_speed = [&](double speed) {

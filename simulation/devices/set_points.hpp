@@ -8,10 +8,9 @@
 #include "core/geometry/pose2.hpp"
 #include "drivers/pioneer/command.hpp"
 #include "simulation/devices/drive_target.hpp"
+#include "simulation/devices/robot_kind.hpp"
 
 namespace deltamap::simulation::devices {
-
-inline constexpr double kHalfTrack_m = 0.1786;  ///< between a wheel and the robot's centre (A7)
 
 /// What the wheels' encoders and the body's sensors tell the controller.
 struct WheelMotion {
@@ -27,6 +26,8 @@ struct WheelMotion {
 /// Values as the robot is delivered (A10: TRANSVELMAX 750 mm/s, ROTVELMAX 100 deg/s, TRANSACC 300, ROTACC 100).
 class SetPoints {
  public:
+  /// A command that says how to move; all but those that stop at once.
+  [[nodiscard]] static bool is_set_point(drivers::pioneer::CommandNumber number);
   /// Takes a command of motion; false for any other.
   bool take(const drivers::pioneer::Command& command, const WheelMotion& motion);
 
@@ -38,6 +39,9 @@ class SetPoints {
   [[nodiscard]] double max_speed_m_per_s() const { return max_speed_m_per_s_; }
   [[nodiscard]] double max_turn_rate_rad_per_s() const { return max_turn_rate_rad_per_s_; }
   [[nodiscard]] const DriveTarget& rates() const { return limits_; }
+
+  /// Since ESTOP.
+  [[nodiscard]] bool is_emergency() const { return emergency_; }
 
   /// The heading that is being held, if one is.
   [[nodiscard]] std::optional<double> heading_rad() const { return heading_rad_; }

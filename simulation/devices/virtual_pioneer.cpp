@@ -43,11 +43,7 @@ std::int16_t millimetres(double metres) { return static_cast<std::int16_t>(std::
 }  // namespace
 
 VirtualPioneer::VirtualPioneer(const PioneerSetup& setup, Random random)
-    : setup_{setup},
-      metres_per_unit_{pioneer::model_named(setup.model).value_or(pioneer::RobotModel{}).metres_per_unit},
-      random_{random},
-      line_{setup.baud, random},
-      decoder_{setup.baud} {}
+    : setup_{setup}, kind_{kind_of(setup.model)}, random_{random}, line_{setup.baud, random}, decoder_{setup.baud} {}
 
 void VirtualPioneer::receive(std::span<const std::uint8_t> bytes, unsigned host_baud, Timestamp now) {
   if (state_ == State::kMaintenance) return;
@@ -93,6 +89,7 @@ void VirtualPioneer::synchronize(const Command& command, Timestamp now) {
 
 void VirtualPioneer::obey(const Command& command, Timestamp now) {
   if (!setup_.takes_limits && is_limit(command)) return;
+  if (faults_.keeps_set_points && SetPoints::is_set_point(command.number)) return;
   if (set_points_.take(command, motion_)) return;
   const int value = command.integer_or(1);
   switch (command.number) {
@@ -171,7 +168,7 @@ void VirtualPioneer::advance(Timestamp now, const WheelMotion& motion, const Son
 void VirtualPioneer::send_cycle(Timestamp now, const Sonar& sonar) {
   line_.send(pioneer::encoded_sip(sip(now, sonar)), now);
   if (encoder_stream_) {
-    const double turned_m = motion_.turned_rad * kHalfTrack_m;
+    const double turned_m = motion_.turned_rad * kind_.half_track_m;
     line_.send(pioneer::encoded_encoder(
                    {static_cast<std::int32_t>(std::llround((motion_.travelled_m - turned_m) * kTicksPerMetre)),
                     static_cast<std::int32_t>(std::llround((motion_.travelled_m + turned_m) * kTicksPerMetre))}),
@@ -182,22 +179,20 @@ void VirtualPioneer::send_cycle(Timestamp now, const Sonar& sonar) {
 
 pioneer::Sip VirtualPioneer::sip(Timestamp now, const Sonar& sonar) {
   const Pose2& pose = motion_.odom_from_robot;
-  const double turn_m_per_s = motion_.turn_rate_rad_per_s * kHalfTrack_m;
-  const int battery_decivolts =
-      fake_battery_decivolts_.value_or(static_cast<int>(std::lround(10.0 * setup_.battery_v)));
+  const double turn_m_per_s = motion_.turn_rate_rad_per_s * kind_.half_track_m;
   pioneer::Sip sip;
   sip.moving = motion_.speed_m_per_s != 0.0 || motion_.turn_rate_rad_per_s != 0.0;
-  sip.x_units = wrapped_units(pose.x, metres_per_unit_);
-  sip.y_units = wrapped_units(pose.y, metres_per_unit_);
+  sip.x_units = wrapped_units(pose.x, kind_.metres_per_unit);
+  sip.y_units = wrapped_units(pose.y, kind_.metres_per_unit);
   sip.heading_units = heading_units(pose.theta);
   sip.left_mm_per_s = millimetres(motion_.speed_m_per_s - turn_m_per_s);
   sip.right_mm_per_s = millimetres(motion_.speed_m_per_s + turn_m_per_s);
-  sip.battery_decivolts = static_cast<std::uint8_t>(std::clamp(battery_decivolts, 0, 255));
   sip.control_units = heading_units(set_points_.heading_rad().value_or(pose.theta));
   if (motors_enabled_) sip.flags |= pioneer::sip_flag::kMotorsEnabled;
   if (stop_button_) sip.flags |= pioneer::sip_flag::kStopButton;
   if (estall_) sip.flags |= pioneer::sip_flag::kEstall;
   if (sonar_on_) sip.flags |= std::uint16_t{1} << 1;
+  if (faults_.charger_power) sip.flags |= pioneer::sip_flag::kChargerPower;
   add_contact(sip);
   add_sonar(sip, now, sonar);
   sip.grip_state = std::uint8_t{0};
@@ -205,11 +200,19 @@ pioneer::Sip VirtualPioneer::sip(Timestamp now, const Sonar& sonar) {
   sip.analog = std::uint8_t{0};
   sip.digital_in = std::uint8_t{0};
   sip.digital_out = std::uint8_t{0};
-  sip.battery_x10_decivolts = static_cast<std::uint16_t>(battery_decivolts);
-  sip.charge_state = std::uint8_t{0};
+  sip.charge_state = faults_.charge_state;
   sip.turn_rate_decideg_per_s = static_cast<std::int16_t>(std::lround(10.0 * degrees(motion_.turn_rate_rad_per_s)));
   sip.fault_flags = fault_flags_;
+  add_battery(sip);
   return sip;
+}
+
+void VirtualPioneer::add_battery(pioneer::Sip& sip) const {
+  if (faults_.tells_no_battery) return;
+  const double battery_v = faults_.battery_v.value_or(setup_.battery_v);
+  const int decivolts = fake_battery_decivolts_.value_or(static_cast<int>(std::lround(10.0 * battery_v)));
+  sip.battery_decivolts = static_cast<std::uint8_t>(std::clamp(decivolts, 0, 255));
+  sip.battery_x10_decivolts = static_cast<std::uint16_t>(decivolts);
 }
 
 void VirtualPioneer::add_contact(pioneer::Sip& sip) const {
@@ -246,7 +249,12 @@ std::optional<Timestamp> VirtualPioneer::next_event() const {
 
 DriveTarget VirtualPioneer::demand() const {
   const bool may_move = state_ == State::kConnected && motors_enabled_ && !watchdog_fired_;
-  return may_move ? set_points_.demand(motion_) : set_points_.standstill();
+  if (!may_move) return set_points_.standstill();
+  DriveTarget demand = set_points_.demand(motion_);
+  if (set_points_.is_emergency()) return demand;
+  demand.speed_m_per_s = faults_.goes_at_m_per_s.value_or(faults_.speed_factor * demand.speed_m_per_s);
+  demand.turn_rate_rad_per_s = faults_.turns_at_rad_per_s.value_or(faults_.turn_factor * demand.turn_rate_rad_per_s);
+  return demand;
 }
 
 std::vector<std::uint8_t> VirtualPioneer::config_frame() const {

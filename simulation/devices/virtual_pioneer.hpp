@@ -15,13 +15,15 @@
 #include "drivers/pioneer/command.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/pioneer/status.hpp"
+#include "simulation/devices/controller_faults.hpp"
+#include "simulation/devices/robot_kind.hpp"
 #include "simulation/devices/serial_line.hpp"
 #include "simulation/devices/set_points.hpp"
 
 namespace deltamap::simulation::devices {
 
 struct PioneerSetup {
-  std::string model = "p3dx-sh";  ///< p3dx-sh or p3dx: unit of the odometry (A7)
+  std::string model = "p3dx-sh";  ///< the subtype that it tells, and is (robot_kind.hpp)
   unsigned baud = 9600;           ///< while nobody is connected
   double sip_cycle_s = 0.1;       ///< A6
   double watchdog_s = 2.0;        ///< A9
@@ -62,6 +64,7 @@ class VirtualPioneer {
   /// Whether ENABLE 1 is obeyed meanwhile is not documented: here it is.
   void begin_estall() { motors_enabled_ = false, estall_ = true; }
   void end_estall() { estall_ = false; }
+  void suffer(const ControllerFaults& faults) { faults_ = faults; }
   void fail(std::uint16_t fault_flags) { fault_flags_ = fault_flags; }
   void press_motors_button() { motors_enabled_ = !motors_enabled_ && !stop_button_; }
 
@@ -82,12 +85,14 @@ class VirtualPioneer {
   void send_cycle(Timestamp now, const Sonar& sonar);
   [[nodiscard]] drivers::pioneer::Sip sip(Timestamp now, const Sonar& sonar);
   void add_sonar(drivers::pioneer::Sip& sip, Timestamp now, const Sonar& sonar);
+  void add_battery(drivers::pioneer::Sip& sip) const;
   void add_contact(drivers::pioneer::Sip& sip) const;
   [[nodiscard]] std::vector<std::uint8_t> config_frame() const;
   [[nodiscard]] std::vector<std::uint8_t> identity_frame() const;
 
   PioneerSetup setup_;
-  double metres_per_unit_;
+  RobotKind kind_;
+  ControllerFaults faults_;
   Random random_;
   SerialLine line_;
   drivers::pioneer::PacketDecoder decoder_;

@@ -44,27 +44,33 @@ void Robot::move(const devices::DriveTarget& target, double dt_s, const RayCaste
                  std::span<const Circle> people) {
   double speed = approached(state_.speed_m_per_s, target.speed_m_per_s, target.acceleration_m_per_s2,
                             target.deceleration_m_per_s2, dt_s);
-  const double turn_rate = approached(state_.turn_rate_rad_per_s, target.turn_rate_rad_per_s,
-                                      target.turn_acceleration_rad_per_s2, target.turn_deceleration_rad_per_s2, dt_s);
+  double turn_rate = approached(state_.turn_rate_rad_per_s, target.turn_rate_rad_per_s,
+                                target.turn_acceleration_rad_per_s2, target.turn_deceleration_rad_per_s2, dt_s);
+  if (faults_.wheels_blocked) speed = turn_rate = 0.0;
+  if (faults_.pushed_m_per_s != 0.0) speed = faults_.pushed_m_per_s;
   const double half_turn_m = turn_rate * params_.half_track_m * dt_s;
   const double true_track_m = params_.half_track_m * (1.0 + params_.track_error);
-  const double left_m = ground_travel_m(left_, speed * dt_s - half_turn_m);
-  const double right_m = ground_travel_m(right_, speed * dt_s + half_turn_m);
-  Pose2 moved = state_.map_from_robot * arc(left_m, right_m, true_track_m);
+  const double left_m = faults_.left_grip * ground_travel_m(left_, speed * dt_s - half_turn_m);
+  const double right_m = faults_.right_grip * ground_travel_m(right_, speed * dt_s + half_turn_m);
+  const Pose2& towed = faults_.towed_per_s;
+  Pose2 moved = state_.map_from_robot * arc(left_m, right_m, true_track_m) *
+                Pose2{towed.x * dt_s, towed.y * dt_s, towed.theta * dt_s};
 
-  const auto contact = contact_at(moved.position(), world, people);
+  const auto contact = contact_at(moved.position(), params_.radius_m, world, people);
   const Point2 step = moved.position() - state_.map_from_robot.position();
   const bool held = contact && step.dot(contact->direction) > 0.0;
+  const double ground_speed = 0.5 * (faults_.left_grip + faults_.right_grip) * std::abs(speed);
   if (held) {
     moved.x = state_.map_from_robot.x;
     moved.y = state_.map_from_robot.y;
     speed = 0.0;
   }
-  state_.stalled = held;
-  state_.contact_bearing_rad.reset();
+  const bool is_towed_alone = left_m == 0.0 && right_m == 0.0;
+  state_.stalled = held && !is_towed_alone;
+  state_.contact.reset();
   if (contact) {
     const double bearing_in_map = std::atan2(contact->direction.y(), contact->direction.x());
-    state_.contact_bearing_rad = turn_between(moved.theta, bearing_in_map);
+    state_.contact = RobotContact{turn_between(moved.theta, bearing_in_map), contact->object, ground_speed};
   }
   state_.map_from_robot = moved;
   state_.odom_from_robot =
@@ -87,17 +93,17 @@ double Robot::ground_travel_m(Wheel& wheel, double encoder_m) {
   return travel_m;
 }
 
-std::optional<Robot::Contact> Robot::contact_at(const Point2& position, const RayCaster& world,
+std::optional<Robot::Contact> Robot::contact_at(const Point2& position, double within_m, const RayCaster& world,
                                                 std::span<const Circle> people) const {
   std::optional<Contact> contact;
-  if (const auto nearest = world.nearest_surface(position, params_.radius_m)) {
-    contact = Contact{nearest->distance_m, nearest->direction};
+  if (const auto nearest = world.nearest_surface(position, within_m)) {
+    contact = Contact{nearest->distance_m, nearest->direction, nearest->object};
   }
   for (const Circle& person : people) {
     const Point2 to_person = person.centre - position;
     const double distance_m = to_person.norm() - person.radius_m;
-    if (distance_m < (contact ? contact->distance_m : params_.radius_m)) {
-      contact = Contact{distance_m, to_person.normalized()};
+    if (distance_m < (contact ? contact->distance_m : within_m)) {
+      contact = Contact{distance_m, to_person.normalized(), kMoverId};
     }
   }
   return contact;

@@ -9,6 +9,7 @@
 #include "core/geometry/pose2.hpp"
 #include "core/random.hpp"
 #include "simulation/devices/drive_target.hpp"
+#include "simulation/robot/body_faults.hpp"
 #include "simulation/world/ray_caster.hpp"
 
 namespace deltamap::simulation {
@@ -34,13 +35,20 @@ struct WheelErrors {
 /// The same robot with these errors in place of its own.
 [[nodiscard]] RobotParams with_wheel_errors(RobotParams body, const WheelErrors& errors);
 
+/// What the body touches.
+struct RobotContact {
+  double bearing_rad = 0.0;    ///< robot frame
+  int object = kMoverId;       ///< id in the world; kMoverId: of nothing that stands in it
+  double speed_m_per_s = 0.0;  ///< of the body by its own wheels when it came to touch
+};
+
 struct RobotState {
-  Pose2 map_from_robot;                       ///< the truth
-  Pose2 odom_from_robot;                      ///< integrated by the wheels' encoders
-  double speed_m_per_s = 0.0;                 ///< by the encoders
-  double turn_rate_rad_per_s = 0.0;           ///< by the encoders
-  bool stalled = false;                       ///< asked to move and held by an obstacle
-  std::optional<double> contact_bearing_rad;  ///< where the body touches one, robot frame
+  Pose2 map_from_robot;              ///< the truth
+  Pose2 odom_from_robot;             ///< integrated by the wheels' encoders
+  double speed_m_per_s = 0.0;        ///< by the encoders
+  double turn_rate_rad_per_s = 0.0;  ///< by the encoders
+  bool stalled = false;              ///< asked to move and held by an obstacle
+  std::optional<RobotContact> contact;
 };
 
 class Robot {
@@ -52,9 +60,15 @@ class Robot {
 
   /// Someone carries it there; its wheels notice nothing.
   void carry_to(const Pose2& map_from_robot) { state_.map_from_robot = map_from_robot; }
+  void suffer(const BodyFaults& faults) { faults_ = faults; }
   /// Its wheels roll that far on the spot; it stands.
   void spin_wheels(const Pose2& robot_from_moved) {
     state_.odom_from_robot = state_.odom_from_robot * robot_from_moved;
+  }
+
+  /// Whether anything is nearer to its body.
+  [[nodiscard]] bool touches(double within_m, const RayCaster& world, std::span<const Circle> people) const {
+    return contact_at(state_.map_from_robot.position(), params_.radius_m + within_m, world, people).has_value();
   }
 
   [[nodiscard]] const RobotState& state() const { return state_; }
@@ -68,12 +82,14 @@ class Robot {
   struct Contact {
     double distance_m;
     Point2 direction;
+    int object;
   };
   [[nodiscard]] double ground_travel_m(Wheel& wheel, double encoder_m);
-  [[nodiscard]] std::optional<Contact> contact_at(const Point2& position, const RayCaster& world,
+  [[nodiscard]] std::optional<Contact> contact_at(const Point2& position, double within_m, const RayCaster& world,
                                                   std::span<const Circle> people) const;
 
   RobotParams params_;
+  BodyFaults faults_;
   Random random_;
   RobotState state_;
   Wheel left_;

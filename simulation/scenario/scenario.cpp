@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/files/text_of_file.hpp"
+#include "simulation/devices/robot_kind.hpp"
 #include "simulation/scenario/scenario_actors.hpp"
 #include "simulation/scenario/scenario_world.hpp"
 #include "simulation/scenario/yaml_section.hpp"
@@ -16,14 +17,18 @@
 namespace deltamap::simulation {
 namespace {
 
+constexpr double kShortestFault_s = 0.01;
+
 template <typename Number, std::size_t kCount>
 void expect_one_of(const YamlSection& section, const std::string& key, Number value,
                    const std::array<Number, kCount>& allowed, const std::string& list) {
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) section.refuse(key, "must be one of " + list);
 }
 
-RobotParams body_of(YamlSection& robot) {
+RobotParams body_of(YamlSection& robot, const devices::RobotKind& kind) {
   RobotParams body;
+  body.radius_m = kind.hull_m;
+  body.half_track_m = kind.half_track_m;
   body.radius_m = robot.number("radius_m", body.radius_m, kSmallest_m, 2.0);
   body.half_track_m = robot.number("half_track_m", body.half_track_m, kSmallest_m, 2.0);
   body.track_error = robot.number("track_error", body.track_error, -0.5, 0.5);
@@ -41,7 +46,7 @@ RobotSetup robot_of(YamlSection robot) {
   const auto start = robot.numbers("start", 3);
   setup.map_from_start = {start[0], start[1], wrapped_angle(radians(start[2]))};
   setup.model = robot.text("model", setup.model);
-  if (setup.model != "p3dx-sh" && setup.model != "p3dx") robot.refuse("model", "must be p3dx-sh or p3dx");
+  if (setup.model.empty()) robot.refuse("model", "must be the subtype of a robot, such as p3dx-sh");
   setup.baud = static_cast<unsigned>(robot.whole_number("baud", static_cast<int>(setup.baud), 9600, 115200));
   expect_one_of(robot, "baud", setup.baud, std::array{9600u, 19200u, 38400u, 57600u, 115200u},
                 "9600, 19200, 38400, 57600, 115200");
@@ -51,7 +56,7 @@ RobotSetup robot_of(YamlSection robot) {
   setup.sonars = robot.whole_number("sonars", setup.sonars, 0, 16);
   expect_one_of(robot, "sonars", setup.sonars, std::array{0, 8, 16}, "0, 8, 16");
   setup.has_bumpers = robot.flag("has_bumpers", setup.has_bumpers);
-  setup.body = body_of(robot);
+  setup.body = body_of(robot, devices::kind_of(setup.model));
   robot.expect_no_more();
   return setup;
 }
@@ -109,6 +114,27 @@ LaserSetup laser_of(YamlSection laser) {
   return setup;
 }
 
+FaultOrder fault_of(YamlSection fault) {
+  constexpr double kLongest_s = 1e6;
+  FaultOrder order;
+  try {
+    order = fault_order(fault.text("fault", ""));
+  } catch (const std::invalid_argument& error) {
+    fault.refuse("fault", std::string(": ") + error.what());
+  }
+  order.after_s = fault.number("after_s", 0.0, 0.0, kLongest_s);
+  if (fault.has("for_s")) order.lasts_s = fault.number("for_s", 0.0, kShortestFault_s, kLongest_s);
+  fault.expect_no_more();
+  return order;
+}
+
+bool has_room_at_start(const Scenario& scenario) {
+  const Point2 start = scenario.robot.map_from_start.position();
+  return std::all_of(scenario.world.objects.begin(), scenario.world.objects.end(), [&](const Object& object) {
+    return distance_between(start, object.shape) >= scenario.robot.body.radius_m;
+  });
+}
+
 Scenario scenario_of(const YAML::Node& root, const std::string& name) {
   YamlSection top{root, name, "the scenario"};
   Scenario scenario;
@@ -124,17 +150,26 @@ Scenario scenario_of(const YAML::Node& root, const std::string& name) {
   for (const YAML::Node& actor : top.items("actors"))
     scenario.actors.push_back(actor_of(YamlSection{actor, name, "actors"}));
   for (const YAML::Node& door : top.items("doors")) scenario.doors.push_back(door_of(YamlSection{door, name, "doors"}));
+  for (const YAML::Node& fault : top.items("faults"))
+    scenario.faults.push_back(fault_of(YamlSection{fault, name, "faults"}));
   top.expect_no_more();
 
-  const Point2 start = scenario.robot.map_from_start.position();
-  for (const Object& object : scenario.world.objects) {
-    if (distance_between(start, object.shape) >= scenario.robot.body.radius_m) continue;
+  if (!has_room_at_start(scenario)) {
     refuse_at(root["robot"]["start"], name, "start", "puts the robot into a wall, a container or a post");
   }
   return scenario;
 }
 
 }  // namespace
+
+Scenario with_robot(Scenario scenario, const std::string& subtype) {
+  const devices::RobotKind kind = devices::kind_of(subtype);
+  scenario.robot.model = subtype;
+  scenario.robot.body.radius_m = kind.hull_m;
+  scenario.robot.body.half_track_m = kind.half_track_m;
+  if (has_room_at_start(scenario)) return scenario;
+  throw std::runtime_error(scenario.file + ": 'start' leaves no room for the hull of a " + subtype);
+}
 
 Scenario parse_scenario(const std::string& yaml, const std::string& name) {
   YAML::Node root;

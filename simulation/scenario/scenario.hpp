@@ -12,6 +12,7 @@
 #include "simulation/changes/changed_hall.hpp"
 #include "simulation/changes/creep.hpp"
 #include "simulation/changes/forklift.hpp"
+#include "simulation/faults/named_fault.hpp"
 #include "simulation/movers/movers.hpp"
 #include "simulation/robot/range_finder.hpp"
 #include "simulation/robot/robot.hpp"
@@ -21,7 +22,7 @@ namespace deltamap::simulation {
 
 /// The P3-DX as it is switched on.
 struct RobotSetup {
-  std::string model = "p3dx-sh";  ///< p3dx-sh or p3dx: the unit of its odometry (protocols.md A7)
+  std::string model = "p3dx-sh";  ///< the subtype that it tells: unit of its odometry, track and hull (protocols.md A7)
   Pose2 map_from_start;
   unsigned baud = 9600;      ///< one of 9600, 19200, 38400, 57600, 115200 (A4)
   double sip_cycle_s = 0.1;  ///< between two SIPs (A6), [0.02, 1]
@@ -53,11 +54,16 @@ struct Scenario {
   std::vector<ActorParams> actors;
   std::vector<DoorParams> doors;
   std::optional<CreepParams> creep;
+  std::vector<FaultOrder> faults;
   std::optional<ChangedStartParams> changed_at_start;  ///< the world above is that of M_0
 };
 
 /// Throws std::runtime_error: one line that names file, line and key.
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& yaml_file);
+
+/// The scenario with another robot in it: subtype, units, track and hull. Throws std::runtime_error where it has no
+/// room at the start.
+[[nodiscard]] Scenario with_robot(Scenario scenario, const std::string& subtype);
 
 /// The same from text; `name` stands for the file in messages.
 [[nodiscard]] Scenario parse_scenario(const std::string& yaml, const std::string& name);

@@ -65,6 +65,12 @@ MoverEvent event_of(const Json& json) {
   return event;
 }
 
+Pose2 pose_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+OrderedJson json_of(const Pose2& pose) { return {pose.x, pose.y, pose.theta}; }
+
 void take_line(const Json& line, Truth& truth) {
   if (line.contains("world")) {
     truth.world = line["world"].get<std::string>();
@@ -80,11 +86,13 @@ void take_line(const Json& line, Truth& truth) {
     truth.events.push_back({time, event_of(line["mover"])});
     return;
   }
-  const Json& pose = line.at("pose");
-  truth.poses.push_back({time,
-                         {pose.at(0).get<double>(), pose.at(1).get<double>(), pose.at(2).get<double>()},
-                         line.value("odom_v", 0.0),
-                         line.value("scan", false)});
+  if (line.contains("collision")) {
+    const Json& collision = line["collision"];
+    truth.collisions.push_back(
+        {time, collision.at("with").get<int>(), collision.at("speed").get<double>(), pose_of(collision.at("pose"))});
+    return;
+  }
+  truth.poses.push_back({time, pose_of(line.at("pose")), line.value("odom_v", 0.0), line.value("scan", false)});
 }
 
 }  // namespace
@@ -97,7 +105,7 @@ std::string truth_line(const TruthRecord& record) {
   OrderedJson line;
   if (const auto* pose = std::get_if<TruthPose>(&record)) {
     line["t_ns"] = unix_ns(pose->time);
-    line["pose"] = {pose->map_from_robot.x, pose->map_from_robot.y, pose->map_from_robot.theta};
+    line["pose"] = json_of(pose->map_from_robot);
     line["odom_v"] = pose->odom_speed_m_per_s;
     if (pose->at_scan) line["scan"] = true;
     return line.dump();
@@ -105,6 +113,12 @@ std::string truth_line(const TruthRecord& record) {
   if (const auto* moved = std::get_if<TruthEvent>(&record)) {
     line["t_ns"] = unix_ns(moved->time);
     line["mover"] = json_of(moved->event);
+    return line.dump();
+  }
+  if (const auto* collision = std::get_if<Collision>(&record)) {
+    line["t_ns"] = unix_ns(collision->time);
+    line["collision"] = {
+        {"with", collision->object}, {"speed", collision->speed_m_per_s}, {"pose", json_of(collision->map_from_robot)}};
     return line.dump();
   }
   const auto& [time, change] = std::get<TruthChange>(record);
@@ -134,6 +148,7 @@ Truth read_truth(const std::filesystem::path& file) {
   std::stable_sort(truth.poses.begin(), truth.poses.end(), by_time);
   std::stable_sort(truth.changes.begin(), truth.changes.end(), by_time);
   std::stable_sort(truth.events.begin(), truth.events.end(), by_time);
+  std::stable_sort(truth.collisions.begin(), truth.collisions.end(), by_time);
   return truth;
 }
 

@@ -13,6 +13,7 @@
 #include "core/time.hpp"
 #include "simulation/changes/change.hpp"
 #include "simulation/movers/movers.hpp"
+#include "simulation/robot/collision_watch.hpp"
 
 namespace deltamap::simulation {
 
@@ -34,21 +35,23 @@ struct TruthEvent {
   MoverEvent event;
 };
 
-using TruthRecord = std::variant<TruthPose, TruthChange, TruthEvent>;
+using TruthRecord = std::variant<TruthPose, TruthChange, TruthEvent, Collision>;
 
 struct Truth {
   std::string world;  ///< the scenario's file
   std::uint64_t seed = 0;
-  std::vector<TruthPose> poses;      ///< in order of time
-  std::vector<TruthChange> changes;  ///< in order of time
-  std::vector<TruthEvent> events;    ///< in order of time
+  std::vector<TruthPose> poses;       ///< in order of time
+  std::vector<TruthChange> changes;   ///< in order of time
+  std::vector<TruthEvent> events;     ///< in order of time
+  std::vector<Collision> collisions;  ///< in order of time
 };
 
 /// The first line: {"world": ..., "seed": ...}.
 [[nodiscard]] std::string truth_header(const std::string& world, std::uint64_t seed);
 /// {"t_ns": ..., "pose": [x, y, theta], "odom_v": ...} or {"t_ns": ..., "change": {"kind", "id", "box", "from"}}; a box
 /// is [centre x, centre y, width, height, theta], radians. Or {"t_ns": ..., "mover": {"kind", "index", "box"}}, its
-/// kind stopped, went, opened or shut. Without the line's end.
+/// kind stopped, went, opened or shut. Or {"t_ns": ..., "collision": {"with", "speed", "pose"}}, with an object's id,
+/// -1 for what moves. Without the line's end.
 [[nodiscard]] std::string truth_line(const TruthRecord& record);
 
 /// A last line that was cut short is left out. Throws std::runtime_error naming file and line.

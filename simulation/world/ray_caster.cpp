@@ -148,7 +148,8 @@ std::optional<RayCaster::Nearest> RayCaster::nearest_surface(const Point2& point
         const double distance_m = std::abs(length_m - surface.radius_m);
         if (distance_m >= limit_m) continue;
         limit_m = distance_m;
-        nearest = Nearest{distance_m, length_m > 0.0 ? Point2{to_surface / length_m} : Point2{0.0, 0.0}};
+        nearest =
+            Nearest{distance_m, surface.object, length_m > 0.0 ? Point2{to_surface / length_m} : Point2{0.0, 0.0}};
       }
     }
   }

@@ -41,6 +41,7 @@ class RayCaster {
 
   struct Nearest {
     double distance_m = 0.0;
+    int object = 0;              ///< id
     Point2 direction{0.0, 0.0};  ///< unit vector from the point to the surface; zero on it
   };
   /// The surface nearest to a point, if one is nearer than within_m.

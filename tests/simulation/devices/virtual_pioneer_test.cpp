@@ -230,6 +230,40 @@ TEST(VirtualPioneer, TellsStallBumpersAndBattery) {
   EXPECT_EQ(sip->rear_bumpers, 0b00100);
 }
 
+TEST(VirtualPioneer, TellsAChargerAndAnEmptyOrNoBatteryOnOrder) {
+  PioneerRig rig;
+  rig.connect();
+  EXPECT_FALSE(rig.next_sip()->has(pioneer::sip_flag::kChargerPower));
+  rig.robot.suffer({.charger_power = true, .charge_state = 1});
+  (void)rig.next_sip();
+  auto sip = rig.next_sip();
+  EXPECT_TRUE(sip->has(pioneer::sip_flag::kChargerPower));
+  EXPECT_EQ(sip->charge_state, 1);
+  rig.robot.suffer({.battery_v = 0.0});
+  (void)rig.next_sip();
+  sip = rig.next_sip();
+  EXPECT_EQ(sip->battery_decivolts, 0);
+  EXPECT_EQ(sip->battery_x10_decivolts, 0);
+  rig.robot.suffer({.tells_no_battery = true});
+  (void)rig.next_sip();
+  sip = rig.next_sip();
+  EXPECT_EQ(sip->battery_decivolts, 0);
+  EXPECT_FALSE(sip->battery_x10_decivolts) << "and nothing after it";
+  rig.robot.suffer({});
+  (void)rig.next_sip();
+  EXPECT_EQ(rig.next_sip()->battery_x10_decivolts, 128);
+}
+
+TEST(VirtualPioneer, HasTheUnitOfTheRobotWhoseSubtypeItTells) {
+  EXPECT_EQ(kind_of("p3dx-sh-lms500").metres_per_unit, 0.001);
+  EXPECT_EQ(kind_of("p3dx").metres_per_unit, 0.000485);
+  EXPECT_EQ(kind_of("p3at").metres_per_unit, 0.000465);
+  EXPECT_EQ(kind_of("p3at").hull_m, 0.5);
+  EXPECT_EQ(kind_of("p3at-sh-lms1xx").metres_per_unit, 0.001);
+  EXPECT_EQ(kind_of("powerbot-sh").hull_m, 0.55);
+  EXPECT_EQ(kind_of("somebody's").metres_per_unit, 0.001);
+}
+
 TEST(VirtualPioneer, IsDeafAndUnreadableAtAnotherBaudAndFollowsHostbaud) {
   PioneerRig rig;
   rig.host_baud = 38400;

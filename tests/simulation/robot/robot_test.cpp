@@ -83,7 +83,7 @@ TEST(Robot, StopsAtAWallStallsAndCanTurnAndLeave) {
   EXPECT_NEAR(robot.state().map_from_robot.x, 20.0 - 0.25, 0.01);
   EXPECT_LE(robot.state().map_from_robot.x, 20.0 - 0.25 + 1e-9) << "never inside the wall";
   EXPECT_TRUE(robot.state().stalled);
-  ASSERT_TRUE(robot.state().contact_bearing_rad || robot.state().stalled);
+  ASSERT_TRUE(robot.state().contact || robot.state().stalled);
   EXPECT_LT(robot.state().odom_from_robot.x, 1.80) << "held wheels do not count";
   drive(robot, 0.0, 1.0, 4.0);
   EXPECT_FALSE(robot.state().stalled);
