@@ -29,9 +29,10 @@ struct Odometry {
   bool stalled = false;            ///< either motor
   std::uint8_t front_bumpers = 0;  ///< a bit a segment
   std::uint8_t rear_bumpers = 0;   ///< a bit a segment
-  double battery_v = 0.0;
-  bool low_battery = false;       ///< at or below what the controller's configuration calls low
-  std::uint16_t fault_flags = 0;  ///< as the controller reports them; 0: no fault, or a controller that reports none
+  double battery_v = 0.0;          ///< 0: the controller tells none, or an empty one
+  bool charging = false;           ///< a charger is plugged in, or its current flows
+  bool low_battery = false;        ///< at or below what the controller's configuration calls low
+  std::uint16_t fault_flags = 0;   ///< as the controller reports them; 0: no fault, or a controller that reports none
 };
 
 /// What a beam brought back (protocols.md B4). Only a range frees cells or scores a pose by default.

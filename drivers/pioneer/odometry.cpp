@@ -21,6 +21,20 @@ double heading_rad(const Sip& sip) {
   return wrapped_angle(sip.heading_units * (2.0 * std::numbers::pi / kHeadingUnitsPerTurn));
 }
 
+/// Later firmware tells the voltage twice; one of both that is 0 is not told.
+double battery_v(const Sip& sip) {
+  const std::uint16_t wide = sip.battery_x10_decivolts.value_or(0);
+  return 0.1 * (wide > 0 ? wide : sip.battery_decivolts);
+}
+
+/// The charge state has no other codes: a byte beyond them is of a controller that has no charger.
+bool is_charging(const Sip& sip) {
+  constexpr std::uint8_t kBulk = 1;
+  constexpr std::uint8_t kBalance = 4;
+  const std::uint8_t state = sip.charge_state.value_or(0);
+  return sip.has(sip_flag::kChargerPower) || (state >= kBulk && state <= kBalance);
+}
+
 }  // namespace
 
 std::optional<RobotModel> model_named(std::string_view subtype) {
@@ -71,7 +85,8 @@ Odometry OdometryTracker::observe(const Sip& sip, Timestamp time) {
   odometry.stalled = sip.left_stall || sip.right_stall;
   odometry.front_bumpers = sip.front_bumpers;
   odometry.rear_bumpers = sip.rear_bumpers;
-  odometry.battery_v = sip.battery_x10_decivolts.value_or(sip.battery_decivolts) * 0.1;
+  odometry.battery_v = battery_v(sip);
+  odometry.charging = is_charging(sip);
   return odometry;
 }
 

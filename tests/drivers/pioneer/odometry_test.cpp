@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <vector>
 
 namespace deltamap::drivers::pioneer {
 namespace {
@@ -107,6 +108,38 @@ TEST(OdometryTracker, BeginsAnEpochWithAnotherModelOnlyAfterTheFirstSip) {
   EXPECT_EQ(tracker.observe(Sip{}, Timestamp{}).epoch, 0u);
   tracker.set_model(kSh);
   EXPECT_EQ(tracker.observe(Sip{}, Timestamp{}).epoch, 1u);
+}
+
+TEST(OdometryTracker, TellsTheChargerByItsFlagAndByEachChargeState) {
+  const auto charging = [](std::uint16_t flags, std::optional<std::uint8_t> state) {
+    Sip sip;
+    sip.flags = flags;
+    sip.charge_state = state;
+    return OdometryTracker{kSh}.observe(sip, Timestamp{}).charging;
+  };
+  EXPECT_FALSE(charging(0, std::nullopt)) << "a controller that tells neither";
+  EXPECT_FALSE(charging(0xFBFF, 0)) << "every flag but bit 10";
+  EXPECT_TRUE(charging(1u << 10, std::nullopt)) << "early firmware has the flag alone";
+  EXPECT_TRUE(charging(1u << 10, 0)) << "plugged in, no current yet";
+  for (const std::uint8_t state : std::vector<std::uint8_t>{1, 2, 3, 4})
+    EXPECT_TRUE(charging(0, state)) << "state " << int{state};
+  for (const std::uint8_t state : std::vector<std::uint8_t>{5, 128, 255})
+    EXPECT_FALSE(charging(0, state)) << "no state: " << int{state};
+}
+
+TEST(OdometryTracker, TakesTheVoltageFromWhereTheControllerTellsOne) {
+  const auto volts = [](std::uint8_t narrow, std::optional<std::uint16_t> wide) {
+    Sip sip;
+    sip.battery_decivolts = narrow;
+    sip.battery_x10_decivolts = wide;
+    return OdometryTracker{kSh}.observe(sip, Timestamp{}).battery_v;
+  };
+  EXPECT_NEAR(volts(121, std::nullopt), 12.1, kTolerance);
+  EXPECT_NEAR(volts(255, 264), 26.4, kTolerance) << "a pack of 24 V does not fit the byte";
+  EXPECT_NEAR(volts(121, 0), 12.1, kTolerance);
+  EXPECT_NEAR(volts(0, 121), 12.1, kTolerance);
+  EXPECT_EQ(volts(0, 0), 0.0);
+  EXPECT_EQ(volts(0, std::nullopt), 0.0);
 }
 
 TEST(OdometryTracker, ReportsSpeedsAndState) {
