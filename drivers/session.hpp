@@ -27,6 +27,7 @@ struct PortRequest {
 struct SessionOutput {
   std::vector<PortRequest> requests;
   std::vector<std::string> log;       ///< short lower-case lines worth telling the operator
+  std::vector<std::string> warnings;  ///< the same, of what he has to mend
   std::optional<Timestamp> wake_at;   ///< call on_time() no later than this
   std::optional<std::string> failed;  ///< the session is over; reconnect after a pause
 };

@@ -36,7 +36,7 @@ class DeviceLink {
     std::function<void()> on_lost;             ///< the port has failed or could not be opened
     // A short line each.
     std::function<void(const std::string&)> log;
-    std::function<void(const std::string&)> warn;  ///< the device is gone, or cannot be had
+    std::function<void(const std::string&)> warn;  ///< the device is gone, cannot be had, or needs its owner
   };
 
   DeviceLink(boost::asio::io_context& loop, drivers::port::PortId id, Session session, Hooks hooks)
@@ -76,6 +76,7 @@ class DeviceLink {
     // What stops a robot waits for nothing that its owner does about it.
     for (const drivers::PortRequest& request : out.output.requests) perform(request);
     hooks_.on_messages(out);
+    for (const std::string& line : out.output.warnings) hooks_.warn(named(line));
     for (const std::string& line : out.output.log) log(line);
     if (out.output.failed) return fail(*out.output.failed);
     wake_at(out.output.wake_at);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <string>
 
 namespace deltamap::drivers::pioneer {
 namespace {
@@ -38,8 +39,11 @@ bool is_charging(const Sip& sip) {
 }  // namespace
 
 std::optional<RobotModel> model_named(std::string_view subtype) {
-  if (subtype == "p3dx-sh") return RobotModel{.metres_per_unit = 0.001};
-  if (subtype == "p3dx") return RobotModel{.metres_per_unit = 0.000485};
+  std::string name{subtype};
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (name.starts_with("p3dx-sh")) return RobotModel{.metres_per_unit = 0.001};
+  if (name == "p3dx") return RobotModel{.metres_per_unit = 0.000485};
   return std::nullopt;
 }
 
@@ -58,11 +62,14 @@ void OdometryTracker::begin_epoch() {
 Odometry OdometryTracker::observe(const Sip& sip, Timestamp time) {
   int dx_units = 0;
   int dy_units = 0;
+  int turn_units = 0;
+  double elapsed_s = 0.0;
   if (last_) {
     dx_units = wrapped_difference(last_->sip.x_units, sip.x_units, kPositionModulus);
     dy_units = wrapped_difference(last_->sip.y_units, sip.y_units, kPositionModulus);
-    const int turn_units = wrapped_difference(last_->sip.heading_units, sip.heading_units, kHeadingUnitsPerTurn);
-    if (is_jump(dx_units, dy_units, turn_units, seconds(time - last_->time))) begin_epoch();
+    turn_units = wrapped_difference(last_->sip.heading_units, sip.heading_units, kHeadingUnitsPerTurn);
+    elapsed_s = seconds(time - last_->time);
+    if (is_jump(dx_units, dy_units, turn_units, elapsed_s)) begin_epoch();
   }
   if (last_) {
     x_units_ += dx_units;
@@ -70,6 +77,7 @@ Odometry OdometryTracker::observe(const Sip& sip, Timestamp time) {
   } else {
     x_units_ = 0;
     y_units_ = 0;
+    turn_units = 0;
   }
   last_ = Reference{sip, time};
 
@@ -78,7 +86,7 @@ Odometry OdometryTracker::observe(const Sip& sip, Timestamp time) {
   odometry.odom_from_robot = {static_cast<double>(x_units_) * model_.metres_per_unit,
                               static_cast<double>(y_units_) * model_.metres_per_unit, heading_rad(sip)};
   odometry.speed_m_per_s = (sip.left_mm_per_s + sip.right_mm_per_s) / 2.0 * 0.001;
-  odometry.turn_rate_rad_per_s = (sip.right_mm_per_s - sip.left_mm_per_s) / 2.0 * model_.turn_rate_per_speed;
+  odometry.turn_rate_rad_per_s = turn_rate_rad_per_s(sip, turn_units, elapsed_s);
   odometry.epoch = epoch_;
   odometry.motors_enabled = sip.has(sip_flag::kMotorsEnabled);
   odometry.stop_button = sip.has(sip_flag::kStopped);
@@ -88,6 +96,14 @@ Odometry OdometryTracker::observe(const Sip& sip, Timestamp time) {
   odometry.battery_v = battery_v(sip);
   odometry.charging = is_charging(sip);
   return odometry;
+}
+
+double OdometryTracker::turn_rate_rad_per_s(const Sip& sip, int turn_units, double elapsed_s) const {
+  if (model_.turn_rate_per_speed > 0.0) {
+    return (sip.right_mm_per_s - sip.left_mm_per_s) / 2.0 * model_.turn_rate_per_speed;
+  }
+  if (sip.turn_rate_decideg_per_s) return radians(0.1 * *sip.turn_rate_decideg_per_s);
+  return elapsed_s > 0.0 ? turn_units * (2.0 * std::numbers::pi / kHeadingUnitsPerTurn) / elapsed_s : 0.0;
 }
 
 bool OdometryTracker::is_jump(int dx_units, int dy_units, int turn_units, double elapsed_s) const {

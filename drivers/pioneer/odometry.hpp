@@ -17,13 +17,16 @@ inline constexpr int kHeadingUnitsPerTurn = 4096;
 
 /// Conversion factors of one kind of robot (A7).
 struct RobotModel {
-  double metres_per_unit = 0.001;       ///< DistConvFactor
-  double turn_rate_per_speed = 0.0056;  ///< DiffConvFactor: rad/s for each mm/s of (right - left) / 2
-  double max_speed_m_per_s = 2.2;       ///< absolute, whatever the flash allows
+  double metres_per_unit = 0.001;  ///< DistConvFactor
+  /// DiffConvFactor: rad/s for each mm/s of (right - left) / 2; 0: its track is not known, and the controller's own
+  /// turn rate or its heading tells.
+  double turn_rate_per_speed = 0.0056;
+  double max_speed_m_per_s = 2.2;  ///< absolute, whatever the flash allows
   friend bool operator==(const RobotModel&, const RobotModel&) = default;
 };
 
-/// "p3dx" (old controller) or "p3dx-sh".
+/// "p3dx" (old controller), or any that begins with "p3dx-sh": what follows tells of its equipment. Capitals count as
+/// small letters.
 [[nodiscard]] std::optional<RobotModel> model_named(std::string_view subtype);
 
 class OdometryTracker {
@@ -39,6 +42,7 @@ class OdometryTracker {
   [[nodiscard]] Odometry observe(const Sip& sip, Timestamp time);
 
  private:
+  [[nodiscard]] double turn_rate_rad_per_s(const Sip& sip, int turn_units, double elapsed_s) const;
   [[nodiscard]] bool is_jump(int dx_units, int dy_units, int turn_units, double elapsed_s) const;
 
   struct Reference {

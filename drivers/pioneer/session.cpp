@@ -17,12 +17,6 @@ constexpr double kCheckIntervalS = 1.0;
 constexpr double kControllerCycleS = 0.1;  // A6: so old the newest speed may be
 constexpr double kVoltsPerDecivolt = 0.1;
 
-RobotModel model_or_throw(const std::string& name) {
-  const std::optional<RobotModel> model = model_named(name);
-  if (!model) throw std::invalid_argument("robot model \"" + name + "\" is unknown: p3dx or p3dx-sh");
-  return *model;
-}
-
 unsigned known_baud_or_throw(unsigned baud) {
   if (!host_baud_code(baud)) {
     throw std::invalid_argument("robot baud " + std::to_string(baud) + " is unknown: 9600 to 115200");
@@ -36,7 +30,8 @@ PioneerSession::PioneerSession(const PioneerParams& params, SessionMode mode)
     : params_{params},
       mode_{mode},
       decoder_{known_baud_or_throw(params.baud)},
-      odometry_{model_or_throw(params.model)},
+      units_{params.model, params.by_hand},
+      odometry_{units_.model()},
       permission_{params.enable_motors, params.drive_switch},
       idle_baud_{params.baud},
       connected_baud_{params.fast_baud == 0 ? params.baud : known_baud_or_throw(params.fast_baud)} {}
@@ -101,10 +96,11 @@ void PioneerSession::take_identity(const Packet& packet, PioneerOutput& out) {
     return;
   }
   identity_ = identity;
+  units_.forget();
   odometry_.begin_epoch();
   out.output.log.push_back("robot name=" + identity->name + " type=" + identity->type +
                            " subtype=" + identity->subtype);
-  use_model_of(identity->subtype, out);
+  use_units_of(identity->subtype, out);
 }
 
 void PioneerSession::take_config(const Packet& packet, Timestamp now, PioneerOutput& out) {
@@ -116,15 +112,13 @@ void PioneerSession::take_config(const Packet& packet, Timestamp now, PioneerOut
   const bool is_first = !knows_watchdog();
   config_ = std::move(config);
   if (is_first && knows_watchdog()) next_check_ = now;
-  use_model_of(config_->subtype, out);
+  use_units_of(config_->subtype, out);
 }
 
-void PioneerSession::use_model_of(const std::string& subtype, PioneerOutput& out) {
-  if (const std::optional<RobotModel> model = model_named(subtype)) {
-    odometry_.set_model(*model);
-  } else {
-    out.output.log.push_back("robot subtype=" + subtype + " unknown, using model=" + params_.model);
-  }
+void PioneerSession::use_units_of(const std::string& subtype, PioneerOutput& out) {
+  RobotUnits::Line line = units_.hear(subtype);
+  odometry_.set_model(units_.model());
+  if (!line.text.empty()) (line.is_warning ? out.output.warnings : out.output.log).push_back(std::move(line.text));
 }
 
 void PioneerSession::answer_while_connected(const Packet& packet, Timestamp now, PioneerOutput& out) {

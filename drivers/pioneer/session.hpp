@@ -6,7 +6,8 @@
 // points. So at every baud ESTOP, VEL 0 and RVEL 0 go out before SYNC0, and after a gap in our own sending VEL 0 and
 // RVEL 0 go out before anything else. CLOSE goes only to a robot that has shown by a SIP that it is connected, and not
 // to one that has fallen silent: it switches the motors off, and then nobody can tell any more whether a person had.
-// Whether motors may be enabled is drive_permission's to say; none are before the controller has told its watchdog.
+// Whether motors may be enabled is drive_permission's to say; none are before the controller has told its watchdog, and
+// none of a robot whose units and hull nobody knows.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +31,14 @@
 #include "drivers/pioneer/motion_limits.hpp"
 #include "drivers/pioneer/odometry.hpp"
 #include "drivers/pioneer/packet.hpp"
+#include "drivers/pioneer/robot_units.hpp"
 #include "drivers/session.hpp"
 
 namespace deltamap::drivers::pioneer {
 
 struct PioneerParams {
   std::string model = "p3dx-sh";  ///< until the robot names itself: "p3dx" or "p3dx-sh"
+  RobotByHand by_hand{};          ///< what a robot of an unknown subtype is driven by
   unsigned baud = 9600;           ///< tried first: 9600, 19200, 38400, 57600 or 115200
   unsigned fast_baud = 0;         ///< switched to once connected, where the robot's AUTOBAUD allows; 0: stay
   bool enable_motors = false;     ///< the configuration lets it drive: one half of drive_permission
@@ -111,7 +114,7 @@ class PioneerSession {
   void watch_motors(Timestamp sip_began, Timestamp now, PioneerOutput& out);
   void take_identity(const Packet& packet, PioneerOutput& out);
   void take_config(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void use_model_of(const std::string& subtype, PioneerOutput& out);
+  void use_units_of(const std::string& subtype, PioneerOutput& out);
 
   // The way to a connection (live).
   void probe(Timestamp now, PioneerOutput& out);
@@ -136,6 +139,7 @@ class PioneerSession {
   void bring_limits(PioneerOutput& out);
   void bring_motors(Timestamp now, PioneerOutput& out);
   [[nodiscard]] bool knows_watchdog() const { return config_ && config_->watchdog_ms; }
+  [[nodiscard]] bool may_be_driven() const { return knows_watchdog() && units_.why_never_driven().empty(); }
   void push_set_points();
   void push_emergency_stop(Timestamp now);
   void leave(std::optional<std::string> reason, Timestamp close_at = {});
@@ -151,6 +155,7 @@ class PioneerSession {
   PioneerParams params_;
   SessionMode mode_;
   PacketDecoder decoder_;
+  RobotUnits units_;
   OdometryTracker odometry_;
   MonotonicTimes odometry_times_;
   DecoderCounts content_counts_;  // malformed and unknown, on top of the decoder's own

@@ -104,13 +104,15 @@ void PioneerSession::bring_limits(PioneerOutput& out) {
 }
 
 std::string_view PioneerSession::why_never_driven() const {
+  if (!units_.why_never_driven().empty()) return units_.why_never_driven();
   if (limits_are_told_ && !knows_watchdog()) return "the robot does not tell its watchdog";
   if (knows_watchdog() && config_->watchdog_ms == 0)
     return "the robot's watchdog is off: it would never stop by itself";
   return {};
 }
 
-/// ENABLE 1 waits for the watchdog, without which nobody knows how the robot would stop. It is sent once, not until it
+/// ENABLE 1 waits for the watchdog, without which nobody knows how the robot would stop, and for a robot of known units
+/// and hull. It is sent once, not until it
 /// shows: motors that are off in the next SIP may have been switched off again by a person who was faster than the SIP.
 void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
   const bool motors_are_on = newest_sip_->has(sip_flag::kMotorsEnabled);
@@ -122,7 +124,7 @@ void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
     permission_.enable_had_no_effect();
     out.output.log.push_back("robot motors did not come on: press MOTORS, or `deltamap ctl drive wander`");
   }
-  const bool is_due = permission_.holds() && knows_watchdog() && !enable_was_sent_;
+  const bool is_due = permission_.holds() && may_be_driven() && !enable_was_sent_;
   if (motors_are_on || !is_due || stop_button_is_pressed()) return;
   queue_.drop(CommandNumber::kEnable);
   queue_.push({CommandNumber::kEnable, 1});
@@ -131,7 +133,7 @@ void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
 PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) {
   PioneerOutput out;
   if (mode_ == SessionMode::kListenOnly || state_ != State::kConnected) return finished(now, std::move(out));
-  const bool may_drive = permission_.holds() && knows_watchdog();
+  const bool may_drive = permission_.holds() && may_be_driven();
   DriveCommand wanted = may_drive ? command : DriveCommand{command.time, 0.0, 0.0};
   const MotionLimits& limits = params_.limits;
   wanted.speed_m_per_s = std::clamp(wanted.speed_m_per_s, -limits.max_speed_m_per_s, limits.max_speed_m_per_s);

@@ -23,6 +23,7 @@ class FakeSession {
     FakeOutput out;
     out.output.log.push_back("robot has news");
     out.output.log.push_back("it went away");
+    out.output.warnings.push_back("robot is somebody else's");
     out.output.failed = "robot has been silent";
     return out;
   }
@@ -107,7 +108,7 @@ TEST_F(DeviceLinkTest, NamesTheDeviceOnceInEveryLine) {
   link_.open();
   device_.on_bytes({}, Timestamp{});
   EXPECT_EQ(log_, (std::vector<std::string>{"robot has news", "robot: it went away"}));
-  EXPECT_EQ(warnings_, std::vector<std::string>{"robot has been silent; trying again"});
+  EXPECT_EQ(warnings_, (std::vector<std::string>{"robot is somebody else's", "robot has been silent; trying again"}));
 }
 
 TEST_F(DeviceLinkTest, AFarewellThatTakesItsTimeIsSentToItsEndAndNothingAfterIt) {

@@ -142,6 +142,30 @@ TEST(OdometryTracker, TakesTheVoltageFromWhereTheControllerTellsOne) {
   EXPECT_EQ(volts(0, std::nullopt), 0.0);
 }
 
+TEST(OdometryTracker, TakesTheTurnOfAnUnknownTrackFromTheController) {
+  OdometryTracker tracker{{.turn_rate_per_speed = 0.0}};
+  Sip sip;
+  sip.left_mm_per_s = -100;
+  sip.right_mm_per_s = 100;
+  sip.turn_rate_decideg_per_s = 195;
+  EXPECT_NEAR(tracker.observe(sip, Timestamp{}).turn_rate_rad_per_s, 19.5 * std::numbers::pi / 180.0, kTolerance);
+  sip.turn_rate_decideg_per_s.reset();
+  sip.heading_units = 22;
+  EXPECT_NEAR(tracker.observe(sip, Timestamp{} + std::chrono::milliseconds{100}).turn_rate_rad_per_s,
+              22 * 2 * std::numbers::pi / 4096 / 0.1, kTolerance);
+}
+
+TEST(OdometryTracker, KnowsSubtypesByTheirBeginning) {
+  for (const char* subtype : {"p3dx-sh", "p3dx-sh-lms500", "p3dx-sh-lms1xx", "P3DX-SH"}) {
+    ASSERT_TRUE(model_named(subtype)) << subtype;
+    EXPECT_EQ(model_named(subtype)->metres_per_unit, 0.001) << subtype;
+  }
+  EXPECT_EQ(model_named("p3dx")->metres_per_unit, 0.000485);
+  for (const char* subtype : {"", "p3at", "p3at-sh", "powerbot-sh", "p3d", "p3dx-s", "p3dxe", "sh-p3dx-sh"}) {
+    EXPECT_FALSE(model_named(subtype)) << subtype;
+  }
+}
+
 TEST(OdometryTracker, ReportsSpeedsAndState) {
   Sip sip;
   sip.left_mm_per_s = 100;

@@ -83,6 +83,7 @@ class Conversation {
       }
     }
     log.insert(log.end(), output.output.log.begin(), output.output.log.end());
+    warnings.insert(warnings.end(), output.output.warnings.begin(), output.output.warnings.end());
     if (output.output.failed) failed = output.output.failed;
     wake_at = output.output.wake_at;
     collect(output);
@@ -98,6 +99,7 @@ class Conversation {
   std::optional<Timestamp> wake_at;
   std::optional<std::string> failed;
   std::vector<std::string> log;
+  std::vector<std::string> warnings;
   std::vector<WrittenBytes> written;
   std::vector<SentBytes> received;  ///< as the session saw it: for replays
   typename Session::Messages messages;
