@@ -114,6 +114,7 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                   : t.by_hand.value() ? "by hand"
                                       : navigation::name_of(settings.navigation.mode);
   json["drive_switch"] = drivers::pioneer::name_of(static_cast<drivers::pioneer::DriveSwitch>(t.drive_switch.value()));
+  json["never_driven"] = t.robot_up.value() ? t.never_driven.line() : "";
   json["stopped_by"] = navigation::name_of(static_cast<navigation::StopReason>(t.stop_reason.value()));
   json["told"] = {{"speed_m_per_s", t.told_speed_m_per_s.value()},
                   {"turn_rate_rad_per_s", t.told_turn_rate_rad_per_s.value()}};

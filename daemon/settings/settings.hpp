@@ -29,7 +29,10 @@ namespace deltamap::daemon {
 
 struct RobotSettings {
   std::string port = "/dev/ttyUSB0";
-  drivers::pioneer::PioneerParams session;  ///< enable_motors is not a key: it follows from navigation.mode
+  double distance_unit_mm = 0.0;  ///< as written; session.by_hand has it in metres. 0: by the robot's subtype
+  /// enable_motors is not a key: it follows from navigation.mode. by_hand.hull_m: navigation.safety.robot_radius_m,
+  /// where that key was given.
+  drivers::pioneer::PioneerParams session;
 };
 
 struct LaserSettings {

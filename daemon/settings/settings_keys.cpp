@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of keys: what config/default.yaml lists, in its order.
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "daemon/dashboard/access.hpp"
@@ -31,6 +33,16 @@ SettingKey of_both(SettingKey key, const double& value, double& other) {
 
 namespace {
 
+/// The key also tells `note` what it was set to, which nothing but a setting does.
+SettingKey noted(SettingKey key, std::function<void()> note) {
+  key.assign = [assign = std::move(key.assign), note = std::move(note)](const SettingValue& given) {
+    auto needed = assign(given);
+    if (!needed) note();
+    return needed;
+  };
+  return key;
+}
+
 /// A number that the driver keeps as one of several words.
 SettingKey baud_key(std::string name, unsigned& field, std::vector<std::pair<std::string, unsigned>> bauds,
                     std::string meaning) {
@@ -45,6 +57,14 @@ void add_robot(RobotSettings& robot, Keys& keys) {
       "robot.model", {"p3dx", "p3dx-sh"}, [&session] { return session.model == "p3dx" ? 0u : 1u; },
       [&session](std::size_t index) { session.model = index == 0 ? "p3dx" : "p3dx-sh"; },
       "model that fixes the units of its odometry until the controller names itself"));
+  keys.push_back(
+      noted(number_key("robot.distance_unit_mm", robot.distance_unit_mm, "mm", 0.0, 10.0,
+                       "unit of the odometry of a robot whose subtype is unknown; 0: by its subtype. Such a robot is "
+                       "driven only where navigation.safety.robot_radius_m is given too"),
+            [&robot, &session] {
+              session.by_hand.metres_per_unit.reset();
+              if (robot.distance_unit_mm > 0.0) session.by_hand.metres_per_unit = 1e-3 * robot.distance_unit_mm;
+            }));
   keys.push_back(baud_key("robot.baud", session.baud,
                           {{"9600", 9600}, {"19200", 19200}, {"38400", 38400}, {"57600", 57600}, {"115200", 115200}},
                           "baud rate that is tried first; all others follow"));
@@ -117,7 +137,7 @@ SettingKey drive_mode_key(navigation::DriveMode& mode) {
   return key;
 }
 
-void add_navigation(NavigationSettings& settings, Keys& keys) {
+void add_navigation(NavigationSettings& settings, std::optional<double>& hull_by_hand_m, Keys& keys) {
   const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
   add(drive_mode_key(settings.mode));
   add(flag_key("navigation.drive_without_pose", settings.drive_without_pose,
@@ -125,9 +145,10 @@ void add_navigation(NavigationSettings& settings, Keys& keys) {
   const auto first_live = static_cast<std::ptrdiff_t>(keys.size());
   auto& safety = settings.safety;
   auto& wander = settings.wander;
-  add(of_both(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
-                         "radius of the circle that the hull sweeps around the middle of the axle"),
-              safety.robot_radius_m, wander.robot_radius_m));
+  add(noted(of_both(number_key("navigation.safety.robot_radius_m", safety.robot_radius_m, "m", 0.05, 2.0,
+                               "radius of the circle that the hull sweeps around the middle of the axle"),
+                    safety.robot_radius_m, wander.robot_radius_m),
+            [&safety, &hull_by_hand_m] { hull_by_hand_m = safety.robot_radius_m; }));
   add(number_key("navigation.safety.margin_m", safety.margin_m, "m", 0.0, 2.0,
                  "distance kept between the hull and everything"));
   add(number_key("navigation.safety.deceleration_m_per_s2", safety.deceleration_m_per_s2, "m/s^2", 0.05, 5.0,
@@ -209,7 +230,7 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_localization_keys(settings.localizer, keys);
   add_memory(settings.memory, keys);
   add_mapping_keys(settings.mapping, keys);
-  add_navigation(settings.navigation, keys);
+  add_navigation(settings.navigation, settings.robot.session.by_hand.hull_m, keys);
   keys.push_back(not_for_results(text_key("control.socket", settings.control.socket,
                                           "socket on which `deltamap ctl` finds the daemon; empty: none")));
   keys.push_back(not_for_results(

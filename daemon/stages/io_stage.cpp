@@ -101,6 +101,7 @@ struct IoStage::State {
     const bool up = robot_is_connected();
     if (up && !telemetry.robot_up.value()) robot.tell_connected();
     telemetry.robot_up.set(up);
+    telemetry.never_driven.set(robot.session().why_never_driven());
     obey_permission();
   }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/messages.hpp"
+#include "daemon/telemetry/notice.hpp"
 #include "daemon/telemetry/output_board.hpp"
 #include "daemon/telemetry/scan_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
@@ -69,6 +70,7 @@ struct Telemetry {
   Gauge<bool> robot_up, laser_up;
   Gauge<bool> drives;                ///< the pilot's commands are listened to
   Gauge<bool> by_hand;               ///< a person's are, and the pilot's are not
+  Notice never_driven;               ///< why this robot is not driven, whatever a person says
   Gauge<std::uint8_t> drive_switch;  ///< drivers::pioneer::DriveSwitch: what a person said last
   Gauge<double> told_speed_m_per_s, told_turn_rate_rad_per_s;  ///< what the robot was told last
   Gauge<double> battery_v;

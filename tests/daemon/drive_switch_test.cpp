@@ -80,6 +80,26 @@ TEST_F(DriveTest, ARobotThatDoesNotTellItsWatchdogIsRefused) {
       prepare);
 }
 
+TEST_F(DriveTest, ARobotOfAnUnknownSubtypeIsWarnedOfAndRefusedUntilHullAndUnitAreSet) {
+  scenario_ = simulation::with_robot(scenario_, "p3at");
+  settings_.navigation.mode = navigation::DriveMode::kWander;
+  const std::string why =
+      "its subtype \"p3at\" is unknown: set its hull (navigation.safety.robot_radius_m) and its unit "
+      "(robot.distance_unit_mm) by hand";
+  run([&](test::SimulatedPorts& ports) {
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["error"], "it is not driven: " + why);
+    EXPECT_EQ(status()["never_driven"], why);
+    const int scan = status()["localized"];
+    EXPECT_TRUE(reached_scan(scan + 10));
+    EXPECT_FALSE(moves(ports));
+  });
+  settings_.robot.session.by_hand = {0.000465, 0.5};
+  run([&](test::SimulatedPorts&) {
+    EXPECT_EQ(status()["never_driven"], "");
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+  });
+}
+
 TEST_F(DriveTest, AWordToAMissingRobotDoesNotMakeItPresent) {
   settings_.navigation.mode = navigation::DriveMode::kWander;
   run([&](test::SimulatedPorts& ports) {

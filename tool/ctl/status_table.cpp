@@ -137,6 +137,9 @@ std::string status_table(const std::string& reply_line) {
                word(s, "/ports/laser").c_str());
   text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),
                word(s, "/stopped_by").c_str());
+  if (const std::string why = word(s, "/never_driven"); why != "-" && !why.empty()) {
+    text += line("not driven", "%s", why.c_str());
+  }
   text += line("running", "%.0f s, log from %s on", number(s, "/since_start_s"), word(s, "/log_level").c_str());
   if (s.contains("recording") && s["recording"].is_object()) {
     text += line("recording", "%s, %.1f MB%s", word(s, "/recording/file").c_str(), number(s, "/recording/bytes") * 1e-6,

@@ -41,6 +41,20 @@ TEST(Settings, WhatIsPrintedReadsBackToTheSame) {
   EXPECT_NEAR(again.initial_pose->theta, radians(-156.2), 1e-12);
 }
 
+TEST(Settings, KnowWhetherHullAndUnitWereSetByHand) {
+  const auto by_hand = [](const std::string& yaml, const std::vector<std::string>& overrides = {}) {
+    return parse_settings(yaml, "f", overrides).robot.session.by_hand;
+  };
+  EXPECT_FALSE(by_hand("").hull_m) << "as delivered is not by hand";
+  EXPECT_FALSE(by_hand("").metres_per_unit);
+  EXPECT_FALSE(by_hand("navigation: {safety: {margin_m: 0.3}}").hull_m);
+  EXPECT_EQ(by_hand("navigation: {safety: {robot_radius_m: 0.5}}").hull_m, 0.5);
+  EXPECT_EQ(by_hand("navigation: {safety: {robot_radius_m: 0.26}}").hull_m, 0.26) << "though that is as delivered";
+  EXPECT_EQ(by_hand("", {"navigation.safety.robot_radius_m=0.55"}).hull_m, 0.55);
+  EXPECT_NEAR(*by_hand("robot: {distance_unit_mm: 0.465}").metres_per_unit, 0.000465, 1e-12);
+  EXPECT_FALSE(by_hand("robot: {distance_unit_mm: 0.465}", {"robot.distance_unit_mm=0"}).metres_per_unit);
+}
+
 TEST(Settings, EveryKeyHasAMeaningAndADefaultInsideItsOwnLimits) {
   Settings settings;
   for (const SettingKey& key : keys_of(settings)) {

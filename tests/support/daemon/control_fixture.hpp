@@ -70,8 +70,7 @@ class DriveTest : public ControlDeskTest {
   void run(
       const std::function<void(SimulatedPorts&)>& operate,
       const std::function<void(SimulatedPorts&)>& prepare = [](SimulatedPorts&) {}, int after_scan = 5) {
-    const auto scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
-    SimulatedPorts ports{scenario, 1};
+    SimulatedPorts ports{scenario_, 1};
     prepare(ports);
     daemon::Pipeline::Options live = options();
     live.open = [&ports](boost::asio::io_context& loop, drivers::port::PortId id, unsigned baud) {
@@ -98,6 +97,8 @@ class DriveTest : public ControlDeskTest {
                          return is_motion && !is_zero;
                        });
   }
+
+  simulation::Scenario scenario_ = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
 };
 
 }  // namespace deltamap::test

@@ -29,5 +29,13 @@ TEST(StatusTable, SaysWhereDrivingHasToldNothingYet) {
               "wheels       distance +0.00 ± 0.00 %, turn +0.00 ± 0.00 %, drift +0.000 ± 0.000 deg/m, lag 40 ± 0 ms");
 }
 
+TEST(StatusTable, SaysWhyARobotIsNeverDriven) {
+  expect_line(R"({"never_driven":"its subtype \"p3at\" is unknown: set its hull"})",
+              R"(not driven   its subtype "p3at" is unknown: set its hull)");
+  for (const char* reply : {R"({"never_driven":""})", "{}", R"({"never_driven":1})"}) {
+    EXPECT_EQ(status_table(reply).find("not driven"), std::string::npos) << reply;
+  }
+}
+
 }  // namespace
 }  // namespace deltamap::tool
