@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/console.hpp"
 
+#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <iostream>
+#include <utility>
 
 #include "daemon/system/system_journal.hpp"
 
@@ -35,27 +37,39 @@ Console::Console() : on_terminal_{::isatty(STDERR_FILENO) != 0}, in_journal_{sys
 
 void Console::set_level(LogLevel level) { spdlog::set_level(spdlog_level_of(level)); }
 
-void Console::write(const LeveledLine& line) const {
+void Console::write(const LeveledLine& line) {
   const auto level = spdlog_level_of(line.level);
   if (!spdlog::should_log(level)) return;
   if (in_journal_ && system_journal::write(line.level, line.text)) return;
+  if (!is_read()) {
+    ++lost_;
+    return;
+  }
+  if (const std::uint64_t lost = std::exchange(lost_, 0); lost > 0) {
+    write({LogLevel::kWarn, std::to_string(lost) + " lines of this log are lost: nobody has read it"});
+    return write(line);
+  }
+  if (on_terminal_) std::cerr << "\r\033[K" << std::flush;
   spdlog::log(level, "{}", line.text);
+}
+
+/// There is room for a line: PIPE_BUF bytes of a pipe.
+bool Console::is_read() {
+  pollfd out{STDERR_FILENO, POLLOUT, 0};
+  return ::poll(&out, 1, 0) != 0;  // where it is broken, writing tells
 }
 
 void Console::log(LogLevel level, const std::string& line) {
   const std::scoped_lock lock{mutex_};
   const auto now_due = throttle_.take({level, line}, LogThrottle::Clock::now());
-  if (!now_due) return;
-  if (on_terminal_) std::cerr << "\r\033[K" << std::flush;
-  write(*now_due);
+  if (now_due) write(*now_due);
 }
 
 void Console::show(const std::string& status) {
   const std::scoped_lock lock{mutex_};
-  if (on_terminal_) std::cerr << "\r\033[K" << std::flush;
   for (const LeveledLine& line : throttle_.due(LogThrottle::Clock::now())) write(line);
   if (on_terminal_) {
-    std::cerr << status << std::flush;
+    if (is_read()) std::cerr << "\r\033[K" << status << std::flush;
   } else {
     write({seconds_++ % kQuietLogPeriod_s == 0 ? LogLevel::kInfo : LogLevel::kDebug, status});
   }
@@ -63,7 +77,7 @@ void Console::show(const std::string& status) {
 
 void Console::end() {
   const std::scoped_lock lock{mutex_};
-  if (on_terminal_) std::cerr << '\n';
+  if (on_terminal_ && is_read()) std::cerr << '\n';
   for (const LeveledLine& line : throttle_.rest(LogThrottle::Clock::now())) write(line);
 }
 

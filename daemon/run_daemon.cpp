@@ -234,16 +234,17 @@ void require_a_start(const Settings& read, const std::string& config) {
   }
 }
 
-int run_pipeline(const Settings& settings, const CommandLine& line) {
+int run_pipeline(const SettingsReading& reading, const CommandLine& line) {
+  const Settings& settings = reading.settings;
   Console console;
   const bool hangup_reloads = !has_terminal();
   take_signals();  // all threads begin with them blocked: only watch() takes them
 
   Pipeline::Options options;
-  options.live = std::make_shared<LiveSettings>(settings, [line] {
+  options.live = std::make_shared<LiveSettings>(reading, [line] {
     require_plain_file(line.config);
-    Settings read = read_settings_of_a_run(line.config, line.overrides);
-    require_a_start(read, line.config);
+    SettingsReading read = read_settings_of_a_run(line.config, line.overrides);
+    require_a_start(read.settings, line.config);
     return read;
   });
   const OccupancyGrid first = first_map(settings, line, console);

@@ -10,10 +10,17 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "daemon/control/request.hpp"
+
 namespace deltamap::daemon::control {
 namespace {
 
 constexpr timeval kPatience{3, 0};  // the daemon's own is a second; this machine may be busy, too
+constexpr int kMostStops = 20;      // where many clients throng, one may be sent away before it was heard
+
+struct HungUp : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct Descriptor {
   int number = -1;
@@ -59,7 +66,7 @@ class Connection {
       const ssize_t n = ::recv(descriptor_.number, bytes, sizeof bytes, 0);
       if (n < 0 && errno == EINTR) continue;
       if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) refuse("the daemon does not answer");
-      if (n <= 0) refuse("the daemon hung up without a reply");
+      if (n <= 0) throw HungUp(path_.string() + ": the daemon hung up without a reply");
       text.append(bytes, static_cast<std::size_t>(n));
       if (const auto end = text.find('\n'); end != std::string::npos) return text.substr(0, end);
     }
@@ -75,9 +82,15 @@ class Connection {
 }  // namespace
 
 std::string exchange(const std::filesystem::path& socket, const std::string& line) {
-  const Connection connection{socket};
-  connection.send(line + "\n");
-  return connection.line();
+  for (int tries_left = is_stop(line) ? kMostStops : 1;; --tries_left) {
+    try {
+      const Connection connection{socket};
+      connection.send(line + "\n");
+      return connection.line();
+    } catch (const HungUp&) {
+      if (tries_left <= 1) throw;
+    }
+  }
 }
 
 }  // namespace deltamap::daemon::control

@@ -111,6 +111,11 @@ RequestAnswer request_of_line(std::string_view line) {
   return {std::nullopt, "unknown command '" + name + "'"};
 }
 
+bool is_stop(std::string_view line) {
+  const RequestAnswer answer = request_of_line(line);
+  return answer.request && answer.request->kind == Kind::kDriveOff;
+}
+
 std::string line_of(const Request& request) {
   Json json;
   json["command"] = name_of(request.kind);

@@ -45,6 +45,9 @@ struct RequestAnswer {
 };
 [[nodiscard]] RequestAnswer request_of_line(std::string_view line);
 
+/// Whether a line asks for `drive off`.
+[[nodiscard]] bool is_stop(std::string_view line);
+
 // Lines without their line end.
 [[nodiscard]] std::string line_of(const Request& request);
 /// {"ok":true,"message":…}, and "doubt":true where a person should look at it again.

@@ -3,6 +3,7 @@
 
 #include <utility>  // Boost 1.74's awaitable.hpp needs it and does not say so
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -18,6 +19,7 @@
 #include "daemon/control/request.hpp"
 #include "daemon/sockets/accept_loop.hpp"
 #include "daemon/sockets/listening_socket.hpp"
+#include "daemon/system/spare_descriptor.hpp"
 
 namespace deltamap::daemon::control {
 namespace {
@@ -26,13 +28,21 @@ namespace asio = boost::asio;
 using Protocol = asio::local::stream_protocol;
 using boost::system::error_code;
 
-constexpr std::size_t kMostClients = 16;
+constexpr std::size_t kMostClients = 64;
+constexpr std::size_t kFewestClients = 16;
+constexpr std::size_t kOthersDescriptors = 64;  // files, ports and the first connections of the page
 
-/// One client: a line, its reply, the next line.
+/// One client: a line, its reply, the next line. One too many is heard, too: it may be somebody who wants to stop the
+/// robot, and is refused whatever else it asks for.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(Protocol::socket socket, const Server::Options& options, std::function<void(Session*)> on_end)
-      : socket_{std::move(socket)}, patience_{socket_.get_executor()}, options_{options}, on_end_{std::move(on_end)} {}
+  Session(Protocol::socket socket, const Server::Options& options, bool is_one_too_many,
+          std::function<void(Session*)> on_end)
+      : socket_{std::move(socket)},
+        patience_{socket_.get_executor()},
+        options_{options},
+        is_one_too_many_{is_one_too_many},
+        on_end_{std::move(on_end)} {}
 
   void listen() {
     asio::async_read_until(
@@ -65,6 +75,7 @@ class Session : public std::enable_shared_from_this<Session> {
     spoke_ = std::chrono::steady_clock::now();
     const std::string line = received_.substr(0, size - 1);
     received_.erase(0, size);
+    if (is_one_too_many_ && !is_stop(line)) return say_and_end(error_line("too many clients"));
     wait_for_reply();
     options_.handle(line, sockets::is_gone(socket_),
                     [self = weak_from_this(), number = number_, to = socket_.get_executor()](std::string reply) {
@@ -102,6 +113,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Protocol::socket socket_;
   asio::steady_timer patience_;
   const Server::Options& options_;
+  bool is_one_too_many_;
   std::function<void(Session*)> on_end_;
   std::string received_;
   std::string reply_;
@@ -117,24 +129,25 @@ struct Server::State {
   explicit State(Options given)
       : options{std::move(given)},
         clients{sockets::listening_at(loop, options.socket),
-                [this](Protocol::socket socket) { welcome(std::move(socket)); }} {}
+                [this](Protocol::socket socket) { welcome(std::move(socket)); }, [this] { return make_room(); }} {}
 
   /// Whoever says nothing must not keep out an order to stop: the one that has been silent longest goes.
-  void make_room() {
+  bool make_room() {
     Session* longest = nullptr;
     for (const auto& session : sessions) {
       if (!session->idle_since()) continue;
       if (longest == nullptr || *session->idle_since() < *longest->idle_since()) longest = session.get();
     }
     if (longest != nullptr) end(longest);
+    return longest != nullptr;
   }
 
   void welcome(Protocol::socket socket) {
-    if (sessions.size() >= kMostClients) make_room();
-    const bool is_full = sessions.size() >= kMostClients;
-    const auto session = std::make_shared<Session>(std::move(socket), options, [this](Session* ended) { end(ended); });
+    if (sessions.size() >= most) (void)make_room();
+    const bool is_full = sessions.size() >= most;
+    const auto session =
+        std::make_shared<Session>(std::move(socket), options, is_full, [this](Session* ended) { end(ended); });
     sessions.insert(session);
-    if (is_full) return session->say_and_end(error_line("too many clients"));
     session->listen();
   }
 
@@ -153,6 +166,7 @@ struct Server::State {
 
   asio::io_context loop{1};
   Options options;
+  std::size_t most = std::min(kMostClients, descriptors_beside(kOthersDescriptors, kFewestClients));
   sockets::AcceptLoop<Protocol> clients;
   sockets::SocketFile file{options.socket};
   std::set<std::shared_ptr<Session>> sessions;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The control socket: a Unix domain stream socket that takes lines and sends a line back for each, in a thread of its
-// own. A client that is silent, slow, rude or gone troubles nobody else.
+// own. A client that is silent, slow, rude or gone troubles nobody else, and however many there are, `drive off` is
+// heard.
 #pragma once
 
 #include <filesystem>

@@ -152,6 +152,15 @@ std::optional<Answer> refusal_of(const Request& request, const Guard& guard) {
   return answer;
 }
 
+bool is_known(const Request& request, const Guard& guard) {
+  return !guard.token.empty() && has_token(request, guard.token);
+}
+
+bool may_stop(const Request& request, const Guard& guard) {
+  const Guard without_token{.token = "", .takes_commands = guard.takes_commands};
+  return request.path == kCommandPath && is_local(request) && !refusal_of(request, without_token);
+}
+
 std::optional<Answer> entry_of(const Request& request, const std::string& token) {
   const std::string_view query = request.query;
   if (request.method != "GET" || !name_in(request.host)) return std::nullopt;

@@ -38,11 +38,17 @@ struct Guard {
   bool takes_commands = false;  ///< from the page
 };
 
+/// Whether it comes with the token; never where there is none.
+[[nodiscard]] bool is_known(const Request& request, const Guard& guard);
+
 /// Why a request is not answered: another method than its path takes, a host that is a name (DNS rebinding), an origin
 /// of another site, no or a wrong token (reading needs none from loopback, at a Host of loopback); a command where none
 /// is taken, or not as JSON (a form of another site cannot send that); driving where there is no token at all. Nothing:
 /// it may be answered.
 [[nodiscard]] std::optional<Answer> refusal_of(const Request& request, const Guard& guard);
+
+/// Whether a command is refused for want of the token alone, and by somebody who may read: STOP is taken of him.
+[[nodiscard]] bool may_stop(const Request& request, const Guard& guard);
 
 /// The answer to /?token=…: keeps the right token in a cookie and leads to the page. Nothing for any other request.
 [[nodiscard]] std::optional<Answer> entry_of(const Request& request, const std::string& token);

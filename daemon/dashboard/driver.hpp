@@ -18,8 +18,12 @@ inline constexpr std::chrono::seconds kDriverSilence{5};
 /// Both sides speak; at most one message is on its way to the client. Whatever ends the connection ends the dialog.
 class Driver final : public Connection, public std::enable_shared_from_this<Driver> {
  public:
-  Driver(beast::tcp_stream stream, Host& host, std::function<void(Driver*)> on_end)
-      : socket_{std::move(stream)}, host_{host}, on_end_{std::move(on_end)}, period_timer_{socket_.get_executor()} {
+  Driver(beast::tcp_stream stream, Guest who, Host& host, std::function<void(Driver*)> on_end)
+      : Connection{std::move(who)},
+        socket_{std::move(stream)},
+        host_{host},
+        on_end_{std::move(on_end)},
+        period_timer_{socket_.get_executor()} {
     socket_.set_option(websocket::stream_base::timeout{kHttpPatience, kDriverSilence, true});
     socket_.read_message_max(kMostSpokenBytes);
     socket_.auto_fragment(false);
@@ -40,6 +44,7 @@ class Driver final : public Connection, public std::enable_shared_from_this<Driv
     period_timer_.cancel();
     beast::get_lowest_layer(socket_).socket().close(ignored);
   }
+  void leave() override { on_end_(this); }
 
  private:
   void listen() {

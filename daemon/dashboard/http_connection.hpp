@@ -46,13 +46,20 @@ inline Request request_of(const HttpRequest& request) {
           .content_type = field(http::field::content_type)};
 }
 
-/// Also as IPv6 writes an address of IPv4.
-inline bool is_from_loopback(const tcp::socket& socket) {
+/// An address of IPv4 as such, also where IPv6 writes it. Unspecified where the client has gone.
+inline asio::ip::address address_of(const tcp::socket& socket) {
   error_code error;
   const asio::ip::address address = socket.remote_endpoint(error).address();
-  if (error) return false;
-  if (address.is_v4() || !address.to_v6().is_v4_mapped()) return address.is_loopback();
-  return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
+  if (address.is_v4() || !address.to_v6().is_v4_mapped()) return address;
+  return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+}
+
+/// Whose places a client takes: of IPv6 a whole network belongs to one.
+inline std::string owner_of(const asio::ip::address& address) {
+  if (address.is_v4()) return address.to_string();
+  auto bytes = address.to_v6().to_bytes();
+  std::fill(bytes.begin() + bytes.size() / 2, bytes.end(), std::uint8_t{0});
+  return asio::ip::address_v6{bytes}.to_string();
 }
 
 inline bool is_bad_http(const error_code& error) {
@@ -62,10 +69,11 @@ inline bool is_bad_http(const error_code& error) {
 
 class HttpConnection final : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(tcp::socket socket, Host& host)
-      : stream_{std::move(socket)}, host_{host}, patience_{stream_.get_executor()} {}
+  HttpConnection(tcp::socket socket, Guest who, Host& host)
+      : Connection{std::move(who)}, stream_{std::move(socket)}, host_{host}, patience_{stream_.get_executor()} {}
 
   void listen() {
+    host_.let_stand(guest, Standing::kWaits);
     parser_.emplace();
     parser_->header_limit(kMostHeaderBytes);
     parser_->body_limit(kMostBodyBytes);
@@ -78,6 +86,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     patience_.cancel();
     stream_.socket().close(ignored);
   }
+  void leave() override { host_.end(this); }
 
  private:
   void take(const error_code& error) {
@@ -86,15 +95,20 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     const bool has_body = parser_->chunked() || parser_->content_length().value_or(0) > 0;
     const HttpRequest& received = parser_->get();
     Request request = request_of(received);
-    request.is_from_loopback = is_from_loopback(stream_.socket());
+    request.is_from_loopback = address_of(stream_.socket()).is_loopback();
     const unsigned version = received.version();
     const Guard& guard = host_.options.guard;
+    guest.is_known = is_known(request, guard);
     if (const auto entry = entry_of(request, guard.token)) return say(*entry, version, false);
-    if (auto refusal = refusal_of(request, guard)) return say(*refusal, version, false);
+    unless_stop_ = refusal_of(request, guard);
+    if (unless_stop_ && !may_stop(request, guard)) return say(*unless_stop_, version, false);
     if (request.path == kCommandPath) return read_command(request, version);
     if (has_body) return say({.status = 413, .body = "a request has no body here\n"}, version, false);
     if (request.path == "/live" || request.path == kDrivePath) return take_viewer(request.path);
-    say(answer_to(request), version, received.keep_alive());
+    host_.let_stand(guest, Standing::kIsAnswered);
+    host_.turns.add([self = shared_from_this(), request, version, goes_on = received.keep_alive()] {
+      if (self->stream_.socket().is_open()) self->say(self->answer_to(request), version, goes_on);
+    });
   }
 
   bool tells_why_not_read(const error_code& error) {
@@ -136,6 +150,11 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     request.body = parser_->get().body();
     const unsigned version = parser_->get().version();
     const bool goes_on = parser_->get().keep_alive();
+    is_stop_ = host_.options.is_stop(request.body);
+    if (unless_stop_ && !is_stop_) return say(*unless_stop_, version, false);
+    if (!is_stop_ && host_.commands >= host_.most_commands()) return say(host_.options.busy_answer, version, false);
+    host_.commands += is_stop_ ? 0 : 1;
+    host_.let_stand(guest, Standing::kStays);
     patience_.expires_after(duration_of(host_.options.command_patience_s));
     patience_.async_wait([self = shared_from_this(), number = ++command_, version](const error_code& cancelled) {
       if (!cancelled) self->reply(number, self->host_.options.late_answer, version, false);
@@ -149,10 +168,11 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   }
 
   void reply(std::uint64_t number, const Answer& answer, unsigned version, bool goes_on) {
-    if (number != command_ || !stream_.socket().is_open()) return;
+    if (number != command_) return;
     ++command_;  // the first one counts
+    host_.commands -= is_stop_ ? 0 : 1;
     patience_.cancel();
-    say(answer, version, goes_on);
+    if (stream_.socket().is_open()) say(answer, version, goes_on);
   }
 
   void take_viewer(const std::string& path) {
@@ -162,29 +182,37 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
     }
     const auto self = shared_from_this();  // outlives its place in the list
     stream_.expires_never();
-    host_.upgrade(std::move(stream_), request);
+    host_.upgrade(std::move(stream_), request, guest);
     std::erase_if(host_.connections, [this](const auto& connection) { return connection.get() == this; });
   }
 
-  void say(const Answer& answer, unsigned version, bool goes_on) {
+  void say(Answer answer, unsigned version, bool goes_on) {
     response_ = {static_cast<http::status>(answer.status), version};
     for (const auto& [name, value] : kEveryAnswer) response_.set(name, value);
     for (const auto& [name, value] : answer.headers) response_.set(name, value);
     response_.set(http::field::content_type, answer.type);
-    response_.body() = answer.body;
+    response_.body() = std::move(answer.body);
     response_.keep_alive(goes_on);
     response_.prepare_payload();
+    const std::size_t size = response_.body().size();
+    host_.turns.began(size);
+    host_.let_stand(guest, Standing::kIsAnswered);
     stream_.expires_after(kHttpPatience);
-    http::async_write(stream_, response_, [self = shared_from_this(), goes_on](const error_code& error, std::size_t) {
-      if (!error && goes_on) return self->listen();
-      self->host_.end(self.get());
-    });
+    http::async_write(stream_, response_,
+                      [self = shared_from_this(), goes_on, size](const error_code& error, std::size_t) {
+                        self->response_ = {};
+                        self->host_.turns.ended(size);
+                        if (!error && goes_on) return self->listen();
+                        self->host_.end(self.get());
+                      });
   }
 
   beast::tcp_stream stream_;
   Host& host_;
-  asio::steady_timer patience_;  // for what becomes of a command
-  std::uint64_t command_ = 0;    // counts the commands that were taken, and their answers
+  asio::steady_timer patience_;        // for what becomes of a command
+  std::uint64_t command_ = 0;          // counts the commands that were taken, and their answers
+  bool is_stop_ = false;               // the newest command
+  std::optional<Answer> unless_stop_;  // what is said to a command that is none
   beast::flat_buffer buffer_{kMostHeaderBytes + kMostBodyBytes + 1024};
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/dashboard/listening_socket.hpp"
 
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include <boost/asio/ip/address.hpp>
@@ -46,6 +47,10 @@ std::string place_of(const asio::ip::tcp::endpoint& endpoint) {
 asio::ip::tcp::acceptor listening_socket(asio::io_context& loop, const Server::Options& options) {
   asio::ip::tcp::acceptor acceptor =
       options.descriptor >= 0 ? inherited(loop, options.descriptor) : listening_at(loop, options.address, options.port);
+  // Whoever says nothing is kept back by the kernel for a second: who comes has said something, and is not sent away
+  // for want of a request that is still on its way.
+  const int silence_s = 1;
+  (void)::setsockopt(acceptor.native_handle(), IPPROTO_TCP, TCP_DEFER_ACCEPT, &silence_s, sizeof silence_s);
   const asio::ip::tcp::endpoint place = acceptor.local_endpoint();
   if (options.guard.token.empty() && !place.address().is_loopback()) {
     throw std::runtime_error(place_of(place) + ": leads beyond this machine, and no token is asked for");

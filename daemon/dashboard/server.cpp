@@ -16,41 +16,64 @@
 #include "daemon/dashboard/listening_socket.hpp"
 #include "daemon/dashboard/viewer.hpp"
 #include "daemon/sockets/accept_loop.hpp"
+#include "daemon/system/spare_descriptor.hpp"
 
 namespace deltamap::daemon::dashboard {
 namespace {
 
-constexpr int kSendBuffer = 128 * 1024;  // of the kernel, for each connection
-constexpr std::size_t kMostDrivers = 4;  // of whom one has the robot
+constexpr int kSendBuffer = 128 * 1024;          // of the kernel, for each connection
+constexpr std::size_t kMostDrivers = 4;          // of whom one has the robot
+constexpr std::size_t kOthersDescriptors = 128;  // of the rest of this process: files, ports, sockets
+constexpr std::size_t kFewestConnections = 8;
 
 }  // namespace
 
 struct Server::State {
   explicit State(Options given)
-      : host{.options = std::move(given)},
-        clients{listening_socket(loop, host.options), [this](tcp::socket socket) { welcome(std::move(socket)); }},
+      : host{std::move(given), loop},
+        clients{listening_socket(loop, host.options), [this](tcp::socket socket) { welcome(std::move(socket)); },
+                [this] { return make_room(); }},
         period_timer{loop} {
-    host.upgrade = [this](beast::tcp_stream stream, const HttpRequest& request) {
+    host.most = std::min(host.most, descriptors_beside(kOthersDescriptors, kFewestConnections));
+    host.upgrade = [this](beast::tcp_stream stream, const HttpRequest& request, const Guest& guest) {
       const bool is_driver = request.target().starts_with(boost::string_view{kDrivePath.data(), kDrivePath.size()});
-      is_driver ? welcome_driver(std::move(stream), request) : welcome_viewer(std::move(stream), request);
+      is_driver ? welcome_driver(std::move(stream), request, guest) : welcome_viewer(std::move(stream), request, guest);
     };
   }
   ~State() { close(); }
 
-  /// One too many is not answered: that would keep it.
   void welcome(tcp::socket socket) {
-    if (host.connections.size() >= host.options.most_connections) return;
+    const Guest guest{.from = owner_of(address_of(socket))};
+    const Welcome verdict = welcome_for(guest.from, host.guests(), {host.most, host.options.most_from_one});
+    if (!verdict.is_welcome) return;  // one too many is not answered: that would keep it
+    if (verdict.leaves != nullptr) host.send_away(verdict.leaves);
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
-    const auto connection = std::make_shared<HttpConnection>(std::move(socket), host);
+    const auto connection = std::make_shared<HttpConnection>(std::move(socket), guest, host);
     host.connections.insert(connection);
     connection->listen();
   }
 
-  void welcome_viewer(beast::tcp_stream stream, const HttpRequest& request) {
-    if (viewers.size() >= host.options.most_viewers) return;
-    const auto viewer = std::make_shared<Viewer>(std::move(stream), host, [this](Viewer* ended) { end_viewer(ended); });
+  /// Where there is no descriptor left.
+  bool make_room() {
+    const Guest* const leaves = first_to_leave(host.guests());
+    if (leaves != nullptr) host.send_away(leaves);
+    return leaves != nullptr;
+  }
+
+  /// One too many is welcome where it has shown the token and another one has not.
+  void welcome_viewer(beast::tcp_stream stream, const HttpRequest& request, const Guest& guest) {
+    if (viewers.size() >= host.options.most_viewers) {
+      std::vector<const Guest*> present;
+      for (const Viewer* const viewer : viewers) present.push_back(&viewer->guest);
+      const Guest* const leaves = first_to_leave(present);
+      if (leaves == nullptr || leaves->is_known || !guest.is_known) return;
+      host.send_away(leaves);
+    }
+    const auto viewer =
+        std::make_shared<Viewer>(std::move(stream), guest, host, [this](Viewer* ended) { end_viewer(ended); });
+    host.let_stand(viewer->guest, Standing::kViews);
     host.connections.insert(viewer);
     viewers.insert(viewer.get());
     if (viewers.size() == 1) {
@@ -62,13 +85,14 @@ struct Server::State {
     viewer->welcome(request);
   }
 
-  void welcome_driver(beast::tcp_stream stream, const HttpRequest& request) {
+  void welcome_driver(beast::tcp_stream stream, const HttpRequest& request, const Guest& guest) {
     if (drivers >= kMostDrivers) return;
-    const auto driver = std::make_shared<Driver>(std::move(stream), host, [this](Driver* ended) {
+    const auto driver = std::make_shared<Driver>(std::move(stream), guest, host, [this](Driver* ended) {
       const std::size_t before = host.connections.size();
       host.end(ended);
       drivers -= before - host.connections.size();
     });
+    host.let_stand(driver->guest, Standing::kStays);
     host.connections.insert(driver);
     ++drivers;
     driver->welcome(request);
@@ -107,14 +131,15 @@ struct Server::State {
     period_timer.cancel();
     for (const auto& connection : host.connections) connection->close();
     host.connections.clear();
+    host.turns.clear();
     viewers.clear();
     loop.stop();
   }
 
+  asio::io_context loop{1};
   Host host;
   std::set<Viewer*> viewers;  // among the connections
   std::size_t drivers = 0;    // connections that may drive
-  asio::io_context loop{1};
   sockets::AcceptLoop<tcp> clients;
   asio::steady_timer period_timer;
   Clock::time_point next_period;

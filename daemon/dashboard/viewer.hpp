@@ -16,8 +16,8 @@ inline constexpr std::chrono::seconds kViewerSilence{30};  // then a ping, which
 /// At most one message is on its way; what comes after it is asked for when it has gone.
 class Viewer final : public Connection, public std::enable_shared_from_this<Viewer> {
  public:
-  Viewer(beast::tcp_stream stream, Host& host, std::function<void(Viewer*)> on_end)
-      : socket_{std::move(stream)}, host_{host}, on_end_{std::move(on_end)} {
+  Viewer(beast::tcp_stream stream, Guest who, Host& host, std::function<void(Viewer*)> on_end)
+      : Connection{std::move(who)}, socket_{std::move(stream)}, host_{host}, on_end_{std::move(on_end)} {
     socket_.set_option(websocket::stream_base::timeout{kHttpPatience, kViewerSilence, true});
     socket_.read_message_max(kMostIncomingBytes);
     socket_.auto_fragment(false);
@@ -53,6 +53,7 @@ class Viewer final : public Connection, public std::enable_shared_from_this<View
     error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
   }
+  void leave() override { on_end_(this); }
 
  private:
   /// Reads only to answer pings and to notice closing and errors. The page is read-only: a viewer that sends data is

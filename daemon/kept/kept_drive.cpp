@@ -117,6 +117,7 @@ bool KeptDrive::waits_to_try_again(DriveSwitch value, Timestamp now) const {
 }
 
 void KeptDrive::write(DriveSwitch value) {
+  const SpareDescriptor::Loan one_for_the_file{spare_};
   if (!place_.file.empty()) replace_file(place_.file, json_text(value, place_.robot_port));
   known_.value = value;
 }

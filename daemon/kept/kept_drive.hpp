@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/time.hpp"
+#include "daemon/system/spare_descriptor.hpp"
 #include "drivers/pioneer/drive_permission.hpp"
 #include "navigation/stop_reason.hpp"
 
@@ -61,6 +62,7 @@ class KeptDrive {
   std::optional<DriveSwitch> failed_;
   Timestamp failed_at_{};
   std::string why_not_kept_;
+  SpareDescriptor spare_;  // an off is kept also where nothing else can be opened
 };
 
 }  // namespace deltamap::daemon

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "daemon/control/request.hpp"
 #include "daemon/control/status_report.hpp"
 #include "daemon/dashboard/access.hpp"
 #include "daemon/live/live_messages.hpp"
@@ -47,6 +48,8 @@ DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, co
                },
            .converse =
                [this] { return std::make_unique<HandDrive>(++drivers_, control_.hand, telemetry_, &port_clock_now); },
+           .is_stop = [](const std::string& body) { return control::is_stop(body); },
+           .busy_answer = refused_command(503, "too many commands wait already: try again"),
            .late_answer = refused_command(504, "not answered yet: the log will say what became of it"),
            .refresh = [this] { refresh(); },
            .watched = [this](bool is_watched) { watched(is_watched); }}} {

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "daemon/settings/lost_keys.hpp"
+
 namespace deltamap::daemon {
 namespace {
 
@@ -37,14 +39,20 @@ MergedSettings with_live_keys_of(const Settings& wanted, const Settings& in_forc
 LiveSettings::Outcome LiveSettings::reload(const std::function<bool(const Settings&)>& take) {
   const std::scoped_lock one_after_another{mutex_};
   std::vector<std::string> lines;
-  MergedSettings merged;
+  SettingsReading read;
   try {
-    merged = with_live_keys_of(read_(), in_force_);
+    read = read_();
   } catch (const SettingsError& error) {
     lines = {"the settings stay as they are: the file cannot be taken"};
     lines.insert(lines.end(), error.lines().begin(), error.lines().end());
     return {false, lines};
   }
+  lines = losses(read, in_force_, last_key_);
+  if (!lines.empty()) {
+    lines.insert(lines.begin(), "the settings stay as they are: the file does not say any more what it said");
+    return {false, lines};
+  }
+  const MergedSettings merged = with_live_keys_of(read.settings, in_force_);
   for (const Contradiction& wrong : contradictions_in(merged.settings)) lines.push_back(wrong.key + ": " + wrong.what);
   if (!lines.empty()) {
     lines.insert(lines.begin(), "the settings stay as they are: with those that wait for a restart they contradict");
@@ -54,6 +62,7 @@ LiveSettings::Outcome LiveSettings::reload(const std::function<bool(const Settin
     return {false, {"the settings stay as they are: the daemon is busy, try again"}};
   }
   in_force_ = merged.settings;
+  last_key_ = read.last_key;
   for (const std::string& key : merged.taken) lines.push_back("taken: " + key);
   for (const std::string& key : merged.for_a_restart) lines.push_back("needs a restart: " + key);
   if (lines.empty()) lines.emplace_back("the settings are as they were");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The settings in force, and their exchange while the daemon runs (`deltamap ctl reload`, SIGHUP). Values of live keys
-// are taken; of all others it is told that they wait for a restart. A file with a mistake changes nothing.
+// are taken; of all others it is told that they wait for a restart. A file with a mistake, or one that has lost what it
+// said (lost_keys.hpp), changes nothing.
 #pragma once
 
 #include <functional>
@@ -9,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/settings/settings.hpp"
+#include "daemon/settings/settings_reading.hpp"
 
 namespace deltamap::daemon {
 
 class LiveSettings {
  public:
   /// `read` reads the file and the overrides of the start again; it throws SettingsError.
-  LiveSettings(const Settings& in_force, std::function<Settings()> read)
-      : in_force_{in_force}, read_{std::move(read)} {}
+  LiveSettings(const SettingsReading& at_start, std::function<SettingsReading()> read)
+      : in_force_{at_start.settings}, last_key_{at_start.last_key}, read_{std::move(read)} {}
 
   struct Outcome {
     bool done = true;
@@ -36,7 +37,8 @@ class LiveSettings {
  private:
   mutable std::mutex mutex_;
   Settings in_force_;
-  std::function<Settings()> read_;
+  std::string last_key_;  // of the file, when it was taken last
+  std::function<SettingsReading()> read_;
 };
 
 /// `in_force` with the live keys of `wanted`, and a line for every key in which both differ.

@@ -17,6 +17,19 @@ namespace {
 
 enum class Use : std::uint8_t { kAny, kRun };
 
+/// Empty where the file gives none that no override gives, too.
+std::string last_key_of_file(const ReadKeys& read) {
+  std::string last;
+  std::pair<int, int> last_place{0, 0};
+  for (const auto& [key, place] : read.places) {
+    const std::pair here{place.line, place.column};
+    if (place.source != 0 || here < last_place) continue;
+    last = key;
+    last_place = here;
+  }
+  return last;
+}
+
 SettingsReading reading_of(const std::string& yaml, const std::string& name, const std::vector<std::string>& overrides,
                            Use use) {
   SettingsReading reading;
@@ -33,6 +46,9 @@ SettingsReading reading_of(const std::string& yaml, const std::string& name, con
   for (const auto& [key, place] : reader.read().places) reading.given.insert(key);
   reading.doubtful = reader.read().doubtful;
   reading.is_whole = reader.read().is_whole;
+  reading.file = name;
+  reading.last_key = last_key_of_file(reader.read());
+  reading.ends_its_line = yaml.empty() || yaml.back() == '\n';
   return reading;
 }
 
@@ -44,15 +60,15 @@ std::string text_of_settings(const std::filesystem::path& file) {
   }
 }
 
-Settings sound_settings(SettingsReading reading) {
+SettingsReading sound(SettingsReading reading) {
   if (!reading.problems.empty()) throw SettingsError(std::move(reading.problems));
-  return std::move(reading.settings);
+  return reading;
 }
 
 }  // namespace
 
 Settings parse_settings(const std::string& yaml, const std::string& name, const std::vector<std::string>& overrides) {
-  return sound_settings(reading_of(yaml, name, overrides, Use::kAny));
+  return sound(reading_of(yaml, name, overrides, Use::kAny)).settings;
 }
 
 Settings read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -67,8 +83,8 @@ SettingsReading look_at_settings(const std::filesystem::path& file, const std::v
   return reading_of(text_of_settings(file), file.string(), overrides, Use::kRun);
 }
 
-Settings read_settings_of_a_run(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return sound_settings(look_at_settings(file, overrides));
+SettingsReading read_settings_of_a_run(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return sound(look_at_settings(file, overrides));
 }
 
 std::vector<std::pair<std::string, std::string>> changed_settings(const Settings& settings) {

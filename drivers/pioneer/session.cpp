@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kCheckIntervalS = 1.0;
 constexpr double kControllerCycleS = 0.1;  // A6: so old the newest speed may be
+constexpr double kLongestBrakingS = 3.0;   // waited for before CLOSE, whatever the controller reports
 constexpr double kVoltsPerDecivolt = 0.1;
 
 unsigned known_baud_or_throw(unsigned baud) {
@@ -172,14 +173,21 @@ void PioneerSession::keep_alive(Timestamp now, PioneerOutput& out) {
 PioneerOutput PioneerSession::close(Timestamp now) {
   PioneerOutput out;
   if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
-  leave(std::nullopt, now + time_to_stand());
+  const double time_to_stand_s = this->time_to_stand_s();
+  leave(std::nullopt, now + duration_from_seconds(std::min(time_to_stand_s, kLongestBrakingS)));
+  if (owes_close_ && time_to_stand_s > kLongestBrakingS) {
+    owes_close_ = false;
+    out.output.log.push_back("robot is told to stop and not let go: by what it reports it stands in " +
+                             std::to_string(std::lround(time_to_stand_s)) +
+                             " s; its motors stay on, and hold it, until the next start");
+  }
   return finished(now, std::move(out));
 }
 
 /// CLOSE takes the current from the motors and our deceleration from the controller: a robot that still moves then
-/// rolls on. Only a robot that we have opened hears CLOSE, one that waits for a connection may take it amiss; and only
-/// at our own wish: where the link has failed, the SIPs of the connection that is left over will tell what buttons were
-/// pressed meanwhile, and CLOSE would wipe that out.
+/// rolls on, so one that would move for long is not closed. Only a robot that we have opened hears CLOSE, one that
+/// waits for a connection may take it amiss; and only at our own wish: where the link has failed, the SIPs of the
+/// connection that is left over will tell what buttons were pressed meanwhile, and CLOSE would wipe that out.
 void PioneerSession::leave(std::optional<std::string> reason, Timestamp close_at) {
   const bool has_opened = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
   owes_close_ = has_opened && !reason;
@@ -189,12 +197,12 @@ void PioneerSession::leave(std::optional<std::string> reason, Timestamp close_at
   left_for_ = std::move(reason);
 }
 
-Duration PioneerSession::time_to_stand() const {
-  if (!newest_sip_) return {};
+double PioneerSession::time_to_stand_s() const {
+  if (!newest_sip_) return 0.0;
   const double faster_m_per_s =
       1e-3 * std::max(std::abs(newest_sip_->left_mm_per_s), std::abs(newest_sip_->right_mm_per_s));
-  if (faster_m_per_s == 0.0) return {};
-  return duration_from_seconds(faster_m_per_s / stopping_limits().deceleration_m_per_s2 + kControllerCycleS);
+  if (faster_m_per_s == 0.0) return 0.0;
+  return faster_m_per_s / stopping_limits().deceleration_m_per_s2 + kControllerCycleS;
 }
 
 Duration PioneerSession::watchdog() const {

@@ -74,7 +74,8 @@ class PioneerSession {
   [[nodiscard]] PioneerOutput emergency_stop(Timestamp now);
   /// A person lets it drive, or makes it stand, until a person says otherwise.
   [[nodiscard]] PioneerOutput switch_drive(bool on, Timestamp now);
-  /// Stops the robot and, once it stands, takes leave: on_time() sends what has to wait; nothing is sent after it.
+  /// Stops the robot and, once it stands, takes leave: on_time() sends what has to wait; nothing is sent after it. Over
+  /// within 3.5 s, whatever the controller reports: one that would move for longer is told to stop and not closed.
   [[nodiscard]] PioneerOutput close(Timestamp now);
   /// The farewell is not out yet.
   [[nodiscard]] bool is_leaving() const { return state_ == State::kLeaving; }
@@ -93,6 +94,8 @@ class PioneerSession {
   [[nodiscard]] StoppingLimits stopping_limits() const { return stopping_limits_of(config_); }
   /// Why this controller is not driven in this connection, whatever a person says; empty: nothing speaks against it.
   [[nodiscard]] std::string_view why_never_driven() const;
+  /// Nobody knows its hull and its units (robot_units): one of the reasons why it is never driven.
+  [[nodiscard]] bool is_unknown_robot() const { return !units_.why_never_driven().empty(); }
 
  private:
   enum class State {
@@ -143,7 +146,7 @@ class PioneerSession {
   void push_set_points();
   void push_emergency_stop(Timestamp now);
   void leave(std::optional<std::string> reason, Timestamp close_at = {});
-  [[nodiscard]] Duration time_to_stand() const;
+  [[nodiscard]] double time_to_stand_s() const;
   [[nodiscard]] Duration watchdog() const;
   [[nodiscard]] Duration pulse_interval() const;
 

@@ -27,12 +27,13 @@ class ReloadTest : public DriveTest {
     DriveTest::SetUp();
     settings_.navigation.mode = navigation::DriveMode::kWander;
     wanted_ = settings_;
-    live_ = std::make_shared<LiveSettings>(settings_, [this] {
+    live_ = std::make_shared<LiveSettings>(SettingsReading{.settings = settings_}, [this] {
       if (!mistake_.empty()) throw SettingsError(mistake_);
-      return wanted_;
+      return SettingsReading{.settings = wanted_, .given = given_};
     });
   }
   Settings wanted_;
+  std::set<std::string> given_{"navigation.safety.max_speed_m_per_s", "navigation.wander.speed_m_per_s"};
   std::string mistake_;
 };
 
@@ -67,6 +68,25 @@ TEST_F(ReloadTest, OfAFileWithAMistakeIsRefusedAndTheRobotDrivesOnAsBefore) {
     EXPECT_EQ(exit_code({"reload"}), 1);
     const std::size_t from = ports.commands().size();
     EXPECT_TRUE(comes_true([&] { return fastest_sent(ports, from) > 10; }));
+  });
+}
+
+TEST_F(ReloadTest, OfAnEmptiedFileIsRefusedAndTheRobotDrivesNoFaster) {
+  constexpr int kLimit_mm_per_s = 120;
+  settings_.navigation.safety.max_speed_m_per_s = 0.001 * kLimit_mm_per_s;
+  live_ = std::make_shared<LiveSettings>(SettingsReading{.settings = settings_}, [this] {
+    return SettingsReading{.settings = wanted_, .file = "robot.yaml"};  // as delivered
+  });
+  run([&](test::SimulatedPorts& ports) {
+    EXPECT_EQ(asked({Request::Kind::kDriveWander, {}})["ok"], true);
+    ASSERT_TRUE(comes_true([&] { return fastest_sent(ports, 0) > kLimit_mm_per_s / 2; }));
+    const Json reply = asked({Request::Kind::kReload, {}});
+    EXPECT_EQ(reply["ok"], false) << reply;
+    EXPECT_NE(reply["error"].get<std::string>().find("'navigation.safety.max_speed_m_per_s' is gone: 0.12 is in force"),
+              std::string::npos)
+        << reply;
+    ASSERT_TRUE(reached_scan(static_cast<int>(status()["localized"]) + 20));
+    EXPECT_LE(fastest_sent(ports, 0), kLimit_mm_per_s);
   });
 }
 

@@ -2,8 +2,9 @@
 // Sends damaged HTTP and WebSocket input to the live page's server, over real sockets, built with the sanitizers:
 //   page_fuzz [--seconds S] [--seed N] [--case N] [--state FILE]
 // A case is made from seed and number alone. Beside the sanitizers, three things must hold: whoever has no token never
-// commands and never drives, whatever comes back is HTTP, and the next good request is answered. Prints one JSON line;
-// exit code 1 where one does not hold. FILE holds the number of the newest case, for whoever looks after a crash;
+// commands, but for STOP, and never drives, whatever comes back is HTTP, and the next good request is answered. Prints
+// one JSON line; exit code 1 where one does not hold. FILE holds the number of the newest case, for whoever looks after
+// a crash;
 // --case plays it alone.
 #include <netinet/in.h>
 #include <poll.h>
@@ -78,8 +79,10 @@ class Page {
     options.guard = {.token = kToken, .takes_commands = true};
     options.answer = [](const dashboard::Request& request) { return dashboard::Answer{.body = request.path}; };
     options.open = [] { return std::make_unique<Few>(); };
+    options.is_stop = [](const std::string& body) { return control::is_stop(body); };
     options.command = [this](const dashboard::Request& request, dashboard::Reply reply) {
-      if (request.authorization.find(kToken) == std::string::npos) is_broken_into_ = true;
+      const bool has_token = request.authorization.find(kToken) != std::string::npos;
+      if (!has_token && !control::is_stop(request.body)) is_broken_into_ = true;
       const auto read = control::request_of_line(request.body);
       reply({.status = read.request ? 200U : 409U,
              .body = read.request ? control::line_of(*read.request) : control::error_line(read.refused)});

@@ -46,6 +46,10 @@ class Cable(threading.Thread):
         state.register(self.host, select.POLLOUT)
         return not any(event & select.POLLHUP for _, event in state.poll(0))
 
+    def passed_on(self, data):
+        """What arrives of what the device has said."""
+        return data
+
     def run(self):
         speed = None
         while True:
@@ -64,13 +68,13 @@ class Cable(threading.Thread):
                     if select.select([self.device], [], [], 0)[0]:
                         data = os.read(self.device, 4096)
                         if is_open and data:
-                            os.write(self.host, data)
+                            os.write(self.host, self.passed_on(data))
                 except OSError:
                     pass
 
 
 class Trial:
-    def __init__(self, bin, out, seed):
+    def __init__(self, bin, out, seed, cable=Cable):
         self.bin, self.out, self.random = pathlib.Path(bin).resolve(), pathlib.Path(out), random.Random(seed)
         world = ["--world", str(ROOT / "config/scenarios/room.yaml")]
         subprocess.run([self.bin / "deltamap", "sim", *world, "--write-map", self.out / "m0.yaml"], check=True)
@@ -78,7 +82,7 @@ class Trial:
         self.sim = subprocess.Popen([self.bin / "deltamap", "sim", *world, "--links", self.out / "sim", "--truth",
                                      self.out / "truth.jsonl", "--seed", str(seed)], stderr=open(self.out / "sim.log", "w"))
         self.until(lambda: (self.out / "sim/laser").exists(), "no simulator")
-        self.cable = Cable(self.out / "sim/robot", self.out / "robot")
+        self.cable = cable(self.out / "sim/robot", self.out / "robot")
         self.daemon = None
 
     def start(self):

@@ -5,11 +5,11 @@ const PATIENCE_MS = 5000;
 
 /// {ok: true, message} with `doubt` where one should look again, or {ok: false, error} with `is_locked` where the token is
 /// missing; never throws.
-export async function command(request) {
+export async function command(request, patience_ms = PATIENCE_MS) {
   try {
     const answer = await fetch("/api/command", {
       method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(request),
-      signal: AbortSignal.timeout(PATIENCE_MS),
+      signal: AbortSignal.timeout(patience_ms),
     });
     const text = await answer.text();
     if (answer.headers.get("Content-Type") === "application/json") return JSON.parse(text);

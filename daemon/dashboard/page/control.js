@@ -6,6 +6,10 @@ import { HandDrive } from "./drive.js";
 import { Relocalize } from "./relocalize.js";
 import { ask_token, is_locked } from "./token.js";
 
+const STOP_PATIENCE_MS = 2000;  // of one try
+const STOP_TRIES_MS = 10000;    // of all of them
+const STOP_PAUSE_MS = 100;
+
 const by_id = (id) => document.getElementById(id);
 
 export class Control {
@@ -33,7 +37,7 @@ export class Control {
     this.set_locked(Boolean(allowed) && await is_locked());
   }
 
-  /// Buttons that would all be refused are not there.
+  /// Buttons that would be refused are not there; STOP needs no token.
   set_locked(is_locked) {
     by_id("unlock").hidden = !is_locked;
     by_id("controls").classList.toggle("locked", is_locked);
@@ -63,8 +67,12 @@ export class Control {
   async stop() {
     this.hand.end("STOP");
     this.row.tell("stopping …", "wait", 60000);
-    let answer = await command({ command: "drive", mode: "off" });
-    for (let i = 0; i < 3 && !answer.ok; ++i) answer = await command({ command: "drive", mode: "off" });
+    const stop = () => command({ command: "drive", mode: "off" }, STOP_PATIENCE_MS);
+    let answer = await stop();
+    for (const began = performance.now(); !answer.ok && performance.now() - began < STOP_TRIES_MS;) {
+      await new Promise((resolve) => setTimeout(resolve, STOP_PAUSE_MS));
+      answer = await stop();
+    }
     if (answer.ok) this.row.tell(`STOP: ${answer.message}`, "good");
     else this.row.tell(`STOP: ${answer.error}. Press STOP on the robot.`, "bad", 60000);
   }

@@ -13,6 +13,7 @@
 #include "daemon/control/client.hpp"
 #include "daemon/control/request.hpp"
 #include "tests/support/daemon/socket_client.hpp"
+#include "tests/support/files/no_descriptors.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 
 namespace deltamap::daemon::control {
@@ -20,6 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::SocketClient;
+
+constexpr std::size_t kMost = 64;  // clients
+const std::string kStop = R"({"command":"drive","mode":"off"})";
 
 class ServerTest : public testing::Test {
  protected:
@@ -138,17 +142,23 @@ TEST_F(ServerTest, AClientTooManyIsToldSoAndPlacesComeFree) {
   std::promise<void> all_wait;
   serve([&](const std::string& line, bool, const Server::Reply& reply) {
     if (line == "now") return reply("re: now");
+    if (line == kStop) return reply("stands");
     waiting.push_back(reply);
-    if (waiting.size() == 16) all_wait.set_value();
+    if (waiting.size() == kMost) all_wait.set_value();
   });
   std::vector<std::unique_ptr<SocketClient>> clients;
-  for (int i = 0; i < 16; ++i) {
+  for (std::size_t i = 0; i < kMost; ++i) {
     clients.push_back(std::make_unique<SocketClient>(socket()));
     ASSERT_TRUE(clients.back()->send("hello\n"));
   }
   all_wait.get_future().wait();
   SocketClient late{socket()};
-  EXPECT_EQ(late.line(), error_line("too many clients"));
+  EXPECT_EQ(late.asked("now"), error_line("too many clients"));
+  EXPECT_EQ(late.line(), "");
+  for (int i = 0; i < 100; ++i) {
+    const SocketClient says_nothing{socket()};
+    ASSERT_EQ(exchange(socket(), kStop), "stands") << "an order to stop is never one too many";
+  }
   for (const Server::Reply& reply : waiting) reply("at last");
   for (const auto& client : clients) EXPECT_EQ(client->line(), "at last");
   EXPECT_EQ(SocketClient{socket()}.asked("now"), "re: now");
@@ -157,7 +167,7 @@ TEST_F(ServerTest, AClientTooManyIsToldSoAndPlacesComeFree) {
 TEST_F(ServerTest, ClientsThatSayNothingKeepNobodyOut) {
   serve_echo();
   std::vector<std::unique_ptr<SocketClient>> clients;
-  for (int i = 0; i < 16; ++i) {
+  for (std::size_t i = 0; i < kMost; ++i) {
     clients.push_back(std::make_unique<SocketClient>(socket()));
     ASSERT_EQ(clients.back()->asked("hello"), "re: hello");
   }
@@ -165,6 +175,20 @@ TEST_F(ServerTest, ClientsThatSayNothingKeepNobodyOut) {
   EXPECT_EQ(SocketClient{socket()}.asked("drive off"), "re: drive off");
   EXPECT_EQ(clients[1]->line(), "") << "it had been silent longest";
   EXPECT_EQ(clients.front()->asked("and here"), "re: and here");
+}
+
+TEST_F(ServerTest, AnOrderGetsThroughWhereTheProcessCanOpenNothingMore) {
+  serve_echo();
+  std::vector<std::unique_ptr<SocketClient>> clients;
+  for (int i = 0; i < 10; ++i) clients.push_back(std::make_unique<SocketClient>());
+  test::NoDescriptors none_left;
+  for (std::size_t i = 0; i + 1 < clients.size(); i += 2) {
+    clients[i]->connect(socket());
+    ASSERT_EQ(clients[i]->asked("hello"), "re: hello");
+    (void)none_left.take();
+    clients[i + 1]->connect(socket());
+    EXPECT_EQ(clients[i + 1]->asked(kStop), "re: " + kStop) << i;
+  }
 }
 
 TEST_F(ServerTest, TheSocketOfADaemonThatFollowsIsLeftAlone) {

@@ -158,6 +158,26 @@ TEST(DashboardAccess, ReadingOnThisMachineNeedsNoTokenAndCommandingDoes) {
   EXPECT_EQ(status_of_command(command, kToken), 401u);
 }
 
+TEST(DashboardAccess, WhoMayReadWithoutTheTokenMayStop) {
+  const Guard guard{.token = kToken, .takes_commands = true};
+  Request command = good_command();
+  EXPECT_FALSE(may_stop(command, guard)) << "from another machine";
+  command.is_from_loopback = true;
+  EXPECT_TRUE(may_stop(command, guard));
+  EXPECT_FALSE(may_stop(command, {.token = kToken, .takes_commands = false}));
+  const auto with = [&command](auto change) {
+    Request changed = command;
+    change(changed);
+    return changed;
+  };
+  EXPECT_FALSE(may_stop(with([](Request& r) { r.host = "192.168.1.7:8484"; }), guard)) << "through a proxy";
+  EXPECT_FALSE(may_stop(with([](Request& r) { r.host = "evil.example"; }), guard));
+  EXPECT_FALSE(may_stop(with([](Request& r) { r.origin = "http://evil.example"; }), guard));
+  EXPECT_FALSE(may_stop(with([](Request& r) { r.content_type = "text/plain"; }), guard)) << "a form of another site";
+  EXPECT_FALSE(may_stop(with([](Request& r) { r.method = "GET"; }), guard));
+  EXPECT_FALSE(may_stop(with([](Request& r) { r.path = "/drive"; }), guard));
+}
+
 TEST(DashboardAccess, ReadingByAnAddressBeyondThisMachineNeedsTheTokenFromAnywhere) {
   for (const char* host : {"192.168.1.7:8484", "0.0.0.0", "[fe80::1]"}) {
     Request request = good_request();

@@ -165,16 +165,74 @@ TEST_F(DashboardServer, ReadingFromThisMachineNeedsNoTokenAndByAnotherAddressItD
   EXPECT_EQ(WebClient{port()}.upgraded("Cookie: " + cookie + "\r\n").status, 101);
 }
 
-TEST_F(DashboardServer, OneConnectionTooManyIsClosedAndTheOthersGoOn) {
+TEST_F(DashboardServer, OneConnectionTooManyIsAnsweredAndWhoWasSilentLongestLeaves) {
   options_.most_connections = 3;
   start();
   WebClient first{port()};
   WebClient second{port()};
   WebClient third{port()};
   for (WebClient* client : {&first, &second, &third}) EXPECT_EQ(client->got("/").status, 200);
-  WebClient fourth{port()};
-  EXPECT_TRUE(fourth.is_hung_up());
   EXPECT_EQ(first.got("/").status, 200);
+  WebClient fourth{port()};
+  EXPECT_EQ(fourth.got("/").status, 200);
+  EXPECT_TRUE(second.is_hung_up());
+  EXPECT_EQ(first.got("/").status, 200);
+  EXPECT_EQ(third.got("/").status, 200);
+}
+
+TEST_F(DashboardServer, WhoHasShownTheTokenIsShownThePageInPlaceOfAStranger) {
+  options_.guard.token = "0123456789abcdef";
+  options_.most_viewers = 2;
+  start();
+  const std::string token = "Authorization: Bearer 0123456789abcdef\r\n";
+  WebClient stranger{port()};
+  WebClient known{port()};
+  EXPECT_EQ(stranger.upgraded().status, 101);
+  EXPECT_EQ(known.upgraded(token).status, 101);
+  EXPECT_EQ(WebClient{port()}.upgraded().status, 0) << "a stranger for nobody";
+  WebClient another{port()};
+  EXPECT_EQ(another.upgraded(token).status, 101);
+  EXPECT_TRUE(stranger.is_hung_up());
+  EXPECT_EQ(WebClient{port()}.upgraded(token).status, 0) << "nor one that is known for another";
+  for (WebClient* viewer : {&known, &another}) EXPECT_TRUE(viewer->frame());
+}
+
+TEST_F(DashboardServer, ACommandDoesNotWaitForALineOfRequestsThatRead) {
+  constexpr int kReaders = 30;
+  std::binary_semaphore is_at_work{0};
+  std::binary_semaphore all_have_come{0};
+  std::vector<std::string> order;  // of the server's thread, which is joined before it is read
+  options_.answer = [&](const Request& request) -> Answer {
+    order.push_back(request.path);
+    if (request.path == "/first") {
+      is_at_work.release();
+      all_have_come.acquire();
+    }
+    return {.body = "well"};
+  };
+  options_.guard.takes_commands = true;
+  options_.command = [&](const Request&, const Reply& reply) {
+    order.emplace_back("command");
+    reply({.body = "done"});
+  };
+  start();
+  std::vector<std::unique_ptr<WebClient>> readers;
+  const auto read = [&](const std::string& path) {
+    readers.push_back(std::make_unique<WebClient>(port()));
+    (void)readers.back()->send("GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:1\r\n\r\n");
+  };
+  read("/first");
+  is_at_work.acquire();
+  for (int i = 0; i < kReaders; ++i) read("/next");
+  WebClient client{port()};
+  (void)client.send(
+      "POST /api/command HTTP/1.1\r\nHost: 127.0.0.1:1\r\nContent-Type: application/json\r\nContent-Length: "
+      "2\r\n\r\n{}");
+  all_have_come.release();
+  EXPECT_EQ(client.answer().status, 200);
+  for (const auto& reader : readers) EXPECT_EQ(reader->answer().status, 200);
+  stop();
+  EXPECT_LT(std::find(order.begin(), order.end(), "command") - order.begin(), kReaders / 2);
 }
 
 TEST_F(DashboardServer, OneViewerTooManyIsClosed) {

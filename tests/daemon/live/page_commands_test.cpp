@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -12,6 +13,7 @@
 #include "drivers/port/port_clock.hpp"
 #include "tests/support/daemon/control_fixture.hpp"
 #include "tests/support/daemon/web_client.hpp"
+#include "tests/support/files/no_descriptors.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -27,7 +29,7 @@ constexpr double kStandsWithin_s = 0.3;
 /// Who drives: answers each beat with what is wanted.
 class Hands {
  public:
-  Hands(std::uint16_t port, const std::string& headers) : client_{std::in_place, port} {
+  Hands(std::uint16_t port, const std::string& headers) : client_{std::make_unique<WebClient>(port)} {
     EXPECT_EQ(client_->upgraded(headers, "/drive").status, 101);
     first_ = told();
   }
@@ -52,7 +54,7 @@ class Hands {
   void go_away() { client_.reset(); }
 
  private:
-  std::optional<WebClient> client_;
+  std::unique_ptr<WebClient> client_;
   Json first_;
 };
 
@@ -285,6 +287,31 @@ TEST_F(PageCommandsTest, StopEndsDrivingByHandAndWandering) {
     EXPECT_LT(stands_s, kStandsWithin_s);
     EXPECT_EQ(switch_on_disk(), drivers::pioneer::DriveSwitch::kOffByOperator);
   });
+}
+
+TEST_F(PageCommandsTest, StopAndDriveOffAreDoneAndKeptWhereTheDaemonCanOpenNothingMore) {
+  ask_for_token();
+  for (const bool by_page : {true, false}) {
+    run([&](test::SimulatedPorts& ports) {
+      ASSERT_EQ(posted(R"({"command":"drive","mode":"wander"})").status, 200);
+      EXPECT_TRUE(comes_true([&] { return newest_speed(ports).mm_per_s > 0; }));
+      WebClient page;
+      test::SocketClient ctl;
+      std::optional<test::NoDescriptors> none_left{std::in_place};
+      const std::string stop = control::line_of({Request::Kind::kDriveOff, {}});
+      const Timestamp stopped = port_clock_now();
+      if (by_page) {
+        page.connect(settings_.dashboard.port);
+        EXPECT_EQ(page.posted("/api/command", stop).status, 200) << "without the token, too";
+      } else {
+        ctl.connect(settings_.control.socket);
+        EXPECT_EQ(ctl.asked(stop), control::done_line("the robot is told to stand"));
+      }
+      EXPECT_LT(stands_after_s(ports, stopped), kStandsWithin_s);
+      none_left.reset();
+      EXPECT_EQ(switch_on_disk(), drivers::pioneer::DriveSwitch::kOffByOperator);
+    });
+  }
 }
 
 TEST_F(PageCommandsTest, WhereTheOffCannotBeKeptOnDiskNobodyTakesIt) {

@@ -20,7 +20,8 @@ class LiveSettingsTest : public testing::Test {
 
   void write(const std::string& yaml) { file_ = folder_.write("f.yaml", yaml); }
   LiveSettings begun() {
-    return {read_settings(file_, overrides_), [this] { return read_settings(file_, overrides_); }};
+    const auto read = [this] { return read_settings_of_a_run(file_, overrides_); };
+    return {read(), read};
   }
   std::function<bool(const Settings&)> take_ = [this](const Settings& settings) {
     taken_.push_back(settings);
@@ -96,6 +97,96 @@ TEST_F(LiveSettingsTest, WhatWasSetOnTheCommandLineStaysSet) {
   LiveSettings live = begun();
   write("seed: 3\nnavigation: {safety: {margin_m: 0.25}}\n");
   EXPECT_EQ(live.reload(take_).lines, Lines{"the settings are as they were"});
+}
+
+// --- a file that an editor or a full disk has emptied or cut ---
+
+const std::string kWhole =
+    "map: {file: hall.yaml}\n"
+    "navigation:\n"
+    "  mode: wander\n"
+    "  safety:\n"
+    "    max_speed_m_per_s: 0.12\n"
+    "    margin_m: 0.3\n"
+    "  wander:\n"
+    "    speed_m_per_s: 0.1\n"
+    "control:\n"
+    "  socket: ctl.sock\n"
+    "recording:\n"
+    "  max_gigabytes: 40  # of 80\n"
+    "# the end\n";
+
+TEST_F(LiveSettingsTest, AFileThatIsCutAnywhereChangesNothing) {
+  write(kWhole);
+  LiveSettings live = begun();
+  const std::size_t end_of_keys = kWhole.find("# the end");
+  for (std::size_t size = 0; size < end_of_keys; ++size) {
+    write(kWhole.substr(0, size));
+    const auto outcome = live.reload(take_);
+    EXPECT_FALSE(outcome.done) << "cut behind: " << kWhole.substr(0, size);
+    EXPECT_TRUE(outcome.lines.front().starts_with("the settings stay as they are: ")) << outcome.lines.front();
+    EXPECT_GE(outcome.lines.size(), 2u) << "what is wrong, and what to do";
+  }
+  EXPECT_TRUE(taken_.empty());
+  for (const std::string& whole : {kWhole, kWhole.substr(0, end_of_keys)}) {
+    write(whole);
+    EXPECT_EQ(live.reload(take_).lines, Lines{"the settings are as they were"});
+  }
+}
+
+TEST_F(LiveSettingsTest, AnEmptiedFileNamesWhatIsGone) {
+  write(kWhole);
+  LiveSettings live = begun();
+  write("");
+  const std::string file = file_.string();
+  EXPECT_EQ(
+      live.reload(take_).lines,
+      (Lines{"the settings stay as they are: the file does not say any more what it said",
+             file + ": 'recording.max_gigabytes', with which it ended before, is gone: is it cut? Put the key back, "
+                    "or restart",
+             file + ": 'navigation.safety.margin_m' is gone: 0.3 is in force, 0.08 is as delivered; write the one "
+                    "that is meant",
+             file + ": 'navigation.safety.max_speed_m_per_s' is gone: 0.12 is in force, 0.7 is as delivered; write "
+                    "the one that is meant",
+             file + ": 'navigation.wander.speed_m_per_s' is gone: 0.1 is in force, 0.5 is as delivered; write the "
+                    "one that is meant"}));
+}
+
+TEST_F(LiveSettingsTest, AKeyThatIsTakenOutOnPurposeIsNoLossWhereItWaitsForARestart) {
+  write(kWhole);
+  LiveSettings live = begun();
+  std::string edited = kWhole;
+  edited.erase(edited.find("control:"), std::string("control:\n  socket: ctl.sock\n").size());
+  write(edited);
+  const auto outcome = live.reload(take_);
+  EXPECT_TRUE(outcome.done);
+  EXPECT_EQ(outcome.lines, Lines{"needs a restart: control.socket: \"\" (in force ctl.sock)"});
+}
+
+TEST_F(LiveSettingsTest, ALimitIsNotRaisedByTheLineThatHasVanished) {
+  write(kWhole);
+  LiveSettings live = begun();
+  std::string edited = kWhole;
+  edited.erase(edited.find("    max_speed"), std::string("    max_speed_m_per_s: 0.12\n").size());
+  write(edited);
+  const auto outcome = live.reload(take_);
+  EXPECT_FALSE(outcome.done);
+  EXPECT_EQ(outcome.lines.back(), file_.string() +
+                                      ": 'navigation.safety.max_speed_m_per_s' is gone: 0.12 is in force, 0.7 is as "
+                                      "delivered; write the one that is meant");
+  edited.insert(edited.find("    margin_m"), "    max_speed_m_per_s: 0.4\n");
+  write(edited);
+  EXPECT_EQ(live.reload(take_).lines, Lines{"taken: navigation.safety.max_speed_m_per_s: 0.4 (before 0.12)"});
+}
+
+TEST_F(LiveSettingsTest, WhatTheFileEndedWithIsTheLastFileThatWasTaken) {
+  LiveSettings live = begun();
+  write("seed: 3\nnavigation: {safety: {margin_m: 0.25}}\n");
+  EXPECT_TRUE(live.reload(take_).done);
+  write("seed: 3\n");
+  EXPECT_FALSE(live.reload(take_).done);
+  write("navigation: {safety: {margin_m: 0.2}}\nseed: 3\n");
+  EXPECT_TRUE(live.reload(take_).done) << "in another order";
 }
 
 TEST(LiveKeys, AreThoseThatDecideNoResultAndNeverWhoDrives) {

@@ -218,5 +218,38 @@ TEST_F(PioneerSessionTest, TakesItsLeaveWithARobotThatStands) {
   EXPECT_EQ(line.written.size(), written) << "nothing is sent after the leave";
 }
 
+/// Speed and deceleration are the controller's word, and some of it is damaged or absurd.
+TEST_F(PioneerSessionTest, LeavesInTimeWhateverTheControllerReports) {
+  constexpr double kFarewell_s = 3.5;
+  struct Report {
+    std::int16_t speed_mm_per_s;
+    std::uint16_t deceleration_mm_per_s2;
+  };
+  const std::vector<Report> reports{{32767, 1000}, {-32768, 1000}, {32767, 1},  {400, 1},
+                                    {1, 1},        {400, 0},       {25000, 300}};
+  for (const Report& report : reports) {
+    use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+    robot = FakeRobot{9600};
+    robot.takes_limits = false;
+    robot.config.trans_decel = report.deceleration_mm_per_s2;
+    ASSERT_TRUE(connect());
+    line.run_for(2.0);
+    robot.sip.left_mm_per_s = report.speed_mm_per_s;
+    line.run_for(0.3);
+    const Timestamp asked = line.now;
+    line.log.clear();
+    line.carry_out(session.close(line.now));
+    EXPECT_TRUE(line.run_until([&] { return !session.is_leaving(); }, 600.0));
+    EXPECT_LT(seconds(line.now - asked), kFarewell_s) << report.speed_mm_per_s << " " << report.deceleration_mm_per_s2;
+    const std::vector<Command> last(robot.obeyed.end() - 4, robot.obeyed.end());
+    const bool is_closed = last.back().number == CommandNumber::kClose;
+    const std::size_t first = is_closed ? 0 : 1;
+    EXPECT_EQ(last[first].number, CommandNumber::kEstop);
+    EXPECT_EQ(last[first + 1], (Command{CommandNumber::kVel, 0}));
+    EXPECT_EQ(last[first + 2], (Command{CommandNumber::kRvel, 0}));
+    EXPECT_EQ(is_closed, !line.has_logged("is told to stop and not let go")) << "CLOSE would let it roll on";
+  }
+}
+
 }  // namespace
 }  // namespace deltamap::drivers::pioneer

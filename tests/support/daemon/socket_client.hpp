@@ -32,7 +32,10 @@ inline void leave_socket_behind(const std::filesystem::path& path) {
 
 class SocketClient {
  public:
-  explicit SocketClient(const std::filesystem::path& path) : socket_{AF_UNIX} { socket_.connect(address_of(path)); }
+  explicit SocketClient(const std::filesystem::path& path) : socket_{AF_UNIX} { connect(path); }
+  /// Has its descriptor, and connects later.
+  SocketClient() : socket_{AF_UNIX} {}
+  void connect(const std::filesystem::path& path) { socket_.connect(address_of(path)); }
 
   [[nodiscard]] bool is_connected() const { return socket_.is_connected(); }
 

@@ -31,7 +31,10 @@ struct WebFrame {
 
 class WebClient {
  public:
-  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : socket_{AF_INET, receive_buffer} {
+  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : socket_{AF_INET, receive_buffer} { connect(port); }
+  /// Has its descriptor, and connects later.
+  WebClient() : socket_{AF_INET} {}
+  void connect(std::uint16_t port) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
