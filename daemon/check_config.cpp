@@ -23,6 +23,7 @@
 #include "daemon/start_banner.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "drivers/port/port_check.hpp"
+#include "drivers/port/port_finder.hpp"
 #include "drivers/port/port_permission.hpp"
 #include "mapping/store/database_log.hpp"
 #include "mapping/store/map_store.hpp"
@@ -33,6 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Level = Finding::Level;
+using drivers::port::PortId;
 
 // Of systemd/deltamap.service: where its settings are, all that it may write to, what it cannot see, what only it sees,
 // and the drivers of the devices that it may open.
@@ -145,11 +147,15 @@ Finding store_finding(const Settings& settings, const std::string& config, const
   }
 }
 
-Finding port_finding(const std::string& about, const std::string& path) {
+Finding port_finding(const Settings& settings, PortId device) {
   using State = drivers::port::PortCheck::State;
-  const drivers::port::PortCheck port = drivers::port::check_port(path);
+  const std::string about{name_of(device)};
+  const bool is_robot = device == drivers::port::PortId::kRobot;
+  const drivers::port::PortCheck port = drivers::port::check_port(is_robot ? settings.robot.port : settings.laser.port);
   if (port.state == State::kReady) return {Level::kOk, about, port.text};
-  return {port.state == State::kMissing ? Level::kWarning : Level::kError, about, port.text};
+  if (port.state != State::kMissing) return {Level::kError, about, port.text};
+  const drivers::port::PortFinder finder{settings.robot.port, settings.laser.port};
+  return {Level::kWarning, about, port.text + finder.others_here(device)};
 }
 
 /// Whether it would drive is a person's word, which a run before has kept.
@@ -263,8 +269,8 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   const auto first = check_map(settings, config, findings);
   findings.push_back(store_finding(settings, config, first));
   if (!settings.map.newest.empty()) findings.push_back(newest_finding(settings.map));
-  findings.push_back(port_finding("robot", settings.robot.port));
-  findings.push_back(port_finding("laser", settings.laser.port));
+  findings.push_back(port_finding(settings, PortId::kRobot));
+  findings.push_back(port_finding(settings, PortId::kLaser));
   findings.push_back(drive_finding(settings));
   if (!settings.control.socket.empty()) findings.push_back(socket_finding("control", settings.control.socket));
   if (!settings.poses.socket.empty()) findings.push_back(socket_finding("poses", settings.poses.socket));
@@ -290,8 +296,8 @@ std::vector<Finding> check_what_is_read(const SettingsReading& reading, const st
        config + ": " + std::to_string(mistakes) + (mistakes == 1 ? " mistake" : " mistakes") + ": see standard error"}};
   const Settings& settings = reading.settings;
   if (reading.knows("map.file") && !settings.map.file.empty()) (void)check_map(settings, config, findings);
-  if (reading.knows("robot.port")) findings.push_back(port_finding("robot", settings.robot.port));
-  if (reading.knows("laser.port")) findings.push_back(port_finding("laser", settings.laser.port));
+  if (reading.knows("robot.port")) findings.push_back(port_finding(settings, PortId::kRobot));
+  if (reading.knows("laser.port")) findings.push_back(port_finding(settings, PortId::kLaser));
   return findings;
 }
 

@@ -47,7 +47,7 @@ struct Drive {
   std::size_t scans = 0;
   std::size_t sure_scans = 0;
   std::optional<localization::motion::DriveCalibration> learned;  ///< by the localizer as it is set, while driving
-  std::optional<drivers::port::LogCut> cut;                       ///< the recording ends there
+  drivers::port::LogFaults faults;                                ///< of the recording
 };
 
 bool is_sure(const Estimate& estimate) {
@@ -83,7 +83,7 @@ Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) 
         drive.sure_scans += sure ? 1 : 0;
         pairs.observe({tracked.odom_from_robot, tracked.odometry_epoch, tracked.estimate.map_from_robot, sure});
       }};
-  drive.cut = read_messages(options.recording, settings, sinks, "calibrate");
+  drive.faults = read_messages(options.recording, settings, sinks, "calibrate");
   drive.learned = as_set.calibration();
   drive.segments = pairs.segments();
   for (const auto& segment : drive.segments) {
@@ -156,7 +156,8 @@ void print_calibration_json(const MotionCalibration& as_they_are, const MotionCa
     motion[key.key]["enough"] = !is_vague(as_they_are.of(key.source));
     motion_corrected[key.key] = json_of_fitted(corrected.of(key.source), key.unit);
   }
-  const Json all{{"cut", drive.cut ? Json(drive.cut->text) : Json(nullptr)},
+  const Json all{{"cut", drive.faults.cut ? Json(drive.faults.cut->text) : Json(nullptr)},
+                 {"doubts", drive.faults.doubts},
                  {"segments", drive.segments.size()},
                  {"driven_m", drive.driven_m},
                  {"turned_deg", degrees(drive.turned_rad)},
@@ -193,7 +194,7 @@ void run_calibration(CalibrateOptions& options) {
     options.overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
   const daemon::Settings settings = daemon::settings_or_defaults(options.config, options.overrides);
   const Drive drive = driven(options, settings);
-  if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
+  for (const std::string& line : drive.faults.lines()) std::cerr << "deltamap: warning: " << line << '\n';
   require_enough(drive, options.recording);
   const MotionCalibration as_they_are = localization::motion::fitted_motion(drive.segments, Systematic::kLeftIn);
   const MotionCalibration corrected = localization::motion::fitted_motion(drive.segments, Systematic::kTakenOut);

@@ -5,9 +5,8 @@
 
 namespace deltamap::tool {
 
-std::optional<drivers::port::LogCut> read_messages(const std::string& recording, const daemon::Settings& settings,
-                                                   const daemon::RecordingDecoder::Sinks& sinks,
-                                                   const std::string& what) {
+drivers::port::LogFaults read_messages(const std::string& recording, const daemon::Settings& settings,
+                                       const daemon::RecordingDecoder::Sinks& sinks, const std::string& what) {
   drivers::port::ReplayPort port{recording, {}};
   daemon::RecordingDecoder decoder{settings};
   Progress progress{what, port.size_bytes()};
@@ -15,7 +14,7 @@ std::optional<drivers::port::LogCut> read_messages(const std::string& recording,
     decoder.feed(replayed->record, sinks);
     progress.show(port.read_bytes());
   }
-  return port.cut();
+  return port.faults();
 }
 
 }  // namespace deltamap::tool

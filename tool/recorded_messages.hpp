@@ -2,7 +2,6 @@
 // A recording, message by message, with a line of progress.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "daemon/records/recording_decoder.hpp"
@@ -11,10 +10,9 @@
 
 namespace deltamap::tool {
 
-/// Where the recording ends before its end, if it does. `what`: what is done with it, for the line of progress. Throws
+/// Answers what the recording lacks. `what`: what is done with it, for the line of progress. Throws
 /// what ReplayPort throws.
-std::optional<drivers::port::LogCut> read_messages(const std::string& recording, const daemon::Settings& settings,
-                                                   const daemon::RecordingDecoder::Sinks& sinks,
-                                                   const std::string& what);
+drivers::port::LogFaults read_messages(const std::string& recording, const daemon::Settings& settings,
+                                       const daemon::RecordingDecoder::Sinks& sinks, const std::string& what);
 
 }  // namespace deltamap::tool

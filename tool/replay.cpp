@@ -26,11 +26,13 @@ struct ReplayOptions {
 
 void print_summary(const daemon::RunReport& report) {
   const double scans = static_cast<double>(report.scans.decoded);
+  const std::string differences =
+      report.journal_differences == 0 ? "" : " with " + std::to_string(report.journal_differences) + " differences";
   std::cout << report.scans.decoded << " scans, " << report.phases << " delta phases, " << report.changes.accepted()
             << " revisions, " << report.changes.refused() << " refused, lost " << report.time_lost_s << " s, "
             << report.cpu_total_s / scans * 1e3 << " ms CPU a scan, peak "
             << static_cast<double>(report.peak_resident_bytes) / (1024.0 * 1024.0) << " MB, journal " << report.journal
-            << "; began with " << report.began << '\n';
+            << differences << "; began with " << report.began << '\n';
 }
 
 void run_replay(ReplayOptions& options) {
@@ -48,7 +50,7 @@ void run_replay(ReplayOptions& options) {
       return !interrupted;
     });
   }
-  if (report.cut) std::cerr << "deltamap: warning: " << report.cut->text << '\n';
+  for (const std::string& line : report.recording.lines()) std::cerr << "deltamap: warning: " << line << '\n';
   if (options.as_json)
     std::cout << daemon::json_text(report, options.job.settings);
   else

@@ -20,11 +20,15 @@ using Json = nlohmann::ordered_json;
 
 double milliseconds(double seconds) { return seconds * 1e3; }
 
-Json as_json(const std::optional<drivers::port::LogCut>& cut) {
-  if (!cut) return {{"cut", false}};
-  Json json{{"cut", true}, {"byte", cut->byte}, {"unread_bytes", cut->unread_bytes}, {"last_record_time", nullptr}};
-  if (cut->last_record) json["last_record_time"] = unix_seconds(*cut->last_record);
-  json["warning"] = cut->text;
+Json as_json(const drivers::port::LogFaults& faults) {
+  Json json{{"cut", faults.cut.has_value()}};
+  if (const auto& cut = faults.cut) {
+    json["byte"] = cut->byte;
+    json["unread_bytes"] = cut->unread_bytes;
+    json["last_record_time"] = cut->last_record ? Json(unix_seconds(*cut->last_record)) : Json(nullptr);
+    json["warning"] = cut->text;
+  }
+  json["doubts"] = faults.doubts;
   return json;
 }
 
@@ -87,7 +91,7 @@ std::string json_text(const RunReport& report, const Settings& settings) {
     json["journal"] = {
         {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
     json["began"] = report.began;
-    json["recording"] = as_json(report.cut);
+    json["recording"] = as_json(report.recording);
   }
   json["wire"] = report.wire;
   return json.dump(2) + "\n";

@@ -15,7 +15,7 @@
 #include "daemon/outputs/change_note.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"
 #include "daemon/telemetry/scan_counts.hpp"
-#include "drivers/port/log_cut.hpp"
+#include "drivers/port/log_faults.hpp"
 #include "mapping/gate/write_gate.hpp"
 
 namespace deltamap::daemon {
@@ -67,7 +67,7 @@ struct RunReport {
   std::uint32_t journal_differences = 0;
   std::uint32_t commands = 0;                 ///< replay: of an operator, obeyed
   std::string began;                          ///< replay: what of the recorded run's beginning is used, or why not
-  std::optional<drivers::port::LogCut> cut;   ///< replay: where the recording ends before its file does
+  drivers::port::LogFaults recording;         ///< replay: what it lacks
   std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
 };
 

@@ -67,6 +67,9 @@ class Journal {
   /// Any note of a recording, in order; those of other kinds are passed over. A new run forgets the one before.
   void read(std::string_view note);
 
+  /// Some of its notes, or bytes beside them, are missing.
+  void lose_records() { has_gap_ = true; }
+
   [[nodiscard]] const std::optional<RunIdentity>& run() const { return run_; }
   /// Bytes or decisions of this run are missing: nothing can be reproduced bit by bit.
   [[nodiscard]] bool has_gap() const { return has_gap_; }

@@ -31,7 +31,7 @@ class Replay {
   Replay(const ReplayJob& job, const RecordedRun& recorded, const ReplayStart& begun, const std::filesystem::path& out)
       : job_{job},
         journal_{recorded.journal},
-        is_cut_{recorded.cut.has_value()},
+        lacks_end_{recorded.faults.lacks_end},
         obeys_{begun.journal == "obeyed"},
         next_command_{journal_.commands().begin()},
         first_revision_{begun.start.revision},
@@ -58,7 +58,7 @@ class Replay {
 
   const ReplayJob& job_;
   const Journal& journal_;
-  bool is_cut_;  // its last notes are missing
+  bool lacks_end_;  // its last notes are missing
   bool obeys_;
   std::vector<Decision>::const_iterator next_command_;
   bool has_begun_ = false;
@@ -97,10 +97,12 @@ void Replay::run(const ReplayProgress& progress) {
     const double done = static_cast<double>(port.read_bytes()) / static_cast<double>(port.size_bytes());
     if (!scans.empty() && !progress(done)) throw std::runtime_error("interrupted");
   }
-  report_.cut = port.cut();
+  report_.recording = port.faults();
   if (report_.scans.decoded == 0) {
-    throw std::runtime_error(report_.cut ? report_.cut->text + "; no scan lies before that"
-                                         : job_.recording.string() + ": holds no scan in this window");
+    const auto& [cut, doubts, lacks_records, lacks_end] = report_.recording;
+    if (cut) throw std::runtime_error(cut->text + "; no scan lies before that");
+    throw std::runtime_error(lacks_records ? doubts.front() + "; no scan is left"
+                                           : job_.recording.string() + ": holds no scan in this window");
   }
   report_.wire = decoder.counts();
 }
@@ -176,7 +178,7 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
 bool Replay::reaches_map(const ScanSet& set, std::uint32_t scan) {
   ++report_.phases;
   const auto closing = journal_.closing_scan(set.phase);
-  const bool is_unknown = !closing && is_cut_;
+  const bool is_unknown = !closing && lacks_end_;
   if (obeys_ && !is_unknown && closing != scan) ++report_.journal_differences;
   if (obeys_ && journal_.set_was_lost(set.phase)) {
     ++report_.scans.sets_lost;

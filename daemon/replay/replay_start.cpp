@@ -39,7 +39,8 @@ RecordedRun recorded_run(const ReplayJob& job) {
     recorded.begin.read(note);
     recorded.journal.read(note);
   }
-  recorded.cut = port.cut();
+  recorded.faults = port.faults();
+  if (recorded.faults.lacks_records) recorded.journal.lose_records();
   return recorded;
 }
 

@@ -10,7 +10,7 @@
 #include "daemon/records/journal.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/steps/run_begin.hpp"
-#include "drivers/port/log_cut.hpp"
+#include "drivers/port/log_faults.hpp"
 
 namespace deltamap::daemon {
 
@@ -18,7 +18,7 @@ namespace deltamap::daemon {
 struct RecordedRun {
   Journal journal;
   BeginReader begin;
-  std::optional<drivers::port::LogCut> cut;
+  drivers::port::LogFaults faults;
 };
 /// Reads the recording once for its notes alone, so that what is wrong with it shows before anything is done. Throws
 /// std::runtime_error as ByteLogReader does.

@@ -3,20 +3,24 @@
 // Wireshark, capinfos, editcap and mergecap read. Interface `robot` is LINKTYPE_USER0 (147), `laser` USER1 (148),
 // stamps in nanoseconds, if_speed the first baud, direction in epb_flags; a note is the packet's comment, on a packet
 // of no bytes where it stands alone. Blocks are only appended, so that whatever cuts the file leaves all blocks before
-// the cut.
+// the cut; each packet is sealed, so that what another program has done to it is seen.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "drivers/port/byte_record.hpp"
-#include "drivers/port/log_cut.hpp"
+#include "drivers/port/log_audit.hpp"
+#include "drivers/port/log_faults.hpp"
+#include "drivers/port/packet_seal.hpp"
+#include "drivers/port/pcapng_file.hpp"
+#include "drivers/port/pcapng_packet.hpp"
 
 namespace deltamap::drivers::port {
 
@@ -24,6 +28,9 @@ struct FirstBauds {
   unsigned robot = 0;
   unsigned laser = 0;
 };
+
+/// LINKTYPE_USER0 of the tcpdump.org registry; USER1 follows.
+[[nodiscard]] constexpr std::uint16_t link_type_of(PortId port) { return port == PortId::kRobot ? 147 : 148; }
 
 class ByteLogWriter {
  public:
@@ -40,7 +47,7 @@ class ByteLogWriter {
   void write(const ByteRecord& record);
   /// Hands everything to the kernel: a crash of this process loses nothing from before.
   void flush();
-  /// Flushes, syncs to the disk and closes. Throws as write() does.
+  /// Marks the end, flushes, syncs to the disk and closes. Throws as write() does.
   void close();
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
@@ -53,58 +60,58 @@ class ByteLogWriter {
   int descriptor_ = -1;
   std::vector<std::uint8_t> waiting_;  // whole blocks
   std::uint64_t flushed_bytes_ = 0;
+  std::uint32_t next_number_ = 0;
+  Timestamp last_stamp_;
 };
 
-/// Reads a recording record by record, in constant memory. Blocks of kinds that are not ours are skipped, so that files
-/// that other tools have cut, joined or commented are read as well.
+/// Reads a recording record by record, in constant memory. Blocks of kinds that are not ours and packets of other
+/// interfaces are skipped, so that files that other programs have cut, joined or commented are read as well; faults()
+/// tells what they did.
 class ByteLogReader {
  public:
   /// Throws std::runtime_error "FILE: byte N: why" where the file is missing, empty, foreign or ends inside its header.
   explicit ByteLogReader(std::filesystem::path file);
 
-  /// The next record; nothing at the end, or at the first block after the header that is not whole (ask cut()). Throws
-  /// std::runtime_error "FILE: byte N: why" where the header is not whole, and at a block of a foreign interface.
+  /// The next record; nothing at the end, or at the first block after the header that is not whole (ask faults()).
+  /// Throws std::runtime_error "FILE: byte N: why" where the header is not whole.
   [[nodiscard]] std::optional<ByteRecord> next();
 
   /// Where the file was cut: "FILE: byte N: cut short…", N the first byte of the block that is incomplete or damaged.
   /// Nothing while no cut has been met.
   [[nodiscard]] const std::optional<LogCut>& cut() const { return cut_; }
+  /// What has been found to be missing so far, the cut included.
+  [[nodiscard]] LogFaults faults() const;
 
-  [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
-  [[nodiscard]] std::uint64_t read_bytes() const { return at_; }
+  [[nodiscard]] std::uint64_t size_bytes() const { return file_.size_bytes(); }
+  [[nodiscard]] std::uint64_t read_bytes() const { return file_.read_bytes(); }
 
  private:
-  struct Interface {
+  struct Source {
+    pcapng::Interface interface;
     std::optional<PortId> port;  // nothing: foreign
-    unsigned baud = 0;
-    std::int64_t ticks_per_s = 1'000'000;  // pcapng's default
-    std::int64_t offset_s = 0;
+    bool has_begun = false;      // some packet of it was there
   };
-  /// A block that is incomplete or damaged: nothing after it can be found.
-  struct Damage {
-    std::string why;
-  };
-  [[noreturn]] void refuse(const std::string& why) const;
   /// Sections and both interfaces have been described.
   [[nodiscard]] bool header_is_whole() const { return met_[0] && met_[1]; }
   void end_at_cut(const std::string& why);
-  /// Throws Damage.
-  [[nodiscard]] std::optional<ByteRecord> next_record();
-  /// Reads the next whole block into body_ and answers its type; nothing at the end. Throws Damage.
-  [[nodiscard]] std::optional<std::uint32_t> next_block();
-  [[nodiscard]] std::uint32_t read_block_head();
-  void begin_section();
-  [[nodiscard]] Interface read_interface() const;
-  [[nodiscard]] ByteRecord read_packet();
+  [[noreturn]] void refuse_without_ports();
+  /// Reads blocks until some record waits; false at the end. Throws Damage.
+  [[nodiscard]] bool read_on();
+  void read_interface();
+  void read_packet();
+  void take_sealed(ByteRecord record, const std::vector<std::string_view>& comments, const PacketSeal& seal);
+  void take_unsealed(ByteRecord record, const std::vector<std::string_view>& comments);
+  void begin(Source& source, const std::optional<PacketSeal>& seal);
+  void hand_over(ByteRecord record);
 
-  std::filesystem::path file_;
-  std::ifstream in_;
-  std::uint64_t size_bytes_ = 0;
-  std::uint64_t at_ = 0;            // of the block after the one in body_
-  std::uint64_t block_at_ = 0;      // of the block in body_
-  std::vector<std::uint8_t> body_;  // without type and lengths
-  std::vector<Interface> interfaces_;
-  std::array<bool, 2> met_{};  // which of our interfaces, by PortId
+  pcapng::PcapngFile file_;
+  std::vector<Source> sources_;      // of the section, by number
+  std::string foreign_;              // the interfaces that are neither robot nor laser, for a refusal
+  std::array<bool, 2> met_{};        // which of our interfaces, by PortId
+  std::array<unsigned, 2> bauds_{};  // in force, by PortId
+  std::deque<ByteRecord> waiting_;   // read and not yet handed over
+  LogAudit audit_;
+  bool at_end_ = false;
   std::optional<Timestamp> first_record_;
   std::optional<Timestamp> last_record_;
   std::optional<LogCut> cut_;

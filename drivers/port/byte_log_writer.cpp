@@ -17,7 +17,6 @@ namespace {
 static_assert(sizeof(off_t) == sizeof(std::int64_t), "a recording may grow beyond 2 GB");
 
 constexpr std::size_t kFlushBytes = std::size_t{64} * 1024;
-constexpr std::uint16_t kLinkTypeUser0 = 147;  // LINKTYPE_USER0 of the tcpdump.org registry; USER1 follows
 constexpr std::uint8_t kNanoseconds = 9;
 
 void append_section(std::vector<std::uint8_t>& out) {
@@ -33,7 +32,7 @@ void append_section(std::vector<std::uint8_t>& out) {
 
 void append_interface(std::vector<std::uint8_t>& out, PortId port, unsigned baud) {
   pcapng::BlockWriter block{out, pcapng::kInterfaceDescription};
-  block.number(static_cast<std::uint16_t>(kLinkTypeUser0 + static_cast<std::uint16_t>(port)));
+  block.number(link_type_of(port));
   block.number(std::uint16_t{0});
   block.number(std::uint32_t{0});  // no limit of a packet's length
   block.option(pcapng::kInterfaceName, name_of(port));
@@ -43,7 +42,7 @@ void append_interface(std::vector<std::uint8_t>& out, PortId port, unsigned baud
   block.finish();
 }
 
-void append_packet(std::vector<std::uint8_t>& out, const ByteRecord& record) {
+void append_packet(std::vector<std::uint8_t>& out, const ByteRecord& record, std::uint32_t number) {
   assert(unix_ns(record.stamp) >= 0 && "a recording cannot tell times before 1970");
   assert(record.note.size() <= 0xFFFF && "a note must fit a pcapng option");
   const auto stamp_ns = static_cast<std::uint64_t>(unix_ns(record.stamp));
@@ -60,6 +59,7 @@ void append_packet(std::vector<std::uint8_t>& out, const ByteRecord& record) {
     block.number_option(pcapng::kPacketFlags,
                         record.direction == Direction::kIn ? pcapng::kFlagInbound : pcapng::kFlagOutbound);
   }
+  block.number_option(pcapng::kPacketId, packet_id({number, sealed_checksum(number, record, record.note)}));
   block.option(pcapng::kOptionEnd, "");
   block.finish();
 }
@@ -98,7 +98,8 @@ void ByteLogWriter::fail(const char* what, int reason) {
 
 void ByteLogWriter::write(const ByteRecord& record) {
   if (descriptor_ < 0) fail("cannot be written", EBADF);
-  append_packet(waiting_, record);
+  append_packet(waiting_, record, next_number_++);
+  last_stamp_ = record.stamp;
   if (waiting_.size() >= kFlushBytes) flush();
 }
 
@@ -126,6 +127,12 @@ void ByteLogWriter::flush() {
 
 void ByteLogWriter::close() {
   if (descriptor_ < 0) fail("cannot be written", EBADF);
+  if (next_number_ > 0) {
+    ByteRecord end;
+    end.stamp = last_stamp_;
+    end.note = end_note(last_stamp_);
+    write(end);
+  }
   flush();
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail("cannot be synced", errno);  // EINVAL: a pipe or device
   const int closed = ::close(std::exchange(descriptor_, -1));

@@ -25,11 +25,17 @@ struct ByteRecord {
   std::vector<std::uint8_t> bytes;       ///< empty: only a note
   std::string note;                      ///< one line of text; empty: only bytes
   unsigned baud = 0;  ///< line speed in force, this record's own note included; filled by whoever reads a recording
+  friend bool operator==(const ByteRecord&, const ByteRecord&) = default;
 };
 
 /// The note that marks a change of baud: "baud 38400".
 [[nodiscard]] inline std::string baud_note(unsigned baud) { return "baud " + std::to_string(baud); }
 /// The baud that such a note tells; nothing for any other note.
 [[nodiscard]] std::optional<unsigned> baud_of_note(std::string_view note);
+
+/// The note that marks the end of a recording that was closed: "recording ends at 1700000000000000000", Unix time, ns.
+[[nodiscard]] inline std::string end_note(Timestamp end) { return "recording ends at " + std::to_string(unix_ns(end)); }
+/// The time that such a note tells; nothing for any other note.
+[[nodiscard]] std::optional<Timestamp> end_of_note(std::string_view note);
 
 }  // namespace deltamap::drivers::port

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,8 @@ constexpr std::uint32_t kSectionHeader = 0x0A0D0D0A;   // 4.1
 constexpr std::uint32_t kByteOrderMagic = 0x1A2B3C4D;  // 4.1
 constexpr std::uint32_t kSwappedByteOrderMagic = 0x4D3C2B1A;
 constexpr std::uint32_t kInterfaceDescription = 1;     // 4.2
+constexpr std::uint32_t kObsoletePacket = 2;           // appendix A
+constexpr std::uint32_t kSimplePacket = 3;             // 4.4: without stamp and options
 constexpr std::uint32_t kEnhancedPacket = 6;           // 4.3
 constexpr std::uint16_t kOptionEnd = 0;                // 3.5
 constexpr std::uint16_t kOptionComment = 1;            // 3.5
@@ -26,9 +29,15 @@ constexpr std::uint16_t kInterfaceSpeed = 8;           // 4.2, table 4: 64 bits,
 constexpr std::uint16_t kInterfaceTimeResolution = 9;  // 4.2, table 4: 10^-n s, or 2^-n s with the top bit
 constexpr std::uint16_t kInterfaceTimeOffset = 14;     // 4.2, table 4: s
 constexpr std::uint16_t kPacketFlags = 2;              // 4.3, table 6
+constexpr std::uint16_t kPacketId = 5;                 // 4.3, table 6
 constexpr std::uint32_t kFlagInbound = 1;              // 4.3.1, bits 0-1
 constexpr std::uint32_t kFlagOutbound = 2;
 constexpr std::uint32_t kFlagDirectionMask = 3;
+
+/// A block that is incomplete or damaged: nothing after it can be found.
+struct Damage {
+  std::string why;
+};
 
 /// Builds one block at the end of a buffer.
 class BlockWriter {

@@ -79,6 +79,12 @@ std::string way_past_the_unit(const std::string& path) {
   return "'DeviceAllow=char-" + (driver.empty() ? "NAME" : driver) + " rw' (sudo systemctl edit deltamap)";
 }
 
+std::string why_the_unit_forbids(const std::string& path) {
+  return "not by its mode, but by the unit of the service: either the driver was loaded after the start of the service "
+         "(sudo systemctl restart deltamap), or the unit lacks " +
+         way_past_the_unit(path);
+}
+
 std::string way_to_permission(const std::string& path) {
   struct stat device {};
   if (::stat(path.c_str(), &device) != 0) {

@@ -32,7 +32,7 @@ class ReplayPort {
   /// The next record; nothing at the end, after the window, or where the file was cut. Throws as ByteLogReader does.
   [[nodiscard]] std::optional<ReplayedRecord> next();
 
-  [[nodiscard]] const std::optional<LogCut>& cut() const { return reader_.cut(); }
+  [[nodiscard]] LogFaults faults() const { return reader_.faults(); }
   [[nodiscard]] std::uint64_t size_bytes() const { return reader_.size_bytes(); }
   [[nodiscard]] std::uint64_t read_bytes() const { return reader_.read_bytes(); }
 

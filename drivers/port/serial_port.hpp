@@ -19,6 +19,7 @@ namespace deltamap::drivers::port {
 struct SerialPortAnswer {
   std::unique_ptr<BytePort> port;
   std::string refused;
+  std::string note{};  ///< where it is another port than the one of the settings: which, and why
 };
 
 /// Opens the device at `path`; nothing is read before start(). The port must not outlive the event loop.

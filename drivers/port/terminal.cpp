@@ -16,7 +16,6 @@
 #include <system_error>
 #include <utility>
 
-#include "core/files/access.hpp"
 #include "drivers/port/port_holder.hpp"
 #include "drivers/port/port_permission.hpp"
 
@@ -102,10 +101,8 @@ std::string why_not_opened(const std::string& path, int error, int own_descripto
     case EBUSY:
     case EWOULDBLOCK:
       return "is busy: " + lockers_or_holders_of(path, own_descriptor).told();
-    case EPERM:
-      if (may_access(path, R_OK | W_OK))  // and yet it may not: DevicePolicy= of a service
-        return is_forbidden(error) + "its mode allows it: a service's unit needs " + way_past_the_unit(path);
-      [[fallthrough]];
+    case EPERM:  // owner, group and mode have let it pass: DevicePolicy= of a service has not
+      return is_forbidden(error) + why_the_unit_forbids(path);
     case EACCES:
       return is_forbidden(error) + way_to_permission(path);
     default:

@@ -7,34 +7,42 @@ import json, os, pathlib, shutil, socket, subprocess, tempfile, time
 class Machine:
     name, limits_memory = "machine", True
     ports = {"robot": "/dev/ttyS1", "laser": "/dev/ttyUSB0"}
+    system = ["qemu-system-i386", "-cpu", "n270", "-smp", "2,sockets=1,cores=1,threads=2"]
 
     def __init__(self, out, links):
+        self.out, self.links = out, links
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="machine.", dir=out))
-        self.share, self.bytes = self.folder / "share", b""
+        self.share, self.disk = self.folder / "share", self.folder / "disk.qcow2"  # what is written goes there, and with the folder
         self.share.mkdir()
-        disk = self.folder / "disk.qcow2"  # what is written goes here, and with the folder
-        subprocess.run(["qemu-img", "create", "-q", "-f", "qcow2", "-F", "qcow2", "-b", out / "disk.qcow2", disk], check=True)
+        subprocess.run(["qemu-img", "create", "-q", "-f", "qcow2", "-F", "qcow2", "-b", out / "disk.qcow2", self.disk], check=True)
         self.log = open(self.folder / "qemu.log", "wb")
+        self.switch_on()
+
+    def devices(self):
+        return ["-chardev", "serial,id=robot,path=%s" % (self.links / "robot"), "-serial", "chardev:robot",
+                "-chardev", "serial,id=laser,path=%s" % (self.links / "laser"), "-device", "piix3-usb-uhci,id=usb"]
+
+    def switch_on(self, *more):
+        self.bytes = b""
         self.process = subprocess.Popen(
-            ["qemu-system-i386", "-machine", "pc,accel=tcg", "-cpu", "n270", "-smp", "2,sockets=1,cores=1,threads=2", "-m", "512", "-nodefaults", "-no-reboot",
-             "-display", "none", "-kernel", out / "kernel", "-initrd", out / "initrd",
+            [*self.system, "-machine", "pc,accel=tcg", "-m", "512", "-nodefaults", "-no-reboot",
+             "-display", "none", "-kernel", self.out / "kernel", "-initrd", self.out / "initrd",
              "-append", "root=/dev/vda ro console=ttyS0,115200 quiet systemd.show_status=0 mitigations=off",
-             "-drive", "file=%s,if=virtio,cache=unsafe,format=qcow2" % disk,
+             "-drive", "file=%s,if=virtio,cache=unsafe,format=qcow2" % self.disk,
              "-chardev", "file,id=console,path=%s" % (self.folder / "console"), "-serial", "chardev:console",
-             "-chardev", "serial,id=robot,path=%s" % (links / "robot"), "-serial", "chardev:robot",
-             "-chardev", "serial,id=laser,path=%s" % (links / "laser"), "-device", "piix3-usb-uhci,id=usb",
-             "-device", "virtio-serial-pci", "-chardev", "socket,id=control,path=%s,server=on,wait=off" % (self.folder / "control"),
+             *self.devices(), *more, "-device", "virtio-serial-pci", "-chardev", "socket,id=control,path=%s,server=on,wait=off" % (self.folder / "control"),
              "-device", "virtserialport,chardev=control,name=control",
              "-fsdev", "local,id=share,path=%s,security_model=none" % self.share, "-device", "virtio-9p-pci,fsdev=share,mount_tag=share",
              "-device", "virtio-rng-pci", "-qmp", "unix:%s,server=on,wait=off" % (self.folder / "qmp")],
             stdin=subprocess.DEVNULL, stdout=self.log, stderr=subprocess.STDOUT)
 
-    def begin(self):
+    def begin(self, plugged=("laser",)):
         self.orders = self.connected("qmp").makefile("rw")
         self.orders.readline()
         self.order("qmp_capabilities")
         self.control = self.connected("control")
-        self.plug("laser")
+        for port in plugged:
+            self.plug(port)
         if self.line(600) != "up":
             raise SystemExit("machine: does not start")
         self.sh("modprobe 9pnet_virtio; mkdir -p /mnt/share; mount -t 9p -o trans=virtio,version=9p2000.L share /mnt/share")

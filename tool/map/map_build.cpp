@@ -44,7 +44,7 @@ struct BuildOptions {
 struct SurveyedDrive {
   std::string recording;
   std::size_t scans = 0;
-  std::optional<drivers::port::LogCut> cut{};  ///< the recording ends there
+  drivers::port::LogFaults faults{};
 };
 
 SurveyedDrive surveyed(const std::string& recording, const daemon::Settings& settings, daemon::SurveyStep& survey) {
@@ -53,8 +53,11 @@ SurveyedDrive surveyed(const std::string& recording, const daemon::Settings& set
   const daemon::RecordingDecoder::Sinks sinks{
       [&](Odometry&& odometry, std::uint32_t) { survey.observe(odometry); },
       [&](Scan&& scan) { drive.scans += survey.observe(std::move(scan)) ? 1 : 0; }};
-  drive.cut = read_messages(recording, settings, sinks, "surveying " + fs::path{recording}.filename().string());
-  if (drive.scans == 0) throw std::runtime_error(recording + ": no scan for which odometry is known");
+  drive.faults = read_messages(recording, settings, sinks, "surveying " + fs::path{recording}.filename().string());
+  if (drive.scans == 0) {
+    const std::vector<std::string> lines = drive.faults.lines();
+    throw std::runtime_error((lines.empty() ? recording : lines.front()) + ": no scan for which odometry is known");
+  }
   return drive;
 }
 
@@ -158,7 +161,7 @@ void run_build(const BuildOptions& options) {
   for (const std::string& recording : options.recordings()) drives.push_back(surveyed(recording, settings, step));
   if (!step.finish()) throw std::runtime_error(options.recordings().front() + ": what was measured does not settle");
   for (const SurveyedDrive& drive : drives) {
-    if (drive.cut) std::cerr << "deltamap: warning: " << drive.cut->text << '\n';
+    for (const std::string& line : drive.faults.lines()) std::cerr << "deltamap: warning: " << line << '\n';
   }
   require_joined(drives, step.slam());
   const mapping::slam::Survey& survey = step.slam().survey();

@@ -119,7 +119,7 @@ void view_recording(ViewOptions& options) {
   auto given = std::make_shared<const OccupancyGrid>(read_grid(job.map));
   const daemon::RecordedRun recorded = daemon::recorded_run(job);
   const daemon::StartMap start = daemon::replay_start(recorded, job, std::move(given)).start;
-  if (recorded.cut) warn(recorded.cut->text);
+  for (const std::string& line : recorded.faults.lines()) warn(line);
   ViewDesk desk{{.kind = "recording",
                  .name = options.target.filename().string(),
                  .settings = job.settings,
@@ -138,7 +138,8 @@ void view_recording(ViewOptions& options) {
         to.tell_progress(done);
         return !stops;
       });
-      return report.cut ? report.cut->text : "";
+      const std::vector<std::string> lines = report.recording.lines();
+      return lines.empty() ? "" : lines.front();
     } catch (const std::runtime_error&) {
       if (stops) return std::nullopt;
       throw;

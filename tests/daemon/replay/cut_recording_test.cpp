@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 using test::content_of;
 
 constexpr std::size_t kHeaderBlocks = 3;  // the section and both interfaces
+constexpr std::size_t kEndMark = 1;
 
 /// Every record, and every message that the records complete.
 struct Decoded {
@@ -41,10 +42,6 @@ Decoded decoded(const fs::path& recording) {
   }
   all.cut = reader.cut();
   return all;
-}
-
-bool same(const drivers::port::ByteRecord& a, const drivers::port::ByteRecord& b) {
-  return a.port == b.port && a.direction == b.direction && a.stamp == b.stamp && a.bytes == b.bytes && a.note == b.note;
 }
 
 class CutRecording : public testing::Test {
@@ -84,8 +81,8 @@ class CutRecording : public testing::Test {
       ASSERT_EQ(static_cast<std::size_t>(std::count(reached.begin(), reached.end(), '\n')), expected) << i;
       ASSERT_EQ(trajectory.substr(0, reached.size()), reached) << i;
       const std::size_t clean = ends_[test::whole_blocks(ends_, whole_, damaged) - 1];
-      ASSERT_EQ(report.cut.has_value(), clean != damaged.size()) << i;
-      ASSERT_EQ(report.cut ? report.cut->byte : clean, clean) << i;
+      ASSERT_EQ(report.recording.cut.has_value(), clean != damaged.size()) << i;
+      ASSERT_EQ(report.recording.cut ? report.recording.cut->byte : clean, clean) << i;
     }
   }
 
@@ -97,15 +94,15 @@ class CutRecording : public testing::Test {
 TEST_F(CutRecording, AThousandRandomCutsAreDecodedUpToTheCut) {
   record(3.0);
   const Decoded whole = decoded(folder_.path() / "drive.pcapng");
-  ASSERT_EQ(whole.records.size() + kHeaderBlocks, ends_.size());
+  ASSERT_EQ(kHeaderBlocks + whole.records.size() + kEndMark, ends_.size());
   ASSERT_FALSE(whole.cut);
   Random random{17};
   for (int i = 0; i < 1000; ++i) {
     const std::string damaged = test::cut_file(whole_, ends_[kHeaderBlocks - 1], random);
     const std::size_t blocks = test::whole_blocks(ends_, whole_, damaged);
     const Decoded read = decoded(folder_.write("cut.pcapng", damaged));
-    ASSERT_EQ(read.records.size(), blocks - kHeaderBlocks) << i;
-    ASSERT_TRUE(std::equal(read.records.begin(), read.records.end(), whole.records.begin(), same)) << i;
+    ASSERT_EQ(read.records.size(), std::min(blocks - kHeaderBlocks, whole.records.size())) << i;
+    ASSERT_TRUE(std::equal(read.records.begin(), read.records.end(), whole.records.begin())) << i;
     ASSERT_TRUE(std::equal(read.scans.begin(), read.scans.end(), whole.scans.begin())) << i;
     const std::size_t clean = ends_[blocks - 1];
     ASSERT_EQ(read.cut.has_value(), clean != damaged.size()) << i;

@@ -69,10 +69,12 @@ class DeviceLinkTest : public testing::Test {
  protected:
   port::SerialPortAnswer opened() {
     if (!refused_.empty()) return {nullptr, refused_};
-    return {std::make_unique<FakePort>(device_, written_), ""};
+    return {std::make_unique<FakePort>(device_, written_), "", note_};
   }
 
   std::string refused_;
+  std::string note_;
+  std::vector<std::string> answered_;
   std::vector<std::string> log_;
   std::vector<std::string> warnings_;
   int lost_ = 0;
@@ -85,7 +87,8 @@ class DeviceLinkTest : public testing::Test {
       FakeSession{},
       {[this](boost::asio::io_context&, port::PortId, unsigned) { return opened(); }, [](port::ByteRecord&&) {},
        [](FakeOutput&) {}, [this] { ++lost_; }, [this](const std::string& line) { log_.push_back(line); },
-       [this](const std::string& line) { warnings_.push_back(line); }}};
+       [this](const std::string& line) { warnings_.push_back(line); },
+       [this](const std::string& name) { answered_.push_back(name); }}};
 };
 
 TEST_F(DeviceLinkTest, TellsThatTheDeviceIsLostWhenItsPortHangsUp) {
@@ -102,6 +105,20 @@ TEST_F(DeviceLinkTest, TellsThatTheDeviceIsLostWhenItCannotBeOpened) {
   link_.open();
   EXPECT_EQ(lost_, 1);
   EXPECT_EQ(warnings_, std::vector<std::string>{"robot: /dev/robot is missing; trying again"});
+}
+
+TEST_F(DeviceLinkTest, TellsOnceThatItsPortIsAnotherOneAndBehindWhichTheDeviceAnswers) {
+  note_ = "its adapter is /dev/robot now";
+  for (int i = 0; i < 3; ++i) {
+    link_.open();
+    EXPECT_EQ(log_, std::vector<std::string>{"robot: its adapter is /dev/robot now"});
+    device_.on_closed("the device hung up");
+  }
+  link_.tell_connected();
+  EXPECT_TRUE(answered_.empty()) << "its port is gone again";
+  link_.open();
+  link_.tell_connected();
+  EXPECT_EQ(answered_, std::vector<std::string>{"/dev/robot"});
 }
 
 TEST_F(DeviceLinkTest, NamesTheDeviceOnceInEveryLine) {

@@ -167,13 +167,26 @@ TEST_F(ForbiddenPort, NamesTheFolderThatIsClosed) {
   EXPECT_EQ(way(0, 0, 0666), "the folder '" + folder_.path().string() + "' is closed to user 'nobody'");
 }
 
-TEST(PortPermission, WhereTheModeAllowsItTheUnitIsNamed) {
+/// A unit's device policy forbids access() as it forbids open(): the owner is not to blame.
+TEST_F(ForbiddenPort, TheOwnerIsNotBlamedForWhatTheUnitForbids) {
+  ASSERT_EQ(::chmod(file_.c_str(), 0), 0);
+  constexpr uid_t kNobody = 65534;
+  ASSERT_EQ(::seteuid(kNobody), 0);
+  const std::string told = why_not_opened(file_, EPERM);
+  ASSERT_EQ(::seteuid(0), 0);
+  EXPECT_NE(told.find("by the unit of the service"), std::string::npos) << told;
+  EXPECT_EQ(told.find("owner"), std::string::npos) << told;
+}
+
+TEST(PortPermission, WhatTheModeDoesNotForbidTheUnitDoes) {
   EXPECT_EQ(driver_of("/dev/null"), "mem");
   EXPECT_EQ(driver_of("/nowhere"), "");
   EXPECT_EQ(
       why_not_opened("/dev/null", EPERM),
-      "is forbidden (Operation not permitted): its mode allows it: a service's unit needs 'DeviceAllow=char-mem rw' "
-      "(sudo systemctl edit deltamap)");
+      "is forbidden (Operation not permitted): not by its mode, but by the unit of the service: either the driver was "
+      "loaded after the start of the service (sudo systemctl restart deltamap), or the unit lacks "
+      "'DeviceAllow=char-mem "
+      "rw' (sudo systemctl edit deltamap)");
 }
 
 }  // namespace
