@@ -145,7 +145,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                     .tracked_scans = tracked_scans,
                     .recorder = recorder.from_localization(),
                     .telemetry = telemetry,
-                    .drive = [this](const auto& command, auto held_by) { io.post(command, held_by); },
+                    .drive = [this](const PilotWord& word) { io.post(word); },
                     .show =
                         [this](const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
                                const localization::particles::ParticleSet* particles) {

@@ -8,6 +8,8 @@
 
 namespace deltamap::experiments {
 
+[[nodiscard]] Experiment faults_experiment();
+[[nodiscard]] Experiment good_driving_experiment();
 [[nodiscard]] Experiment hall_experiment();
 [[nodiscard]] Experiment stale_map_experiment();
 [[nodiscard]] Experiment verdict_experiment();

@@ -50,6 +50,7 @@ std::string pose_line(const PoseNews& news) {
   json["revision"] = row.revision;
   json["other_hypothesis"] = hypothesis_json(row.belief);
   json["gate"] = gate_json(news.gate);
+  if (news.may_drive) json["may_drive_by_pose"] = *news.may_drive;
   json["latency_ms"] = 1e3 * news.latency_s;
   if (news.pilot) {
     json["pilot"] = {{"speed_m_per_s", news.pilot->speed_m_per_s},

@@ -22,6 +22,7 @@ struct PoseNews {
   double latency_s = 0.0;                         ///< from the scan's last byte to its pose
   std::optional<mapping::gate::GateReason> gate;  ///< nothing: nobody works on the map
   std::optional<PilotWish> pilot{};               ///< nothing: it does not drive, or is not told of
+  std::optional<bool> may_drive{};                ///< by this pose (telemetry); nothing: not told of
 };
 
 /// "pose": the pose, what is believed of it, and the write gate. Without line end.

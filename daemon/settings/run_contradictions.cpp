@@ -10,6 +10,7 @@
 #include "core/files/grid_file.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "mapping/store/database_log.hpp"
+#include "navigation/fan.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -105,12 +106,29 @@ void add_port_contradictions(const Settings& settings, std::vector<Contradiction
     found.push_back({"laser.port", "must not be the same device as 'robot.port'", {"robot.port"}});
 }
 
+/// Who wanders drives ahead: by a laser that looks aside or back he would not see into what.
+void add_mount_contradictions(const Settings& settings, std::vector<Contradiction>& found) {
+  if (settings.navigation.mode == navigation::DriveMode::kOff) return;
+  const drivers::lms200::Lms200Params& laser = settings.laser.session;
+  const double field_rad = radians(laser.variant.angle_deg);
+  const navigation::Fan fan{laser.robot_from_laser, -0.5 * field_rad, field_rad};
+  const navigation::SafetyParams& safety = settings.navigation.safety;
+  if (navigation::covers_way_ahead(fan, safety.robot_radius_m + safety.margin_m)) return;
+  found.push_back({"laser.mount.yaw_deg",
+                   "with 'navigation.mode' " + std::string(name_of(settings.navigation.mode)) +
+                       " the laser must look where the robot drives, as wide as its hull and margin: see "
+                       "'laser.mount', 'laser.variant' and 'navigation.safety'",
+                   {"laser.mount.x_m", "laser.mount.y_m", "laser.variant", "navigation.mode",
+                    "navigation.safety.robot_radius_m", "navigation.safety.margin_m"}});
+}
+
 }  // namespace
 
 std::vector<Contradiction> contradictions_in_a_run(const Settings& settings, const std::string& file) {
   std::vector<Contradiction> found;
   add_port_contradictions(settings, found);
   add_file_contradictions(settings, file, found);
+  add_mount_contradictions(settings, found);
   return found;
 }
 

@@ -37,6 +37,7 @@ class DeviceLink {
     // A short line each.
     std::function<void(const std::string&)> log;
     std::function<void(const std::string&)> warn;  ///< the device is gone, cannot be had, or needs its owner
+    std::function<void(const std::string& port)> on_answered{};  ///< the device works behind this port; may be empty
   };
 
   DeviceLink(boost::asio::io_context& loop, drivers::port::PortId id, Session session, Hooks hooks)
@@ -50,6 +51,7 @@ class DeviceLink {
   void open() {
     auto answer = hooks_.open(loop_, id_, session_.baud());
     if (!answer.port) return retry(answer.refused);
+    if (std::exchange(noted_, answer.note) != answer.note && !answer.note.empty()) log(answer.note);
     is_heard_ = true;
     reconnect_.opened();
     port_ = std::make_unique<drivers::port::RecordingPort>(
@@ -84,6 +86,7 @@ class DeviceLink {
 
   /// The device works: told by its owner, which knows what that means.
   void tell_connected() {
+    if (hooks_.on_answered && port_) hooks_.on_answered(port_->name());
     if (const auto line = reconnect_.connected()) log(*line);
   }
 
@@ -109,6 +112,7 @@ class DeviceLink {
 
   void say_farewell(const Output& out) {
     for (const drivers::PortRequest& request : out.output.requests) perform(request);
+    for (const std::string& line : out.output.log) log(line);
     if (!out.output.wake_at || out.output.failed) return;
     call_at(*out.output.wake_at, [this] {
       if (port_) say_farewell(session_.on_time(drivers::port::port_clock_now()));
@@ -182,6 +186,7 @@ class DeviceLink {
   drivers::port::Reconnect reconnect_{drivers::port::ReconnectParams{}};
   std::unique_ptr<drivers::port::RecordingPort> port_;
   std::unique_ptr<drivers::port::RecordingPort> leaving_;
+  std::string noted_;  // of the port that was opened last
   bool is_heard_ = false;
   bool closed_ = false;
 };

@@ -56,6 +56,9 @@ LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit)
     const double before = mean_fit_.value_or(*fit);
     mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kJudged.memory_s)) * (*fit - before);
   }
+  const bool has_proven =
+      mean_fit_.value_or(0.0) >= kJudged.found_above || tracked.estimate.belief.verdict == PoseVerdict::kRight;
+  start_is_unfit_ = start_is_unfit_ && !has_proven;
   const bool is_unfit =
       tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kJudged.lost_below;
   unfit_s_ = is_unfit ? unfit_s_ + passed_s_ : 0.0;
@@ -63,9 +66,10 @@ LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit)
   return judged_long(tracked.estimate.state);
 }
 
-LogLine FitWatch::judged_start() const {
+LogLine FitWatch::judged_start() {
   const double mean = first_fit_ / kFirstScans;
-  if (mean >= kJudged.found_above) return {};
+  start_is_unfit_ = mean < kJudged.found_above;
+  if (!start_is_unfit_) return {};
   return {"the start pose does not fit: " + percent(mean) +
               " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere,
           true};

@@ -30,13 +30,19 @@ class FitWatch {
   /// After each scan: a line for the log, of no text where there is nothing to say.
   /// `fit`: share of its beams that the map explains at the estimated pose; nothing where no beam came back.
   [[nodiscard]] LogLine observe(const TrackedScan& tracked, std::optional<double> fit);
+  /// False from the first scans, which the given pose does not fit, until others have fitted or the pose has been
+  /// called right; and from the pose that a person gave until its scan has fitted.
+  [[nodiscard]] bool start_fits() const { return !start_is_unfit_; }
+  /// A person has said where the robot stands, and the next scan fits there or does not.
+  void relocalized(std::optional<double> fit) { start_is_unfit_ = is_in_doubt(fit); }
 
  private:
-  [[nodiscard]] LogLine judged_start() const;
+  [[nodiscard]] LogLine judged_start();
   [[nodiscard]] LogLine judged_long(LocalizerState state);
   void pass(const TrackedScan& tracked);
 
   bool looks_at_start_;
+  bool start_is_unfit_ = false;
   int first_scans_ = 0;
   double first_fit_ = 0.0;  // sum over them
   std::optional<double> mean_fit_;

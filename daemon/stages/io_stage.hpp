@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The io thread: both devices on one event loop, so that messages keep the order in which their bytes came; and safety,
-// which has the last word over every velocity before any pulse goes out.
+// The io thread: both devices on one event loop, so that messages keep the order in which their bytes came; and the
+// drive desk, which has the last word over every velocity before any pulse goes out.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,7 @@
 #include "daemon/records/recorder.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/stages/device_link.hpp"
+#include "daemon/steps/pilot_step.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 
 namespace deltamap::daemon {
@@ -38,8 +39,8 @@ class IoStage {
   void run();
   /// Any thread: the robot is stopped and both devices let go; run() returns soon after.
   void stop();
-  /// Any thread. Not listened to while nobody may drive. `held_by`: why the pilot itself does not drive now.
-  void post(const DriveCommand& command, navigation::StopReason held_by = navigation::StopReason::kNone);
+  /// Any thread, after each localized scan. Its command is not listened to while nobody may drive.
+  void post(const PilotWord& word);
   /// Any thread. A person lets the pilot drive (again), or not: the robot is then told to stand at once. Kept on disk
   /// before it is answered. Where the settings say that nobody drives, no velocity is ever sent.
   void let_drive(bool may_drive, std::uint64_t ticket);

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
-#include "navigation/pose_stop.hpp"
-#include "navigation/remembered_obstacles.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -36,7 +34,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
                                      Wiring wiring)
     : wiring_{std::move(wiring)},
       step_{settings, start},
-      drives_without_pose_{settings.navigation.drive_without_pose},
+      pilot_{settings},
       mapping_enabled_{settings.mapping.enabled},
       first_revision_{start.revision},
       first_map_{first_map},
@@ -44,9 +42,6 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
       memory_{settings.memory},
       is_kept_{!settings.map.store.empty()},
       fit_watch_{settings.initial_pose.has_value()} {
-  if (settings.navigation.mode == navigation::DriveMode::kWander) {
-    pilot_.emplace(settings.navigation.wander, settings.seed);
-  }
   if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
     (void)wiring_.recorder.send(refused_start_line());
   }
@@ -59,9 +54,7 @@ void LocalizationStage::run() {
   while (!wiring_.sensors.is_drained()) {
     pulse_.beat();
     auto message = wiring_.sensors.receive_within(kLookEvery);
-    while (const auto params = wiring_.wander.try_receive()) {
-      if (pilot_) pilot_->set_params(*params);
-    }
+    while (const auto params = wiring_.wander.try_receive()) pilot_.set_params(*params);
     // After a stall the queue is drained: all odometry counts, of the scans only the newest.
     batch.clear();
     while (message) {
@@ -104,17 +97,17 @@ void LocalizationStage::localize(Scan scan) {
   take_transients(number);
   take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
+  LogLine fit_line = fit_watch_.observe(tracked, step_.fit());
+  answer_relocalize(number);
+  pilot(tracked);
   show(tracked.estimate, tracked.scan.received);
   wiring_.show(tracked, step_.row(), wiring_.telemetry.latency_s.value(), step_.particles());
-  answer_relocalize(number);
   tell_changes();
-  if (LogLine line = fit_watch_.observe(tracked, step_.fit()); !line.text.empty())
-    (void)wiring_.recorder.send(std::move(line));
+  if (!fit_line.text.empty()) (void)wiring_.recorder.send(std::move(fit_line));
   (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
   (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
   keep_now_and_then(tracked.scan.time);
-  if (pilot_) pilot(tracked);
   if (!mapping_enabled_ || is_paused_ || wiring_.tracked_scans.try_send(std::move(tracked))) return;
   wiring_.telemetry.tracked_lost.add(1);
   note({Kind::kTrackedLost, number, 0});
@@ -138,20 +131,12 @@ void LocalizationStage::take_transients(std::uint32_t scan) {
 }
 
 void LocalizationStage::pilot(const TrackedScan& tracked) {
-  using navigation::StopReason;
-  const StopReason held_by = drives_without_pose_ ? StopReason::kNone : navigation::pose_stop(tracked.estimate);
-  wiring_.telemetry.wanted_speed_m_per_s.set(0.0);
-  wiring_.telemetry.wanted_turn_rate_rad_per_s.set(0.0);
-  if (held_by != StopReason::kNone) return wiring_.drive({tracked.scan.time, 0.0, 0.0}, held_by);
-  const DriveCommand wanted = pilot_->step(tracked, obstacles_beside(tracked));
-  wiring_.telemetry.wanted_speed_m_per_s.set(wanted.speed_m_per_s);
-  wiring_.telemetry.wanted_turn_rate_rad_per_s.set(wanted.turn_rate_rad_per_s);
-  wiring_.drive(wanted, held_by);
-}
-
-std::vector<Point2> LocalizationStage::obstacles_beside(const TrackedScan& tracked) const {
-  if (transients_ == nullptr) return {};
-  return navigation::remembered_obstacles(*transients_, tracked, {.hull_m = pilot_->params().robot_radius_m});
+  const PilotWord word = pilot_.observe(
+      tracked, {.fit = step_.fit(), .start_fits = fit_watch_.start_fits(), .transients = transients_.get()});
+  wiring_.telemetry.pose_stop.set(static_cast<std::uint8_t>(word.pose));
+  wiring_.telemetry.wanted_speed_m_per_s.set(word.command.speed_m_per_s);
+  wiring_.telemetry.wanted_turn_rate_rad_per_s.set(word.command.turn_rate_rad_per_s);
+  wiring_.drive(word);
 }
 
 // --- the operator ---
@@ -198,6 +183,7 @@ void LocalizationStage::answer_relocalize(std::uint32_t scan) {
   wiring_.answer({*relocalized_, true,
                   "the robot starts there with scan " + std::to_string(scan) + ": " + fit_words(step_.fit()),
                   is_in_doubt(step_.fit())});
+  fit_watch_.relocalized(step_.fit());
   relocalized_.reset();
 }
 

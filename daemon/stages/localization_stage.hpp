@@ -15,10 +15,10 @@
 #include "daemon/settings/settings.hpp"
 #include "daemon/stages/fit_watch.hpp"
 #include "daemon/steps/localization_step.hpp"
+#include "daemon/steps/pilot_step.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/telemetry.hpp"
-#include "navigation/stop_reason.hpp"
 #include "navigation/wander.hpp"
 
 namespace deltamap::daemon {
@@ -34,8 +34,7 @@ class LocalizationStage {
     Channel<DeltaWork>& tracked_scans;          ///< and what an operator wants of the map
     RecorderInput& recorder;
     Telemetry& telemetry;
-    /// What the pilot wants, or why it does not drive.
-    std::function<void(const DriveCommand&, navigation::StopReason)> drive;
+    std::function<void(const PilotWord&)> drive;  ///< after each scan; never waits
     /// For the live page: a scan, what is known of it, its latency in s, and the particles or null. Never waits.
     std::function<void(const TrackedScan&, const LocalizationRow&, double, const localization::particles::ParticleSet*)>
         show;
@@ -59,8 +58,6 @@ class LocalizationStage {
   void take_revisions(std::uint32_t scan);
   void take_transients(std::uint32_t scan);
   void pilot(const TrackedScan& tracked);
-  /// For the pilot: what stands there although the scan does not show it.
-  [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked) const;
   void take_commands(const Scan& scan);
   /// No scan comes: a save is done, everything else is answered as not done.
   void take_commands_without_scan();
@@ -81,8 +78,7 @@ class LocalizationStage {
 
   Wiring wiring_;
   LocalizationStep step_;
-  std::optional<navigation::Wander> pilot_;
-  bool drives_without_pose_;
+  PilotStep pilot_;
   LatencyHistogram latency_;
   Pulse pulse_;
   bool mapping_enabled_;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/geometry/angle.hpp"
+#include "navigation/stop_reason.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -37,6 +38,11 @@ std::string_view name_of(PoseVerdict verdict) {
       return "wrong";
   }
   return "";
+}
+
+bool may_drive_by_pose(const Telemetry& telemetry) {
+  constexpr auto kNone = static_cast<std::uint8_t>(navigation::StopReason::kNone);
+  return telemetry.localized.value() > 0 && telemetry.pose_stop.value() == kNone && telemetry.unfit.value() == kNone;
 }
 
 void BeamCountGauges::set(const BeamCounts& counts) {

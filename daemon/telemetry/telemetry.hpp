@@ -75,6 +75,7 @@ struct Telemetry {
   Gauge<double> told_speed_m_per_s, told_turn_rate_rad_per_s;  ///< what the robot was told last
   Gauge<double> battery_v;
   Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason
+  Gauge<std::uint8_t> unfit;        ///< navigation::StopReason: what of robot and laser forbids to drive
   Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
   // recorder thread
   Gauge<std::uint64_t> recorded_bytes;
@@ -89,6 +90,7 @@ struct Telemetry {
   Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none came back
   Gauge<double> latency_s;
   Gauge<double> wanted_speed_m_per_s, wanted_turn_rate_rad_per_s;  ///< by the pilot; 0 where it wants to stand
+  Gauge<std::uint8_t> pose_stop;                                   ///< navigation::StopReason: of the newest pose
   Gauge<bool> paused;                                              ///< by the operator: Δ-mapping sees no scans
   // delta thread
   Gauge<double> r_d;
@@ -99,6 +101,10 @@ struct Telemetry {
   // map thread
   Gauge<std::uint32_t> newest_revision, refused;
 };
+
+/// For planners: the pose is good enough to drive by, and neither robot nor laser forbids it. Says nothing of motors,
+/// of the STOP button, or of who drives.
+[[nodiscard]] bool may_drive_by_pose(const Telemetry& telemetry);
 
 [[nodiscard]] ScanCounts counts_of(const Telemetry& telemetry);
 

@@ -112,8 +112,8 @@ std::string_view PioneerSession::why_never_driven() const {
 }
 
 /// ENABLE 1 waits for the watchdog, without which nobody knows how the robot would stop, and for a robot of known units
-/// and hull. It is sent once, not until it
-/// shows: motors that are off in the next SIP may have been switched off again by a person who was faster than the SIP.
+/// and hull. It is sent once, not until it shows: motors that are off in the next SIP may have been switched off again
+/// by a person who was faster than the SIP.
 void PioneerSession::bring_motors(Timestamp now, PioneerOutput& out) {
   const bool motors_are_on = newest_sip_->has(sip_flag::kMotorsEnabled);
   if (permission_.must_disable() && motors_are_on && disable_requests_ < kMaxRequests) {

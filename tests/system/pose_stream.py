@@ -25,7 +25,7 @@ PATIENCE_S = 120.0
 NUMBER, TEXT, OBJECT = (int, float), str, dict
 POSE = {"type": TEXT, "time": NUMBER, "scan": int, "x_m": NUMBER, "y_m": NUMBER, "heading_rad": NUMBER, "covariance": OBJECT, "state": TEXT, "verdict": TEXT,
         "pose_right": NUMBER, "map_wrong": NUMBER, "speed_m_per_s": NUMBER, "turn_rate_rad_per_s": NUMBER, "revision": int,
-        "other_hypothesis": (dict, type(None)), "gate": (dict, type(None)), "latency_ms": NUMBER}
+        "other_hypothesis": (dict, type(None)), "gate": (dict, type(None)), "latency_ms": NUMBER, "may_drive_by_pose": bool}
 COVARIANCE = {"xx_m2", "xy_m2", "yy_m2", "xh_m_rad", "yh_m_rad", "hh_rad2"}
 
 
@@ -62,7 +62,7 @@ def until(condition, what):
 def check_pose(pose):
     check(pose.keys() == POSE.keys(), f"keys that differ from the schema: {sorted(pose.keys() ^ POSE.keys())}")
     for key, kind in POSE.items():
-        check(isinstance(pose[key], kind) and not isinstance(pose[key], bool), f"{key} is {pose[key]!r}")
+        check(isinstance(pose[key], kind) and (kind is bool or not isinstance(pose[key], bool)), f"{key} is {pose[key]!r}")
     check(pose["covariance"].keys() == COVARIANCE, "the covariance is not as in the schema")
     check(pose["covariance"]["xx_m2"] > 0 and pose["covariance"]["hh_rad2"] > 0, "a deviation is 0")
     check(pose["state"] in ("global", "tracking", "lost") and pose["verdict"] in ("right", "wrong", "undecided"), f"{pose['state']}, {pose['verdict']}")

@@ -137,6 +137,9 @@ std::string status_table(const std::string& reply_line) {
                word(s, "/ports/laser").c_str());
   text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),
                word(s, "/stopped_by").c_str());
+  if (s.contains("may_drive_by_pose"))
+    text += line("planners", "%s",
+                 s["may_drive_by_pose"] == true ? "may drive by this pose" : "must not drive by this pose");
   if (const std::string why = word(s, "/never_driven"); why != "-" && !why.empty()) {
     text += line("not driven", "%s", why.c_str());
   }

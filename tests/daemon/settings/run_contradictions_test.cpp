@@ -113,5 +113,20 @@ TEST_F(RunContradictions, AreToldWhereTheKeyIsGiven) {
   EXPECT_NO_THROW((void)read_settings(settings_, {})) << "a replay has no outputs of the settings";
 }
 
+TEST_F(RunContradictions, WhoWandersLooksWhereHeDrives) {
+  const Lines refused{
+      "laser.mount.yaw_deg: with 'navigation.mode' wander the laser must look where the robot drives, as wide as its "
+      "hull "
+      "and margin: see 'laser.mount', 'laser.variant' and 'navigation.safety'"};
+  for (const std::string yaw_deg : {"180", "90", "-90", "135", "60"}) {
+    EXPECT_EQ(told({"navigation.mode=wander", "laser.mount.yaw_deg=" + yaw_deg}), refused) << yaw_deg;
+    EXPECT_EQ(told({"laser.mount.yaw_deg=" + yaw_deg}), Lines{}) << "it never drives";
+  }
+  EXPECT_EQ(told({"navigation.mode=wander", "laser.mount.x_m=0.5"}), refused)
+      << "before the hull it sees nothing aside";
+  EXPECT_EQ(told({"navigation.mode=wander"}), Lines{});
+  EXPECT_EQ(told({"navigation.mode=wander", "laser.variant=100/1"}), Lines{});
+}
+
 }  // namespace
 }  // namespace deltamap::daemon

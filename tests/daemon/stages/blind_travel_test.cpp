@@ -6,13 +6,12 @@
 #include <cstdio>
 #include <numbers>
 
-#include "simulation/simulation.hpp"
-#include "tests/support/daemon/driving_daemon.hpp"
+#include "experiments/closed_loop/virtual_daemon.hpp"
 
 namespace deltamap {
 namespace {
 
-using Daemon = test::DrivingDaemon<simulation::Simulation>;
+using Daemon = experiments::VirtualDaemon;
 
 constexpr Timestamp kStart = timestamp_from_ns(1'700'000'000'000'000'000);
 
@@ -95,13 +94,14 @@ class Drive {
  private:
   static Daemon::Params params(std::uint64_t seed, bool is_reckless) {
     Daemon::Params params;
-    params.robot.fast_baud = 38400;
-    params.robot.limits.max_speed_m_per_s = 0.7;
-    params.robot.limits.max_turn_rate_rad_per_s = radians(80.0);
-    params.laser.baud = 38400;
-    params.laser.variant = *drivers::lms200::variant_named("180/1");
-    params.laser.robot_from_laser.x = 0.021;
-    params.seed = seed;
+    daemon::Settings& settings = params.settings;
+    settings.robot.session.fast_baud = 38400;
+    settings.robot.session.limits.max_speed_m_per_s = 0.7;
+    settings.robot.session.limits.max_turn_rate_rad_per_s = radians(80.0);
+    settings.laser.session.baud = 38400;
+    settings.laser.session.variant = *drivers::lms200::variant_named("180/1");
+    settings.laser.session.robot_from_laser.x = 0.021;
+    settings.seed = seed;
     if (is_reckless) params.pilot = reckless(seed);
     return params;
   }

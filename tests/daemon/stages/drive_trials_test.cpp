@@ -7,8 +7,8 @@
 #include <algorithm>
 
 #include "core/random.hpp"
+#include "experiments/closed_loop/virtual_daemon.hpp"
 #include "simulation/simulation.hpp"
-#include "tests/support/daemon/driving_daemon.hpp"
 #include "tests/support/files/figure.hpp"
 #include "tests/support/files/source_tree.hpp"
 #include "tests/support/files/temporary_folder.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 using drivers::pioneer::DriveSwitch;
 using simulation::Simulation;
-using Daemon = test::DrivingDaemon<Simulation>;
+using Daemon = experiments::VirtualDaemon;
 
 constexpr Timestamp kTrialStart = timestamp_from_ns(1'700'000'000'000'000'000);
 constexpr std::uint64_t kShards = 8;
@@ -31,12 +31,12 @@ simulation::Scenario room() {
 
 Daemon::Params params(const std::filesystem::path& folder, std::uint64_t seed) {
   Daemon::Params params;
-  params.robot.fast_baud = 38400;
-  params.laser.baud = 38400;
-  params.laser.variant = *drivers::lms200::variant_named("180/1");
-  params.laser.robot_from_laser.x = 0.021;
+  params.settings.robot.session.fast_baud = 38400;
+  params.settings.laser.session.baud = 38400;
+  params.settings.laser.session.variant = *drivers::lms200::variant_named("180/1");
+  params.settings.laser.session.robot_from_laser.x = 0.021;
+  params.settings.seed = seed;
   params.kept_file = folder / "store.drive.json";
-  params.seed = seed;
   return params;
 }
 

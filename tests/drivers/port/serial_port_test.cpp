@@ -69,7 +69,7 @@ void run_until(boost::asio::io_context& loop, const std::function<bool()>& done)
 TEST(SerialPort, CarriesEveryByteValueBothWaysUnchanged) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 9600);
   ASSERT_TRUE(port) << refused;
   Bytes all;
   for (int i = 0; i < 256; ++i) all.push_back(static_cast<std::uint8_t>(i));
@@ -98,7 +98,7 @@ TEST(SerialPort, CarriesEveryByteValueBothWaysUnchanged) {
 TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused] = open_serial_port(loop, device.path(), 500000);
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 500000);
   ASSERT_TRUE(port) << refused;
   std::vector<std::size_t> chunks;
   port->start({[&](std::span<const std::uint8_t> bytes, Timestamp) { chunks.push_back(bytes.size()); }, {}});
@@ -111,7 +111,7 @@ TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
 TEST(SerialPort, ChangesTheBaudAfterTheBytesBeforeAndBeforeTheBytesAfter) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 9600);
   ASSERT_TRUE(port) << refused;
   EXPECT_EQ(device.speed(), static_cast<speed_t>(B9600));
   port->start({});
@@ -133,7 +133,7 @@ TEST(SerialPort, ChangesTheBaudAfterTheBytesBeforeAndBeforeTheBytesAfter) {
 TEST(SerialPort, WritesMoreThanTheKernelTakesAtOnce) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused] = open_serial_port(loop, device.path(), 500000);
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 500000);
   ASSERT_TRUE(port) << refused;
   Bytes much(100'000);
   for (std::size_t i = 0; i < much.size(); ++i) much[i] = static_cast<std::uint8_t>(i * 7);
@@ -172,7 +172,7 @@ TEST(SerialPort, TellsOnceWhenTheDeviceHangsUp) {
 TEST(SerialPort, CallsNoHandlerAfterItIsGone) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused] = open_serial_port(loop, device.path(), 9600);
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 9600);
   ASSERT_TRUE(port) << refused;
   port->start({[](std::span<const std::uint8_t>, Timestamp) { FAIL(); }, [](const std::string&) { FAIL(); }});
   port->set_baud(123);  // refused by the line: would be told

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "daemon/control/request.hpp"
+#include "simulation/scenario/start_map.hpp"
 #include "tests/support/bytes/simulated_ports.hpp"
 #include "tests/support/daemon/pipeline_fixture.hpp"
 #include "tests/support/daemon/socket_client.hpp"
@@ -65,6 +66,7 @@ class DriveTest : public ControlDeskTest {
     settings_.laser.session.baud = 38400;
     settings_.initial_pose = Pose2{1.0, 2.0, 0.0};
     settings_.recording.file.clear();
+    write_grid(simulation::start_map(scenario_, 0.05), folder_.path() / "room.yaml");  // where the robot truly drives
   }
 
   void run(

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the localization thread decides about driving after each scan: whether the pose is good enough to drive by,
+// where the pilot wants to go, and whether the laser should see anything at all. The io thread has the last word
+// (DriveDesk).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/transient_obstacles.hpp"
+#include "daemon/settings/settings.hpp"
+#include "navigation/dead_beams.hpp"
+#include "navigation/pose_watch.hpp"
+#include "navigation/stop_reason.hpp"
+#include "navigation/wander.hpp"
+
+namespace deltamap::daemon {
+
+struct PilotWord {
+  DriveCommand command;
+  navigation::StopReason held_by = navigation::StopReason::kNone;  ///< why the pilot itself does not drive now
+  navigation::StopReason pose = navigation::StopReason::kNone;     ///< why nobody should drive by this pose
+  bool misses_walls = false;                                       ///< a part of the laser never sees what the map has
+  bool expects_no_range = false;  ///< the map knows this place, and nothing that the laser could reach
+};
+
+class PilotStep {
+ public:
+  explicit PilotStep(const Settings& settings);
+
+  /// What is known of a scan besides its pose.
+  struct Seen {
+    std::optional<double> fit;                       ///< as LocalizationStep::fit()
+    bool start_fits = true;                          ///< as FitWatch::start_fits()
+    const TransientObstacles* transients = nullptr;  ///< what differs from the map now; null: not known
+  };
+  [[nodiscard]] PilotWord observe(const TrackedScan& tracked, const Seen& seen);
+  /// In the middle of a run: from the next scan on.
+  void set_params(const navigation::WanderParams& params);
+
+ private:
+  /// What stands there although the scan does not show it.
+  [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked, const Seen& seen) const;
+
+  bool drives_without_pose_;
+  navigation::PoseWatch pose_watch_;
+  navigation::DeadBeams dead_beams_;
+  std::optional<navigation::Wander> wander_;  // nothing: nobody drives in this run
+};
+
+}  // namespace deltamap::daemon

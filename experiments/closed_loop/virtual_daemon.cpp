@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiments/closed_loop/virtual_daemon.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/driving/drive_desk.hpp"
+#include "daemon/replay/sequential_run.hpp"
+#include "daemon/stages/fit_watch.hpp"
+#include "daemon/steps/pilot_step.hpp"
+#include "daemon/telemetry/telemetry.hpp"
+#include "drivers/lms200/session.hpp"
+#include "drivers/pioneer/session.hpp"
+#include "experiments/closed_loop/virtual_link.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+using drivers::lms200::Lms200Output;
+using drivers::lms200::Lms200Session;
+using drivers::pioneer::PioneerOutput;
+using drivers::pioneer::PioneerSession;
+
+constexpr double kMapDelayS = 0.2;  // from a set of scans to its revision
+
+daemon::Settings driving(daemon::Settings settings, bool has_map) {
+  settings.navigation.mode = navigation::DriveMode::kWander;
+  settings.robot.session.enable_motors = true;
+  if (!has_map) settings.navigation.drive_without_pose = true;
+  return settings;
+}
+
+drivers::pioneer::PioneerParams robot_params(const daemon::Settings& settings, const daemon::KeptDrive& kept) {
+  auto params = settings.robot.session;
+  params.drive_switch = kept.value();
+  return params;
+}
+
+}  // namespace
+
+struct VirtualDaemon::Process {
+  explicit Process(VirtualDaemon& its_owner)
+      : owner{its_owner},
+        kept{{its_owner.params_.kept_file, "/dev/robot"}},
+        robot{PioneerSession{robot_params(its_owner.params_.settings, kept), drivers::SessionMode::kLive},
+              {[this](std::span<const std::uint8_t> bytes, unsigned baud) { owner.write_to_robot(bytes, baud); },
+               [this](PioneerOutput& out) { take(out); }}},
+        laser{
+            Lms200Session{its_owner.params_.settings.laser.session, drivers::SessionMode::kLive},
+            {[this](std::span<const std::uint8_t> bytes, unsigned baud) { owner.devices_.send_to_laser(bytes, baud); },
+             [this](Lms200Output& out) { take(out); }}},
+        desk{true,
+             its_owner.params_.settings.navigation.safety,
+             {.session = robot.session(),
+              .kept = kept,
+              .telemetry = telemetry,
+              .obey = [this](PioneerOutput out) { robot.handle(std::move(out), now()); },
+              .log = [this](const std::string& line) { owner.log_.push_back(line); },
+              .warn = [this](const std::string& line) { owner.log_.push_back(line); }}},
+        pilot{its_owner.params_.settings},
+        fit_watch{its_owner.params_.settings.initial_pose.has_value()} {
+    if (its_owner.params_.map == nullptr) return;
+    const daemon::StartMap start{.map = its_owner.params_.map};
+    run.emplace(its_owner.params_.settings, start, nullptr, kMapDelayS);
+  }
+
+  [[nodiscard]] Timestamp now() const { return owner.devices_.now(); }
+
+  void take(PioneerOutput& out) {
+    for (const Odometry& odometry : out.odometry) {
+      desk.observe(odometry, now());
+      newest = odometry;
+      owner.last_odometry_ = now();
+      if (run) run->observe(odometry);
+    }
+    owner.log_.insert(owner.log_.end(), out.output.log.begin(), out.output.log.end());
+    desk.set_port_open(robot.is_open());
+    desk.obey_permission(now());
+  }
+
+  void take(Lms200Output& out) {
+    for (Scan& scan : out.scans) {
+      scan.number = scans++;
+      desk.set_nominal_scan_period(laser.session().nominal_period_s());
+      desk.observe(scan);
+      owner.last_scan_ = scan;
+      desk.take(word_on(std::move(scan)), now());
+    }
+  }
+
+  /// What the localization thread says of a scan.
+  daemon::PilotWord word_on(Scan scan) {
+    if (owner.params_.pilot) return {.command = owner.params_.pilot(scan)};
+    const TrackedScan tracked = run ? localized(std::move(scan)) : without_pose(std::move(scan));
+    daemon::PilotStep::Seen seen;
+    if (run) {
+      seen.fit = run->localization().fit();
+      if (const std::string line = fit_watch.observe(tracked, seen.fit).text; !line.empty()) owner.log_.push_back(line);
+      seen.start_fits = fit_watch.start_fits();
+      seen.transients = run->store_scan().transients().get();
+    }
+    const daemon::PilotWord word = pilot.observe(tracked, seen);
+    telemetry.pose_stop.set(static_cast<std::uint8_t>(word.pose));
+    if (run && owner.params_.settings.mapping.enabled) follow_changes(tracked);
+    return word;
+  }
+
+  TrackedScan localized(Scan scan) {
+    run->take_what_is_due(scan);
+    TrackedScan tracked = run->observe(std::move(scan));
+    telemetry.localized.add(1);
+    owner.estimate_ = tracked.estimate;
+    return tracked;
+  }
+
+  TrackedScan without_pose(Scan scan) const {
+    TrackedScan tracked;
+    tracked.scan = std::move(scan);
+    tracked.odom_from_robot = newest.odom_from_robot;
+    tracked.odometry_epoch = newest.epoch;
+    return tracked;
+  }
+
+  void follow_changes(const TrackedScan& tracked) {
+    if (const auto request = run->look_for_changes(tracked)) (void)run->update_map(*request);
+  }
+
+  VirtualDaemon& owner;
+  daemon::KeptDrive kept;
+  daemon::Telemetry telemetry;
+  VirtualLink<PioneerSession, PioneerOutput> robot;
+  VirtualLink<Lms200Session, Lms200Output> laser;
+  daemon::DriveDesk desk;
+  daemon::PilotStep pilot;
+  daemon::FitWatch fit_watch;
+  std::optional<daemon::SequentialRun> run;
+  Odometry newest;
+  std::uint32_t scans = 0;
+  Timestamp next_tick{};
+};
+
+VirtualDaemon::VirtualDaemon(simulation::Simulation& devices, Params params)
+    : devices_{devices}, params_{std::move(params)} {
+  params_.settings = driving(std::move(params_.settings), params_.map != nullptr);
+}
+VirtualDaemon::~VirtualDaemon() = default;
+
+void VirtualDaemon::start() {
+  process_ = std::make_unique<Process>(*this);
+  process_->robot.start(devices_.now());
+  process_->laser.start(devices_.now());
+}
+
+void VirtualDaemon::kill() { process_.reset(); }
+
+bool VirtualDaemon::is_alive() const { return process_ != nullptr; }
+
+void VirtualDaemon::pull_adapter(bool is_out) {
+  adapter_is_out_ = is_out;
+  if (is_out && process_ && process_->robot.is_open()) process_->robot.hang_up(devices_.now());
+}
+
+bool VirtualDaemon::operator_says(bool on) {
+  if (!process_) return false;
+  const Timestamp now = devices_.now();
+  return process_->desk.let_drive({on, 1, now}, now).done || !on;  // an off is kept although nobody can be told
+}
+
+bool VirtualDaemon::is_connected() const { return process_ && process_->desk.robot_is_connected(); }
+
+navigation::AllowedMotion VirtualDaemon::last_allowed() const {
+  return process_ ? process_->desk.allowed() : navigation::AllowedMotion{};
+}
+
+bool VirtualDaemon::may_drive_by_pose() const { return process_ && daemon::may_drive_by_pose(process_->telemetry); }
+
+void VirtualDaemon::write_to_robot(std::span<const std::uint8_t> bytes, unsigned baud) {
+  if (!line_is_cut_ && !adapter_is_out_) devices_.send_to_robot(bytes, baud);
+}
+
+void VirtualDaemon::run(double duration_s, const std::function<void()>& each_step) {
+  for (const Timestamp end = devices_.now() + duration_from_seconds(duration_s); devices_.now() < end;) {
+    devices_.advance_to(std::min(end, devices_.next_event()));
+    turn();
+    each_step();
+  }
+}
+
+void VirtualDaemon::turn() {
+  constexpr unsigned kIdleBaud = 9600;
+  std::vector<std::uint8_t> from_robot = devices_.bytes_from_robot(process_ ? process_->robot.baud() : kIdleBaud);
+  const std::vector<std::uint8_t> from_laser = devices_.bytes_from_laser(process_ ? process_->laser.baud() : kIdleBaud);
+  if (!process_) return;
+  if (line_is_cut_ || answers_are_cut_ || adapter_is_out_) from_robot.clear();
+  const Timestamp now = devices_.now();
+  process_->robot.turn(from_robot, !adapter_is_out_, now);
+  process_->laser.turn(from_laser, true, now);
+  if (now < process_->next_tick) return;
+  process_->next_tick = now + duration_from_seconds(daemon::kSafetyPeriodS);
+  process_->desk.set_port_open(process_->robot.is_open());
+  process_->desk.tick(now);
+}
+
+}  // namespace deltamap::experiments

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The daemon in virtual time between the two devices of a simulation: sessions, drive desk, pilot and, where it is
+// given a map, localizer and Δ-mapping, as the threads of pipeline.cpp run them. What it drives moves a body in a
+// world, so that it can bump into things. Killed and started again like a process.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/grid/occupancy_grid.hpp"
+#include "daemon/settings/settings.hpp"
+#include "navigation/safety.hpp"
+#include "simulation/simulation.hpp"
+
+namespace deltamap::experiments {
+
+class VirtualDaemon {
+ public:
+  struct Params {
+    daemon::Settings settings;                         ///< navigation.mode is taken for wander
+    std::shared_ptr<const OccupancyGrid> map{};        ///< M_0; null: no localizer, it wanders without a pose
+    std::filesystem::path kept_file{};                 ///< of the drive switch; empty: not kept
+    std::function<DriveCommand(const Scan&)> pilot{};  ///< in place of wandering
+  };
+  VirtualDaemon(simulation::Simulation& devices, Params params);
+  ~VirtualDaemon();
+  VirtualDaemon(const VirtualDaemon&) = delete;
+  VirtualDaemon& operator=(const VirtualDaemon&) = delete;
+
+  void start();
+  void kill();
+  [[nodiscard]] bool is_alive() const;
+  /// Time passes; `each_step` is called a few milliseconds apart.
+  void run(
+      double duration_s, const std::function<void()>& each_step = [] {});
+
+  // What befalls it.
+  /// The robot's line carries nothing in either direction.
+  void cut_line(bool is_cut) { line_is_cut_ = is_cut; }
+  /// Half a cable: the robot hears us, we do not hear it.
+  void cut_answers(bool are_cut) { answers_are_cut_ = are_cut; }
+  /// The adapter is pulled out: the port hangs up and cannot be opened.
+  void pull_adapter(bool is_out);
+  /// `deltamap ctl drive wander` or `drive off`: whether that is kept.
+  [[nodiscard]] bool operator_says(bool on);
+
+  // What it does.
+  [[nodiscard]] bool is_connected() const;
+  [[nodiscard]] Timestamp last_odometry() const { return last_odometry_; }
+  [[nodiscard]] navigation::AllowedMotion last_allowed() const;
+  [[nodiscard]] const std::optional<Scan>& last_scan() const { return last_scan_; }
+  /// Of the newest localized scan; nothing without a map.
+  [[nodiscard]] const std::optional<Estimate>& estimate() const { return estimate_; }
+  /// What ctl status tells planners.
+  [[nodiscard]] bool may_drive_by_pose() const;
+  /// Lines of its log, of all processes so far.
+  [[nodiscard]] const std::vector<std::string>& log() const { return log_; }
+
+ private:
+  struct Process;
+  void turn();
+  void write_to_robot(std::span<const std::uint8_t> bytes, unsigned baud);
+
+  simulation::Simulation& devices_;
+  Params params_;
+  std::unique_ptr<Process> process_;  // what dies with it
+  bool line_is_cut_ = false;
+  bool answers_are_cut_ = false;
+  bool adapter_is_out_ = false;
+  Timestamp last_odometry_{};
+  std::optional<Scan> last_scan_;
+  std::optional<Estimate> estimate_;
+  std::vector<std::string> log_;
+};
+
+}  // namespace deltamap::experiments

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// One session on one line in virtual time: what daemon/stages/device_link does with a serial port and the clock.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/time.hpp"
+#include "drivers/port/reconnect.hpp"
+#include "drivers/session.hpp"
+
+namespace deltamap::experiments {
+
+template <typename Session, typename Output>
+class VirtualLink {
+ public:
+  struct Hooks {
+    std::function<void(std::span<const std::uint8_t>, unsigned baud)> write;
+    std::function<void(Output&)> on_messages;  ///< after all that the session answers
+  };
+  VirtualLink(Session session, Hooks hooks) : session_{std::move(session)}, hooks_{std::move(hooks)} {}
+
+  /// The port is open.
+  void start(Timestamp now) {
+    try_again_at_.reset();
+    handle(session_.start(now), now);
+  }
+
+  void handle(Output out, Timestamp now) {
+    if (!is_open()) return;  // no port to write to
+    for (const drivers::PortRequest& request : out.output.requests) {
+      if (request.kind == drivers::PortRequest::Kind::kWrite) hooks_.write(request.bytes, baud_);
+      if (request.kind == drivers::PortRequest::Kind::kSetBaud) baud_ = request.baud;
+    }
+    wake_at_ = out.output.wake_at;
+    if (out.output.failed) lose(*out.output.failed, now);
+    hooks_.on_messages(out);
+  }
+
+  /// A port that hangs up, as an adapter that is pulled out.
+  void hang_up(Timestamp now) { lose("the device hung up", now); }
+
+  /// What has come by now.
+  void turn(std::span<const std::uint8_t> bytes, bool can_open, Timestamp now) {
+    if (try_again_at_) {
+      if (now < *try_again_at_) return;
+      if (!can_open) return hang_up(now);
+      reconnect_.opened();
+      return start(now);
+    }
+    if (!bytes.empty()) handle(session_.on_bytes(bytes, now), now);
+    if (is_open() && wake_at_ && *wake_at_ <= now) handle(session_.on_time(now), now);
+  }
+
+  [[nodiscard]] Session& session() { return session_; }
+  [[nodiscard]] unsigned baud() const { return baud_; }
+  [[nodiscard]] bool is_open() const { return !try_again_at_; }
+
+ private:
+  void lose(const std::string& reason, Timestamp now) {
+    wake_at_.reset();
+    try_again_at_ = reconnect_.failed(reason, now).try_again_at;
+  }
+
+  Session session_;
+  Hooks hooks_;
+  unsigned baud_ = 9600;
+  std::optional<Timestamp> wake_at_;
+  std::optional<Timestamp> try_again_at_;
+  drivers::port::Reconnect reconnect_{drivers::port::ReconnectParams{}};
+};
+
+}  // namespace deltamap::experiments

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// The drive desk between a simulated robot and people: requests that have waited too long, hands, and a robot that
+// cannot be told. What it shares with whole drives is tested in stages/drive_trials_test.
+#include "daemon/driving/drive_desk.hpp"
+
+#include <gtest/gtest.h>
+
+#include "experiments/closed_loop/virtual_link.hpp"
+#include "simulation/simulation.hpp"
+#include "tests/support/files/source_tree.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+using drivers::pioneer::PioneerOutput;
+using drivers::pioneer::PioneerSession;
+
+constexpr Timestamp kDeskOpens = timestamp_from_ns(1'700'000'000'000'000'000);
+
+drivers::pioneer::PioneerParams driving_robot() {
+  drivers::pioneer::PioneerParams params;
+  params.enable_motors = true;
+  return params;
+}
+
+/// A robot on its line, a desk, and no laser: scans are made up, of a free hall.
+class Desk {
+ public:
+  Desk()
+      : world_{simulation::read_scenario(test::source_path("config/scenarios/room.yaml")),
+               {.seed = 1, .start = kDeskOpens, .change_every_s = {}}},
+        kept_{{folder_.path() / "drive.json", "/dev/robot"}},
+        link_{PioneerSession{driving_robot(), drivers::SessionMode::kLive},
+              {[this](std::span<const std::uint8_t> bytes, unsigned baud) {
+                 if (!is_cut) world_.send_to_robot(bytes, baud);
+               },
+               [this](PioneerOutput& out) {
+                 for (const Odometry& odometry : out.odometry) desk.observe(odometry, world_.now());
+                 desk.set_port_open(link_.is_open());
+                 desk.obey_permission(world_.now());
+               }}},
+        desk{true,
+             {},
+             {.session = link_.session(),
+              .kept = kept_,
+              .telemetry = telemetry,
+              .obey = [this](PioneerOutput out) { link_.handle(std::move(out), world_.now()); },
+              .log = [](const std::string&) {},
+              .warn = [](const std::string&) {}}} {
+    link_.start(world_.now());
+    pass(6.0);
+  }
+
+  void pass(double for_s, double speed_m_per_s = 0.2) {
+    for (const Timestamp end = now() + duration_from_seconds(for_s); now() < end;) {
+      world_.advance_to(std::min(end, world_.next_event()));
+      const auto bytes = world_.bytes_from_robot(link_.baud());
+      link_.turn(is_cut ? std::span<const std::uint8_t>{} : bytes, true, now());
+      if (now() < next_) continue;
+      next_ = now() + duration_from_seconds(kSafetyPeriodS);
+      desk.observe(free_hall());
+      if (hand == 0) desk.take({.command = {now(), speed_m_per_s, 0.0}}, now());
+      if (hand != 0) desk.drive_by_hand(hand, {now(), speed_m_per_s, 0.0});
+      desk.tick(now());
+    }
+  }
+  [[nodiscard]] Timestamp now() const { return world_.now(); }
+  [[nodiscard]] bool is_driven() const { return desk.allowed().speed_m_per_s > 0.0; }
+  [[nodiscard]] drivers::pioneer::DriveSwitch on_disk() const {
+    return read_kept_drive({folder_.path() / "drive.json", "/dev/robot"}).value;
+  }
+
+ private:
+  Scan free_hall() {
+    Scan scan;
+    scan.time = scan.received = now();
+    scan.first_bearing_rad = radians(-90.0);
+    scan.bearing_step_rad = radians(1.0);
+    scan.max_range_m = 32.0;
+    for (int i = 0; i < 181; ++i)
+      scan.beams.push_back({static_cast<float>(20.0 + random_.normal(0.01)), 0.0F, BeamKind::kRange});
+    return scan;
+  }
+
+  test::TemporaryFolder folder_;
+  simulation::Simulation world_;
+  Random random_{5};
+  KeptDrive kept_;
+  experiments::VirtualLink<PioneerSession, PioneerOutput> link_;
+  Timestamp next_{};
+
+ public:
+  Telemetry telemetry;
+  DriveDesk desk;
+  bool is_cut = false;
+  std::uint64_t hand = 0;
+};
+
+TEST(DriveDesk, LetsNobodyDriveUntilAPersonSaysSo) {
+  Desk desk;
+  desk.pass(1.0);
+  EXPECT_FALSE(desk.is_driven());
+  EXPECT_TRUE(desk.desk.let_drive({true, 1, desk.now()}, desk.now()).done);
+  desk.pass(1.0);
+  EXPECT_TRUE(desk.is_driven());
+  EXPECT_EQ(desk.on_disk(), drivers::pioneer::DriveSwitch::kOn);
+  EXPECT_TRUE(desk.desk.let_drive({false, 2, desk.now()}, desk.now()).done);
+  EXPECT_FALSE(desk.is_driven()) << "at once, not at the next tick";
+  EXPECT_EQ(desk.on_disk(), drivers::pioneer::DriveSwitch::kOffByOperator);
+}
+
+TEST(DriveDesk, RefusesARequestThatHasWaitedTooLong) {
+  Desk desk;
+  const auto outcome = desk.desk.let_drive({true, 1, desk.now() - std::chrono::seconds{2}}, desk.now());
+  EXPECT_FALSE(outcome.done);
+  desk.pass(1.0);
+  EXPECT_FALSE(desk.is_driven());
+}
+
+TEST(DriveDesk, ListensToAHandAloneAndLeavesTheRobotStandingAfterIt) {
+  Desk desk;
+  ASSERT_TRUE(desk.desk.let_drive({true, 1, desk.now()}, desk.now()).done);
+  EXPECT_TRUE(desk.desk.take_by_hand(7, desk.now(), desk.now()).done);
+  EXPECT_EQ(desk.on_disk(), drivers::pioneer::DriveSwitch::kOffByOperator) << "a restart is no hand";
+  desk.pass(1.0);
+  EXPECT_FALSE(desk.is_driven()) << "the pilot is not listened to";
+  desk.hand = 7;
+  desk.pass(1.0);
+  EXPECT_TRUE(desk.is_driven());
+  EXPECT_FALSE(desk.desk.take_by_hand(8, desk.now(), desk.now()).done);
+  EXPECT_FALSE(desk.desk.let_drive({true, 2, desk.now()}, desk.now()).done) << "the hand must end first";
+  desk.desk.let_go(7, desk.now());
+  desk.hand = 0;
+  desk.pass(1.0);
+  EXPECT_FALSE(desk.is_driven());
+}
+
+TEST(DriveDesk, SaysWhereTheRobotCannotBeTold) {
+  Desk desk;
+  ASSERT_TRUE(desk.desk.let_drive({true, 1, desk.now()}, desk.now()).done);
+  desk.pass(1.0);
+  desk.is_cut = true;
+  desk.pass(0.7);
+  const auto outcome = desk.desk.let_drive({false, 2, desk.now()}, desk.now());
+  EXPECT_FALSE(outcome.done);
+  EXPECT_NE(outcome.message.find("press STOP"), std::string::npos) << outcome.message;
+  EXPECT_EQ(desk.on_disk(), drivers::pioneer::DriveSwitch::kOffByOperator) << "kept all the same";
+}
+
+TEST(DriveDesk, StopsWhereThePilotSaysThatTheLaserMissesWalls) {
+  Desk desk;
+  ASSERT_TRUE(desk.desk.let_drive({true, 1, desk.now()}, desk.now()).done);
+  desk.pass(1.0);
+  desk.desk.take({.command = {desk.now(), 0.2, 0.0}, .misses_walls = true}, desk.now());
+  desk.desk.tick(desk.now());
+  EXPECT_EQ(desk.desk.allowed().stop, navigation::StopReason::kLaserBlind);
+  EXPECT_FALSE(may_drive_by_pose(desk.telemetry));
+}
+
+}  // namespace
+}  // namespace deltamap::daemon

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lasers, wheels, mounts and robots that go wrong while the daemon drives in a room that it has a map of: it touches
+// nothing, says why it stands, and tells planners that they must not drive. `deltamap experiment faults` has the rest.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "experiments/closed_loop/fault_trial.hpp"
+#include "tests/support/files/source_tree.hpp"
+
+namespace deltamap {
+namespace {
+
+simulation::Scenario quiet_room() {
+  auto scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
+  scenario.forklift.reset();
+  return scenario;
+}
+
+class FaultTrials : public testing::TestWithParam<std::string_view> {};
+
+TEST_P(FaultTrials, TouchNothing) {
+  for (const double before_s : {0.0, 10.0}) {
+    const experiments::FaultTrial trial{
+        .fault = std::string(GetParam()), .before_s = before_s, .for_s = 15.0, .seed = 1};
+    const experiments::LoopOutcome outcome = outcome_of(run_of(trial, quiet_room(), {}));
+    EXPECT_EQ(outcome.collisions, 0) << "at " << outcome.fastest_collision_m_per_s << " m/s";
+    EXPECT_TRUE(before_s == 0.0 || trial.fault.starts_with("mount") || outcome.driven_before_m > 0.5)
+        << "it must have been driving: " << outcome.driven_before_m;
+  }
+}
+
+std::string name_of_trial(const testing::TestParamInfo<std::string_view>& trial) {
+  std::string name(trial.param);
+  for (char& letter : name) letter = std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Each, FaultTrials, testing::ValuesIn(experiments::kTrialFaults), name_of_trial);
+
+TEST(FaultTrials, SayWhyTheRobotStandsAndThatNobodyMustDriveByItsPose) {
+  const std::map<std::string, navigation::StopReason> expected{
+      {"laser-repeats", navigation::StopReason::kLaserFrozen},
+      {"laser-beyond-maximum", navigation::StopReason::kLaserBlind},
+      {"laser-not-valid", navigation::StopReason::kLaserBlind},
+      {"laser-covered-ahead=120", navigation::StopReason::kLaserBlind},
+      {"laser-random=10", navigation::StopReason::kPoseUnfit},
+      {"wheels-spin", navigation::StopReason::kWheelsSpin},
+      {"wheels-blocked", navigation::StopReason::kDisobeys},
+      {"speed-factor=2", navigation::StopReason::kDisobeys},
+      {"charger-plugged", navigation::StopReason::kCharging},
+      {"battery=0", navigation::StopReason::kNoBattery},
+      {"mount-turned=180", navigation::StopReason::kWayUncovered}};
+  for (const auto& [fault, reason] : expected) {
+    const experiments::FaultTrial trial{.fault = fault, .before_s = 10.0, .for_s = 25.0, .seed = 1};
+    const experiments::LoopOutcome outcome = outcome_of(run_of(trial, quiet_room(), {}));
+    EXPECT_EQ(outcome.reason, reason) << fault << ": " << name_of(outcome.reason);
+    EXPECT_EQ(outcome.may_drive_at_end_share, 0.0) << fault;
+  }
+}
+
+TEST(FaultTrials, DriveOnWhereNothingIsWrong) {
+  experiments::LoopRun run;
+  run.scenario = quiet_room();
+  run.settings = experiments::fitting(run.scenario);
+  run.for_s = 120.0;
+  const experiments::LoopOutcome outcome = outcome_of(run);
+  EXPECT_EQ(outcome.collisions, 0);
+  EXPECT_TRUE(outcome.stops.empty()) << outcome.stops.begin()->first;
+  EXPECT_GT(outcome.moved_m, 5.0);
+  EXPECT_EQ(outcome.may_drive_at_end_share, 1.0);
+}
+
+}  // namespace
+}  // namespace deltamap
