@@ -20,7 +20,7 @@ double approached(double now, double target, double acceleration, double deceler
 class Walk {
  public:
   explicit Walk(const Coasting& coasting) : coasting_{coasting}, motion_{coasting.at_first} {
-    path_.centres.emplace_back(0.0, 0.0);
+    path_.poses.push_back(pose_);
   }
 
   void go_on(double for_s) { go_towards(motion_, for_s); }
@@ -51,7 +51,7 @@ class Walk {
     pose_.x += ahead_m * std::cos(along_rad);
     pose_.y += ahead_m * std::sin(along_rad);
     pose_.theta += turn_rad;
-    path_.centres.push_back(pose_.position());
+    path_.poses.push_back(pose_);
     path_.length_m += std::abs(ahead_m);
     path_.turned_rad = std::max(path_.turned_rad, std::abs(pose_.theta));
   }
@@ -77,8 +77,14 @@ bool is_clear(const CoastingPath& path, std::span<const Point2> obstacles_in_rob
     const double at_first_m = point.norm();
     if (at_first_m > path.length_m + radius_m) return false;
     const double least_m = std::min(radius_m, at_first_m - kNearerM);
-    return std::any_of(path.centres.begin(), path.centres.end(),
-                       [&](const Point2& centre) { return (point - centre).norm() < least_m; });
+    return std::any_of(path.poses.begin(), path.poses.end(),
+                       [&](const Pose2& pose) { return (point - pose.position()).norm() < least_m; });
+  });
+}
+
+bool is_looked_at(const CoastingPath& path, const Fan& fan, double radius_m) {
+  return std::all_of(path.poses.begin(), path.poses.end(), [&](const Pose2& pose) {
+    return looks_at(fan, pose * Point2{radius_m, 0.0});
   });
 }
 

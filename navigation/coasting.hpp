@@ -10,6 +10,7 @@
 
 #include "core/geometry/angle.hpp"
 #include "core/geometry/pose2.hpp"
+#include "navigation/fan.hpp"
 
 namespace deltamap::navigation {
 
@@ -39,7 +40,7 @@ struct Coasting {
 };
 
 struct CoastingPath {
-  std::vector<Point2> centres;  ///< of the robot, in its frame at the beginning; every 0.1 s
+  std::vector<Pose2> poses;  ///< of the robot, in its frame at the beginning; every 0.1 s
   double length_m = 0.0;
   double turned_rad = 0.0;  ///< >= 0, whichever the side
 };
@@ -49,5 +50,8 @@ struct CoastingPath {
 /// Does a disc of `radius_m` stay clear of every point on this path? Points that it touches at the beginning count only
 /// where it would come nearer to them.
 [[nodiscard]] bool is_clear(const CoastingPath& path, std::span<const Point2> obstacles_in_robot, double radius_m);
+
+/// Does the laser see all along this path what the middle of the robot's front comes to?
+[[nodiscard]] bool is_looked_at(const CoastingPath& path, const Fan& fan, double radius_m);
 
 }  // namespace deltamap::navigation

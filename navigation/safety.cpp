@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace deltamap::navigation {
 namespace {
@@ -15,6 +16,14 @@ constexpr double kTurnAccelerationRadPerS2 = radians(100.0);  // of a P3-DX as d
 constexpr double kMostTurnRad = 0.5 * std::numbers::pi;       // further on it would go where the laser does not look
 constexpr int kHalvings = 7;                                  // of the share of a speed: 5 mm/s of 0.7 m/s
 constexpr std::uint8_t kLaserErrorSeverity = 3;               // B6: 3 error, 4 fatal
+constexpr double kLeastBatteryV = 1.0;                        // nothing runs on less: it was not measured
+
+/// Whether something has lasted for so long without a break.
+bool lasts(std::optional<Timestamp>& since, bool is_so, Timestamp now, double least_s) {
+  if (!is_so) since.reset();
+  if (is_so && !since) since = now;
+  return is_so && seconds(now - *since) >= least_s;
+}
 
 double clamped(double value, double most) { return std::clamp(value, -most, most); }
 
@@ -27,18 +36,35 @@ Motion scaled(const Motion& motion, double share) {
 // --- what is known ---
 
 void Safety::observe(const Scan& scan) {
-  scan_ = SeenScan{scan.time, scan.received, obstacles_of(scan, params_.obstacles)};
+  laser_.observe(scan);
+  const Scan believed = laser_.believed(scan);
+  lost_ends_.observe(believed, odom_at(scan));
+  scan_ = SeenScan{scan.time, scan.received, fan_of(scan), obstacles_of(believed, params_.obstacles)};
+  scan_->obstacles_in_robot.insert(scan_->obstacles_in_robot.end(), lost_ends_.in_robot().begin(),
+                                   lost_ends_.in_robot().end());
   if (scan.implausible) implausible_at_ = scan.received;
   latches_[kLaserError].observe(scan.severity >= kLaserErrorSeverity);
+  latches_[kWheelsSpin].observe(laser_.contradicts_wheels());
+}
+
+/// In one frame since the last call, or nothing: the frame has jumped.
+std::optional<Pose2> Safety::odom_at(const Scan& scan) {
+  const WheelPath& wheels = laser_.wheels();
+  if (std::exchange(lost_ends_epoch_, wheels.epoch()) != wheels.epoch()) return std::nullopt;
+  return wheels.odom_from_robot(scan.time);
 }
 
 void Safety::observe(const Odometry& odometry) {
   const bool same_epoch = odometry_ && odometry_->epoch == odometry.epoch;
   if (!same_epoch) motors_were_on_ = false;
+  laser_.observe(odometry);
+  obedience_.observe(odometry, stopping_);
   latches_[kBumper].observe(odometry.front_bumpers != 0 || odometry.rear_bumpers != 0);
   latches_[kStalled].observe(odometry.stalled);
   latches_[kControllerFault].observe(odometry.fault_flags != 0);
-  latches_[kLowBattery].observe(is_battery_low(odometry));
+  latches_[kLowBattery].observe(lasts(low_battery_since_, odometry.low_battery, odometry.time, params_.low_battery_s));
+  latches_[kDisobeys].observe(obedience_.disobeys());
+  has_no_battery_ = lasts(no_battery_since_, odometry.battery_v < kLeastBatteryV, odometry.time, params_.no_battery_s);
   // The first time the daemon may have enabled them. After that, within a connection, a person has.
   const bool come_on = same_epoch && odometry.motors_enabled && !odometry_->motors_enabled;
   if (come_on && motors_were_on_) let_drive_again();
@@ -46,13 +72,9 @@ void Safety::observe(const Odometry& odometry) {
   odometry_ = odometry;
 }
 
-bool Safety::is_battery_low(const Odometry& odometry) {
-  if (!odometry.low_battery) {
-    low_battery_since_.reset();
-    return false;
-  }
-  if (!low_battery_since_) low_battery_since_ = odometry.time;
-  return seconds(odometry.time - *low_battery_since_) >= params_.low_battery_s;
+void Safety::told(const std::optional<Motion>& motion, Timestamp now) {
+  if (!motion) return obedience_.forget();
+  obedience_.told(*motion, now);
 }
 
 void Safety::command(const DriveCommand& command, Timestamp now, StopReason held_by) {
@@ -61,6 +83,8 @@ void Safety::command(const DriveCommand& command, Timestamp now, StopReason held
 }
 
 void Safety::let_drive_again() {
+  laser_.forget_contradiction();
+  latches_[kWheelsSpin].observe(false);
   for (StopLatch& latch : latches_) latch.release();
 }
 
@@ -73,23 +97,39 @@ StopReason Safety::waits_for() const {
 
 StopReason Safety::blocking_state(Timestamp now) const {
   if (const StopReason held = waits_for(); held != StopReason::kNone) return held;
-  if (const StopReason silent = silence(now); silent != StopReason::kNone) return silent;
+  if (!command_) return StopReason::kNoCommand;
+  if (seconds(now - command_->received) > params_.command_life_s) return StopReason::kCommandExpired;
+  if (const StopReason unfit_now = unfit(now); unfit_now != StopReason::kNone) return unfit_now;
   if (odometry_->stop_button) return StopReason::kStopButton;
   // Before the motors: they are not enabled until it is known.
   if (!stopping_.watchdog_s) return StopReason::kWatchdogUnknown;
   if (!odometry_->motors_enabled) return StopReason::kMotorsOff;
   if (!std::isfinite(*stopping_.watchdog_s)) return StopReason::kNoWatchdog;
-  if (implausible_at_ && seconds(now - *implausible_at_) < params_.plausible_s) return StopReason::kImplausible;
   if (command_->held_by != StopReason::kNone) return command_->held_by;
   return command_->command.speed_m_per_s < 0.0 ? StopReason::kReverse : StopReason::kNone;
 }
 
-StopReason Safety::silence(Timestamp now) const {
-  if (!command_) return StopReason::kNoCommand;
-  if (seconds(now - command_->received) > params_.command_life_s) return StopReason::kCommandExpired;
+StopReason Safety::unfit(Timestamp now) const {
+  if (const StopReason held = waits_for(); held != StopReason::kNone) return held;
+  if (const StopReason robot = unfit_robot(now); robot != StopReason::kNone) return robot;
+  return unfit_laser(now);
+}
+
+StopReason Safety::unfit_robot(Timestamp now) const {
   if (!odometry_ || seconds(now - odometry_->time) > params_.odometry_life_s) return StopReason::kNoOdometry;
+  if (is_unknown_robot_) return StopReason::kUnknownRobot;
+  if (odometry_->charging) return StopReason::kCharging;
+  return has_no_battery_ ? StopReason::kNoBattery : StopReason::kNone;
+}
+
+StopReason Safety::unfit_laser(Timestamp now) const {
   const bool is_stale = !scan_ || seconds(now - scan_->received) > 3.0 * params_.nominal_scan_period_s;
-  return is_stale ? StopReason::kStaleLaser : StopReason::kNone;
+  if (is_stale) return StopReason::kStaleLaser;
+  if (!covers_way_ahead(scan_->fan, params_.robot_radius_m + params_.margin_m)) return StopReason::kWayUncovered;
+  if (misses_walls_ || laser_.sees_nothing()) return StopReason::kLaserBlind;
+  if (laser_.repeats_itself()) return StopReason::kLaserFrozen;
+  const bool is_implausible = implausible_at_ && seconds(now - *implausible_at_) < params_.plausible_s;
+  return is_implausible ? StopReason::kImplausible : StopReason::kNone;
 }
 
 // --- how fast ---
@@ -112,7 +152,7 @@ bool Safety::coasts_clear(const Motion& command, double radius_m, double blind_s
   const bool moves_on = command.speed_m_per_s > 0.0;
   const auto fits = [&](const Coasting& coasting) {
     const CoastingPath path = coasting_path(coasting);
-    if (moves_on && path.turned_rad > kMostTurnRad) return false;
+    if (moves_on && (path.turned_rad > kMostTurnRad || !is_looked_at(path, scan_->fan, radius_m))) return false;
     return is_clear(path, scan_->obstacles_in_robot, radius_m);
   };
   const Motion at_once{std::max(now.speed_m_per_s, command.speed_m_per_s), command.turn_rate_rad_per_s};
@@ -145,8 +185,9 @@ double Safety::safe_share(const Motion& wished, double blind_s) const {
 AllowedMotion Safety::allowed(Timestamp now) const {
   const StopReason blocked = blocking_state(now);
   if (blocked != StopReason::kNone) {
-    const bool touches = blocked == StopReason::kBumper || blocked == StopReason::kStalled;
-    return {0.0, 0.0, blocked, touches};
+    const bool is_urgent =
+        blocked == StopReason::kBumper || blocked == StopReason::kStalled || blocked == StopReason::kDisobeys;
+    return {0.0, 0.0, blocked, is_urgent};
   }
   const double blind_s = params_.reaction_s + std::max(0.0, seconds(now - scan_->time));
   if (!can_stop_ahead(blind_s)) return {0.0, 0.0, StopReason::kObstacle, true};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The last word before any velocity goes to the robot, spoken in the io thread. A speed is allowed only where the robot
 // would come to rest within what the laser has seen free although nobody spoke to it any more from now on. Bumpers, a
-// stall, faults, a low battery, a laser in error, an unknown pose and silence stop it. Reads no clock and starts
-// nothing by itself.
+// stall, faults, a low battery, a laser that cannot be believed, a robot that does not obey, an unknown pose and
+// silence stop it. Reads no clock and starts nothing by itself.
 #pragma once
 
 #include <array>
@@ -13,7 +13,11 @@
 #include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "navigation/coasting.hpp"
+#include "navigation/fan.hpp"
 #include "navigation/free_path.hpp"
+#include "navigation/laser_watch.hpp"
+#include "navigation/lost_ends.hpp"
+#include "navigation/obedience.hpp"
 #include "navigation/stop_reason.hpp"
 
 namespace deltamap::navigation {
@@ -27,6 +31,7 @@ struct SafetyParams {
   double nominal_scan_period_s = 0.107;  ///< laser stale after three of these; 180/1° at 38400 (protocols.md B7); > 0
   double odometry_life_s = 0.5;          ///< five controller cycles without a packet: the link is gone; > 0
   double low_battery_s = 3.0;            ///< low for so long: not the sag of a motor that starts; >= 0
+  double no_battery_s = 1.0;             ///< without a voltage: not one packet; >= 0
   double plausible_s = 2.0;              ///< of scans that are not flagged, before it goes on; >= 0
   double max_speed_m_per_s = 0.7;        ///< > 0
   double max_turn_rate_rad_per_s = radians(80.0);  ///< > 0
@@ -73,6 +78,14 @@ class Safety {
   void command(const DriveCommand& command, Timestamp now, StopReason held_by = StopReason::kNone);
   /// Forgets the command: the mode went to off.
   void release() { command_.reset(); }
+  /// What was sent to the robot just now: it is held to that. Nothing: nobody talks to it.
+  void told(const std::optional<Motion>& motion, Timestamp now);
+  /// Where the map says that the laser should see nothing, it may. Counts for a moment.
+  void expect_no_range(Timestamp now) { laser_.excuse(now); }
+  /// Whoever knows map and pose: a part of the laser never sees what the map has.
+  void set_misses_walls(bool misses_walls) { misses_walls_ = misses_walls; }
+  /// The robot's session does not know what hull and units this robot has.
+  void set_unknown_robot(bool is_unknown) { is_unknown_robot_ = is_unknown; }
   /// A person said drive (`deltamap ctl drive wander`; Safety sees the MOTORS button itself): stops whose cause is gone
   /// end.
   void let_drive_again();
@@ -90,11 +103,14 @@ class Safety {
 
   /// Ask before every pulse.
   [[nodiscard]] AllowedMotion allowed(Timestamp now) const;
+  /// What of robot and laser forbids to drive, whoever drives and whether or not anybody wants to.
+  [[nodiscard]] StopReason unfit(Timestamp now) const;
 
  private:
   struct SeenScan {
     Timestamp time;      // of the first beam: the obstacles' age
     Timestamp received;  // staleness
+    Fan fan;
     std::vector<Point2> obstacles_in_robot;
   };
   struct HeldCommand {
@@ -102,11 +118,21 @@ class Safety {
     Timestamp received;
     StopReason held_by;
   };
-  enum Latched : std::size_t { kBumper, kStalled, kControllerFault, kLowBattery, kLaserError };
+  enum Latched : std::size_t {
+    kBumper,
+    kStalled,
+    kControllerFault,
+    kLowBattery,
+    kLaserError,
+    kWheelsSpin,
+    kDisobeys,
+    kLatches
+  };
 
   [[nodiscard]] StopReason blocking_state(Timestamp now) const;
-  [[nodiscard]] StopReason silence(Timestamp now) const;
-  [[nodiscard]] bool is_battery_low(const Odometry& odometry);
+  [[nodiscard]] StopReason unfit_robot(Timestamp now) const;
+  [[nodiscard]] StopReason unfit_laser(Timestamp now) const;
+  [[nodiscard]] std::optional<Pose2> odom_at(const Scan& scan);
   [[nodiscard]] Motion motion_now() const;
   [[nodiscard]] Coasting coasting(const Motion& at_first, const Motion& then, double blind_s) const;
   [[nodiscard]] bool coasts_clear(const Motion& command, double radius_m, double blind_s) const;
@@ -118,12 +144,21 @@ class Safety {
   std::optional<SeenScan> scan_;
   std::optional<Odometry> odometry_;
   std::optional<HeldCommand> command_;
+  LaserWatch laser_;
+  LostEnds lost_ends_;
+  std::uint32_t lost_ends_epoch_ = 0;  // of the odometry in whose frame they are
+  Obedience obedience_;
+  bool is_unknown_robot_ = false;
+  bool misses_walls_ = false;
   std::optional<Timestamp> low_battery_since_;
+  std::optional<Timestamp> no_battery_since_;
+  bool has_no_battery_ = false;
   std::optional<Timestamp> implausible_at_;  // the newest scan that was flagged
   bool motors_were_on_ = false;              // in this odometry epoch
-  std::array<StopLatch, 5> latches_{StopLatch{StopReason::kBumper}, StopLatch{StopReason::kStalled},
-                                    StopLatch{StopReason::kControllerFault}, StopLatch{StopReason::kLowBattery},
-                                    StopLatch{StopReason::kLaserError}};
+  std::array<StopLatch, kLatches> latches_{StopLatch{StopReason::kBumper},          StopLatch{StopReason::kStalled},
+                                           StopLatch{StopReason::kControllerFault}, StopLatch{StopReason::kLowBattery},
+                                           StopLatch{StopReason::kLaserError},      StopLatch{StopReason::kWheelsSpin},
+                                           StopLatch{StopReason::kDisobeys}};
 };
 
 }  // namespace deltamap::navigation

@@ -29,8 +29,24 @@ std::string_view name_of(StopReason reason) {
       return "controller fault";
     case StopReason::kLowBattery:
       return "low battery";
+    case StopReason::kWheelsSpin:
+      return "wheels turn and scans do not follow";
+    case StopReason::kDisobeys:
+      return "robot does not obey";
+    case StopReason::kUnknownRobot:
+      return "unknown robot";
+    case StopReason::kCharging:
+      return "charging";
+    case StopReason::kNoBattery:
+      return "no battery voltage";
     case StopReason::kStaleLaser:
       return "stale laser";
+    case StopReason::kLaserBlind:
+      return "laser sees nothing";
+    case StopReason::kLaserFrozen:
+      return "laser repeats one scan";
+    case StopReason::kWayUncovered:
+      return "way ahead not in the laser's view";
     case StopReason::kLaserError:
       return "laser error";
     case StopReason::kImplausible:
@@ -41,6 +57,12 @@ std::string_view name_of(StopReason reason) {
       return "lost";
     case StopReason::kPoseWrong:
       return "pose wrong";
+    case StopReason::kStartUnfit:
+      return "start pose does not fit";
+    case StopReason::kPoseUnsure:
+      return "pose unsure";
+    case StopReason::kPoseUnfit:
+      return "scans do not fit the pose";
     case StopReason::kReverse:
       return "reverse refused";
     case StopReason::kObstacle:
@@ -56,6 +78,8 @@ bool waits_for_person(StopReason reason) {
     case StopReason::kControllerFault:
     case StopReason::kLowBattery:
     case StopReason::kLaserError:
+    case StopReason::kWheelsSpin:
+    case StopReason::kDisobeys:
       return true;
     default:
       return false;
@@ -65,7 +89,16 @@ bool waits_for_person(StopReason reason) {
 bool is_told(StopReason reason) {
   switch (reason) {
     case StopReason::kNoWatchdog:
+    case StopReason::kUnknownRobot:
+    case StopReason::kCharging:
+    case StopReason::kNoBattery:
+    case StopReason::kLaserBlind:
+    case StopReason::kLaserFrozen:
+    case StopReason::kWayUncovered:
     case StopReason::kImplausible:
+    case StopReason::kStartUnfit:
+    case StopReason::kPoseUnsure:
+    case StopReason::kPoseUnfit:
     case StopReason::kPoseUnknown:
     case StopReason::kLost:
     case StopReason::kPoseWrong:

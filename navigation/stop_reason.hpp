@@ -21,12 +21,23 @@ enum class StopReason : std::uint8_t {
   kStalled,          ///< a motor has stalled since a person last said drive
   kControllerFault,  ///< the controller has reported a fault since a person last said drive
   kLowBattery,       ///< the controller has called its battery low since a person last said drive
+  kWheelsSpin,       ///< the wheels turned and the scans stood, or went the other way, since a person last said drive
+  kDisobeys,         ///< the robot did not do what it was told since a person last said drive
+  kUnknownRobot,     ///< the controller names a robot whose hull and units are not known
+  kCharging,         ///< the charger is plugged in
+  kNoBattery,        ///< the controller reports no battery voltage
   kStaleLaser,       ///< no scan for three periods
+  kLaserBlind,       ///< no range has come for a second, or none from a sector that had some
+  kLaserFrozen,      ///< the laser repeats the same ranges while the wheels turn
+  kWayUncovered,     ///< the laser, as it is mounted, does not look where the robot drives
   kLaserError,       ///< the laser has called its state an error or fatal since a person last said drive
   kImplausible,      ///< the laser flags its own values as implausible
   kPoseUnknown,      ///< the localizer searches
   kLost,             ///< the localizer has lost the robot
   kPoseWrong,        ///< the localizer calls its pose wrong
+  kStartUnfit,       ///< the pose that the run was given does not fit the scans
+  kPoseUnsure,       ///< the deviation of the position exceeds a metre
+  kPoseUnfit,        ///< the scans have not fitted the pose for two seconds
   kReverse,          ///< backwards is where the laser does not look
   kObstacle          ///< what the laser sees, or could not see, is too near
 };

@@ -28,6 +28,7 @@ Odometry driving() {
   Odometry odometry;
   odometry.time = kNow;
   odometry.motors_enabled = true;
+  odometry.battery_v = 12.5;
   return odometry;
 }
 

@@ -5,7 +5,8 @@
 #include <functional>
 #include <numbers>
 
-#include "navigation/pose_stop.hpp"
+#include "core/random.hpp"
+#include "navigation/pose_watch.hpp"
 #include "navigation/safety.hpp"
 
 namespace deltamap::navigation {
@@ -20,6 +21,7 @@ class Drive {
   Drive() {
     safety.set_stopping_behaviour({.watchdog_s = 2.0});
     odometry.motors_enabled = true;
+    odometry.battery_v = 12.5;
     scan.first_bearing_rad = -std::numbers::pi / 2.0;
     scan.bearing_step_rad = std::numbers::pi / 180.0;
     scan.max_range_m = 32.0;
@@ -28,11 +30,24 @@ class Drive {
 
   AllowedMotion tick() {
     now = now + duration_from_seconds(kTickS);
+    if (drives_on) odometry.odom_from_robot.x += kTickS * 0.3;
+    if (flickers) flicker();
     odometry.time = scan.time = scan.received = now;
     if (robot_speaks) safety.observe(odometry);
     if (laser_speaks) safety.observe(scan);
-    if (pilot_speaks) safety.command({now, speed_m_per_s, 0.1}, now, held_by);
-    return safety.allowed(now);
+    if (pilot_speaks)
+      safety.command({now, speed_m_per_s, 0.1}, now, estimate ? pose_watch.observe(pose()) : StopReason::kNone);
+    const AllowedMotion motion = safety.allowed(now);
+    if (is_told) safety.told(Motion{motion.speed_m_per_s, motion.turn_rate_rad_per_s}, now);
+    return motion;
+  }
+  /// As a laser that works: no two scans are the same.
+  void flicker() {
+    for (Beam& beam : scan.beams) beam.range_m = 6.0F + static_cast<float>(random.uniform(-0.01, 0.01));
+  }
+  PoseNow pose() {
+    estimate->time = now;
+    return {*estimate, fit, start_fits};
   }
   AllowedMotion run_for(double s) {
     AllowedMotion motion;
@@ -46,13 +61,20 @@ class Drive {
   }
 
   Safety safety{{}};
+  Random random{1};
   Odometry odometry;
   Scan scan;
   bool robot_speaks = true;
   bool laser_speaks = true;
   bool pilot_speaks = true;
   double speed_m_per_s = 0.3;
-  StopReason held_by = StopReason::kNone;
+  bool is_told = false;  ///< what safety allows, so that the robot is held to it
+  PoseWatch pose_watch;
+  std::optional<Estimate> estimate;  ///< nothing: the pilot asks for none
+  std::optional<double> fit = 0.9;
+  bool start_fits = true;
+  bool drives_on = false;  ///< by its wheels
+  bool flickers = false;   ///< its scans have noise
   Timestamp now = kStart;
 };
 
@@ -68,12 +90,23 @@ std::vector<Row> table() {
   using Do = std::function<void(Drive&)>;
   const auto pose = [](LocalizerState state, PoseVerdict verdict) -> Do {
     return [=](Drive& d) {
-      Estimate estimate;
-      estimate.state = state;
-      estimate.belief.verdict = verdict;
-      d.held_by = pose_stop(estimate);
+      d.estimate = Estimate{};
+      d.estimate->state = state;
+      d.estimate->belief.verdict = verdict;
     };
   };
+  const auto on_pose = [=](const Do& change) -> Do {
+    return [=](Drive& d) {
+      pose(LocalizerState::kTracking, PoseVerdict::kUndecided)(d);
+      change(d);
+    };
+  };
+  const auto all_beams = [](BeamKind kind) -> Do {
+    return [=](Drive& d) {
+      for (Beam& beam : d.scan.beams) beam.kind = kind;
+    };
+  };
+  const Do looks_ahead = [](Drive& d) { d.scan.robot_from_laser = {}; };
   const Do tracked = pose(LocalizerState::kTracking, PoseVerdict::kUndecided);
   const auto right = PoseVerdict::kRight;
   const auto infinite = std::numeric_limits<double>::infinity();
@@ -113,6 +146,29 @@ std::vector<Row> table() {
       {StopReason::kPoseUnknown, pose(LocalizerState::kGlobal, right), tracked, false, false},
       {StopReason::kLost, pose(LocalizerState::kLost, right), tracked, false, false},
       {StopReason::kPoseWrong, pose(LocalizerState::kTracking, PoseVerdict::kWrong), tracked, false, false},
+      {StopReason::kStartUnfit, on_pose([](Drive& d) { d.start_fits = false; }), [](Drive& d) { d.start_fits = true; },
+       false, false},
+      {StopReason::kPoseUnsure, on_pose([](Drive& d) { d.estimate->covariance(1, 1) = 1.1 * 1.1; }), tracked, false,
+       false},
+      {StopReason::kPoseUnfit, on_pose([](Drive& d) { d.fit = 0.1; }), [](Drive& d) { d.fit = 0.9; }, false, false},
+      {StopReason::kUnknownRobot, [](Drive& d) { d.safety.set_unknown_robot(true); },
+       [](Drive& d) { d.safety.set_unknown_robot(false); }, false, false},
+      {StopReason::kCharging, [](Drive& d) { d.odometry.charging = true; },
+       [](Drive& d) { d.odometry.charging = false; }, false, false},
+      {StopReason::kNoBattery, [](Drive& d) { d.odometry.battery_v = 0.0; },
+       [](Drive& d) { d.odometry.battery_v = 12.5; }, false, false},
+      {StopReason::kLaserBlind, all_beams(BeamKind::kBeyondMaximum), all_beams(BeamKind::kRange), false, false},
+      {StopReason::kLaserBlind, all_beams(BeamKind::kNotValid), all_beams(BeamKind::kRange), false, false},
+      {StopReason::kLaserFrozen, [](Drive& d) { d.drives_on = true; },
+       [](Drive& d) { d.drives_on = false, d.flicker(); }, false, false},
+      {StopReason::kWayUncovered, [](Drive& d) { d.scan.robot_from_laser.theta = std::numbers::pi; }, looks_ahead,
+       false, false},
+      {StopReason::kWayUncovered, [](Drive& d) { d.scan.robot_from_laser.theta = -std::numbers::pi / 2.0; },
+       looks_ahead, false, false},
+      {StopReason::kWheelsSpin, [](Drive& d) { d.drives_on = true, d.flickers = true; },
+       [](Drive& d) { d.drives_on = false; }, true, false},
+      {StopReason::kDisobeys, [](Drive& d) { d.is_told = true, d.odometry.speed_m_per_s = 0.9; },
+       [](Drive& d) { d.odometry.speed_m_per_s = 0.0; }, true, true},
       {StopReason::kReverse, [](Drive& d) { d.speed_m_per_s = -0.1; }, [](Drive& d) { d.speed_m_per_s = 0.3; }, false,
        false},
       {StopReason::kObstacle, [](Drive& d) { d.scan.beams[90].range_m = 0.3F; },

@@ -59,6 +59,7 @@ Course driven(const OccupancyGrid& grid, Pose2 pose, double for_s, std::uint64_t
   Timestamp now = timestamp_from_ns(5'000'000'000);
   Odometry odometry;
   odometry.motors_enabled = true;
+  odometry.battery_v = 12.5;
   for (double t = 0.0; t < for_s; t += kScanPeriodS) {
     TrackedScan tracked;
     tracked.scan = seen(grid, pose, now);
@@ -68,6 +69,7 @@ Course driven(const OccupancyGrid& grid, Pose2 pose, double for_s, std::uint64_t
     }
     const Timestamp decided = now + duration_from_seconds(kScanAgeS);
     odometry.time = decided;
+    odometry.odom_from_robot = pose;
     safety.observe(tracked.scan);
     safety.observe(odometry);
     const DriveCommand command = wander.step(tracked);

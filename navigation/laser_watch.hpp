@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the laser can be believed: what it has ceased to see, whether it repeats itself, and whether its scans follow
+// the wheels. Looks at scans and odometry alone, so that no pose and no map is needed; a map may only excuse a laser
+// that sees nothing.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "navigation/wheel_path.hpp"
+
+namespace deltamap::navigation {
+
+/// So few ranges that there are none.
+[[nodiscard]] bool brings_nothing(const Scan& scan);
+
+/// A sector in which ranges broke off all at once is taken for covered until ranges come from it again.
+class CoveredSector {
+ public:
+  void observe(const Scan& scan);
+  [[nodiscard]] bool is_there() const { return since_.has_value(); }
+  [[nodiscard]] std::optional<Timestamp> since() const { return since_; }
+  /// The scan with these beams as not valid: what they do not see is not free.
+  [[nodiscard]] Scan without(Scan scan) const;
+
+ private:
+  std::vector<BeamKind> last_;  // of each beam
+  Timestamp last_at_{};
+  std::vector<bool> covered_;  // a beam each
+  std::optional<Timestamp> since_;
+};
+
+class LaserWatch {
+ public:
+  void observe(const Odometry& odometry) { wheels_.observe(odometry); }
+  void observe(const Scan& scan);
+  /// Whoever knows map and pose: from here nothing lies within the laser's reach. Counts for a moment.
+  void excuse(Timestamp now) { excused_at_ = now; }
+  [[nodiscard]] const WheelPath& wheels() const { return wheels_; }
+  /// A person said drive.
+  void forget_contradiction() { contradictions_ = 0; }
+
+  /// No range for a second, or none from a sector that had some.
+  [[nodiscard]] bool sees_nothing() const;
+  /// The same ranges again and again, to the last digit, while the wheels turn.
+  [[nodiscard]] bool repeats_itself() const { return repeats_; }
+  /// The wheels say that the robot moves, and what it sees stands still or comes the other way.
+  [[nodiscard]] bool contradicts_wheels() const;
+  /// The scan, and what it leaves open: beams of a covered sector as not valid.
+  [[nodiscard]] Scan believed(const Scan& scan) const { return sector_.without(scan); }
+
+ private:
+  struct Seen {
+    Scan scan;
+    Pose2 odom_from_robot;
+    std::uint32_t epoch;
+  };
+  void watch_emptiness(const Scan& scan);
+  void watch_repetition(const Scan& scan, const std::optional<Pose2>& odom_from_robot);
+  void watch_motion(const Scan& scan, const std::optional<Pose2>& odom_from_robot);
+
+  WheelPath wheels_;
+  CoveredSector sector_;
+  Timestamp newest_{};
+  std::optional<Timestamp> empty_since_;
+  std::optional<Timestamp> excused_at_;
+  std::optional<Seen> first_alike_;  // of the scans that are the same
+  bool repeats_ = false;
+  std::optional<Seen> reference_;  // what the next scan a way further on is held against
+  int contradictions_ = 0;         // unbroken
+};
+
+}  // namespace deltamap::navigation
