@@ -19,6 +19,7 @@
 #include "drivers/pioneer/command.hpp"
 #include "drivers/pioneer/packet.hpp"
 #include "drivers/port/byte_port.hpp"
+#include "drivers/port/byte_record.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "drivers/port/serial_port.hpp"
 #include "simulation/simulation.hpp"
