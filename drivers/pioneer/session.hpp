@@ -112,6 +112,7 @@ class PioneerSession {
   enum class SwitchStep { kAnnounced, kSpeedSet, kAwaitingPacket };
 
   // What comes in (both modes).
+  [[nodiscard]] std::vector<Packet> at_the_controllers_pace(std::vector<Packet> packets) const;
   void take_packet(const Packet& packet, Timestamp now, PioneerOutput& out);
   void take_sip(const Packet& packet, Timestamp now, PioneerOutput& out);
   void watch_motors(Timestamp sip_began, Timestamp now, PioneerOutput& out);

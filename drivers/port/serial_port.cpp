@@ -28,6 +28,8 @@ using boost::system::error_code;
 using Steady = std::chrono::steady_clock;
 
 constexpr std::size_t kReadBytes = 65536;  // more than a terminal keeps for a program that stands still
+constexpr std::size_t kMostInTime = 1024;  // a frame has at most 812 bytes: more than that at once has waited
+constexpr auto kSettle = std::chrono::milliseconds(2);
 constexpr auto kDrainPoll = std::chrono::milliseconds(2);
 constexpr auto kDrainMargin = std::chrono::milliseconds(5);   // for what an adapter holds behind the kernel's queue
 constexpr auto kDrainLimit = std::chrono::milliseconds(500);  // then the baud changes, drained or not
@@ -44,7 +46,7 @@ struct Task {
 class SerialLine : public std::enable_shared_from_this<SerialLine> {
  public:
   SerialLine(asio::io_context& loop, int terminal, unsigned baud)
-      : terminal_{terminal}, baud_{baud}, descriptor_{loop, terminal}, drain_timer_{loop} {}
+      : terminal_{terminal}, baud_{baud}, descriptor_{loop, terminal}, drain_timer_{loop}, settle_timer_{loop} {}
   ~SerialLine() { close(); }
 
   void start(PortHandlers handlers) {
@@ -58,8 +60,9 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     if (tasks_.size() == 1) work();
   }
 
-  void discard_input() const {
+  void discard_input() {
     if (!closed_) discard_unread_bytes(terminal_);
+    held_ = 0;
   }
 
   void close() {
@@ -67,6 +70,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     closed_ = true;
     handlers_ = {};
     drain_timer_.cancel();
+    settle_timer_.cancel();
     close_terminal(descriptor_.release());
   }
 
@@ -92,32 +96,45 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
                            });
   }
 
-  /// Reads until nothing waits any more, as one chunk: after a standstill the kernel hands over what has come meanwhile
-  /// in pieces of 4 KiB or less, and each byte is dated by those that followed it (received_bytes.hpp).
+  /// What has waited while this program, the kernel or an adapter stood still comes in pieces, one right after another,
+  /// but is one chunk: each byte is dated by those that followed it (received_bytes.hpp).
   void read() {
-    std::size_t count = 0;
-    Timestamp stamp;
-    std::string gone;
-    while (count < input_.size() && gone.empty()) {
-      const ssize_t fresh = ::read(terminal_, input_.data() + count, input_.size() - count);
-      const int error = errno;
-      if (fresh > 0) {
-        stamp = port_clock_now();
-        count += static_cast<std::size_t>(fresh);
-      } else if (fresh == 0) {
-        gone = "the device hung up";
-      } else if (error == EAGAIN) {
-        break;
-      } else if (error != EINTR) {
-        gone = "the device is gone (" + std::generic_category().message(error) + ")";
-      }
-    }
+    const std::size_t held_before = held_;
+    const std::string gone = read_all();
+    if (gone.empty() && held_ - held_before > kMostInTime && held_ < input_.size()) return read_again_soon();
+    const std::size_t count = std::exchange(held_, 0);
     if (count > 0 && handlers_.on_bytes) {
       const auto on_bytes = handlers_.on_bytes;  // the handler may close this port
-      on_bytes({input_.data(), count}, stamp);
+      on_bytes({input_.data(), count}, read_at_);
     }
     if (!gone.empty()) return fail(gone);
     if (!closed_ && !failed_) wait_for_input();
+  }
+
+  /// Until nothing waits any more; answers why nothing more will come.
+  std::string read_all() {
+    while (held_ < input_.size()) {
+      const ssize_t count = ::read(terminal_, input_.data() + held_, input_.size() - held_);
+      const int error = errno;
+      if (count > 0) {
+        read_at_ = port_clock_now();
+        held_ += static_cast<std::size_t>(count);
+      } else if (count == 0) {
+        return "the device hung up";
+      } else if (error == EAGAIN) {
+        break;
+      } else if (error != EINTR) {
+        return "the device is gone (" + std::generic_category().message(error) + ")";
+      }
+    }
+    return "";
+  }
+
+  void read_again_soon() {
+    settle_timer_.expires_after(kSettle);
+    settle_timer_.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error && !self->closed_ && !self->failed_) self->read();
+    });
   }
 
   void work() {
@@ -177,8 +194,11 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   unsigned baud_;
   asio::posix::stream_descriptor descriptor_;
   asio::steady_timer drain_timer_;
+  asio::steady_timer settle_timer_;
   PortHandlers handlers_;
   std::array<std::uint8_t, kReadBytes> input_{};
+  std::size_t held_ = 0;  // bytes of input_ that are not handed over yet
+  Timestamp read_at_;     // the newest of them
   std::deque<Task> tasks_;
   Steady::time_point line_free_at_{};
   bool closed_ = false;

@@ -46,7 +46,7 @@ void expect_rising(const std::vector<Odometry>& odometry) {
   for (std::size_t i = 1; i < odometry.size(); ++i) EXPECT_GT(odometry[i].time, odometry[i - 1].time) << i;
 }
 
-TEST(OdometryTimes, LieBackFromTheReadThatEndedAStandstillAtTheLinesRate) {
+TEST(OdometryTimes, LieBackFromTheReadThatEndedAStandstillAtTheControllersPace) {
   for (const unsigned baud : kBauds) {
     constexpr int kSips = 6;
     LateReader line{baud};
@@ -55,10 +55,20 @@ TEST(OdometryTimes, LieBackFromTheReadThatEndedAStandstillAtTheLinesRate) {
     const Timestamp read_at = kFirstSent + kSips * kCycle;
     robot.hear(line.read(read_at));
     ASSERT_EQ(robot.odometry.size(), 6u);
+    const Timestamp newest = read_at - line_time(sip_frame(0).size() - 1, baud);
     for (int i = 0; i < kSips; ++i) {
-      const auto bytes_since_first = (kSips - static_cast<std::size_t>(i)) * sip_frame(0).size() - 1;
-      EXPECT_EQ(robot.odometry[static_cast<std::size_t>(i)].time, read_at - line_time(bytes_since_first, baud)) << i;
+      EXPECT_EQ(robot.odometry[static_cast<std::size_t>(i)].time, newest - (kSips - 1 - i) * kCycle) << i;
     }
+  }
+}
+
+TEST(OdometryTimes, OfTwoPacketsThatWereReadInTimeLieAsTheyCame) {
+  constexpr unsigned kBaud = 38400;
+  Listener robot{kBaud};
+  for (int i = 0; i < 20; ++i) {
+    robot.hear(sip_frame(i), kFirstSent + i * milliseconds{13});  // a recording with a packet for each scan
+    EXPECT_EQ(robot.odometry.back().time,
+              kFirstSent + i * milliseconds{13} - line_time(sip_frame(i).size() - 1, kBaud));
   }
 }
 
@@ -78,6 +88,27 @@ TEST(OdometryTimes, NeverStepBackHoweverLateAndInWhateverPiecesTheReaderReads) {
     ASSERT_GT(robot.odometry.size(), sent.size() / 2)
         << round << ": a packet that a long standstill breaks is given up";
     expect_rising(robot.odometry);
+  }
+}
+
+TEST(OdometryTimes, AreNoFasterThanTheRobotHoweverLateTheReaderIs) {
+  Random random{8};
+  for (int round = 0; round < 100; ++round) {
+    const unsigned baud = kBauds[1 + round % 2];
+    LateReader line{baud};
+    std::vector<Timestamp> sent;
+    for (int i = 0; i < 60; ++i) sent.push_back(line.send(sip_frame(i), kFirstSent + i * kCycle));
+    Listener robot{baud};
+    for (Timestamp now = kFirstSent; now < sent.back() + std::chrono::seconds{2};) {
+      now += milliseconds{100 + random.index_below(900)};
+      robot.hear(line.read(now));
+    }
+    for (std::size_t i = 3; i < robot.odometry.size(); ++i) {
+      // 0.3 m/s in truth; a fifth of a second, for a reader that was late for one packet and in time for the next
+      const double way_m = robot.odometry[i].odom_from_robot.x - robot.odometry[i - 3].odom_from_robot.x;
+      const double time_s = seconds(robot.odometry[i].time - robot.odometry[i - 3].time);
+      ASSERT_LT(way_m, 0.3 * (time_s + 0.2) + 1e-9) << round << ", " << i;
+    }
   }
 }
 

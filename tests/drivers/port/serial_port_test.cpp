@@ -108,6 +108,27 @@ TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
   EXPECT_EQ(chunks, std::vector<std::size_t>{kScans * 732});
 }
 
+TEST(SerialPort, HandsOverAsOneChunkWhatComesInPiecesBehindAStandstill) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused] = open_serial_port(loop, device.path(), 500000);
+  ASSERT_TRUE(port) << refused;
+  std::vector<std::size_t> chunks;
+  port->start({[&](std::span<const std::uint8_t> bytes, Timestamp) { chunks.push_back(bytes.size()); }, {}});
+  for (int piece = 0; piece < 3; ++piece) {
+    device.send(Bytes(2048, 0x02));
+    loop.restart();
+    EXPECT_EQ(loop.run_one(), 1u);
+  }
+  EXPECT_TRUE(chunks.empty()) << "there may be more";
+  run_until(loop, [&] { return !chunks.empty(); });
+  EXPECT_EQ(chunks, std::vector<std::size_t>{3 * 2048});
+  device.send({1, 2, 3});  // in time: at once
+  loop.restart();
+  EXPECT_EQ(loop.run_one(), 1u);
+  EXPECT_EQ(chunks.size(), 2u);
+}
+
 TEST(SerialPort, ChangesTheBaudAfterTheBytesBeforeAndBeforeTheBytesAfter) {
   PseudoTerminal device;
   boost::asio::io_context loop;
