@@ -6,6 +6,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <string>
 #include <utility>
 
@@ -35,6 +36,7 @@ class StreamSocket {
     std::size_t sent = 0;
     while (sent < bytes.size()) {
       const ssize_t n = ::send(descriptor_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (n < 0 && errno == EINTR) continue;
       if (n <= 0) return false;
       sent += static_cast<std::size_t>(n);
     }
@@ -43,7 +45,10 @@ class StreamSocket {
   /// What has come, at the end of `received`; false where the other side has hung up.
   bool receive(std::string& received) const {
     char bytes[4096];
-    const ssize_t n = ::recv(descriptor_, bytes, sizeof bytes, 0);
+    ssize_t n = 0;
+    do {
+      n = ::recv(descriptor_, bytes, sizeof bytes, 0);
+    } while (n < 0 && errno == EINTR);  // this process was stopped and went on
     if (n > 0) received.append(bytes, static_cast<std::size_t>(n));
     return n > 0;
   }

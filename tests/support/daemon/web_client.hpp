@@ -120,6 +120,7 @@ class WebClient {
     for (;;) {
       const ssize_t n = ::recv(socket_.descriptor(), bytes, sizeof bytes, 0);
       if (n == 0) return true;
+      if (n < 0 && errno == EINTR) continue;
       if (n < 0) return errno == ECONNRESET || errno == EPIPE;
     }
   }
