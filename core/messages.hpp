@@ -114,6 +114,7 @@ struct Estimate {
   /// Of that, what all scans are off by alike, for the map's surfaces are: it is drawn and read with the same error.
   PoseCovariance bias_covariance = PoseCovariance::Zero();
   LocalizerState state = LocalizerState::kGlobal;
+  bool checks_pose = false;           ///< kGlobal, and yet a pose is followed: it is held against a few scans first
   std::uint32_t relocalizations = 0;  ///< grows when a person says where the robot is: it was believed elsewhere
   /// Effective sample size before resampling, Eq. 5; in [1, particles]. While surfaces lead no particle is weighed, and
   /// it is `particles`.
@@ -186,8 +187,14 @@ struct WithdrawOrder {
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose at that scan
 };
 
+/// The pose has held for long and far enough: what was written before is provisional no longer. A set says the same of
+/// what was written before it; this comes where no other set does.
+struct Settlement {
+  Timestamp before;
+};
+
 /// What Δ-awareness asks of the map, at most one a scan.
-using MapRequest = std::variant<ScanSet, WithdrawOrder>;
+using MapRequest = std::variant<ScanSet, WithdrawOrder, Settlement>;
 
 /// M_k: the map after a Δ.
 struct MapRevision {

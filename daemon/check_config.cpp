@@ -109,11 +109,11 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
                        std::to_string(refusals) + " refusals";
     if (const std::string others = words_of_others(copy); !others.empty())
       return {Level::kWarning, "store", store + ": " + others};
-    if (copy.dropped() == 0) return {Level::kOk, "store", text};
-    return {Level::kWarning, "store", text + ", " + std::to_string(copy.dropped()) + " damaged revisions are dropped"};
+    return {Level::kOk, "store", text};
   } catch (const mapping::store::StoreError& error) {
     const bool is_unsound = error.kind == mapping::store::StoreError::Kind::kUnsound;
-    const char* what_then = is_unsound ? ": a start would set it aside" : ": a start would go on without it";
+    const char* what_then = is_unsound ? ": a start would set it aside and go on with what can be recovered of it"
+                                       : ": a start would go on without it";
     return {Level::kWarning, "store", of_the_store(error.what()) + what_then};
   } catch (const std::exception& error) {
     return {Level::kWarning, "store", store + ": not opened: " + of_the_store(error.what())};

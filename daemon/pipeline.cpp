@@ -154,6 +154,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                         },
                     .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}},
       delta{settings,
+            !options.start.provisional.empty(),
             {.work = tracked_scans,
              .sets = sets,
              .transients = transients,

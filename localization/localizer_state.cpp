@@ -335,6 +335,7 @@ Estimate Localizer::State::estimate(Timestamp time, const sensor::RefinedPose& b
           .covariance = believed.covariance + more.noise + more.bias,
           .bias_covariance = more.bias,
           .state = monitor.state(),
+          .checks_pose = check.under_way(),
           .relocalizations = static_cast<std::uint32_t>(counts.relocalizations),
           .n_eff = n_eff,
           .particles = static_cast<std::uint32_t>(

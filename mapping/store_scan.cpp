@@ -12,11 +12,11 @@ constexpr int kLateAtOnce = 3;               // keyframes a scan, so that no sca
 }  // namespace
 
 struct StoreScan::State {
-  State(const StoreScanParams& params, std::uint64_t seed)
+  State(const StoreScanParams& params, std::uint64_t seed, bool inherits)
       : method{params.method},
         paper{params.delta_phase, seed},
         evidence{params.evidence},
-        gate{params.gate},
+        gate{params.gate, inherits},
         waiting{params.evidence.keyframes, kMostWaiting} {}
 
   /// Where the gate is shut a keyframe waits, unless the pose may be wrong by then; once it is open again, those that
@@ -50,8 +50,8 @@ struct StoreScan::State {
   Awareness awareness;
 };
 
-StoreScan::StoreScan(const StoreScanParams& params, std::uint64_t seed)
-    : state_{std::make_unique<State>(params, seed)} {}
+StoreScan::StoreScan(const StoreScanParams& params, std::uint64_t seed, bool inherits)
+    : state_{std::make_unique<State>(params, seed, inherits)} {}
 StoreScan::~StoreScan() = default;
 StoreScan::StoreScan(StoreScan&&) noexcept = default;
 StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;

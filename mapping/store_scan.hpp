@@ -45,13 +45,14 @@ struct StoredScans {
 
 class StoreScan {
  public:
-  StoreScan(const StoreScanParams& params, std::uint64_t seed);
+  /// `inherits`: the run before has left revisions that are still provisional.
+  StoreScan(const StoreScanParams& params, std::uint64_t seed, bool inherits = false);
   ~StoreScan();
   StoreScan(StoreScan&&) noexcept;
   StoreScan& operator=(StoreScan&&) noexcept;
 
-  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update(), or, where the scan has
-  /// proven the pose wrong, an order to take back what was written by it.
+  /// Every tracked scan in order. An answer is a finished S(k), to be handed to map_update(); or, where the scan has
+  /// proven the pose wrong, an order to take back what was written by it; or word that nothing is provisional any more.
   [[nodiscard]] std::optional<MapRequest> observe(const TrackedScan& tracked);
 
   [[nodiscard]] const Awareness& awareness() const;

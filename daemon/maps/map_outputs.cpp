@@ -67,6 +67,11 @@ void MapOutputs::save(const MapStep::Result& result, Timestamp now) {
   if (newest_) newest_->write(result, now);
 }
 
+void MapOutputs::settle(Timestamp now) {
+  if (history_) history_->settle(now);
+  if (store_) store_->settle(now);
+}
+
 const RevisionKeeper* MapOutputs::memory() const { return store_ ? &*store_ : history_ ? &*history_ : nullptr; }
 
 mapping::store::MapStore::Undoing MapOutputs::cells_of(const MapOrder& order, const OccupancyGrid& newest_map) const {

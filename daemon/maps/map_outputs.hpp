@@ -30,6 +30,8 @@ class MapOutputs {
   MapOutputs(Options options, OutputBoard& board, const RetryingOutput::Warn& warn, Timestamp now);
 
   void save(const MapStep::Result& result, Timestamp now);
+  /// Nothing is provisional any more.
+  void settle(Timestamp now);
   /// As RevisionKeeper::cells_of(), from the store of the settings, else from the history of --out. Throws
   /// std::runtime_error where there is neither.
   [[nodiscard]] mapping::store::MapStore::Undoing cells_of(const MapOrder& order,

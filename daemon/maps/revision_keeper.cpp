@@ -12,20 +12,35 @@ namespace {
 constexpr Duration kLookForOld =
     std::chrono::minutes(1);  // a look reads an index; what it finds is 64 revisions at most
 
-mapping::store::RevisionNote note_of(const MapStep::Result& result, std::string_view method) {
+/// As the store counts; what is older than the store is not in it.
+std::vector<std::uint32_t> numbers_in_store(const std::vector<std::uint32_t>& numbers, std::uint32_t numbers_before) {
+  std::vector<std::uint32_t> in_store;
+  for (const std::uint32_t number : numbers) {
+    const std::int64_t stored = std::int64_t{number} - static_cast<std::int32_t>(numbers_before);
+    if (stored > 0) in_store.push_back(static_cast<std::uint32_t>(stored));
+  }
+  return in_store;
+}
+
+mapping::store::RevisionNote note_of(const MapStep::Result& result, std::string_view method,
+                                     std::uint32_t numbers_before) {
   const ChangeNote& note = result.note;
-  const std::string cause = result.revision && note.reason.empty() ? std::string(method) : note.reason;
-  return {note.phase, note.acceptance, cause, note.by_operator ? std::nullopt : std::optional{note.covariance}};
+  return {.phase = note.phase,
+          .acceptance = note.acceptance,
+          .cause = result.revision && note.reason.empty() ? std::string(method) : note.reason,
+          .covariance = note.by_operator ? std::nullopt : std::optional{note.covariance},
+          .provisional = numbers_in_store(result.provisional, numbers_before)};
 }
 
 }  // namespace
 
 void keep(mapping::store::MapStore& store, const MapStep::Result& result, std::string_view method,
           std::uint32_t numbers_before) {
-  if (!result.revision) return store.append_refusal(result.note.time, note_of(result, method));
+  const mapping::store::RevisionNote note = note_of(result, method, numbers_before);
+  if (!result.revision) return store.append_refusal(result.note.time, note);
   MapRevision revision = *result.revision;
   revision.number -= numbers_before;
-  store.append(revision, note_of(result, method));
+  store.append(revision, note);
 }
 
 RevisionKeeper::RevisionKeeper(StoreToKeep store, std::string_view method, RetryingOutput output, Timestamp now)
@@ -34,7 +49,13 @@ RevisionKeeper::RevisionKeeper(StoreToKeep store, std::string_view method, Retry
   if (!to_.why_not.empty()) output_.fail(now, to_.why_not);
 }
 
+void RevisionKeeper::settle(Timestamp now) {
+  missed_settlement_ = true;
+  store_waiting(now);
+}
+
 void RevisionKeeper::take(const MapStep::Result& result, Timestamp now) {
+  missed_settlement_ = false;  // what comes after it tells more
   const bool all_stored = to_.store && !missed_revision_ && !missed_refusal_;
   const bool goes_on = all_stored && (!result.revision || follows(*result.revision));
   const auto append = [&] {
@@ -112,7 +133,7 @@ void RevisionKeeper::thin_out(Timestamp now) {
 
 void RevisionKeeper::store_waiting(Timestamp now) {
   const bool is_locked = to_.lock || to_.to_lock.empty();
-  if (to_.store && is_locked && !missed_revision_ && !missed_refusal_) return;
+  if (to_.store && is_locked && !missed_revision_ && !missed_refusal_ && !missed_settlement_) return;
   (void)output_.attempt(now, [this] { store_missed(); });
 }
 
@@ -129,8 +150,12 @@ void RevisionKeeper::store_missed() {
     missed_revision_.reset();
   }
   if (missed_refusal_) {
-    keep(*to_.store, *missed_refusal_, method_);
+    keep(*to_.store, *missed_refusal_, method_, to_.numbers_before);
     missed_refusal_.reset();
+  }
+  if (missed_settlement_) {
+    to_.store->set_provisional({});
+    missed_settlement_ = false;
   }
 }
 
@@ -143,7 +168,7 @@ void RevisionKeeper::store_whole(const Missed& missed) {
   const std::uint32_t first = std::max(missed.first - to_.numbers_before, store.newest() + 1);
   const std::uint32_t numbers_before = missed.first - first;
   const std::uint32_t number = newest.number - numbers_before;
-  mapping::store::RevisionNote note = note_of(missed.newest, method_);
+  mapping::store::RevisionNote note = note_of(missed.newest, method_, numbers_before);
   if (first < number) note.cause += " (" + std::to_string(first) + " to " + std::to_string(number) + " in one)";
   store.append_whole(number, newest.time, *newest.map, note);
   to_.numbers_before = numbers_before;

@@ -40,6 +40,8 @@ class RevisionKeeper {
   RevisionKeeper(StoreToKeep store, std::string_view method, RetryingOutput output, Timestamp now);
 
   void take(const MapStep::Result& result, Timestamp now);
+  /// Nothing is provisional any more.
+  void settle(Timestamp now);
   /// What an order would set in the newest map of the run; `kept` as MapStore has it, 0 for a rollback. Throws
   /// std::runtime_error with one line: the store is behind, it has no such revision, or there is nothing to do.
   [[nodiscard]] mapping::store::MapStore::Undoing cells_of(const MapOrder& order,
@@ -75,6 +77,7 @@ class RevisionKeeper {
   RetryingOutput output_;
   std::optional<Missed> missed_revision_;
   std::optional<MapStep::Result> missed_refusal_;  // the newest
+  bool missed_settlement_ = false;                 // since what was missed
   std::optional<Timestamp> looked_for_old_;        // when nothing was found that could go
 };
 

@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/maps/store_opening.hpp"
 
+#include <chrono>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "core/files/replace_file.hpp"
 #include "daemon/outputs/output_place.hpp"
 #include "daemon/settings/start_error.hpp"
+#include "daemon/system/service.hpp"
 #include "mapping/store/database_log.hpp"
-#include "mapping/store/map_salvage.hpp"
 #include "mapping/store/store_error.hpp"
+#include "mapping/store/store_recovery.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
 namespace fs = std::filesystem;
 using mapping::store::MapStore;
-using mapping::store::SalvagedMap;
+using mapping::store::Recovery;
 using mapping::store::StoreError;
 
-/// The database with its log, under the first free name NAME.set-aside-1, -2 …; nothing where it cannot be renamed.
+constexpr std::chrono::minutes kLongestOpening{20};  // a start that is ended in the midst would begin anew for ever
+
+/// The database with its log, under the first free name NAME.set-aside-1, -2 …; nothing where it cannot be renamed. The
+/// log goes first: a new database must never find it.
 std::optional<fs::path> set_aside(const fs::path& file) {
   std::error_code error;
   fs::path aside;
@@ -26,61 +33,124 @@ std::optional<fs::path> set_aside(const fs::path& file) {
   do {
     aside = file.string() + ".set-aside-" + std::to_string(number++);
   } while (fs::exists(fs::symlink_status(aside, error)));
-  fs::rename(file, aside, error);
-  if (error) return std::nullopt;
   const auto [log, index] = mapping::store::log_of(file);
   const auto [log_aside, index_aside] = mapping::store::log_of(aside);
   fs::rename(log, log_aside, error);
   fs::rename(index, index_aside, error);
+  fs::rename(file, aside, error);
+  if (error) return std::nullopt;
   return aside;
 }
 
-StartMap start_on(const OccupancyGrid& first, const std::optional<SalvagedMap>& saved) {
-  if (!saved) return {std::make_shared<const OccupancyGrid>(first), 0};
-  return {std::make_shared<const OccupancyGrid>(saved->grid), saved->number};
+/// Complete, and not yet in its place.
+fs::path recovered_name(const fs::path& file) { return file.string() + ".recovered"; }
+
+void put_in_place(const fs::path& file) { move_into_place(recovered_name(file), file); }
+
+/// A start that was killed in the midst had made a whole store of a damaged one.
+void finish_recovery(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(recovered_name(file), ignored)) return;
+  if (fs::exists(file, ignored)) (void)set_aside(file);
+  put_in_place(file);
 }
 
-/// Opens the store, and brings it to where the old one ended.
-MapStore brought_forward(const fs::path& file, const OccupancyGrid& first, const std::optional<SalvagedMap>& saved) {
-  MapStore store{file, first};
-  if (saved && store.newest() < saved->number) {
-    store.append_whole(saved->number, saved->time, saved->grid, {.cause = "saved from a store that was set aside"});
+struct Recovered {
+  fs::path aside;
+  Recovery recovery;
+};
+
+/// Makes a whole store of what can be had of this one, beside it. Throws std::runtime_error where that cannot be
+/// written.
+Recovery made_whole(const fs::path& file, const OccupancyGrid& first) {
+  const fs::path draft = file.string() + ".recovering";
+  const auto [log, index] = mapping::store::log_of(draft);
+  const auto remove_draft = [&, log = log, index = index] {
+    std::error_code ignored;
+    for (const fs::path& part : {draft, log, index}) fs::remove(part, ignored);
+  };
+  remove_draft();
+  try {
+    Recovery recovery = mapping::store::recover(file, first, draft);
+    if (fs::exists(log)) throw std::runtime_error(draft.string() + ": its log cannot be written into it");
+    move_into_place(draft, recovered_name(file));
+    return recovery;
+  } catch (...) {
+    remove_draft();
+    throw;
   }
-  return store;
 }
 
-void take(OpenedStore& opened, MapStore store, const OccupancyGrid& first) {
-  if (store.dropped() > 0) {
-    opened.warnings.push_back("map store: damaged revisions dropped=" + std::to_string(store.dropped()));
+/// The store in its place, sound; a line is added to `warnings` where that took a recovery. Throws StoreError.
+MapStore sound_store(const fs::path& file, const OccupancyGrid& first, std::vector<std::string>& warnings) {
+  std::string reason;
+  try {
+    return MapStore{file, first};
+  } catch (const StoreError& error) {
+    if (error.kind == StoreError::Kind::kOther) throw;
+    reason = error.what();
   }
-  const std::uint32_t newest = store.newest();
+  try {
+    const Recovery recovery = made_whole(file, first);
+    const auto aside = set_aside(file);
+    if (!aside) throw std::runtime_error(file.string() + ": cannot be renamed");
+    put_in_place(file);
+    warnings.push_back("map store set aside as " + aside->string() + ": " + reason + "; " + recovery.words());
+    return MapStore{file, first};
+  } catch (const std::runtime_error& error) {
+    throw StoreError(reason + "; no other store can be written: " + error.what(), StoreError::Kind::kOther);
+  }
+}
+
+StartMap start_on(const MapStore& store) {
+  StartMap start{.map = std::make_shared<const OccupancyGrid>(store.grid(store.newest())), .revision = store.newest()};
+  for (const std::uint32_t number : store.provisional()) start.provisional.push_back({number, store.changes(number)});
+  return start;
+}
+
+void take(OpenedStore& opened, MapStore store) {
   if (const std::string others = words_of_others(store); !others.empty())
     opened.warnings.push_back("map store: " + others);
-  opened.start = {std::make_shared<const OccupancyGrid>(newest == 0 ? first : store.grid(newest)), newest};
+  opened.start = start_on(store);
   opened.store.store = std::move(store);
 }
 
-/// The store cannot be used as it is.
-void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGrid& first, const StoreError& reason) {
-  const auto saved = mapping::store::newest_whole_map(file, first);
-  const auto aside = reason.kind == StoreError::Kind::kOther ? std::nullopt : set_aside(file);
-  opened.start = start_on(first, saved);
-  const std::string from = saved ? "goes on with its revision=" + std::to_string(saved->number)
-                                 : std::string("nothing in it can be restored for this map: begins with the first map");
-  if (aside) {
-    opened.warnings.push_back("map store set aside as " + aside->string() + ": " + reason.what() + "; " + from);
-    try {
-      opened.store.store = brought_forward(file, first, saved);
-      return;
-    } catch (const StoreError& error) {
-      opened.store.why_not = error.what();
+/// Of what can be read of a store that cannot be written now.
+struct ReadStart {
+  StartMap start;
+  Timestamp time;  ///< of its revision
+};
+
+/// Nothing where nothing of this map can be had.
+std::optional<ReadStart> read_start(const fs::path& file, const OccupancyGrid& first) {
+  try {
+    const MapStore store = MapStore::in_memory(file, first);
+    if (store.newest() == 0) return std::nullopt;
+    ReadStart read{start_on(store), {}};
+    for (const auto& revision : store.history()) {
+      if (!revision.refused && revision.number == read.start.revision) read.time = revision.time;
     }
-  } else {
-    opened.warnings.push_back(std::string("map store cannot be written: ") + reason.what() + "; " + from);
-    opened.store.why_not = reason.what();
+    return read;
+  } catch (const StoreError&) {
+    return std::nullopt;
   }
-  opened.store.open = [file, saved, first = std::make_shared<const OccupancyGrid>(first)] {
-    return brought_forward(file, *first, saved);
+}
+
+/// The run begins with what can be read of the store, and opens it when that can be done.
+void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGrid& first, const std::string& reason) {
+  const auto read = read_start(file, first);
+  opened.start = read ? read->start : StartMap{.map = std::make_shared<const OccupancyGrid>(first)};
+  opened.warnings.push_back("map store cannot be written: " + reason + "; " +
+                            (read ? "goes on with its revision=" + std::to_string(read->start.revision)
+                                  : "nothing of this map can be read in it: begins with the first map"));
+  opened.store.why_not = reason;
+  opened.store.open = [file, read, first = std::make_shared<const OccupancyGrid>(first)] {
+    std::vector<std::string> told_before;
+    MapStore store = sound_store(file, *first, told_before);
+    if (read && store.newest() < read->start.revision) {
+      store.append_whole(read->start.revision, read->time, *read->start.map, {.cause = "read before it was written"});
+    }
+    return store;
   };
 }
 
@@ -98,13 +168,15 @@ OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
   // What is locked, opened and set aside is the database, and no link to it. Without knowing whether another program
   // has it, it is not touched.
   const fs::path file = or_start_error([&] { return file_behind(name); });
+  service::ask_for_time(kLongestOpening);
   OpenedStore opened;
   opened.store.to_lock = file;
   opened.store.lock = or_start_error([&] { return lock_of_file(file); });
   try {
-    take(opened, MapStore{file, first}, first);
-  } catch (const StoreError& error) {
-    go_on_without(opened, file, first, error);
+    finish_recovery(file);
+    take(opened, sound_store(file, first, opened.warnings));
+  } catch (const std::runtime_error& error) {
+    go_on_without(opened, file, first, error.what());
   }
   return opened;
 }

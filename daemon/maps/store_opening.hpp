@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens the store of the settings at the start. One that is damaged, foreign or read-only is set aside, never deleted,
-// and the newest whole map in it goes on in a new one; one that cannot be written now is tried again while the run goes
-// on.
+// Opens the store of the settings at the start. One that is damaged, foreign or read-only is set aside whole, and all
+// that can be had of it goes on in a new one; one that cannot be written now is tried again while the run goes on.
 #pragma once
 
 #include <filesystem>

@@ -27,6 +27,11 @@ struct LocalizationRow {
   std::uint32_t revision = 0;
   double speed_m_per_s = 0.0;
   double turn_rate_rad_per_s = 0.0;
+
+  /// A pose is tracked, and nothing says that the robot is elsewhere: the next run may begin there.
+  [[nodiscard]] bool is_sure() const {
+    return state == LocalizerState::kTracking && belief.verdict != PoseVerdict::kWrong && !belief.fits_worse;
+  }
 };
 
 /// Averages are left at 0: whoever keeps them fills them in.

@@ -171,7 +171,8 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
   if (!request) return;
   if (const auto* set = std::get_if<ScanSet>(&*request); set != nullptr && !reaches_map(*set, tracked.scan.number))
     return;
-  keep_result(run_.update_map(*request));
+  if (const auto result = run_.update_map(*request)) return keep_result(*result);
+  store_.set_provisional({});  // all is settled
 }
 
 /// Counts the phase, and holds it against the journal. False: the live run lost the set.

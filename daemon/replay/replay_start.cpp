@@ -11,6 +11,7 @@ namespace {
 /// "revision=3, kept pose, stability, wheels and mount"
 std::string content_of(const StartMap& start) {
   std::string content = "revision=" + std::to_string(start.revision);
+  if (!start.provisional.empty()) content += " (" + std::to_string(start.provisional.size()) + " provisional)";
   if (start.remembered) content += ", kept pose";
   if (start.stability) content += ", stability";
   if (start.calibration) content += ", wheels and mount";

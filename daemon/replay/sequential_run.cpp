@@ -10,7 +10,7 @@ namespace deltamap::daemon {
 SequentialRun::SequentialRun(const Settings& settings, const StartMap& start, const Journal* journal,
                              double map_delay_s)
     : localization_{settings, start},
-      store_scan_{settings.mapping.store_scan, settings.seed},
+      store_scan_{settings.mapping.store_scan, settings.seed, !start.provisional.empty()},
       map_{settings, start},
       revisions_{journal, map_delay_s, start.revision},
       transients_{journal} {}
@@ -38,9 +38,11 @@ std::optional<MapRequest> SequentialRun::look_for_changes(const TrackedScan& tra
   return request;
 }
 
-MapStep::Result SequentialRun::update_map(const MapRequest& request) {
+std::optional<MapStep::Result> SequentialRun::update_map(const MapRequest& request) {
   const CpuTimer timer{cpu_.map_update_s};
-  return handed_on(map_.take(request));
+  std::optional<MapStep::Result> result = map_.take(request);
+  if (result) result = handed_on(*std::move(result));
+  return result;
 }
 
 MapStep::Result SequentialRun::obey(const SetCells& wanted) {

@@ -33,7 +33,8 @@ class SequentialRun {
   [[nodiscard]] TrackedScan observe(Scan scan);
   /// What is to be handed to update_map().
   [[nodiscard]] std::optional<MapRequest> look_for_changes(const TrackedScan& tracked);
-  [[nodiscard]] MapStep::Result update_map(const MapRequest& request);
+  /// As MapStep::take().
+  [[nodiscard]] std::optional<MapStep::Result> update_map(const MapRequest& request);
   [[nodiscard]] MapStep::Result obey(const SetCells& wanted);
 
   [[nodiscard]] LocalizationStep& localization() { return localization_; }

@@ -17,8 +17,8 @@ const ScanSet* set_in(const MapWork& work) {
 
 }  // namespace
 
-DeltaStage::DeltaStage(const Settings& settings, Wiring wiring)
-    : wiring_{std::move(wiring)}, store_scan_{settings.mapping.store_scan, settings.seed} {}
+DeltaStage::DeltaStage(const Settings& settings, bool inherits, Wiring wiring)
+    : wiring_{std::move(wiring)}, store_scan_{settings.mapping.store_scan, settings.seed, inherits} {}
 
 void DeltaStage::run() {
   while (!wiring_.work.is_drained()) {
@@ -86,8 +86,8 @@ void DeltaStage::tell_of_gate() {
   if (!line.text.empty()) (line.is_warning ? wiring_.warn : wiring_.log)(line.text);
 }
 
-/// An order is never lost: of those to withdraw there are no more than sets that were handed over before, and an
-/// operator gives few.
+/// An order is never lost, nor is word that all is settled: of those there are no more than sets that were handed over
+/// before, and an operator gives few.
 void DeltaStage::hand_over(MapWork work) {
   const ScanSet* set = set_in(work);
   if (set != nullptr && std::any_of(waiting_.begin(), waiting_.end(), set_in)) {

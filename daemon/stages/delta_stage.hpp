@@ -36,7 +36,8 @@ class DeltaStage {
     std::function<bool()> shows_scans;                     ///< for the live page: somebody looks at the next
     std::function<void(mapping::StoredScans)> show_scans;  ///< never waits
   };
-  DeltaStage(const Settings& settings, Wiring wiring);
+  /// `inherits`: as StoreScan has it.
+  DeltaStage(const Settings& settings, bool inherits, Wiring wiring);
 
   /// The thread's work, until the channel is closed and empty.
   void run();

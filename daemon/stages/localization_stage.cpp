@@ -281,7 +281,7 @@ KeptPose LocalizationStage::pose_to_keep() const {
           .time = row.time,
           .map_from_robot = row.map_from_robot,
           .covariance = row.covariance,
-          .is_sure = row.state == LocalizerState::kTracking && row.belief.verdict != PoseVerdict::kWrong,
+          .is_sure = row.is_sure(),
           .calibration = step_.calibration()};
 }
 

@@ -48,7 +48,7 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
                 .store_file = settings.map.store,
                 .newest_file = settings.map.newest,
                 .store = with_retention(std::move(store), settings.map.retention),
-                .start = {start.map, start.revision},
+                .start = {.map = start.map, .revision = start.revision},
                 .method = step_.method()},
                wiring_.telemetry.outputs,
                wiring_.warn,
@@ -66,7 +66,8 @@ void MapStage::run(const std::deque<MapWork>& rest) {
 
 void MapStage::take(const MapWork& work) {
   if (const auto* request = std::get_if<MapRequest>(&work)) {
-    tell_and_hand_on(step_.take(*request));
+    if (const auto result = step_.take(*request)) return tell_and_hand_on(*result);
+    outputs_.settle(port_clock_now());
   } else {
     obey(std::get<MapOrder>(work));
   }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/messages.hpp"
 #include "daemon/outputs/localization_log.hpp"
@@ -16,6 +17,12 @@
 
 namespace deltamap::daemon {
 
+/// A revision that may have been written by a wrong pose.
+struct ProvisionalRevision {
+  std::uint32_t number = 0;
+  std::vector<CellChange> changes;
+};
+
 /// What a run starts on: M_0, or the newest revision of the store, and what an earlier run has left.
 struct StartMap {
   std::shared_ptr<const OccupancyGrid> map;
@@ -24,6 +31,7 @@ struct StartMap {
   std::optional<Pose2> remembered{};
   std::optional<localization::belief::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
   std::optional<localization::motion::DriveCalibration> calibration{};  ///< and of wheels and mount
+  std::vector<ProvisionalRevision> provisional{};                       ///< of `map`, oldest first
 };
 
 /// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.

@@ -45,7 +45,24 @@ MapStep::MapStep(const Settings& settings, StartMap start)
       localizer_{settings.localizer},
       newest_{std::move(start)},
       operator_cells_{{.hold_s = settings.mapping.store_scan.evidence.passing.persistence_s,
-                       .margin_cells = settings.mapping.update.evidence.added_reach_cells}} {}
+                       .margin_cells = settings.mapping.update.evidence.added_reach_cells}} {
+  for (ProvisionalRevision& revision : newest_.provisional) {
+    provisional_.push_back({std::move(revision), Timestamp::min()});
+  }
+  newest_.provisional.clear();
+}
+
+std::vector<ProvisionalRevision> MapStep::provisional() const {
+  std::vector<ProvisionalRevision> all;
+  for (const Provisional& one : provisional_) all.push_back(one.revision);
+  return all;
+}
+
+std::vector<std::uint32_t> MapStep::provisional_numbers() const {
+  std::vector<std::uint32_t> numbers;
+  for (const Provisional& one : provisional_) numbers.push_back(one.revision.number);
+  return numbers;
+}
 
 MapRevision MapStep::publish(Timestamp time, std::vector<CellChange> changes) {
   newest_.map = std::make_shared<const OccupancyGrid>(patched(*newest_.map, changes));
@@ -63,9 +80,15 @@ void MapStep::settle(const std::optional<Timestamp>& before) {
   }
 }
 
-MapStep::Result MapStep::take(const MapRequest& request) {
+std::optional<MapStep::Result> MapStep::take(const MapRequest& request) {
+  if (const auto* settlement = std::get_if<Settlement>(&request)) {
+    settle(settlement->before);
+    return std::nullopt;
+  }
   const auto* set = std::get_if<ScanSet>(&request);
-  return set != nullptr ? update(*set) : withdraw(std::get<WithdrawOrder>(request));
+  Result result = set != nullptr ? update(*set) : withdraw(std::get<WithdrawOrder>(request));
+  result.provisional = provisional_numbers();
+  return result;
 }
 
 MapStep::Result MapStep::update(const ScanSet& set) {
@@ -83,13 +106,14 @@ MapStep::Result MapStep::update(const ScanSet& set) {
   }
   result.revision = publish(set.ended, std::move(update.changes));
   result.note.revision = result.revision->number;
-  provisional_.push_back({result.revision->number, set.ended, result.revision->changes});
+  provisional_.push_back({{result.revision->number, result.revision->changes}, set.ended});
   return result;
 }
 
 MapStep::Result MapStep::obey(const SetCells& wanted) {
   const GridGeometry& geometry = newest_.map->geometry();
   Result result;
+  result.provisional = provisional_numbers();
   result.note.time = wanted.order.scan_time;
   result.note.by_operator = true;
   result.note.reason = reason_of(wanted.order);
@@ -117,9 +141,9 @@ MapStep::Result MapStep::withdraw(const WithdrawOrder& order) {
   OccupancyGrid map = *newest_.map;
   std::vector<std::uint32_t> withdrawn;
   while (!provisional_.empty() && provisional_.back().time >= order.from) {
-    const std::vector<CellChange> back = mapping::store::taken_back(map, provisional_.back().changes);
+    const std::vector<CellChange> back = mapping::store::taken_back(map, provisional_.back().revision.changes);
     map = patched(std::move(map), back);
-    withdrawn.push_back(provisional_.back().number);
+    withdrawn.push_back(provisional_.back().revision.number);
     provisional_.pop_back();
   }
   std::vector<CellChange> changes = changes_between(*newest_.map, map);

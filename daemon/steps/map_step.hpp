@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the map thread does with each S(k), and what a replay does in its place: updates the newest map, prepares the
-// localizer's patch, and says what became of the Δ-phase. What it writes is provisional until a later set says that it
-// is settled; an order takes it back. An operator sets cells as he wants them. The revision goes to the localizer, the
-// note to changes.jsonl.
+// localizer's patch, and says what became of the Δ-phase. What it writes is provisional until a later set, or word of
+// its own, says that it is settled; an order takes it back, in a later run as well. An operator sets cells as he wants
+// them. The revision goes to the localizer, the note to changes.jsonl.
 #pragma once
 
 #include <deque>
@@ -26,10 +26,11 @@ class MapStep {
   struct Result {
     std::optional<MapRevision> revision;
     ChangeNote note;
+    std::vector<std::uint32_t> provisional{};  ///< numbers of what is so from then on, oldest first
   };
-  /// A set becomes a revision or is refused; an order takes back, in one revision, what was written since then and no
-  /// set has settled.
-  [[nodiscard]] Result take(const MapRequest& request);
+  /// A set becomes a revision or is refused; an order takes back, in one revision, what was written since then and is
+  /// not settled. Nothing where something is settled and no more.
+  [[nodiscard]] std::optional<Result> take(const MapRequest& request);
   /// An operator's cells take the states that the order gives them, whatever they are. Older evidence does not write
   /// them again. No revision where they are so already, or the map has another size.
   [[nodiscard]] Result obey(const SetCells& wanted);
@@ -39,12 +40,14 @@ class MapStep {
   /// M_k, the newest map.
   [[nodiscard]] const std::shared_ptr<const OccupancyGrid>& map() const { return newest_.map; }
   [[nodiscard]] std::uint32_t revision() const { return newest_.revision; }
+  /// For a run that goes on from here.
+  [[nodiscard]] std::vector<ProvisionalRevision> provisional() const;
+  [[nodiscard]] std::vector<std::uint32_t> provisional_numbers() const;
 
  private:
   struct Provisional {
-    std::uint32_t number = 0;
-    Timestamp time;
-    std::vector<CellChange> changes;
+    ProvisionalRevision revision;
+    Timestamp time;  // before all others where an earlier run has written it
   };
 
   [[nodiscard]] Result update(const ScanSet& set);

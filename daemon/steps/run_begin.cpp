@@ -21,6 +21,10 @@ std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+std::span<const std::uint8_t> as_bytes(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
 /// Runs of equal tiles, as most of them have nothing to tell: length (1 to 255), tile.
 Bytes packed_tiles(const Bytes& tiles) {
   Bytes packed;
@@ -76,14 +80,24 @@ std::optional<RunBegin> begin_in(const Json& head, std::string_view bytes) {
   const auto map_size = head.at("map_bytes").get<std::size_t>();
   if (map_size > bytes.size()) return std::nullopt;
   if (const auto map = head.find("map"); map != head.end()) {
-    auto grid = mapping::store::decoded_grid(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), map_size),
-                                             geometry_in(*map));
+    auto grid = mapping::store::decoded_grid(as_bytes(bytes.substr(0, map_size)), geometry_in(*map));
     if (!grid) return std::nullopt;
     begin.start.map = std::make_shared<const OccupancyGrid>(std::move(*grid));
   }
+  bytes.remove_prefix(map_size);
+  if (const auto provisional = head.find("provisional"); provisional != head.end()) {
+    if (!begin.start.map) return std::nullopt;
+    for (const Json& revision : *provisional) {
+      const auto size = revision.at(1).get<std::size_t>();
+      if (size > bytes.size()) return std::nullopt;
+      auto changes = mapping::store::decoded_changes(as_bytes(bytes.substr(0, size)), begin.start.map->geometry());
+      if (!changes) return std::nullopt;
+      begin.start.provisional.push_back({revision.at(0).get<std::uint32_t>(), *std::move(changes)});
+      bytes.remove_prefix(size);
+    }
+  }
   if (const auto stability = head.find("stability"); stability != head.end()) {
-    begin.start.stability = {geometry_in(*stability), stability->at("cells_a_tile").get<int>(),
-                             unpacked_tiles(bytes.substr(map_size))};
+    begin.start.stability = {geometry_in(*stability), stability->at("cells_a_tile").get<int>(), unpacked_tiles(bytes)};
   }
   return begin;
 }
@@ -111,6 +125,11 @@ std::vector<std::string> begin_notes(const RunBegin& begin) {
     bytes = mapping::store::encoded_grid(*start.map);
   }
   head["map_bytes"] = bytes.size();
+  for (const ProvisionalRevision& revision : start.provisional) {
+    const Bytes changes = mapping::store::encoded_changes(revision.changes, start.map->geometry());
+    head["provisional"].push_back({revision.number, changes.size()});
+    bytes.insert(bytes.end(), changes.begin(), changes.end());
+  }
   if (start.calibration) head["calibration"] = localization::motion::numbers_of(*start.calibration);
   if (start.remembered) head["pose"] = {start.remembered->x, start.remembered->y, start.remembered->theta};
   if (start.stability) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recorded run began from besides M_0 and its settings: M_k, the pose that was kept, what had proven stable,
-// what was known of wheels and mount. It stands in the recording itself, as notes after the first one, so that one file
-// is all that a replay needs.
+// What a recorded run began from besides M_0 and its settings: M_k and what of it is provisional, the pose that was
+// kept, what had proven stable, what was known of wheels and mount. It stands in the recording itself, as notes after
+// the first one, so that one file is all that a replay needs.
 #pragma once
 
 #include <cstdint>

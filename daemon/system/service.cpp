@@ -8,6 +8,10 @@
 namespace deltamap::daemon::service {
 
 void tell_ready() { (void)sd_notify(0, "READY=1"); }
+void ask_for_time(std::chrono::seconds time) {
+  const auto time_us = std::chrono::microseconds(time).count();
+  (void)sd_notify(0, ("EXTEND_TIMEOUT_USEC=" + std::to_string(time_us)).c_str());
+}
 void tell_reloading() { (void)sd_notify(0, "RELOADING=1"); }
 void tell_stopping() { (void)sd_notify(0, "STOPPING=1"); }
 void tell_status(const std::string& line) { (void)sd_notify(0, ("STATUS=" + line).c_str()); }

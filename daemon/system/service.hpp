@@ -2,6 +2,7 @@
 // What systemd hears of the daemon (sd_notify(3)). Without systemd every call does nothing.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -10,6 +11,8 @@
 namespace deltamap::daemon::service {
 
 void tell_ready();
+/// Before what may take long at a start: systemd waits so long from now on, and no shorter than it would.
+void ask_for_time(std::chrono::seconds time);
 /// Until tell_ready().
 void tell_reloading();
 void tell_stopping();

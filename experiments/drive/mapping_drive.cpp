@@ -51,10 +51,14 @@ Mapped MappingDrive::next() {
   return mapped;
 }
 
-void MappingDrive::restart() {
-  daemon::StartMap kept{.map = run_->map().map(), .revision = run_->map().revision(), .remembered = last_pose_};
-  kept.stability = run_->localization().stability();
-  settings_.initial_pose.reset();
+void MappingDrive::restart(const std::optional<Pose2>& given) {
+  const daemon::LocalizationStep& localization = run_->localization();
+  daemon::StartMap kept{.map = run_->map().map(), .revision = run_->map().revision()};
+  kept.provisional = run_->map().provisional();
+  if (localization.row().is_sure()) kept.remembered = last_pose_;
+  kept.stability = localization.stability();
+  kept.calibration = localization.calibration();
+  settings_.initial_pose = given;
   ++settings_.seed;
   run_.emplace(settings_, kept, nullptr, kMapDelay_s);
 }

@@ -37,8 +37,9 @@ class MappingDrive {
                const daemon::Settings& settings, const daemon::StartMap& start, bool knows_start = true);
 
   [[nodiscard]] Mapped next();
-  /// The daemon ends and begins again where it stands: pose, stability and map are kept, all else is forgotten.
-  void restart();
+  /// The daemon ends and begins again where it stands: kept are the map and what of it is provisional, stability,
+  /// calibration, and the pose where it is sure of that; all else is forgotten. `given`: the pose that a person gives.
+  void restart(const std::optional<Pose2>& given = std::nullopt);
 
   [[nodiscard]] simulation::VirtualDrive& drive() { return drive_; }
   [[nodiscard]] const OccupancyGrid& map() const { return *run_->map().map(); }

@@ -64,9 +64,14 @@ std::optional<MapRequest> GatedSets::next() {
     waiting_.pop_front();
     last_handed_on_ = set->ended;
   }
-  if (!set) return std::nullopt;
-  set->settled = gate_.settled();
-  return set;
+  const std::optional<Timestamp> settled = gate_.settled();
+  if (set) {
+    set->settled = settled;
+    return set;
+  }
+  if (!settled || !last_handed_on_ || *last_handed_on_ >= *settled) return std::nullopt;
+  last_handed_on_.reset();
+  return Settlement{*settled};
 }
 
 }  // namespace deltamap::mapping::gate

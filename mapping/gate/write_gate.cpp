@@ -132,11 +132,13 @@ void WriteGate::observe(const TrackedScan& tracked) {
   const double driven_m = driven_way_.since_last_m(tracked);
   const GateReason judgement = judged(tracked);
   note_break(tracked);
+  // Of a pose that the run before has left nothing is known until it has been held against the first scans.
+  const bool was_believed = was_tracking_ || (inherits_ && !tracked.estimate.checks_pose);
   const bool is_proof = proves_wrong(judgement);
-  has_proven_wrong_ = was_tracking_ && !is_distrusted_ && is_proof;
+  has_proven_wrong_ = was_believed && !is_distrusted_ && is_proof;
   if (has_proven_wrong_) is_distrusted_ = true;
   if (tracked.estimate.state == LocalizerState::kTracking) was_tracking_ = true;
-  if (was_tracking_ && is_proof) {
+  if ((was_tracking_ || was_believed) && is_proof) {
     // What a search has found remains found, whatever else speaks against it.
     if (!is_confirming_ || !may_be_another(confirms_after_)) confirms_after_ = judgement;
     is_confirming_ = true;

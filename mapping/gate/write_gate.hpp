@@ -72,7 +72,9 @@ class DrivenWay {
 
 class WriteGate {
  public:
-  explicit WriteGate(const WriteGateParams& params) : params_{params}, provisional_{params.provisional} {}
+  /// `inherits`: a pose was believed in the run before, and what was written by it is still provisional.
+  explicit WriteGate(const WriteGateParams& params, bool inherits = false)
+      : params_{params}, provisional_{params.provisional}, inherits_{inherits} {}
 
   /// Every tracked scan in order.
   void observe(const TrackedScan& tracked);
@@ -105,6 +107,7 @@ class WriteGate {
   std::optional<Timestamp> broke_off_at_;  // the last break that the belief has told of
   ProvisionalWindow provisional_;
   GateReason reason_ = GateReason::kSearching;
+  bool inherits_ = false;
   bool was_tracking_ = false;
   bool has_proven_wrong_ = false;
   bool is_confirming_ = false;

@@ -10,6 +10,7 @@
 
 #include "core/files/access.hpp"
 #include "mapping/store/database_log.hpp"
+#include "mapping/store/row_sum.hpp"
 
 namespace deltamap::mapping::store {
 namespace {
@@ -19,6 +20,7 @@ constexpr int kBusy_ms = 3000;  // another program may be reading or writing
 int flags_of(Database::Mode mode) {
   switch (mode) {
     case Database::Mode::kCreate:
+    case Database::Mode::kMemory:
       return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     case Database::Mode::kExisting:
       return SQLITE_OPEN_READWRITE;
@@ -32,6 +34,7 @@ int flags_of(Database::Mode mode) {
 
 /// A file URI takes parameters; what would end its path is escaped.
 std::string name_of(const std::filesystem::path& file, Database::Mode mode) {
+  if (mode == Database::Mode::kMemory) return ":memory:";
   if (mode != Database::Mode::kReadAsIs) return file.string();
   std::string uri = "file:";
   for (const char letter : std::filesystem::absolute(file).string()) {
@@ -103,6 +106,7 @@ Database::Database(std::filesystem::path file, Mode mode) : file_{std::move(file
     fail(why, kind_of(result));
   }
   sqlite3_busy_timeout(handle_, kBusy_ms);
+  add_row_sum(handle_);
 }
 
 Database::~Database() { sqlite3_close(handle_); }
@@ -121,6 +125,13 @@ void Database::fail_by_code() const {
 
 void Database::run(const std::string& sql) {
   if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail_by_code();
+}
+
+/// What lies in the log alone is there once, and all of it from a damaged byte on is as if it had never been written.
+void Database::empty_log() {
+  sqlite3_busy_timeout(handle_, 0);
+  sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
+  sqlite3_busy_timeout(handle_, kBusy_ms);
 }
 
 std::int64_t Database::number(const std::string& sql) {
@@ -162,11 +173,27 @@ Statement& Statement::bind(std::span<const std::uint8_t> blob) {
   return *this;
 }
 
+Statement& Statement::skip() {
+  ++bound_;  // what is not bound is NULL
+  return *this;
+}
+
+Statement& Statement::bind(const Value& value) {
+  sqlite3_bind_value(handle_, ++bound_, value.get());
+  return *this;
+}
+
 bool Statement::step() {
   const int result = sqlite3_step(handle_);
   if (result == SQLITE_ROW) return true;
   if (result != SQLITE_DONE) database_.fail_by_code();
   return false;
+}
+
+bool Statement::finds(std::int64_t value) {
+  sqlite3_reset(handle_);
+  sqlite3_bind_int64(handle_, 1, value);
+  return sqlite3_step(handle_) == SQLITE_ROW;
 }
 
 bool Statement::is_null(int column) const { return sqlite3_column_type(handle_, column) == SQLITE_NULL; }
@@ -184,6 +211,10 @@ std::vector<std::uint8_t> Statement::blob(int column) const {
   return bytes == nullptr ? std::vector<std::uint8_t>{} : std::vector<std::uint8_t>{bytes, bytes + size};
 }
 
+Value Statement::value(int column) const {
+  return {sqlite3_value_dup(sqlite3_column_value(handle_, column)), sqlite3_value_free};
+}
+
 Transaction::Transaction(Database& database) : database_{database} { database_.run("BEGIN IMMEDIATE"); }
 
 Transaction::~Transaction() {
@@ -197,6 +228,7 @@ Transaction::~Transaction() {
 void Transaction::commit() {
   database_.run("COMMIT");
   open_ = false;
+  database_.empty_log();
 }
 
 }  // namespace deltamap::mapping::store

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,15 +14,20 @@
 
 struct sqlite3;
 struct sqlite3_stmt;
+struct sqlite3_value;
 
 namespace deltamap::mapping::store {
 
 class Statement;
 
+/// What stands in a column of a row, kept beyond the row.
+using Value = std::shared_ptr<sqlite3_value>;
+
 class Database {
  public:
-  /// kReadAsIs looks at the file alone: not at its log, and at nobody's locks.
-  enum class Mode : std::uint8_t { kCreate, kExisting, kRead, kReadAsIs };
+  /// kReadAsIs looks at the file alone: not at its log, and at nobody's locks. kMemory: a new database in memory, which
+  /// has no more of the file than its name.
+  enum class Mode : std::uint8_t { kCreate, kExisting, kRead, kReadAsIs, kMemory };
 
   /// Throws StoreError, as everything here does.
   Database(std::filesystem::path file, Mode mode);
@@ -34,6 +40,8 @@ class Database {
   /// The first column of the first row.
   [[nodiscard]] std::int64_t number(const std::string& sql);
   [[nodiscard]] std::string text(const std::string& sql);
+  /// Puts what lies in the log into the file, where nobody reads it just now and there is room: else the next one does.
+  void empty_log();
   [[noreturn]] void fail(const std::string& why, StoreError::Kind kind = StoreError::Kind::kOther) const;
   /// The file is damaged or no map store.
   [[noreturn]] void fail_as_unsound(const std::string& why) const { fail(why, StoreError::Kind::kUnsound); }
@@ -62,15 +70,21 @@ class Statement {
   Statement& bind(const std::string& value);
   /// An empty blob binds NULL.
   Statement& bind(std::span<const std::uint8_t> blob);
+  /// NULL.
+  Statement& skip();
+  Statement& bind(const Value& value);
 
   /// Is there a (further) row?
   bool step();
+  /// Anew, with this as the one value that is bound: is there a row, and can it be read?
+  bool finds(std::int64_t value);
 
   [[nodiscard]] bool is_null(int column) const;
   [[nodiscard]] std::int64_t number(int column) const;
   [[nodiscard]] double real(int column) const;
   [[nodiscard]] std::string text(int column) const;
   [[nodiscard]] std::vector<std::uint8_t> blob(int column) const;
+  [[nodiscard]] Value value(int column) const;
 
  private:
   Database& database_;

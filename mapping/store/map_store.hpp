@@ -2,7 +2,8 @@
 // The journal of the map on disk (SQLite, write-ahead log): every Δ with its cells before and after, time, pose
 // covariance, acceptance and cause, a whole grid every 64, and what was refused. Histories are told apart by the hash
 // of M_0, so that another map never finds old revisions. Of the refusals the newest 1000 are kept. Used by one thread.
-// What goes wrong is told by a StoreError.
+// What goes wrong is told by a StoreError: a store that opens is sound, byte for byte as far as it matters; what can be
+// had of one that is not is store_recovery's business.
 #pragma once
 
 #include <cstdint>
@@ -15,46 +16,31 @@
 #include "core/grid/occupancy_grid.hpp"
 #include "core/messages.hpp"
 #include "mapping/store/retention.hpp"
+#include "mapping/store/stored_revision.hpp"
 
 namespace deltamap::mapping::store {
 
-/// What a revision or a refusal is kept with.
-struct RevisionNote {
-  std::uint32_t phase = 0;  ///< number of the Δ-phase
-  double acceptance = 0.0;  ///< Eq. 11
-  std::string cause;        ///< method, "withdrawn", "undo of K", or the reason of the refusal
-  /// Of the localizer's pose when the Δ-phase ended; nothing where no localizer had a part in it.
-  std::optional<PoseCovariance> covariance{};
-};
-
-struct StoredRevision {
-  std::uint32_t number = 0;  ///< k; a refusal has the number of the revision that stayed
-  bool refused = false;
-  Timestamp time;
-  RevisionNote note;
-  std::uint32_t occupied = 0;  ///< cells that became occupied
-  std::uint32_t freed = 0;     ///< cells that became free
-  std::uint32_t unknown = 0;   ///< cells that became unknown
-  CellBox box;                 ///< of the changed cells
-  std::string name{};          ///< given by a person; empty: none
-};
+struct History;
 
 class MapStore {
  public:
-  /// Opens the history of M_0, and begins it where there is none. Revisions at the end that cannot be restored are
-  /// dropped. Throws StoreError: one line that names the file (foreign, damaged, not writable).
+  /// Opens the history of M_0, and begins it where there is none. Throws StoreError: one line that names the file
+  /// (foreign, damaged, not writable).
   MapStore(const std::filesystem::path& file, const OccupancyGrid& first);
   /// Opens the history that was used last in an existing file, to read or to roll back.
   explicit MapStore(const std::filesystem::path& file);
   /// Opens it for a moment's reading: one that this user may not write is read as it is, where no log lies beside it.
+  /// Of one that is damaged, or is read as it is and of an older version, what can be had is read into memory.
   [[nodiscard]] static MapStore to_read(const std::filesystem::path& file);
+  /// What can be had of the history of M_0, in memory, where the file cannot be opened: it is not touched.
+  [[nodiscard]] static MapStore in_memory(const std::filesystem::path& file, const OccupancyGrid& first);
   ~MapStore();
   MapStore(MapStore&&) noexcept;
   MapStore& operator=(MapStore&&) noexcept;
 
   [[nodiscard]] std::uint32_t newest() const;
-  /// Damaged revisions that opening has dropped.
-  [[nodiscard]] std::uint32_t dropped() const;
+  /// What to_read() has found damaged, and what of it could be had; empty: nothing was.
+  [[nodiscard]] const std::string& damage() const { return damage_; }
   /// Revisions that the file holds of other first maps, without those maps themselves.
   [[nodiscard]] std::uint32_t revisions_of_others() const;
   /// What another program has written since it was opened counts, too.
@@ -70,6 +56,10 @@ class MapStore {
   /// missing from now on. The number is higher than the newest.
   void append_whole(std::uint32_t number, Timestamp time, const OccupancyGrid& map, const RevisionNote& note);
   void append_refusal(Timestamp time, const RevisionNote& note);
+  /// Revisions that are provisional, oldest first, by the last note that tells of them; where the store holds several
+  /// in one, that one.
+  [[nodiscard]] std::vector<std::uint32_t> provisional() const;
+  void set_provisional(const std::vector<std::uint32_t>& numbers);
   /// What led from M_{k-1} to M_k. Throws as grid() does; M_0 has no changes.
   [[nodiscard]] std::vector<CellChange> changes(std::uint32_t number) const;
   /// Writes M_k once more as the newest revision (nothing is lost), and returns its number.
@@ -95,10 +85,11 @@ class MapStore {
   void set_name(std::uint32_t number, const std::string& name);
 
  private:
-  struct State;
+  MapStore(std::unique_ptr<History> opened, const OccupancyGrid& first);
   /// With the history that was used last.
-  explicit MapStore(std::unique_ptr<State> opened);
-  std::unique_ptr<State> state_;
+  explicit MapStore(std::unique_ptr<History> opened);
+  std::unique_ptr<History> history_;
+  std::string damage_;
 };
 
 }  // namespace deltamap::mapping::store

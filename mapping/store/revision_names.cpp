@@ -3,18 +3,12 @@
 
 #include <algorithm>
 
+#include "mapping/store/guarded_rows.hpp"
+
 namespace deltamap::mapping::store {
 namespace {
 
 constexpr std::size_t kLongestName = 80;  // bytes
-
-/// Made with the first name: a store without names stays what older versions know.
-constexpr const char* kTable =
-    "CREATE TABLE IF NOT EXISTS named (map INTEGER, number INTEGER, name TEXT NOT NULL, PRIMARY KEY (map, number))";
-
-bool has_names(Database& database) {
-  return database.number("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'named'") > 0;
-}
 
 bool is_one_line(const std::string& name) {
   return std::none_of(name.begin(), name.end(), [](char letter) {
@@ -23,36 +17,22 @@ bool is_one_line(const std::string& name) {
   });
 }
 
-void keep_whole(Database& database, std::int64_t map, std::uint32_t number, std::span<const std::uint8_t> grid) {
-  Statement row{database, "UPDATE revision SET grid = ? WHERE map = ? AND refused = 0 AND number = ? AND grid IS NULL"};
-  row.bind(grid).bind(map).bind(std::int64_t{number});
-  row.step();
-}
-
 }  // namespace
-
-std::map<std::uint32_t, std::string> names_in(Database& database, std::int64_t map) {
-  std::map<std::uint32_t, std::string> names;
-  if (!has_names(database)) return names;
-  Statement rows{database, "SELECT number, name FROM named WHERE map = ?"};
-  rows.bind(map);
-  while (rows.step()) names.emplace(static_cast<std::uint32_t>(rows.number(0)), rows.text(1));
-  return names;
-}
 
 void write_name(Database& database, std::int64_t map, std::uint32_t number, const std::string& name,
                 std::span<const std::uint8_t> grid) {
   if (name.size() > kLongestName || !is_one_line(name)) {
     database.fail("a name is one line of at most " + std::to_string(kLongestName) + " bytes");
   }
+  const std::string which = "map = " + std::to_string(map) + " AND refused = 0 AND number = " + std::to_string(number);
   Transaction all{database};
-  database.run(kTable);
-  Statement row{database, name.empty() ? "DELETE FROM named WHERE map = ? AND number = ?"
-                                       : "INSERT OR REPLACE INTO named (map, number, name) VALUES (?, ?, ?)"};
-  row.bind(map).bind(std::int64_t{number});
-  if (!name.empty()) row.bind(name);
+  if (!are_sound(database, Table::kRevision, which)) {
+    database.fail_as_unsound("damaged: revision " + std::to_string(number) + " is not what was written");
+  }
+  Statement row{database, "UPDATE revision SET name = nullif(?, ''), grid = ifnull(grid, ?) WHERE " + which};
+  row.bind(name).bind(name.empty() ? std::span<const std::uint8_t>{} : grid);
   row.step();
-  if (!name.empty()) keep_whole(database, map, number, grid);
+  guard(database, Table::kRevision, which);
   all.commit();
 }
 

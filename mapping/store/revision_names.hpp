@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 
@@ -11,11 +10,8 @@
 
 namespace deltamap::mapping::store {
 
-/// By number; empty where no revision of this map has a name. Throws StoreError, as everything here does.
-[[nodiscard]] std::map<std::uint32_t, std::string> names_in(Database& database, std::int64_t map);
-
 /// `grid` is the encoded whole map of that revision. An empty name takes the name away; the map stays whole. Refused:
-/// a name of more than 80 bytes, or of more than one line.
+/// a name of more than 80 bytes, or of more than one line. Throws StoreError.
 void write_name(Database& database, std::int64_t map, std::uint32_t number, const std::string& name,
                 std::span<const std::uint8_t> grid);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/store/guarded_rows.hpp"
 #include "mapping/store/map_codec.hpp"
 
 namespace deltamap::mapping::store {
@@ -42,10 +43,14 @@ std::int64_t first_by_age(Database& database, std::int64_t map, double days, Tim
 }
 
 /// Revisions below it are kept by no rule.
-std::int64_t first_kept(Database& database, std::int64_t map, const Retention& retention, Timestamp now) {
+std::int64_t first_kept(Database& database, std::int64_t map, const Retention& retention,
+                        std::uint32_t first_provisional, Timestamp now) {
+  const std::int64_t by_state = first_provisional > 0 ? first_provisional : std::numeric_limits<std::int64_t>::max();
   const std::int64_t by_count = retention.revisions > 0 ? first_by_count(database, map, retention.revisions)
                                                         : std::numeric_limits<std::int64_t>::max();
-  return retention.days > 0.0 ? first_by_age(database, map, retention.days, now, by_count) : by_count;
+  const std::int64_t by_rules =
+      retention.days > 0.0 ? first_by_age(database, map, retention.days, now, by_count) : by_count;
+  return std::min(by_state, by_rules);
 }
 
 struct Stretch {
@@ -132,21 +137,24 @@ void write_end(Database& database, std::int64_t map, const GridGeometry& geometr
 }  // namespace
 
 bool thin_out(Database& database, std::int64_t map, const GridGeometry& geometry, const Retention& retention,
-              Timestamp now) {
+              std::uint32_t first_provisional, Timestamp now) {
   if (retention.keeps_all()) return false;
-  const auto found = [&] { return oldest_stretch(database, map, first_kept(database, map, retention, now)); };
+  const auto found = [&] {
+    return oldest_stretch(database, map, first_kept(database, map, retention, first_provisional, now));
+  };
   if (!found()) return false;
   Transaction all{database};
   const auto stretch = found();  // another program may have named one of them
   if (!stretch) return false;
-  // Where a step is damaged, those behind it were lost before; the whole map at the end is not.
-  if (const auto written = changes_in(database, map, geometry, *stretch)) {
-    write_end(database, map, geometry, *stretch, *written);
-  }
-  Statement steps{database,
-                  "DELETE FROM revision WHERE map = ? AND refused = 0 AND number >= ? AND number < ? AND grid IS NULL"};
-  steps.bind(map).bind(stretch->first).bind(stretch->end);
-  steps.step();
+  const std::string accepted = "map = " + std::to_string(map) + " AND refused = 0 AND number ";
+  const std::string all_steps =
+      accepted + "BETWEEN " + std::to_string(stretch->first) + " AND " + std::to_string(stretch->end);
+  if (!are_sound(database, Table::kRevision, all_steps)) return false;
+  const auto written = changes_in(database, map, geometry, *stretch);
+  if (!written) return false;
+  write_end(database, map, geometry, *stretch, *written);
+  guard(database, Table::kRevision, accepted + "= " + std::to_string(stretch->end));
+  remove_rows(database, Table::kRevision, all_steps + " AND grid IS NULL");
   all.commit();
   return true;
 }

@@ -12,10 +12,12 @@
 
 namespace deltamap::mapping::store {
 
-/// Thins out the oldest stretch that may be: at most 63 revisions, in one transaction. False where there is none.
+/// Thins out the oldest stretch that may be: at most 63 revisions, in one transaction. False where there is none, or
+/// where it is damaged: what is left of it is for a recovery. Revisions from `first_provisional` on stay one by one; 0:
+/// there are none.
 /// `now` is Unix time. The clock may have jumped: a revision whose time lies in the future, or before that of an older
 /// one, is as old as the next one whose time is credible. Throws StoreError.
 bool thin_out(Database& database, std::int64_t map, const GridGeometry& geometry, const Retention& retention,
-              Timestamp now);
+              std::uint32_t first_provisional, Timestamp now);
 
 }  // namespace deltamap::mapping::store

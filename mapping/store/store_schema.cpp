@@ -4,38 +4,29 @@
 #include <string>
 #include <system_error>
 
+#include "mapping/store/guarded_rows.hpp"
+#include "mapping/store/store_upgrade.hpp"
+
 namespace deltamap::mapping::store {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x444D4150;  // "DMAP"
-constexpr std::int64_t kSchemaVersion = 2;
 constexpr int kCache_kB = 256;  // of the file in memory: an append touches a few pages; SQLite would keep 2 MB a store
 
-constexpr const char* kSchema = R"(
-CREATE TABLE map (hash INTEGER PRIMARY KEY, width INTEGER, height INTEGER, resolution_m REAL, origin_x_m REAL,
-                  origin_y_m REAL, used INTEGER);
-CREATE TABLE revision (id INTEGER PRIMARY KEY, map INTEGER NOT NULL, number INTEGER NOT NULL, refused INTEGER NOT NULL,
-                       time_ns INTEGER, phase INTEGER, acceptance REAL, cause TEXT,
-                       occupied INTEGER, freed INTEGER, unknown INTEGER,
-                       first_column INTEGER, first_row INTEGER, last_column INTEGER, last_row INTEGER,
-                       grid_hash INTEGER, changes BLOB, grid BLOB,
-                       xx_m2 REAL, xy_m2 REAL, xh_m_rad REAL, yy_m2 REAL, yh_m_rad REAL, hh_rad2 REAL);
-CREATE UNIQUE INDEX accepted ON revision (map, number) WHERE refused = 0;
-)";
+/// Tables before indexes: so they begin on the same pages once a file has been compacted.
+constexpr const char* kMapColumns =
+    "(hash INTEGER PRIMARY KEY, width INTEGER, height INTEGER, resolution_m REAL, origin_x_m REAL, origin_y_m REAL, "
+    "used INTEGER, provisional TEXT, checksum INTEGER)";
+constexpr const char* kRevisionColumns =
+    "(id INTEGER PRIMARY KEY, map INTEGER NOT NULL, number INTEGER NOT NULL, refused INTEGER NOT NULL, "
+    "time_ns INTEGER, phase INTEGER, acceptance REAL, cause TEXT, occupied INTEGER, freed INTEGER, unknown INTEGER, "
+    "first_column INTEGER, first_row INTEGER, last_column INTEGER, last_row INTEGER, grid_hash INTEGER, changes BLOB, "
+    "grid BLOB, xx_m2 REAL, xy_m2 REAL, xh_m_rad REAL, yy_m2 REAL, yh_m_rad REAL, hh_rad2 REAL, name TEXT, "
+    "checksum INTEGER)";
+constexpr const char* kIndex = "CREATE UNIQUE INDEX accepted ON revision (map, number) WHERE refused = 0";
 
-/// Version 1 kept no pose covariance.
-constexpr const char* kFromVersion1 = R"(
-ALTER TABLE revision ADD COLUMN xx_m2 REAL;
-ALTER TABLE revision ADD COLUMN xy_m2 REAL;
-ALTER TABLE revision ADD COLUMN xh_m_rad REAL;
-ALTER TABLE revision ADD COLUMN yy_m2 REAL;
-ALTER TABLE revision ADD COLUMN yh_m_rad REAL;
-ALTER TABLE revision ADD COLUMN hh_rad2 REAL;
-PRAGMA user_version = 2;
-)";
-
-/// Throws where the file holds something else, or is broken.
-void check(Database& database) {
+/// Throws where the file holds something else.
+void require_store(Database& database) {
   const std::int64_t id = database.number("PRAGMA application_id");
   if (id != kApplicationId) database.fail_as_unsound("not a map store");
   const std::int64_t version = database.number("PRAGMA user_version");
@@ -43,21 +34,36 @@ void check(Database& database) {
     database.fail_as_unsound("map store of version " + std::to_string(version) + ", not 1 to " +
                              std::to_string(kSchemaVersion));
   }
-  const std::string sound = database.text("PRAGMA quick_check(1)");
+}
+
+void require_sound_pages(Database& database) {
+  const std::string sound = database.text("PRAGMA integrity_check(1)");
   if (sound != "ok") database.fail_as_unsound("damaged: " + sound.substr(0, sound.find('\n')));
 }
 
-void bring_up_to_date(Database& database) {
-  if (database.number("PRAGMA user_version") == kSchemaVersion) return;
-  Transaction all{database};
-  if (database.number("PRAGMA user_version") == 1) database.run(kFromVersion1);  // nobody else was faster
-  all.commit();
+void require_sound_rows(Database& database) {
+  if (const std::string row = damaged_row(database); !row.empty()) database.fail_as_unsound("damaged: " + row);
 }
 
 }  // namespace
 
+void make_tables(Database& database) {
+  for (const char* name : {"map", "map_copy"}) {
+    database.run("CREATE TABLE " + std::string(name) + " " + kMapColumns);
+  }
+  for (const char* name : {"revision", "revision_copy"}) {
+    database.run("CREATE TABLE " + std::string(name) + " " + kRevisionColumns);
+  }
+  database.run(kIndex);
+}
+
+void mark_as_store(Database& database) {
+  database.run("PRAGMA application_id = " + std::to_string(kApplicationId));
+  database.run("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+}
+
 Database opened_store(const std::filesystem::path& file, Database::Mode mode) {
-  const bool create = mode == Database::Mode::kCreate;
+  const bool create = mode == Database::Mode::kCreate || mode == Database::Mode::kMemory;
   std::error_code error;
   if (std::filesystem::is_directory(file, error))
     throw StoreError(file.string() + ": is a directory", StoreError::Kind::kOther);
@@ -71,14 +77,19 @@ Database opened_store(const std::filesystem::path& file, Database::Mode mode) {
     database.run("PRAGMA journal_mode = WAL");
     Transaction all{database};
     if (database.number("SELECT count(*) FROM sqlite_master") == 0) {  // nobody else was faster
-      database.run(kSchema);
-      database.run("PRAGMA application_id = " + std::to_string(kApplicationId));
-      database.run("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+      make_tables(database);
+      mark_as_store(database);
     }
     all.commit();
   }
-  check(database);
-  bring_up_to_date(database);
+  require_store(database);
+  require_sound_pages(database);
+  if (database.number("PRAGMA user_version") < kSchemaVersion) {
+    if (mode == Database::Mode::kReadAsIs)
+      database.fail("of an older version, and may not be written", StoreError::Kind::kReadOnly);
+    bring_up_to_date(database);
+  }
+  require_sound_rows(database);
   if (mode == Database::Mode::kReadAsIs) return database;
   database.run("PRAGMA journal_mode = WAL");
   database.run("PRAGMA synchronous = FULL");

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Kills what keeps the maps at random moments, cuts its power, lets its disk fail; and kills the real daemon behind a simulated
-robot. After each: the newest revision that was called safe is there, nothing is torn, and it starts again by itself.
+"""Kills what keeps the maps at random moments, cuts its power, lets its disk fail, flips bytes of its store; and kills the real
+daemon behind a simulated robot. After each: every revision that was called safe is there, nothing is torn, and it starts by itself.
 usage: crash.py [--quick] [--seed N] [--only PART] [--build FOLDER] [--out FILE]"""
 import argparse, collections, concurrent.futures, datetime, json, os, pathlib, random, re, subprocess, sys, tempfile, time
 
@@ -16,7 +16,8 @@ RATES = (0.005, 0.02, 0.1, 0.4, 1.0)  # calls that fail; 1: a disk that is full 
 FAULTS = ("lost", "torn", "not started", "set aside")
 A_ROBOT = 25        # trials of one robot and its maps
 ROBOTS = 10         # at once: they mostly wait
-SIZES = {"kills": (1000, 75), "power": (1000, 75), "failing": (1000, 50), "daemon": (1000, 2)}  # whole, quick
+SIZES = {"kills": (1000, 75), "power": (1000, 75), "failing": (1000, 50), "flips": (1000, 40), "daemon": (1000, 2)}  # whole, quick
+PAGE = 4096         # of a store, in bytes: the first says what all others are
 
 
 class Trials:
@@ -46,6 +47,7 @@ class Keeper:
         self.writer, self.disk = build / "tests/map_writer", build / "tests/libfailing_disk.so"
         self.folder, self.trials, self.seed, self.random = folder, trials, seed, random.Random(seed)
         self.safe = {"store": 0, "newest": 0}
+        self.revisions = None  # in the store, where their number is known
         (folder / "maps").mkdir()
 
     def run(self, job, count=None, disk=None, kill_after_s=None):
@@ -73,7 +75,7 @@ class Keeper:
                 self.trials.revisions += words[1] == "store"
             if words[0] == "began" and int(words[1]) < self.safe["store"]:
                 self.trials.fault("lost", self.where(), "%d was safe, begins with %s" % (self.safe["store"], words[1]))
-            if "set aside" in line:
+            if "set aside" in line and self.revisions is None:
                 self.trials.fault("set aside", self.where(), line)
 
     def where(self):
@@ -89,6 +91,10 @@ class Keeper:
             if serial > 0 and found.get(name, -1) < serial:
                 self.trials.fault("lost", self.where(), "%s was safe up to %d, holds %s" % (name, serial, found.get(name)))
         self.safe["store"] = max(self.safe["store"], found.get("store", 0))
+        kept = [int(line.split(" ")[3]) for line in lines if re.match(r"store \d+ revisions \d+", line)][0]
+        if self.revisions is not None and kept != self.revisions:
+            self.trials.fault("lost", self.where(), "%d of %d revisions are there" % (kept, self.revisions))
+        return kept
 
     def went_on(self, code, lines):
         """A start without a person, whatever was left."""
@@ -112,6 +118,28 @@ class Keeper:
         disk = (self.random.randrange(1 << 30), self.random.choice(RATES), 0)
         self.went_on(*self.run("write", FAILING, disk=disk, kill_after_s=self.random.choice((None, self.random.uniform(0.0, 0.2)))))
         self.trials.failures += self.count_failures()
+
+    def flip(self):
+        """One byte of the store; and the start that finds it out is left alone, killed, or its power is cut."""
+        self.revisions = None
+        self.went_on(*self.run("write", self.random.randint(1, 60)))
+        self.revisions = self.verify()
+        store = self.folder / "maps/store.sqlite"
+        damaged = bytearray(store.read_bytes())
+        place = self.random.randrange(self.random.choice((PAGE, len(damaged))))
+        damaged[place] ^= self.random.randint(1, 255)
+        store.write_bytes(damaged)
+        disturbance = self.random.choice(("none", "kill", "power"))
+        if disturbance == "kill":
+            self.run("verify", kill_after_s=self.random.uniform(0.0, 0.05))
+        if disturbance == "power":
+            self.run("verify", disk=(self.random.randrange(1 << 30), 0.0, self.random.randint(1, 300)))
+        self.verify()
+        for aside in store.parent.glob("store.sqlite.set-aside-*"):
+            if not aside.name.endswith(("-wal", "-shm")) and aside.read_bytes() != damaged:
+                self.trials.fault("set aside", self.where(), "%s is not what was damaged at %d" % (aside.name, place))
+            self.trials.failures += not aside.name.endswith(("-wal", "-shm"))
+            aside.unlink()
 
     def count_failures(self):
         file = self.folder / "failures"
@@ -204,7 +232,7 @@ class Robot:
         begun = [int(number) for number in re.findall(r"goes on with revision=(\d+)", text)]
         self.trials.revisions += len(made)
         where = self.where()
-        if "set aside" in text or "damaged revisions" in text:
+        if "set aside" in text:
             self.trials.fault("set aside", where, text[-300:])
         if begun and begun[0] < self.safe:
             self.trials.fault("lost", where, "revision %d was safe, goes on with %d" % (self.safe, begun[0]))
@@ -255,6 +283,7 @@ def parts(build, seed, is_quick):
     yield "kills", lambda: in_folders(build, "kills", "killed with SIGKILL at a random moment", Keeper.kill, seed, size["kills"])
     yield "power", lambda: in_folders(build, "power", "power cut before a random call, unsynced sectors and renames lost at random", Keeper.cut_power, 1000 + seed, size["power"])
     yield "failing", lambda: in_folders(build, "failing", "open, write, sync, truncate, rename fail (ENOSPC, EIO) or write short", Keeper.fail, 2000 + seed, size["failing"])
+    yield "flips", lambda: in_folders(build, "flips", "one byte of the store flipped; the start that finds it left alone, killed, or its power cut", Keeper.flip, 4000 + seed, size["flips"])
     yield "daemon", lambda: daemon_trials(build, 3000 + seed, size["daemon"])
 
 
@@ -275,11 +304,11 @@ TITLE = "Crashes and failing disks"
 
 def section(done, build, is_quick, seconds):
     head = ["Written by `./dev bench crash%s` (%s, %s, %.0f s)." % (" --quick" if is_quick else "", project.provenance(build), datetime.date.today(), seconds), "",
-            "The first three rows run what the daemon's map thread runs (store with retention, `map.newest`, the files of `--out`, kept pose) without a pause, each",
+            "The first four rows run what the daemon's map thread runs (store with retention, `map.newest`, the files of `--out`, kept pose) without a pause, each",
             "trial on what the one before has left. After each trial every revision in the store is restored and held against its content, and so are `map.yaml` and `map.pgm`.",
             "The last row runs the daemon itself, %d at once, each behind a robot of its own, and kills it up to 30 s after its start, %d times on the same maps." % (ROBOTS, A_ROBOT),
             "*Lost*: something that was reported as written is not there. *Torn*: a map or revision is neither the old nor the new one. *Not started*: a",
-            "start needs a person. *Set aside*: the store was called damaged.", ""]
+            "start needs a person. *Set aside*: the store was called damaged and is not; where a byte was flipped, it was not kept aside whole.", ""]
     return head + table(done, is_quick)
 
 

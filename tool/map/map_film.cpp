@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -77,6 +78,7 @@ std::vector<Point2> path_to(const std::vector<StampedPose>& poses, std::size_t l
 void film(const FilmOptions& options) {
   require_output_beside(options.png, options.store);
   const auto store = mapping::store::MapStore::to_read(options.store);
+  if (!store.damage().empty()) std::cerr << "deltamap: " << store.damage() << "; the file is left as it is\n";
   const std::vector<Step> steps = steps_of(store);
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);
   const Timestamp began = poses.front().time;

@@ -74,6 +74,13 @@ const char* name_of(CellState state) {
   return "?";
 }
 
+/// Of a damaged store, what can be had.
+MapStore read_store(const HistoryOptions& options) {
+  MapStore store = MapStore::to_read(options.store);
+  if (!store.damage().empty()) std::cerr << "deltamap: " << store.damage() << "; the file is left as it is\n";
+  return store;
+}
+
 Timestamp store_time(const MapStore& store, std::uint32_t number) {
   for (const StoredRevision& revision : store.history()) {
     if (!revision.refused && revision.number == number) return revision.time;
@@ -82,7 +89,7 @@ Timestamp store_time(const MapStore& store, std::uint32_t number) {
 }
 
 void list(const HistoryOptions& options) {
-  const MapStore store = MapStore::to_read(options.store);
+  const MapStore store = read_store(options);
   if (!options.json)
     std::printf("%6s  %-19s  %5s  %8s  %7s  %7s  %s\n", "k", "time (UTC)", "phase", "occupied", "freed", "accept.",
                 "cause");
@@ -114,7 +121,7 @@ void list(const HistoryOptions& options) {
 void write_revision(const HistoryOptions& options) {
   require_output_beside(options.out, options.store);
   require_output_beside(std::filesystem::path(options.out).replace_extension(".pgm"), options.store);
-  write_grid(MapStore::to_read(options.store).grid(options.number), options.out);
+  write_grid(read_store(options).grid(options.number), options.out);
   if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
 }
 
@@ -133,7 +140,7 @@ void print_changes(const std::vector<CellChange>& changes) {
 }
 
 void compare(const HistoryOptions& options) {
-  const MapStore store = MapStore::to_read(options.store);
+  const MapStore store = read_store(options);
   const OccupancyGrid before = store.grid(options.number);
   const OccupancyGrid after = store.grid(options.other);
   const auto changes = changes_between(before, after);
@@ -158,7 +165,7 @@ void compare(const HistoryOptions& options) {
 void draw_delta(const HistoryOptions& options) {
   constexpr double kAround_m = 3.0;
   require_output_beside(options.out, options.store);
-  const MapStore store = MapStore::to_read(options.store);
+  const MapStore store = read_store(options);
   if (options.number == 0) throw std::runtime_error("revision 0 is the first map: it has changed nothing");
   const std::vector<CellChange> changes = store.changes(options.number);
   const OccupancyGrid after = store.grid(options.number);

@@ -46,7 +46,7 @@ class NewestMap : public test::SavingFixture {
     return {.store_file = store,
             .newest_file = newest,
             .store = std::move(to),
-            .start = {std::make_shared<const OccupancyGrid>(map_of(0)), 0},
+            .start = {.map = std::make_shared<const OccupancyGrid>(map_of(0))},
             .method = "evidence"};
   }
   [[nodiscard]] std::size_t kept() const { return MapStore{store}.history().size(); }

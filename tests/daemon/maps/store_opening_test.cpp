@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A store that is no good does not keep the daemon from its work: it is set aside, and its newest whole map goes on.
+// A store that is no good does not keep the daemon from its work: it is set aside whole, and all that can be had of it
+// goes on.
 #include "daemon/maps/store_opening.hpp"
 
 #include <gtest/gtest.h>
@@ -63,6 +64,15 @@ class StoreOpening : public testing::Test {
     out << bytes;
   }
 
+  /// Every revision is there as it was written.
+  void expect_every_revision(const std::string& what) {
+    const MapStore store{file, first};
+    ASSERT_EQ(store.newest(), kRevisions) << what;
+    for (std::uint32_t number = 0; number <= kRevisions; ++number) {
+      ASSERT_EQ(store.grid(number), maps[number]) << what << ", revision " << number;
+    }
+  }
+
   /// The store was set aside untouched, and the run goes on with a map that the old one held; answers its number.
   std::uint32_t expect_set_aside() {
     const std::string before = content_of(file);
@@ -106,11 +116,98 @@ TEST_F(StoreOpening, AStoreThatWasCutIsSetAsideAndAMapInItGoesOn) {
   EXPECT_GE(expect_set_aside(), 64u);
 }
 
-TEST_F(StoreOpening, FlippedBytesCostAtMostWhatTheyHit) {
+TEST_F(StoreOpening, AWholePageOfOtherBytesCostsNoRevision) {
   fill();
   const auto size = static_cast<std::size_t>(fs::file_size(file));
   overwrite(size - 4096, std::string(4096, '\x5A'));
-  EXPECT_GE(expect_set_aside(), 64u);
+  EXPECT_EQ(expect_set_aside(), kRevisions);
+  expect_every_revision("the last page");
+}
+
+TEST_F(StoreOpening, AFlippedByteCostsNoRevisionAndTheDamagedStoreIsKeptWhole) {
+  fill();
+  const std::string whole = content_of(file);
+  Random random{3};
+  int set_aside = 0;
+  for (int i = 0; i < 40; ++i) {
+    std::string damaged = whole;
+    const std::size_t at = random.index_below(static_cast<std::uint32_t>(whole.size()));
+    damaged[at] = static_cast<char>(damaged[at] ^ static_cast<char>(1 + random.index_below(255)));
+    (void)folder.write("store.sqlite", damaged);
+    {
+      const OpenedStore opened = open_store(file, first);
+      EXPECT_EQ(opened.start.revision, kRevisions) << at;
+      EXPECT_EQ(*opened.start.map, maps.back()) << at;
+      if (!opened.warnings.empty()) {
+        ++set_aside;
+        EXPECT_NE(opened.warnings[0].find("; 150 revisions recovered"), std::string::npos) << opened.warnings[0];
+        EXPECT_EQ(content_of(file.string() + ".set-aside-1"), damaged) << at;
+      }
+    }
+    expect_every_revision(std::to_string(at));
+    fs::remove(file.string() + ".set-aside-1");
+  }
+  EXPECT_GT(set_aside, 20);
+}
+
+TEST_F(StoreOpening, WhatIsLostIsToldByNumber) {
+  fill();
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  for (const char* sql : {"UPDATE revision SET changes = x'FF' WHERE number IN (30, 140, 141)",
+                          "UPDATE revision_copy SET changes = x'FF' WHERE number IN (30, 140, 141)"}) {
+    EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+  }
+  sqlite3_close(database);
+  const OpenedStore opened = open_store(file, first);
+  ASSERT_EQ(opened.warnings.size(), 1u);
+  EXPECT_NE(opened.warnings[0].find("; 148 revisions recovered, of these computed from their neighbours: 30; lost for "
+                                    "good: 140 to 141 (later maps are without what these alone have changed)"),
+            std::string::npos)
+      << opened.warnings[0];
+  EXPECT_EQ(opened.start.revision, kRevisions);
+}
+
+TEST_F(StoreOpening, AKillInTheMidstOfARecoveryIsMadeGoodByTheNextStart) {
+  fill();
+  const std::string whole = content_of(file);
+  const std::string damaged = std::string(100, 'x') + whole.substr(100);
+  const fs::path recovered = file.string() + ".recovered";
+  const fs::path aside = file.string() + ".set-aside-1";
+
+  (void)folder.write("store.sqlite", damaged);  // while it was written
+  (void)folder.write("store.sqlite.recovering", "half of it");
+  EXPECT_EQ(open_store(file, first).start.revision, kRevisions);
+  EXPECT_FALSE(fs::exists(file.string() + ".recovering"));
+  EXPECT_EQ(content_of(aside), damaged);
+  fs::remove(aside);
+
+  (void)folder.write("store.sqlite", damaged);  // before the damaged one was set aside
+  (void)folder.write("store.sqlite.recovered", whole);
+  EXPECT_EQ(open_store(file, first).start.revision, kRevisions);
+  EXPECT_EQ(content_of(aside), damaged);
+  EXPECT_FALSE(fs::exists(recovered));
+
+  fs::remove(file);  // after that
+  (void)folder.write("store.sqlite.recovered", whole);
+  EXPECT_EQ(open_store(file, first).start.revision, kRevisions);
+  EXPECT_FALSE(fs::exists(recovered));
+  expect_every_revision("in its place");
+}
+
+TEST_F(StoreOpening, ARunBeginsWithWhatIsProvisional) {
+  fill();
+  const std::vector<std::uint32_t> numbers{148, 150};
+  {
+    MapStore store{file, first};
+    store.set_provisional(numbers);
+  }
+  const OpenedStore opened = open_store(file, first);
+  ASSERT_EQ(opened.start.provisional.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(opened.start.provisional[i].number, numbers[i]);
+    EXPECT_EQ(opened.start.provisional[i].changes, changes_between(maps[numbers[i] - 1], maps[numbers[i]]));
+  }
 }
 
 TEST_F(StoreOpening, DamageAnywhereNeverEndsTheStart) {

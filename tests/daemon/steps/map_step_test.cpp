@@ -32,14 +32,14 @@ class Withdrawal : public testing::Test {
       const Pose2 pose = test::below_the_containers(time_s);
       const auto request = store_scan.observe(test::drawn_scan(world, step.map(), pose, time_s, random, noise));
       if (!request) continue;
-      MapStep::Result result = step.take(*request);
-      if (result.revision) return result;
+      std::optional<MapStep::Result> result = step.take(*request);
+      if (result && result->revision) return *std::move(result);
     }
     ADD_FAILURE() << "nothing was written";
     return {};
   }
   [[nodiscard]] MapStep::Result withdraw(Timestamp from, double after_s) {
-    return step.take(WithdrawOrder{.time = at(time_s + after_s), .from = from});
+    return *step.take(WithdrawOrder{.time = at(time_s + after_s), .from = from});
   }
 
   OccupancyGrid hall = test::drawn_hall(0.05);
@@ -89,6 +89,33 @@ TEST_F(Withdrawal, LeavesWhatIsSettled) {
   EXPECT_EQ(*step.map(), kept);
 }
 
+TEST_F(Withdrawal, LeavesWhatIsSettledByWordOfItsOwn) {
+  (void)change(with_box);
+  EXPECT_EQ(step.provisional_numbers(), std::vector<std::uint32_t>{step.revision()});
+  EXPECT_FALSE(step.take(Settlement{at(time_s + 1.0)}));
+  EXPECT_TRUE(step.provisional_numbers().empty());
+  EXPECT_FALSE(withdraw(Timestamp::min(), 2.0).revision);
+}
+
+TEST_F(Withdrawal, TakesBackWhatTheRunBeforeHasLeft) {
+  const MapStep::Result written = change(with_box);
+  EXPECT_EQ(written.provisional, step.provisional_numbers());
+  const std::uint32_t last = step.revision();
+  step = MapStep{settings, {.map = step.map(), .revision = last, .provisional = step.provisional()}};
+  const MapStep::Result result = withdraw(Timestamp::min(), 1.0);
+  ASSERT_TRUE(result.revision);
+  EXPECT_EQ(*step.map(), hall);
+  EXPECT_EQ(result.note.withdraws.back(), last);
+  EXPECT_TRUE(result.provisional.empty());
+}
+
+TEST_F(Withdrawal, LeavesWhatTheRunBeforeHasLeftOnceItIsSettled) {
+  (void)change(with_box);
+  step = MapStep{settings, {.map = step.map(), .revision = step.revision(), .provisional = step.provisional()}};
+  EXPECT_FALSE(step.take(Settlement{at(time_s + 40.0)}));
+  EXPECT_FALSE(withdraw(Timestamp::min(), 41.0).revision);
+}
+
 TEST_F(Withdrawal, IsNotDoneTwice) {
   (void)change(with_box);
   (void)withdraw(Timestamp::min(), 1.0);
@@ -99,16 +126,18 @@ TEST_F(Withdrawal, StandsInTheMapStore) {
   const test::TemporaryFolder folder;
   mapping::store::MapStore store{folder.path() / "store.sqlite", hall};
   keep(store, change(with_box), step.method());
+  EXPECT_EQ(store.provisional(), step.provisional_numbers());
   ASSERT_EQ(store.newest(), step.revision());
   keep(store, withdraw(Timestamp::min(), 1.0), step.method());
   EXPECT_EQ(store.history().back().note.cause, "withdrawn");
   EXPECT_EQ(store.grid(store.newest()), hall);
+  EXPECT_TRUE(store.provisional().empty());
 }
 
 TEST_F(Withdrawal, ASetOfADoubtfulPoseIsRefusedByName) {
   ScanSet set;
   set.pose_in_doubt = true;
-  const MapStep::Result result = step.take(set);
+  const MapStep::Result result = *step.take(set);
   EXPECT_FALSE(result.revision);
   EXPECT_EQ(result.note.reason, "pose in doubt");
 }

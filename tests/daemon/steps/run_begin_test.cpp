@@ -6,6 +6,7 @@
 #include "core/random.hpp"
 #include "daemon/records/journal.hpp"
 #include "daemon/replay/replay_start.hpp"
+#include "tests/support/daemon/stored_maps.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -26,6 +27,8 @@ RunBegin large_begin() {
   RunBegin begin{0xFEDCBA9876543210u, 0xFFFFFFFFFFFFFFFFu, {}};
   begin.start.map = std::make_shared<const OccupancyGrid>(std::move(grid));
   begin.start.revision = 7;
+  begin.start.provisional = {{5, {{{1, 2}, CellState::kFree, CellState::kOccupied}}},
+                             {7, test::revision_after(*begin.start.map, 7, 3000).changes}};
   begin.start.remembered = Pose2{1.0 / 3.0, -2e-9, 3.0 / 7.0};
   begin.start.stability = std::move(stability);
   begin.start.calibration = localization::motion::DriveCalibration{
@@ -54,6 +57,11 @@ TEST(RunBegin, SurvivesTheRecordingBitForBitWhateverItsSize) {
   EXPECT_EQ(back.memory, begin.memory);
   EXPECT_EQ(back.start.revision, 7u);
   EXPECT_EQ(*back.start.map, *begin.start.map);
+  ASSERT_EQ(back.start.provisional.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(back.start.provisional[i].number, begin.start.provisional[i].number);
+    EXPECT_EQ(back.start.provisional[i].changes, begin.start.provisional[i].changes);
+  }
   EXPECT_EQ(back.start.remembered, begin.start.remembered);
   ASSERT_TRUE(back.start.calibration);
   EXPECT_EQ(numbers_of(*back.start.calibration), numbers_of(*begin.start.calibration));

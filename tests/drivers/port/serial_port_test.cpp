@@ -111,7 +111,7 @@ TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
 TEST(SerialPort, HandsOverAsOneChunkWhatComesInPiecesBehindAStandstill) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused] = open_serial_port(loop, device.path(), 500000);
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 500000);
   ASSERT_TRUE(port) << refused;
   std::vector<std::size_t> chunks;
   port->start({[&](std::span<const std::uint8_t> bytes, Timestamp) { chunks.push_back(bytes.size()); }, {}});

@@ -45,6 +45,8 @@ class Sets : public testing::Test {
     while (auto request = sets.next()) {
       if (const auto* order = std::get_if<WithdrawOrder>(&*request))
         ordered_back.push_back(*order);
+      else if (std::holds_alternative<Settlement>(*request))
+        settled_at_s.push_back(robot.time_s());
       else
         handed_on.push_back(std::get<ScanSet>(*std::move(request)));
     }
@@ -57,6 +59,7 @@ class Sets : public testing::Test {
   double other_share = 0.0;
   GatedSets sets{{}};
   std::vector<WithdrawOrder> ordered_back;
+  std::vector<double> settled_at_s;
 };
 
 TEST_F(Sets, WaitAMomentAndAreHandedOn) {
@@ -140,11 +143,61 @@ TEST_F(Sets, AnOrderGoesBeforeTheSetsThatItMarks) {
   EXPECT_TRUE(std::get<ScanSet>(*second).pose_in_doubt);
 }
 
-TEST_F(Sets, WhatIsSettledStays) {
+TEST_F(Sets, WhatIsSettledStaysAndThatIsSaidOnce) {
   (void)on(60.0);
   end_set(2.0, 1);
   ASSERT_EQ(on(40.0).size(), 1u);
+  ASSERT_EQ(settled_at_s.size(), 1u);
+  EXPECT_NEAR(settled_at_s[0], 60.0 + 30.0, 0.5);
   EXPECT_TRUE(lose_the_way().empty());
+  EXPECT_TRUE(ordered_back.empty());
+}
+
+// --- what the run before has left ---
+
+TEST_F(Sets, WhatTheRunBeforeHasLeftIsSettledOnceThePoseHasHeld) {
+  sets = GatedSets{{}, true};
+  (void)on(25.0);
+  EXPECT_TRUE(settled_at_s.empty());
+  (void)on(20.0);
+  ASSERT_EQ(settled_at_s.size(), 1u);
+  EXPECT_NEAR(settled_at_s[0], 30.0, 0.5);
+  (void)lose_the_way();
+  EXPECT_TRUE(ordered_back.empty());
+}
+
+TEST_F(Sets, WhatTheRunBeforeHasLeftIsOrderedBackWhereThePoseProvesWrong) {
+  sets = GatedSets{{}, true};
+  (void)on(25.0);
+  (void)lose_the_way();
+  ASSERT_EQ(ordered_back.size(), 1u);
+  EXPECT_EQ(ordered_back[0].from, Timestamp::min());
+  (void)on(60.0);
+  (void)lose_the_way();
+  EXPECT_EQ(ordered_back.size(), 1u) << "nothing was written since";
+  EXPECT_TRUE(settled_at_s.empty());
+}
+
+TEST_F(Sets, OfTheRunBeforeAreOrderedBackWhereItsPoseDoesNotFitAndNotWhileItIsLookedAt) {
+  sets = GatedSets{{}, true};
+  std::vector<ScanSet> handed_on;
+  TrackedScan tracked = robot.next();
+  tracked.estimate.state = LocalizerState::kGlobal;
+  tracked.estimate.checks_pose = true;
+  take(tracked, handed_on);
+  EXPECT_TRUE(ordered_back.empty());
+  tracked = robot.next();
+  tracked.estimate.state = LocalizerState::kGlobal;
+  take(tracked, handed_on);
+  EXPECT_EQ(ordered_back.size(), 1u);
+}
+
+TEST_F(Sets, NothingIsOrderedBackWhereTheFirstRunBeginsWithASearch) {
+  std::vector<ScanSet> handed_on;
+  TrackedScan tracked = robot.next();
+  tracked.estimate.state = LocalizerState::kGlobal;
+  take(tracked, handed_on);
+  EXPECT_TRUE(ordered_back.empty());
 }
 
 TEST_F(Sets, AllPassAShutGateThatIsOff) {

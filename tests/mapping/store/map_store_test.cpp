@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "tests/mapping/store/written_store.hpp"
+#include "tests/support/files/text_file.hpp"
 
 namespace deltamap::mapping::store {
 namespace {
@@ -170,7 +172,6 @@ TEST_F(Store, StoresWholeWhatCouldNotBeStoredStepByStep) {
     EXPECT_NE(complaint([&] { store.append_whole(10, {}, maps[9], {}); }).find("older"), std::string::npos);
   }
   MapStore store{file, first_map()};
-  EXPECT_EQ(store.dropped(), 0u);
   EXPECT_EQ(store.newest(), 10u);
   EXPECT_EQ(store.grid(3), maps[3]);
   EXPECT_EQ(store.grid(9), maps[9]);
@@ -219,16 +220,29 @@ TEST_F(Store, SurvivesBeingKilledBetweenWrites) {
   EXPECT_EQ((MapStore{file, first_map()}.newest()), 20u);
 }
 
+TEST_F(Store, KeepsNothingInTheLogAlone) {
+  MapStore store{file, first_map()};
+  fill(store, 20);
+  EXPECT_EQ(fs::file_size(file.string() + "-wal"), 0u);
+  fs::copy_file(file, folder.path() / "copy.sqlite");
+  EXPECT_EQ((MapStore{folder.path() / "copy.sqlite"}.newest()), 20u);
+}
+
 TEST_F(Store, ForgetsAWriteThatWasCutInTheLog) {
   const pid_t child = fork();
   if (child == 0) {
     MapStore store{file, first_map()};
-    fill(store, 20);
+    fill(store, 19);
+    sqlite3* reader = nullptr;  // what is written meanwhile stays in the log
+    sqlite3_open(file.c_str(), &reader);
+    sqlite3_exec(reader, "BEGIN; SELECT count(*) FROM revision", nullptr, nullptr, nullptr);
+    store.append(revision_after(store.grid(19), 20), {});
     _exit(0);
   }
   int status = 0;
   waitpid(child, &status, 0);
   const fs::path wal = file.string() + "-wal";
+  ASSERT_GT(fs::file_size(wal), 100u);
   fs::resize_file(wal, fs::file_size(wal) - 100);
   fs::remove(file.string() + "-shm");
   MapStore store{file, first_map()};
@@ -237,28 +251,56 @@ TEST_F(Store, ForgetsAWriteThatWasCutInTheLog) {
   EXPECT_EQ(store.newest(), 20u);
 }
 
-TEST_F(Store, StartsFromTheNewestGoodRevision) {
+TEST_F(Store, IsNotOpenedWhereARowIsNotWhatWasWrittenAndStaysAsItIs) {
+  {
+    MapStore store{file, first_map()};
+    fill(store, 10);
+  }
+  const std::vector<std::pair<std::string, std::string>> damages{
+      {"UPDATE revision SET changes = x'FFFFFFFF' WHERE number = 8", "revision 8 is not what was written"},
+      {"UPDATE revision SET time_ns = 1 WHERE number = 3", "revision 3 is not what was written"},
+      {"UPDATE revision_copy SET cause = 'x' WHERE number = 5", "revision 5 is not what was written"},
+      {"UPDATE map SET width = 41", "the size of a map is not what was written"},
+      {"DELETE FROM revision WHERE number = 10", "a row is missing"}};
+  const std::string sound = test::content_of(file);
+  for (const auto& [sql, what] : damages) {
+    (void)folder.write("store.sqlite", sound);
+    run_sql(file, sql);
+    const std::string damaged = test::content_of(file);
+    EXPECT_EQ(complaint([&] { MapStore store(file, first_map()); }), file.string() + ": damaged: " + what);
+    EXPECT_EQ(complaint([&] { MapStore store{file}; }), file.string() + ": damaged: " + what);
+    EXPECT_EQ(test::content_of(file), damaged) << sql;
+  }
+}
+
+TEST_F(Store, ReadsWhatCanBeHadOfADamagedFileIntoMemory) {
   std::vector<OccupancyGrid> maps;
   {
     MapStore store{file, first_map()};
     maps = fill(store, 10);
   }
+  EXPECT_EQ(MapStore::to_read(file).damage(), "");
   run_sql(file, "UPDATE revision SET changes = x'FFFFFFFF' WHERE number = 8");
-  MapStore store{file, first_map()};
-  EXPECT_EQ(store.newest(), 7u);
-  EXPECT_EQ(store.dropped(), 3u);
-  EXPECT_EQ(store.grid(7), maps[7]);
-  store.append(revision_after(maps[7], 8), {});
-  EXPECT_EQ((MapStore{file, first_map()}.newest()), 8u);
+  const std::string damaged = test::content_of(file);
+  const MapStore store = MapStore::to_read(file);
+  EXPECT_EQ(store.damage(), file.string() + ": damaged: revision 8 is not what was written; 10 revisions recovered");
+  for (std::uint32_t number = 0; number <= 10; ++number) EXPECT_EQ(store.grid(number), maps[number]) << number;
+  EXPECT_EQ(test::content_of(file), damaged);
 }
 
-TEST_F(Store, NoticesCellsThatAreNotWhatWasWritten) {
+TEST_F(Store, KeepsWhatIsProvisional) {
+  using List = std::vector<std::uint32_t>;
   {
     MapStore store{file, first_map()};
-    fill(store, 3);
+    EXPECT_EQ(store.provisional(), List{});
+    store.append(revision_after(first_map(), 1), {.cause = "evidence", .provisional = List{1}});
+    store.append(revision_after(store.grid(1), 2), {.cause = "evidence", .provisional = List{1, 2}});
+    (void)store.roll_back(0, {});
   }
-  run_sql(file, "UPDATE revision SET changes = (SELECT changes FROM revision WHERE number = 1) WHERE number = 3");
-  EXPECT_EQ((MapStore{file, first_map()}.newest()), 2u);
+  MapStore store{file, first_map()};
+  EXPECT_EQ(store.provisional(), (List{1, 2}));
+  store.set_provisional({});
+  EXPECT_EQ((MapStore{file, first_map()}.provisional()), List{});
 }
 
 TEST_F(Store, NamesAFileThatWasCut) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/store/guarded_rows.hpp"
 #include "mapping/store/store_schema.hpp"
 #include "tests/support/daemon/stored_maps.hpp"
 #include "tests/support/files/temporary_folder.hpp"
@@ -27,9 +28,17 @@ class RevisionNames : public testing::Test {
     for (const std::int64_t map : {kMap, kOtherMap}) {
       database.run("INSERT INTO revision (map, number, refused) VALUES (" + std::to_string(map) + ", 5, 0)");
     }
+    guard(database, Table::kRevision, "true");
   }
   [[nodiscard]] std::int64_t kept_whole() {
     return database.number("SELECT count(*) FROM revision WHERE grid IS NOT NULL");
+  }
+  [[nodiscard]] Names names_of(std::int64_t map) {
+    Names names;
+    Statement rows{database, "SELECT number, name FROM revision WHERE map = ? AND name IS NOT NULL"};
+    rows.bind(map);
+    while (rows.step()) names.emplace(static_cast<std::uint32_t>(rows.number(0)), rows.text(1));
+    return names;
   }
   void write(const std::string& name) { write_name(database, kMap, 5, name, grid); }
 
@@ -39,11 +48,11 @@ class RevisionNames : public testing::Test {
 };
 
 TEST_F(RevisionNames, AreOfOneMapAndTheNewestCounts) {
-  EXPECT_EQ(names_in(database, kMap), Names{});
+  EXPECT_EQ(names_of(kMap), Names{});
   write("before the move");
   write("after the move");
-  EXPECT_EQ(names_in(database, kMap), (Names{{5, "after the move"}}));
-  EXPECT_EQ(names_in(database, kOtherMap), Names{});
+  EXPECT_EQ(names_of(kMap), (Names{{5, "after the move"}}));
+  EXPECT_EQ(names_of(kOtherMap), Names{});
 }
 
 TEST_F(RevisionNames, KeepTheRevisionWholeEvenOnceTheyAreTakenAway) {
@@ -51,16 +60,29 @@ TEST_F(RevisionNames, KeepTheRevisionWholeEvenOnceTheyAreTakenAway) {
   write("before the move");
   EXPECT_EQ(kept_whole(), 1);
   write("");
-  EXPECT_EQ(names_in(database, kMap), Names{});
+  EXPECT_EQ(names_of(kMap), Names{});
   EXPECT_EQ(kept_whole(), 1);
+}
+
+TEST_F(RevisionNames, LeaveTheRowWithItsChecksumAndItsCopy) {
+  write("before the move");
+  EXPECT_EQ(damaged_row(database), "");
+  write("");
+  EXPECT_EQ(damaged_row(database), "");
+}
+
+TEST_F(RevisionNames, AreNotGivenToADamagedRow) {
+  database.run("UPDATE revision SET phase = 3");
+  EXPECT_NE(test::complaint([&] { write("before the move"); }).find("damaged: revision 5 is not what was written"),
+            std::string::npos);
 }
 
 TEST_F(RevisionNames, AreOneLineOfAtMost80Bytes) {
   EXPECT_NE(test::complaint([&] { write("two\nlines"); }), "");
   EXPECT_NE(test::complaint([&] { write(std::string(81, 'x')); }), "");
-  EXPECT_EQ(names_in(database, kMap), Names{});
+  EXPECT_EQ(names_of(kMap), Names{});
   write(std::string(80, 'x'));
-  EXPECT_EQ(names_in(database, kMap).size(), 1U);
+  EXPECT_EQ(names_of(kMap).size(), 1U);
 }
 
 }  // namespace

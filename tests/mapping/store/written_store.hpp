@@ -42,4 +42,18 @@ inline void run_sql(const std::filesystem::path& file, const std::string& sql) {
   sqlite3_close(database);
 }
 
+/// What version 1 or 2 would have written: without checksums and copies, names in a table of their own.
+inline void make_older(const std::filesystem::path& file, int version) {
+  run_sql(file,
+          "CREATE TABLE named (map INTEGER, number INTEGER, name TEXT NOT NULL, PRIMARY KEY (map, number));"
+          "INSERT INTO named SELECT map, number, name FROM revision WHERE name IS NOT NULL;"
+          "DROP TABLE map_copy; DROP TABLE revision_copy; ALTER TABLE map DROP COLUMN checksum;"
+          "ALTER TABLE map DROP COLUMN provisional; ALTER TABLE revision DROP COLUMN checksum;"
+          "ALTER TABLE revision DROP COLUMN name; PRAGMA user_version = " +
+              std::to_string(version));
+  for (const char* column : {"xx_m2", "xy_m2", "xh_m_rad", "yy_m2", "yh_m_rad", "hh_rad2"}) {
+    if (version == 1) run_sql(file, std::string("ALTER TABLE revision DROP COLUMN ") + column);
+  }
+}
+
 }  // namespace deltamap::mapping::store

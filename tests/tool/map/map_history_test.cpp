@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -175,6 +176,25 @@ TEST_F(MapHistory, WithALogThatCannotBeReadIsNotReadWithoutIt) {
   const ToolRun run = history({file, "list"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.errors.find("Permission denied"), std::string::npos) << run.errors;
+}
+
+TEST_F(MapHistory, OfADamagedStoreIsReadAndNotWritten) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, "UPDATE revision SET changes = x'FF' WHERE number = 1", nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  const std::string what = file + ": damaged: revision 1 is not what was written";
+  const std::string out = (elsewhere.path() / "one.yaml").string();
+  const ToolRun read = history({file, "export", "1", out});
+  EXPECT_EQ(read.exit_code, 0) << read.errors;
+  EXPECT_EQ(read.errors, "deltamap: " + what + "; 1 revision recovered; the file is left as it is\n");
+  EXPECT_EQ(read_grid(out), second);
+  for (const char* act : {"rollback", "undo"}) {
+    const ToolRun written = history({file, act, "1"});
+    EXPECT_EQ(written.exit_code, 1);
+    EXPECT_NE(written.errors.find(what), std::string::npos) << written.errors;
+  }
 }
 
 TEST_F(MapHistory, TellsThePoseCovarianceOfEachRevision) {

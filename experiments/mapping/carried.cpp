@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// `carried`: robots that somebody carries elsewhere 1 to 30 s after their start, while nothing is known yet of how
+// their scans usually fit. Is anything wrong in the map a minute after a stop and a start?
+#include <array>
+
+#include "core/random.hpp"
+#include "experiments/drive/first_map.hpp"
+#include "experiments/mapping/carried_run.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/watch/mapping_run.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+constexpr std::array kPlaces{"room", "hall", "depot", "racks"};
+constexpr std::array kStops{"kept", "given", "none"};  // the pose at the second start, or no stop at all
+constexpr double kSoonest_s = 1.0;
+constexpr double kLatest_s = 30.0;
+constexpr double kStopSoonest_s = 5.0;
+constexpr double kStopLatest_s = 60.0;
+
+std::vector<Run> runs_of(const Options& options) {
+  std::vector<Run> runs;
+  for (const std::string place : kPlaces) {
+    const auto scenario = scenario_of(options, place + ".yaml");
+    for (const std::string stop : kStops) {
+      for (const std::uint64_t seed : options.seeds(15)) {
+        CarriedRun run{*scenario, settings_of(options, "evidence"), seed};
+        Random random{seed};
+        run.carried_after_s = random.uniform(kSoonest_s, kLatest_s);
+        run.stopped_after_s = random.uniform(kStopSoonest_s, kStopLatest_s);
+        run.restarts = stop != "none";
+        run.is_given_again = stop == "given";
+        runs.push_back({place + "-" + stop + "-seed" + std::to_string(seed), [=] {
+                          Outcome outcome = outcome_of(run);
+                          outcome.labels = {{"place", place}, {"stop", stop}, {"seed", std::to_string(seed)}};
+                          return outcome;
+                        }});
+      }
+    }
+  }
+  return runs;
+}
+
+Report report_of(const std::vector<Outcome>& outcomes) {
+  Report report;
+  TextTable table{"By place and pose at the second start, all seeds",
+                  {"place", "pose", "robots", "revisions", "withdrawn", "wall cells wrong at the stop",
+                   "a minute after the start", "ghost cells at the stop", "a minute after the start"},
+                  {}};
+  for (const std::string stop : kStops) {
+    double wrong = 0.0;
+    double ghosts = 0.0;
+    std::size_t robots = 0;
+    for (const std::string place : kPlaces) {
+      std::array<double, 6> sums{};
+      std::size_t count = 0;
+      for (const Outcome& outcome : outcomes) {
+        if (outcome.label("place") != place || outcome.label("stop") != stop) continue;
+        ++count;
+        std::size_t column = 0;
+        for (const char* name :
+             {"revisions", "withdrawn", "walls_wrong_at_stop", "walls_wrong", "ghosts_at_stop", "ghosts"}) {
+          sums.at(column++) += outcome.number(name);
+        }
+      }
+      if (count == 0) continue;
+      std::vector<std::string> row{place, stop, std::to_string(count)};
+      for (const double sum : sums) row.push_back(text_of(sum));
+      table.rows.push_back(std::move(row));
+      wrong += sums[3];
+      ghosts += sums[5];
+      robots += count;
+    }
+    if (robots == 0) continue;
+    report.figures.push_back(
+        {stop + ": wall cells wrong", wrong, "", Target{.most = 0.0}, "", Certainty{.runs = robots}});
+    report.figures.push_back({stop + ": ghost cells", ghosts, "", {}, "", Certainty{.runs = robots}});
+  }
+  report.tables.push_back(std::move(table));
+  return report;
+}
+
+}  // namespace
+
+Experiment carried_experiment() {
+  return {"carried", "robots carried right after their start, stopped and started: does their map stay right?", runs_of,
+          report_of};
+}
+
+}  // namespace deltamap::experiments
