@@ -74,7 +74,7 @@ struct Pipeline::State {
   DeltaStage delta;                // TrackedScan → ScanSet, TransientObstacles
   MapStage map;                    // ScanSet, MapOrder → MapRevision
 
-  void tell(const control::CommandOutcome& outcome) {
+  void tell(const control::CommandOutcome& outcome) const {
     if (control) control->tell(outcome);
   }
   LiveSettings::Outcome reload();
