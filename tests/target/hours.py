@@ -47,7 +47,7 @@ def rows(figures, told, course):
 def section(made, course):
     return ["The daemon's own pipeline in the i386 program, with threads, store, recording and files, at 2 scans a second of virtual time in `endurance.yaml`: a hall of",
             "35 m x 35 m where a container is moved each minute, doors open and people pass. The simulator's memory is in it. What is kept of a place is made when it is",
-            "first seen: it grows until the hall has been seen whole, in the fourth hour, and is bounded by its area ([memory](../operating.md#memory)).",
+            "first seen: it grows until the hall has been seen whole, in the fourth hour, and is bounded by its area ([memory](../architecture.md#memory)).",
             "Looked at after %s h." % ", ".join("%.2f" % hour for hour, _, _ in course), ""] + table_lines(made)
 
 
