@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The programs and set-ups in examples/, against a daemon with a simulated robot: they print what the daemon serves, and no panel or
+scrape job names what it does not. usage: examples.py FOLDER-OF-PROGRAMS"""
+
+import json
+import os
+import pathlib
+import re
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+WORLD = ROOT / "config/scenarios/room.yaml"
+PATIENCE_S = 120.0
+START = (1.0, 2.0)  # the room's robot
+
+
+def check(condition, what):
+    if not condition:
+        raise SystemExit(f"examples: {what}")
+
+
+def until(condition, what):
+    give_up_at = time.monotonic() + PATIENCE_S
+    while not condition():
+        check(time.monotonic() < give_up_at, what)
+        time.sleep(0.05)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def read(address):
+    try:
+        return urllib.request.urlopen(address, timeout=PATIENCE_S).read().decode()
+    except OSError:  # nobody listens yet
+        return None
+
+
+def check_pose_stream(place):
+    """It says where the robot stands once a planner may drive by that, and ends with the daemon."""
+    client = subprocess.Popen([ROOT / "examples/pose_stream/pose_client.py", place / "poses.sock"], stdout=subprocess.PIPE, text=True)
+    give_up_at = time.monotonic() + PATIENCE_S
+    for line in client.stdout:
+        if line.strip() != "stand":
+            break
+        check(time.monotonic() < give_up_at, "nobody may drive by the pose")
+    else:
+        check(False, "pose_client.py tells no pose")
+    told, x, y, heading = map(float, line.split())
+    check(0 < told <= time.time(), f"a pose of {told}")
+    check(abs(x - START[0]) < 0.5 and abs(y - START[1]) < 0.5 and abs(heading) < 0.5, f"the robot stands at {START}: {line}")
+    return client
+
+
+def check_map(page, place):
+    """The page and the file of `map.newest` are the same map; the robot stands on free floor, and outside nothing is known."""
+    program = ROOT / "examples/planner_map/read_map.py"
+    point = f"{START[0]},{START[1]}"
+    told = {name: subprocess.run([program, source, point], check=True, capture_output=True, text=True).stdout.splitlines()
+            for name, source in (("page", page), ("file", place / "newest.yaml"))}
+    check(told["page"][0] == "revision 0" and told["page"][1:] == told["file"], f"two maps: {told}")
+    check(told["file"][-1] == "free", f"the robot stands on {told['file'][-1]}")
+    outside = subprocess.run([program, place / "newest.yaml", "-1000,0"], check=True, capture_output=True, text=True).stdout
+    check(outside.splitlines()[-1] == "unknown", f"outside the map it is {outside}")
+
+
+def check_metrics(page):
+    """Each metric and label of the dashboard is served, and the scrape job asks at the delivered port."""
+    served = read(f"{page}/metrics")
+    dashboard = json.loads((ROOT / "examples/prometheus/dashboard.json").read_text())
+    asked = [target["expr"] for panel in dashboard["panels"] for target in panel["targets"]]
+    asked.append(dashboard["templating"]["list"][1]["definition"])
+    for expression in asked:
+        names = re.findall(r"deltamap_\w+", expression)
+        check(names, f"no metric in {expression}")
+        for name in names:
+            check(re.search(rf"^{name}(\{{[^}}]*\}})? \S+$", served, re.M), f"{name} is not served")
+    for panel in dashboard["panels"]:
+        for target in panel["targets"]:
+            for label in re.findall(r"{{(\w+)}}", target["legendFormat"]):
+                metric = re.search(r"deltamap_\w+", target["expr"]).group()
+                check(re.search(rf"^{metric}{{[^}}]*\b{label}=", served, re.M), f"{metric} has no label {label}")
+    check('"127.0.0.1:8484"' in (ROOT / "examples/prometheus/prometheus.yml").read_text(), "another port in prometheus.yml")
+
+
+def run(bin_folder, place, log):
+    subprocess.run([bin_folder / "deltamap", "sim", "--world", WORLD, "--write-map", place / "m0.yaml"], check=True, stdout=log, stderr=log)
+    processes = [subprocess.Popen([bin_folder / "deltamap", "sim", "--world", WORLD, "--links", place], stdout=log, stderr=log)]
+    port = free_port()
+    page = f"http://127.0.0.1:{port}"
+    settings = {"robot.port": place / "robot", "laser.port": place / "laser", "map.file": place / "m0.yaml", "map.store": "", "map.newest": place / "newest.yaml",
+                "recording.file": "", "control.socket": "", "poses.socket": place / "poses.sock", "dashboard.port": port, "dashboard.control": "false",
+                "navigation.mode": "off", "mapping.enabled": "false"}
+    words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+    try:
+        until(lambda: (place / "robot").exists() and (place / "laser").exists(), "no simulator")
+        processes.append(subprocess.Popen([bin_folder / "deltamapd", "--config", ROOT / "config/simulation.yaml", "--initial-pose", f"{START[0]},{START[1]},0", *words],
+                                          stdout=log, stderr=log))
+        until(lambda: (place / "poses.sock").exists() and (place / "newest.yaml").exists() and read(f"{page}/metrics") is not None, "no daemon")
+        processes.append(check_pose_stream(place))
+        check_map(page, place)
+        check_metrics(page)
+        processes[1].terminate()
+        check(processes[1].wait(PATIENCE_S) == 0, "the daemon did not end well")
+        processes[2].stdout.read()
+        check(processes[2].wait(PATIENCE_S) == 0, "pose_client.py does not end with the daemon")
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+
+
+def main():
+    bin_folder = pathlib.Path(sys.argv[1]).resolve()
+    os.chdir(ROOT)
+    with tempfile.TemporaryDirectory(prefix="deltamap-examples-") as folder:
+        place = pathlib.Path(folder)
+        with (place / "log").open("w") as log:
+            try:
+                run(bin_folder, place, log)
+            except BaseException:
+                print((place / "log").read_text()[-4000:], file=sys.stderr)
+                raise
+
+
+if __name__ == "__main__":
+    main()
