@@ -159,6 +159,7 @@ def folder_of_trials(build, name, meant, act, seed, count):
         keeper = Keeper(build, pathlib.Path(folder), trials, seed)
         for _ in range(count):
             keeper.trial(act)
+        keeper.revisions = None  # it goes on: more come, old ones go
         keeper.went_on(*keeper.run("write", 3))
         keeper.verify()
     return trials
