@@ -122,7 +122,8 @@ TEST(ReplayStart, IsWhatTheRunBeganFromOnTheFirstMapAndOnItsOwn) {
   for (const auto& given : {first, begin.start.map}) {
     const ReplayStart on = replay_start(recorded, ReplayJob{}, given);
     EXPECT_EQ(on.journal, "obeyed");
-    EXPECT_EQ(on.began, "what the recorded run began from: revision=7, kept pose, stability, wheels and mount");
+    EXPECT_EQ(on.began,
+              "what the recorded run began from: revision=7 (2 provisional), kept pose, stability, wheels and mount");
     EXPECT_EQ(*on.start.map, *begin.start.map);
     EXPECT_EQ(on.start.revision, 7u);
     EXPECT_EQ(on.start.remembered, begin.start.remembered);
