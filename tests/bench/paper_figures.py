@@ -41,7 +41,7 @@ ROWS = [
     ("Table 1: time of MA1", "0.67 s", "{MA1, all four layouts, continuous angles: mean CPU time:.0f} ms of CPU", "table1"),
     ("Table 2: ten drives of two hours, acceptance (method evidence)", "0.968–0.980",
      "{hall: acceptance, least:.4f} and more, within {hall: acceptance_perfect - acceptance, most:.4f} of the perfect mapper's", "table2"),
-    ("Table 2: what of the changes the map follows (skill)", "–", "{hall: skill, least:.3f} and more, mean {hall: skill, mean:.3f}", "table2"),
+    ("Table 2: what of the changes the map follows ([skill](glossary.md#figures))", "–", "{hall: skill, least:.3f} and more, mean {hall: skill, mean:.3f}", "table2"),
     ("Table 2: error of the pose", "< 0.5 m, one loss in ten",
      "mean at most {hall: error_mean_m, most:.4f} m, 99 % within {hall: error_p99_m, most:.3f} m; lost {hall: not_tracking, most:.1%} of the time",
      "table2"),
