@@ -31,7 +31,8 @@ std::vector<Run> runs_of(const Options& options) {
         run.stopped_after_s = random.uniform(kStopSoonest_s, kStopLatest_s);
         run.restarts = stop != "none";
         run.is_given_again = stop == "given";
-        runs.push_back({place + "-" + stop + "-seed" + std::to_string(seed), [=] {
+        const std::string name = std::string(place).append("-").append(stop).append("-seed") + std::to_string(seed);
+        runs.push_back({name, [=] {
                           Outcome outcome = outcome_of(run);
                           outcome.labels = {{"place", place}, {"stop", stop}, {"seed", std::to_string(seed)}};
                           return outcome;
