@@ -32,7 +32,7 @@ bool is_proof(const ViewTally& view, const PoseVerdictParams& params) {
 
 /// ln p(support | right) - ln p(support | wrong) of one new view, halved because views of one drive are alike. From
 /// drives in the paper's hall at right poses (unchanged, 10 %, 50 % changed) and wrong ones;
-/// docs/decisions/two-answers.md.
+/// docs/decisions/pose-verdict.md.
 double evidence_of(double support) {
   constexpr std::array<double, 11> kByTenths{-2.6, -2.6, -2.0, -1.1, -0.2, 0.25, 0.5, 0.75, 1.0, 1.2, 1.2};
   const double at = 10.0 * std::clamp(support, 0.0, 1.0);

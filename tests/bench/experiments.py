@@ -76,7 +76,7 @@ Written by `./dev experiments --only unseen --seed 1000`, or from what `deltamap
 
 Every seed is another kind of building, first map, laser, robot and life in it ([what is drawn](../experiments.md)). Seeds 1 to
 999 are for development; 1000 to 1059 for final figures. Why figures are missed:
-[what falls short](../decisions/what-falls-short.md).
+[known limits](known-limits.md).
 """
 
 # Their tables fill a page of their own. `empty`: what an empty table says; `seed`: of other seeds the page lies in the run's folder.
