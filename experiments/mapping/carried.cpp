@@ -78,6 +78,11 @@ Report report_of(const std::vector<Outcome>& outcomes) {
         {stop + ": wall cells wrong", wrong, "", Target{.most = 0.0}, "", Certainty{.runs = robots}});
     report.figures.push_back({stop + ": ghost cells", ghosts, "", {}, "", Certainty{.runs = robots}});
   }
+  std::vector<std::pair<double, double>> course;
+  for (const Outcome& outcome : outcomes) {
+    course.emplace_back(static_cast<double>(course.size() + 1), outcome.number("walls_wrong"));
+  }
+  report.charts.push_back({"wall cells wrong a minute after the start", "robot", "cells", {{"robots", course}}});
   report.tables.push_back(std::move(table));
   return report;
 }
