@@ -59,7 +59,8 @@ PioneerOutput PioneerSession::on_bytes(std::span<const std::uint8_t> bytes, Time
 /// SIPs that have waited for the reader lie one right behind another in their chunk, but were sent a cycle apart (A6):
 /// dated by the line alone the robot would be ten times as fast as it is.
 std::vector<Packet> PioneerSession::at_the_controllers_pace(std::vector<Packet> packets) const {
-  const std::chrono::milliseconds cycle{config_.value_or(ConfigPacket{}).sip_cycle_ms};
+  if (packets.size() < 2) return packets;
+  const std::chrono::milliseconds cycle{config_ ? config_->sip_cycle_ms : ConfigPacket{}.sip_cycle_ms};
   std::optional<Timestamp> next;
   for (auto packet = packets.rbegin(); packet != packets.rend(); ++packet) {
     if (!is_sip(packet->type())) continue;

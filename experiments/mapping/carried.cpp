@@ -79,6 +79,7 @@ Report report_of(const std::vector<Outcome>& outcomes) {
     report.figures.push_back({stop + ": ghost cells", ghosts, "", {}, "", Certainty{.runs = robots}});
   }
   std::vector<std::pair<double, double>> course;
+  course.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) {
     course.emplace_back(static_cast<double>(course.size() + 1), outcome.number("walls_wrong"));
   }

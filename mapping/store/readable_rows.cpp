@@ -2,7 +2,6 @@
 #include "mapping/store/readable_rows.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <utility>
 
@@ -57,22 +56,20 @@ enum Column : int {  // of `revision`, and behind them
   kColumnIsSure
 };
 
-/// Of each row another, or what it is known by.
-constexpr std::array kOwn{kColumnId, kColumnMap, kColumnNumber, kColumnRefused, kColumnChanges, kColumnGrid};
-
 std::vector<Value> columns_of(const Statement& row, int count) {
   std::vector<Value> columns;
   for (int column = 0; column < count; ++column) columns.push_back(row.value(column));
   return columns;
 }
 
-std::vector<Value> others_in(const Statement& row) {
-  std::vector<Value> others(kColumnIsSure);
+/// All but what may be large.
+std::vector<Value> small_columns_of(const Statement& row) {
+  std::vector<Value> columns(kColumnIsSure);
   for (int column = 0; column < kColumnIsSure; ++column) {
-    if (std::find(kOwn.begin(), kOwn.end(), column) == kOwn.end())
-      others[static_cast<std::size_t>(column)] = row.value(column);
+    if (column != kColumnChanges && column != kColumnGrid)
+      columns[static_cast<std::size_t>(column)] = row.value(column);
   }
-  return others;
+  return columns;
 }
 
 ReadableRow row_in(const Statement& row, std::size_t source, const std::string& table) {
@@ -86,7 +83,7 @@ ReadableRow row_in(const Statement& row, std::size_t source, const std::string& 
           .time_ns = row.number(kColumnTime),
           .hash = row.number(kColumnHash),
           .changes = row.blob(kColumnChanges),
-          .others = others_in(row),
+          .columns = small_columns_of(row),
           .source = source,
           .table = table};
 }
@@ -279,7 +276,7 @@ void ReadableRows::copy(const ReadableRow& row, std::int64_t id, Database& targe
     } else if (column == kColumnGrid) {
       write.bind(grid);
     } else {
-      write.bind(row.others[static_cast<std::size_t>(column)]);
+      write.bind(row.columns[static_cast<std::size_t>(column)]);
     }
   }
   write.step();

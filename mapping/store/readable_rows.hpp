@@ -29,9 +29,9 @@ struct ReadableRow {
   std::int64_t time_ns = 0;
   std::int64_t hash = 0;  ///< of M_k
   std::vector<std::uint8_t> changes;
-  /// Of each column: where a file is damaged, what was found once need not be found again. Null: those above, and the
-  /// whole map.
-  std::vector<Value> others{};
+  /// As they were read, null for the changes and the whole map: where a file is damaged, what was found once need not
+  /// be found again.
+  std::vector<Value> columns{};
   // Where its whole map is read.
   std::size_t source = 0;
   std::string table;
