@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why the robot must stand. The status shows the reason, the log tells of those that a person should learn of, and
-// docs/operating.md says what ends each.
+// docs/operating/why-it-stands.md says what ends each.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of --out (docs/operating.md, Files): trajectory.tum, localization.csv, changes.jsonl, map, report.json. A
+// The files of --out (docs/operating/files.md): trajectory.tum, localization.csv, changes.jsonl, map, report.json. A
 // replay writes them aside and moves them in place when all is done, so that a failure leaves nothing half-written; the
 // daemon writes them while it runs.
 #pragma once
