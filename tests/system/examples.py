@@ -4,38 +4,15 @@
 scrape job names what it does not. usage: examples.py FOLDER-OF-PROGRAMS"""
 
 import json
-import os
-import pathlib
 import re
-import socket
 import subprocess
-import sys
-import tempfile
 import time
 import urllib.request
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from live_trial import PATIENCE_S, ROOT, check, free_port, main, until
+
 WORLD = ROOT / "config/scenarios/room.yaml"
-PATIENCE_S = 120.0
 START = (1.0, 2.0)  # the room's robot
-
-
-def check(condition, what):
-    if not condition:
-        raise SystemExit(f"examples: {what}")
-
-
-def until(condition, what):
-    give_up_at = time.monotonic() + PATIENCE_S
-    while not condition():
-        check(time.monotonic() < give_up_at, what)
-        time.sleep(0.05)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def read(address):
@@ -119,18 +96,5 @@ def run(bin_folder, place, log):
             process.wait()
 
 
-def main():
-    bin_folder = pathlib.Path(sys.argv[1]).resolve()
-    os.chdir(ROOT)
-    with tempfile.TemporaryDirectory(prefix="deltamap-examples-") as folder:
-        place = pathlib.Path(folder)
-        with (place / "log").open("w") as log:
-            try:
-                run(bin_folder, place, log)
-            except BaseException:
-                print((place / "log").read_text()[-4000:], file=sys.stderr)
-                raise
-
-
 if __name__ == "__main__":
-    main()
+    main(run)

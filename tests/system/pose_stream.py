@@ -6,20 +6,16 @@
 import csv
 import json
 import math
-import os
-import pathlib
 import signal
 import socket
 import stat
 import subprocess
-import sys
-import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from live_trial import PATIENCE_S, ROOT, check, main, until
+
 WORLD = ROOT / "config/scenarios/room.yaml"
 SCANS = 40
-PATIENCE_S = 120.0
 
 # The schema of a line (docs/api.md): every key, and what its value may be.
 NUMBER, TEXT, OBJECT = (int, float), str, dict
@@ -27,11 +23,6 @@ POSE = {"type": TEXT, "time": NUMBER, "scan": int, "x_m": NUMBER, "y_m": NUMBER,
         "pose_right": NUMBER, "map_wrong": NUMBER, "speed_m_per_s": NUMBER, "turn_rate_rad_per_s": NUMBER, "revision": int,
         "other_hypothesis": (dict, type(None)), "gate": (dict, type(None)), "latency_ms": NUMBER, "may_drive_by_pose": bool}
 COVARIANCE = {"xx_m2", "xy_m2", "yy_m2", "xh_m_rad", "yh_m_rad", "hh_rad2"}
-
-
-def check(condition, what):
-    if not condition:
-        raise SystemExit(f"pose_stream: {what}")
 
 
 class Poses:
@@ -50,13 +41,6 @@ class Poses:
     def close(self):
         self.lines.close()
         self.socket.close()
-
-
-def until(condition, what):
-    give_up_at = time.monotonic() + PATIENCE_S
-    while not condition():
-        check(time.monotonic() < give_up_at, what)
-        time.sleep(0.05)
 
 
 def check_pose(pose):
@@ -137,18 +121,5 @@ def run(bin_folder, place, log):
             process.wait()
 
 
-def main():
-    bin_folder = pathlib.Path(sys.argv[1]).resolve()
-    os.chdir(ROOT)
-    with tempfile.TemporaryDirectory(prefix="deltamap-poses-") as folder:
-        place = pathlib.Path(folder)
-        with (place / "log").open("w") as log:
-            try:
-                run(bin_folder, place, log)
-            except BaseException:
-                print((place / "log").read_text()[-4000:], file=sys.stderr)
-                raise
-
-
 if __name__ == "__main__":
-    main()
+    main(run)

@@ -95,13 +95,20 @@ TEST(SerialPort, CarriesEveryByteValueBothWaysUnchanged) {
   EXPECT_LE(stamp, port_clock_now());
 }
 
+/// A port that notes the size of each chunk; null where it cannot be opened.
+auto started(boost::asio::io_context& loop, const PseudoTerminal& device, std::vector<std::size_t>& chunks) {
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 500000);
+  EXPECT_TRUE(port) << refused;
+  if (port) port->start({[&](std::span<const std::uint8_t> bytes, Timestamp) { chunks.push_back(bytes.size()); }, {}});
+  return std::move(port);
+}
+
 TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused, note] = open_serial_port(loop, device.path(), 500000);
-  ASSERT_TRUE(port) << refused;
   std::vector<std::size_t> chunks;
-  port->start({[&](std::span<const std::uint8_t> bytes, Timestamp) { chunks.push_back(bytes.size()); }, {}});
+  const auto port = started(loop, device, chunks);
+  ASSERT_TRUE(port);
   constexpr std::size_t kScans = 15;
   for (std::size_t i = 0; i < kScans; ++i) device.send(Bytes(732, 0x02));  // more than a terminal gives at once
   run_until(loop, [&] { return !chunks.empty(); });
@@ -111,10 +118,9 @@ TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
 TEST(SerialPort, HandsOverAsOneChunkWhatComesInPiecesBehindAStandstill) {
   PseudoTerminal device;
   boost::asio::io_context loop;
-  auto [port, refused, note] = open_serial_port(loop, device.path(), 500000);
-  ASSERT_TRUE(port) << refused;
   std::vector<std::size_t> chunks;
-  port->start({[&](std::span<const std::uint8_t> bytes, Timestamp) { chunks.push_back(bytes.size()); }, {}});
+  const auto port = started(loop, device, chunks);
+  ASSERT_TRUE(port);
   for (int piece = 0; piece < 3; ++piece) {
     device.send(Bytes(2048, 0x02));
     loop.restart();
