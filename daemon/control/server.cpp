@@ -152,7 +152,7 @@ struct Server::State {
   }
 
   void end(Session* ended) {
-    ended->close();
+    clients.end([ended] { ended->close(); });
     std::erase_if(sessions, [ended](const auto& session) { return session.get() == ended; });
   }
 

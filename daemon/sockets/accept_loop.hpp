@@ -34,6 +34,12 @@ class AcceptLoop {
     acceptor_.non_blocking(true, ignored);
     wait();
   }
+  /// Ends a client: what that frees is first of all for who comes next here.
+  void end(const std::function<void()>& close_client) {
+    const auto turn = SpareDescriptor::turn();
+    close_client();
+    spare_.hold();
+  }
   /// Nobody is welcome any more.
   void close() {
     boost::system::error_code ignored;
@@ -64,6 +70,7 @@ class AcceptLoop {
   void take_all() {
     namespace reason = boost::asio::error;
     for (int i = 0; i < kMostAtOnce && acceptor_.is_open() && somebody_waits(); ++i) {
+      const auto turn = SpareDescriptor::turn();
       boost::system::error_code error;
       typename Protocol::socket socket = acceptor_.accept(error);
       if (!error) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <mutex>
 #include <utility>
 
 namespace deltamap::daemon {
@@ -20,11 +21,18 @@ class SpareDescriptor {
   SpareDescriptor(const SpareDescriptor&) = delete;
   SpareDescriptor& operator=(const SpareDescriptor&) = delete;
 
+  /// Whoever keeps a spare one holds this from giving it up until something has it, and from closing something until
+  /// the spare one is back: else another of them takes what was meant for him, and he may never have one again.
+  [[nodiscard]] static std::unique_lock<std::recursive_mutex> turn() {
+    static std::recursive_mutex one_at_a_time;
+    return std::unique_lock{one_at_a_time};
+  }
+
   /// Takes one unless it has one. Where there is none, the next time.
   void hold() {
     if (descriptor_ < 0) descriptor_ = ::eventfd(0, EFD_CLOEXEC);
   }
-  /// What is opened next has one, unless another thread is faster. False: it had none.
+  /// What is opened next has one, unless a thread that keeps none is faster. False: it had none.
   [[nodiscard]] bool give() { return descriptor_ >= 0 && ::close(std::exchange(descriptor_, -1)) == 0; }
 
   /// Given up as long as it lives.
