@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -62,10 +63,10 @@ std::vector<Packet> PioneerSession::at_the_controllers_pace(std::vector<Packet> 
   if (packets.size() < 2) return packets;
   const std::chrono::milliseconds cycle{config_ ? config_->sip_cycle_ms : ConfigPacket{}.sip_cycle_ms};
   std::optional<Timestamp> next;
-  for (auto packet = packets.rbegin(); packet != packets.rend(); ++packet) {
-    if (!is_sip(packet->type())) continue;
-    if (next) packet->first_byte = std::min(packet->first_byte, *next - cycle);
-    next = packet->first_byte;
+  for (Packet& packet : packets | std::views::reverse) {
+    if (!is_sip(packet.type())) continue;
+    if (next) packet.first_byte = std::min(packet.first_byte, *next - cycle);
+    next = packet.first_byte;
   }
   return packets;
 }

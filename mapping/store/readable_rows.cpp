@@ -58,6 +58,7 @@ enum Column : int {  // of `revision`, and behind them
 
 std::vector<Value> columns_of(const Statement& row, int count) {
   std::vector<Value> columns;
+  columns.reserve(static_cast<std::size_t>(count));
   for (int column = 0; column < count; ++column) columns.push_back(row.value(column));
   return columns;
 }
@@ -235,9 +236,11 @@ std::optional<std::int64_t> ReadableRows::read_next(std::int64_t id, std::size_t
 void ReadableRows::take(ReadableRow row) {
   OfMap& of_map = maps_[row.map];
   if (row.is_refusal) {
-    keep_better(of_map.refusals, std::int64_t{row.id}, std::move(row));
+    const std::int64_t id = row.id;
+    keep_better(of_map.refusals, id, std::move(row));
   } else {
-    keep_better(of_map.revisions, std::uint32_t{row.number}, std::move(row));
+    const std::uint32_t number = row.number;
+    keep_better(of_map.revisions, number, std::move(row));
   }
 }
 
