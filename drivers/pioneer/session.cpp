@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -63,11 +62,11 @@ std::vector<Packet> PioneerSession::at_the_controllers_pace(std::vector<Packet> 
   if (packets.size() < 2) return packets;
   const std::chrono::milliseconds cycle{config_ ? config_->sip_cycle_ms : ConfigPacket{}.sip_cycle_ms};
   std::optional<Timestamp> next;
-  for (Packet& packet : packets | std::views::reverse) {
-    if (!is_sip(packet.type())) continue;
+  std::for_each(packets.rbegin(), packets.rend(), [&](Packet& packet) {
+    if (!is_sip(packet.type())) return;
     if (next) packet.first_byte = std::min(packet.first_byte, *next - cycle);
     next = packet.first_byte;
-  }
+  });
   return packets;
 }
 
