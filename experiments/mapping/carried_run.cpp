@@ -26,8 +26,7 @@ WrongCells wrong_in(const OccupancyGrid& map, const OccupancyGrid& truth) {
 /// Drives on, and counts.
 class Watch {
  public:
-  Watch(const CarriedRun& run, MappingDrive& drive, const OccupancyGrid& truth)
-      : run_{run}, drive_{drive}, truth_{truth} {}
+  Watch(MappingDrive& drive, const OccupancyGrid& truth) : drive_{drive}, truth_{truth} {}
 
   void until(double end_s) {
     while (passed_s_ < end_s) {
@@ -58,7 +57,6 @@ class Watch {
               static_cast<double>(scan.awareness.gate), revisions, withdrawn, wrong_now.walls, wrong_now.ghosts});
   }
 
-  const CarriedRun& run_;
   MappingDrive& drive_;
   const OccupancyGrid& truth_;
   double passed_s_ = 0.0;
@@ -74,7 +72,7 @@ Outcome outcome_of(const CarriedRun& run) {
   MappingDrive drive{run.scenario, params, run.settings, {.map = first}};
   const Pose2 start = drive.drive().map_from_robot();
   Random random{run.seed + 15485863};
-  Watch watch{run, drive, *first};
+  Watch watch{drive, *first};
   watch.until(run.carried_after_s);
   befall(drive.drive(), PoseEvent::kElsewhere, random);
   watch.until(run.carried_after_s + run.stopped_after_s);
