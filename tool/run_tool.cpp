@@ -2,72 +2,18 @@
 #include "tool/run_tool.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <exception>
-#include <iostream>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "daemon/control/request.hpp"
-#include "daemon/settings/reader/nearest_key.hpp"
-#include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/version.hpp"
+#include "tool/command_line.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
-namespace {
-
-/// Whoever reads the replies of the daemon as JSON reads what has kept them away the same way.
-void tell_in_json(int argc, const char* const* argv, const std::string& error) {
-  const auto is = [&](int at, std::string_view word) { return argv[at] == word; };
-  bool is_asked = false;
-  for (int at = 2; at < argc && is(1, "ctl"); ++at) is_asked = is_asked || is(at, "--json");
-  if (is_asked) std::cout << daemon::control::error_line(error) << std::endl;
-}
-
-/// "ctl: unknown command 'stauts' (nearest command status)". Nothing where no word is left over, or no command belongs
-/// there.
-std::optional<std::string> unknown_command(const CLI::App& app) {
-  const CLI::App* parent = &app;
-  std::string path;
-  while (!parent->get_subcommands().empty()) {
-    parent = parent->get_subcommands().front();
-    path += (path.empty() ? "" : " ") + parent->get_name();
-  }
-  const std::vector<std::string> words = app.remaining(true);
-  const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
-  const auto word = std::find_if_not(words.begin(), words.end(), is_option);
-  if (word == words.end()) return std::nullopt;
-  std::vector<std::string> names;
-  for (const CLI::App* one : parent->get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(one->get_name());
-  }
-  if (names.empty()) return std::nullopt;
-  const auto nearest = daemon::nearest_of(names, *word);
-  return (path.empty() ? "" : path + ": ") + "unknown command '" + *word + "'" +
-         (nearest ? " (nearest command " + *nearest + ")" : "");
-}
-
-/// Prints it, and returns the exit code.
-int refuse(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
-  const auto unknown = error.get_name() == "RequiredError" ? unknown_command(app) : std::nullopt;
-  const CLI::ParseError told = unknown ? CLI::ParseError{*unknown, CLI::ExitCodes::RequiredError} : error;
-  if (app.exit(told) == 0) return 0;
-  tell_in_json(argc, argv, told.what());
-  return 2;
-}
-
-}  // namespace
 
 int run_tool(int argc, const char* const* argv) {
   CLI::App app{"deltamap: keeps a robot localized in a map that follows the world", "deltamap"};
   app.set_version_flag("--version", "deltamap " + daemon::version_text());
   app.require_subcommand(1);
   add_ctl(app);
-  add_experiment(app);
   add_score(app);
   add_sim(app);
   CLI::App& map = *app.add_subcommand("map", "make, compare, merge and look at maps")->require_subcommand(1);
@@ -86,20 +32,7 @@ int run_tool(int argc, const char* const* argv) {
   add_decode(app);
   add_replay(app);
   add_view(app);
-  try {
-    app.parse(argc, argv);
-    if (!std::cout.flush()) throw std::runtime_error("standard output: cannot be written");
-  } catch (const CLI::ParseError& error) {
-    return refuse(app, error, argc, argv);
-  } catch (const daemon::SettingsError& error) {
-    for (const std::string& problem : error.lines()) std::cerr << "deltamap: " << problem << '\n';
-    return 2;
-  } catch (const std::exception& error) {
-    tell_in_json(argc, argv, error.what());
-    std::cerr << "deltamap: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  return answer_of(app, argc, argv);
 }
 
 }  // namespace deltamap::tool

@@ -11,7 +11,6 @@ namespace deltamap::tool {
 
 void add_ctl(CLI::App& app);
 void add_decode(CLI::App& app);
-void add_experiment(CLI::App& app);
 void add_score(CLI::App& app);
 void add_sim(CLI::App& app);
 

@@ -8,13 +8,13 @@ what was measured and at which revision is kept in experiments.json beside it. C
       --quick: short drives, few seeds; writes into build/ alone
       --only: does these anew and keeps what is known of the others
       --jobs: drives at once; experiments that measure the machine do one
-      --page: only writes the page of an ablation or of unseen worlds that `deltamap experiment NAME --out FOLDER` has
+      --page: only writes the page of an ablation or of unseen worlds that `deltamap-lab NAME --out FOLDER` has
               done"""
 import argparse, collections, json, os, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import paper_figures
-from measuring import DATA, ROOT, TOOL, in_a_cell, processor, row_of_figure, run, table_lines, told
+from measuring import DATA, LAB, ROOT, in_a_cell, processor, row_of_figure, run, table_lines, told
 
 OUT = ROOT / "build/experiments"
 OF_THE_LOCALIZER = {"hall", "stale-map", "verdict"}  # ./dev bench localization
@@ -22,7 +22,7 @@ OF_THE_LOCALIZER = {"hall", "stale-map", "verdict"}  # ./dev bench localization
 
 def experiments():
     """Name, and whether it measures the machine."""
-    listed = [line.split("\t") for line in run(TOOL, "experiment", "--list").splitlines()]
+    listed = [line.split("\t") for line in run(LAB, "--list").splitlines()]
     return {name: (times == "times", what) for name, times, what in listed if name not in OF_THE_LOCALIZER}
 
 
@@ -59,7 +59,7 @@ def markdown(parts):
 
 ABLATION = """# What each mechanism and each key is worth
 
-Written by `./dev experiments`, or from what `deltamap experiment ablation` has left in its folder, on %s: %s.
+Written by `./dev experiments`, or from what `deltamap-lab ablation` has left in its folder, on %s: %s.
 
 A row changes one thing: a mechanism is switched off, or a key is set to half or twice its value. The same worlds of `unseen` are
 driven through as delivered. A cell tells the mean difference to that, its 95 %% interval (bootstrap over the worlds), and in how many
@@ -71,7 +71,7 @@ interval leaves out 0. Of twenty cells that nothing moves, one is bold by chance
 
 UNSEEN = """# Worlds that nobody has tuned on
 
-Written by `./dev experiments --only unseen --seed 1000`, or from what `deltamap experiment unseen` has left in its folder, on %s:
+Written by `./dev experiments --only unseen --seed 1000`, or from what `deltamap-lab unseen` has left in its folder, on %s:
 %s.
 
 Every seed is another kind of building, first map, laser, robot and life in it ([what is drawn](../experiments.md)). Seeds 1 to
@@ -110,7 +110,7 @@ def write_page(summary, folder, quick):
 
 def done(name, measures_machine, arguments, folder):
     """Does one experiment, its progress on this terminal, and answers its summary."""
-    command = [TOOL, "experiment", name, "--out", folder / name, "--seed", arguments.seed]
+    command = [LAB, name, "--out", folder / name, "--seed", arguments.seed]
     command += ["--quick"] if arguments.quick else []
     jobs = 1 if measures_machine else arguments.jobs
     command += ["--jobs", jobs] if jobs else []

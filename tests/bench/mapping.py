@@ -7,7 +7,7 @@ container comes or goes each minute. Writes docs/results/mapping.md. Called by .
   mapping.py [--quick]    --quick: two minutes of the hall alone, into build/"""
 import argparse, re, subprocess
 
-from measuring import OUT, ROOT, TOOL, mark, provenance, row, settings_section, table_lines, unpacked
+from measuring import LAB, OUT, ROOT, TOOL, mark, provenance, row, settings_section, table_lines, unpacked
 from on_intel import KNOWN_START, missing_data, recording
 
 AWARENESS = "deltamap::mapping::StoreScan::observe("
@@ -34,12 +34,12 @@ def costs(profile):
     return {names[number]: cost for number, cost in found.items()}
 
 
-def measured(what, *arguments):
+def measured(what, *command):
     """Instructions a scan: of awareness and of updates; how many updates there were."""
     OUT.mkdir(parents=True, exist_ok=True)
     profile = OUT / (what + ".callgrind")
     done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=%s" % profile, "--collect-atstart=no",
-                           "--toggle-collect=%s*" % AWARENESS, "--toggle-collect=%s*" % UPDATE, TOOL, *map(str, arguments)],
+                           "--toggle-collect=%s*" % AWARENESS, "--toggle-collect=%s*" % UPDATE, *map(str, command)],
                           cwd=ROOT, text=True, capture_output=True)
     found = costs(profile) if profile.exists() else {}
     total = {wanted: [sum(x) for x in zip((0, 0), *(cost for name, cost in found.items() if name.startswith(wanted)))]
@@ -61,12 +61,12 @@ def rows_of(where, measure):
 
 def intel():
     unpacked("maps/ref_intel.pgm")
-    return measured("intel", "replay", recording(), "--map", unpacked("maps/ref_intel.yaml"), "--config", ROOT / "config/pioneer.yaml",
+    return measured("intel", TOOL, "replay", recording(), "--map", unpacked("maps/ref_intel.yaml"), "--config", ROOT / "config/pioneer.yaml",
                     "--out", OUT / "intel-mapping", "--set", "laser.mount.x_m=0", "--initial-pose", KNOWN_START)
 
 
 def hall(minutes):
-    return measured("hall", "experiment", "table2", "--only", "evidence", "--repeats", 1, "--jobs", 1, "--minutes", minutes,
+    return measured("hall", LAB, "table2", "--only", "evidence", "--repeats", 1, "--jobs", 1, "--minutes", minutes,
                     "--out", OUT / "hall-mapping")
 
 

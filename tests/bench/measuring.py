@@ -8,6 +8,7 @@ from project import DATA, ROOT, processor, provenance, run, settings_section, to
 
 OUT = ROOT / "build/bench-localization"
 TOOL = ROOT / "build/release/bin/deltamap"
+LAB = ROOT / "build/release/bin/deltamap-lab"
 
 
 def row(figure, ours, target="", met=None, peers=""):

@@ -4,7 +4,7 @@
 
     tests/bench/paired.py BEFORE AFTER [--figure NAME]...
 
-BEFORE and AFTER are folders that `deltamap experiment NAME --out` has left. For every figure it prints median, nine of
+BEFORE and AFTER are folders that `deltamap-lab NAME --out` has left. For every figure it prints median, nine of
 ten and worst of both, in how many runs it became better and worse, and the two-sided p of a sign test: the chance of
 so uneven a count if the change did nothing.
 """

@@ -104,7 +104,7 @@ def told_once(parts):
 
 
 def table(parts):
-    lines = ["| figure | paper | ours | `deltamap experiment` |", "|---|---|---|---|"]
+    lines = ["| figure | paper | ours | `deltamap-lab` |", "|---|---|---|---|"]
     for what, papers, ours, name in ROWS:
         values = values_of(parts[name]["summary"])
         lines.append("| %s | %s | %s | %s |" % (filled(what, values), papers, filled(ours, values), name))

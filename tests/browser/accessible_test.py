@@ -115,7 +115,7 @@ class ReportForAll(unittest.TestCase):
     def setUpClass(cls):
         PICTURES.mkdir(parents=True, exist_ok=True)
         cls.folder = tempfile.TemporaryDirectory(prefix="deltamap-report-")
-        subprocess.run([BIN / "deltamap", "experiment", "hall", "--out", cls.folder.name, "--minutes", "0.5", "--repeats", "5", "--jobs", "1",
+        subprocess.run([BIN / "deltamap-lab", "hall", "--out", cls.folder.name, "--minutes", "0.5", "--repeats", "5", "--jobs", "1",
                         "--scenarios", ROOT / "config/scenarios"], check=True, capture_output=True, cwd=ROOT)
         cls.url = (pathlib.Path(cls.folder.name) / "index.html").as_uri()
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap experiment` at the command line, with drives of seconds.
+// `deltamap-lab` at the command line, with drives of seconds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 #include "experiments/registry.hpp"
 #include "experiments/report/result_files.hpp"
 #include "experiments/report/svg_chart.hpp"
+#include "tests/support/files/lab_run.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/text_file.hpp"
-#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 using test::content_of;
-using test::run_deltamap;
+using test::run_lab;
 using test::ToolRun;
 
 ToolRun experiment(const std::string& name, const fs::path& out, std::vector<std::string> more = {}) {
@@ -150,7 +150,7 @@ TEST(Experiment, RefusesAnUnknownNameAndListsThoseThatThereAre) {
 }
 
 TEST(Experiment, ListsThoseThatThereAreALineEach) {
-  const ToolRun answer = run_deltamap({"experiment", "--list"});
+  const ToolRun answer = run_lab({"--list"});
   ASSERT_EQ(answer.exit_code, 0) << answer.errors;
   std::istringstream lines{answer.output};
   for (const auto& known : experiments::experiments()) {
@@ -172,8 +172,8 @@ TEST(Experiment, RefusesAFolderThatCannotBeWrittenInOneLine) {
 
 TEST(Experiment, RefusesAFolderWithoutScenariosInOneLine) {
   const test::TemporaryFolder folder;
-  const ToolRun answer = run_deltamap(
-      {"experiment", "hall", "--out", (folder.path() / "out").string(), "--scenarios", folder.path().string()});
+  const ToolRun answer =
+      run_lab({"hall", "--out", (folder.path() / "out").string(), "--scenarios", folder.path().string()});
   EXPECT_EQ(answer.exit_code, 1);
   EXPECT_NE(answer.errors.find("hall.yaml"), std::string::npos) << answer.errors;
 }
@@ -182,7 +182,7 @@ TEST(Experiment, RefusesASettingThatThereIsNot) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(experiment("hall", folder.path() / "out", {"--set", "localization.no_such_key=1"}).exit_code, 2);
   EXPECT_EQ(experiment("hall", folder.path() / "out", {"--jobs", "0"}).exit_code, 2);
-  EXPECT_EQ(run_deltamap({"experiment", "hall", "--out", folder.path().string(), "--minutes", "-1"}).exit_code, 2);
+  EXPECT_EQ(run_lab({"hall", "--out", folder.path().string(), "--minutes", "-1"}).exit_code, 2);
 }
 
 TEST(Experiment, TriesTheFolderWithoutLeavingATrace) {

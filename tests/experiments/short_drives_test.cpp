@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/files/lab_run.hpp"
 #include "tests/support/files/temporary_folder.hpp"
-#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {

@@ -18,7 +18,7 @@ TITLE = "Seven hours of the pipeline"
 
 def run(seed, hours):
     """The figures by name, what was warned of, and [(hours, heap in MB, resident MB)] on the way."""
-    command = program("i386", "deltamap") + ["experiment", "endurance", "--only", "pipeline", "--minutes", 60 * hours, "--seed", seed, "--jobs", 1, "--scans", "--out", OUT]
+    command = program("i386", "deltamap-lab") + ["endurance", "--only", "pipeline", "--minutes", 60 * hours, "--seed", seed, "--jobs", 1, "--scans", "--out", OUT]
     done = subprocess.run([str(part) for part in command], cwd=ROOT, capture_output=True, text=True)
     tables = list(OUT.glob("scans/pipeline*.csv"))
     if len(tables) != 1:

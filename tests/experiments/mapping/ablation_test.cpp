@@ -11,8 +11,8 @@
 
 #include "experiments/mapping/ablation_changes.hpp"
 #include "experiments/registry.hpp"
+#include "tests/support/files/lab_run.hpp"
 #include "tests/support/files/temporary_folder.hpp"
-#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -89,9 +89,9 @@ TEST(Ablation, PairsWorldsAndMarksWhatIsClear) {
 
 TEST(Ablation, DrivesAsDeliveredWhateverOnlySays) {
   const test::TemporaryFolder folder;
-  const test::ToolRun answer = test::run_deltamap({"experiment", "ablation", "--out", folder.path().string(), "--seed",
-                                                   "2", "--repeats", "1", "--minutes", "0.2", "--only", "off-slips",
-                                                   "--scenarios", test::source_path("config/scenarios"), "--json"});
+  const test::ToolRun answer =
+      test::run_lab({"ablation", "--out", folder.path().string(), "--seed", "2", "--repeats", "1", "--minutes", "0.2",
+                     "--only", "off-slips", "--scenarios", test::source_path("config/scenarios"), "--json"});
   ASSERT_EQ(answer.exit_code, 0) << answer.errors;
   const auto summary = nlohmann::json::parse(answer.output);
   EXPECT_EQ(summary["runs"], 2 * (1 + 3)) << "one world, and carried in three ways";

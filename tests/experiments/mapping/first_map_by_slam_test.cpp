@@ -4,17 +4,17 @@
 
 #include <sstream>
 
+#include "tests/support/files/lab_run.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/text_file.hpp"
-#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {
 
 test::ToolRun first_map(const std::string& out, const std::vector<std::string>& more) {
-  std::vector<std::string> words{"experiment", "first-map", "--out", out};
+  std::vector<std::string> words{"first-map", "--out", out};
   words.insert(words.end(), more.begin(), more.end());
-  return test::run_deltamap(words);
+  return test::run_lab(words);
 }
 
 /// The number of the first run by the name of its column.

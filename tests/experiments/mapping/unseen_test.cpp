@@ -7,9 +7,9 @@
 
 #include "experiments/seed_summary.hpp"
 #include "experiments/watch/pose_course.hpp"
+#include "tests/support/files/lab_run.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/text_file.hpp"
-#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -160,9 +160,9 @@ TEST(SeedSummary, AsksTheWorstSeedAndLeavesOutWhatNobodyHasMeasured) {
 }
 
 test::ToolRun unseen(const std::string& out, const std::vector<std::string>& more) {
-  std::vector<std::string> words{"experiment", "unseen", "--out", out};
+  std::vector<std::string> words{"unseen", "--out", out};
   words.insert(words.end(), more.begin(), more.end());
-  return test::run_deltamap(words);
+  return test::run_lab(words);
 }
 
 TEST(Unseen, LeavesALineForEverySeedWithItsKindAndItsFigures) {

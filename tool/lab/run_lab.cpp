@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap experiment`: drives simulated robots until the figures of an experiment are known.
+#include "tool/lab/run_lab.hpp"
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -9,12 +10,13 @@
 #include <thread>
 
 #include "daemon/settings/settings.hpp"
+#include "daemon/telemetry/version.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/report/result_files.hpp"
 #include "experiments/run_pool.hpp"
+#include "tool/command_line.hpp"
 #include "tool/progress.hpp"
 #include "tool/scenario_place.hpp"
-#include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -100,10 +102,12 @@ void run_experiment(const ExperimentOptions& given) {
 
 }  // namespace
 
-void add_experiment(CLI::App& app) {
-  auto given = std::make_shared<ExperimentOptions>();
+int run_lab(int argc, const char* const* argv) {
+  CLI::App command{"deltamap-lab: what is reached in simulated drives and on recorded maps, held against what is asked",
+                   "deltamap-lab"};
+  command.set_version_flag("--version", "deltamap-lab " + daemon::version_text());
+  const auto given = std::make_shared<ExperimentOptions>();
   given->options.scenarios = scenario_folder();
-  CLI::App& command = *app.add_subcommand("experiment", "what the localizer reaches in simulated drives");
   std::string names;
   for (const auto& known : experiments::experiments()) names += (names.empty() ? "" : ", ") + known.name;
   command.add_option("name", given->name, names)->required();
@@ -137,6 +141,7 @@ void add_experiment(CLI::App& app) {
       "name, 'times' where it measures the machine, and meaning of every experiment, separated by tabs");
   command.add_flag("--json", given->as_json, "print the summary as JSON");
   command.callback([given] { run_experiment(*given); });
+  return answer_of(command, argc, argv);
 }
 
 }  // namespace deltamap::tool
