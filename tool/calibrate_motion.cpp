@@ -12,7 +12,7 @@
 #include "daemon/control/calibration_json.hpp"
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
-#include "localization/motion/motion_calibration.hpp"
+#include "surveying/calibration/motion_calibration.hpp"
 #include "tool/recorded_messages.hpp"
 #include "tool/subcommands.hpp"
 
@@ -21,9 +21,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using localization::motion::Fitted;
-using localization::motion::MotionCalibration;
-using localization::motion::MotionSource;
 using localization::motion::Systematic;
+using surveying::calibration::MotionCalibration;
+using surveying::calibration::MotionSource;
 
 constexpr std::size_t kFewestSegments = 20;  // a deviation from 20 segments is good to 16 % at best
 constexpr double kLeastSureShare = 0.5;      // of the scans; a robot on a foreign map seldom has more
@@ -41,7 +41,7 @@ struct CalibrateOptions {
 };
 
 struct Drive {
-  std::vector<localization::motion::MotionSegment> segments;
+  std::vector<surveying::calibration::MotionSegment> segments;
   double driven_m = 0.0;
   double turned_rad = 0.0;
   std::size_t scans = 0;
@@ -67,7 +67,7 @@ Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) 
   params.follow_surfaces = false;  // wheels as they count, not as they have been corrected
   localization::Localizer localizer{params, map, start, settings.seed};
   const auto& update = settings.localizer.update;
-  localization::motion::MotionSegments pairs{
+  surveying::calibration::MotionSegments pairs{
       {.step_m = std::max(1e-3, update.distance_m), .step_rad = std::max(1e-3, update.turn_rad)}};
   Drive drive;
   const daemon::RecordingDecoder::Sinks sinks{

@@ -9,7 +9,7 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
 #include "localization/motion/odometry_buffer.hpp"
-#include "mapping/slam/slam.hpp"
+#include "surveying/slam/slam.hpp"
 
 namespace deltamap::daemon {
 
@@ -25,7 +25,7 @@ class SurveyStep {
   /// After the last scan. False: the measurements do not settle, the poses are worth nothing.
   [[nodiscard]] bool finish() { return slam_.finish(); }
 
-  [[nodiscard]] const mapping::slam::Slam& slam() const { return slam_; }
+  [[nodiscard]] const surveying::slam::Slam& slam() const { return slam_; }
   /// Where each scan that was not left out was taken, in the survey's frame: at a keyframe, or from there on by the
   /// wheels.
   [[nodiscard]] std::vector<TrajectoryPoint> trajectory() const;
@@ -40,7 +40,7 @@ class SurveyStep {
   localization::motion::OdometryBufferParams odometry_params_;
   double range_deviation_m_;
   localization::motion::OdometryBuffer odometry_;
-  mapping::slam::Slam slam_;
+  surveying::slam::Slam slam_;
   std::vector<SurveyedScan> scans_;
 };
 

@@ -13,13 +13,13 @@
 #include "experiments/registry.hpp"
 #include "experiments/seed_summary.hpp"
 #include "mapping/registration/contour_score.hpp"
-#include "mapping/slam/drawn_map.hpp"
 #include "simulation/drawn/unseen_world.hpp"
+#include "surveying/slam/drawn_map.hpp"
 
 namespace deltamap::experiments {
 namespace {
 
-using mapping::slam::Survey;
+using surveying::slam::Survey;
 
 constexpr int kSeeds = 40;
 constexpr int kQuickSeeds = 3;
@@ -113,9 +113,9 @@ std::pair<int, int> loops_of(const Survey& survey, const std::vector<Pose2>& tru
 double contour_f1(const Survey& survey, std::vector<Pose2> truth, const Pose2& truth_from_survey) {
   Survey as_it_was = survey;
   for (std::size_t i = 0; i < truth.size(); ++i) as_it_was.poses[i] = inverse(truth_from_survey) * truth[i];
-  const Pose2 to_axes{0.0, 0.0, mapping::slam::turn_to_axes(survey)};
-  return mapping::registration::contour_score(mapping::slam::drawn_map(as_it_was, to_axes, kResolutionM),
-                                              mapping::slam::drawn_map(survey, to_axes, kResolutionM))
+  const Pose2 to_axes{0.0, 0.0, surveying::slam::turn_to_axes(survey)};
+  return mapping::registration::contour_score(surveying::slam::drawn_map(as_it_was, to_axes, kResolutionM),
+                                              surveying::slam::drawn_map(survey, to_axes, kResolutionM))
       .f1();
 }
 

@@ -9,8 +9,8 @@
 #include "experiments/merge/merge_table.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/report/svg_map.hpp"
-#include "mapping/grid_registration/global_merge.hpp"
-#include "mapping/grid_registration/prior_merge.hpp"
+#include "surveying/grid_registration/global_merge.hpp"
+#include "surveying/grid_registration/prior_merge.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -66,13 +66,13 @@ Outcome merge_often(const std::string& name, bool with_prior, std::uint64_t layo
       const Pose2 guess = guess_of(truth, mapping::merge::LocalCells{local.grid}.middle_in_local(), random);
       taken_ms = cpu_ms([&] {
         const auto merge =
-            mapping::grid_registration::prior_merge(place.map, local.grid, guess, prior_covariance(), {});
+            surveying::grid_registration::prior_merge(place.map, local.grid, guess, prior_covariance(), {});
         found = merge.map_from_guess * guess;
         is_refused = !merge.accepted();
       });
     } else {
       taken_ms = cpu_ms([&] {
-        const auto merge = mapping::grid_registration::global_merge(place.map, local.grid);
+        const auto merge = surveying::grid_registration::global_merge(place.map, local.grid);
         found = merge.map_from_local;
         is_refused = !merge.accepted();
       });

@@ -17,7 +17,7 @@
 #include "core/files/replace_file.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/survey_step.hpp"
-#include "mapping/slam/drawn_map.hpp"
+#include "surveying/slam/drawn_map.hpp"
 #include "tool/output_file.hpp"
 #include "tool/recorded_messages.hpp"
 #include "tool/subcommands.hpp"
@@ -81,7 +81,7 @@ void require_files_apart(const BuildOptions& options) {
 }
 
 /// Nothing is written of drives that hang together by guesswork.
-void require_joined(const std::vector<SurveyedDrive>& drives, const mapping::slam::Slam& slam) {
+void require_joined(const std::vector<SurveyedDrive>& drives, const surveying::slam::Slam& slam) {
   for (std::uint32_t i = 0; i < drives.size(); ++i) {
     if (slam.is_joined(i)) continue;
     throw std::runtime_error(
@@ -110,7 +110,7 @@ std::string pose_text(const Pose2& pose) {
 
 void print_built(const BuildOptions& options, const std::vector<SurveyedDrive>& drives, const daemon::SurveyStep& step,
                  const Pose2& map_from_survey, const OccupancyGrid& grid) {
-  const mapping::slam::Survey& survey = step.slam().survey();
+  const surveying::slam::Survey& survey = step.slam().survey();
   const auto loops = static_cast<std::size_t>(
       std::count_if(survey.links.begin(), survey.links.end(), [](const auto& link) { return link.may_drop; }));
   const std::size_t unmatched = survey.keyframes.size() - drives.size() - step.slam().matched();
@@ -118,7 +118,7 @@ void print_built(const BuildOptions& options, const std::vector<SurveyedDrive>& 
   std::uint32_t node = 0;
   for (std::uint32_t i = 0; i < drives.size(); ++i) {
     while (survey.keyframes[node].drive != i) ++node;
-    const std::uint32_t last = mapping::slam::on_by(survey, node, std::numeric_limits<double>::infinity());
+    const std::uint32_t last = surveying::slam::on_by(survey, node, std::numeric_limits<double>::infinity());
     json_drives.push_back({{"recording", drives[i].recording},
                            {"scans", drives[i].scans},
                            {"keyframes", last - node + 1},
@@ -164,9 +164,9 @@ void run_build(const BuildOptions& options) {
     for (const std::string& line : drive.faults.lines()) std::cerr << "deltamap: warning: " << line << '\n';
   }
   require_joined(drives, step.slam());
-  const mapping::slam::Survey& survey = step.slam().survey();
-  const Pose2 map_from_survey{0.0, 0.0, options.keep_frame ? 0.0 : mapping::slam::turn_to_axes(survey)};
-  const OccupancyGrid grid = mapping::slam::drawn_map(survey, map_from_survey, options.resolution_m);
+  const surveying::slam::Survey& survey = step.slam().survey();
+  const Pose2 map_from_survey{0.0, 0.0, options.keep_frame ? 0.0 : surveying::slam::turn_to_axes(survey)};
+  const OccupancyGrid grid = surveying::slam::drawn_map(survey, map_from_survey, options.resolution_m);
   if (count_of(grid, CellState::kFree) == 0) {
     throw std::runtime_error(drives.front().recording + ": no scan has a valid range");
   }

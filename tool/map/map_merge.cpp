@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "core/files/grid_file.hpp"
-#include "mapping/grid_registration/global_merge.hpp"
-#include "mapping/grid_registration/prior_merge.hpp"
 #include "mapping/merge/map_merge.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/registration/transformed_grid.hpp"
+#include "surveying/grid_registration/global_merge.hpp"
+#include "surveying/grid_registration/prior_merge.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
@@ -49,18 +49,19 @@ Result merged_with_prior(const OccupancyGrid& map, const OccupancyGrid& local, c
   std::vector<Point2> points;
   for (const Cell& cell : contour_cells(local)) points.emplace_back(map_from_local * local.geometry().centre_of(cell));
   const double heading_deviation_rad = radians(kPriorDeviation_deg);
-  mapping::grid_registration::PosePrior prior;
+  surveying::grid_registration::PosePrior prior;
   prior.position_in_map = map_from_local * mapping::merge::LocalCells{local}.middle_in_local();
   prior.covariance = Eigen::Vector3d{kPriorDeviation_m * kPriorDeviation_m, kPriorDeviation_m * kPriorDeviation_m,
                                      heading_deviation_rad * heading_deviation_rad}
                          .asDiagonal();
-  const mapping::grid_registration::PriorMerge merged = mapping::grid_registration::prior_merge(map, points, prior, {});
+  const surveying::grid_registration::PriorMerge merged =
+      surveying::grid_registration::prior_merge(map, points, prior, {});
   return {merged.map_from_guess * map_from_local, merged.refusal, 0.0};
 }
 
 Result merged_without_prior(const OccupancyGrid& map, const OccupancyGrid& local, const std::string& method) {
   if (method == "global") {
-    const mapping::merge::MapMerge merged = mapping::grid_registration::global_merge(map, local);
+    const mapping::merge::MapMerge merged = surveying::grid_registration::global_merge(map, local);
     return {merged.map_from_local, merged.refusal, 0.0};
   }
   mapping::merge::MapMergeParams params;

@@ -4,9 +4,9 @@
 
 #include "core/geometry/angle.hpp"
 #include "experiments/merge/merge_places.hpp"
-#include "mapping/grid_registration/global_merge.hpp"
-#include "mapping/grid_registration/prior_merge.hpp"
 #include "mapping/registration/transformed_grid.hpp"
+#include "surveying/grid_registration/global_merge.hpp"
+#include "surveying/grid_registration/prior_merge.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -19,7 +19,7 @@ TEST(GlobalMerge, FindsTheTruePlaceAmongRacksThatRepeat) {
   for (int i = 0; i < 7; ++i) {
     const LocalMap local = turned_local(place, false, random);
     if (i != 0 && i != 6) continue;
-    const mapping::merge::MapMerge merge = mapping::grid_registration::global_merge(place.map, local.grid);
+    const mapping::merge::MapMerge merge = surveying::grid_registration::global_merge(place.map, local.grid);
     EXPECT_TRUE(merge.accepted()) << i;
     EXPECT_LT(measured(place, local, merge.map_from_local).off_cells, kRight_cells) << i;
   }
@@ -33,7 +33,7 @@ TEST(PriorMerge, DoesNotAskForSurfacesWhereTheMapKnowsNothing) {
   for (int i = 0; i < 3; ++i) {
     const LocalMap local = turned_local(place, false, random);
     const Pose2 truth = place.map_from_other * inverse(local.local_from_other);
-    const auto merge = mapping::grid_registration::prior_merge(place.map, local.grid, truth, covariance, {});
+    const auto merge = surveying::grid_registration::prior_merge(place.map, local.grid, truth, covariance, {});
     EXPECT_TRUE(merge.accepted()) << i;
     EXPECT_LT(measured(place, local, merge.map_from_guess * truth).off_cells, kRight_cells) << i;
   }
@@ -47,7 +47,7 @@ TEST(PriorMerge, EndsAsWellAsTheTruePoseNearTheLatticesOwnTurns) {
     const OccupancyGrid local = mapping::registration::moved_grid(place.map, local_from_map, place.map.resolution_m());
     const mapping::merge::LocalCells cells{local};
     const auto merge =
-        mapping::grid_registration::prior_merge(place.map, local, inverse(local_from_map), covariance, {});
+        surveying::grid_registration::prior_merge(place.map, local, inverse(local_from_map), covariance, {});
     ASSERT_TRUE(merge.accepted()) << turn_deg;
     const Pose2 found = merge.map_from_guess * inverse(local_from_map);
     const auto motion = mapping::merge::cell_motion(found, place.map.geometry(), cells);

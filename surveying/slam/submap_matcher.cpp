@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surveying/slam/submap_matcher.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace deltamap::surveying::slam {
+namespace {
+
+constexpr double kCorrelationCellM = 0.1;
+constexpr int kMostLevels = 7;
+constexpr std::size_t kMostCorrelated = 500;  // ends of a scan, evenly
+constexpr double kTableCellM = 0.1;
+constexpr double kReachM = 0.3;  // a pose of the lattice is off by a cell
+constexpr double kLastReachM = 0.12;
+constexpr double kMostCorrectionM = 0.3;  // from the lattice's pose: farther is another minimum
+constexpr double kMostCorrectionRad = 0.1;
+constexpr double kFlatShare = 0.9;         // of the best score: the search does not tell the poses apart
+constexpr double kIndependentShare = 0.1;  // of the ends whose errors are their own
+constexpr double kUnobservedM = 1.0;       // 1 σ along an axis that the ends do not observe (a corridor)
+constexpr double kUnobservedRad = 0.2;
+
+SearchWindow window_around(const std::vector<Point2>& ends) {
+  if (ends.empty()) return {};
+  Point2 low = ends.front();
+  Point2 high = low;
+  for (const Point2& end : ends) {
+    low = low.cwiseMin(end);
+    high = high.cwiseMax(end);
+  }
+  const Point2 middle = 0.5 * (low + high);
+  return {{middle.x(), middle.y(), 0.0}, 0.5 * (high - low).maxCoeff(), std::numbers::pi};
+}
+
+/// As coarse as a window of that size asks for.
+int levels_for(double reach_m) {
+  int levels = 1;
+  while (levels < kMostLevels && (1 << levels) * kCorrelationCellM <= 2.0 * reach_m) ++levels;
+  return levels;
+}
+
+std::vector<Point2> evenly(std::span<const Point2> ends) {
+  std::vector<Point2> some;
+  const std::size_t each = ends.size() / kMostCorrelated + 1;
+  for (std::size_t i = 0; i < ends.size(); i += each) some.push_back(ends[i]);
+  return some;
+}
+
+PoseCovariance covariance_of(const Eigen::Matrix3d& by_ends, const Eigen::Matrix3d& known,
+                             const SubmapMatchParams& params) {
+  const double unobserved_m2 = kUnobservedM * kUnobservedM;
+  const Eigen::Matrix3d floor =
+      Eigen::Vector3d{1.0 / unobserved_m2, 1.0 / unobserved_m2, 1.0 / (kUnobservedRad * kUnobservedRad)}.asDiagonal();
+  const Eigen::Vector3d inner{params.inner_deviation_m, params.inner_deviation_m, params.inner_deviation_rad};
+  const Eigen::Matrix3d bent = inner.cwiseAbs2().asDiagonal();
+  return (kIndependentShare * by_ends + known + floor).inverse() + bent;
+}
+
+}  // namespace
+
+SubmapMatcher::SubmapMatcher(Submap submap, double reach_m)
+    : everywhere_{window_around(submap.ends)},
+      field_{submap.ends, kCorrelationCellM, levels_for(reach_m)},
+      surface_{std::move(submap.surface), kTableCellM, kReachM} {}
+
+std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, double range_deviation_m,
+                                                const SearchWindow& window,
+                                                const mapping::registration::PoseBelief& known,
+                                                const SubmapMatchParams& params) const {
+  const std::vector<Point2> some = evenly(ends);
+  auto found = best_match(field_, some, window, params.least_score, params.ambiguous_share);
+  if (!found || found->elsewhere > 0.0) return std::nullopt;
+  // Along a corridor all poses score alike: then the wheels know better than the best of them.
+  if (!known.information.isZero() &&
+      best_match(field_, some, {window.centre, 0.0, 0.0}, kFlatShare * found->score, 1.0)) {
+    found->field_from_scan = window.centre;
+  }
+  // Ends share errors: what was known before weighs as much more.
+  const mapping::registration::Registration refined = mapping::registration::registration(
+      ends, surface_, found->field_from_scan, {known.pose, known.information / kIndependentShare},
+      {.first_reach_m = kReachM, .last_reach_m = kLastReachM, .point_deviation_m = range_deviation_m});
+  const Pose2 correction = motion_between(found->field_from_scan, refined.reference_from_moving);
+  const bool fits = refined.settled &&
+                    static_cast<double>(refined.paired) >= params.least_paired * static_cast<double>(ends.size()) &&
+                    refined.deviation_m <= params.most_deviation_m &&
+                    correction.position().norm() <= kMostCorrectionM &&
+                    std::abs(correction.theta) <= kMostCorrectionRad;
+  if (!fits) return std::nullopt;
+  return SubmapMatch{refined.reference_from_moving, covariance_of(refined.information, known.information, params),
+                     found->score};
+}
+
+}  // namespace deltamap::surveying::slam
