@@ -42,8 +42,8 @@ for file in /lib/systemd/system/deltamap.service /lib/udev/rules.d/60-deltamap.r
   /usr/share/man/man1/deltamap.1.gz /usr/share/man/man5/deltamap.yaml.5.gz /usr/share/bash-completion/completions/deltamap \
   /usr/share/bash-completion/completions/deltamapd \
   /usr/share/deltamap/default.yaml /usr/share/deltamap/deltamap.schema.json /usr/share/deltamap/simulation.yaml /usr/share/deltamap/scenarios/hall.yaml \
-  /usr/share/doc/deltamap/copyright /usr/share/doc/deltamap/changelog.gz /usr/share/doc/deltamap/README.md* \
-  /usr/share/doc/deltamap/operating.md* /usr/share/doc/deltamap/operating/why-it-stands.md* /usr/share/doc/deltamap/examples/deltamap-page.socket \
+  /usr/share/doc/deltamap/copyright /usr/share/doc/deltamap/changelog.gz /usr/share/doc/deltamap/README.md \
+  /usr/share/doc/deltamap/docs/operating.md /usr/share/doc/deltamap/docs/operating/why-it-stands.md /usr/share/doc/deltamap/examples/deltamap-page.socket \
   /usr/share/doc/deltamap/examples/deltamap-page.conf; do
   holds "$file" is 'root:root 644' "$file"
 done

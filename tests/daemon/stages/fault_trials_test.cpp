@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lasers, wheels, mounts and robots that go wrong while the daemon drives in a room that it has a map of: it touches
-// nothing, says why it stands, and tells planners that they must not drive. `deltamap experiment faults` has the rest.
+// nothing, says why it stands, and tells planners that they must not drive. `deltamap-lab faults` has the rest.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap experiment ablation`: what it changes, and what it says of it.
+// `deltamap-lab ablation`: what it changes, and what it says of it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

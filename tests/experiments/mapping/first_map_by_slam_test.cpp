@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap experiment first-map`: what a short run measures, and which seeds it refuses.
+// `deltamap-lab first-map`: what a short run measures, and which seeds it refuses.
 #include <gtest/gtest.h>
 
 #include <sstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap experiment unseen`: what it counts, on made-up drives, and what it refuses.
+// `deltamap-lab unseen`: what it counts, on made-up drives, and what it refuses.
 #include <gtest/gtest.h>
 
 #include <algorithm>

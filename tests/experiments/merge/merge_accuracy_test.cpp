@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Merges that once went wrong in `deltamap experiment merge`.
+// Merges that once went wrong in `deltamap-lab merge`.
 #include <gtest/gtest.h>
 
 #include "core/geometry/angle.hpp"

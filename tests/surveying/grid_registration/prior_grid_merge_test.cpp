@@ -13,7 +13,7 @@
 namespace deltamap::surveying::grid_registration {
 namespace {
 
-/// Small version of `deltamap experiment merge`: two parts that share two thirds, guesses that the prior allows.
+/// Small version of `deltamap-lab merge`: two parts that share two thirds, guesses that the prior allows.
 TEST(PriorGridMerge, BringsALocalMapOntoTheMapToATenthOfACell) {
   const OccupancyGrid world = test::drawn_warehouse(3);
   const OccupancyGrid map = test::moved_grid(test::part_of(world, 0.0, 0.75), {}, 0.1);
