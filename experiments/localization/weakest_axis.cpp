@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiments/localization/weakest_axis.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "core/geometry/principal_axes.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -34,10 +35,10 @@ WeakestAxis weakest_axis(const simulation::World& world, const simulation::RayCa
   if (information(2, 2) > 0.0) {
     position -= information.topRightCorner<2, 1>() * information.topRightCorner<2, 1>().transpose() / information(2, 2);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{position};
-  const double least = std::max(0.0, axes.eigenvalues()[0]);
-  const double most = axes.eigenvalues()[1];
-  return {axes.eigenvectors().col(0), most > 0.0 ? least / most : 0.0};
+  const PrincipalAxes axes = principal_axes(position);
+  const double least = std::max(0.0, axes.values[0]);
+  const double most = axes.values[1];
+  return {axes.vectors.col(0), most > 0.0 ? least / most : 0.0};
 }
 
 }  // namespace deltamap::experiments

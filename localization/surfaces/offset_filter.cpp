@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/surfaces/offset_filter.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/principal_axes.hpp"
 #include "localization/sensor/normal_equations.hpp"
 #include "localization/surfaces/surface_measurement.hpp"
 
@@ -294,10 +294,11 @@ double OffsetFilter::share_of_surfaces_held() const {
     all += normal * normal.transpose();
     if (of.holds > 0.5) held += normal * normal.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions{all};
-  if (directions.eigenvalues().minCoeff() < kFewestOfADirection) return 0.0;
-  const Eigen::Matrix2d scale = directions.operatorInverseSqrt();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>{scale * held * scale}.eigenvalues().minCoeff();
+  const PrincipalAxes directions = principal_axes(all);
+  if (directions.values[0] < kFewestOfADirection) return 0.0;
+  const Eigen::Matrix2d scale =
+      directions.vectors * directions.values.cwiseInverse().cwiseSqrt().asDiagonal() * directions.vectors.transpose();
+  return principal_axes(scale * held * scale).values[0];
 }
 
 void OffsetFilter::note_visits(std::span<const Sighting> sightings, const std::vector<bool>& fits) {

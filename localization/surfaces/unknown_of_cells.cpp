@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/surfaces/unknown_of_cells.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "core/geometry/principal_axes.hpp"
 
 namespace deltamap::localization::surfaces {
 
@@ -16,9 +17,9 @@ UnknownOfCells unknown_of_cells(std::span<const SupportingFace> faces) {
     normals += counted * face.normal.transpose();
     pull += counted * face.off_m;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{normals};
-  const Point2 counts = axes.eigenvalues().cwiseMax(1.0);  // faces that tell of each direction
-  const Point2 common_m = axes.eigenvectors() * (axes.eigenvectors().transpose() * pull).cwiseQuotient(counts);
+  const PrincipalAxes axes = principal_axes(normals);
+  const Point2 counts = axes.values.cwiseMax(1.0);  // faces that tell of each direction
+  const Point2 common_m = axes.vectors * (axes.vectors.transpose() * pull).cwiseQuotient(counts);
 
   // The two that the position takes up count as scattered like cells.
   constexpr double kOfPosition = 2.0;
@@ -32,7 +33,7 @@ UnknownOfCells unknown_of_cells(std::span<const SupportingFace> faces) {
   const double alike_m2 = std::max(0.0, cells_m2 - scatter_m2);
   const double worse_m2 = std::max(0.0, scatter_m2 - cells_m2);
   const auto along_axes = [&](const Point2& variances_m2) -> Eigen::Matrix2d {
-    return axes.eigenvectors() * variances_m2.asDiagonal() * axes.eigenvectors().transpose();
+    return axes.vectors * variances_m2.asDiagonal() * axes.vectors.transpose();
   };
   const Point2 shares = counts.cwiseInverse();
   return {along_axes(cells_m2 * shares), along_axes(worse_m2 * shares + alike_m2 * (Point2::Ones() - shares))};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/tracking/surface_tracker.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/principal_axes.hpp"
 #include "localization/sensor/weighing.hpp"
 
 namespace deltamap::localization::tracking {
@@ -28,11 +28,11 @@ constexpr double kLongestStepM = 0.5;   // of one correction
 /// Along an axis in which the particles are less sure than a scan would make them they tell what the wheels have told.
 PoseCovariance unobserved_along(const PoseCovariance& spread) {
   constexpr double kNothing_m2 = 100.0;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{Eigen::Matrix2d{spread.topLeftCorner<2, 2>()}};
+  const PrincipalAxes axes = principal_axes(spread.topLeftCorner<2, 2>());
   PoseCovariance more = PoseCovariance::Zero();
   for (Eigen::Index i = 0; i < 2; ++i) {
-    const Eigen::Vector2d axis = axes.eigenvectors().col(i);
-    if (axes.eigenvalues()[i] > kOfAPose(0, 0)) more.topLeftCorner<2, 2>() += kNothing_m2 * axis * axis.transpose();
+    const Eigen::Vector2d axis = axes.vectors.col(i);
+    if (axes.values[i] > kOfAPose(0, 0)) more.topLeftCorner<2, 2>() += kNothing_m2 * axis * axis.transpose();
   }
   return more;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/tracking/tracker.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/principal_axes.hpp"
 #include "localization/sensor/weighing.hpp"
 #include "localization/tracking/surface_tracker.hpp"
 
@@ -54,9 +54,8 @@ Tracker::NotCounted Tracker::not_counted_in(const sensor::RefinedPose& believed)
   if (!surfaces_) return more;
   const surfaces::UnknownOfCells unknown = surfaces_->unknown_of_cells();
   const Eigen::Matrix2d beyond = unknown.scattered - believed.covariance.topLeftCorner<2, 2>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{beyond};
-  more.noise.topLeftCorner<2, 2>() =
-      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+  const PrincipalAxes axes = principal_axes(beyond);
+  more.noise.topLeftCorner<2, 2>() = axes.vectors * axes.values.cwiseMax(0.0).asDiagonal() * axes.vectors.transpose();
   more.bias.topLeftCorner<2, 2>() = unknown.alike;
   if (surfaces_->leads()) return more;
   // From scan to scan the particles' pose is as sure as the scans make it; the mount errs alike in all of them.

@@ -2,11 +2,11 @@
 #include "mapping/registration/registration.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/geometry/points_in_map.hpp"
+#include "core/geometry/principal_axes.hpp"
 
 namespace deltamap::mapping::registration {
 namespace {
@@ -58,11 +58,11 @@ PairSums sums_over_pairs(std::span<const Point2> points, const NearestSurface& r
 /// Noise in the normals pretends to observe the length of a corridor: its share of the curvature is taken off the
 /// weaker axis, so that the covariance does not promise it.
 Eigen::Matrix3d without_normal_noise(const Eigen::Matrix3d& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes{information.topLeftCorner<2, 2>()};
-  const double weaker = axes.eigenvalues()[0];
+  const PrincipalAxes axes = principal_axes(information.topLeftCorner<2, 2>());
+  const double weaker = axes.values[0];
   if (weaker <= 0.0) return information;
-  const double left = std::max(0.0, 1.0 - kNormalNoise * axes.eigenvalues()[1] / weaker);
-  const Eigen::Vector2d axis = axes.eigenvectors().col(0);
+  const double left = std::max(0.0, 1.0 - kNormalNoise * axes.values[1] / weaker);
+  const Eigen::Vector2d axis = axes.vectors.col(0);
   Eigen::Matrix3d scale = Eigen::Matrix3d::Identity();
   scale.topLeftCorner<2, 2>() -= (1.0 - std::sqrt(left)) * axis * axis.transpose();
   return scale * information * scale;
