@@ -18,8 +18,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/browser"), str(ROOT / "tests/support")]
+from browser import Browser  # noqa: E402
 from running_daemon import RunningDaemon  # noqa: E402
-from webdriver import Browser  # noqa: E402
 import project  # noqa: E402
 
 RESULT = ROOT / "docs/results/dashboard.md"
@@ -123,10 +123,10 @@ def paints(daemon):
     painted, shown = [], []
     for _ in range(PAINTS):
         with Browser() as browser:
-            browser.open(daemon.url)
+            browser.get(daemon.url)
             browser.wait("window.deltamap?.view.tiles.size > 0 && window.deltamap.model.scan")
-            shown.append(browser.run("return performance.now()"))
-            painted.append(browser.run('return performance.getEntriesByName("first-contentful-paint")[0].startTime'))
+            shown.append(browser.execute_script("return performance.now()"))
+            painted.append(browser.execute_script('return performance.getEntriesByName("first-contentful-paint")[0].startTime'))
     return painted, shown
 
 

@@ -5,6 +5,9 @@ $DELTAMAP_AXE: then it judges as well, and nothing that it calls serious or crit
 import os
 import pathlib
 
+from selenium.webdriver import ActionChains
+from selenium.webdriver.common.keys import Keys
+
 INTERACTIVE = {"button", "link", "checkbox", "slider", "combobox", "textbox", "radio", "switch", "tab", "menuitem", "spinbutton", "DisclosureTriangle"}
 NAMED = INTERACTIVE | {"image", "img", "region", "group", "toolbar", "dialog", "navigation"}
 
@@ -85,7 +88,7 @@ return axe.run(document, { resultTypes: ["violations"] }).then(({ violations, pa
 def found_by_axe(browser):
     if not (file := os.environ.get("DELTAMAP_AXE")):
         return []
-    told = browser.run(pathlib.Path(file).read_text() + AXE)
+    told = browser.execute_script(pathlib.Path(file).read_text() + AXE)
     return told["serious"] + ([] if told["passed"] else ["axe passed nothing: it sees nothing"])
 
 
@@ -100,10 +103,10 @@ def findings(browser):
             found.append(f"takes the focus without a role: {node['name']}")
     if not any(node["role"] in INTERACTIVE for node in nodes):
         found.append("the tree holds nothing that can be used: the check sees nothing")
-    contrast = browser.run(CONTRASTS)
+    contrast = browser.execute_script(CONTRASTS)
     if contrast["seen"] < 5:
         found.append("no text was seen: the check sees nothing")
-    return found + [f"contrast {line}" for line in contrast["poor"]] + browser.run(STRUCTURE) + found_by_axe(browser)
+    return found + [f"contrast {line}" for line in contrast["poor"]] + browser.execute_script(STRUCTURE) + found_by_axe(browser)
 
 
 # Where the focus is, and whether one sees it.
@@ -118,11 +121,11 @@ return [...document.querySelectorAll("button, input, select, summary, a[href], [
 
 def walk(browser, most=200):
     """Tab by tab through the page: the stops, until the focus leaves or comes round."""
-    browser.run("document.body.tabIndex = -1; document.body.focus(); document.body.removeAttribute('tabindex'); window.scrollTo(0, 0)")  # from the top
+    browser.execute_script("document.body.tabIndex = -1; document.body.focus(); document.body.removeAttribute('tabindex'); window.scrollTo(0, 0)")  # from the top
     stops = []
     for _ in range(most):
-        browser.keys(("down", "\ue004"), ("up", "\ue004"))
-        stop = browser.run(FOCUS)
+        ActionChains(browser).key_down(Keys.TAB).key_up(Keys.TAB).perform()
+        stop = browser.execute_script(FOCUS)
         if stop["tag"] == "BODY" or (stops and stop == stops[0]):
             break
         stops.append(stop)

@@ -9,12 +9,14 @@ import sys
 import tempfile
 import unittest
 
+from selenium.webdriver.common.keys import Keys
+
 import accessible
+from browser import Browser
 from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
 from running_daemon import BIN, ROOT
-from webdriver import Browser
 
-SPACE, ENTER, ESCAPE, RIGHT = " ", "\ue007", "\ue00c", "\ue014"
+SPACE, ENTER, ESCAPE, RIGHT = " ", Keys.ENTER, Keys.ESCAPE, Keys.ARROW_RIGHT
 
 
 class PageForAll(PageCase):
@@ -26,18 +28,18 @@ class PageForAll(PageCase):
             for dark in (False, True):
                 with self.subTest(size=name, dark=dark):
                     browser = self.open(width, height, mobile, dark)
-                    browser.run("document.querySelector('#layers-box').open = true")
+                    browser.execute_script("document.querySelector('#layers-box').open = true")
                     self.assertEqual(accessible.findings(browser), [])
-                    self.assertEqual(browser.run(accessible.STICKS_OUT), [])
-                    browser.screenshot(PICTURES / f"layers-{name}-{'dark' if dark else 'light'}.png")
+                    self.assertEqual(browser.execute_script(accessible.STICKS_OUT), [])
+                    browser.save_screenshot(PICTURES / f"layers-{name}-{'dark' if dark else 'light'}.png")
                     self.assertEqual(browser.errors(), [])
 
     def test_the_check_finds_what_is_wrong(self):
         browser = self.open()
-        browser.run("""document.querySelector("#fit").textContent = ""; document.querySelector("#fit").removeAttribute("aria-label");
-                       document.querySelector("#status-title").style.color = "#dddddd"; document.querySelector("#status-title").style.background = "#ffffff";
-                       document.querySelector("#save").id = "pause"; document.querySelector("#zoom-in").style.cssText = "min-width:0;width:9px;padding:0";
-                       document.querySelector("#status-section").removeAttribute("tabindex"); document.querySelector("#status-section").style.height = "60px" """)
+        browser.execute_script("""document.querySelector("#fit").textContent = ""; document.querySelector("#fit").removeAttribute("aria-label");
+                                  document.querySelector("#status-title").style.color = "#dddddd"; document.querySelector("#status-title").style.background = "#ffffff";
+                                  document.querySelector("#save").id = "pause"; document.querySelector("#zoom-in").style.cssText = "min-width:0;width:9px;padding:0";
+                                  document.querySelector("#status-section").removeAttribute("tabindex"); document.querySelector("#status-section").style.height = "60px" """)
         found = "\n".join(accessible.findings(browser))
         for what in ("no name: button", "contrast 1.", "id twice: pause", "small to touch, 9", "scrollable-region-focusable: status-section"):
             self.assertIn(what, found)
@@ -46,19 +48,19 @@ class PageForAll(PageCase):
         browser = self.open()
         browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 0", 120)
         stops = accessible.walk(browser)
-        self.assertGreaterEqual(len(stops) + 2, browser.run(accessible.CAN_TAKE_FOCUS))  # a change may have come meanwhile
+        self.assertGreaterEqual(len(stops) + 2, browser.execute_script(accessible.CAN_TAKE_FOCUS))  # a change may have come meanwhile
         self.assertEqual([stop for stop in stops if not stop["is_seen"]], [])
         self.assertIn("map", [stop["what"] for stop in stops])
-        if not browser.run("return document.querySelector('#layers-box').open"):
+        if not browser.execute_script("return document.querySelector('#layers-box').open"):
             browser.press("#layers-box summary", ENTER)
         browser.press("#layer-scan", SPACE)
-        self.assertFalse(browser.run("return document.querySelector('#layer-scan').checked"))
+        self.assertFalse(browser.execute_script("return document.querySelector('#layer-scan').checked"))
         browser.press("#changes li:not(.refused) button", ENTER)
-        self.assertIsNotNone(browser.run("return window.deltamap.model.picked"))
-        before = browser.run("return document.documentElement.dataset.theme")
+        self.assertIsNotNone(browser.execute_script("return window.deltamap.model.picked"))
+        before = browser.execute_script("return document.documentElement.dataset.theme")
         browser.press("#theme", ENTER)
-        self.assertNotEqual(browser.run("return document.documentElement.dataset.theme"), before)
-        browser.press("#charts canvas", "\ue012")  # the left arrow
+        self.assertNotEqual(browser.execute_script("return document.documentElement.dataset.theme"), before)
+        browser.press("#charts canvas", Keys.ARROW_LEFT)
         browser.wait('document.querySelector("#charts-instant").textContent.startsWith("at ")')
         browser.press("#pause", ENTER)
         browser.wait('window.deltamap.model.status.mapping === "paused"')
@@ -75,24 +77,24 @@ class PageForAll(PageCase):
                      for (let i = 0; i < at.length; i += 4) if (Math.hypot(at[i] - r, at[i + 1] - g, at[i + 2] - b) < 12) ++count;
                      return count;"""
         # As the daemon sends them; when it does is up to the localizer.
-        browser.run("""const { model, view } = window.deltamap, { x_m, y_m } = model.pose;
-                       window.deltamap.connection.on.particles = () => {}; window.deltamap.connection.on.stored = () => {};
-                       model.particles = [];
-                       const ends = Array.from({ length: 80 }, (_, i) => (i % 2 ? y_m + 1 : x_m + i / 40));
-                       model.stored = [{ x: x_m, y: y_m, heading: 0, waits: false, ends }];
-                       view.show(x_m, y_m); view.scale = 60; view.draw();""")
-        self.assertGreater(browser.run(colours), 100)
+        browser.execute_script("""const { model, view } = window.deltamap, { x_m, y_m } = model.pose;
+                                  window.deltamap.connection.on.particles = () => {}; window.deltamap.connection.on.stored = () => {};
+                                  model.particles = [];
+                                  const ends = Array.from({ length: 80 }, (_, i) => (i % 2 ? y_m + 1 : x_m + i / 40));
+                                  model.stored = [{ x: x_m, y: y_m, heading: 0, waits: false, ends }];
+                                  view.show(x_m, y_m); view.scale = 60; view.draw();""")
+        self.assertGreater(browser.execute_script(colours), 100)
         browser.press("#layer-stored", SPACE)
-        browser.run("window.deltamap.view.draw()")
-        self.assertLess(browser.run(colours), 100)
-        browser.run("""const { model, view } = window.deltamap, { x_m, y_m } = model.pose;
-                       model.particles = Array.from({ length: 600 }, (_, i) => (i % 3 === 2 ? 0.3 : (i % 3 ? y_m : x_m) + ((7 * i) % 11 - 5) / 10));
-                       view.draw();""")
-        browser.screenshot(PICTURES / "particles.png")
-        self.assertTrue(browser.run("""const { view } = window.deltamap, drawn = () => { view.draw(); return view.canvas.toDataURL(); };
-                                       const box = document.querySelector("#layer-particles"), before = drawn();
-                                       box.click();
-                                       return drawn() !== before;"""))
+        browser.execute_script("window.deltamap.view.draw()")
+        self.assertLess(browser.execute_script(colours), 100)
+        browser.execute_script("""const { model, view } = window.deltamap, { x_m, y_m } = model.pose;
+                                  model.particles = Array.from({ length: 600 }, (_, i) => (i % 3 === 2 ? 0.3 : (i % 3 ? y_m : x_m) + ((7 * i) % 11 - 5) / 10));
+                                  view.draw();""")
+        browser.save_screenshot(PICTURES / "particles.png")
+        self.assertTrue(browser.execute_script("""const { view } = window.deltamap, drawn = () => { view.draw(); return view.canvas.toDataURL(); };
+                                                  const box = document.querySelector("#layer-particles"), before = drawn();
+                                                  box.click();
+                                                  return drawn() !== before;"""))
         self.assertEqual([line for line in browser.errors() if "willReadFrequently" not in line], [])  # that is of this test's own reading
 
     def test_the_pilots_way_is_told_while_it_drives(self):
@@ -125,8 +127,8 @@ class ReportForAll(unittest.TestCase):
 
     def open(self, width=1280, height=800, mobile=False, dark=False):
         browser = Browser(width, height, dark, mobile)
-        self.addCleanup(browser.__exit__)
-        browser.open(self.url)
+        self.addCleanup(browser.quit)
+        browser.get(self.url)
         return browser
 
     def test_fits_every_size_light_and_dark(self):
@@ -134,43 +136,43 @@ class ReportForAll(unittest.TestCase):
             for dark in (False, True):
                 with self.subTest(size=name, dark=dark):
                     browser = self.open(width, height, mobile, dark)
-                    self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark" if dark else "light")
-                    self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
-                    self.assertEqual(browser.run(accessible.STICKS_OUT), [])
+                    self.assertEqual(browser.execute_script("return document.documentElement.dataset.theme"), "dark" if dark else "light")
+                    self.assertLessEqual(browser.execute_script("return document.documentElement.scrollWidth"), width)
+                    self.assertEqual(browser.execute_script(accessible.STICKS_OUT), [])
                     self.assertEqual(accessible.findings(browser), [])
-                    self.assertEqual(browser.run(MET_OUT_OF_SIGHT), [])
-                    least = browser.run("return Math.min(...[...document.querySelectorAll('svg text')].map((one) => one.getBoundingClientRect().height))")
+                    self.assertEqual(browser.execute_script(MET_OUT_OF_SIGHT), [])
+                    least = browser.execute_script("return Math.min(...[...document.querySelectorAll('svg text')].map((one) => one.getBoundingClientRect().height))")
                     self.assertGreater(least, 9)
-                    browser.screenshot(PICTURES / f"report-{name}-{'dark' if dark else 'light'}.png", whole=True)
+                    browser.save_whole_page(PICTURES / f"report-{name}-{'dark' if dark else 'light'}.png")
                     self.assertEqual(browser.errors(), [])
 
     def test_pointer_and_keyboard_tell_the_values_of_all_lines(self):
         browser = self.open()
         told = "return [...document.querySelectorAll('figure.chart')][0].querySelector('.keys output').textContent"
-        self.assertEqual(browser.run(told), "")
-        browser.run("document.querySelector('figure.chart svg').scrollIntoView({ block: 'center' })")
-        place = browser.run("""const box = document.querySelector("figure.chart svg").getBoundingClientRect();
-                               return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]""")
-        browser.move(place)
+        self.assertEqual(browser.execute_script(told), "")
+        browser.execute_script("document.querySelector('figure.chart svg').scrollIntoView({ block: 'center' })")
+        place = browser.execute_script("""const box = document.querySelector("figure.chart svg").getBoundingClientRect();
+                                          return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]""")
+        browser.hand({0: place})
         browser.wait("document.querySelector('figure.chart .keys output').textContent !== ''")
-        browser.move([2, 2])
+        browser.hand({0: [2, 2]})
         browser.wait("document.querySelector('figure.chart .keys output').textContent === ''")
         browser.press("figure.chart svg", RIGHT)
-        first = browser.run("return document.querySelector('figure.chart figcaption output').textContent")
+        first = browser.execute_script("return document.querySelector('figure.chart figcaption output').textContent")
         browser.press("figure.chart svg", RIGHT)
-        self.assertNotEqual(browser.run("return document.querySelector('figure.chart figcaption output').textContent"), first)
+        self.assertNotEqual(browser.execute_script("return document.querySelector('figure.chart figcaption output').textContent"), first)
         # The value is the one that the line has there.
-        value = browser.run("""const figure = document.querySelector("figure.chart"), svg = figure.querySelector("svg");
+        value = browser.execute_script("""const figure = document.querySelector("figure.chart"), svg = figure.querySelector("svg");
             const [low, high] = svg.dataset.y.split(" ").map(Number), [, top, , bottom] = svg.dataset.plot.split(" ").map(Number);
             const at = Number(svg.querySelector(".instant").getAttribute("x1"));
             const point = [...svg.querySelector("polyline").points].reduce((best, one) => (Math.abs(one.x - at) < Math.abs(best.x - at) ? one : best));
             return [low + (bottom - point.y) / (bottom - top) * (high - low), Number(figure.querySelector(".keys output").textContent)]""")
         self.assertAlmostEqual(value[0], value[1], delta=0.006 * max(abs(value[0]), 1e-6))
         stops = accessible.walk(browser)
-        self.assertEqual(len(stops), browser.run(accessible.CAN_TAKE_FOCUS))
+        self.assertEqual(len(stops), browser.execute_script(accessible.CAN_TAKE_FOCUS))
         self.assertEqual([stop for stop in stops if not stop["is_seen"]], [])
         browser.press("#theme", ENTER)
-        self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark")
+        self.assertEqual(browser.execute_script("return document.documentElement.dataset.theme"), "dark")
 
     def test_the_page_of_the_check_looks_alike(self):
         sys.path.insert(0, str(ROOT / "tests/support"))
@@ -180,19 +182,19 @@ class ReportForAll(unittest.TestCase):
         file.write_text(report_page("Figures promised", ["deltamap 0.1.0"], ["on", "figure", "measured", "at least", "met"], rows))
         for name, (width, height, mobile) in SIZES.items():
             browser = Browser(width, height, name == "phone", mobile)
-            self.addCleanup(browser.__exit__)
-            browser.open(file.as_uri())
-            self.assertIn("intel <on> ref_intel", browser.run("return document.querySelector('td').textContent"))
-            self.assertEqual(browser.run("return [...document.querySelectorAll('.missed')].length"), 1)
-            self.assertEqual(browser.run(MET_OUT_OF_SIGHT), [])
-            self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+            self.addCleanup(browser.quit)
+            browser.get(file.as_uri())
+            self.assertIn("intel <on> ref_intel", browser.execute_script("return document.querySelector('td').textContent"))
+            self.assertEqual(browser.execute_script("return [...document.querySelectorAll('.missed')].length"), 1)
+            self.assertEqual(browser.execute_script(MET_OUT_OF_SIGHT), [])
+            self.assertLessEqual(browser.execute_script("return document.documentElement.scrollWidth"), width)
             self.assertEqual(accessible.findings(browser), [])
             self.assertEqual(browser.errors(), [])
 
     def test_tells_where_it_comes_from(self):
         browser = self.open()
         summary = json.loads((pathlib.Path(self.folder.name) / "summary.json").read_text())
-        text = browser.run("return document.body.textContent")
+        text = browser.execute_script("return document.body.textContent")
         for what in (summary["version"], summary["commit"], "settings as delivered"):
             self.assertIn(what, text)
 

@@ -6,11 +6,14 @@ import math
 import time
 import unittest
 
-from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
-from webdriver import Browser
+from selenium.webdriver import ActionChains
+from selenium.webdriver.common.keys import Keys
 
-UP, LEFT, ESCAPE, ENTER = "\ue013", "\ue012", "\ue00c", "\ue007"
-SHIFT, CONTROL = "\ue008", "\ue009"
+from browser import Browser
+from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
+
+UP, LEFT, ESCAPE, ENTER = Keys.ARROW_UP, Keys.ARROW_LEFT, Keys.ESCAPE, Keys.ENTER
+SHIFT, CONTROL = Keys.SHIFT, Keys.CONTROL
 HAS_CONTROL = '!document.querySelector("#controls").hidden'
 TASK = 'document.querySelector("#task .task-text").textContent'
 STATUS_S = 0.1  # until a status has been asked for and read
@@ -45,7 +48,7 @@ class ControlTest(PageCase):
 
     def test_pause_and_resume(self):
         browser = self.open()
-        self.assertEqual(browser.run("return document.querySelector('#pause').textContent"), "Pause mapping")
+        self.assertEqual(browser.execute_script("return document.querySelector('#pause').textContent"), "Pause mapping")
         self.click(browser, "#pause")
         self.until(lambda: self.daemon.status()["mapping"] == "paused")
         browser.wait("document.querySelector('#pause').textContent === 'Resume mapping'")
@@ -70,18 +73,18 @@ class ControlTest(PageCase):
 
     def test_without_the_token_the_page_is_read_and_asks_for_it_to_command(self):
         browser = Browser()
-        self.addCleanup(browser.__exit__)
-        browser.open(self.daemon.url)
+        self.addCleanup(browser.quit)
+        browser.get(self.daemon.url)
         browser.wait(SHOWS_MAP)
         browser.wait("!document.querySelector('#unlock').hidden")
-        seen = browser.run("return [...document.querySelectorAll('#controls button')].filter((one) => one.checkVisibility()).map((one) => one.id)")
+        seen = browser.execute_script("return [...document.querySelectorAll('#controls button')].filter((one) => one.checkVisibility()).map((one) => one.id)")
         self.assertEqual(sorted(seen), ["stop", "unlock"])
         self.assertTrue(all("401" in line for line in browser.errors()))
         self.click(browser, "#stop")
         browser.wait(f"{TASK}.startsWith('STOP: the robot is told to stand')")
         self.assertEqual(self.daemon.status()["drive"], "off")
         self.click(browser, "#unlock")
-        browser.run("document.querySelector('#task input').value = arguments[0]", self.daemon.token)
+        browser.execute_script("document.querySelector('#task input').value = arguments[0]", self.daemon.token)
         self.choose(browser, "Unlock")
         browser.wait(SHOWS_MAP)
         browser.wait("document.querySelector('#unlock').hidden && document.querySelector('#stop').checkVisibility()")
@@ -93,12 +96,12 @@ class ControlTest(PageCase):
         for name, (width, height, mobile) in SIZES.items():
             with self.subTest(size=name):
                 browser = self.open(width, height, mobile)
-                self.assertEqual(browser.run(ON_TOP, "#stop"), "stop")
-                browser.run("scrollTo(0, 100000)")
-                self.assertEqual(browser.run(ON_TOP, "#stop"), "stop")
-                browser.run("scrollTo(0, 0)")
+                self.assertEqual(browser.execute_script(ON_TOP, "#stop"), "stop")
+                browser.execute_script("scrollTo(0, 100000)")
+                self.assertEqual(browser.execute_script(ON_TOP, "#stop"), "stop")
+                browser.execute_script("scrollTo(0, 0)")
                 self.click(browser, "#relocalize")
-                self.assertEqual(browser.run(ON_TOP, "#stop"), "stop")
+                self.assertEqual(browser.execute_script(ON_TOP, "#stop"), "stop")
                 self.click(browser, "#stop")
                 browser.wait(f"{TASK}.startsWith('STOP: the robot is told to stand')")
                 self.assertEqual(self.daemon.status()["drive"], "off")
@@ -110,32 +113,32 @@ class ControlTest(PageCase):
         browser = self.open()
         self.click(browser, "#stop")
         self.until(self.is_still)
-        there = browser.run("const { x_m, y_m, heading_rad } = window.deltamap.model.pose; return [x_m, y_m, heading_rad]")
+        there = browser.execute_script("const { x_m, y_m, heading_rad } = window.deltamap.model.pose; return [x_m, y_m, heading_rad]")
         x, y, heading = there
         # A pose that is merely shifted may be mended by the very next scan; one that is turned is not.
         for name, wish, level in (("turned", (x, y, heading + math.pi / 2), "warn"), ("put back", there, "good")):
             with self.subTest(name):
                 self.click(browser, "#relocalize")
                 fit = self.drag_to(browser, wish)
-                browser.screenshot(PICTURES / f"relocalize-{level}.png")
+                browser.save_screenshot(PICTURES / f"relocalize-{level}.png")
                 self.assertTrue(fit > 60 if level == "good" else fit < 40, fit)
                 self.choose(browser, "Relocalize here")
                 browser.wait(f"document.querySelector('#task').dataset.level === '{level}'")
-                self.assertIn("beams", browser.run(f"return {TASK}"))
+                self.assertIn("beams", browser.execute_script(f"return {TASK}"))
                 browser.wait(f"Math.cos(window.deltamap.model.pose.heading_rad - {wish[2]}) > 0.98", 5)
-        put_back = browser.run("const { x_m, y_m } = window.deltamap.model.pose; return [x_m, y_m]")
+        put_back = browser.execute_script("const { x_m, y_m } = window.deltamap.model.pose; return [x_m, y_m]")
         self.assertLess(math.dist(put_back, (x, y)), 0.2)
         self.assertEqual(browser.errors(), [])
 
     def drag_to(self, browser, wish):
         """Presses where the robot shall be and drags to where it shall look; the share that is told, in percent."""
-        start, end = browser.run("""const { view } = window.deltamap, [x, y, heading] = arguments[0];
+        start, end = browser.execute_script("""const { view } = window.deltamap, [x, y, heading] = arguments[0];
             view.show(x, y);
             const box = view.canvas.getBoundingClientRect(), [px, py] = view.to_screen(x, y);
             return [[px, py], [px + 90 * Math.cos(heading), py - 90 * Math.sin(heading)]].map(([px, py]) => [Math.round(box.left + px), Math.round(box.top + py)])""",
                                  wish)
-        browser.drag(start, end)
-        told = browser.run(f"return {TASK}")
+        browser.hand({0: start}, {0: "down"}, {0: end}, {0: "up"})
+        told = browser.execute_script(f"return {TASK}")
         self.assertIn("% of the beams fit the map", told)
         return int(told.split(": ")[1].split(" %")[0])
 
@@ -145,11 +148,11 @@ class ControlTest(PageCase):
                 browser = self.open(*SIZES[name])
                 self.click(browser, "#relocalize")
                 for _ in range(3):
-                    browser.press("#map", "\ue015")  # the down arrow
-                browser.run("const { view, model } = window.deltamap; view.show(model.wish.x, model.wish.y); view.move_by(0, 400)")
+                    browser.press("#map", Keys.ARROW_DOWN)
+                browser.execute_script("const { view, model } = window.deltamap; view.show(model.wish.x, model.wish.y); view.move_by(0, 400)")
                 browser.press("#map", UP)
                 self.expect_in_sight(browser, "[model.wish.x, model.wish.y]")
-                browser.screenshot(PICTURES / f"wish-{name}.png")
+                browser.save_screenshot(PICTURES / f"wish-{name}.png")
                 self.assertEqual(browser.errors(), [])
 
     def test_relocalize_by_keys_and_escape(self):
@@ -160,9 +163,9 @@ class ControlTest(PageCase):
         browser.wait("window.deltamap.model.wish")
         browser.press("#map", ESCAPE)
         browser.wait("!window.deltamap.model.wish && document.querySelector('#task').hidden")
-        before = browser.run("return window.deltamap.view.centre.y")
+        before = browser.execute_script("return window.deltamap.view.centre.y")
         browser.press("#map", UP)
-        self.assertGreater(browser.run("return window.deltamap.view.centre.y"), before)
+        self.assertGreater(browser.execute_script("return window.deltamap.view.centre.y"), before)
 
     def test_keys_drive_and_releasing_stops(self):
         browser = self.open()
@@ -170,15 +173,15 @@ class ControlTest(PageCase):
         self.until(self.is_still)
         self.take_in_hand(browser)
         self.assertTrue(self.is_still())
-        before = browser.run("return window.deltamap.model.pose.heading_rad")
-        browser.keys(("down", LEFT), ("wait", 1.5))
-        browser.screenshot(PICTURES / "drive.png")
-        browser.keys(("up", LEFT))
-        turned = abs(math.remainder(browser.run("return window.deltamap.model.pose.heading_rad") - before, 2 * math.pi))
+        before = browser.execute_script("return window.deltamap.model.pose.heading_rad")
+        ActionChains(browser).key_down(LEFT).pause(1.5).perform()
+        browser.save_screenshot(PICTURES / "drive.png")
+        ActionChains(browser).key_up(LEFT).perform()
+        turned = abs(math.remainder(browser.execute_script("return window.deltamap.model.pose.heading_rad") - before, 2 * math.pi))
         self.assertGreater(turned, 0.2)
         self.until(self.is_still)
         self.assertEqual(self.daemon.status()["drive"], "by hand")
-        browser.keys(("down", ESCAPE), ("up", ESCAPE))
+        ActionChains(browser).key_down(ESCAPE).key_up(ESCAPE).perform()
         self.until(lambda: self.daemon.status()["drive"] == "off")
         self.assertEqual(self.daemon.status()["drive_switch"], "off by the operator")
         self.assertEqual(browser.errors(), [])
@@ -188,12 +191,12 @@ class ControlTest(PageCase):
         self.click(browser, "#stop")
         self.until(self.is_still)
         self.take_in_hand(browser)
-        x, y = browser.run("const box = document.querySelector('#stick').getBoundingClientRect(); return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]")
+        x, y = browser.execute_script("const box = document.querySelector('#stick').getBoundingClientRect(); return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]")
         told = lambda: self.daemon.status()["told"]
         browser.hand({0: (x, y)}, {0: "down"}, {0: (x - 20, y - 30)})
         self.until(lambda: told()["turn_rate_rad_per_s"] > 0.1)
         self.until(lambda: told()["speed_m_per_s"] > 0.05 or self.daemon.status()["stopped_by"] == "obstacle")
-        browser.screenshot(PICTURES / "stick.png")
+        browser.save_screenshot(PICTURES / "stick.png")
         browser.hand({0: "up"})
         let_go = time.monotonic()
         self.until(lambda: told() == {"speed_m_per_s": 0, "turn_rate_rad_per_s": 0})
@@ -203,33 +206,33 @@ class ControlTest(PageCase):
             with self.subTest(lost=name):
                 browser.hand({0: (x, y)}, {0: "down"}, {0: (x + 25, y)})
                 self.until(lambda: told()["turn_rate_rad_per_s"] < -0.1)
-                browser.run(end)
+                browser.execute_script(end)
                 self.until(lambda: told()["turn_rate_rad_per_s"] == 0, 1)
                 browser.hand({0: (x - 25, y)})  # what is still down means nothing until it is pressed anew
-                self.assertIsNone(browser.run("return window.deltamap.control.hand.pull"))
+                self.assertIsNone(browser.execute_script("return window.deltamap.control.hand.pull"))
                 browser.hand({0: "up"})
         self.assertEqual(browser.errors(), [])
 
     def test_a_hidden_page_a_closed_one_and_a_lost_focus_let_go(self):
         for name, leave in {
-            "hidden": lambda browser: browser.run("""Object.defineProperty(document, "hidden", { value: true, configurable: true });
-                                                     document.dispatchEvent(new Event("visibilitychange"))"""),
-            "left": lambda browser: browser.open("about:blank"),
-            "closed": lambda browser: browser.__exit__(),
+            "hidden": lambda browser: browser.execute_script("""Object.defineProperty(document, "hidden", { value: true, configurable: true });
+                                                                document.dispatchEvent(new Event("visibilitychange"))"""),
+            "left": lambda browser: browser.get("about:blank"),
+            "closed": lambda browser: browser.quit(),
         }.items():
             with self.subTest(name):
                 browser = self.open()
                 self.take_in_hand(browser)
-                browser.keys(("down", LEFT))
+                ActionChains(browser).key_down(LEFT).perform()
                 leave(browser)
                 self.until(lambda: self.daemon.status()["drive"] == "off", 2)
                 self.until(self.is_still)
         browser = self.open()
         self.take_in_hand(browser)
-        browser.keys(("down", LEFT))
+        ActionChains(browser).key_down(LEFT).perform()
         browser.wait("window.deltamap.control.hand.held.size === 1")
-        browser.run("dispatchEvent(new Event('blur'))")
-        self.assertEqual(browser.run("return window.deltamap.control.hand.held.size"), 0)
+        browser.execute_script("dispatchEvent(new Event('blur'))")
+        self.assertEqual(browser.execute_script("return window.deltamap.control.hand.held.size"), 0)
         self.until(self.is_still)
 
     def test_a_key_that_goes_up_under_a_modifier_is_released(self):
@@ -238,21 +241,21 @@ class ControlTest(PageCase):
         self.take_in_hand(browser)
         for key, modifier in (UP, CONTROL), ("w", SHIFT):
             with self.subTest(key):
-                browser.keys(("down", key))
-                self.assertEqual(browser.run(held), 1)
-                browser.keys(("down", modifier), ("up", key))
-                self.assertEqual(browser.run(held), 0)
-                browser.keys(("up", modifier))
-        browser.keys(("down", UP), ("down", CONTROL))
-        self.assertEqual(browser.run(held), 0)
+                ActionChains(browser).key_down(key).perform()
+                self.assertEqual(browser.execute_script(held), 1)
+                ActionChains(browser).key_down(modifier).key_up(key).perform()
+                self.assertEqual(browser.execute_script(held), 0)
+                ActionChains(browser).key_up(modifier).perform()
+        ActionChains(browser).key_down(UP).key_down(CONTROL).perform()
+        self.assertEqual(browser.execute_script(held), 0)
         self.until(self.is_still)
 
     def test_nothing_to_command_where_control_is_off(self):
         browser = self.open()
-        browser.run("return window.deltamap.control.allow(null)")
-        self.assertTrue(browser.run("return document.querySelector('#controls').hidden"))
-        browser.run("return window.deltamap.control.allow({ drive: false })")
-        self.assertTrue(browser.run("return document.querySelector('#drive').hidden && !document.querySelector('#stop').hidden"))
+        browser.execute_script("return window.deltamap.control.allow(null)")
+        self.assertTrue(browser.execute_script("return document.querySelector('#controls').hidden"))
+        browser.execute_script("return window.deltamap.control.allow({ drive: false })")
+        self.assertTrue(browser.execute_script("return document.querySelector('#drive').hidden && !document.querySelector('#stop').hidden"))
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@
 import time
 import unittest
 
+from browser import Browser
 from running_daemon import ROOT, RunningDaemon
-from webdriver import Browser
 
 PICTURES = ROOT / "build/browser"
 SIZES = {"phone": (390, 844, True), "netbook": (1024, 600, False), "desk": (1920, 1080, False)}
@@ -28,12 +28,12 @@ class PageCase(unittest.TestCase):
         cls.daemon.__exit__()
 
     def click(self, browser, selector):
-        browser.run("document.querySelector(arguments[0]).click()", selector)
+        browser.execute_script("document.querySelector(arguments[0]).click()", selector)
 
     def choose(self, browser, label):
         """One of the answers to a question over the map."""
         browser.wait(f"[...document.querySelectorAll('.task-buttons button')].some((one) => one.textContent === '{label}')")
-        browser.run("[...document.querySelectorAll('.task-buttons button')].find((one) => one.textContent === arguments[0]).click()", label)
+        browser.execute_script("[...document.querySelectorAll('.task-buttons button')].find((one) => one.textContent === arguments[0]).click()", label)
 
     def until(self, condition, patience_s=10):
         give_up_at = time.monotonic() + patience_s
@@ -50,8 +50,8 @@ class PageCase(unittest.TestCase):
 
     def open(self, width=1280, height=800, mobile=False, dark=False):
         browser = Browser(width, height, dark, mobile)
-        self.addCleanup(browser.__exit__)
-        browser.open(self.daemon.page())
+        self.addCleanup(browser.quit)
+        browser.get(self.daemon.page())
         for condition in self.ready:
             browser.wait(condition)
         return browser

@@ -9,9 +9,11 @@ import signal
 import time
 import unittest
 
+from selenium.webdriver.common.keys import Keys
+
+from browser import Browser
 from page_case import PICTURES, SHOWS_MAP, SIZES, PageCase
 from running_daemon import ROOT
-from webdriver import Browser
 
 IS_LIVE = 'document.body.dataset.link === "live"'
 # Cells of a box of the map (centre and sides, m) that the page shows as free, as a share.
@@ -41,14 +43,14 @@ class PageTest(PageCase):
 
     def test_shows_the_map_within_two_seconds(self):
         browser = Browser()
-        self.addCleanup(browser.__exit__)
+        self.addCleanup(browser.quit)
         began = time.monotonic()
-        browser.open(self.daemon.page())
+        browser.get(self.daemon.page())
         browser.wait(SHOWS_MAP, 5)
         self.assertLess(time.monotonic() - began, 2.0)
         browser.wait(IS_LIVE)
-        self.assertGreater(browser.run(DRAWN), 5)
-        paint_ms = browser.run('return performance.getEntriesByName("first-contentful-paint")[0].startTime')
+        self.assertGreater(browser.execute_script(DRAWN), 5)
+        paint_ms = browser.execute_script('return performance.getEntriesByName("first-contentful-paint")[0].startTime')
         self.assertLess(paint_ms, 1000)
         self.expect_calm(browser)
 
@@ -59,15 +61,15 @@ class PageTest(PageCase):
                     browser = self.open(width, height, mobile, dark)
                     browser.wait(SHOWS_MAP)
                     browser.wait('document.querySelectorAll("#status dd").length > 5 && window.deltamap.model.samples.length > 1')
-                    browser.run("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
-                    self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark" if dark else "light")
-                    self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
-                    wide = browser.run("""return [...document.querySelectorAll("body *")].filter((one) =>
+                    browser.execute_script("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+                    self.assertEqual(browser.execute_script("return document.documentElement.dataset.theme"), "dark" if dark else "light")
+                    self.assertLessEqual(browser.execute_script("return document.documentElement.scrollWidth"), width)
+                    wide = browser.execute_script("""return [...document.querySelectorAll("body *")].filter((one) =>
                         one.getBoundingClientRect().right > innerWidth + 0.5 || one.getBoundingClientRect().left < -0.5).map((one) => one.tagName + "#" + one.id)""")
                     self.assertEqual(wide, [])
                     if not mobile:
-                        self.assertLessEqual(browser.run("return document.documentElement.scrollHeight"), height)
-                    browser.screenshot(PICTURES / f"{name}-{'dark' if dark else 'light'}.png", whole=mobile)
+                        self.assertLessEqual(browser.execute_script("return document.documentElement.scrollHeight"), height)
+                    (browser.save_whole_page if mobile else browser.save_screenshot)(PICTURES / f"{name}-{'dark' if dark else 'light'}.png")
                     self.expect_calm(browser)
 
     def test_a_container_that_is_taken_away_in_the_hall_goes_away_on_the_page(self):
@@ -79,11 +81,11 @@ class PageTest(PageCase):
             for change in self.daemon.changes():
                 if change["kind"] != "removed":
                     continue
-                now = browser.run(FREE_SHARE, change["box"][:4])
+                now = browser.execute_script(FREE_SHARE, change["box"][:4])
                 before = first.setdefault(json.dumps(change), now)
                 if now - before > 0.3:
                     browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 0")
-                    browser.screenshot(PICTURES / "changed.png")
+                    browser.save_screenshot(PICTURES / "changed.png")
                     return self.expect_calm(browser)
             time.sleep(0.3)
         self.fail("no container that was taken away has gone on the page in five minutes")
@@ -122,8 +124,8 @@ class PageTest(PageCase):
         self.daemon.simulator.send_signal(signal.SIGSTOP)
         try:
             browser.wait('window.deltamap.model.is_old && document.querySelector("#badge-state").textContent.startsWith("was ")', 6)
-            self.assertEqual(browser.run("return document.querySelector('#badge-state').dataset.level"), "none")
-            browser.screenshot(PICTURES / "old.png")
+            self.assertEqual(browser.execute_script("return document.querySelector('#badge-state').dataset.level"), "none")
+            browser.save_screenshot(PICTURES / "old.png")
         finally:
             self.daemon.simulator.send_signal(signal.SIGCONT)
         browser.wait("!window.deltamap.model.is_old", 20)
@@ -134,11 +136,11 @@ class PageTest(PageCase):
         browser.wait(SHOWS_MAP)
         self.daemon.stop()
         browser.wait('document.body.dataset.link === "lost" && !document.querySelector("#map-note").hidden')
-        browser.screenshot(PICTURES / "lost.png")
+        browser.save_screenshot(PICTURES / "lost.png")
         self.daemon.start()
         browser.wait(IS_LIVE, 20)
         browser.wait(SHOWS_MAP)
-        self.assertTrue(browser.run('return document.querySelector("#map-note").hidden'))
+        self.assertTrue(browser.execute_script('return document.querySelector("#map-note").hidden'))
         refused = [line for line in browser.errors() if "ERR_CONNECTION_REFUSED" not in line]
         self.assertEqual(refused, [])
 
@@ -147,26 +149,26 @@ class PageTest(PageCase):
         browser.wait(SHOWS_MAP)
         scale = "return window.deltamap.view.scale"
         centre = "return window.deltamap.view.centre.x"
-        fitted = browser.run(scale)
+        fitted = browser.execute_script(scale)
         browser.press("#map", "+")
-        self.assertGreater(browser.run(scale), fitted)
-        before = browser.run(centre)
-        browser.press("#map", "\ue014")  # the right arrow
-        self.assertGreater(browser.run(centre), before)
-        before = browser.run(centre)
-        browser.drag((300, 300), (400, 300))
-        self.assertLess(browser.run(centre), before)
+        self.assertGreater(browser.execute_script(scale), fitted)
+        before = browser.execute_script(centre)
+        browser.press("#map", Keys.ARROW_RIGHT)
+        self.assertGreater(browser.execute_script(centre), before)
+        before = browser.execute_script(centre)
+        browser.hand({0: (300, 300)}, {0: "down"}, {0: (400, 300)}, {0: "up"})
+        self.assertLess(browser.execute_script(centre), before)
         browser.press("#map", "f")
-        self.assertAlmostEqual(browser.run(scale), fitted, 3)
+        self.assertAlmostEqual(browser.execute_script(scale), fitted, 3)
         browser.press("#map", "r")
-        self.assertEqual(browser.run('return document.querySelector("#follow").getAttribute("aria-pressed")'), "true")
+        self.assertEqual(browser.execute_script('return document.querySelector("#follow").getAttribute("aria-pressed")'), "true")
         self.expect_calm(browser)
 
     def test_fingers_move_and_pinch_the_map(self):
         browser = self.open(390, 844, True)
         browser.wait(SHOWS_MAP)
-        x, y = browser.run("const box = document.querySelector('#map').getBoundingClientRect(); return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]")
-        now = lambda: browser.run("const { view } = window.deltamap; return [view.centre.x, view.centre.y, view.scale]")
+        x, y = browser.execute_script("const box = document.querySelector('#map').getBoundingClientRect(); return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]")
+        now = lambda: browser.execute_script("const { view } = window.deltamap; return [view.centre.x, view.centre.y, view.scale]")
         before = now()
         browser.hand({0: (x, y)}, {0: "down"}, {0: (x + 60, y)}, {0: "up"}, kind="touch")
         moved = now()
@@ -174,32 +176,32 @@ class PageTest(PageCase):
         self.assertEqual(moved[2], before[2])
         browser.hand({0: (x - 30, y), 1: (x + 30, y)}, {0: "down", 1: "down"}, {0: (x - 60, y), 1: (x + 60, y)}, {0: "up", 1: "up"}, kind="touch")
         self.assertAlmostEqual(now()[2] / moved[2], 2, delta=0.1)
-        self.assertEqual(browser.run("return window.deltamap.view.pointers.size"), 0)
+        self.assertEqual(browser.execute_script("return window.deltamap.view.pointers.size"), 0)
         self.expect_calm(browser)
 
     def test_a_picked_change_is_ringed_and_layers_switch(self):
         browser = self.open()
         browser.wait(SHOWS_MAP)
         browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 1", 90)
-        browser.run("[...document.querySelectorAll('#changes li:not(.refused) button')].at(-1).click()")
-        self.assertIn(" m; ", browser.run("return document.querySelector('#changes [aria-pressed=true] .why').textContent"), "its place")
-        self.assertIsNotNone(browser.run("return window.deltamap.model.picked"))
+        browser.execute_script("[...document.querySelectorAll('#changes li:not(.refused) button')].at(-1).click()")
+        self.assertIn(" m; ", browser.execute_script("return document.querySelector('#changes [aria-pressed=true] .why').textContent"), "its place")
+        self.assertIsNotNone(browser.execute_script("return window.deltamap.model.picked"))
         pressed = "return [...document.querySelectorAll('#changes button')].filter((one) => one.getAttribute('aria-pressed') === 'true').length"
-        self.assertEqual(browser.run(pressed), 1)  # a newer change may lie above it by now
+        self.assertEqual(browser.execute_script(pressed), 1)  # a newer change may lie above it by now
         browser.wait("document.querySelectorAll('#layers input').length === 9")
-        browser.run("document.querySelectorAll('#layers input').forEach((box) => box.click())")
-        browser.run("return new Promise((done) => requestAnimationFrame(done))")
+        browser.execute_script("document.querySelectorAll('#layers input').forEach((box) => box.click())")
+        browser.execute_script("return new Promise((done) => requestAnimationFrame(done))")
         self.expect_calm(browser)
 
     def test_hover_shows_one_instant_in_all_charts(self):
         browser = self.open()
         browser.wait("window.deltamap?.model.samples.length > 3")
-        place = browser.run("""const box = document.querySelector("#charts canvas").getBoundingClientRect();
-                               return [Math.round(box.left + box.width * 0.8), Math.round(box.top + 20)]""")
-        browser.move(place)
+        place = browser.execute_script("""const box = document.querySelector("#charts canvas").getBoundingClientRect();
+                                          return [Math.round(box.left + box.width * 0.8), Math.round(box.top + 20)]""")
+        browser.hand({0: place})
         browser.wait('document.querySelector("#charts-instant").textContent.startsWith("at ")')
         # Every line tells its value of the same instant.
-        told, there = browser.run("""const { charts } = window.deltamap;
+        told, there = browser.execute_script("""const { charts } = window.deltamap;
             const shown = (chart) => chart.values.map((value) => Number(value.textContent.split(" ").at(-1)));
             return [charts.charts.map(shown), charts.charts.map((chart) => chart.kind.lines.map(({ column }) => charts.instant[column]))]""")
         self.assertEqual(len(told), 9)
@@ -207,13 +209,13 @@ class PageTest(PageCase):
             for value, wanted in zip(chart, of_sample):
                 if wanted is not None and value is not None:
                     self.assertAlmostEqual(value, wanted, delta=max(0.006, 0.006 * abs(wanted)))
-        self.assertIn("threshold", browser.run('return document.querySelector("#charts canvas").getAttribute("aria-label")'))
+        self.assertIn("threshold", browser.execute_script('return document.querySelector("#charts canvas").getAttribute("aria-label")'))
         self.expect_calm(browser)
 
     def test_nothing_is_asked_of_anybody_else(self):
         browser = self.open()
         browser.wait(SHOWS_MAP)
-        foreign = browser.run("return performance.getEntriesByType('resource').map((one) => one.name).filter((name) => !name.startsWith(location.origin))")
+        foreign = browser.execute_script("return performance.getEntriesByType('resource').map((one) => one.name).filter((name) => !name.startsWith(location.origin))")
         self.assertEqual([name for name in foreign if not name.startswith("data:")], [])
 
 
@@ -223,7 +225,7 @@ class PageTest(PageCase):
         browser = self.open(1440, 900)
         browser.wait(SHOWS_MAP)
         browser.wait("document.querySelectorAll('#changes li:not(.refused) button').length > 2 && window.deltamap.model.samples.length > 60", 180)
-        browser.screenshot(PICTURES / "live.png")
+        browser.save_screenshot(PICTURES / "live.png")
         if os.environ.get("DELTAMAP_WRITE_PICTURES"):
             shutil.copyfile(PICTURES / "live.png", ROOT / "docs/images/live.png")
         self.expect_calm(browser)

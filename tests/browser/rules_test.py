@@ -7,9 +7,9 @@ import subprocess
 import tempfile
 import unittest
 
-import view_test
+from browser import Browser
 from running_daemon import BIN, WORLD
-from webdriver import Browser
+import view_test
 
 # A room of 4 m by 4 m with a wall 0.5 m in front of its right side: columns 60 and 76 are occupied, what lies behind is unknown.
 # The robot stands at 1, 2 m; `words` of beams that end at the given places.
@@ -43,12 +43,12 @@ class RulesTest(unittest.TestCase):
         cls.view = view_test.View(file)
         cls.addClassCleanup(cls.view.__exit__)
         cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.__exit__)
-        cls.browser.open(cls.view.url)
+        cls.addClassCleanup(cls.browser.quit)
+        cls.browser.get(cls.view.url)
         cls.browser.wait(view_test.HAS_MAP)
 
     def words(self, *ends, gap=(0, 0)):
-        return self.browser.run(BEAMS, [list(end) for end in ends], list(gap))
+        return self.browser.execute_script(BEAMS, [list(end) for end in ends], list(gap))
 
     def test_a_beam_says_what_it_means_for_the_map(self):
         self.assertEqual(self.words((3.02, 2), (2.9, 2), (2.0, 2), (0.2, 0.3)), [FITS, FITS, SHORT, SHORT])
@@ -66,19 +66,19 @@ class RulesTest(unittest.TestCase):
         self.assertEqual(self.words((3.82, 2.6), gap=(20, 40)), [THROUGH])
 
     def test_axes_fit_the_data(self):
-        axis = lambda low, high: self.browser.run("""const [low, high] = arguments;
+        axis = lambda low, high: self.browser.execute_script("""const [low, high] = arguments;
             return import("/page/charts.js").then(({ axis_for }) => { const axis = axis_for(low, high); return [axis.low, axis.high] })""", low, high)
         for (low, high), (least, most) in {(0.1, 0.9): (0, 1), (80, 100): (80, 100), (0.97, 0.99): (0.97, 0.99), (0, 0): (-0.5, 0.5), (-1.1, -0.1): (-1.5, 0), (500, 500): (450, 550), (9.383, 9.386): (9.25, 9.5)}.items():
             self.assertAlmostEqual(axis(low, high)[0], least, 6, (low, high))
             self.assertAlmostEqual(axis(low, high)[1], most, 6, (low, high))
 
     def test_cells_are_counted_in_the_same_words_everywhere(self):
-        texts = self.browser.run("""return import("/page/cell_text.js").then(({ cell_text }) =>
+        texts = self.browser.execute_script("""return import("/page/cell_text.js").then(({ cell_text }) =>
             [{ occupied: 1024, forgotten: 3 }, { free: 1 }, {}].map(cell_text))""")
         self.assertEqual(texts, ["1,024 occupied, 3 forgotten", "1 free", ""])
 
     def test_times_are_written_the_same_in_every_language(self):
-        texts = self.browser.run("""return import("/page/time_text.js").then(({ clock, date_and_clock }) => {
+        texts = self.browser.execute_script("""return import("/page/time_text.js").then(({ clock, date_and_clock }) => {
             const time = new Date(2026, 0, 5, 0, 7, 9) / 1000;
             return [clock(time), date_and_clock(time)];
         })""")

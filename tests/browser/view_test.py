@@ -10,8 +10,10 @@ import tempfile
 import time
 import unittest
 
+from selenium.webdriver.common.keys import Keys
+
+from browser import Browser
 from running_daemon import BIN, ROOT, RunningDaemon
-from webdriver import Browser
 
 PICTURES = ROOT / "build/browser"
 DRIVE_S = 60
@@ -72,14 +74,14 @@ class ViewTest(unittest.TestCase):
 
     def open(self, url, width=1280, height=800, mobile=False, dark=False):
         browser = Browser(width, height, dark, mobile)
-        self.addCleanup(browser.__exit__)
-        browser.open(url)
+        self.addCleanup(browser.quit)
+        browser.get(url)
         return browser
 
     def scrub(self, browser, share):
-        browser.run(SCRUB, share)
+        browser.execute_script(SCRUB, share)
         browser.wait(SETTLED)
-        return browser.run("const { pose, scan, until } = window.deltamap.model; return { pose, beams: scan?.beams.length ?? 0, until, shown: window.deltamap.view.past !== null }")
+        return browser.execute_script("const { pose, scan, until } = window.deltamap.model; return { pose, beams: scan?.beams.length ?? 0, until, shown: window.deltamap.view.past !== null }")
 
     def test_a_folder_is_scrubbed_from_end_to_end(self):
         with View(self.place / "run") as view:
@@ -96,10 +98,10 @@ class ViewTest(unittest.TestCase):
             written = [json.loads(line) for line in (self.place / "run/changes.jsonl").read_text().splitlines()]
             newest = max(change.get("revision") or 0 for change in written)  # at times after the last pose
             self.assertEqual(last["shown"], int(rows[-1]["revision"]) < newest)
-            self.assertEqual(browser.run("return document.querySelector('#controls').hidden"), True)
-            self.assertGreater(browser.run("return document.querySelectorAll('#changes button').length"), 1)
+            self.assertEqual(browser.execute_script("return document.querySelector('#controls').hidden"), True)
+            self.assertGreater(browser.execute_script("return document.querySelectorAll('#changes button').length"), 1)
             self.scrub(browser, 0.5)
-            browser.screenshot(PICTURES / "view-folder.png")
+            browser.save_screenshot(PICTURES / "view-folder.png")
             self.assertEqual(browser.errors(), [])
         self.assertEqual(view.process.returncode, 0)
         self.assertEqual(view.said, "")
@@ -111,29 +113,29 @@ class ViewTest(unittest.TestCase):
             browser.wait(IS_READ, 60)
             middle = self.scrub(browser, 0.5)
             self.assertGreater(middle["beams"], 100)
-            on_obstacles = browser.run("""const { view, model: { scan } } = window.deltamap; let hits = 0;
+            on_obstacles = browser.execute_script("""const { view, model: { scan } } = window.deltamap; let hits = 0;
                 for (let i = 0; i < scan.ends.length; i += 2) if (view.state_near(scan.ends[i], scan.ends[i + 1], 0.15) === 1) ++hits;
                 return hits / (scan.ends.length / 2)""")
             self.assertGreater(on_obstacles, 0.6, "the scan lies on the map of its time")
-            browser.screenshot(PICTURES / "view-recording.png")
+            browser.save_screenshot(PICTURES / "view-recording.png")
             kept = []
             for share in range(0, 21):
                 self.scrub(browser, share / 20)
-                kept.append(browser.run("const { particles, stored, transient } = window.deltamap.model; return [particles.length, stored.length, transient !== null]"))
+                kept.append(browser.execute_script("const { particles, stored, transient } = window.deltamap.model; return [particles.length, stored.length, transient !== null]"))
             self.assertGreater(kept[0][0], 10, "the first pose rests on particles")
             self.assertGreater(max(scans for _, scans, _ in kept), 0, "scans of a Δ-phase")
             self.assertTrue(all(transient for *_, transient in kept))
             self.scrub(browser, 0.5)
-            browser.run("document.querySelector('#changes li:not(.refused) button').click()")
+            browser.execute_script("document.querySelector('#changes li:not(.refused) button').click()")
             browser.wait("window.deltamap.model.delta")
-            browser.screenshot(PICTURES / "view-change.png")
-            browser.run("document.querySelector('#history-close').click()")
+            browser.save_screenshot(PICTURES / "view-change.png")
+            browser.execute_script("document.querySelector('#history-close').click()")
             self.scrub(browser, 0.5)  # the change may lie at the very end
-            before = browser.run("return window.deltamap.run.wanted")
-            browser.run("document.querySelector('#run-play').click()")
+            before = browser.execute_script("return window.deltamap.run.wanted")
+            browser.execute_script("document.querySelector('#run-play').click()")
             browser.wait(f"window.deltamap.run.wanted > {before} + 2")
-            browser.run("document.querySelector('#run-play').click()")
-            browser.press("#run-slider", "\ue012")  # the left arrow
+            browser.execute_script("document.querySelector('#run-play').click()")
+            browser.press("#run-slider", Keys.ARROW_LEFT)
             browser.wait(SETTLED)
             self.assertEqual(browser.errors(), [])
         self.assertEqual(view.process.returncode, 0)
@@ -145,7 +147,7 @@ class ViewTest(unittest.TestCase):
             browser = self.open(view.url)
             browser.wait(IS_READ, 60)
             browser.wait('document.querySelector("#run-note").textContent.includes("cut")')
-            self.assertGreater(browser.run("return window.deltamap.run.told.scans"), 100)
+            self.assertGreater(browser.execute_script("return window.deltamap.run.told.scans"), 100)
             self.assertEqual(browser.errors(), [])
         self.assertIn("deltamap: warning: ", view.said)
         self.assertEqual(view.said.count("\n"), 1)
@@ -156,12 +158,12 @@ class ViewTest(unittest.TestCase):
             browser = self.open(view.url)
             browser.wait(HAS_MAP)
             browser.wait("document.querySelector('#status').children.length > 2")
-            self.assertTrue(browser.run("return document.querySelector('#run-bar').hidden"))
-            self.assertEqual(browser.run("return ['#follow', '#history', '#layers-box'].filter((one) => document.querySelector(one).checkVisibility())"), [])
+            self.assertTrue(browser.execute_script("return document.querySelector('#run-bar').hidden"))
+            self.assertEqual(browser.execute_script("return ['#follow', '#history', '#layers-box'].filter((one) => document.querySelector(one).checkVisibility())"), [])
             self.assertEqual(browser.errors(), [])
-            browser.screenshot(PICTURES / "view-map.png")
+            browser.save_screenshot(PICTURES / "view-map.png")
         browser.wait('document.body.dataset.link === "lost"')
-        self.assertIn("has ended", browser.run("return document.querySelector('#map-note').textContent"))
+        self.assertIn("has ended", browser.execute_script("return document.querySelector('#map-note').textContent"))
 
     def test_fits_every_size(self):
         with View(self.place / "run") as view:
@@ -169,10 +171,10 @@ class ViewTest(unittest.TestCase):
                 with self.subTest(size=name):
                     browser = self.open(view.url, width, height, mobile)
                     browser.wait(f"{HAS_MAP} && {IS_READ}")
-                    self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+                    self.assertLessEqual(browser.execute_script("return document.documentElement.scrollWidth"), width)
                     if not mobile:
-                        self.assertLessEqual(browser.run("return document.documentElement.scrollHeight"), height)
-                    browser.screenshot(PICTURES / f"view-{name}.png", whole=mobile)
+                        self.assertLessEqual(browser.execute_script("return document.documentElement.scrollHeight"), height)
+                    (browser.save_whole_page if mobile else browser.save_screenshot)(PICTURES / f"view-{name}.png")
 
     def test_two_on_one_port_and_what_cannot_be_viewed_end_at_once(self):
         with View(self.place / "run") as view:
