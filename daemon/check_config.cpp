@@ -36,8 +36,9 @@ namespace fs = std::filesystem;
 using Level = Finding::Level;
 using drivers::port::PortId;
 
-// Of systemd/deltamap.service: where its settings are, all that it may write to, what it cannot see, what only it sees,
-// and the drivers of the devices that it may open.
+// Paths and device drivers as systemd/deltamap.service sets them: the folder of settings, the two folders that the
+// service may write to, folders that are hidden from it, folders that it has a private copy of, and the serial drivers
+// whose devices it may open.
 constexpr const char* kServiceSettings = "/etc/deltamap";
 constexpr const char* kStateFolder = "/var/lib/deltamap";
 constexpr const char* kRuntimeFolder = "/run/deltamap";
@@ -62,7 +63,7 @@ std::string cells_text(const OccupancyGrid& grid) {
          count(CellState::kUnknown) + " unknown";
 }
 
-/// The map itself, where it can be read.
+/// Adds the finding about the map file; returns the map where it can be read.
 std::optional<OccupancyGrid> check_map(const Settings& settings, const std::string& config,
                                        std::vector<Finding>& findings) {
   try {
@@ -83,7 +84,7 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
   }
 }
 
-/// With its write-ahead log: what a daemon that was killed has left there belongs to the store.
+/// Copies the database with its write-ahead log: a daemon that was killed may have left its newest revisions there.
 void copy_store(const fs::path& store, const fs::path& target) {
   fs::copy_file(store, target);
   fs::permissions(target, fs::perms::owner_write, fs::perm_options::add);
@@ -91,7 +92,7 @@ void copy_store(const fs::path& store, const fs::path& target) {
   if (fs::exists(log)) fs::copy_file(log, mapping::store::log_of(target).log);
 }
 
-/// Opened as a start opens it, which mends and begins histories: hence a copy.
+/// Opens a copy of the store: a start repairs a damaged store and begins histories, and a check must change nothing.
 Finding store_content(const std::string& store, const OccupancyGrid& first) {
   const ScratchFolder scratch;
   const fs::path copied = scratch.path() / "store.sqlite";
@@ -120,7 +121,7 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
   }
 }
 
-/// The folder may have to be made: a start does that, where it is allowed.
+/// Judges the place of an output whose folder may still be missing: a start makes the folder where this user may.
 std::string judged_place(const fs::path& file, const std::function<std::string()>& judged) {
   std::error_code ignored;
   if (fs::is_directory(fs::absolute(file).parent_path(), ignored)) return judged();
@@ -129,7 +130,7 @@ std::string judged_place(const fs::path& file, const std::function<std::string()
   return "";
 }
 
-/// `first` is nothing where the map could not be read.
+/// Without a first map (its file could not be read) only the place of the store is judged.
 Finding store_finding(const Settings& settings, const std::string& config, const std::optional<OccupancyGrid>& first) {
   const std::string& store = settings.map.store;
   std::error_code ignored;
@@ -158,7 +159,7 @@ Finding port_finding(const Settings& settings, PortId device) {
   return {Level::kWarning, about, port.text + finder.others_here(device)};
 }
 
-/// Whether it would drive is a person's word, which a run before has kept.
+/// Whether a start would drive depends on the drive switch, which the last run has kept on disk.
 Finding drive_finding(const Settings& settings) {
   const std::string mode(name_of(settings.navigation.mode));
   if (settings.navigation.mode == navigation::DriveMode::kOff)
@@ -170,7 +171,7 @@ Finding drive_finding(const Settings& settings) {
   return {Level::kOk, "drive", mode + ": the switch is " + told + (drives ? ": it would drive" : ": it would stand")};
 }
 
-/// An output that is written as the run goes: `file`, or all of a folder that `file` lies in.
+/// Judges an output that a run writes: one file, or a whole folder, of which `file` then stands for all.
 Finding place_finding(const std::string& about, const std::string& name, const fs::path& file,
                       const std::function<std::string()>& judged) {
   try {
@@ -182,7 +183,7 @@ Finding place_finding(const std::string& about, const std::string& name, const f
   }
 }
 
-/// The name counts also where the folder has still to be made.
+/// The name of the newest map is judged even where its folder is still missing.
 Finding newest_finding(const MapSettings& map) {
   try {
     require_newest_named(map);
@@ -210,7 +211,7 @@ Finding socket_finding(const std::string& about, const fs::path& socket) {
   }
 }
 
-/// Listens for a moment, as a start would.
+/// Opens the page's port for a moment, as a start would, and closes it again.
 Finding page_finding(const DashboardSettings& page) {
   try {
     const dashboard::Server server{{.address = page.address,

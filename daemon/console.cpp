@@ -13,7 +13,7 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr int kQuietLogPeriod_s = 60;  // between status lines where nobody watches; those between are for debugging
+constexpr int kQuietLogPeriod_s = 60;  // between status lines at info level without a terminal; others are debug
 
 spdlog::level::level_enum spdlog_level_of(LogLevel level) {
   switch (level) {
@@ -53,10 +53,10 @@ void Console::write(const LeveledLine& line) {
   spdlog::log(level, "{}", line.text);
 }
 
-/// There is room for a line: PIPE_BUF bytes of a pipe.
+/// True where standard error takes a line at once: a pipe then has room for PIPE_BUF bytes.
 bool Console::is_read() {
   pollfd out{STDERR_FILENO, POLLOUT, 0};
-  return ::poll(&out, 1, 0) != 0;  // where it is broken, writing tells
+  return ::poll(&out, 1, 0) != 0;  // a broken pipe counts as read: writing to it reports the error
 }
 
 void Console::log(LogLevel level, const std::string& line) {

@@ -17,15 +17,15 @@ namespace {
 
 constexpr double kBytesOfAll = 24e6;  // the daemon on a map of a building, 181 beams, 500 particles
 constexpr double kBytesOfACell =
-    3.3;  // of what is shown: grid, field, votes; 64 million cells: 229 MB with all stages at work
+    3.3;  // of a shown cell: grid, field, votes; 64 million cells took 229 MB with all stages at work
 constexpr double kCoarsest_m = 0.25;  // walls are drawn a cell thick, and poses found to a fraction of one
 
 std::string megabytes(double bytes) { return std::to_string(std::llround(bytes * 1e-6)) + " MB"; }
 
 double bytes_needed(std::uint64_t cells) { return kBytesOfAll + kBytesOfACell * static_cast<double>(cells); }
 
-/// What the map needs beyond the limits: throws, or answers a warning. Most maps fit whatever they show: only of a
-/// larger one it is counted how much that is.
+/// Compares the memory that the map needs with the limits: throws above the hard one, returns a warning above the soft
+/// one. The shown cells are counted only where a map that shows all its cells would not fit.
 std::string judged_size(const std::filesystem::path& file, const GridGeometry& geometry, const MemoryLimit& limit) {
   const auto fits = [](double bytes, std::uint64_t most) { return bytes <= static_cast<double>(most); };
   const double at_most = bytes_needed(geometry.cell_count());

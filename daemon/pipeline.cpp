@@ -31,7 +31,7 @@ constexpr int kMapNiceness = 15;  // a map update never makes a scan wait, even 
 constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
 constexpr int kPageNiceness = 10;
-constexpr double kPatience = 10.0;  // with map and recorder, against the other stages
+constexpr double kPatience = 10.0;  // map and recorder may be silent so many times longer than other stages
 
 std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
   return folder ? *folder / name : std::filesystem::path{};
@@ -62,7 +62,7 @@ struct Pipeline::State {
   Channel<control::Command> commands{16};       // control → localization: the newest command, and its sender is told
   Channel<navigation::WanderParams> wander{4};  // whoever reloads → localization: refused, and who asked is told
 
-  // The first that touch a file: where another daemon is at work, this one ends before it does harm.
+  // The locks come before everything that writes: where another daemon has the files, this one ends without harm.
   std::optional<FileLock> out_lock;               // of --out
   std::optional<FileLock> newest_lock;            // of map.newest
   std::unique_ptr<control::ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
@@ -83,7 +83,7 @@ struct Pipeline::State {
   void write_report(const RunReport& report) const;
 
   double wall_began_s = 0.0;
-  std::atomic<bool> has_poses_ended{false};  // it has failed, which ends nothing else
+  std::atomic<bool> has_poses_ended{false};  // the pose stream has failed; the run goes on without it
   std::unique_ptr<Stage> io_thread, localization_thread, delta_thread, map_thread, recorder_thread, control_thread,
       page_thread, poses_thread;
   bool ended = false;
@@ -185,7 +185,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
   telemetry.estimate.revision.set(options.start.revision);
   wall_began_s = seconds(drivers::port::port_clock_now().time_since_epoch());
 
-  // Receivers before senders.
+  // Receivers start before their senders.
   recorder_thread = std::make_unique<Stage>(
       Stage::Options{"recorder", kRecorderNiceness}, [this] { recorder.run(); }, options.failed);
   map_thread = std::make_unique<Stage>(
@@ -217,7 +217,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
   }
 }
 
-// --- whoever reloads ---
+// --- reloading the settings ---
 
 LiveSettings::Outcome Pipeline::State::reload() {
   if (options.live == nullptr) return {false, {"the settings of this run came from no file"}};
@@ -249,7 +249,7 @@ Pipeline::~Pipeline() { state_->end_threads(); }
 void Pipeline::State::end_threads() {
   if (ended) return;
   ended = true;
-  io.stop();  // first of all: the robot stands, whatever the others are about
+  io.stop();  // first: the robot stands, however long the other stages take to end
   io_thread->join();
   if (page) {
     page->stop();
@@ -273,7 +273,7 @@ void Pipeline::State::end_threads() {
   recorder_thread->join();
 }
 
-/// The run has ended well whether or not there is room for its report.
+/// Writes the run's report; a failure is only a warning, because the run itself has ended well.
 void Pipeline::State::write_report(const RunReport& report) const {
   try {
     replace_file(*options.out / "report.json", json_text(report, options.live ? options.live->in_force() : settings));

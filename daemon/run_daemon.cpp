@@ -97,7 +97,7 @@ void remember_pose(const Settings& settings, Pipeline::Options& options, Console
   console.log(LogLevel::kInfo, begin_line(*answer.pose));
 }
 
-/// What the runs before have learned; of cells that were rewritten since, nothing.
+/// Takes the stability that earlier runs have learned, without that of cells that were rewritten since.
 void remember_stability(const Settings& settings, const mapping::store::MapStore& store, Pipeline::Options& options,
                         Console& console) {
   auto answer = read_kept_stability(memory_places(settings.map.store).stability, options.first_map);
@@ -181,7 +181,7 @@ void take_store(OpenedStore& opened, const Settings& settings, Pipeline::Options
   options.store = std::move(opened.store);
 }
 
-/// What is no good in settings or map shows only here, too.
+/// Begins the pipeline; a mistake in settings or map that only its stages find ends the start as any other one does.
 std::unique_ptr<Pipeline> begun(const Settings& settings, Pipeline::Options options) {
   try {
     return std::make_unique<Pipeline>(settings, std::move(options));

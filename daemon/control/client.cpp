@@ -15,8 +15,8 @@
 namespace deltamap::daemon::control {
 namespace {
 
-constexpr timeval kPatience{3, 0};  // the daemon's own is a second; this machine may be busy, too
-constexpr int kMostStops = 20;      // where many clients throng, one may be sent away before it was heard
+constexpr timeval kPatience{3, 0};  // the daemon answers within a second; the rest is for a busy machine
+constexpr int kMostStops = 20;      // a crowded daemon may close a connection before it has read the request
 
 struct HungUp : std::runtime_error {
   using std::runtime_error::runtime_error;

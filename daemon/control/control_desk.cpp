@@ -61,7 +61,7 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
   }
 }
 
-/// What was logged before gets its outcome.
+/// Logs the refusal behind the request that was logged when it came, and answers the client with the reason.
 void ControlDesk::refuse(const Request& request, const std::string& why, const control::Server::Reply& reply) {
   wiring_.log("ctl: " + control::words_of(request) + ": " + why);
   reply(error_line(why));

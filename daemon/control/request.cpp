@@ -43,7 +43,7 @@ RequestAnswer relocalization_in(const Json& json) {
   return {Request{Kind::kRelocalize, {*x_m, *y_m, wrapped_angle(radians(*heading_deg))}}, ""};
 }
 
-/// "undo", "rollback".
+/// Reads the requests "undo" and "rollback", which name a revision.
 RequestAnswer map_order_in(const Json& json, Kind kind, const std::string& name) {
   const auto revision = json.find("revision");
   const bool is_number = revision != json.end() && revision->is_number_unsigned() &&

@@ -32,8 +32,8 @@ constexpr std::size_t kMostClients = 64;
 constexpr std::size_t kFewestClients = 16;
 constexpr std::size_t kOthersDescriptors = 64;  // files, ports and the first connections of the page
 
-/// One client: a line, its reply, the next line. One too many is heard, too: it may be somebody who wants to stop the
-/// robot, and is refused whatever else it asks for.
+/// One client: a line, its reply, the next line. A client beyond the limit is heard, too, because it may want to stop
+/// the robot; everything else that it asks for is refused.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(Protocol::socket socket, const Server::Options& options, bool is_one_too_many,
@@ -55,7 +55,7 @@ class Session : public std::enable_shared_from_this<Session> {
     say(line);
   }
 
-  /// Since when it has said nothing; nothing while it is being answered.
+  /// The instant since which the client has been silent; nullopt while a request of it is being answered.
   [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> idle_since() const {
     return awaits_ || ends_ ? std::nullopt : std::optional{spoke_};
   }
@@ -131,7 +131,7 @@ struct Server::State {
         clients{sockets::listening_at(loop, options.socket),
                 [this](Protocol::socket socket) { welcome(std::move(socket)); }, [this] { return make_room(); }} {}
 
-  /// Whoever says nothing must not keep out an order to stop: the one that has been silent longest goes.
+  /// Closes the client that has been silent longest: silent clients must not keep out an order to stop.
   bool make_room() {
     Session* longest = nullptr;
     for (const auto& session : sessions) {

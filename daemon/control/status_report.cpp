@@ -76,7 +76,7 @@ Json recording_json(const Telemetry& t, const Settings& settings) {
   return {{"file", settings.recording.file}, {"bytes", t.recorded_bytes.value()}, {"goes_on", t.records.value()}};
 }
 
-/// By name: is it being written, and since when and why not.
+/// Each output by name: whether it is being written; where not, since when and why.
 Json outputs_json(const Telemetry& t) {
   Json json = Json::object();
   for (const OutputStatus& output : t.outputs.all()) {

@@ -46,7 +46,8 @@ std::optional<std::string_view> name_in(std::string_view host) {
   return address && address->is_v6() == is_bracketed ? std::optional{name} : std::nullopt;
 }
 
-/// Sent on this machine to this machine. A proxy that forwards from outside names the outer address.
+/// True for a request that was sent on this machine to a loopback name. A proxy that forwards requests from outside
+/// connects from here as well, but names the outer address.
 bool is_local(const Request& request) {
   const auto name = name_in(request.host);
   return request.is_from_loopback && name && (name == kLocalhost || is_loopback(std::string(*name)) == true);
@@ -73,7 +74,7 @@ bool has_token(const Request& request, const std::string& token) {
 
 Answer refused(unsigned status, std::string why) { return {.status = status, .body = std::move(why) + "\n"}; }
 
-/// With or without parameters: "application/json; charset=utf-8".
+/// True for the media type of JSON, with parameters ("application/json; charset=utf-8") or without.
 bool is_json(std::string_view type) {
   constexpr std::string_view kJson = "application/json";
   if (!type.starts_with(kJson)) return false;
@@ -90,7 +91,7 @@ std::optional<Answer> refusal_of_method(const Request& request) {
   return answer;
 }
 
-/// Of what commands and drives, once the sender may read.
+/// The refusal of a request that commands or drives, of a sender who is allowed to read the page.
 std::optional<Answer> refusal_of_command(const Request& request, const Guard& guard) {
   if (!commands(request)) return std::nullopt;
   if (!guard.takes_commands) return refused(403, "no commands are taken here: 'dashboard.control' is off");

@@ -13,7 +13,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-/// One that somebody else has opened, systemd for example.
+/// The acceptor of a listening socket that another process has opened, systemd for example.
 asio::ip::tcp::acceptor inherited(asio::io_context& loop, int descriptor) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
@@ -47,8 +47,8 @@ std::string place_of(const asio::ip::tcp::endpoint& endpoint) {
 asio::ip::tcp::acceptor listening_socket(asio::io_context& loop, const Server::Options& options) {
   asio::ip::tcp::acceptor acceptor =
       options.descriptor >= 0 ? inherited(loop, options.descriptor) : listening_at(loop, options.address, options.port);
-  // Whoever says nothing is kept back by the kernel for a second: who comes has said something, and is not sent away
-  // for want of a request that is still on its way.
+  // The kernel keeps a connection back until its first bytes are there, a second at most: a viewer whose request is
+  // still on its way does not count as silent, which would make it the first to be sent away.
   const int silence_s = 1;
   (void)::setsockopt(acceptor.native_handle(), IPPROTO_TCP, TCP_DEFER_ACCEPT, &silence_s, sizeof silence_s);
   const asio::ip::tcp::endpoint place = acceptor.local_endpoint();

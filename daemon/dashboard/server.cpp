@@ -22,8 +22,8 @@ namespace deltamap::daemon::dashboard {
 namespace {
 
 constexpr int kSendBuffer = 128 * 1024;          // of the kernel, for each connection
-constexpr std::size_t kMostDrivers = 4;          // of whom one has the robot
-constexpr std::size_t kOthersDescriptors = 128;  // of the rest of this process: files, ports, sockets
+constexpr std::size_t kMostDrivers = 4;          // connections of /drive; one at a time has the robot
+constexpr std::size_t kOthersDescriptors = 128;  // that the rest of this process needs: files, ports, sockets
 constexpr std::size_t kFewestConnections = 8;
 
 }  // namespace
@@ -45,7 +45,7 @@ struct Server::State {
   void welcome(tcp::socket socket) {
     const Guest guest{.from = owner_of(address_of(socket))};
     const Welcome verdict = welcome_for(guest.from, host.guests(), {host.most, host.options.most_from_one});
-    if (!verdict.is_welcome) return;  // one too many is not answered: that would keep it
+    if (!verdict.is_welcome) return;  // closed without an answer, which would hold its descriptor
     if (verdict.leaves != nullptr) host.send_away(verdict.leaves);
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
@@ -55,14 +55,14 @@ struct Server::State {
     connection->listen();
   }
 
-  /// Where there is no descriptor left.
+  /// Called where accept() finds no descriptor left: closes the connection that is first to leave.
   bool make_room() {
     const Guest* const leaves = first_to_leave(host.guests());
     if (leaves != nullptr) host.send_away(leaves);
     return leaves != nullptr;
   }
 
-  /// One too many is welcome where it has shown the token and another one has not.
+  /// Beyond the limit a viewer is let in only where it has shown the token and takes the place of one that has not.
   void welcome_viewer(beast::tcp_stream stream, const HttpRequest& request, const Guest& guest) {
     if (viewers.size() >= host.options.most_viewers) {
       std::vector<const Guest*> present;
@@ -153,7 +153,7 @@ std::uint16_t Server::port() const { return state_->clients.place().port(); }
 std::string Server::place() const { return place_of(state_->clients.place()); }
 
 void Server::run() {
-  // However it ends: who drives does so no longer.
+  // However the loop ends, by an exception too, whoever drives by hand lets go of the robot.
   const std::unique_ptr<State, void (*)(State*)> at_end{state_.get(), [](State* state) { state->close(); }};
   const auto keep_alive = asio::make_work_guard(state_->loop);
   state_->clients.start();

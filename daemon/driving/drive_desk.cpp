@@ -7,9 +7,9 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr std::chrono::seconds kRequestLife{1};          // to drive: the thread has hung, or the machine
-constexpr double kHandLifeS = 0.25;                      // of a command by hand: with one safety period below 0.3 s
-constexpr std::chrono::milliseconds kRobotSilence{500};  // five controller cycles: it is not heard, and may not hear
+constexpr std::chrono::seconds kRequestLife{1};  // an older request to drive has waited in a hung thread
+constexpr double kHandLifeS = 0.25;              // of a command by hand; ends within 0.3 s, a safety period later
+constexpr std::chrono::milliseconds kRobotSilence{500};  // five controller cycles; a silent robot may not hear us
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void DriveDesk::keep_switch(Timestamp now) {
 // --- what goes out ---
 
 void DriveDesk::tick(Timestamp now) {
-  keep_switch(now);  // what stops it may be the laser; what could not be written is tried again
+  keep_switch(now);  // the laser may have stopped the robot, or the last write to disk may have failed
   send_allowed_motion(now);
 }
 
@@ -151,7 +151,7 @@ control::CommandOutcome DriveDesk::take_by_hand(std::uint64_t who, Timestamp ask
   if (!may_ever_drive_) return {who, false, "'navigation.mode' is off: this daemon never drives"};
   if (in_hand_of_ != 0) return {who, false, "somebody else drives it by hand"};
   put_in_hand_of(who);
-  keep_switch(now);  // off, before the motors come on: a restart is no hand
+  keep_switch(now);  // "off" on disk before the motors come on: after a crash nobody drives by hand
   const std::string& why = wiring_.kept.why_not_kept();
   control::CommandOutcome outcome =
       why.empty() ? switch_on({true, who, asked}, now)

@@ -22,7 +22,8 @@ constexpr std::chrono::seconds kTryAgainAfter{1};
 constexpr const char* kSwitchKey = "drive";
 constexpr const char* kPortKey = "robot_port";
 
-/// Slashes become plus signs; the plus and the percent sign are escaped, so that no two paths have one name.
+/// The file name for a port: slashes become plus signs, plus and percent signs are escaped, so that no two paths share
+/// a name.
 std::string file_name_of(std::string port) {
   const std::string devices = "/dev/";
   if (port.starts_with(devices)) port.erase(0, devices.size());
@@ -98,7 +99,7 @@ std::string KeptDrive::keep(DriveSwitch value, Timestamp now) {
     why_not_kept_.clear();
     return is_late ? "drive: kept now: " + std::string(drivers::pioneer::name_of(value)) : "";
   } catch (const std::exception& error) {
-    // Better nothing on disk than an old "on".
+    // A switch that cannot be written leaves no old "on" on disk: without a file the next run does not drive.
     std::error_code ignored;
     const bool is_gone = value != DriveSwitch::kOn && fs::remove(place_.file, ignored);
     if (is_gone) known_.value = DriveSwitch::kUnknown;

@@ -24,7 +24,7 @@ std::optional<double> number_in(const Json& json, const char* key) {
   return std::isfinite(number) ? std::optional{number} : std::nullopt;
 }
 
-/// Nothing where none was written, or something else.
+/// The calibration in a kept pose; nullopt where it is missing or malformed.
 std::optional<localization::motion::DriveCalibration> calibration_in(const Json& json) {
   const auto found = json.find("calibration");
   if (found == json.end() || !found->is_array()) return std::nullopt;
@@ -35,7 +35,7 @@ std::optional<localization::motion::DriveCalibration> calibration_in(const Json&
   return localization::motion::calibration_of(numbers);
 }
 
-/// Nothing where it is not what json_text() writes.
+/// The pose in a file of json_text(); nullopt where the JSON has another form.
 std::optional<KeptPose> pose_in(const Json& json, std::uint64_t first_map) {
   if (!json.is_object()) return std::nullopt;
   const auto x = number_in(json, "x_m");

@@ -32,7 +32,7 @@ KeptStability head_in(const Json& json) {
   return kept;
 }
 
-/// Nothing where text is cut, damaged or foreign.
+/// The record in a file of file_text(); nullopt where the file is cut, damaged or foreign.
 std::optional<KeptStability> kept_in(const std::string& text) {
   const auto end = text.find('\n');
   if (end == std::string::npos) return std::nullopt;

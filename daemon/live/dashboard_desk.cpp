@@ -20,8 +20,8 @@ using dashboard::Request;
 using drivers::port::port_clock_now;
 
 constexpr double kScanPeriod_s = 0.19;    // with a look every 0.1 s: five scans a second at most
-constexpr double kStoredPeriod_s = 0.99;  // with the same look: once a second
-constexpr double kStatusPeriod_s = 0.99;  // once a second
+constexpr double kStoredPeriod_s = 0.99;  // with a look every 0.1 s: once a second
+constexpr double kStatusPeriod_s = 0.99;  // with a look every 0.1 s: once a second
 constexpr const char* kJson = "application/json";
 
 }  // namespace
@@ -76,10 +76,10 @@ Answer DashboardDesk::answer(const Request& request) {
   if (path == "/metrics") {
     return {.type = "text/plain; version=0.0.4; charset=utf-8", .body = metrics_text(telemetry_, since_start_s())};
   }
-  return page_file(path);  // has no '/' in front: never found
+  return page_file(path);  // a path without a leading '/' is the name of no file
 }
 
-/// Without a viewer about a second old.
+/// The newest scan of the board; about a second old while nobody views the page.
 Answer DashboardDesk::newest_scan() const {
   LiveScan scan;
   if (!board_.fetch(scan)) return {.status = 404, .body = "no scan has come yet\n"};

@@ -14,8 +14,8 @@ using Json = nlohmann::ordered_json;
 using dashboard::Message;
 
 constexpr double kBeatPeriod_s = 0.09;  // with a look every 0.1 s: ten a second
-constexpr int kMostAnswers = 40;        // to one beat: a hand on a pad gives a few
-constexpr double kSilence_s = 1.0;      // then whoever drove is gone
+constexpr int kMostAnswers = 40;        // of a driver to one beat; a person on a pad gives a few
+constexpr double kSilence_s = 1.0;      // after which a driver counts as gone
 
 Message message_of(const Json& json) {
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);

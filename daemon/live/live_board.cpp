@@ -102,11 +102,11 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   add_figures(sample, passed_s);
   last_sample_ = row.time;
   scans_at_sample_ = scans_seen_;
-  if (!is_first) samples_.add(sample);  // the first has no rate yet
+  if (!is_first) samples_.add(sample);  // rates need a sample before
 }
 
-/// CPU since the sample before: the stages' clocks run in real time, a live run's scans too. Where the scans' time has
-/// gone back, no rate is known.
+/// Adds CPU shares since the sample before, memory and wheels. Processor time is divided by the time of the scans,
+/// which in a live run is real time; where the scans' time has gone back, the shares are unknown.
 void LiveBoard::add_figures(LiveSample& sample, double passed_s) {
   constexpr double kBytesPerMiB = 1024.0 * 1024.0;
   const LiveFigures now = figures_();

@@ -20,12 +20,12 @@ using dashboard::append_number;
 using dashboard::MessageKind;
 
 constexpr int kProtocol = 1;
-constexpr double kMostSteps = 32767.0;       // of a 16-bit number
-constexpr std::size_t kMostScans = 40;       // of those that are kept for a map update; more are thinned,
-constexpr std::size_t kMostEnds = 120;       // and so are the ends of each
-constexpr std::size_t kMostBlocks = 20'000;  // of a kind; more are not drawn
+constexpr double kMostSteps = 32767.0;       // largest signed 16-bit number
+constexpr std::size_t kMostScans = 40;       // sent of the scans that are kept for a map update; more are thinned out
+constexpr std::size_t kMostEnds = 120;       // sent of each kept scan; more beam ends are thinned out
+constexpr std::size_t kMostBlocks = 20'000;  // sent of standing and of gone obstacles each; the rest is not drawn
 
-// In the order of LiveSample::Column.
+// Names of the columns of a sample, in the order of LiveSample::Column.
 constexpr const char* kSampleColumns[] = {"x_m",
                                           "y_m",
                                           "w_avg",
@@ -55,7 +55,7 @@ Json blocks_json(const std::vector<std::uint32_t>& blocks) {
   return std::vector<std::uint32_t>(blocks.begin(), blocks.begin() + shown);
 }
 
-/// One scan that is kept: its pose and every so many-th of its ends.
+/// Appends one scan that is kept for a map update: its pose and at most kMostEnds of its beam ends, evenly thinned.
 void append_stored(std::string& bytes, const TrackedScan& tracked, bool waits) {
   const std::vector<LiveBeam> beams = beams_of(tracked);
   const std::size_t every = beams.size() / kMostEnds + 1;

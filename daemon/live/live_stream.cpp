@@ -14,7 +14,7 @@ using dashboard::Message;
 
 constexpr std::size_t kSamplesAtOnce = 400;
 constexpr std::size_t kChangesAtOnce = 50;
-constexpr std::size_t kMostDue = 1024;  // pieces that changed; beyond, all pieces are due in their place
+constexpr std::size_t kMostDue = 1024;  // changed pieces of the map that wait; with more, the whole map is sent
 
 Message message_of(std::string bytes, bool is_binary) {
   return {.is_binary = is_binary, .bytes = std::make_shared<const std::string>(std::move(bytes))};

@@ -65,7 +65,7 @@ Answer PageHistory::answer(std::string_view path) {
   try {
     return answer_from_store(*wanted);
   } catch (const std::exception& error) {
-    store_.reset();  // opened anew the next time
+    store_.reset();  // the next request opens the store anew
     return missing(error.what());
   }
 }

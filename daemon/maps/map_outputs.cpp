@@ -17,7 +17,7 @@ void remove_old(const std::filesystem::path& file) {
   if (error) throw std::runtime_error(file.string() + ": cannot be removed: " + error.message());
 }
 
-/// A history that begins with this run, whenever it can be opened: that of a run before goes.
+/// A history of this run alone: when it is opened, now or later, the file of an earlier run is removed first.
 StoreToKeep begun_history(const std::filesystem::path& file, const StartMap& start) {
   return {.to_lock = file,
           .open =
@@ -41,7 +41,7 @@ MapOutputs::MapOutputs(Options options, OutputBoard& board, const RetryingOutput
     map_->retry(now);
     const auto history = *options.out / "map_store.sqlite";
     std::error_code ignored;
-    // Nothing where the settings keep theirs in the same file.
+    // The store of the settings already holds the history where it is the same file.
     if (options.store_file.empty() || !std::filesystem::equivalent(history, options.store_file, ignored)) {
       history_.emplace(begun_history(history, options.start), options.method,
                        RetryingOutput{"history", history, board, warn}, now);

@@ -25,7 +25,7 @@ std::string judged_newest_place(const MapSettings& map) {
 std::optional<FileLock> newest_map_lock(const MapSettings& map) {
   if (map.newest.empty()) return std::nullopt;
   (void)judged_newest_place(map);
-  // Whatever the description is called, the picture is the one that is written.
+  // The lock is on the picture, because descriptions with different extensions share one picture.
   return or_start_error([&] { return lock_of_file(std::filesystem::path(map.newest).replace_extension(".pgm")); });
 }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kLookForOld =
     std::chrono::minutes(1);  // a look reads an index; what it finds is 64 revisions at most
 
-/// As the store counts; what is older than the store is not in it.
+/// Turns revision numbers of this run into those of the store; revisions from before the store are left out.
 std::vector<std::uint32_t> numbers_in_store(const std::vector<std::uint32_t>& numbers, std::uint32_t numbers_before) {
   std::vector<std::uint32_t> in_store;
   for (const std::uint32_t number : numbers) {
@@ -55,7 +55,7 @@ void RevisionKeeper::settle(Timestamp now) {
 }
 
 void RevisionKeeper::take(const MapStep::Result& result, Timestamp now) {
-  missed_settlement_ = false;  // what comes after it tells more
+  missed_settlement_ = false;  // the result lists anew which revisions are provisional
   const bool all_stored = to_.store && !missed_revision_ && !missed_refusal_;
   const bool goes_on = all_stored && (!result.revision || follows(*result.revision));
   const auto append = [&] {
@@ -117,7 +117,7 @@ void RevisionKeeper::retry(Timestamp now) {
   thin_out(now);
 }
 
-/// Where the clock has jumped back, it looks again at once.
+/// Looks for old revisions once a period, and at once where the clock has jumped back.
 void RevisionKeeper::thin_out(Timestamp now) {
   if (to_.retention.keeps_all() || !why_behind().empty()) return;
   if (looked_for_old_ && now >= *looked_for_old_ && now - *looked_for_old_ < kLookForOld) return;
@@ -159,8 +159,8 @@ void RevisionKeeper::store_missed() {
   }
 }
 
-/// Behind what the store holds: one that could be opened only now, or that another program has written to, holds more
-/// than this run knew of.
+/// Appends the whole map behind the store's newest revision: a store that could be opened only now, or that another
+/// program has written to, holds revisions that this run does not know of.
 void RevisionKeeper::store_whole(const Missed& missed) {
   mapping::store::MapStore& store = *to_.store;
   store.catch_up();

@@ -22,10 +22,10 @@ using mapping::store::MapStore;
 using mapping::store::Recovery;
 using mapping::store::StoreError;
 
-constexpr std::chrono::minutes kLongestOpening{20};  // a start that is ended in the midst would begin anew for ever
+constexpr std::chrono::minutes kLongestOpening{20};  // else systemd would kill a long recovery at each start
 
-/// The database with its log, under the first free name NAME.set-aside-1, -2 …; nothing where it cannot be renamed. The
-/// log goes first: a new database must never find it.
+/// Renames the database with its log to the first free name NAME.set-aside-1, -2 …; nullopt where that fails. The log
+/// goes first: a new database of the old name must never find it.
 std::optional<fs::path> set_aside(const fs::path& file) {
   std::error_code error;
   fs::path aside;
@@ -42,12 +42,12 @@ std::optional<fs::path> set_aside(const fs::path& file) {
   return aside;
 }
 
-/// Complete, and not yet in its place.
+/// The name of a recovered store that is complete and still has to be renamed to `file`.
 fs::path recovered_name(const fs::path& file) { return file.string() + ".recovered"; }
 
 void put_in_place(const fs::path& file) { move_into_place(recovered_name(file), file); }
 
-/// A start that was killed in the midst had made a whole store of a damaged one.
+/// Puts a recovered store in place where an earlier start was killed between recovering and renaming.
 void finish_recovery(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(recovered_name(file), ignored)) return;
@@ -60,8 +60,8 @@ struct Recovered {
   Recovery recovery;
 };
 
-/// Makes a whole store of what can be had of this one, beside it. Throws std::runtime_error where that cannot be
-/// written.
+/// Recovers what is readable of a damaged store into a new one beside it (recovered_name). Throws std::runtime_error
+/// where that cannot be written.
 Recovery made_whole(const fs::path& file, const OccupancyGrid& first) {
   const fs::path draft = file.string() + ".recovering";
   const auto [log, index] = mapping::store::log_of(draft);
@@ -81,7 +81,7 @@ Recovery made_whole(const fs::path& file, const OccupancyGrid& first) {
   }
 }
 
-/// The store in its place, sound; a line is added to `warnings` where that took a recovery. Throws StoreError.
+/// Opens the store, after a recovery where it is damaged, which adds a line to `warnings`. Throws StoreError.
 MapStore sound_store(const fs::path& file, const OccupancyGrid& first, std::vector<std::string>& warnings) {
   std::string reason;
   try {
@@ -115,13 +115,13 @@ void take(OpenedStore& opened, MapStore store) {
   opened.store.store = std::move(store);
 }
 
-/// Of what can be read of a store that cannot be written now.
+/// Where a run begins whose store can be read but not written.
 struct ReadStart {
   StartMap start;
   Timestamp time;  ///< of its revision
 };
 
-/// Nothing where nothing of this map can be had.
+/// The start from a store that is only read; nullopt where it holds no revision of this first map.
 std::optional<ReadStart> read_start(const fs::path& file, const OccupancyGrid& first) {
   try {
     const MapStore store = MapStore::in_memory(file, first);
@@ -136,7 +136,7 @@ std::optional<ReadStart> read_start(const fs::path& file, const OccupancyGrid& f
   }
 }
 
-/// The run begins with what can be read of the store, and opens it when that can be done.
+/// Begins the run with what can be read of a store that cannot be written; it is opened as soon as that is possible.
 void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGrid& first, const std::string& reason) {
   const auto read = read_start(file, first);
   opened.start = read ? read->start : StartMap{.map = std::make_shared<const OccupancyGrid>(first)};
@@ -165,8 +165,8 @@ std::string words_of_others(const MapStore& store) {
 
 OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
   (void)judged_store_place(name);
-  // What is locked, opened and set aside is the database, and no link to it. Without knowing whether another program
-  // has it, it is not touched.
+  // A link is followed: lock, open and set aside act on the database itself. Where it cannot be told whether another
+  // program has it locked, the start ends and the file stays untouched.
   const fs::path file = or_start_error([&] { return file_behind(name); });
   service::ask_for_time(kLongestOpening);
   OpenedStore opened;

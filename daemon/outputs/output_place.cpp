@@ -23,7 +23,8 @@ std::string cannot_be(const char* done, const fs::path& place, int reason) {
   return place.string() + ": cannot be " + done + ": " + std::generic_category().message(reason);
 }
 
-/// Empty, or why not: on a read-only file system. Throws StartError where this user may not.
+/// Empty where the folder is writable, the reason on a read-only file system, which may change while the robot runs.
+/// Throws StartError where this user lacks the permission.
 std::string why_not_writable(const fs::path& folder, const fs::path& what) {
   if (may_access(folder, W_OK | X_OK)) return "";
   const int reason = errno;
@@ -43,7 +44,8 @@ void require_file_in_folder(const fs::path& file) {
   if (fs::is_directory(file, error)) throw StartError(file.string() + ": is a directory");
 }
 
-/// A file that is there may be replaced by a rename, but not everywhere.
+/// Throws StartError where an existing file cannot be replaced by a rename: in a folder with the sticky bit only the
+/// owner of file or folder may do that.
 void require_replaceable(const fs::path& file) {
   struct stat folder {};
   struct stat old {};

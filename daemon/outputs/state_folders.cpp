@@ -36,7 +36,7 @@ std::string why_no_folder_for(const fs::path& file) {
   fs::path folder = absolute_folder_of(file);
   std::error_code error;
   fs::file_status status = fs::status(folder, error);
-  // Up to what can be seen: what lies below is not there yet, or hidden by a folder that may not be entered.
+  // Climb to the nearest folder that can be seen: those below are missing, or in a folder that may not be entered.
   while (!fs::exists(status) && folder.has_relative_path()) {
     folder = folder.parent_path();
     status = fs::status(folder, error);
@@ -52,7 +52,7 @@ void require_store_folder(const Settings& settings, const std::string& config) {
   const std::string why = why_no_folder_for(settings.map.store);
   if (why.empty()) return;
   const fs::path folder = absolute_folder_of(settings.map.store);
-  // Of a folder that is there, the same command would take owner and mode away from whoever has it.
+  // `install -d` is advised for a missing folder only: it would change owner and mode of an existing one.
   const bool is_missing = fs::status(folder, ignored).type() == fs::file_type::not_found;
   throw SettingsError(
       config + ": 'map.store': " + why + ": give this user " +

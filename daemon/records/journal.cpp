@@ -19,7 +19,7 @@ bool matches(const std::string& note, const char* format, Fields*... fields) {
   return found == static_cast<int>(sizeof...(fields)) && read == static_cast<int>(note.size());
 }
 
-/// Every bit of the pose survives.
+/// The note of a relocalization, with as many digits as keep every bit of the pose.
 std::string words_of_relocalization(const Pose2& pose) {
   char text[96];
   (void)std::snprintf(text, sizeof text, "relocalized to %.17g %.17g %.17g", pose.x, pose.y, pose.theta);
@@ -162,7 +162,7 @@ void Journal::read(std::string_view note) {
     case Kind::kPaused:
     case Kind::kResumed:
     case Kind::kRelocalized:
-      // What was in force is said again behind a gap.
+      // A recording repeats behind a gap which command is in force: that one is no new command.
       if (std::find(commands_.begin(), commands_.end(), *decision) == commands_.end()) add_command(*decision);
       break;
     case Kind::kMapSet:
@@ -170,7 +170,8 @@ void Journal::read(std::string_view note) {
   }
 }
 
-/// What the map thread has done is noted behind what the localization thread has noted in the meantime.
+/// Inserts a command by its scan: the map thread notes a command later than the localization thread notes its own of
+/// the same time.
 void Journal::add_command(Decision command) {
   const auto place = std::upper_bound(commands_.begin(), commands_.end(), command.scan,
                                       [](std::uint32_t scan, const Decision& other) { return scan < other.scan; });

@@ -20,8 +20,8 @@ using drivers::port::PortId;
 
 constexpr const char* kFull = "it has reached recording.max_gigabytes";
 
-/// A service that has crashed is started again at once: the recording of the crash must outlive that. Answers why it
-/// cannot be kept now.
+/// Renames the recording of the last run: after a crash the service starts again at once, and the recording of the
+/// crash must survive. Returns an error where the disk is full or read-only; throws StartError for any other reason.
 std::error_code keep_previous(const std::filesystem::path& recording) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(recording, error)) return {};
@@ -65,7 +65,7 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
 }
 
 void LiveRecording::begin() {
-  if (!lock_) lock_ = lock_of_file(options_.file);  // there could be none before
+  if (!lock_) lock_ = lock_of_file(options_.file);  // the folder may have been read-only at the start
   if (!is_previous_kept_) {
     if (const auto error = keep_previous(options_.file)) throw std::system_error(error, options_.file.string());
     is_previous_kept_ = true;
@@ -94,7 +94,7 @@ void LiveRecording::go_on() {
 }
 
 void LiveRecording::attempt(Timestamp now, const std::function<void()>& write) {
-  // What was to be written is gone where it failed, and so may be what waited for the disk.
+  // A failed write leaves a gap: its bytes are gone, and so may be bytes that the writer still held.
   if (!output_.attempt(now, write)) has_gap_ = true;
   telemetry_.records.set(output_.works());
   if (writer_) telemetry_.recorded_bytes.set(writer_->size_bytes());

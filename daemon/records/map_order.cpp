@@ -14,12 +14,12 @@ using Json = nlohmann::ordered_json;
 using Kind = MapOrder::Kind;
 
 constexpr std::string_view kHead = "map order";
-constexpr int kLongestSide = 32767;  // cells
+constexpr int kLongestSide = 32767;  // of a map, cells
 
-/// The cells are coded by their index alone.
+/// A lattice of this size for the codec of changes, which needs indices alone: no resolution, no origin.
 GridGeometry lattice_of(int width, int height) { return {width, height, 1.0, {0.0, 0.0}}; }
 
-/// Throws Json::exception where the head is not what notes_of() writes; null where the bytes are not.
+/// Decodes what notes_of() writes. Throws Json::exception for a malformed head; null for malformed bytes.
 std::shared_ptr<const SetCells> set_cells_in(const Json& head, std::string_view bytes) {
   SetCells set;
   set.order.kind = head.at("order") == "undo" ? Kind::kUndo : Kind::kRollBack;

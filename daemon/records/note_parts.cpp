@@ -14,7 +14,7 @@ constexpr std::size_t kPartChars = 60'000;  // a pcapng option holds 65535
 constexpr std::size_t kSealChars = 16;
 constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// RFC 4648, section 4.
+/// Base64 with padding (RFC 4648, section 4).
 std::string base64_of(std::string_view bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -28,7 +28,7 @@ std::string base64_of(std::string_view bytes) {
   return text;
 }
 
-/// Nothing where the text is no base64.
+/// The bytes that base64_of() has coded; nullopt where the text is no base64.
 std::optional<std::string> bytes_of_base64(std::string_view text) {
   std::string bytes;
   std::uint32_t group = 0;
@@ -46,10 +46,10 @@ std::optional<std::string> bytes_of_base64(std::string_view text) {
   return bytes;
 }
 
-/// 16 hexadecimal digits: the checksum of all that follows.
+/// The content behind its checksum of 16 hexadecimal digits.
 std::string sealed(std::string_view content) { return hex_of(fingerprint_of(content)).append(content); }
 
-/// What was sealed; nothing where it is damaged.
+/// The content that sealed() was given; nullopt where its checksum does not match.
 std::optional<std::string> unsealed(const std::string& bytes) {
   if (bytes.size() < kSealChars) return std::nullopt;
   std::string content = bytes.substr(kSealChars);
@@ -78,7 +78,7 @@ bool PartsReader::read(std::string_view note) {
   if (std::sscanf(numbers.c_str(), " %u/%u %n", &part, &parts, &end) != 2 || end == 0 || parts == 0) return false;
   if (part == 1) *this = PartsReader{head_};
   parts_ = parts;
-  if (part != read_ + 1) return true;  // one is missing: never complete
+  if (part != read_ + 1) return true;  // a part is missing: this content never becomes complete
   ++read_;
   text_ += note.substr(head_.size() + static_cast<std::size_t>(end));
   if (read_ != parts_) return true;

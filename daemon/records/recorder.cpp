@@ -91,7 +91,7 @@ void Recorder::write(RecorderItem&& item) {
     last_stamp_ = bytes->stamp;
     record(*bytes);
   } else if (auto* note = std::get_if<JournalNote>(&item)) {
-    // Where a note stands among the bytes means nothing: it names its scan.
+    // A journal note may stand anywhere among the bytes, because it names the scan that it belongs to.
     ByteRecord noted;
     noted.stamp = last_stamp_;
     noted.note = std::move(*note);

@@ -58,7 +58,7 @@ class Replay {
 
   const ReplayJob& job_;
   const Journal& journal_;
-  bool lacks_end_;  // its last notes are missing
+  bool lacks_end_;  // the journal's last notes are missing
   bool obeys_;
   std::vector<Decision>::const_iterator next_command_;
   bool has_begun_ = false;
@@ -144,14 +144,15 @@ void Replay::take(Scan&& scan) {
   if (job_.watch.scan) job_.watch.scan({tracked, row, cost_s, run_.localization().particles(), run_.store_scan()});
 }
 
-/// What the operator did is an input as the bytes are: obeyed whatever becomes of the journal.
+/// Carries out the operator's commands up to this scan. They are inputs as the bytes are, so they count even where the
+/// journal's other notes are not obeyed.
 void Replay::obey_commands_before(const Scan& scan) {
   for (; next_command_ != journal_.commands().end(); ++next_command_) {
     const Decision& command = *next_command_;
     const auto place = journal_.place_of(command, scan);
     if (std::is_gt(place)) break;
     ++report_.commands;
-    const bool is_of_before = !has_begun_ && std::is_lt(place);  // the window begins later
+    const bool is_of_before = !has_begun_ && std::is_lt(place);  // from before the replayed window
     if (command.kind == Decision::Kind::kRelocalized && !is_of_before)
       run_.localization().relocalize(command.map_from_robot);
     if (command.kind == Decision::Kind::kMapSet) keep_result(run_.obey(*command.set));
@@ -172,10 +173,10 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
   if (const auto* set = std::get_if<ScanSet>(&*request); set != nullptr && !reaches_map(*set, tracked.scan.number))
     return;
   if (const auto result = run_.update_map(*request)) return keep_result(*result);
-  store_.set_provisional({});  // all is settled
+  store_.set_provisional({});  // no revision is provisional any more
 }
 
-/// Counts the phase, and holds it against the journal. False: the live run lost the set.
+/// Counts the phase and compares it with the journal; false where the live run lost this set of scans.
 bool Replay::reaches_map(const ScanSet& set, std::uint32_t scan) {
   ++report_.phases;
   const auto closing = journal_.closing_scan(set.phase);

@@ -29,7 +29,7 @@ struct NamedFile {
   }
 };
 
-/// Where it cannot be looked at, its name stands for it.
+/// The file behind a link; the absolute name where it cannot be looked at.
 fs::path behind(const fs::path& file) {
   try {
     return file_behind(file);
@@ -43,7 +43,8 @@ bool is_same(const fs::path& one, const fs::path& other) {
   return fs::equivalent(one, other, not_both_are_there) || behind(one) == behind(other);
 }
 
-/// What is only read comes first: an output that is in its place is the one that is told.
+/// All files that the settings name. Those that are only read come first, so that of two keys with one file the output
+/// is the one that is reported.
 std::vector<NamedFile> files_of(const Settings& settings, const std::string& file) {
   std::vector<NamedFile> files{{"", "", file, false}};
   const auto add = [&](const std::string& key, const std::string& named, bool is_written) {
@@ -106,7 +107,7 @@ void add_port_contradictions(const Settings& settings, std::vector<Contradiction
     found.push_back({"laser.port", "must not be the same device as 'robot.port'", {"robot.port"}});
 }
 
-/// Who wanders drives ahead: by a laser that looks aside or back he would not see into what.
+/// A wandering robot drives forward: a laser that looks aside or back would not see what lies ahead.
 void add_mount_contradictions(const Settings& settings, std::vector<Contradiction>& found) {
   if (settings.navigation.mode == navigation::DriveMode::kOff) return;
   const drivers::lms200::Lms200Params& laser = settings.laser.session;

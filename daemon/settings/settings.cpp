@@ -17,7 +17,7 @@ namespace {
 
 enum class Use : std::uint8_t { kAny, kRun };
 
-/// Empty where the file gives none that no override gives, too.
+/// The key that stands last in the file, of those that no override replaces; empty where there is none.
 std::string last_key_of_file(const ReadKeys& read) {
   std::string last;
   std::pair<int, int> last_place{0, 0};

@@ -33,7 +33,7 @@ SettingKey of_both(SettingKey key, const double& value, double& other) {
 
 namespace {
 
-/// The key also tells `note` what it was set to, which nothing but a setting does.
+/// The same key, which also calls `note` whenever a setting assigns it; the default does not.
 SettingKey noted(SettingKey key, std::function<void()> note) {
   key.assign = [assign = std::move(key.assign), note = std::move(note)](const SettingValue& given) {
     auto needed = assign(given);
@@ -124,7 +124,7 @@ void add_laser(LaserSettings& laser, double& range_deviation_m, Keys& keys) {
                              "how far the laser is mounted turned counter-clockwise"));
 }
 
-/// `patrol` has its name already, and nothing behind it.
+/// The mode `patrol` is reserved: naming it gives a reason of its own.
 SettingKey drive_mode_key(navigation::DriveMode& mode) {
   using navigation::DriveMode;
   std::vector<std::pair<std::string, DriveMode>> modes;

@@ -66,7 +66,7 @@ void add_sensor(localization::LocalizerParams& localizer, Keys& keys) {
                           "leave beams that end at a transient obstacle out of the weights of the particles"));
 }
 
-/// What is believed without a given pose, and instead of one.
+/// The keys of global localization: when it may end, and how much of the map it looks at in one scan.
 void add_belief(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(number_key("localization.global.converged_after_m", localizer.fit.converged_after_m, "m", 0.0, 1000.0,
                             "distance driven before global localization may end, unless the robot has turned by half "

@@ -14,7 +14,7 @@ void add_evidence(mapping::evidence::EvidencePhaseParams& evidence, double& long
       "time that a change must last to become map, unless it is a small free-standing object or comes and goes"));
   keys.push_back(number_key(at + "small_m", evidence.passing.small_m, "m", 0.0, 100.0,
                             "widest free-standing object that counts as small; 0: none is"));
-  // What a beam says nothing about it must not draw.
+  // One key sets both ranges: a beam must not draw cells that it does not vote on.
   double& judged_m = evidence.beams.most_range_m;
   keys.push_back(of_both(
       number_key(at + "most_range_m", judged_m, "m", 0.1, 100.0, "range beyond which a beam neither votes nor draws"),

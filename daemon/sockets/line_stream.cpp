@@ -49,7 +49,7 @@ class Client : public std::enable_shared_from_this<Client> {
     socket_.set_option(asio::socket_base::send_buffer_size(options.send_buffer_bytes), ignored);
   }
 
-  /// False where too many lines wait already.
+  /// Queues a line for this client; false where too many lines wait already.
   [[nodiscard]] bool send(const Line& line) {
     if (waiting_.size() >= most_lines_) return false;
     waiting_.push_back(line);
@@ -61,7 +61,7 @@ class Client : public std::enable_shared_from_this<Client> {
     (void)send(line);
   }
 
-  /// Nobody is expected to say anything: what comes is a mistake, or the end.
+  /// Waits for the client's end: clients of a stream send nothing, and bytes from one end it as well.
   void listen() {
     socket_.async_read_some(asio::buffer(heard_), [self = shared_from_this()](const error_code& error, std::size_t) {
       const bool still_listens = error == asio::error::eof && !self->has_left();

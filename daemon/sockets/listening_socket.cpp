@@ -44,7 +44,8 @@ void require_way_clear(const std::filesystem::path& socket) {
   }
 }
 
-/// Never wider than owner and group, not even for a moment; and not narrower, whatever the umask.
+/// Opens a listening socket for owner and group: fchmod() before bind() keeps it from being wider for a moment, chmod()
+/// after it undoes a narrower umask.
 Protocol::acceptor listening_at(asio::io_context& loop, const std::filesystem::path& socket) {
   try {
     require_way_clear(socket);

@@ -53,7 +53,7 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
   if (wiring_.shows_scans()) show_scans();
 }
 
-/// What waits for the map thread waits too.
+/// Shows the stored scans, with those of sets that still wait for the map thread.
 void DeltaStage::show_scans() {
   mapping::StoredScans stored = store_scan_.stored();
   for (const MapWork& work : waiting_) {
@@ -86,8 +86,8 @@ void DeltaStage::tell_of_gate() {
   if (!line.text.empty()) (line.is_warning ? wiring_.warn : wiring_.log)(line.text);
 }
 
-/// An order is never lost, nor is word that all is settled: of those there are no more than sets that were handed over
-/// before, and an operator gives few.
+/// Hands work to the map thread. One set of scans waits at most and the next is lost; orders and settlements always
+/// wait: an operator gives few orders, and each settlement follows a set.
 void DeltaStage::hand_over(MapWork work) {
   const ScanSet* set = set_in(work);
   if (set != nullptr && std::any_of(waiting_.begin(), waiting_.end(), set_in)) {

@@ -12,9 +12,9 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr int kFirstScans = localization::particles::PoseCheck::kScans;
-constexpr localization::belief::FitParams kJudged{};  // as localization.fit judges where it is not set otherwise
+constexpr localization::belief::FitParams kJudged{};  // the defaults of localization.fit
 
-// A search needs some seconds and metres, someone may stand in the way for a while.
+// A pose that is not sure for so long and so far is reported: a search, or a person in the way, takes less.
 constexpr double kLong_s = 60.0;
 constexpr double kFar_m = 10.0;
 
@@ -77,7 +77,7 @@ LogLine FitWatch::judged_start() {
 
 LogLine FitWatch::judged_long(LocalizerState state) {
   if (unfit_s_ == 0.0) return {std::exchange(said_, false) ? "the map fits again" : ""};
-  // A search that nobody drives for gets no further.
+  // Global localization is reported by time alone: a robot that stands would never drive the distance.
   const bool is_long = unfit_s_ >= kLong_s && (unfit_m_ >= kFar_m || state == LocalizerState::kGlobal);
   if (said_ || !is_long) return {};
   said_ = true;

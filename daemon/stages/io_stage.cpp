@@ -28,7 +28,7 @@ drivers::pioneer::PioneerParams robot_params(const Settings& settings, const Kep
   return params;
 }
 
-/// A replay keeps nothing.
+/// The drive switch on disk; without a file in a replay or while listening only.
 KeptDrive kept_drive(const Settings& settings, drivers::SessionMode mode) {
   return KeptDrive{mode == drivers::SessionMode::kLive ? drive_place(settings.map.store, settings.robot.port)
                                                        : DrivePlace{}};
@@ -143,14 +143,14 @@ struct IoStage::State {
   asio::io_context loop{1};
   LoopPulse pulse;
   Wiring wiring;
-  bool drives;  // by the settings
+  bool drives;  // whether the settings allow driving
   KeptDrive kept;
   asio::steady_timer drive_timer;
   asio::steady_timer farewell_timer{loop};
   drivers::port::PortFinder finder;
   DeviceLink<PioneerSession, PioneerOutput> robot;
   DeviceLink<Lms200Session, Lms200Output> laser;
-  DriveDesk drive;  // what the robot is told
+  DriveDesk drive;  // decides what the robot is told
 };
 
 IoStage::IoStage(const Settings& settings, Wiring wiring)

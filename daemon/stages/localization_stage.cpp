@@ -12,9 +12,9 @@ namespace {
 
 using Kind = Decision::Kind;
 
-constexpr double kStabilityPeriods = 12.0;            // of the pose, between two writings of what has proven to stay
-constexpr double kNoScan_s = 0.7;                     // without a scan: what an operator asks for is not done
-constexpr std::chrono::milliseconds kLookEvery{200};  // for what an operator asks while no message comes
+constexpr double kStabilityPeriods = 12.0;            // stability is written once in so many writings of the pose
+constexpr double kNoScan_s = 0.7;                     // without a scan, then commands are answered as not done
+constexpr std::chrono::milliseconds kLookEvery{200};  // for commands, while no message comes
 
 std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batch) {
   for (std::size_t i = batch.size(); i-- > 0;) {
@@ -23,7 +23,7 @@ std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batc
   return std::nullopt;
 }
 
-/// A clock that fell back does not end the keeping.
+/// True where the period is over, and where the clock has jumped back.
 bool is_due(const std::optional<Timestamp>& last, Timestamp time, double period_s) {
   return !last || time < *last || seconds(time - *last) >= period_s;
 }
@@ -61,7 +61,8 @@ void LocalizationStage::run() {
       batch.push_back(std::move(*message));
       message = batch.size() < wiring_.sensors.capacity() ? wiring_.sensors.try_receive() : std::nullopt;
     }
-    // Who stood still has heard nothing either: what waits comes before a word on silence.
+    // A stage that stood still took no message meanwhile: the waiting ones are looked at before the laser is called
+    // silent.
     const bool is_silent = seconds(drivers::port::port_clock_now() - last_scan_came_) >= kNoScan_s;
     if (is_silent && !newest_scan_in(batch)) take_commands_without_scan();
     work_off(batch);
@@ -116,7 +117,7 @@ void LocalizationStage::localize(Scan scan) {
 void LocalizationStage::take_revisions(std::uint32_t scan) {
   while (const auto revision = wiring_.revisions.try_receive()) {
     step_.apply(*revision);
-    // Counted from the start of the run, as a replay does.
+    // The journal counts revisions from the start of the run, as a replay does.
     note({Kind::kRevision, scan, revision->number - first_revision_});
   }
 }
@@ -207,7 +208,7 @@ void LocalizationStage::pause(const control::Command& command, const Scan& scan)
     return wiring_.answer({command.ticket, false, "'mapping.enabled' is false: there is nothing to pause"});
   is_paused_ = command.kind == control::Command::Kind::kPause;
   wiring_.telemetry.paused.set(is_paused_);
-  if (is_paused_) {  // nobody would notice what leaves
+  if (is_paused_) {  // a paused Δ-stage would not notice that a transient obstacle leaves
     transients_.reset();
     step_.apply(transients_);
   }
@@ -215,7 +216,7 @@ void LocalizationStage::pause(const control::Command& command, const Scan& scan)
   wiring_.answer({command.ticket, true, (is_paused_ ? "the map stays as it is" : "the map follows the world") + from});
 }
 
-/// The recorder answers when both are on disk.
+/// Sends pose and map to the recorder, which answers the operator when both are on disk.
 void LocalizationStage::save(const control::Command& command) {
   if (!pose_kept_) {
     wiring_.answer({command.ticket, false, "no scan has been localized yet: nothing to save"});
@@ -257,7 +258,7 @@ void LocalizationStage::keep_now_and_then(Timestamp time) {
     pose_kept_ = time;
     keep_pose();
   }
-  if (!stability_kept_) stability_kept_ = time;  // at the start there is nothing new
+  if (!stability_kept_) stability_kept_ = time;  // the first write comes a period later
   if (is_due(stability_kept_, time, kStabilityPeriods * memory_.pose_period_s)) {
     stability_kept_ = time;
     keep_stability();

@@ -39,7 +39,7 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
   if (start.revision > 0)
     apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
   if (start.calibration) localizer_.restore(*start.calibration);
-  if (start.stability) (void)localizer_.restore(*start.stability);  // of other tiles than ours: begins anew
+  if (start.stability) (void)localizer_.restore(*start.stability);  // refused where its tiles differ: begins anew
 }
 
 TrackedScan LocalizationStep::observe(Scan scan) {

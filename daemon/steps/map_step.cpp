@@ -10,9 +10,9 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr std::size_t kMostProvisional = 256;  // of a robot that stands for hours: older ones count as settled
+constexpr std::size_t kMostProvisional = 256;  // revisions that may still be taken back; older ones count as settled
 
-/// Adds what the changes are.
+/// Adds to the note how many cells were added, freed and forgotten, and the box around them.
 ChangeNote with_cells(ChangeNote note, std::span<const CellChange> changes, const GridGeometry& geometry) {
   if (changes.empty()) return note;
   const auto count = [&](CellState state) {

@@ -25,7 +25,7 @@ std::span<const std::uint8_t> as_bytes(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// Runs of equal tiles, as most of them have nothing to tell: length (1 to 255), tile.
+/// Run-length coding of tiles, most of which are equal: length (1 to 255), tile.
 Bytes packed_tiles(const Bytes& tiles) {
   Bytes packed;
   for (std::size_t at = 0; at + kTileBytes <= tiles.size();) {
@@ -64,7 +64,7 @@ GridGeometry geometry_in(const Json& json) {
           Point2{json.at("origin_m").at(0).get<double>(), json.at("origin_m").at(1).get<double>()}};
 }
 
-/// Throws Json::exception where the head is not what begin_notes() writes; nothing where the bytes are not.
+/// Decodes what begin_notes() writes. Throws Json::exception for a malformed head; nullopt for malformed bytes.
 std::optional<RunBegin> begin_in(const Json& head, std::string_view bytes) {
   RunBegin begin;
   begin.first_map = head.at("first_map").get<std::uint64_t>();

@@ -16,7 +16,7 @@ std::optional<std::uint64_t> number_in(const fs::path& file) {
   return in >> number ? std::optional{number} : std::nullopt;
 }
 
-/// "/system.slice/deltamap.service", from the line "0::PATH"; nothing without cgroup v2.
+/// The cgroup of this process ("/system.slice/deltamap.service"), from the line "0::PATH"; nullopt without cgroup v2.
 std::optional<fs::path> cgroup_of_this(const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {
@@ -34,7 +34,7 @@ std::optional<std::uint64_t> available_bytes(const fs::path& root) {
   return std::nullopt;
 }
 
-/// Whether it has.
+/// Lowers a limit, and notes whose it is, to one that was found and is smaller; true where it did.
 bool lower(std::uint64_t& bytes, std::string& of, const std::optional<std::uint64_t>& found, const std::string& whose) {
   if (!found || *found >= bytes) return false;
   bytes = *found;

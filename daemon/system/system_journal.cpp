@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <syslog.h>
-#define SD_JOURNAL_SUPPRESS_LOCATION  // this file's own would be told
+#define SD_JOURNAL_SUPPRESS_LOCATION  // the journal would name this source file for every line
 #include <systemd/sd-journal.h>
 #include <unistd.h>
 
@@ -36,7 +36,7 @@ bool is_in_key(char letter) {
   return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '_';
 }
 
-/// "DELTAMAP_REVISION"; empty where it is no key.
+/// The journal's field for a key: "DELTAMAP_REVISION" for "revision"; empty where the word is no key.
 std::string field_name(std::string_view key) {
   const bool is_key =
       !key.empty() && key.size() <= 32 && key.front() >= 'a' && std::all_of(key.begin(), key.end(), is_in_key);
@@ -46,7 +46,7 @@ std::string field_name(std::string_view key) {
   return name;
 }
 
-/// The word that ends at a '='.
+/// The word in front of the '=' at `equals`.
 std::string_view key_before(std::string_view line, std::size_t equals) {
   const std::size_t blank = line.rfind(' ', equals);
   const std::size_t begin = blank == std::string_view::npos ? 0 : blank + 1;
@@ -62,7 +62,7 @@ std::size_t next_key(std::string_view line, std::size_t from) {
   return line.size();
 }
 
-/// Of several words where the key says so.
+/// The value that begins at `begin`: one word, or several for the keys whose values hold blanks.
 std::string_view value_at(std::string_view line, std::size_t begin, std::string_view key) {
   if (key == "reason") return line.substr(begin);
   if (key == "file" || key == "size") return line.substr(begin, next_key(line, begin) - begin);

@@ -17,7 +17,7 @@ bool stands_for_itself(const LeveledLine& line) {
                      [&](std::string_view begin) { return line.text.starts_with(begin); });
 }
 
-/// A run of digits counts as one.
+/// The text with each run of digits as one 0: lines that differ in numbers alone are of one kind.
 std::string kind_of(std::string_view text) {
   std::string kind;
   for (const char letter : text) {

@@ -55,7 +55,7 @@ Stage::Stage(Options options, std::function<void()> body, std::function<void(con
 std::optional<double> Stage::cpu_now_s() const {
   const clockid_t clock = clock_.load(std::memory_order_relaxed);
   timespec time{};
-  if (clock == 0 || clock_gettime(clock, &time) != 0) return std::nullopt;  // it may end at this moment
+  if (clock == 0 || clock_gettime(clock, &time) != 0) return std::nullopt;  // the thread has just ended
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 

@@ -79,7 +79,7 @@ class Words {
     const bool has_stamp = number_in(ahead.word("time stamp")).has_value();
     if (has_stamp || ahead.at_end()) times.stamp = time("time stamp");
     if (has_stamp && !at_end()) (void)word("host");
-    if (!has_stamp) *this = ahead;  // that word was the host
+    if (!has_stamp) *this = ahead;  // the first word was the host
     const auto logger_s = at_end() ? std::nullopt : number_in(word("logger time"));
     if (logger_s && std::abs(*logger_s) < static_cast<double>(kMaxSeconds)) {
       times.logger = duration_from_seconds(*logger_s);
@@ -282,7 +282,8 @@ std::optional<CarmenRecord> CarmenLog::record_of_line() {
         const std::size_t usual = time_words_.emplace(kind, held.times.words).first->second;
         if (held.times.words < usual)
           words.refuse(std::string("cut short: '") + kTimeWords[held.times.words] + "' is missing");
-        // The number that a line breaks off in may be a wrong one.
+        // A last number without a line end may be cut. It does no harm where it is a logger time that the log's clock
+        // does not use.
         const bool is_whole = held.times.stamp && held.times.logger && !clock_.by_logger;
         if (!is_ended_ && !is_whole) words.refuse("cut short: its end is missing");
         held.line = line_;
@@ -292,7 +293,7 @@ std::optional<CarmenRecord> CarmenLog::record_of_line() {
   return record;
 }
 
-/// After a broken line.
+/// True where a readable record follows a broken line, which is then damage and not the end of the log.
 bool CarmenLog::record_follows() {
   while (read_line()) {
     try {

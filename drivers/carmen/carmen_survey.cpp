@@ -26,7 +26,8 @@ constexpr std::int64_t kLongestWord = 0x7FFF;
 
 std::int64_t word_of(double range_m, double words_per_m) { return std::llround(std::min(range_m * words_per_m, 1e9)); }
 
-/// What has to be known of all ranges; for both units, until it is clear which one it is.
+/// Gathers what the simulated laser's words depend on, from all ranges of the log: in centimetres and in millimetres,
+/// until it is clear which unit the log has.
 class RangeCensus {
  public:
   void add(double range_m) {
@@ -47,8 +48,8 @@ class RangeCensus {
     const std::int64_t longest = units() == Units::kCentimetre ? longest_cm_ : longest_mm_;
     return longest <= 0x1FFF ? 0x00 : longest <= 0x3FFF ? 0x04 : 0x06;
   }
-  /// The values near the largest one, where they are many. Where that is a code of the scanner, its codes alone: ranges
-  /// may be as long.
+  /// Finds the value that stands for "no return": the lowest of the values near the largest one, where those are many.
+  /// Where the largest is a code of the scanner, only codes count, because true ranges may lie close to them.
   void find_no_return(CarmenSurvey& survey) const {
     const double words_per_m = units() == Units::kCentimetre ? 100.0 : 1000.0;
     const auto is_code = [&](double range_m) { return is_scanner_code(word_of(range_m, words_per_m)); };
@@ -119,7 +120,7 @@ class ClockCensus {
                                     : "its lines have no time stamp";
       return;
     }
-    // The first line keeps its stamp, as far as it tells.
+    // The first line keeps its stamp, where it has one; the logger's clock counts on from there.
     survey.clock.by_logger = true;
     survey.clock.logger_began =
         first_->stamp ? *first_->stamp - *first_->logger : Timestamp{} + std::max(Duration{0}, -*first_->logger);

@@ -11,8 +11,8 @@ namespace deltamap::drivers::carmen {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kFirstCodes{0x1FF7, 0x3FF7, 0x7FF7};
-constexpr std::int64_t kCodes = 9;          // …F7 to …FF
-constexpr std::int64_t kBeyondMaximum = 0;  // counted from …F7
+constexpr std::int64_t kCodes = 9;          // codes of a scanner, x..F7 to x..FF
+constexpr std::int64_t kBeyondMaximum = 0;  // counted from the first code, x..F7
 constexpr std::int64_t kNotValid = 8;
 constexpr double kMostWords = 1e9;  // far beyond any code: keeps the rounding defined
 

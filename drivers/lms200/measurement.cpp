@@ -11,14 +11,14 @@
 namespace deltamap::drivers::lms200 {
 namespace {
 
-// The count word (B6).
+// Fields of the count word (protocols.md B6).
 constexpr unsigned kCountMask = 0x03FF;
 constexpr unsigned kPartialNumberShift = 11;
 constexpr unsigned kPartialFlag = 0x2000;
 constexpr unsigned kUnitShift = 14;
 constexpr unsigned kUnknownUnit = 3;
 
-// The codes, counted from "beyond maximum" (x..F7).
+// Codes that stand in place of a range, counted from "beyond maximum" (x..F7).
 constexpr unsigned kChannelErrorAfterMaximum = 0x3;
 constexpr unsigned kSignalTooWeakAfterMaximum = 0x4;
 constexpr unsigned kOverflowAfterMaximum = 0x6;
@@ -26,7 +26,7 @@ constexpr unsigned kDazzledAfterMaximum = 0x7;
 constexpr unsigned kNotValidAfterMaximum = 0x8;
 
 constexpr double kDegreesPerTurn = 360.0;
-constexpr unsigned kPartialValues = 181;  // of raster 0; the others have one less (B6)
+constexpr unsigned kPartialValues = 181;  // in a partial scan of raster 0; of the other rasters one less (B6)
 
 /// Where the beams of a scan point and when.
 struct Fan {

@@ -22,7 +22,7 @@ double heading_rad(const Sip& sip) {
   return wrapped_angle(sip.heading_units * (2.0 * std::numbers::pi / kHeadingUnitsPerTurn));
 }
 
-/// Later firmware tells the voltage twice; one of both that is 0 is not told.
+/// Later firmware reports the voltage in two fields, of which an unused one is 0.
 double battery_v(const Sip& sip) {
   const std::uint16_t wide = sip.battery_x10_decivolts.value_or(0);
   return 0.1 * (wide > 0 ? wide : sip.battery_decivolts);

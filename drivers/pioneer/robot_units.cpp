@@ -23,7 +23,7 @@ std::string millimetres(double metres) {
   return text;
 }
 
-/// What a controller sends may hold anything.
+/// The subtype in quotes for a log line; bytes that cannot be printed, which a controller may send, become '?'.
 std::string quoted(const std::string& subtype) {
   std::string text;
   for (const char c : subtype) text += c >= ' ' && c <= '~' ? c : '?';

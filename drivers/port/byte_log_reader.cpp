@@ -165,7 +165,7 @@ void ByteLogReader::begin(Source& source, const std::optional<PacketSeal>& seal)
   if (!goes_on || baud == 0) baud = source.interface.baud;
 }
 
-/// Of all lines on the packet the note is the one that was sealed; the others are remarks.
+/// Finds among the packet's comment lines the note whose checksum the seal has; the other lines are people's remarks.
 void ByteLogReader::take_sealed(ByteRecord record, const std::vector<std::string_view>& comments,
                                 const PacketSeal& seal) {
   std::vector<std::string_view> candidates = lines_of(comments);
@@ -179,7 +179,7 @@ void ByteLogReader::take_sealed(ByteRecord record, const std::vector<std::string
   hand_over(std::move(record));
 }
 
-/// Older recordings do not tell which line is theirs: each is handed over.
+/// Recordings of earlier versions have no seal that tells notes from remarks: every comment line is handed over.
 void ByteLogReader::take_unsealed(ByteRecord record, const std::vector<std::string_view>& comments) {
   std::vector<std::string_view> lines = lines_of(comments);
   if (record.bytes.empty() && lines.empty()) return audit_.silenced(file_.block_at());

@@ -37,7 +37,7 @@ LogFaults LogAudit::faults(const std::string& file, bool is_whole) const {
   lack(steps_back_,
        "out of order: recordings were joined, packets doubled or put in another order; give one recording in the order "
        "in which it was written");
-  // What was put in another order is missing where it was, and found elsewhere.
+  // Packets in another order are missing where they were and found elsewhere: then "out of order" says it all.
   if (steps_back_.count == 0)
     lack(missing_,
          "missing before later ones: another program took them out, or the disk was full; the recording as it was "

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The kernel lists each device by its number; pseudo-terminals (kernel's devices.txt) are not among them.
+/// True for a tty: by its entry in /sys/dev/char, or by its number for a pseudo-terminal, which has no entry there.
 bool is_serial(const struct stat& device) {
   if (!S_ISCHR(device.st_mode)) return false;
   if (is_pseudo_terminal(device.st_rdev)) return true;
@@ -27,7 +27,8 @@ bool is_serial(const struct stat& device) {
   return error ? !fs::exists("/sys/dev/char", error) : subsystem.filename() == "tty";
 }
 
-/// Empty where nobody has it; a pseudo-terminal's other end keeps it open as well, and is no rival.
+/// Who has the port, in words; empty where nobody has. Of a pseudo-terminal only locks count: the program at its other
+/// end keeps the device open, too.
 std::string busy(const std::string& path, dev_t number) {
   if (const auto holder = lock_file_holder(path, kLockFolder)) {
     return holder->told() + " has a lock file in " + kLockFolder;

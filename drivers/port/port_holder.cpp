@@ -38,8 +38,8 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>{in}, {}};
 }
 
-/// From its stat line: the name in brackets may hold anything; the 20th field after it is its start in ticks since
-/// boot.
+/// The process's name and age from /proc/PID/stat: the name in brackets may hold anything, and the 20th field behind it
+/// is the start in ticks since boot.
 PortHolder holder_of(pid_t pid) {
   PortHolder holder{pid, "?", 0.0};
   const std::string stat = text_of("/proc/" + std::to_string(pid) + "/stat");
@@ -58,13 +58,13 @@ PortHolder holder_of(pid_t pid) {
   return holder;
 }
 
-/// Whether one of its descriptors is the device; nullopt where it hides them.
+/// Whether the process has the device open; nullopt where this user may not see its descriptors.
 std::optional<bool> has_open(pid_t pid, dev_t device, int except_descriptor) {
   std::error_code error;
   fs::directory_iterator descriptors{"/proc/" + std::to_string(pid) + "/fd", error};
   if (error) return error.value() == EACCES || error.value() == EPERM ? std::nullopt : std::optional{false};
   for (; descriptors != fs::directory_iterator{}; descriptors.increment(error)) {
-    if (error) return false;  // it has ended
+    if (error) return false;  // the process has ended
     const std::optional<pid_t> number = number_in(descriptors->path().filename().string());
     if (pid == ::getpid() && number == except_descriptor) continue;
     struct stat status {};
@@ -154,7 +154,7 @@ std::optional<PortHolder> lock_file_holder(const std::string& path, const std::s
   for (const fs::path& device : {fs::path{path}, fs::weakly_canonical(path, error)}) {
     const std::string content = text_of(fs::path{lock_folder} / ("LCK.." + device.filename().string()));
     std::optional<pid_t> pid = number_in(content);
-    if (!pid && content.size() == sizeof(pid_t)) {  // the binary form
+    if (!pid && content.size() == sizeof(pid_t)) {  // some programs write the number in binary
       pid.emplace();
       std::memcpy(&*pid, content.data(), sizeof(pid_t));
     }

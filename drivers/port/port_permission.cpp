@@ -35,7 +35,7 @@ std::string name_of_user(uid_t id) {
   return found != nullptr ? found->pw_name : std::to_string(id);
 }
 
-/// This process has the group's rights.
+/// Whether this process has the rights of the group.
 bool is_acting_as(gid_t id) {
   if (::getegid() == id) return true;
   std::vector<gid_t> groups(static_cast<std::size_t>(std::max(0, ::getgroups(0, nullptr))));
@@ -44,7 +44,7 @@ bool is_acting_as(gid_t id) {
   return std::find(groups.begin(), groups.end(), id) != groups.end();
 }
 
-/// The user is listed as a member; a login from before that does not have the group's rights.
+/// Whether the group lists this user as a member; a session that began before lacks the group's rights all the same.
 bool is_listed_in(gid_t id) {
   Names names{};
   group entry{};

@@ -32,7 +32,7 @@ constexpr std::size_t kMostInTime = 1024;  // a frame has at most 812 bytes: mor
 constexpr auto kSettle = std::chrono::milliseconds(2);
 constexpr auto kDrainPoll = std::chrono::milliseconds(2);
 constexpr auto kDrainMargin = std::chrono::milliseconds(5);   // for what an adapter holds behind the kernel's queue
-constexpr auto kDrainLimit = std::chrono::milliseconds(500);  // then the baud changes, drained or not
+constexpr auto kDrainLimit = std::chrono::milliseconds(500);  // after which the baud changes, drained or not
 
 /// One thing to be done on the line, in order.
 struct Task {
@@ -111,7 +111,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     if (!closed_ && !failed_) wait_for_input();
   }
 
-  /// Until nothing waits any more; answers why nothing more will come.
+  /// Reads until nothing waits any more; returns why no more bytes will come, empty where the port lives on.
   std::string read_all() {
     while (held_ < input_.size()) {
       const ssize_t count = ::read(terminal_, input_.data() + held_, input_.size() - held_);
@@ -197,8 +197,8 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   asio::steady_timer settle_timer_;
   PortHandlers handlers_;
   std::array<std::uint8_t, kReadBytes> input_{};
-  std::size_t held_ = 0;  // bytes of input_ that are not handed over yet
-  Timestamp read_at_;     // the newest of them
+  std::size_t held_ = 0;  // bytes in input_ that are not handed over yet
+  Timestamp read_at_;     // when the newest byte in input_ was read
   std::deque<Task> tasks_;
   Steady::time_point line_free_at_{};
   bool closed_ = false;

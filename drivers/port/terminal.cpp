@@ -43,7 +43,7 @@ bool is_open_pseudo_terminal(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && is_pseudo_terminal(status.st_rdev);
 }
 
-/// 8N1, nothing translated, no flow control, no modem lines.
+/// Sets the line to 8N1, without translation, flow control or modem lines.
 bool set_raw(int descriptor) {
   termios line{};
   if (::tcgetattr(descriptor, &line) != 0) return false;
@@ -63,16 +63,16 @@ void ask_for_low_latency(int descriptor) {
   (void)::ioctl(descriptor, TIOCSSERIAL, &settings);
 }
 
-/// Root is let in where another program has made the device exclusive, and must go by itself. A pseudo-terminal may be
-/// exclusive still although nobody has it open.
+/// Whether another program has made the device exclusive. open() refuses everyone but root then, so root has to look.
+/// A pseudo-terminal may still be exclusive although nobody has it open.
 bool is_exclusive(int descriptor) {
   int exclusive = 0;
   return ::ioctl(descriptor, TIOCGEXCL, &exclusive) == 0 && exclusive != 0;
 }
 
-/// Empty where the device is now ours. The lock keeps out our own kind, root's too; TIOCEXCL keeps out everyone else. A
-/// pseudo-terminal would stay exclusive after a crash for as long as the simulator holds its other end, so there the
-/// lock must do.
+/// Takes the device for this process; empty where that worked, else the reason. flock() keeps out other daemons, root's
+/// too; TIOCEXCL keeps out all other programs. A pseudo-terminal gets the lock alone: after a crash it would stay
+/// exclusive for as long as the simulator holds its other end.
 std::string own_exclusively(const std::string& path, int descriptor) {
   if (const auto holder = lock_file_holder(path, kLockFolder)) {
     return "is busy: " + holder->told() + " has a lock file in " + kLockFolder;
@@ -101,7 +101,7 @@ std::string why_not_opened(const std::string& path, int error, int own_descripto
     case EBUSY:
     case EWOULDBLOCK:
       return "is busy: " + lockers_or_holders_of(path, own_descriptor).told();
-    case EPERM:  // owner, group and mode have let it pass: DevicePolicy= of a service has not
+    case EPERM:  // file permissions refuse with EACCES; EPERM comes from DevicePolicy= of a service
       return is_forbidden(error) + why_the_unit_forbids(path);
     case EACCES:
       return is_forbidden(error) + way_to_permission(path);
@@ -130,7 +130,7 @@ OpenedTerminal open_terminal(const std::string& path, unsigned baud) {
 }
 
 void close_terminal(int descriptor) {
-  if (!is_open_pseudo_terminal(descriptor)) (void)::ioctl(descriptor, TIOCNXCL);  // there it would be another program's
+  if (!is_open_pseudo_terminal(descriptor)) (void)::ioctl(descriptor, TIOCNXCL);  // never set on those
   ::close(descriptor);
 }
 

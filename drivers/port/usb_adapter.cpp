@@ -19,8 +19,8 @@ std::string attribute(const fs::path& folder, const char* name) {
   return line;
 }
 
-/// "/sys/devices/…/1-2/1-2:1.0/ttyUSB0": the adapter is the first folder above that tells a vendor; the interface of it
-/// lies between.
+/// The adapter of a tty ("/sys/devices/…/1-2/1-2:1.0/ttyUSB0"): the first folder above it with a vendor. The folder
+/// between them (1-2:1.0) is one interface of the adapter.
 std::optional<UsbAdapter> adapter_above(fs::path device) {
   const std::string port_number = attribute(device, "port_number");
   std::string interface;

@@ -22,7 +22,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-constexpr std::size_t kLongest = 200;  // longer is like no name, and the distance to each takes its time
+constexpr std::size_t kLongest = 200;  // a longer word is like no name, and the edit distances would take long
 
 std::vector<std::string> names_of(const std::vector<SettingKey>& keys) {
   std::vector<std::string> names;
@@ -31,9 +31,9 @@ std::vector<std::string> names_of(const std::vector<SettingKey>& keys) {
   return names;
 }
 
-constexpr std::size_t kMostElsewhere = 3;  // names of one end that are a hint; more are none
+constexpr std::size_t kMostElsewhere = 3;  // keys with the same last part that are named as a hint; with more, none is
 
-/// "laser.port" and "robot.port" for "port", or for "lase.prot.port".
+/// The names with the last part of `path`: "laser.port" and "robot.port" for "port" or "lase.prot.port".
 std::vector<std::string> of_the_same_end(const std::vector<std::string>& names, const std::string& path) {
   const std::string end = "." + path.substr(path.rfind('.') + 1);
   std::vector<std::string> found;

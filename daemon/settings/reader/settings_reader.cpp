@@ -59,7 +59,7 @@ class Walk {
         problems_{problems},
         read_{read} {}
 
-  /// What is read next begins at this line of the file, counted from 0.
+  /// Sets the line of the file, counted from 0, at which the YAML that is read next begins.
   void go_to_line(std::size_t line) { first_line_ = static_cast<int>(line); }
 
   /// `key` is the node that names `node`.
@@ -73,7 +73,8 @@ class Walk {
     for (const auto& entry : node) read_entry(path, entry.first, entry.second);
   }
 
-  /// The line of a section whose lines below are read on their own; what it opens, else nothing.
+  /// The section that this line opens, when the lines below are read on their own; empty where it is given twice,
+  /// nullopt where the line opens none.
   [[nodiscard]] std::optional<std::string> enter(const std::string& path, const YAML::Node& line) {
     const auto entry = line.begin();
     if (!line.IsMap() || line.size() != 1 || !entry->second.IsNull() || !entry->first.IsScalar()) return std::nullopt;
@@ -83,7 +84,7 @@ class Walk {
     return child;
   }
 
-  /// More mistakes than are told: what follows stands behind them.
+  /// True once more mistakes are found than are told; then the rest is not read.
   [[nodiscard]] bool has_enough() {
     if (told_ <= SettingsProblems::kMostTold) return false;
     read_.is_whole = false;
@@ -116,7 +117,7 @@ class Walk {
     if (is_new(child, key)) read(child, node, key);
   }
 
-  /// Told where it is not. Nested and dotted names count alike.
+  /// False, and a mistake, where the key was given before, be it nested or dotted.
   bool is_new(const std::string& path, const YAML::Node& key) {
     const int line = place_of(key, key).line;
     const auto [first, is_new] = lines_.emplace(path, line);
@@ -131,7 +132,7 @@ class Walk {
     return line + ", not " + quoted(found) + hint_of(found);
   }
 
-  /// What somebody meant who wrote a line without "key: value".
+  /// A hint about the likely slip in a line without "key: value".
   static std::string hint_of(const std::string& words) {
     if (words.find('=') < words.find(':')) return ": 'key=value' is for --set, the file has 'key: value'";
     return words.find(':') == std::string::npos ? "" : ": a blank belongs behind the colon";
@@ -153,7 +154,7 @@ class Walk {
       add(key.name, node, named, "needs " + *needed + ", not " + found(key, value));
   }
 
-  /// What stands where `key` needs something else.
+  /// The value that the file gives, in words for the mistake "needs …, not …".
   static std::string found(const SettingKey& key, const SettingValue& value) {
     using Type = SettingKey::Type;
     if (value.kind == SettingValue::Kind::kNull) return "nothing";
@@ -188,14 +189,14 @@ class Walk {
     problems_.add(std::move(place), (path.empty() ? "" : shortened(path, kLongestName) + ": ") + what);
   }
 
-  /// The key, or all keys of the section: what they are meant to be is not known.
+  /// Notes the key, or all keys of the section, as doubtful: their intended values are not known.
   void doubt(const std::string& path) {
     for (const SettingKey& key : keys_) {
       if (key.name == path || path.empty() || key.name.starts_with(path + ".")) read_.doubtful.insert(key.name);
     }
   }
 
-  /// What has no place of its own (an empty value) stands where its key does.
+  /// The place of a value; an empty value has none of its own and takes that of its key.
   [[nodiscard]] SettingPlace place_of(const YAML::Node& node, const YAML::Node& key) const {
     const YAML::Mark mark = node.IsNull() ? key.Mark() : node.Mark();
     SettingPlace place = source_;

@@ -26,7 +26,7 @@ bool has_content(std::string_view line) {
   return first != std::string_view::npos && line[first] != '#';
 }
 
-/// Behind the closing quote, or nothing where the line has none.
+/// The index behind the closing quote; nullopt where the line has none.
 std::optional<std::size_t> end_of_quoted(std::string_view line, std::size_t opening) {
   const char quote = line[opening];
   for (std::size_t at = opening + 1; at < line.size(); ++at) {
@@ -80,7 +80,7 @@ class Lines {
  private:
   struct LineShape {
     bool has_key = false;    // a colon that ends a key, outside of [ and {
-    bool has_value = false;  // and something behind it
+    bool has_value = false;  // something stands behind the key's colon
     bool is_text_of_lines = false;
   };
 
@@ -88,7 +88,7 @@ class Lines {
     text_.problems.push_back({number_, static_cast<int>(at) + 1, std::move(what)});
   }
 
-  /// A second document is told once, where it begins.
+  /// True in a second document of the file, whose beginning is reported once.
   bool is_beyond_document(std::string_view line) {
     const bool begins = begins_with_marker(line, "---");
     if (begins_with_marker(line, "...")) {
@@ -189,7 +189,7 @@ class Lines {
     line.has_content = false;
   }
 
-  /// What has a problem is not handed to the YAML reader, nor what belongs to it: its flow, and what stands below it.
+  /// Begins to keep lines from the YAML reader: one with a problem, with the rest of its flow and the lines below it.
   void begin_dropping(const YamlLine& line, bool has_problem, const LineShape& shape) {
     drop_below_ = kNothing;
     drops_flow_ = has_problem && depth_ > 0;
@@ -204,19 +204,19 @@ class Lines {
 
   YamlText text_;
   int number_ = 0;
-  int depth_ = 0;               // of [ and {
+  int depth_ = 0;               // of open [ and {
   std::size_t flow_begin_ = 0;  // the line, from 0, of the outermost [ or { that is open; else this one
-  int value_line_ = 0;          // the line before, where it has a value; else 0
+  int value_line_ = 0;          // number of the previous line where that has a value; else 0
   int value_indentation_ = 0;
   int drop_below_ = kNothing;  // lines that are indented farther are dropped
-  bool drops_flow_ = false;    // and so are those inside the [ or { that is open
-  bool drops_text_ = false;    // they are a text, not YAML
+  bool drops_flow_ = false;    // lines inside the open [ or { are dropped
+  bool drops_text_ = false;    // what is dropped is a text of lines, not YAML
   bool has_begun_ = false;
   bool has_ended_ = false;
   bool is_second_ = false;
 };
 
-/// A byte that no text has, or line ends that no reader sees.
+/// The first byte that no text has, or line ends that the YAML reader does not recognize.
 std::optional<TextProblem> binary_byte(std::string_view yaml) {
   if (yaml.starts_with("\xFF\xFE") || yaml.starts_with("\xFE\xFF"))
     return TextProblem{1, 1, "UTF-16: save it as UTF-8"};
