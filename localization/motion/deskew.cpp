@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why: a sweep at half a degree takes two turns of the mirror, 27 ms. A robot that turns by 1 rad/s turns by 1.5
+// degrees meanwhile, which moves a beam's end 10 m away by a quarter of a metre and bends walls.
 #include "localization/motion/deskew.hpp"
 
 #include <cmath>

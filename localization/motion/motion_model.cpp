@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why a turn, a drive and a turn: the error of a heading grows with the way and the turn, and then carries the robot
+// aside the farther it drives. Noise added to x, y and heading alone would not tie the three together.
 #include "localization/motion/motion_model.hpp"
 
 #include <algorithm>

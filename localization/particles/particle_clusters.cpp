@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why not the mean of all particles: between two groups it lies where no particle is. Cells in a hash table, joined
+// with their neighbours, find the groups in one pass without being told how many there are.
 #include "localization/particles/particle_clusters.hpp"
 
 #include <algorithm>

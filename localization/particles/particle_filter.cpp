@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why particles: after a slip, or before racks that repeat themselves, the belief has several maxima, which one
+// Gaussian cannot hold. One particle in sixteen is moved as if the wheels had slipped, so that some already lie where
+// a slip has led to.
 #include "localization/particles/particle_filter.hpp"
 
 #include <Eigen/Cholesky>

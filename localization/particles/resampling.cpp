@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why not draw at every scan: each drawing loses particles by chance, and a robot that stands would be left with
+// copies of a few. Low variance needs one random number for all draws, and of equal weights it loses none.
 #include "localization/particles/resampling.hpp"
 
 #include <cassert>

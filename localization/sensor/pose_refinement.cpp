@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why refine: particles and the poses of a lattice lie centimetres apart, and the best of them is no better than that.
+// The field has a gradient, so a few Gauss-Newton steps find the maximum between them.
 #include "localization/sensor/pose_refinement.hpp"
 
 #include <Eigen/Cholesky>

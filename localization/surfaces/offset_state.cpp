@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why one joint Gaussian: a surface that was followed while the pose was off has an error in common with it. Their
+// correlation keeps that error from coming back as a new observation (as in SLAM with an extended Kalman filter).
 #include "localization/surfaces/offset_state.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why shares of hits: a local map is drawn once, from few scans, and needs no model of the laser's noise. One stray
+// hit among many crossings leaves a cell free, and a wall that some beams graze stays a wall.
 #include "mapping/alignment/local_map.hpp"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why a network: matches that are chained one to the next add up their errors, so that the last scan of a set
+// disagrees with the first. Least squares over all relations spread the contradiction by covariance. The worst
+// relation is dropped alone and the rest solved again, because one wrong match makes others look wrong.
 #include "mapping/alignment/pose_network.hpp"
 
 #include <Eigen/LU>

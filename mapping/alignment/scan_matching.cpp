@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why lines: two scans seldom hit the same points of a wall, so pairs of points hold a scan back along it. The
+// covariance matters as much as the pose: along a corridor it has to stay wide, or the network trusts what nothing has
+// observed.
 #include "mapping/alignment/scan_matching.hpp"
 
 #include <Eigen/LU>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why votes on blocks: the fit of a whole scan does not notice a box half a metre wide, and does not say where it
+// stands. Blocks are wider than a pose's error of some centimetres, and votes have to last because people, trolleys
+// and doors only pass.
 #include "mapping/evidence/evidence_phase.hpp"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why regions: a real change covers several blocks at once, while a single block is mostly noise of a pose or of a
+// grazing beam. Gaps between blocks are bridged, for beams from afar leave blocks of a face out.
 #include "mapping/evidence/evidence_regions.hpp"
 
 #include <cstdlib>

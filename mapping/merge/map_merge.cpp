@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why spectra: rotation and both shifts are found one after the other by correlations of one dimension, not by a
+// search of all three at once. That asks for walls that are straight and mostly at right angles.
 #include "mapping/merge/map_merge.hpp"
 
 #include <algorithm>

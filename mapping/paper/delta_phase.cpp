@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why scans are kept by chance: the more the scans contradict the map, the more of them a new map needs, and r_d as
+// the probability thins out the rest. A low N_eff means a poor pose, and such a scan would bend the local map.
 #include "mapping/paper/delta_phase.hpp"
 
 #include <utility>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why two averages: how well scans fit depends on building and laser, so no fixed threshold of w_avg tells a change.
+// The slow average is what is usual here, and the fast one is compared with it (as in the augmented filter of Thrun,
+// Burgard and Fox, "Probabilistic Robotics", 2005, Table 8.3).
 #include "mapping/paper/divergence_ratio.hpp"
 
 namespace deltamap::mapping::paper {

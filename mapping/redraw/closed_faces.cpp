@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why: far away, neighbouring beams end cells apart, so a new straight face would be drawn as single dots, between
+// which a planner would see gaps.
 #include "mapping/redraw/closed_faces.hpp"
 
 #include <algorithm>

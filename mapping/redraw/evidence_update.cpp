@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why cast the rays again: the votes tell which blocks differ, at the localizer's poses; which of their cells are
+// occupied only all keyframes together tell, at corrected poses. Walls away from the verdicts are neither written nor
+// freed, so that an update does no harm there.
 #include "mapping/redraw/evidence_update.hpp"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why: the localizer's pose errs by centimetres, which is as wide as a cell: drawn at it, scans would make walls thick
+// or double. What is in doubt does not count, or a scan would be pulled onto the very thing that has changed.
 #include "mapping/redraw/placed_scans.hpp"
 
 #include <Eigen/LU>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why lines and a reach that shrinks: a point may slide along a wall freely, as it should; far pairs lead the first
+// steps, near ones alone decide the last, so that what is not the same surface drops out.
 #include "mapping/registration/registration.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why normals: a place on a straight surface tells its distance alone, not where along the surface it is. The places
+// around it give the direction; where they make no line (a corner, a clump) there is no normal and the place does not
+// count.
 #include "mapping/registration/surface.hpp"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why each cell of the target asks for its source: moved the other way, the cells of a turned grid would leave holes
+// between them.
 #include "mapping/registration/transformed_grid.hpp"
 
 namespace deltamap::mapping::registration {

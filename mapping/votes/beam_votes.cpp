@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why one vote for a block and keyframe: the beams of one scan share the error of its pose, so thirty of them on one
+// block are not thirty witnesses.
 #include "mapping/votes/beam_votes.hpp"
 
 #include <algorithm>

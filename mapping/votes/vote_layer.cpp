@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why votes wear away: by plain sums a wall that was seen for an hour would need an hour of contrary votes. Worn and
+// capped, a change is proven after a few keyframes, whatever was seen before it.
 #include "mapping/votes/vote_layer.hpp"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why two steps: closest lines find the minimum next to where they begin and no other; correlation finds the best pose
+// of the whole window, but only to the width of its lattice.
 #include "surveying/slam/submap_matcher.hpp"
 
 #include <Eigen/LU>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why a graph: a loop that closes moves all poses, while the motions that were measured between two keyframes stay as
+// they were. So these are kept, and the poses are solved from them again.
 #include "surveying/slam/survey.hpp"
 
 #include <cmath>
