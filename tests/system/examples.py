@@ -9,7 +9,7 @@ import subprocess
 import time
 import urllib.request
 
-from live_trial import PATIENCE_S, ROOT, check, free_port, main, until
+from live_trial import PATIENCE_S, ROOT, check, free_port, main, set_options, until
 
 WORLD = ROOT / "config/scenarios/room.yaml"
 START = (1.0, 2.0)  # the room's robot
@@ -77,10 +77,9 @@ def run(bin_folder, place, log):
     settings = {"robot.port": place / "robot", "laser.port": place / "laser", "map.file": place / "m0.yaml", "map.store": "", "map.newest": place / "newest.yaml",
                 "recording.file": "", "control.socket": "", "poses.socket": place / "poses.sock", "dashboard.port": port, "dashboard.control": "false",
                 "navigation.mode": "off", "mapping.enabled": "false"}
-    words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
     try:
         until(lambda: (place / "robot").exists() and (place / "laser").exists(), "no simulator")
-        processes.append(subprocess.Popen([bin_folder / "deltamapd", "--config", ROOT / "config/simulation.yaml", "--initial-pose", f"{START[0]},{START[1]},0", *words],
+        processes.append(subprocess.Popen([bin_folder / "deltamapd", "--config", ROOT / "config/simulation.yaml", "--initial-pose", f"{START[0]},{START[1]},0", *set_options(settings)],
                                           stdout=log, stderr=log))
         until(lambda: (place / "poses.sock").exists() and (place / "newest.yaml").exists() and read(f"{page}/metrics") is not None, "no daemon")
         processes.append(check_pose_stream(place))

@@ -6,12 +6,12 @@ again. usage: kills.py FOLDER-OF-PROGRAMS [KILLS] [PULLS] [SEED] [LATE_S]; a mac
 3 s that are promised on one that is not"""
 import json, math, os, pathlib, pty, random, select, signal, subprocess, sys, tempfile, termios, threading, time, tty
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from live_trial import PATIENCE_S, ROOT, check, set_options, until
+
 SOON = 0.95          # share of the trials that are not late
 STANDS_S = 4.5       # watchdog 2 s, then braked
 FARTHEST_M = 1.3     # the pilot's 0.5 m/s for 2 s and two SIP cycles, then braked at 1 m/s^2
 PILOT_M_PER_S = 0.5
-PATIENCE_S = 120.0
 
 
 class Cable(threading.Thread):
@@ -81,7 +81,7 @@ class Trial:
         (self.out / "sim").mkdir()
         self.sim = subprocess.Popen([self.bin / "deltamap", "sim", *world, "--links", self.out / "sim", "--truth",
                                      self.out / "truth.jsonl", "--seed", str(seed)], stderr=open(self.out / "sim.log", "w"))
-        self.until(lambda: (self.out / "sim/laser").exists(), "no simulator")
+        until(lambda: (self.out / "sim/laser").exists(), "no simulator")
         self.cable = cable(self.out / "sim/robot", self.out / "robot")
         self.daemon = None
 
@@ -89,25 +89,17 @@ class Trial:
         pose = "null" if self.daemon else "[1,2,0]"  # later it is where the run before has kept it
         settings = {"localization.initial_pose": pose, "robot.port": self.out / "robot", "laser.port": self.out / "sim/laser", "map.file": self.out / "m0.yaml",
                     "map.store": self.out / "store.sqlite", "control.socket": self.out / "ctl.sock"}
-        options = [part for key, value in settings.items() for part in ("--set", "%s=%s" % (key, value))]
         self.daemon = subprocess.Popen([self.bin / "deltamapd", "--config", ROOT / "config/simulation.yaml",
-                                        *options], cwd=ROOT, stderr=open(self.out / "daemon.log", "a"))
+                                        *set_options(settings)], cwd=ROOT, stderr=open(self.out / "daemon.log", "a"))
 
     def ask(self, *words):
         done = subprocess.run([self.bin / "deltamap", "ctl", "--socket", self.out / "ctl.sock", "--json", *words],
                               capture_output=True, text=True)
         return json.loads(done.stdout) if done.stdout else {}
 
-    def until(self, condition, what):
-        give_up_at = time.monotonic() + PATIENCE_S
-        while not condition():
-            if time.monotonic() > give_up_at:
-                raise SystemExit("kills: %s: %s" % (what, self.out))
-            time.sleep(0.05)
-
     def order(self, *words):
         """Refused is what has waited for a second: asked again."""
-        self.until(lambda: self.ask(*words).get("ok"), "not done: " + " ".join(words))
+        until(lambda: self.ask(*words).get("ok"), "not done: " + " ".join(words))
 
     def time_until_back(self):
         began = time.monotonic()
@@ -119,7 +111,7 @@ class Trial:
                 return time.monotonic() - began
             before = count if status else None
             time.sleep(0.03)
-        raise SystemExit("the robot did not come back: " + str(self.out))
+        check(False, f"the robot did not come back: {self.out}")
 
     def truth_since(self, unix_s):
         """Times, s, and positions."""
@@ -144,12 +136,12 @@ class Trial:
 
     def way_of(self, unix_s, simulated_s):
         """Metres in so much of the simulator's time."""
-        self.until(lambda: self.simulator_has_reached(unix_s + simulated_s), "the simulator stands still")
+        until(lambda: self.simulator_has_reached(unix_s + simulated_s), "the simulator stands still")
         return self.way_since(unix_s) - self.way_since(unix_s + simulated_s)
 
     def heard_last(self, killed):
         """When at the latest the simulated robot has heard what was said before a kill: it looks at its port before it goes on."""
-        self.until(lambda: self.simulator_has_reached(killed), "the simulator stands still")
+        until(lambda: self.simulator_has_reached(killed), "the simulator stands still")
         return time.time()
 
     def end(self):

@@ -25,6 +25,11 @@ def until(condition, what):
         time.sleep(0.05)
 
 
+def set_options(settings):
+    """The words of a command line that set these keys."""
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+
+
 def free_port():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))

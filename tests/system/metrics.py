@@ -12,7 +12,7 @@ import tempfile
 import time
 import urllib.request
 
-from live_trial import PATIENCE_S, ROOT, free_port
+from live_trial import PATIENCE_S, ROOT, free_port, set_options
 
 
 def read_metrics(port, daemon):
@@ -38,9 +38,7 @@ def main():
         port = free_port()
         own = {"robot.port": place / "no_robot", "laser.port": place / "no_laser", "map.file": place / "m0.yaml", "map.store": place / "store.sqlite",
                "control.socket": place / "ctl.sock", "dashboard.port": port}
-        command = [bin_folder / "deltamapd", "--config", ROOT / "config/simulation.yaml"]
-        for key, value in own.items():
-            command += ["--set", f"{key}={value}"]
+        command = [bin_folder / "deltamapd", "--config", ROOT / "config/simulation.yaml", *set_options(own)]
         with (place / "log").open("w") as log:
             daemon = subprocess.Popen(command, stdout=log, stderr=log, cwd=ROOT)
             try:

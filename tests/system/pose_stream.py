@@ -12,7 +12,7 @@ import stat
 import subprocess
 import time
 
-from live_trial import PATIENCE_S, ROOT, check, main, until
+from live_trial import PATIENCE_S, ROOT, check, main, set_options, until
 
 WORLD = ROOT / "config/scenarios/room.yaml"
 SCANS = 40
@@ -56,9 +56,8 @@ def check_pose(pose):
 def started(bin_folder, place, log, *options):
     settings = {"robot.port": place / "robot", "laser.port": place / "laser", "map.file": place / "m0.yaml", "poses.socket": place / "made/poses.sock",
                 "map.store": "", "control.socket": "", "recording.file": ""}
-    words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
     return subprocess.Popen([bin_folder / "deltamapd", "--config", "config/simulation.yaml", "--set", "dashboard.port=0", "--set", "dashboard.control=false",
-                             "--initial-pose", "1,2,0", *words, *options], stdout=log, stderr=log)
+                             "--initial-pose", "1,2,0", *set_options(settings), *options], stdout=log, stderr=log)
 
 
 def run(bin_folder, place, log):

@@ -6,10 +6,11 @@ with the token and without, and `deltamap ctl drive off` must all be done; print
 open anything, and where nobody reads its log. usage: siege.py FOLDER-OF-PROGRAMS [CLIENTS] [SECONDS] [P99_S]: with P99_S a later p99 is a fault, too."""
 import fcntl, heapq, http.client, multiprocessing, os, pathlib, random, resource, selectors, socket, struct, subprocess, sys, tempfile, time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from live_trial import ROOT, check, free_port, set_options, until
+
 TOKEN = "of-the-siege-0123456789"
 STOP = '{"command":"drive","mode":"off"}'
-PATIENCE_S = 20.0     # for one STOP
+STOP_PATIENCE_S = 20.0
 AGAIN_AFTER_S = 0.25  # a client that was sent away
 FEW_DESCRIPTORS = 6   # beyond those that the daemon has open while nobody is there
 
@@ -102,21 +103,17 @@ class Castle:
         (self.out / "token").write_text(TOKEN + "\n")
         (self.out / "token").chmod(0o600)
         self.sim = subprocess.Popen([self.bin / "deltamap", "sim", *world, "--links", self.out, "--seed", "1"], stderr=open(self.out / "sim.log", "w"))
-        while not (self.out / "laser").exists():
-            time.sleep(0.1)
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
+        until((self.out / "laser").exists, "no simulator")
+        self.port = free_port()
         settings = {"localization.initial_pose": "[1,2,0]", "robot.port": self.out / "robot", "laser.port": self.out / "laser", "map.file": self.out / "m0.yaml",
                     "map.store": self.out / "store.sqlite", "recording.file": self.out / "bytes.pcapng", "control.socket": self.control,
                     "dashboard.port": self.port, "dashboard.token_file": self.out / "token"}
-        options = [part for key, value in settings.items() for part in ("--set", "%s=%s" % (key, value))]
         self.log, log = os.pipe() if not log_is_read else (None, os.open(self.out / "daemon.log", os.O_WRONLY | os.O_CREAT))
-        self.daemon = subprocess.Popen([self.bin / "deltamapd", "--config", ROOT / "config/simulation.yaml", *options], cwd=ROOT, stderr=log)
+        self.daemon = subprocess.Popen([self.bin / "deltamapd", "--config", ROOT / "config/simulation.yaml", *set_options(settings)], cwd=ROOT, stderr=log)
         if not log_is_read:
             fcntl.fcntl(log, fcntl.F_SETPIPE_SZ, 4096)
         os.close(log)
-        self.until("robot and laser do not speak", lambda: b"localized" in self.ctl("status", "--json") and b'"robot":"up"' in self.ctl("status", "--json"))
+        until(self.both_speak, "robot and laser do not speak")
         if descriptors is not None:
             has = [int(number) for number in os.listdir("/proc/%d/fd" % self.daemon.pid)]
             limit = max(has) + 1 + descriptors
@@ -124,12 +121,10 @@ class Castle:
         for _ in range(0 if log_is_read else 100):
             self.ctl("log-level", "info")  # a line or two each: then the pipe is full
 
-    def until(self, why_not, is_so):
-        give_up_at = time.monotonic() + 60.0
-        while not is_so():
-            if time.monotonic() > give_up_at or self.daemon.poll() is not None:
-                raise SystemExit("siege: " + why_not)
-            time.sleep(0.1)
+    def both_speak(self):
+        check(self.daemon.poll() is None, "the daemon has ended")
+        status = self.ctl("status", "--json")
+        return b"localized" in status and b'"robot":"up"' in status
 
     def ctl(self, *words):
         return subprocess.run([self.bin / "deltamap", "ctl", "--socket", self.control, *words], capture_output=True).stdout
@@ -139,7 +134,7 @@ class Castle:
         return done.returncode == 0, (done.stdout + done.stderr).strip()
 
     def is_stopped_by_page(self, headers):
-        page = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE_S)
+        page = http.client.HTTPConnection("127.0.0.1", self.port, timeout=STOP_PATIENCE_S)
         try:
             page.request("POST", "/api/command", STOP, {"Content-Type": "application/json", **headers})
             answer = page.getresponse()

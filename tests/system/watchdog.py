@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Stops each thread of the real daemon in turn, one daemon a thread, all at once: systemd's watchdog must starve, the log must
 name the stage, and both must end when the thread goes on. usage: watchdog.py FOLDER-OF-PROGRAMS"""
-import concurrent.futures, ctypes, os, pathlib, re, signal, socket, subprocess, sys, tempfile, time
+import concurrent.futures, ctypes, os, pathlib, re, socket, subprocess, sys, tempfile, time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from live_trial import PATIENCE_S, ROOT, check, set_options
+
 STUCK_S = {"io": 10, "localization": 10, "delta": 10, "control": 10, "poses": 10, "map": 100, "recorder": 100}
 EARLY = 0.5        # a look a second, and a machine that has other things to do
 LATE_S = 40.0
 STARVED_S = 16.0   # WatchdogSec of the unit, and a second
-PATIENCE_S = 120.0
 SEIZE, INTERRUPT, DETACH, ALL_CHILDREN = 0x4206, 0x4207, 17, 0x40000000
 libc = ctypes.CDLL(None, use_errno=True)
 libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p]
@@ -27,10 +27,9 @@ class Daemon:
         self.log = folder / "daemon.log"
         settings = {"robot.port": folder / "no_robot", "laser.port": folder / "no_laser", "map.file": first_map, "map.store": folder / "store.sqlite",
                     "recording.file": folder / "bytes.pcapng", "control.socket": folder / "ctl.sock", "poses.socket": folder / "poses.sock"}
-        options = [part for key, value in settings.items() for part in ("--set", "%s=%s" % (key, value))]
         environment = dict(os.environ, NOTIFY_SOCKET=str(folder / "notify"), WATCHDOG_USEC="15000000")
         environment.pop("WATCHDOG_PID", None)
-        self.process = subprocess.Popen([bin / "deltamapd", "--config", ROOT / "config/simulation.yaml", *options], cwd=ROOT,
+        self.process = subprocess.Popen([bin / "deltamapd", "--config", ROOT / "config/simulation.yaml", *set_options(settings)], cwd=ROOT,
                                         env=environment, stderr=open(self.log, "w"))
 
     def is_fed_within(self, seconds):
@@ -48,7 +47,7 @@ class Daemon:
         for task in pathlib.Path("/proc/%d/task" % self.process.pid).iterdir():
             if (task / "comm").read_text().strip() == name:
                 return int(task.name)
-        raise SystemExit("watchdog: the daemon has no thread " + name)
+        check(False, "the daemon has no thread " + name)
 
     def end(self):
         self.process.kill()
