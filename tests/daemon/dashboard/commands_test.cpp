@@ -6,10 +6,10 @@
 #include <memory>
 #include <mutex>
 #include <random>
-#include <thread>
 #include <vector>
 
 #include "daemon/dashboard/server.hpp"
+#include "tests/support/daemon/served_page.hpp"
 #include "tests/support/daemon/web_client.hpp"
 
 namespace deltamap::daemon::dashboard {
@@ -39,7 +39,7 @@ class Echo final : public Dialog {
   std::size_t said_ = 0;
 };
 
-class DashboardCommands : public testing::Test {
+class DashboardCommands : public test::ServedPage {
  protected:
   DashboardCommands() {
     options_.guard = {.token = kCommandToken, .takes_commands = true};
@@ -57,16 +57,6 @@ class DashboardCommands : public testing::Test {
   }
   ~DashboardCommands() override { stop(); }
 
-  void start() {
-    server_ = std::make_unique<Server>(options_);
-    thread_ = std::thread([this] { server_->run(); });
-  }
-  void stop() {
-    if (!thread_.joinable()) return;
-    server_->stop();
-    thread_.join();
-  }
-  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   [[nodiscard]] WebAnswer posted(const std::string& body) const {
     return WebClient{port()}.posted("/api/command", body, kBearer);
   }
@@ -75,12 +65,9 @@ class DashboardCommands : public testing::Test {
     return commands_.size();
   }
 
-  Server::Options options_;
   mutable std::mutex mutex_;
   std::vector<std::string> commands_;
   std::atomic<int> present_{0};
-  std::unique_ptr<Server> server_;
-  std::thread thread_;
 };
 
 TEST_F(DashboardCommands, ABodyArrivesWholeAndOneConnectionTakesSeveral) {

@@ -12,9 +12,9 @@
 #include <random>
 #include <semaphore>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
+#include "tests/support/daemon/served_page.hpp"
 #include "tests/support/daemon/web_client.hpp"
 
 namespace deltamap::daemon::dashboard {
@@ -40,7 +40,7 @@ class Numbers final : public Stream {
   std::size_t size_;
 };
 
-class DashboardServer : public testing::Test {
+class DashboardServer : public test::ServedPage {
  protected:
   DashboardServer() {
     options_.answer = [](const Request& request) { return Answer{.body = "you asked for " + request.path + "\n"}; };
@@ -54,28 +54,15 @@ class DashboardServer : public testing::Test {
   }
   ~DashboardServer() override { stop(); }
 
-  void start() {
-    server_ = std::make_unique<Server>(options_);
-    thread_ = std::thread([this] { server_->run(); });
-  }
-  void stop() {
-    if (!thread_.joinable()) return;
-    server_->stop();
-    thread_.join();
-  }
-  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   [[nodiscard]] WebAnswer got(const std::string& path, const std::string& headers = "") const {
     return WebClient{port()}.got(path, headers);
   }
 
-  Server::Options options_;
   int messages_ = 3;
   std::size_t message_size_ = 0;
   std::atomic<bool> is_watched_{false};
   std::counting_semaphore<> watch_changes_{0};
   std::atomic<int> refreshes_{0};
-  std::unique_ptr<Server> server_;
-  std::thread thread_;
 };
 
 TEST_F(DashboardServer, AnswersGetAfterGetOnOneConnection) {

@@ -6,10 +6,10 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include "daemon/dashboard/server.hpp"
+#include "tests/support/daemon/served_page.hpp"
 #include "tests/support/daemon/web_client.hpp"
 #include "tests/support/files/no_descriptors.hpp"
 
@@ -22,7 +22,7 @@ const std::string kTokenHeader = "Authorization: Bearer 0123456789abcdef\r\n";
 const std::string kStop = R"({"command":"drive","mode":"off"})";
 
 /// A locked page with few places. What is no STOP waits for its reply until the end.
-class StopTest : public testing::Test {
+class StopTest : public test::ServedPage {
  protected:
   StopTest() {
     options_.guard = {.token = "0123456789abcdef", .takes_commands = true};
@@ -44,26 +44,13 @@ class StopTest : public testing::Test {
   }
   ~StopTest() override { stop(); }
 
-  void start() {
-    server_ = std::make_unique<Server>(options_);
-    thread_ = std::thread([this] { server_->run(); });
-  }
-  void stop() {
-    if (!thread_.joinable()) return;
-    server_->stop();
-    thread_.join();
-  }
-  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
   [[nodiscard]] int stopped(const std::string& headers = "") const {
     return WebClient{port()}.posted("/api/command", kStop, headers).status;
   }
 
-  Server::Options options_;
   std::mutex mutex_;
   std::vector<Reply> waiting_;
   std::atomic<int> stops_{0};
-  std::unique_ptr<Server> server_;
-  std::thread thread_;
 };
 
 TEST_F(StopTest, NeedsNoTokenWhereThePageIsReadWithoutOneAndAllElseDoes) {

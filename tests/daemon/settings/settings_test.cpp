@@ -118,11 +118,6 @@ TEST(Settings, AnIllTypedValueIsNamedWithWhatTheKeyNeeds) {
   EXPECT_EQ(error_of("seed: {a: 1}"), "robot.yaml:1:7: seed: takes one value, not keys");
 }
 
-TEST(Settings, AValueOutsideItsRangeIsRefused) {
-  EXPECT_EQ(error_of("\n\nlaser: {max_range_m: -1}"),
-            "robot.yaml:3:22: laser.max_range_m: needs a number in its range (m, 0 to 90), not '-1'");
-}
-
 TEST(Settings, EveryKeyThatScriptsSetIsKnown) {
   const Settings settings = parse_settings("", "robot.yaml",
                                            {"robot.port=/dev/a b",
@@ -156,10 +151,6 @@ TEST(Settings, PatrolIsRefusedUntilItIsBuilt) {
   const std::string why = "navigation.mode: needs off or wander (patrol does not exist yet), not 'patrol'";
   EXPECT_EQ(error_of("seed: 1\nnavigation:\n  mode: patrol\n"), "robot.yaml:3:9: " + why);
   EXPECT_EQ(error_of("", {"navigation.mode=patrol"}), "--set navigation.mode=patrol: " + why);
-}
-
-TEST(Settings, AKeyGivenTwiceIsRefused) {
-  EXPECT_EQ(error_of("seed: 1\nseed: 2"), "robot.yaml:2:1: seed: given twice, first in line 1");
 }
 
 TEST(Settings, ValuesThatContradictEachOtherAreRefused) {
