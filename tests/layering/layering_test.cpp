@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 const fs::path kRoot = deltamap::test::source_path("");
 
-// A wing, or a room that is named here by itself, may include itself and these. `simulation` may use of the drivers only the device codecs.
+// A wing, or a room that is named here by itself, may include itself and these. `simulation` may use of the drivers
+// only the device codecs.
 const std::map<std::string, std::set<std::string>> kArrows = {
     {"core", {}},
     {"drivers", {"core"}},

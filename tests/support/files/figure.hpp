@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A figure that a test has measured beside what it claims: printed as a line of its own, and kept in GoogleTest's report.
+// A figure that a test has measured beside what it claims: printed as a line of its own, and kept in GoogleTest's
+// report.
 #pragma once
 
 #include <gtest/gtest.h>
