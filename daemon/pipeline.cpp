@@ -79,8 +79,16 @@ struct Pipeline::State {
   }
   LiveSettings::Outcome reload();
   bool set_log_level(LogLevel level);
+  void begin_threads();
   void end_threads();
   void write_report(const RunReport& report) const;
+
+  control::ControlDesk::Wiring control_wiring();
+  Recorder::Options recorder_options() const;
+  IoStage::Wiring io_wiring();
+  LocalizationStage::Wiring localization_wiring();
+  DeltaStage::Wiring delta_wiring();
+  MapStage::Wiring map_wiring();
 
   double wall_began_s = 0.0;
   std::atomic<bool> has_poses_ended{false};  // the pose stream has failed; the run goes on without it
@@ -94,116 +102,135 @@ Pipeline::State::State(const Settings& given, Options wanted)
       options{with_warnings(std::move(wanted))},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       newest_lock{newest_map_lock(settings.map)},
-      control{control::begun_control_desk(
-          settings,
-          {.map = options.start.map->geometry(),
-           .commands = commands,
-           .telemetry = telemetry,
-           .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
-           .log = options.log,
-           .reload = [this] { return reload(); },
-           .record =
-               [this](bool goes_on, std::uint64_t ticket) {
-                 return recorder.from_control().send(RecordOrder{goes_on, ticket});
-               },
-           .set_log_level = [this](LogLevel level) { return set_log_level(level); },
-           .patience_s = options.control_patience_s},
-          options.warn)},
+      control{control::begun_control_desk(settings, control_wiring(), options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, page_control(control.get(), io), options.log,
                            options.warn)},
       poses{begun_pose_stream(settings, telemetry, options.warn)},
-      recorder{{.recording = settings.recording.file,
-                .bauds = {settings.robot.session.baud, settings.laser.session.baud},
-                .began = drivers::port::port_clock_now(),
-                .first_notes = first_notes(settings, grid_hash(*options.start.map),
-                                           {options.first_map, options.memory, options.start}),
-                .max_gigabytes = settings.recording.max_gigabytes,
-                .trajectory = in_folder(options.out, "trajectory.tum"),
-                .localization = in_folder(options.out, "localization.csv"),
-                .memory = memory_places(settings.map.store)},
+      recorder{recorder_options(),
                telemetry,
-               {.log = options.log,
-                .saved = [this](const control::CommandOutcome& outcome) { tell(outcome); },
-                .warn = options.warn}},
-      io{settings,
-         {.open = options.open,
+               {.log = options.log, .saved = [this](const auto& outcome) { tell(outcome); }, .warn = options.warn}},
+      io{settings, io_wiring()},
+      localization{settings, options.start, options.first_map, localization_wiring()},
+      delta{settings, !options.start.provisional.empty(), delta_wiring()},
+      map{settings, options.start, options.out, std::move(options.store), map_wiring()} {
+  telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
+  telemetry.newest_revision.set(options.start.revision);
+  telemetry.estimate.revision.set(options.start.revision);
+  wall_began_s = seconds(drivers::port::port_clock_now().time_since_epoch());
+  begin_threads();
+}
+
+// --- what joins the parts: called in the order of the members, each names only what stands before it, or what runs
+// later ---
+
+control::ControlDesk::Wiring Pipeline::State::control_wiring() {
+  return {.map = options.start.map->geometry(),
+          .commands = commands,
+          .telemetry = telemetry,
+          .let_drive = [this](bool may_drive, std::uint64_t ticket) { io.let_drive(may_drive, ticket); },
+          .log = options.log,
+          .reload = [this] { return reload(); },
+          .record =
+              [this](bool goes_on, std::uint64_t ticket) {
+                return recorder.from_control().send(RecordOrder{goes_on, ticket});
+              },
+          .set_log_level = [this](LogLevel level) { return set_log_level(level); },
+          .patience_s = options.control_patience_s};
+}
+
+Recorder::Options Pipeline::State::recorder_options() const {
+  return {.recording = settings.recording.file,
+          .bauds = {settings.robot.session.baud, settings.laser.session.baud},
+          .began = drivers::port::port_clock_now(),
+          .first_notes =
+              first_notes(settings, grid_hash(*options.start.map), {options.first_map, options.memory, options.start}),
+          .max_gigabytes = settings.recording.max_gigabytes,
+          .trajectory = in_folder(options.out, "trajectory.tum"),
+          .localization = in_folder(options.out, "localization.csv"),
+          .memory = memory_places(settings.map.store)};
+}
+
+IoStage::Wiring Pipeline::State::io_wiring() {
+  return {.open = options.open,
           .mode = options.mode,
           .sensors = sensors,
           .recorder = recorder.from_io(),
           .telemetry = telemetry,
           .log = options.log,
           .warn = options.warn,
-          .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}},
-      localization{settings,
-                   options.start,
-                   options.first_map,
-                   {.sensors = sensors,
-                    .revisions = revisions,
-                    .transients = transients,
-                    .commands = commands,
-                    .wander = wander,
-                    .tracked_scans = tracked_scans,
-                    .recorder = recorder.from_localization(),
-                    .telemetry = telemetry,
-                    .drive = [this](const PilotWord& word) { io.post(word); },
-                    .show =
-                        [this](const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
-                               const localization::particles::ParticleSet* particles) {
-                          if (page) page->board().show(tracked, row, latency_s, particles);
-                          if (poses) poses->show(row, latency_s);
-                        },
-                    .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}},
-      delta{settings,
-            !options.start.provisional.empty(),
-            {.work = tracked_scans,
-             .sets = sets,
-             .transients = transients,
-             .recorder = recorder.from_awareness(),
-             .telemetry = telemetry,
-             .log = options.log,
-             .warn = options.warn,
-             .show = [this](const auto& newest) { return page && page->board().show(newest); },
-             .shows_scans = [this] { return page && page->board().is_watched(); },
-             .show_scans = [this](mapping::StoredScans stored) { page->board().show(std::move(stored)); }}},
-      map{settings,
-          options.start,
-          options.out,
-          std::move(options.store),
-          {.work = sets,
-           .revisions = revisions,
-           .recorder = recorder.from_map(),
-           .telemetry = telemetry,
-           .log = options.log,
-           .warn = options.warn,
-           .show =
-               [this](const MapRevision* revision, const ChangeNote& note) {
-                 if (page) page->board().show(revision, note);
-               },
-           .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }}} {
-  telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
-  telemetry.newest_revision.set(options.start.revision);
-  telemetry.estimate.revision.set(options.start.revision);
-  wall_began_s = seconds(drivers::port::port_clock_now().time_since_epoch());
+          .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }};
+}
 
-  // Receivers start before their senders.
-  recorder_thread = std::make_unique<Stage>(
-      Stage::Options{"recorder", kRecorderNiceness}, [this] { recorder.run(); }, options.failed);
-  map_thread = std::make_unique<Stage>(
-      Stage::Options{"map", kMapNiceness}, [this] { map.run(delta.waiting()); }, options.failed);
-  delta_thread = std::make_unique<Stage>(
-      Stage::Options{"delta", 0}, [this] { delta.run(); }, options.failed);
-  localization_thread = std::make_unique<Stage>(
-      Stage::Options{"localization", 0}, [this] { localization.run(); }, options.failed);
-  io_thread = std::make_unique<Stage>(
-      Stage::Options{"io", 0}, [this] { io.run(); }, options.failed);
-  if (control) {
-    control_thread = std::make_unique<Stage>(
-        Stage::Options{"control", kControlNiceness}, [this] { control->run(); }, options.failed);
-  }
+LocalizationStage::Wiring Pipeline::State::localization_wiring() {
+  return {.sensors = sensors,
+          .revisions = revisions,
+          .transients = transients,
+          .commands = commands,
+          .wander = wander,
+          .tracked_scans = tracked_scans,
+          .recorder = recorder.from_localization(),
+          .telemetry = telemetry,
+          .drive = [this](const PilotWord& word) { io.post(word); },
+          .show =
+              [this](const TrackedScan& tracked, const LocalizationRow& row, double latency_s,
+                     const localization::particles::ParticleSet* particles) {
+                if (page) page->board().show(tracked, row, latency_s, particles);
+                if (poses) poses->show(row, latency_s);
+              },
+          .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }};
+}
+
+DeltaStage::Wiring Pipeline::State::delta_wiring() {
+  return {.work = tracked_scans,
+          .sets = sets,
+          .transients = transients,
+          .recorder = recorder.from_awareness(),
+          .telemetry = telemetry,
+          .log = options.log,
+          .warn = options.warn,
+          .show = [this](const auto& newest) { return page && page->board().show(newest); },
+          .shows_scans = [this] { return page && page->board().is_watched(); },
+          .show_scans = [this](mapping::StoredScans stored) { page->board().show(std::move(stored)); }};
+}
+
+MapStage::Wiring Pipeline::State::map_wiring() {
+  return {.work = sets,
+          .revisions = revisions,
+          .recorder = recorder.from_map(),
+          .telemetry = telemetry,
+          .log = options.log,
+          .warn = options.warn,
+          .show =
+              [this](const MapRevision* revision, const ChangeNote& note) {
+                if (page) page->board().show(revision, note);
+              },
+          .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }};
+}
+
+// --- the threads ---
+
+/// Receivers start before their senders.
+void Pipeline::State::begin_threads() {
+  const auto begun = [](const char* name, int niceness, auto body, auto failed) {
+    return std::make_unique<Stage>(Stage::Options{name, niceness}, std::move(body), std::move(failed));
+  };
+  recorder_thread = begun(
+      "recorder", kRecorderNiceness, [this] { recorder.run(); }, options.failed);
+  map_thread = begun(
+      "map", kMapNiceness, [this] { map.run(delta.waiting()); }, options.failed);
+  delta_thread = begun(
+      "delta", 0, [this] { delta.run(); }, options.failed);
+  localization_thread = begun(
+      "localization", 0, [this] { localization.run(); }, options.failed);
+  io_thread = begun(
+      "io", 0, [this] { io.run(); }, options.failed);
+  if (control)
+    control_thread = begun(
+        "control", kControlNiceness, [this] { control->run(); }, options.failed);
   if (page) {
     const auto without_page = [this](const std::string& why) { options.warn("no live page any more: " + why); };
-    page_thread = std::make_unique<Stage>(
-        Stage::Options{"page", kPageNiceness}, [this] { page->run(); }, without_page);
+    page_thread = begun(
+        "page", kPageNiceness, [this] { page->run(); }, without_page);
     page->watch({io_thread.get(), localization_thread.get(), delta_thread.get(), map_thread.get(),
                  recorder_thread.get(), page_thread.get()});
   }
@@ -212,8 +239,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
       has_poses_ended = true;
       options.warn("no stream of poses any more: " + why);
     };
-    poses_thread = std::make_unique<Stage>(
-        Stage::Options{"poses", 0}, [this] { poses->run(); }, without_poses);
+    poses_thread = begun(
+        "poses", 0, [this] { poses->run(); }, without_poses);
   }
 }
 
