@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "navigation/shown_motion.hpp"
-
 namespace deltamap::navigation {
 namespace {
 
@@ -18,16 +16,6 @@ constexpr double kUncoveredShare = 1.0 / 12.0;  // less than that of the fan is 
 constexpr std::size_t kFewestAlike = 10;        // ranges; fewer could be the same by chance
 constexpr double kAlikeM = 0.1;                 // driven, or turned, while scans are the same: none can be
 constexpr double kAlikeRad = radians(5.0);
-constexpr double kWayM = 0.25;  // driven, or turned, between two scans that are compared
-constexpr double kWayRad = 0.2;
-constexpr double kWayMostS = 6.0;
-constexpr int kFewestAsked = 15;
-constexpr double kShownAtLeast = 0.6;   // of what is asked shows another motion,
-constexpr double kMoreThanTold = 0.4;   // and so much more than shows what the wheels tell
-constexpr int kContradictions = 2;      // in a row: one may be chance,
-constexpr int kClearAsked = 30;         // but not where so many ends
-constexpr double kClearlyMore = 0.6;    // show it so clearly
-constexpr double kLittleAsTold = 0.25;  // the robot has moved otherwise, whatever that was
 
 std::size_t ranges_in(const Scan& scan) {
   return static_cast<std::size_t>(std::count_if(scan.beams.begin(), scan.beams.end(),
@@ -37,10 +25,6 @@ std::size_t ranges_in(const Scan& scan) {
 bool are_alike(const Scan& one, const Scan& other) {
   return std::equal(one.beams.begin(), one.beams.end(), other.beams.begin(), other.beams.end(),
                     [](const Beam& a, const Beam& b) { return a.kind == b.kind && a.range_m == b.range_m; });
-}
-
-bool is_a_way(const Pose2& motion, double distance_m, double turn_rad) {
-  return std::hypot(motion.x, motion.y) >= distance_m || std::abs(motion.theta) >= turn_rad;
 }
 
 }  // namespace
@@ -96,7 +80,10 @@ void LaserWatch::observe(const Scan& scan) {
   watch_emptiness(scan);
   const auto odom_from_robot = wheels_.odom_from_robot(scan.time);
   watch_repetition(scan, odom_from_robot);
-  watch_motion(scan, odom_from_robot);
+  if (odom_from_robot && !repeats_)
+    (void)motion_.observe(scan, *odom_from_robot, wheels_.epoch());
+  else
+    motion_.skip();
 }
 
 void LaserWatch::watch_emptiness(const Scan& scan) {
@@ -123,32 +110,8 @@ void LaserWatch::watch_repetition(const Scan& scan, const std::optional<Pose2>& 
     return;
   }
   if (!odom_from_robot) return;
-  repeats_ = repeats_ || is_a_way(motion_between(first_alike_->odom_from_robot, *odom_from_robot), kAlikeM, kAlikeRad);
+  const Pose2 motion = motion_between(first_alike_->odom_from_robot, *odom_from_robot);
+  repeats_ = repeats_ || std::hypot(motion.x, motion.y) >= kAlikeM || std::abs(motion.theta) >= kAlikeRad;
 }
-
-void LaserWatch::watch_motion(const Scan& scan, const std::optional<Pose2>& odom_from_robot) {
-  if (!odom_from_robot) return reference_.reset();
-  const auto begin_anew = [&] { reference_ = Seen{scan, *odom_from_robot, wheels_.epoch()}; };
-  const bool is_usable = reference_ && reference_->epoch == wheels_.epoch() &&
-                         reference_->scan.robot_from_laser == scan.robot_from_laser &&
-                         seconds(scan.time - reference_->scan.time) < kWayMostS;
-  if (!is_usable) return begin_anew();
-  const Pose2 motion = motion_between(reference_->odom_from_robot, *odom_from_robot);
-  if (repeats_) return begin_anew();  // a scan that is not new tells nothing of the wheels
-  if (!is_a_way(motion, kWayM, kWayRad)) return;
-  const ShownMotion shown = shown_motion(reference_->scan, scan, motion);
-  begin_anew();
-  if (shown.asked < kFewestAsked) return;
-  const double more = shown.otherwise - shown.as_told;
-  const bool shows_otherwise = shown.otherwise >= kShownAtLeast && more >= kMoreThanTold;
-  const bool shows_neither = shown.asked >= kClearAsked && shown.as_told < kLittleAsTold;
-  const bool is_clear = shown.asked >= kClearAsked && more >= kClearlyMore;
-  if (!shows_otherwise && !shows_neither)
-    contradictions_ = 0;
-  else
-    contradictions_ += is_clear ? kContradictions : 1;
-}
-
-bool LaserWatch::contradicts_wheels() const { return contradictions_ >= kContradictions; }
 
 }  // namespace deltamap::navigation

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
+#include "navigation/motion_watch.hpp"
 #include "navigation/wheel_path.hpp"
 
 namespace deltamap::navigation {
@@ -39,14 +40,14 @@ class LaserWatch {
   void excuse(Timestamp now) { excused_at_ = now; }
   [[nodiscard]] const WheelPath& wheels() const { return wheels_; }
   /// A person said drive.
-  void forget_contradiction() { contradictions_ = 0; }
+  void forget_contradiction() { motion_.forget_contradiction(); }
 
   /// No range for a second, or none from a sector that had some.
   [[nodiscard]] bool sees_nothing() const;
   /// The same ranges again and again, to the last digit, while the wheels turn.
   [[nodiscard]] bool repeats_itself() const { return repeats_; }
-  /// The wheels say that the robot moves, and what it sees stands still or comes the other way.
-  [[nodiscard]] bool contradicts_wheels() const;
+  /// Whether the scans follow the wheels, and have shown that the laser looks where its mount says.
+  [[nodiscard]] const MotionWatch& motion() const { return motion_; }
   /// The scan, and what it leaves open: beams of a covered sector as not valid.
   [[nodiscard]] Scan believed(const Scan& scan) const { return sector_.without(scan); }
 
@@ -58,7 +59,6 @@ class LaserWatch {
   };
   void watch_emptiness(const Scan& scan);
   void watch_repetition(const Scan& scan, const std::optional<Pose2>& odom_from_robot);
-  void watch_motion(const Scan& scan, const std::optional<Pose2>& odom_from_robot);
 
   WheelPath wheels_;
   CoveredSector sector_;
@@ -67,8 +67,7 @@ class LaserWatch {
   std::optional<Timestamp> excused_at_;
   std::optional<Seen> first_alike_;  // of the scans that are the same
   bool repeats_ = false;
-  std::optional<Seen> reference_;  // what the next scan a way further on is held against
-  int contradictions_ = 0;         // unbroken
+  MotionWatch motion_;
 };
 
 }  // namespace deltamap::navigation

@@ -10,6 +10,7 @@ namespace deltamap::navigation {
 namespace {
 
 constexpr double kCrawlMPerS = 0.02;         // slower than this is standing
+constexpr double kCreepMPerS = 0.1;          // until the laser has shown that it looks ahead: it stands within 0.05 m
 constexpr double kControllerCycleS = 0.1;    // A6: so late the controller may notice that its watchdog is due
 constexpr double kAccelerationMPerS2 = 0.3;  // of a P3-DX as delivered (A10: TRANSACC)
 constexpr double kTurnAccelerationRadPerS2 = radians(100.0);  // of a P3-DX as delivered (A10: ROTACC)
@@ -44,7 +45,7 @@ void Safety::observe(const Scan& scan) {
                                    lost_ends_.in_robot().end());
   if (scan.implausible) implausible_at_ = scan.received;
   latches_[kLaserError].observe(scan.severity >= kLaserErrorSeverity);
-  latches_[kWheelsSpin].observe(laser_.contradicts_wheels());
+  latches_[kWheelsSpin].observe(laser_.motion().contradicts_wheels());
 }
 
 /// In one frame since the last call, or nothing: the frame has jumped.
@@ -182,11 +183,17 @@ double Safety::safe_share(const Motion& wished, double blind_s) const {
   return safe;
 }
 
+/// As slow as it has to creep, on the same arc.
+Motion Safety::creeping(const Motion& wished) const {
+  const bool is_slow = wished.speed_m_per_s <= kCreepMPerS;
+  return is_slow || !creeps() ? wished : scaled(wished, kCreepMPerS / wished.speed_m_per_s);
+}
+
 AllowedMotion Safety::allowed(Timestamp now) const {
   const StopReason blocked = blocking_state(now);
   if (blocked != StopReason::kNone) {
-    const bool is_urgent =
-        blocked == StopReason::kBumper || blocked == StopReason::kStalled || blocked == StopReason::kDisobeys;
+    const bool is_urgent = blocked == StopReason::kBumper || blocked == StopReason::kStalled ||
+                           blocked == StopReason::kWheelsSpin || blocked == StopReason::kDisobeys;
     return {0.0, 0.0, blocked, is_urgent};
   }
   const double blind_s = params_.reaction_s + std::max(0.0, seconds(now - scan_->time));
@@ -194,7 +201,8 @@ AllowedMotion Safety::allowed(Timestamp now) const {
   const Motion wished{clamped(command_->command.speed_m_per_s, params_.max_speed_m_per_s),
                       clamped(command_->command.turn_rate_rad_per_s, params_.max_turn_rate_rad_per_s)};
   if (wished.speed_m_per_s > 0.0) {
-    const Motion motion = scaled(wished, safe_share(wished, blind_s));
+    const Motion ahead = creeping(wished);
+    const Motion motion = scaled(ahead, safe_share(ahead, blind_s));
     if (motion.speed_m_per_s >= kCrawlMPerS) return {motion.speed_m_per_s, motion.turn_rate_rad_per_s};
   }
   const bool may_turn = nearest_m(scan_->obstacles_in_robot) > params_.robot_radius_m &&

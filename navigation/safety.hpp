@@ -91,6 +91,8 @@ class Safety {
   void let_drive_again();
   /// What a person has yet to answer; kNone where nothing.
   [[nodiscard]] StopReason waits_for() const;
+  /// It has to: until the scans have shown that the laser looks ahead.
+  [[nodiscard]] bool creeps() const { return !laser_.motion().looks_ahead(); }
   /// The laser session tells what its variant and baud give.
   void set_nominal_scan_period(double period_s) { params_.nominal_scan_period_s = period_s; }
   /// In the middle of a run: from the next allowed() on. The scan period stays as the session told it.
@@ -133,6 +135,7 @@ class Safety {
   [[nodiscard]] StopReason unfit_robot(Timestamp now) const;
   [[nodiscard]] StopReason unfit_laser(Timestamp now) const;
   [[nodiscard]] std::optional<Pose2> odom_at(const Scan& scan);
+  [[nodiscard]] Motion creeping(const Motion& wished) const;
   [[nodiscard]] Motion motion_now() const;
   [[nodiscard]] Coasting coasting(const Motion& at_first, const Motion& then, double blind_s) const;
   [[nodiscard]] bool coasts_clear(const Motion& command, double radius_m, double blind_s) const;

@@ -7,22 +7,20 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/angle.hpp"
 #include "navigation/fan.hpp"
 
 namespace deltamap::navigation {
 namespace {
 
-// Noise of a range, motion within the sweep, and the slant of a surface between two beams.
-constexpr double kSameM = 0.06;
-constexpr double kSamePerM = 0.005;
-constexpr double kClearlyElsewhere = 2.0;  // times that
+constexpr double kClearlyElsewhere = 2.0;  // times what is the same
 // Neighbours nearer to each other than this lie on one surface, seen at a slant.
 constexpr double kOneSurfaceM = 0.3;
 constexpr double kOneSurfacePerM = 0.1;
 constexpr std::array<double, 5> kAsTold{1.0, 0.9, 1.1, 0.75, 1.25};
-// Wheels whose reports are a tenth of a second late misjudge a turn that begins or ends by so much.
-constexpr std::array<double, 7> kTurnedMoreRad{0.0, 0.03, -0.03, 0.06, -0.06, 0.09, -0.09};
+constexpr int kTurnSteps = 3;  // to each side
 constexpr std::array<double, 4> kOtherwise{0.0, 0.25, -0.5, -1.0};
+constexpr std::array<double, 3> kTurnedOnMountRad{radians(90.0), radians(180.0), radians(-90.0)};
 
 struct SeenEnd {
   Point2 in_laser;
@@ -64,7 +62,9 @@ class Profile {
   const Scan& scan_;
 };
 
-double same_within_m(double range_m) { return kSameM + kSamePerM * range_m; }
+double same_within_m(const Likeness& likeness, double range_m) {
+  return likeness.same_m + likeness.same_per_m * range_m;
+}
 
 /// That share of a motion, along its arc.
 Pose2 share_of(const Pose2& motion, double share) {
@@ -92,8 +92,10 @@ class Ends {
     const Point2 point = laser_after_from_before * in_laser_[end];
     return {point, point.norm()};
   }
-  [[nodiscard]] Pose2 of_laser(const Pose2& robot_before_from_after) const {
-    return inverse(inverse(mount_) * robot_before_from_after * mount_);
+  /// `turned_rad`: of the laser on its mount, against what that says.
+  [[nodiscard]] Pose2 of_laser(const Pose2& robot_before_from_after, double turned_rad = 0.0) const {
+    const Pose2 robot_from_laser = mount_ * Pose2{0.0, 0.0, turned_rad};
+    return inverse(inverse(robot_from_laser) * robot_before_from_after * robot_from_laser);
   }
 
  private:
@@ -103,7 +105,8 @@ class Ends {
 
 }  // namespace
 
-ShownMotion shown_motion(const Scan& before, const Scan& after, const Pose2& robot_before_from_after) {
+ShownMotion shown_motion(const Scan& before, const Scan& after, const Pose2& robot_before_from_after,
+                         const Likeness& likeness) {
   const Ends ends{before};
   const Profile then{before};
   const Profile now{after};
@@ -112,24 +115,28 @@ ShownMotion shown_motion(const Scan& before, const Scan& after, const Pose2& rob
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const SeenEnd moved = ends.after(i, told);
     const auto off_m = then.off_m(moved);
-    if (off_m && *off_m > kClearlyElsewhere * same_within_m(moved.range_m)) asked.push_back(i);
+    if (off_m && *off_m > kClearlyElsewhere * same_within_m(likeness, moved.range_m)) asked.push_back(i);
   }
   ShownMotion shown{.asked = static_cast<int>(asked.size())};
   if (asked.empty()) return shown;
-  const auto share_seen = [&](double share, double turned_more_rad) {
-    const Pose2 moved = ends.of_laser(share_of(robot_before_from_after, share) * Pose2{0.0, 0.0, turned_more_rad});
+  const auto share_seen = [&](const Pose2& moved) {
     const auto seen = std::count_if(asked.begin(), asked.end(), [&](std::size_t end) {
       const SeenEnd point = ends.after(end, moved);
       const auto off_m = now.off_m(point);
-      return off_m && *off_m <= same_within_m(point.range_m);
+      return off_m && *off_m <= same_within_m(likeness, point.range_m);
     });
     return static_cast<double>(seen) / static_cast<double>(asked.size());
   };
   for (const double share : kAsTold) {
-    for (const double turned_rad : kTurnedMoreRad)
-      shown.as_told = std::max(shown.as_told, share_seen(share, turned_rad));
+    for (int step = -kTurnSteps; step <= kTurnSteps; ++step) {
+      const double turned_rad = likeness.turned_more_rad * step / kTurnSteps;
+      const Pose2 motion = share_of(robot_before_from_after, share) * Pose2{0.0, 0.0, turned_rad};
+      shown.as_told = std::max(shown.as_told, share_seen(ends.of_laser(motion)));
+    }
   }
-  for (const double share : kOtherwise) shown.otherwise = std::max(shown.otherwise, share_seen(share, 0.0));
+  const auto otherwise = [&](const Pose2& moved) { shown.otherwise = std::max(shown.otherwise, share_seen(moved)); };
+  for (const double share : kOtherwise) otherwise(ends.of_laser(share_of(robot_before_from_after, share)));
+  for (const double turned_rad : kTurnedOnMountRad) otherwise(ends.of_laser(robot_before_from_after, turned_rad));
   return shown;
 }
 

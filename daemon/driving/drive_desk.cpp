@@ -71,6 +71,10 @@ void DriveDesk::send_allowed_motion(Timestamp now) {
   if (const LogLine line = stop_log_.line(allowed_.stop); !line.text.empty()) {
     (line.is_warning ? wiring_.warn : wiring_.log)(line.text);
   }
+  if (told.speed_m_per_s > 0.0 && std::exchange(creeps_, safety_.creeps()) != safety_.creeps()) {
+    wiring_.log(creeps_ ? "driving slowly until the scans have followed the wheels"
+                        : "driving at full speed: the scans follow the wheels, or had nothing to show it by");
+  }
   safety_.told(told, now);
   if (allowed_.brake_hard) return wiring_.obey(wiring_.session.emergency_stop(now));
   wiring_.obey(wiring_.session.drive({now, told.speed_m_per_s, told.turn_rate_rad_per_s}, now));

@@ -142,11 +142,11 @@ TEST(LaserWatch, NoticesScansThatStandWhileTheWheelsTurn) {
   laser.pass(1.0);
   laser.odometry.speed_m_per_s = 0.3;
   laser.pass(0.7);
-  EXPECT_FALSE(laser.watch.contradicts_wheels()) << "one such pair may be chance";
+  EXPECT_FALSE(laser.watch.motion().contradicts_wheels()) << "one such pair may be chance";
   laser.pass(1.3);
-  EXPECT_TRUE(laser.watch.contradicts_wheels());
+  EXPECT_TRUE(laser.watch.motion().contradicts_wheels());
   laser.watch.forget_contradiction();
-  EXPECT_FALSE(laser.watch.contradicts_wheels());
+  EXPECT_FALSE(laser.watch.motion().contradicts_wheels());
 }
 
 TEST(LaserWatch, ComparesNothingAcrossAJumpOfTheOdometry) {
@@ -157,7 +157,7 @@ TEST(LaserWatch, ComparesNothingAcrossAJumpOfTheOdometry) {
     laser.odometry.odom_from_robot.x += 5.0;
     laser.pass(kScanS);
   }
-  EXPECT_FALSE(laser.watch.contradicts_wheels());
+  EXPECT_FALSE(laser.watch.motion().contradicts_wheels());
 }
 
 TEST(LostEnds, KeepWhatWasSeenUntilSomethingIsSeenThere) {

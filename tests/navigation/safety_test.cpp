@@ -33,9 +33,29 @@ Odometry driving() {
 }
 
 /// The controller has told a watchdog of 2 s.
-Safety with_watchdog(const SafetyParams& params = {}) {
+Safety put_down(const SafetyParams& params = {}) {
   Safety safety{params};
   safety.set_stopping_behaviour({.watchdog_s = 2.0});
+  return safety;
+}
+
+/// On a plane 6 m away a few metres ago: its scans have followed its wheels.
+Safety with_watchdog(const SafetyParams& params = {}) {
+  Safety safety = put_down(params);
+  for (int i = 0; i < 10; ++i) {
+    Odometry odometry = driving();
+    odometry.time = after(0.1 * i - 2.0);
+    odometry.odom_from_robot.x = 0.05 * i - 2.0;
+    safety.observe(odometry);
+    Scan scan = hall(6.0F, odometry.time);
+    for (std::size_t beam = 0; beam < scan.beams.size(); ++beam) {
+      const double ahead_m = (6.0 - 0.05 * i) / std::max(0.1, std::cos(scan.bearing_rad(beam)));
+      scan.beams[beam].range_m = static_cast<float>(ahead_m);
+      if (ahead_m > scan.max_range_m) scan.beams[beam].kind = BeamKind::kBeyondMaximum;
+    }
+    safety.observe(scan);
+  }
+  EXPECT_FALSE(safety.creeps());
   return safety;
 }
 
@@ -65,6 +85,20 @@ TEST(Safety, LetsACommandThroughWhereAllIsWell) {
   EXPECT_EQ(motion.stop, StopReason::kNone);
   EXPECT_EQ(motion.speed_m_per_s, 0.5);
   EXPECT_EQ(motion.turn_rate_rad_per_s, 0.2);
+}
+
+TEST(Safety, LetsItCreepOnTheSameArcUntilItsLaserHasShownThatItLooksAhead) {
+  Safety safety = put_down();
+  safety.observe(hall(6.0F));
+  safety.observe(driving());
+  EXPECT_TRUE(safety.creeps());
+  safety.command({kNow, 0.5, 0.2}, kNow);
+  EXPECT_NEAR(safety.allowed(kNow).speed_m_per_s, 0.1, 1e-9);
+  EXPECT_NEAR(safety.allowed(kNow).turn_rate_rad_per_s, 0.04, 1e-9);
+  safety.command({kNow, 0.05, 0.2}, kNow);
+  EXPECT_EQ(safety.allowed(kNow).speed_m_per_s, 0.05);
+  safety.command({kNow, 0.0, 0.5}, kNow);
+  EXPECT_EQ(safety.allowed(kNow).turn_rate_rad_per_s, 0.5) << "on the spot the hull goes nowhere";
 }
 
 TEST(Safety, StandsStillUntilSomeoneDrives) {

@@ -8,7 +8,7 @@
 
 #include "core/grid/grid_ray.hpp"
 #include "core/random.hpp"
-#include "tests/support/worlds/drawn_grid.hpp"
+#include "tests/support/worlds/room_and_corridor.hpp"
 
 namespace deltamap::navigation {
 namespace {
@@ -37,38 +37,54 @@ Scan seen(const OccupancyGrid& world, const Pose2& map_from_robot, Random& noise
   return scan;
 }
 
-/// 8 m by 6 m with a pillar; cells of 0.1 m.
-OccupancyGrid room() {
-  std::vector<std::string> lines(60, "#" + std::string(78, '.') + "#");
-  lines.front() = lines.back() = std::string(80, '#');
-  for (int row = 20; row < 25; ++row) lines[static_cast<std::size_t>(row)].replace(55, 5, "#####");
-  return test::drawn_grid(lines, 0.1);
-}
-
-/// 2 m wide and longer than the laser sees.
-OccupancyGrid corridor() {
-  std::vector<std::string> lines(20, std::string(400, '.'));
-  lines.front() = lines.back() = std::string(400, '#');
-  return test::drawn_grid(lines, 0.1);
-}
-
 ShownMotion shown(const OccupancyGrid& world, const Pose2& from, const Pose2& truly, const Pose2& told) {
   Random noise{7};
   return shown_motion(seen(world, from, noise), seen(world, from * truly, noise), told);
 }
 
 TEST(ShownMotion, OfARobotThatDrivesAsItsWheelsTell) {
-  for (const Pose2& motion : {Pose2{0.3, 0.0, 0.0}, Pose2{0.0, 0.0, 0.3}, Pose2{0.25, 0.02, -0.2}}) {
-    const ShownMotion answer = shown(room(), {3.0, 3.0, 0.4}, motion, motion);
+  for (const Pose2& motion : {Pose2{0.3, 0.0, 0.0}, Pose2{0.25, 0.02, -0.2}}) {
+    const ShownMotion answer = shown(test::room_with_pillar(), {3.0, 3.0, 0.4}, motion, motion);
     EXPECT_GT(answer.asked, 15);
     EXPECT_GT(answer.as_told, 0.8);
     EXPECT_LT(answer.otherwise, answer.as_told);
   }
 }
 
+TEST(ShownMotion, OfATurnOnTheSpotFitsALaserThatIsTurnedRoundAsWell) {
+  const ShownMotion answer = shown(test::room_with_pillar(), {3.0, 3.0, 0.4}, {0.0, 0.0, 0.3}, {0.0, 0.0, 0.3});
+  EXPECT_GT(answer.asked, 15);
+  EXPECT_GT(answer.as_told, 0.8);
+  EXPECT_GT(answer.otherwise, 0.8);
+}
+
+TEST(ShownMotion, OfALaserThatIsTurnedWhileTheRobotDrivesACurve) {
+  for (const double turned_rad : {radians(90.0), radians(180.0), radians(-90.0)}) {
+    const Pose2 told{0.25, 0.02, 0.15};
+    const Pose2 turn{0.0, 0.0, turned_rad};
+    const ShownMotion answer = shown(test::room_with_pillar(), {3.0, 3.0, 0.4}, inverse(turn) * told * turn, told);
+    EXPECT_GT(answer.asked, 15);
+    EXPECT_GT(answer.otherwise, 0.8);
+    EXPECT_LT(answer.as_told, answer.otherwise - 0.4) << turned_rad;
+  }
+}
+
+TEST(ShownMotion, OfARobotThatCreepsIsToldByATenthOfAMetre) {
+  const Pose2 told{0.1, 0.0, 0.0};
+  Random noise{7};
+  const Scan before = seen(test::room_with_pillar(), {3.0, 3.0, 0.4}, noise);
+  const Scan ahead = seen(test::room_with_pillar(), Pose2{3.0, 3.0, 0.4} * told, noise);
+  const Scan back = seen(test::room_with_pillar(), Pose2{3.0, 3.0, 0.4} * inverse(told), noise);
+  const ShownMotion as_told = shown_motion(before, ahead, told, Likeness::creeping());
+  EXPECT_GT(as_told.asked, 15);
+  EXPECT_GT(as_told.as_told, as_told.otherwise + 0.4);
+  const ShownMotion reversed = shown_motion(before, back, told, Likeness::creeping());
+  EXPECT_GT(reversed.otherwise, reversed.as_told + 0.4);
+}
+
 TEST(ShownMotion, OfARobotThatStandsWhileItsWheelsTurn) {
   for (const Pose2& told : {Pose2{0.3, 0.0, 0.0}, Pose2{0.0, 0.0, 0.3}, Pose2{0.25, 0.02, -0.2}}) {
-    const ShownMotion answer = shown(room(), {3.0, 3.0, 0.4}, {}, told);
+    const ShownMotion answer = shown(test::room_with_pillar(), {3.0, 3.0, 0.4}, {}, told);
     EXPECT_GT(answer.asked, 15);
     EXPECT_GT(answer.otherwise, 0.9);
     EXPECT_LT(answer.as_told, answer.otherwise - 0.4);
@@ -76,13 +92,13 @@ TEST(ShownMotion, OfARobotThatStandsWhileItsWheelsTurn) {
 }
 
 TEST(ShownMotion, OfALaserThatIsTurnedRound) {
-  const ShownMotion answer = shown(room(), {3.0, 3.0, 0.4}, {-0.3, 0.0, 0.0}, {0.3, 0.0, 0.0});
+  const ShownMotion answer = shown(test::room_with_pillar(), {3.0, 3.0, 0.4}, {-0.3, 0.0, 0.0}, {0.3, 0.0, 0.0});
   EXPECT_GT(answer.otherwise, 0.8);
   EXPECT_LT(answer.as_told, 0.4);
 }
 
 TEST(ShownMotion, AsksLittleInACorridorThatLooksTheSameFurtherOn) {
-  EXPECT_LT(shown(corridor(), {20.0, 1.0, 0.0}, {}, {0.3, 0.0, 0.0}).asked, 15);
+  EXPECT_LT(shown(test::long_corridor(), {20.0, 1.0, 0.0}, {}, {0.3, 0.0, 0.0}).asked, 15);
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ std::vector<Row> table() {
       {StopReason::kWayUncovered, [](Drive& d) { d.scan.robot_from_laser.theta = -std::numbers::pi / 2.0; },
        looks_ahead, false, false},
       {StopReason::kWheelsSpin, [](Drive& d) { d.drives_on = true, d.flickers = true; },
-       [](Drive& d) { d.drives_on = false; }, true, false},
+       [](Drive& d) { d.drives_on = false; }, true, true},
       {StopReason::kDisobeys, [](Drive& d) { d.is_told = true, d.odometry.speed_m_per_s = 0.9; },
        [](Drive& d) { d.odometry.speed_m_per_s = 0.0; }, true, true},
       {StopReason::kReverse, [](Drive& d) { d.speed_m_per_s = -0.1; }, [](Drive& d) { d.speed_m_per_s = 0.3; }, false,

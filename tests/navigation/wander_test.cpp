@@ -123,8 +123,9 @@ TEST(Wander, VisitsTheWholeHallWithoutTouchingAnything) {
 
 TEST(Wander, GoesStraightAtFullSpeedWhereItIsClear) {
   const OccupancyGrid grid = hall();
-  const Course drive = driven(grid, {2.0, 3.0, 0.0}, 5.0, 1);
-  EXPECT_NEAR(distance_between({2.0, 3.0, 0.0}, drive.poses.back()), 0.5 * 5.0, 0.1);
+  const Course drive = driven(grid, {2.0, 3.0, 0.0}, 8.0, 1);
+  const Pose2& halfway = drive.poses[drive.poses.size() / 2];  // it creeps until its scans have followed its wheels
+  EXPECT_NEAR(distance_between(halfway, drive.poses.back()), 0.5 * 4.0, 0.1);
   EXPECT_NEAR(drive.poses.back().y, 3.0, 0.1);
 }
 

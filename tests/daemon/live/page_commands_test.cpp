@@ -134,8 +134,8 @@ class PageCommandsTest : public test::DriveTest {
   }
   void drive_until_it_moves(Hands& hands, const test::SimulatedPorts& ports) {
     EXPECT_EQ(hands.first()["type"], "taken") << hands.first();
-    for (int i = 0; i < 600 && newest_speed(ports).mm_per_s <= 100; ++i) hands.hold(0.2, 1);
-    ASSERT_GT(newest_speed(ports).mm_per_s, 100);
+    for (int i = 0; i < 600 && newest_speed(ports).mm_per_s <= 50; ++i) hands.hold(0.2, 1);
+    ASSERT_GT(newest_speed(ports).mm_per_s, 50);
     EXPECT_EQ(status()["drive"], "by hand");
   }
   /// Nothing but standing follows, although the pilot is asked all the while.

@@ -37,6 +37,22 @@ std::string name_of_trial(const testing::TestParamInfo<std::string_view>& trial)
 }
 INSTANTIATE_TEST_SUITE_P(Each, FaultTrials, testing::ValuesIn(experiments::kTrialFaults), name_of_trial);
 
+TEST(FaultTrials, OfALaserThatWasTurnedOnItsMountBeforeTheStartEndBeforeItHasUsedItsRoom) {
+  constexpr double kFreeM = 0.3;  // what an operator leaves free around it
+  for (const std::string_view fault : {"laser-turned=180", "laser-turned=90", "laser-turned=-90"}) {
+    for (std::uint64_t seed = 1; seed <= 7; ++seed) {
+      const experiments::FaultTrial trial{.fault = std::string(fault), .before_s = 0.0, .for_s = 60.0, .seed = seed};
+      for (const bool has_pilot_gone_wild : {false, true}) {  // by a pose that may fit the turned scans, or by hand
+        experiments::LoopRun run = run_of(trial, quiet_room(), {});
+        run.has_pilot_gone_wild = has_pilot_gone_wild;
+        const experiments::LoopOutcome outcome = outcome_of(run);
+        EXPECT_EQ(outcome.collisions, 0) << fault << " seed " << seed;
+        EXPECT_LT(outcome.moved_m, kFreeM) << fault << " seed " << seed;
+      }
+    }
+  }
+}
+
 TEST(FaultTrials, SayWhyTheRobotStandsAndThatNobodyMustDriveByItsPose) {
   const std::map<std::string, navigation::StopReason> expected{
       {"laser-repeats", navigation::StopReason::kLaserFrozen},
