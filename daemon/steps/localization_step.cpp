@@ -40,9 +40,16 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
     apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
   if (start.calibration) localizer_.restore(*start.calibration);
   if (start.stability) (void)localizer_.restore(*start.stability);  // refused where its tiles differ: begins anew
+  calibration_ = calibration_now_ = localizer_.calibration();
+}
+
+void LocalizationStep::observe(const Odometry& odometry) {
+  wheels_.observe(odometry);
+  localizer_.observe(odometry);
 }
 
 TrackedScan LocalizationStep::observe(Scan scan) {
+  unlearn_contradicted(scan);
   TrackedScan tracked = localizer_.observe(std::move(scan));
   last_map_from_robot_ = tracked.estimate.map_from_robot;
   last_odom_from_robot_ = localizer_.odom_from_robot(tracked.scan.time);
@@ -52,6 +59,18 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   tracked.weights = ratio_.observe(tracked.estimate);
   row_ = row_of(tracked);
   return tracked;
+}
+
+/// Wheels that spin, or are pushed, tell nothing of how they err: what was learned on such a way is forgotten. It may
+/// have begun within the way before, which then showed too little to be sure.
+void LocalizationStep::unlearn_contradicted(const Scan& scan) {
+  const auto odom_from_robot = wheels_.odom_from_robot(scan.time);
+  if (!odom_from_robot) return motion_watch_.skip();
+  if (motion_watch_.observe(scan, *odom_from_robot, wheels_.epoch()))
+    calibration_ = std::exchange(calibration_now_, localizer_.calibration());
+  if (!calibration_ || !motion_watch_.contradicts_wheels()) return;
+  localizer_.restore(*calibration_);
+  calibration_now_ = calibration_;
 }
 
 TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {

@@ -14,6 +14,8 @@
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
 #include "mapping/paper/divergence_ratio.hpp"
+#include "navigation/motion_watch.hpp"
+#include "navigation/wheel_path.hpp"
 
 namespace deltamap::daemon {
 
@@ -42,7 +44,7 @@ class LocalizationStep {
   /// Throws std::runtime_error where the map has no free cell.
   LocalizationStep(const Settings& settings, const StartMap& start);
 
-  void observe(const Odometry& odometry) { localizer_.observe(odometry); }
+  void observe(const Odometry& odometry);
   [[nodiscard]] TrackedScan observe(Scan scan);
   /// A scan that a newer one has overtaken: where odometry alone says that it was taken.
   [[nodiscard]] TrajectoryPoint pass_over(const Scan& scan);
@@ -57,8 +59,10 @@ class LocalizationStep {
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
   /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
-  [[nodiscard]] std::optional<localization::motion::DriveCalibration> calibration() const {
-    return localizer_.calibration();
+  /// What is known of wheels and mount, without what was learned on the last way: whether scans and wheels contradict
+  /// each other there is not known yet.
+  [[nodiscard]] const std::optional<localization::motion::DriveCalibration>& calibration() const {
+    return calibration_;
   }
   /// What the newest pose rests on; null where not on particles (localizer.hpp).
   [[nodiscard]] const localization::particles::ParticleSet* particles() const { return localizer_.particles(); }
@@ -73,8 +77,13 @@ class LocalizationStep {
 
  private:
   void count_time(Timestamp time);
+  void unlearn_contradicted(const Scan& scan);
 
   localization::Localizer localizer_;
+  navigation::WheelPath wheels_;
+  navigation::MotionWatch motion_watch_;
+  std::optional<localization::motion::DriveCalibration> calibration_;      // before the last way without a doubt
+  std::optional<localization::motion::DriveCalibration> calibration_now_;  // after it
   mapping::paper::DivergenceRatio ratio_;
   LocalizationRow row_;
   Pose2 last_map_from_robot_;

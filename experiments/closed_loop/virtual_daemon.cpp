@@ -172,6 +172,10 @@ navigation::AllowedMotion VirtualDaemon::last_allowed() const {
   return process_ ? process_->desk.allowed() : navigation::AllowedMotion{};
 }
 
+std::optional<localization::motion::DriveCalibration> VirtualDaemon::calibration() const {
+  return process_ && process_->run ? process_->run->localization().calibration() : std::nullopt;
+}
+
 bool VirtualDaemon::may_drive_by_pose() const { return process_ && daemon::may_drive_by_pose(process_->telemetry); }
 
 void VirtualDaemon::write_to_robot(std::span<const std::uint8_t> bytes, unsigned baud) {

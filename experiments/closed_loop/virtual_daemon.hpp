@@ -55,6 +55,8 @@ class VirtualDaemon {
   [[nodiscard]] const std::optional<Scan>& last_scan() const { return last_scan_; }
   /// Of the newest localized scan; nothing without a map.
   [[nodiscard]] const std::optional<Estimate>& estimate() const { return estimate_; }
+  /// What would be kept of wheels and mount; nothing without a map.
+  [[nodiscard]] std::optional<localization::motion::DriveCalibration> calibration() const;
   /// What ctl status tells planners.
   [[nodiscard]] bool may_drive_by_pose() const;
   /// Lines of its log, of all processes so far.
