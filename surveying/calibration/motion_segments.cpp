@@ -8,6 +8,12 @@
 namespace deltamap::surveying::calibration {
 namespace {
 
+using localization::motion::motion_noise;
+using localization::motion::MotionModelParams;
+using localization::motion::MotionNoise;
+using localization::motion::turn_drive_turn;
+using localization::motion::TurnDriveTurn;
+
 constexpr MotionModelParams kNothing{.turn_per_turn = 0.0,
                                      .turn_per_metre_rad = 0.0,
                                      .metre_per_metre = 0.0,

@@ -9,6 +9,13 @@
 namespace deltamap::surveying::calibration {
 namespace {
 
+using localization::motion::motion_noise;
+using localization::motion::MotionModelParams;
+using localization::motion::MotionNoise;
+using localization::motion::sampled_motion;
+using localization::motion::turn_drive_turn;
+using localization::motion::TurnDriveTurn;
+
 constexpr double kTolerance = 0.2;  // relative: what the command promises
 
 struct Wheels {
