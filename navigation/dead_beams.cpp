@@ -21,23 +21,27 @@ bool is_another_place(const std::optional<Pose2>& before, const Pose2& now) {
 
 }  // namespace
 
-void DeadBeams::observe(const TrackedScan& tracked) {
-  if (tracked.estimate.state != LocalizerState::kTracking || tracked.estimate.map == nullptr) return;
-  if (!is_another_place(looked_from_, tracked.estimate.map_from_robot)) return;
-  looked_from_ = tracked.estimate.map_from_robot;
-  const Scan& scan = tracked.scan;
+void DeadBeams::observe(const Scan& scan) {
   const std::size_t step = beams_between(scan);
   missed_.resize((scan.beams.size() + step - 1) / step, 0);
   for (std::size_t i = 0; i < missed_.size(); ++i) {
-    const std::size_t beam = i * step;
-    if (scan.beams[beam].kind == BeamKind::kRange) {
-      missed_[i] = 0;
-    } else if (mapped_wall_m(tracked, beam)) {
-      ++missed_[i];
-    }
+    if (scan.beams[i * step].kind == BeamKind::kRange) missed_[i] = 0;
   }
+}
+
+void DeadBeams::hold_against_map(const TrackedScan& tracked) {
+  if (tracked.estimate.state != LocalizerState::kTracking || tracked.estimate.map == nullptr) return;
+  if (!is_another_place(looked_from_, tracked.estimate.map_from_robot)) return;
+  looked_from_ = tracked.estimate.map_from_robot;
+  const std::size_t step = beams_between(tracked.scan);
+  for (std::size_t i = 0; i < missed_.size(); ++i) {
+    if (tracked.scan.beams[i * step].kind != BeamKind::kRange && mapped_wall_m(tracked, i * step)) ++missed_[i];
+  }
+}
+
+bool DeadBeams::hide_a_sector() const {
   const auto dead = std::count_if(missed_.begin(), missed_.end(), [](int missed) { return missed >= kPlaces; });
-  hide_a_sector_ = static_cast<double>(dead) >= kSectorShare * static_cast<double>(missed_.size());
+  return dead > 0 && static_cast<double>(dead) >= kSectorShare * static_cast<double>(missed_.size());
 }
 
 }  // namespace deltamap::navigation

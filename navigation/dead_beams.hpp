@@ -13,15 +13,17 @@ namespace deltamap::navigation {
 
 class DeadBeams {
  public:
-  /// After each localized scan. Looks where the robot has moved or turned a little since it last did.
-  void observe(const TrackedScan& tracked);
+  /// Each scan, with or without a pose, whether or not the robot moves: a beam that brings a range is not dead.
+  void observe(const Scan& scan);
+  /// After that, where the scan is localized: which of its beams should have seen a wall. Looks where the robot has
+  /// moved or turned a little since it last did.
+  void hold_against_map(const TrackedScan& tracked);
   /// So many beams that something as wide as a sixth of the fan is not seen.
-  [[nodiscard]] bool hide_a_sector() const { return hide_a_sector_; }
+  [[nodiscard]] bool hide_a_sector() const;
 
  private:
   std::vector<int> missed_;  // of every few beams: places in a row from which it missed a wall
   std::optional<Pose2> looked_from_;
-  bool hide_a_sector_ = false;
 };
 
 }  // namespace deltamap::navigation

@@ -50,6 +50,7 @@ Met met_by(const TrackedScan& tracked, std::size_t beam, double reach_m) {
 }  // namespace
 
 std::size_t beams_between(const Scan& scan) {
+  if (scan.bearing_step_rad == 0.0) return 1;
   return static_cast<std::size_t>(std::max(1.0, std::floor(kStepRad / std::abs(scan.bearing_step_rad) + 1e-6)));
 }
 

@@ -27,7 +27,8 @@ PilotWord PilotStep::observe(const TrackedScan& tracked, const Seen& seen) {
   PilotWord word;
   word.command.time = tracked.scan.time;
   word.pose = pose_watch_.observe({tracked.estimate, seen.fit, seen.start_fits});
-  if (word.pose == StopReason::kNone) dead_beams_.observe(tracked);
+  dead_beams_.observe(tracked.scan);
+  if (word.pose == StopReason::kNone) dead_beams_.hold_against_map(tracked);
   word.misses_walls = dead_beams_.hide_a_sector();
   word.held_by = drives_without_pose_ ? StopReason::kNone : word.pose;
   word.expects_no_range = navigation::brings_nothing(tracked.scan) && word.pose == StopReason::kNone &&
