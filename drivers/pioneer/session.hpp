@@ -70,7 +70,7 @@ class PioneerSession {
   [[nodiscard]] PioneerOutput drive(const DriveCommand& command, Timestamp now);
   [[nodiscard]] PioneerOutput stop_driving(Timestamp now);
   /// ESTOP: stops it as fast as its motors can, whatever deceleration is set. To be called as long as it holds: ESTOP
-  /// goes out again until SIPs show that the robot stands, then in place of the pulse. Ended by drive().
+  /// goes out again until SIPs show that the robot stands, then in place of the pulse. Ended by a drive() that moves.
   [[nodiscard]] PioneerOutput emergency_stop(Timestamp now);
   /// A person lets it drive, or makes it stand, until a person says otherwise.
   [[nodiscard]] PioneerOutput switch_drive(bool on, Timestamp now);

@@ -141,6 +141,8 @@ PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) 
       std::clamp(wanted.turn_rate_rad_per_s, -limits.max_turn_rate_rad_per_s, limits.max_turn_rate_rad_per_s);
   const bool is_number = std::isfinite(wanted.speed_m_per_s) && std::isfinite(wanted.turn_rate_rad_per_s);
   if (!is_number) return stop_driving(now);
+  const bool is_to_stand = wanted.speed_m_per_s == 0.0 && wanted.turn_rate_rad_per_s == 0.0;
+  if (emergency_stop_ && is_to_stand) return emergency_stop(now);  // VEL 0 would withdraw it
   emergency_stop_.reset();
   const bool is_new = !set_point_ || set_point_->speed_m_per_s != wanted.speed_m_per_s ||
                       set_point_->turn_rate_rad_per_s != wanted.turn_rate_rad_per_s;

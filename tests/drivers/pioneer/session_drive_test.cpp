@@ -145,6 +145,30 @@ TEST_F(PioneerSessionTest, StopsInAnEmergencyUntilTheRobotStandsAndHoldsItThere)
   EXPECT_TRUE(line.run_until([&] { return robot.moves; }, 1.0));
 }
 
+TEST_F(PioneerSessionTest, KeepsAnEmergencyStopUpUntilTheRobotIsToldToMove) {
+  use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
+  ASSERT_TRUE(connect());
+  ASSERT_TRUE(line.run_until([&] { return robot.motors_on; }, 3.0));
+  line.carry_out(session.drive({line.now, 0.3, 0.2}, line.now));
+  ASSERT_TRUE(line.run_until([&] { return robot.moves; }, 1.0));
+  line.carry_out(session.emergency_stop(line.now));
+  line.run_for(0.1);
+  robot.sip.left_mm_per_s = robot.sip.right_mm_per_s =
+      300;  // it heeds no set point, and VEL 0 would withdraw the ESTOP
+  const std::size_t begin = robot.obeyed.size();
+  for (int i = 0; i < 20; ++i) {
+    line.carry_out(session.drive({line.now, 0.0, 0.0}, line.now));
+    line.run_for(0.05);
+  }
+  ASSERT_GT(robot.obeyed.size(), begin + 5);
+  for (std::size_t i = begin; i < robot.obeyed.size(); ++i) {
+    EXPECT_EQ(robot.obeyed[i].number, CommandNumber::kEstop) << i;
+  }
+  line.carry_out(session.drive({line.now, 0.0, 0.2}, line.now));
+  line.run_for(0.1);
+  EXPECT_NE(robot.turn_rate, 0);
+}
+
 TEST_F(PioneerSessionTest, DoesNotEnableMotorsAgainAfterTheStopButton) {
   use({.enable_motors = true, .drive_switch = DriveSwitch::kOn});
   ASSERT_TRUE(connect());
