@@ -15,21 +15,20 @@ constexpr double kSpeedSlack = 0.1;           // m/s: of a wheel's measured spee
 constexpr double kTurnSlack = radians(20.0);  // per s: the same of two wheels
 constexpr double kSlowerShare = 0.7;          // of the set acceleration, by a loaded robot
 constexpr double kIdleShare = 0.1;            // of the least that it should do by now: it stands
+constexpr double kFasterShare = 0.2;          // of what it was told, by a controller's regulation
+// Slower than these it stands. 0.1 m is about the margin beside the hull; 30° more than a castor turns it by.
+constexpr ExcessWay::Tolerance kWay{.creep = 0.005, .most = 0.1};  // m
+constexpr ExcessWay::Tolerance kTurn{.creep = radians(0.5), .most = radians(30.0)};
 
 /// Faster than anything that it was told, or the other way. Slower is no danger.
 bool exceeds(double measured, const SpeedRange& range, double slack) {
   return measured > std::max(0.0, range.high()) + slack || measured < std::min(0.0, range.low()) - slack;
 }
 
-/// The least magnitude that an obedient robot has by now.
-double least_of(const SpeedRange& range) {
-  if (range.low() > 0.0) return range.low();
-  return range.high() < 0.0 ? -range.high() : 0.0;
-}
-
+/// It should go by now, and stands or goes the other way.
 bool is_idle(double measured, const SpeedRange& range, double slack) {
-  const double least = least_of(range);
-  return least > slack && std::abs(measured) < kIdleShare * least;
+  if (range.low() > slack) return measured < kIdleShare * range.low();
+  return range.high() < -slack && measured > kIdleShare * range.high();
 }
 
 /// Whether something has held without a break for so long.
@@ -55,6 +54,16 @@ void SpeedRange::advance(double least, double most, const Gathering& gathering, 
   low_ = least < low_ ? least : slowly(low_, least);
 }
 
+void ExcessWay::advance(double measured, const SpeedRange& range, const Tolerance& tolerance, double dt_s) {
+  const double most = (1.0 + kFasterShare) * std::max(0.0, range.high()) + tolerance.creep;
+  const double least = (1.0 + kFasterShare) * std::min(0.0, range.low()) - tolerance.creep;
+  ahead_ = std::max(0.0, ahead_ + (measured - most) * dt_s);
+  behind_ = std::max(0.0, behind_ + (least - measured) * dt_s);
+  is_too_far_ = std::max(ahead_, behind_) > tolerance.most;
+  // Once it is back at what it was told, it owes nothing.
+  if (is_too_far_ && measured <= most && measured >= least) *this = {};
+}
+
 void Obedience::told(const Motion& motion, Timestamp now) {
   told_.push_back({now, motion});
   // The last that is older than the latest is what it may still act on.
@@ -70,6 +79,7 @@ void Obedience::forget() {
 }
 
 void Obedience::begin(const Odometry& odometry) {
+  excess_way_ = excess_turn_ = {};
   speed_.begin(odometry.speed_m_per_s);
   turn_rate_.begin(odometry.turn_rate_rad_per_s);
   excess_since_.reset();
@@ -100,7 +110,9 @@ void Obedience::observe(const Odometry& odometry, const StoppingBehaviour& stopp
   // A robot that stands endangers nobody: it gets more time.
   const bool is_idle_long = holds_for(idle_since_, idles, odometry.time, kIdleS);
   const bool is_excess_long = holds_for(excess_since_, exceeds_told, odometry.time, kExcessS);
-  disobeys_ = is_idle_long || is_excess_long;
+  excess_way_.advance(odometry.speed_m_per_s, speed_, kWay, dt_s);
+  excess_turn_.advance(odometry.turn_rate_rad_per_s, turn_rate_, kTurn, dt_s);
+  disobeys_ = is_idle_long || is_excess_long || excess_way_.is_too_far() || excess_turn_.is_too_far();
 }
 
 }  // namespace deltamap::navigation

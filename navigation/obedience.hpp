@@ -29,6 +29,22 @@ class SpeedRange {
   double high_ = 0.0;
 };
 
+/// How far it has gone beyond what an obedient robot may have: bounded however slowly it creeps.
+class ExcessWay {
+ public:
+  struct Tolerance {
+    double creep;  ///< per s; so slow it stands
+    double most;   ///< of the way
+  };
+  void advance(double measured, const SpeedRange& range, const Tolerance& tolerance, double dt_s);
+  [[nodiscard]] bool is_too_far() const { return is_too_far_; }
+
+ private:
+  double ahead_ = 0.0;   // >= 0: farther, or ahead where it was to stand or to go back
+  double behind_ = 0.0;  // >= 0
+  bool is_too_far_ = false;
+};
+
 class Obedience {
  public:
   /// What was sent to the robot just now, every safety period.
@@ -38,8 +54,8 @@ class Obedience {
   /// `stopping`: how its controller brakes.
   void observe(const Odometry& odometry, const StoppingBehaviour& stopping);
 
-  /// For half a second it has been faster than anything that it was told, or turned so; or it has stood for two seconds
-  /// though it was told to go.
+  /// For half a second it has been much faster than anything that it was told, or turned so; or by and by it has gone
+  /// 0.1 m, or turned by 30°, farther than that or the other way; or for two seconds it has not gone as it was told.
   [[nodiscard]] bool disobeys() const { return disobeys_; }
 
  private:
@@ -53,6 +69,8 @@ class Obedience {
   std::optional<Odometry> last_;
   SpeedRange speed_;
   SpeedRange turn_rate_;
+  ExcessWay excess_way_;
+  ExcessWay excess_turn_;
   std::optional<Timestamp> excess_since_;
   std::optional<Timestamp> idle_since_;
   bool disobeys_ = false;

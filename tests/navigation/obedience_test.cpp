@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/random.hpp"
+
 namespace deltamap::navigation {
 namespace {
 
@@ -79,6 +81,72 @@ TEST(Obedience, GivesARobotThatStandsMoreTimeAndASlowOneAllOfIt) {
   slow.odometry.speed_m_per_s = 0.2;
   slow.pass(10.0, {0.6, 0.0});
   EXPECT_FALSE(slow.disobeyed) << "its controller may be set to less";
+}
+
+constexpr double kMostGoneM = 0.2;  // where it was told to stand or to go the other way
+constexpr double kMostTurnedRad = radians(40.0);
+
+/// How far a robot gets that does what it likes, until that is noticed; at most as far as it gets in a minute.
+Motion gone_unnoticed(const Motion& told, const Motion& does) {
+  Robot robot;
+  robot.pass(3.0, told);
+  EXPECT_FALSE(robot.disobeyed);
+  robot.obeys = false;
+  robot.odometry.speed_m_per_s = does.speed_m_per_s;
+  robot.odometry.turn_rate_rad_per_s = does.turn_rate_rad_per_s;
+  const Timestamp begin = robot.now;
+  while (!robot.disobeyed && seconds(robot.now - begin) < 60.0) robot.pass(kToldEveryS, told);
+  const double for_s = seconds(robot.now - begin);
+  return {for_s * does.speed_m_per_s, for_s * does.turn_rate_rad_per_s};
+}
+
+TEST(Obedience, IsNotShownByARobotThatCreepsAlongAgainstItsOrders) {
+  for (const double told : {0.0, 0.05, 0.5}) {
+    for (const double does : {-0.02, -0.05, -0.09}) {
+      EXPECT_LT(-gone_unnoticed({told, 0.0}, {does, 0.0}).speed_m_per_s, kMostGoneM) << told << " " << does;
+    }
+  }
+  for (const double does : {0.02, 0.05, 0.09}) {
+    EXPECT_LT(gone_unnoticed({0.0, 0.0}, {does, 0.0}).speed_m_per_s, kMostGoneM) << does;
+  }
+}
+
+TEST(Obedience, IsNotShownByARobotThatTurnsSlowlyAgainstItsOrders) {
+  for (const Motion& told : {Motion{0.0, 0.0}, Motion{0.3, 0.0}, Motion{0.3, radians(30.0)}}) {
+    for (const double does : {radians(-5.0), radians(-15.0)}) {
+      EXPECT_LT(-gone_unnoticed(told, {told.speed_m_per_s, does}).turn_rate_rad_per_s, kMostTurnedRad)
+          << told.turn_rate_rad_per_s << " " << does;
+    }
+  }
+}
+
+TEST(Obedience, IsShownByWheelsThatAreMeasuredAndRegulatedWithNoise) {
+  for (const Motion& told : {Motion{0.0, 0.0}, Motion{0.03, 0.0}, Motion{0.4, radians(20.0)}}) {
+    Robot robot;
+    Random random{7};
+    robot.pass(3.0, told);
+    robot.obeys = false;
+    for (int i = 0; i < 6000; ++i) {
+      const double share = told.speed_m_per_s > 0.0 ? 1.0 : 0.2;  // of the noise: a wheel that stands has little
+      robot.odometry.speed_m_per_s = 1.05 * told.speed_m_per_s + share * random.normal(0.02);
+      robot.odometry.turn_rate_rad_per_s = 1.05 * told.turn_rate_rad_per_s + share * random.normal(radians(4.0));
+      robot.pass(kToldEveryS, told);
+    }
+    EXPECT_FALSE(robot.disobeyed) << told.speed_m_per_s;
+  }
+}
+
+TEST(Obedience, IsShownByARobotThatIsNudgedWhileItStands) {
+  Robot robot;
+  robot.pass(1.0, {0.0, 0.0});
+  robot.obeys = false;
+  for (int i = 0; i < 10; ++i) {
+    robot.odometry.speed_m_per_s = 0.1;
+    robot.pass(0.5, {0.0, 0.0});
+    robot.odometry.speed_m_per_s = 0.0;
+    robot.pass(10.0, {0.0, 0.0});
+  }
+  EXPECT_FALSE(robot.disobeyed);
 }
 
 TEST(Obedience, IsNotAskedOfARobotThatIsPushedWithItsMotorsOffOrThatNobodyTalksTo) {
