@@ -15,6 +15,7 @@ constexpr double kControllerCycleS = 0.1;    // A6: so late the controller may n
 constexpr double kAccelerationMPerS2 = 0.3;  // of a P3-DX as delivered (A10: TRANSACC)
 constexpr double kTurnAccelerationRadPerS2 = radians(100.0);  // of a P3-DX as delivered (A10: ROTACC)
 constexpr double kMostTurnRad = 0.5 * std::numbers::pi;       // further on it would go where the laser does not look
+constexpr double kOldestViewS = 2.0;                          // an older scan does not tell what is near now
 constexpr int kHalvings = 7;                                  // of the share of a speed: 5 mm/s of 0.7 m/s
 constexpr std::uint8_t kLaserErrorSeverity = 3;               // B6: 3 error, 4 fatal
 constexpr double kLeastBatteryV = 1.0;                        // nothing runs on less: it was not measured
@@ -141,7 +142,7 @@ Coasting Safety::coasting(const Motion& at_first, const Motion& then, double bli
   return {.at_first = at_first,
           .at_first_s = blind_s,
           .then = then,
-          .then_s = stopping_.watchdog_s.value() + kControllerCycleS,
+          .then_s = stopping_.watchdog_s.value_or(0.0) + kControllerCycleS,  // known wherever it is told to go
           .deceleration_m_per_s2 = std::min(params_.deceleration_m_per_s2, stopping_.deceleration_m_per_s2),
           .turn_deceleration_rad_per_s2 = stopping_.turn_deceleration_rad_per_s2};
 }
@@ -163,11 +164,25 @@ bool Safety::coasts_clear(const Motion& command, double radius_m, double blind_s
   return fits(coasting(at_once, command, blind_s)) && fits(gathering);
 }
 
+/// How long the robot goes on as it does now, counted from what the laser has seen.
+double Safety::unseen_s(Timestamp now) const { return params_.reaction_s + std::max(0.0, seconds(now - scan_->time)); }
+
 /// Even braking from now on the hull would touch something: only the hardest braking is left.
-bool Safety::can_stop_ahead(double blind_s) const {
-  const Motion now = motion_now();
-  if (now.speed_m_per_s < kCrawlMPerS) return true;
-  return is_clear(coasting_path(coasting(now, {}, blind_s)), scan_->obstacles_in_robot, params_.robot_radius_m);
+bool Safety::can_stop_ahead(Timestamp now) const {
+  const Motion motion = motion_now();
+  if (motion.speed_m_per_s < kCrawlMPerS) return true;
+  Coasting braking = coasting(motion, {}, unseen_s(now));
+  braking.then_s = 0.0;  // it is told so: that needs no watchdog
+  return is_clear(coasting_path(braking), scan_->obstacles_in_robot, params_.robot_radius_m);
+}
+
+/// Whatever it is to stand for: it has touched something, goes on all the same, or comes too near to something.
+bool Safety::must_brake_hard(Timestamp now) const {
+  for (const Latched urgent : {kDisobeys, kBumper, kStalled, kWheelsSpin}) {
+    if (latches_[urgent].is_held()) return true;
+  }
+  const bool is_in_view = scan_ && odometry_ && odometry_->motors_enabled && seconds(now - scan_->time) < kOldestViewS;
+  return is_in_view && !can_stop_ahead(now);
 }
 
 /// The greatest share of a motion, on the same arc, that is safe; 0 where none is.
@@ -190,14 +205,11 @@ Motion Safety::creeping(const Motion& wished) const {
 }
 
 AllowedMotion Safety::allowed(Timestamp now) const {
+  const bool brake_hard = must_brake_hard(now);
   const StopReason blocked = blocking_state(now);
-  if (blocked != StopReason::kNone) {
-    const bool is_urgent = blocked == StopReason::kBumper || blocked == StopReason::kStalled ||
-                           blocked == StopReason::kWheelsSpin || blocked == StopReason::kDisobeys;
-    return {0.0, 0.0, blocked, is_urgent};
-  }
-  const double blind_s = params_.reaction_s + std::max(0.0, seconds(now - scan_->time));
-  if (!can_stop_ahead(blind_s)) return {0.0, 0.0, StopReason::kObstacle, true};
+  if (blocked != StopReason::kNone) return {0.0, 0.0, blocked, brake_hard};
+  if (brake_hard) return {0.0, 0.0, StopReason::kObstacle, true};
+  const double blind_s = unseen_s(now);
   const Motion wished{clamped(command_->command.speed_m_per_s, params_.max_speed_m_per_s),
                       clamped(command_->command.turn_rate_rad_per_s, params_.max_turn_rate_rad_per_s)};
   if (wished.speed_m_per_s > 0.0) {

@@ -120,14 +120,15 @@ class Safety {
     Timestamp received;
     StopReason held_by;
   };
+  /// The first that is held is named: nothing may hide that the robot does not obey.
   enum Latched : std::size_t {
+    kDisobeys,
     kBumper,
     kStalled,
     kControllerFault,
     kLowBattery,
     kLaserError,
     kWheelsSpin,
-    kDisobeys,
     kLatches
   };
 
@@ -139,7 +140,9 @@ class Safety {
   [[nodiscard]] Motion motion_now() const;
   [[nodiscard]] Coasting coasting(const Motion& at_first, const Motion& then, double blind_s) const;
   [[nodiscard]] bool coasts_clear(const Motion& command, double radius_m, double blind_s) const;
-  [[nodiscard]] bool can_stop_ahead(double blind_s) const;
+  [[nodiscard]] double unseen_s(Timestamp now) const;
+  [[nodiscard]] bool can_stop_ahead(Timestamp now) const;
+  [[nodiscard]] bool must_brake_hard(Timestamp now) const;
   [[nodiscard]] double safe_share(const Motion& wished, double blind_s) const;
 
   SafetyParams params_;
@@ -158,10 +161,10 @@ class Safety {
   bool has_no_battery_ = false;
   std::optional<Timestamp> implausible_at_;  // the newest scan that was flagged
   bool motors_were_on_ = false;              // in this odometry epoch
-  std::array<StopLatch, kLatches> latches_{StopLatch{StopReason::kBumper},          StopLatch{StopReason::kStalled},
-                                           StopLatch{StopReason::kControllerFault}, StopLatch{StopReason::kLowBattery},
-                                           StopLatch{StopReason::kLaserError},      StopLatch{StopReason::kWheelsSpin},
-                                           StopLatch{StopReason::kDisobeys}};
+  std::array<StopLatch, kLatches> latches_{StopLatch{StopReason::kDisobeys},   StopLatch{StopReason::kBumper},
+                                           StopLatch{StopReason::kStalled},    StopLatch{StopReason::kControllerFault},
+                                           StopLatch{StopReason::kLowBattery}, StopLatch{StopReason::kLaserError},
+                                           StopLatch{StopReason::kWheelsSpin}};
 };
 
 }  // namespace deltamap::navigation

@@ -270,6 +270,28 @@ TEST(Safety, BrakesHardForWhatHasComeNearerThanItsBraking) {
   EXPECT_TRUE(motion.brake_hard);
 }
 
+TEST(Safety, BrakesHardForWhatIsTooNearWhateverItStandsFor) {
+  for (const double watchdog_s : {2.0, std::numeric_limits<double>::infinity()}) {
+    Safety safety = at_ease();
+    safety.set_stopping_behaviour({.watchdog_s = watchdog_s});
+    Odometry moving = driving();
+    moving.speed_m_per_s = 0.5;
+    moving.charging = true;
+    safety.observe(moving);
+    safety.observe(hall(1.0F));
+    EXPECT_FALSE(safety.allowed(kNow).brake_hard) << "it has room to brake";
+    safety.observe(hall(0.7F));
+    const AllowedMotion motion = safety.allowed(kNow);
+    expect_stop(motion, StopReason::kCharging);
+    EXPECT_TRUE(motion.brake_hard) << "told to stand, it goes on";
+    safety.release();
+    EXPECT_TRUE(safety.allowed(kNow).brake_hard) << "nobody drives, and it goes on";
+    moving.motors_enabled = false;
+    safety.observe(moving);
+    EXPECT_FALSE(safety.allowed(kNow).brake_hard) << "a person pushes it";
+  }
+}
+
 TEST(Safety, LooksAlongTheArcThatIsDriven) {
   Scan scan = hall(6.0F);
   scan.beams[150].range_m = 0.4F;  // 60° to the left: beside the straight way, on the way of a bend to the left

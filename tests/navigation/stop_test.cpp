@@ -251,6 +251,52 @@ TEST(StopReasons, DoNotEndWhenTheMotorsComeOnAfterAReconnect) {
   EXPECT_EQ(drive.run_for(1.0).stop, StopReason::kBumper);
 }
 
+/// What a robot may be told and not do: silence and motors that are off ask nothing of it.
+bool asks_nothing_of_the_robot(StopReason reason) {
+  return reason == StopReason::kNoOdometry || reason == StopReason::kMotorsOff;
+}
+
+TEST(StopReasons, NoneHidesThatTheRobotDoesNotObeyNorWithdrawsItsHardestBraking) {
+  const auto run_away = [](Drive& drive) { drive.odometry.speed_m_per_s = 0.9; };
+  for (const Row& row : table()) {
+    SCOPED_TRACE(name_of(row.reason));
+    Drive stops_first;
+    stops_first.is_told = true;
+    Drive runs_away_first = stops_first;
+    row.begins(stops_first);
+    (void)stops_first.run_for(kLongEnoughS);
+    run_away(stops_first);
+    const AllowedMotion motion = stops_first.run_for(kLongEnoughS);
+    EXPECT_EQ(motion.stop == StopReason::kDisobeys, !asks_nothing_of_the_robot(row.reason)) << name_of(motion.stop);
+    EXPECT_TRUE(motion.brake_hard || asks_nothing_of_the_robot(row.reason));
+
+    (void)runs_away_first.run_for(1.0);
+    run_away(runs_away_first);
+    ASSERT_EQ(runs_away_first.run_for(2.0).stop, StopReason::kDisobeys);
+    row.begins(runs_away_first);
+    for (double t = 0.0; t < kLongEnoughS; t += kTickS) {
+      const AllowedMotion still = runs_away_first.tick();
+      EXPECT_EQ(name_of(still.stop), name_of(StopReason::kDisobeys));
+      EXPECT_TRUE(still.brake_hard);
+    }
+  }
+}
+
+TEST(StopReasons, BrakeHardWhateverIsNamedWhereSomethingWasTouched) {
+  for (const Row& row : table()) {
+    if (!row.brakes_hard) continue;
+    for (const Row& other : table()) {
+      SCOPED_TRACE(std::string(name_of(row.reason)) + " after " + std::string(name_of(other.reason)));
+      Drive drive;
+      drive.is_told = true;
+      row.begins(drive);
+      (void)drive.run_for(kLongEnoughS);
+      other.begins(drive);
+      EXPECT_TRUE(drive.run_for(kLongEnoughS).brake_hard);
+    }
+  }
+}
+
 TEST(StopReasons, BumperOfOneSipIsEnough) {
   Drive drive;
   (void)drive.run_for(1.0);

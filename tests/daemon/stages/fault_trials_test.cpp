@@ -3,6 +3,7 @@
 // nothing, says why it stands, and tells planners that they must not drive. `deltamap-lab faults` has the rest.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "experiments/closed_loop/fault_trial.hpp"
@@ -50,6 +51,33 @@ TEST(FaultTrials, OfALaserThatWasTurnedOnItsMountBeforeTheStartEndBeforeItHasUse
         EXPECT_LT(outcome.moved_m, kFreeM) << fault << " seed " << seed;
       }
     }
+  }
+}
+
+/// A robot that does not obey, and what else goes wrong so much later.
+struct Runaway {
+  std::string fault;
+  std::string also;
+  double after_s;
+};
+
+TEST(FaultTrials, TouchNothingWithARobotThatRunsAwayWhateverElseIsWrong) {
+  const std::array<Runaway, 7> runaways{{{"goes-at=0.4", "battery=9", 0.0},
+                                         {"goes-at=0.4", "battery=9", -4.0},
+                                         {"keeps-set-points", "battery=9", 0.0},
+                                         {"goes-at=0.4", "laser-turned=180", 0.0},
+                                         {"goes-at=-0.09", "", 0.0},
+                                         {"goes-at=-0.05", "", 0.0},
+                                         {"turns-at=15", "", 0.0}}};
+  for (const Runaway& runaway : runaways) {
+    const experiments::FaultTrial trial{.fault = runaway.fault, .before_s = 10.0, .for_s = 40.0, .seed = 1};
+    experiments::LoopRun run = run_of(trial, quiet_room(), {});
+    const double begins_s = run.scenario.faults.front().after_s + runaway.after_s;
+    if (!runaway.also.empty()) run.scenario.faults.push_back(simulation::fault_order(runaway.also, begins_s));
+    const experiments::LoopOutcome outcome = outcome_of(run);
+    EXPECT_EQ(outcome.collisions, 0) << runaway.fault << " " << runaway.also;
+    EXPECT_EQ(name_of(outcome.reason), name_of(navigation::StopReason::kDisobeys))
+        << runaway.fault << " " << runaway.also;
   }
 }
 
