@@ -89,6 +89,8 @@ bool Localizer::relocalize(const particles::InitialPose& pose) {
 
 std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 
+std::optional<double> Localizer::fit_of_all() const { return state_->newest_fit_of_all; }
+
 std::optional<motion::DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }
 
 const particles::ParticleSet* Localizer::particles() const {

@@ -54,8 +54,12 @@ class Localizer {
   /// What the pose rests on, valid until the next message; null where it does not rest on particles: while straight
   /// surfaces lead, and while the whole map is searched.
   [[nodiscard]] const particles::ParticleSet* particles() const;
-  /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing without a return.
+  /// Share of the newest scan's ends that the map explains at the estimated pose, [0, 1]; nothing where no beam came
+  /// back, or none ended where a robot that drives by a given pose has a map.
   [[nodiscard]] std::optional<double> fit() const;
+  /// What speaks for the pose: share of all beams that came back which the map explains, [0, 1]. Ends where the map
+  /// knows nothing are no support. Nothing without a return.
+  [[nodiscard]] std::optional<double> fit_of_all() const;
 
   /// Errors of wheels and mount, as far as driving among surfaces has told; nothing where surfaces are not followed.
   [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;

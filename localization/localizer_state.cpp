@@ -140,6 +140,7 @@ void Localizer::State::note_oddities(const motion::ScanInstant& now) {
 }
 
 void Localizer::State::leave_out_unmapped(const Point2& robot_from_laser, const motion::ScanInstant& now) {
+  returned = ends.size();
   const std::optional<Pose2> expected = expected_pose(now);
   if (!expected || searches() || was_found || best.covariance.topLeftCorner<2, 2>().trace() > kBlindlyM * kBlindlyM)
     return;
@@ -260,6 +261,8 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   seen.fit = sensor::explained_share(field, ends, believed.map_from_robot);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
   newest_fit = blind ? std::nullopt : std::optional{seen.fit};
+  const double explained = blind ? 0.0 : seen.fit * static_cast<double>(ends.size());
+  newest_fit_of_all = returned == 0 ? std::nullopt : std::optional{explained / static_cast<double>(returned)};
   judgement.fix_by_surfaces(!searches() && tracker.is_fixed_by_surfaces());
   judgement.follow({.scan = scan,
                     .rays = rays,

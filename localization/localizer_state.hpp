@@ -50,11 +50,13 @@ struct Localizer::State {
     Pose2 map_from_robot;
     Pose2 continuous_odom_from_robot;
   };
-  std::optional<GivenUp> given_up;   ///< where the robot was last believed to be, while a search has only begun
-  particles::ParticleCluster best;   ///< of the particles, or the hypothesis that leads a search
-  double w_avg = 1.0;                ///< of that; before any scan nothing speaks against the pose
-  std::optional<double> newest_fit;  ///< explained_share() of the newest scan at the estimate
-  double n_eff = 0.0;                ///< of the particles, or of a search's hypotheses
+  std::optional<GivenUp> given_up;          ///< where the robot was last believed to be, while a search has only begun
+  particles::ParticleCluster best;          ///< of the particles, or the hypothesis that leads a search
+  double w_avg = 1.0;                       ///< of that; before any scan nothing speaks against the pose
+  std::size_t returned = 0;                 ///< beams of the newest scan that came back, mapped or not
+  std::optional<double> newest_fit;         ///< explained_share() of the newest scan's mapped ends at the estimate
+  std::optional<double> newest_fit_of_all;  ///< what that is of all beams that came back
+  double n_eff = 0.0;                       ///< of the particles, or of a search's hypotheses
   belief::StableSupport stable_support;
 
   // How a pose comes to be believed, and ceases to be.

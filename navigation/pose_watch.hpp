@@ -12,8 +12,8 @@ namespace deltamap::navigation {
 
 struct PoseNow {
   const Estimate& estimate;
-  std::optional<double> fit;  ///< share of the scan's beams that the map explains at the pose; nothing: none came back
-  bool start_fits = true;     ///< or no start pose was given, or it has proven right since
+  std::optional<double> fit;  ///< share of the scan's beams that the map explains; nothing: none ended where it knows
+  bool start_fits = true;     ///< no pose was given, or scans have supported it
 };
 
 class PoseWatch {

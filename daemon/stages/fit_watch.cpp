@@ -44,21 +44,13 @@ void FitWatch::pass(const TrackedScan& tracked) {
   last_odom_from_robot_ = tracked.odom_from_robot;
 }
 
-LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit) {
+LogLine FitWatch::observe(const TrackedScan& tracked, const Seen& seen) {
   pass(tracked);
-  if (fit) {
-    first_scans_ = std::min(first_scans_ + 1, kFirstScans + 1);
-    first_fit_ += *fit;
-    if (looks_at_start_ && first_scans_ == kFirstScans) {
-      looks_at_start_ = false;
-      return judged_start();
-    }
-    const double before = mean_fit_.value_or(*fit);
-    mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kJudged.memory_s)) * (*fit - before);
+  if (seen.fit) {
+    const double before = mean_fit_.value_or(*seen.fit);
+    mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kJudged.memory_s)) * (*seen.fit - before);
   }
-  const bool has_proven =
-      mean_fit_.value_or(0.0) >= kJudged.found_above || tracked.estimate.belief.verdict == PoseVerdict::kRight;
-  start_is_unfit_ = start_is_unfit_ && !has_proven;
+  if (LogLine start = judged_start(seen.fit_of_all, tracked.estimate.belief.verdict); !start.text.empty()) return start;
   const bool is_unfit =
       tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kJudged.lost_below;
   unfit_s_ = is_unfit ? unfit_s_ + passed_s_ : 0.0;
@@ -66,11 +58,22 @@ LogLine FitWatch::observe(const TrackedScan& tracked, std::optional<double> fit)
   return judged_long(tracked.estimate.state);
 }
 
-LogLine FitWatch::judged_start() {
-  const double mean = first_fit_ / kFirstScans;
-  start_is_unfit_ = mean < kJudged.found_above;
-  if (!start_is_unfit_) return {};
-  return {"the start pose does not fit: " + percent(mean) +
+LogLine FitWatch::judged_start(std::optional<double> fit_of_all, PoseVerdict verdict) {
+  if (!given_) return {};
+  Given& given = *given_;
+  if (fit_of_all) {
+    ++given.scans;
+    const double share = std::max(1.0 / given.scans, 1.0 - std::exp(-passed_s_ / kJudged.memory_s));
+    given.fit += share * (*fit_of_all - given.fit);
+  }
+  given.is_supported = given.fit >= kJudged.found_above || verdict == PoseVerdict::kRight;
+  if (given.scans < kFirstScans) return {};
+  if (given.is_supported) {
+    given_.reset();
+    return {};
+  }
+  if (std::exchange(given.is_told, true)) return {};
+  return {"the start pose does not fit: " + percent(given.fit) +
               " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere,
           true};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says in the log when the pose that the run was given does not fit the first scans, and when nothing in the map has
-// fitted for long: another map, a wrong mount, or a wrong pose. A person can mend these, and should hear of them at
-// once.
+// Whether scans support a pose that a person gave. Says in the log when the first of them do not, and when nothing in
+// the map has fitted for long: another map, a wrong mount, or a wrong pose. A person can mend these, and should hear of
+// them at once.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,8 @@
 
 namespace deltamap::daemon {
 
-// `fit`: share of the beams that the map explains; nothing where no beam came back.
-
-/// "93 % of its beams fit", and what to look at where few do.
+/// "93 % of its beams fit", and what to look at where few do. `fit`: share of the beams that the map explains; nothing
+/// where no beam came back.
 [[nodiscard]] std::string fit_words(std::optional<double> fit);
 /// So few fit that the pose may be wrong, or none can tell.
 [[nodiscard]] bool is_in_doubt(std::optional<double> fit);
@@ -25,26 +24,36 @@ namespace deltamap::daemon {
 class FitWatch {
  public:
   /// `is_given`: the run begins at a pose that a person gave.
-  explicit FitWatch(bool is_given) : looks_at_start_{is_given} {}
+  explicit FitWatch(bool is_given) : given_{is_given ? std::optional{Given{}} : std::nullopt} {}
 
+  struct Seen {
+    std::optional<double> fit;         ///< as LocalizationStep::fit()
+    std::optional<double> fit_of_all;  ///< as LocalizationStep::fit_of_all()
+  };
   /// After each scan: a line for the log, of no text where there is nothing to say.
-  /// `fit`: share of its beams that the map explains at the estimated pose; nothing where no beam came back.
-  [[nodiscard]] LogLine observe(const TrackedScan& tracked, std::optional<double> fit);
-  /// False from the first scans, which the given pose does not fit, until others have fitted or the pose has been
-  /// called right; and from the pose that a person gave until its scan has fitted.
-  [[nodiscard]] bool start_fits() const { return !start_is_unfit_; }
-  /// A person has said where the robot stands, and the next scan fits there or does not.
-  void relocalized(std::optional<double> fit) { start_is_unfit_ = is_in_doubt(fit); }
+  [[nodiscard]] LogLine observe(const TrackedScan& tracked, const Seen& seen);
+  /// False from the moment at which a person gave a pose until the scans since then support it, or it is called right.
+  /// What the first scan supports, the next ones may still refute.
+  [[nodiscard]] bool start_fits() const { return !given_ || given_->is_supported; }
+  /// A person has said where the robot stands: only scans from now on speak for that.
+  void relocalized() {
+    given_.emplace();
+    mean_fit_.reset();
+  }
 
  private:
-  [[nodiscard]] LogLine judged_start();
+  /// A pose that was given and that scans have yet to prove.
+  struct Given {
+    int scans = 0;     // with a return
+    double fit = 0.0;  // their plain mean at first, then a running one
+    bool is_supported = false;
+    bool is_told = false;  // that it does not fit
+  };
+  [[nodiscard]] LogLine judged_start(std::optional<double> fit_of_all, PoseVerdict verdict);
   [[nodiscard]] LogLine judged_long(LocalizerState state);
   void pass(const TrackedScan& tracked);
 
-  bool looks_at_start_;
-  bool start_is_unfit_ = false;
-  int first_scans_ = 0;
-  double first_fit_ = 0.0;  // sum over them
+  std::optional<Given> given_;  // nothing: none was, or it has proven right
   std::optional<double> mean_fit_;
   std::optional<Timestamp> last_;
   Pose2 last_odom_from_robot_;

@@ -98,7 +98,7 @@ void LocalizationStage::localize(Scan scan) {
   take_transients(number);
   take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
-  LogLine fit_line = fit_watch_.observe(tracked, step_.fit());
+  LogLine fit_line = fit_watch_.observe(tracked, {step_.fit(), step_.fit_of_all()});
   answer_relocalize(number);
   pilot(tracked);
   show(tracked.estimate, tracked.scan.received);
@@ -176,6 +176,7 @@ void LocalizationStage::relocalize(const control::Command& command, const Scan& 
     return wiring_.answer({command.ticket, false, "no free floor lies within 1 m of it: the pose stays as it was"});
   }
   note({Kind::kRelocalized, scan.number, 0, command.map_from_robot, scan.time});
+  fit_watch_.relocalized();
   relocalized_ = command.ticket;
 }
 
@@ -184,7 +185,6 @@ void LocalizationStage::answer_relocalize(std::uint32_t scan) {
   wiring_.answer({*relocalized_, true,
                   "the robot starts there with scan " + std::to_string(scan) + ": " + fit_words(step_.fit()),
                   is_in_doubt(step_.fit())});
-  fit_watch_.relocalized(step_.fit());
   relocalized_.reset();
 }
 

@@ -57,8 +57,10 @@ class LocalizationStep {
 
   /// Of the newest scan that was localized.
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
-  /// Share of its beams that the map explains at the estimated pose; nothing where no beam came back.
+  /// As Localizer::fit().
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
+  /// As Localizer::fit_of_all().
+  [[nodiscard]] std::optional<double> fit_of_all() const { return localizer_.fit_of_all(); }
   /// What is known of wheels and mount, without what was learned on the last way: whether scans and wheels contradict
   /// each other there is not known yet.
   [[nodiscard]] const std::optional<localization::motion::DriveCalibration>& calibration() const {

@@ -95,7 +95,8 @@ struct VirtualDaemon::Process {
     daemon::PilotStep::Seen seen;
     if (run) {
       seen.fit = run->localization().fit();
-      if (const std::string line = fit_watch.observe(tracked, seen.fit).text; !line.empty()) owner.log_.push_back(line);
+      const std::string line = fit_watch.observe(tracked, {seen.fit, run->localization().fit_of_all()}).text;
+      if (!line.empty()) owner.log_.push_back(line);
       seen.start_fits = fit_watch.start_fits();
       seen.transients = run->store_scan().transients().get();
     }

@@ -103,6 +103,20 @@ TEST(UnmappedSpace, IsLeftForASmallRoom) {
   EXPECT_LT(distance_between(believed, walk.truth()), 0.1);
 }
 
+TEST(UnmappedSpace, SpeaksForNoPose) {
+  Walk walk{test::symmetric_hall(), hall_with_an_unknown_quarter(), {10.0, 1.0, 0.0}, 4.0, 3};
+  for (int i = 0; i < 5; ++i) {
+    (void)walk.next({});
+    ASSERT_TRUE(walk.localizer().fit_of_all().has_value()) << i;
+    EXPECT_LT(*walk.localizer().fit_of_all(), 0.1) << i;
+  }
+  EXPECT_EQ(walk.localizer().fit(), std::nullopt) << "nor against one";
+  walk.carry_to({1.0, 1.0, 0.0});
+  ASSERT_TRUE(walk.localizer().relocalize({walk.truth()}));
+  (void)walk.next({});
+  EXPECT_GT(walk.localizer().fit_of_all().value(), 0.8);
+}
+
 TEST(UnmappedSpace, IsForgottenWhereTheRobotIsRelocalized) {
   Walk walk{test::symmetric_hall(), hall_with_an_unknown_quarter(), {10.0, 1.0, 0.0}, 4.0, 3};
   for (int i = 0; i < 5; ++i) (void)walk.next({});

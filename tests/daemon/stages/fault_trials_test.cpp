@@ -102,6 +102,18 @@ TEST(FaultTrials, SayWhyTheRobotStandsAndThatNobodyMustDriveByItsPose) {
   }
 }
 
+TEST(FaultTrials, StandAtAGivenPoseThatNoScanHasSupported) {
+  experiments::LoopRun run;
+  run.scenario = quiet_room();
+  run.settings = experiments::fitting(run.scenario);
+  run.settings.initial_pose = Pose2{10.6, 3.0, 0.0};  // behind the wall: the map knows nothing of where the beams end
+  run.for_s = 15.0;
+  const experiments::LoopOutcome outcome = outcome_of(run);
+  EXPECT_EQ(outcome.moved_m, 0.0);
+  EXPECT_EQ(outcome.reason, navigation::StopReason::kStartUnfit) << name_of(outcome.reason);
+  EXPECT_EQ(outcome.may_drive_at_end_share, 0.0);
+}
+
 TEST(FaultTrials, DriveOnWhereNothingIsWrong) {
   experiments::LoopRun run;
   run.scenario = quiet_room();

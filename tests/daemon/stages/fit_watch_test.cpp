@@ -20,16 +20,22 @@ class Watched {
   void hold() { step_m_ = 0.0; }
 
   std::string after(double duration_s, std::optional<double> fit, LocalizerState state = LocalizerState::kTracking) {
+    return after(duration_s, {fit, fit}, state);
+  }
+  std::string after(double duration_s, const FitWatch::Seen& seen, LocalizerState state = LocalizerState::kTracking) {
     std::string said;
     for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
       tracked_.scan.time += duration_from_seconds(kPeriod_s);
       tracked_.odom_from_robot.x += step_m_;
       tracked_.estimate.state = state;
-      const LogLine line = watch_.observe(tracked_, fit);
+      const LogLine line = watch_.observe(tracked_, seen);
       if (!line.text.empty()) said += (line.is_warning ? "warning: " : "") + line.text + "\n";
     }
     return said;
   }
+  void call(PoseVerdict verdict) { tracked_.estimate.belief.verdict = verdict; }
+  void relocalize() { watch_.relocalized(); }
+  [[nodiscard]] bool start_fits() const { return watch_.start_fits(); }
 
  private:
   double step_m_ = 0.1;
@@ -50,6 +56,62 @@ TEST(FitWatch, ScansWithoutAReturnSayNothingOfTheStartPose) {
   Watched watched{true};
   EXPECT_EQ(watched.after(5.0, std::nullopt), "");
   EXPECT_NE(watched.after(1.0, 0.1), "");
+}
+
+TEST(FitWatch, AGivenPoseDoesNotFitUntilScansSupportIt) {
+  Watched watched{true};
+  EXPECT_FALSE(watched.start_fits()) << "before any scan";
+  (void)watched.after(30.0, std::nullopt);
+  EXPECT_FALSE(watched.start_fits()) << "nothing came back";
+  (void)watched.after(kPeriod_s, 0.9);
+  EXPECT_TRUE(watched.start_fits());
+  (void)watched.after(10.0, 0.9);
+  (void)watched.after(60.0, FitWatch::Seen{std::nullopt, 0.0});
+  EXPECT_TRUE(watched.start_fits()) << "it has driven on into what was never mapped";
+  EXPECT_TRUE(Watched{false}.start_fits()) << "nobody gave one";
+}
+
+TEST(FitWatch, WhatTheMapKnowsNothingOfIsNoSupport) {
+  Watched nowhere{true};
+  (void)nowhere.after(kPeriod_s, 0.2);
+  EXPECT_NE(nowhere.after(30.0, FitWatch::Seen{std::nullopt, 0.0}), "");
+  EXPECT_FALSE(nowhere.start_fits());
+  Watched chance_hits{true};
+  (void)chance_hits.after(30.0, FitWatch::Seen{1.0, 0.2});
+  EXPECT_FALSE(chance_hits.start_fits()) << "all other beams end where nothing is known";
+}
+
+TEST(FitWatch, AGivenPoseThatTheFirstScanFitsByChanceIsRefutedByTheNext) {
+  Watched watched{true};
+  (void)watched.after(kPeriod_s, 0.7);
+  EXPECT_TRUE(watched.start_fits());
+  (void)watched.after(30.0, 0.55);
+  EXPECT_FALSE(watched.start_fits());
+}
+
+TEST(FitWatch, AGivenPoseThatIsCalledRightFits) {
+  Watched watched{true};
+  (void)watched.after(5.0, 0.3);
+  EXPECT_FALSE(watched.start_fits());
+  watched.call(PoseVerdict::kRight);
+  (void)watched.after(kPeriod_s, 0.3);
+  EXPECT_TRUE(watched.start_fits());
+}
+
+TEST(FitWatch, ARelocalizedPoseIsProvenByItsOwnScansAlone) {
+  for (const bool is_given : {true, false}) {
+    Watched watched{is_given};
+    (void)watched.after(60.0, 0.95);
+    ASSERT_TRUE(watched.start_fits());
+    watched.relocalize();
+    EXPECT_FALSE(watched.start_fits());
+    EXPECT_EQ(watched.after(5.0, 0.45).rfind("warning: the start pose does not fit: 45 %", 0), 0u);
+    EXPECT_EQ(watched.after(60.0, 0.55), "");
+    EXPECT_FALSE(watched.start_fits());
+    watched.relocalize();
+    EXPECT_EQ(watched.after(5.0, 0.95), "");
+    EXPECT_TRUE(watched.start_fits());
+  }
 }
 
 TEST(FitWatch, AForeignMapIsToldOnceAfterAMinuteOfSearching) {
