@@ -80,9 +80,6 @@ void ControlDesk::ask(std::string line, control::Server::Reply reply) {
 }
 
 void ControlDesk::drive(bool may_drive, const Request& request, control::Server::Reply reply) {
-  if (may_drive && settings_.navigation.mode != navigation::DriveMode::kWander) {
-    return refuse(request, "'navigation.mode' is not wander: this daemon never drives", reply);
-  }
   const std::uint64_t ticket = next_ticket_++;
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
   wiring_.let_drive(may_drive, ticket);

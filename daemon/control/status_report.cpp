@@ -116,7 +116,9 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["drive_switch"] = drivers::pioneer::name_of(static_cast<drivers::pioneer::DriveSwitch>(t.drive_switch.value()));
   json["never_driven"] = t.robot_up.value() ? t.never_driven.line() : "";
   json["stopped_by"] = navigation::name_of(static_cast<navigation::StopReason>(t.stop_reason.value()));
-  json["may_drive_by_pose"] = may_drive_by_pose(t);
+  const navigation::StopReason forbids = forbidden_by(t);
+  json["may_drive_by_pose"] = forbids == navigation::StopReason::kNone;
+  json["forbidden_by"] = navigation::name_of(forbids);
   json["told"] = {{"speed_m_per_s", t.told_speed_m_per_s.value()},
                   {"turn_rate_rad_per_s", t.told_turn_rate_rad_per_s.value()}};
   json["battery_v"] = t.battery_v.value();

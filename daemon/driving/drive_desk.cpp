@@ -11,6 +11,8 @@ constexpr std::chrono::seconds kRequestLife{1};  // an older request to drive ha
 constexpr double kHandLifeS = 0.25;              // of a command by hand; ends within 0.3 s, a safety period later
 constexpr std::chrono::milliseconds kRobotSilence{500};  // five controller cycles; a silent robot may not hear us
 
+const std::string kNeverDrives = "'navigation.mode' is off: this daemon never drives";
+
 }  // namespace
 
 DriveDesk::DriveDesk(bool may_ever_drive, const navigation::SafetyParams& safety, Wiring wiring)
@@ -54,11 +56,13 @@ void DriveDesk::tick(Timestamp now) {
 
 void DriveDesk::send_allowed_motion(Timestamp now) {
   const drivers::pioneer::PioneerSession& session = wiring_.session;
-  wiring_.telemetry.unfit.set(static_cast<std::uint8_t>(safety_.unfit(now)));
+  const navigation::StopReason unfit = safety_.unfit(now);
+  wiring_.telemetry.unfit.set(static_cast<std::uint8_t>(unfit));
   if (!robot_is_connected()) {
     safety_.told(std::nullopt, now);
     allowed_ = {.stop = safety_.allowed(now).stop};
-    return show(allowed_.stop, {});
+    show(allowed_.stop, {});
+    return tell(stop_log_.line_for_planners(unfit, pose_stop_));
   }
   if (in_hand_of_ != 0 && seconds(now - hand_moved_) > kHandLifeS) safety_.release();
   const auto limits = session.stopping_limits();
@@ -67,10 +71,8 @@ void DriveDesk::send_allowed_motion(Timestamp now) {
   allowed_ = safety_.allowed(now);
   const navigation::Motion told{allowed_.speed_m_per_s, allowed_.turn_rate_rad_per_s};
   show(allowed_.stop, told);
+  tell_why_it_stands(unfit);
   if (!may_ever_drive_) return;
-  if (const LogLine line = stop_log_.line(allowed_.stop); !line.text.empty()) {
-    (line.is_warning ? wiring_.warn : wiring_.log)(line.text);
-  }
   if (told.speed_m_per_s > 0.0 && std::exchange(creeps_, safety_.creeps()) != safety_.creeps()) {
     wiring_.log(creeps_ ? "driving slowly until the scans have followed the wheels"
                         : "driving at full speed: the scans follow the wheels, or had nothing to show it by");
@@ -78,6 +80,17 @@ void DriveDesk::send_allowed_motion(Timestamp now) {
   safety_.told(told, now);
   if (allowed_.brake_hard) return wiring_.obey(wiring_.session.emergency_stop(now));
   wiring_.obey(wiring_.session.drive({now, told.speed_m_per_s, told.turn_rate_rad_per_s}, now));
+}
+
+void DriveDesk::tell_why_it_stands(navigation::StopReason unfit) {
+  const LogLine own = may_ever_drive_ ? stop_log_.line(allowed_.stop) : LogLine{};
+  const LogLine of_planners = stop_log_.line_for_planners(unfit, pose_stop_);
+  tell(own);
+  if (own.text.empty() || !stop_log_.says_it_all()) tell(of_planners);
+}
+
+void DriveDesk::tell(const LogLine& line) const {
+  if (!line.text.empty()) (line.is_warning ? wiring_.warn : wiring_.log)(line.text);
 }
 
 void DriveDesk::show(navigation::StopReason stop, const navigation::Motion& told) {
@@ -89,6 +102,7 @@ void DriveDesk::show(navigation::StopReason stop, const navigation::Motion& told
 // --- the pilot ---
 
 void DriveDesk::take(const PilotWord& word, Timestamp now) {
+  pose_stop_ = word.pose;
   safety_.set_misses_walls(word.misses_walls);
   if (word.expects_no_range) safety_.expect_no_range(now);
   if (in_hand_of_ != 0 || !wiring_.session.permission().holds()) return;
@@ -104,8 +118,11 @@ control::CommandOutcome DriveDesk::let_drive(const Request& request, Timestamp n
   return request.may_drive ? switch_on(request, now) : switch_off(request.ticket, now);
 }
 
-/// Refused as long as anything speaks against it: a refusal must not drive later, by itself.
+/// Refused as long as anything speaks against it: a refusal must not drive later, by itself. Where this daemon never
+/// drives, the word still ends what waits for a person, for planners: STOP and `drive off` must not do that.
 control::CommandOutcome DriveDesk::switch_on(const Request& request, Timestamp now) {
+  const navigation::StopReason waited_for = safety_.waits_for();
+  if (!may_ever_drive_ && waited_for == navigation::StopReason::kNone) return {request.ticket, false, kNeverDrives};
   if (now - request.asked > kRequestLife) {
     return {request.ticket, false, "it was asked for too long ago: say so again"};
   }
@@ -115,6 +132,9 @@ control::CommandOutcome DriveDesk::switch_on(const Request& request, Timestamp n
   safety_.let_drive_again();
   if (const navigation::StopReason held_by = safety_.waits_for(); held_by != navigation::StopReason::kNone) {
     return {request.ticket, false, "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
+  }
+  if (!may_ever_drive_) {
+    return {request.ticket, true, "it waits no more: " + std::string(name_of(waited_for)) + "; " + kNeverDrives};
   }
   if (const std::string_view why = wiring_.session.why_never_driven(); !why.empty()) {
     return {request.ticket, false, "it is not driven: " + std::string(why)};
@@ -152,7 +172,7 @@ void DriveDesk::put_in_hand_of(std::uint64_t who) {
 }
 
 control::CommandOutcome DriveDesk::take_by_hand(std::uint64_t who, Timestamp asked, Timestamp now) {
-  if (!may_ever_drive_) return {who, false, "'navigation.mode' is off: this daemon never drives"};
+  if (!may_ever_drive_) return {who, false, kNeverDrives};
   if (in_hand_of_ != 0) return {who, false, "somebody else drives it by hand"};
   put_in_hand_of(who);
   keep_switch(now);  // "off" on disk before the motors come on: after a crash nobody drives by hand

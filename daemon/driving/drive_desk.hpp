@@ -73,6 +73,8 @@ class DriveDesk {
  private:
   void keep_switch(Timestamp now);
   void send_allowed_motion(Timestamp now);
+  void tell_why_it_stands(navigation::StopReason unfit);
+  void tell(const LogLine& line) const;
   void show(navigation::StopReason stop, const navigation::Motion& told);
   void put_in_hand_of(std::uint64_t who);
   [[nodiscard]] control::CommandOutcome switch_on(const Request& request, Timestamp now);
@@ -84,6 +86,7 @@ class DriveDesk {
   navigation::Safety safety_;
   navigation::AllowedMotion allowed_;
   StopLog stop_log_;
+  navigation::StopReason pose_stop_ = navigation::StopReason::kNone;  // of the newest scan
   bool creeps_ = false;  // as last told
   bool is_port_open_ = false;
   std::uint64_t in_hand_of_ = 0;  // nobody else's commands are listened to; 0: in nobody's

@@ -115,7 +115,7 @@ std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
   if (telemetry.drives.value() && !telemetry.by_hand.value()) {
     news.pilot = {telemetry.wanted_speed_m_per_s.value(), telemetry.wanted_turn_rate_rad_per_s.value()};
   }
-  news.may_drive = may_drive_by_pose(telemetry);
+  news.forbidden_by = forbidden_by(telemetry);
   return pose_line(news);
 }
 

@@ -50,7 +50,10 @@ std::string pose_line(const PoseNews& news) {
   json["revision"] = row.revision;
   json["other_hypothesis"] = hypothesis_json(row.belief);
   json["gate"] = gate_json(news.gate);
-  if (news.may_drive) json["may_drive_by_pose"] = *news.may_drive;
+  if (news.forbidden_by) {
+    json["may_drive_by_pose"] = *news.forbidden_by == navigation::StopReason::kNone;
+    json["forbidden_by"] = navigation::name_of(*news.forbidden_by);
+  }
   json["latency_ms"] = 1e3 * news.latency_s;
   if (news.pilot) {
     json["pilot"] = {{"speed_m_per_s", news.pilot->speed_m_per_s},

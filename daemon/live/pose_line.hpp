@@ -7,6 +7,7 @@
 
 #include "daemon/outputs/localization_log.hpp"
 #include "mapping/gate/write_gate.hpp"
+#include "navigation/stop_reason.hpp"
 
 namespace deltamap::daemon {
 
@@ -22,7 +23,8 @@ struct PoseNews {
   double latency_s = 0.0;                         ///< from the scan's last byte to its pose
   std::optional<mapping::gate::GateReason> gate;  ///< nothing: nobody works on the map
   std::optional<PilotWish> pilot{};               ///< nothing: it does not drive, or is not told of
-  std::optional<bool> may_drive{};                ///< by this pose (telemetry); nothing: not told of
+  /// What forbids to drive by this pose (telemetry); nothing: not told of.
+  std::optional<navigation::StopReason> forbidden_by{};
 };
 
 /// "pose": the pose, what is believed of it, and the write gate. Without line end.

@@ -30,7 +30,7 @@ PoseStream::PoseStream(const Settings& settings, const Telemetry& telemetry)
 
 void PoseStream::show(const LocalizationRow& row, double latency_s) {
   if (!lines_.has_clients()) return;
-  (void)news_.try_send({row, latency_s, gate(), {}, may_drive_by_pose(telemetry_)});
+  (void)news_.try_send({row, latency_s, gate(), {}, forbidden_by(telemetry_)});
   lines_.wake();
 }
 

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "core/geometry/angle.hpp"
-#include "navigation/stop_reason.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -40,9 +39,12 @@ std::string_view name_of(PoseVerdict verdict) {
   return "";
 }
 
-bool may_drive_by_pose(const Telemetry& telemetry) {
-  constexpr auto kNone = static_cast<std::uint8_t>(navigation::StopReason::kNone);
-  return telemetry.localized.value() > 0 && telemetry.pose_stop.value() == kNone && telemetry.unfit.value() == kNone;
+navigation::StopReason forbidden_by(const Telemetry& telemetry) {
+  using navigation::StopReason;
+  const auto unfit = static_cast<StopReason>(telemetry.unfit.value());
+  if (unfit != StopReason::kNone) return unfit;
+  return telemetry.localized.value() > 0 ? static_cast<StopReason>(telemetry.pose_stop.value())
+                                         : StopReason::kPoseUnknown;
 }
 
 void BeamCountGauges::set(const BeamCounts& counts) {

@@ -15,6 +15,7 @@
 #include "daemon/telemetry/scan_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "mapping/gate/write_gate.hpp"
+#include "navigation/stop_reason.hpp"
 
 namespace deltamap::daemon {
 
@@ -87,7 +88,7 @@ struct Telemetry {
   Gauge<std::uint64_t> localized, dropped, tracked_lost;
   EstimateGauges estimate;
   CalibrationGauges calibration;
-  Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none came back
+  Gauge<double> fit;  ///< share of the newest scan's beams that the map explains; below 0: none tells
   Gauge<double> latency_s;
   Gauge<double> wanted_speed_m_per_s, wanted_turn_rate_rad_per_s;  ///< by the pilot; 0 where it wants to stand
   Gauge<std::uint8_t> pose_stop;                                   ///< navigation::StopReason: of the newest pose
@@ -102,9 +103,12 @@ struct Telemetry {
   Gauge<std::uint32_t> newest_revision, refused;
 };
 
-/// For planners: the pose is good enough to drive by, and neither robot nor laser forbids it. Says nothing of motors,
-/// of the STOP button, or of who drives.
-[[nodiscard]] bool may_drive_by_pose(const Telemetry& telemetry);
+/// For planners, whoever drives: what of robot, laser or pose forbids to drive by the pose. Says nothing of motors, of
+/// the STOP button, or of who drives.
+[[nodiscard]] navigation::StopReason forbidden_by(const Telemetry& telemetry);
+[[nodiscard]] inline bool may_drive_by_pose(const Telemetry& telemetry) {
+  return forbidden_by(telemetry) == navigation::StopReason::kNone;
+}
 
 [[nodiscard]] ScanCounts counts_of(const Telemetry& telemetry);
 

@@ -21,7 +21,8 @@ SCANS = 40
 NUMBER, TEXT, OBJECT = (int, float), str, dict
 POSE = {"type": TEXT, "time": NUMBER, "scan": int, "x_m": NUMBER, "y_m": NUMBER, "heading_rad": NUMBER, "covariance": OBJECT, "state": TEXT, "verdict": TEXT,
         "pose_right": NUMBER, "map_wrong": NUMBER, "speed_m_per_s": NUMBER, "turn_rate_rad_per_s": NUMBER, "revision": int,
-        "other_hypothesis": (dict, type(None)), "gate": (dict, type(None)), "latency_ms": NUMBER, "may_drive_by_pose": bool}
+        "other_hypothesis": (dict, type(None)), "gate": (dict, type(None)), "latency_ms": NUMBER, "may_drive_by_pose": bool,
+        "forbidden_by": TEXT}
 COVARIANCE = {"xx_m2", "xy_m2", "yy_m2", "xh_m_rad", "yh_m_rad", "hh_rad2"}
 
 

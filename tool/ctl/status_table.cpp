@@ -137,9 +137,11 @@ std::string status_table(const std::string& reply_line) {
                word(s, "/ports/laser").c_str());
   text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),
                word(s, "/stopped_by").c_str());
-  if (s.contains("may_drive_by_pose"))
-    text += line("planners", "%s",
-                 s["may_drive_by_pose"] == true ? "may drive by this pose" : "must not drive by this pose");
+  if (s.contains("may_drive_by_pose")) {
+    const std::string forbidden_by = word(s, "/forbidden_by");
+    text += s["may_drive_by_pose"] == true ? line("planners", "%s", "may drive by this pose")
+                                           : line("planners", "must not drive by this pose: %s", forbidden_by.c_str());
+  }
   if (const std::string why = word(s, "/never_driven"); why != "-" && !why.empty()) {
     text += line("not driven", "%s", why.c_str());
   }

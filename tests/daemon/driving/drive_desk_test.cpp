@@ -27,7 +27,7 @@ drivers::pioneer::PioneerParams driving_robot() {
 /// A robot on its line, a desk, and no laser: scans are made up, of a free hall.
 class Desk {
  public:
-  Desk()
+  explicit Desk(bool may_ever_drive = true)
       : world_{simulation::read_scenario(test::source_path("config/scenarios/room.yaml")),
                {.seed = 1, .start = kDeskOpens, .change_every_s = {}}},
         kept_{{folder_.path() / "drive.json", "/dev/robot"}},
@@ -36,18 +36,18 @@ class Desk {
                  if (!is_cut) world_.send_to_robot(bytes, baud);
                },
                [this](PioneerOutput& out) {
-                 for (const Odometry& odometry : out.odometry) desk.observe(odometry, world_.now());
+                 for (const Odometry& odometry : out.odometry) desk.observe(heard_ = odometry, world_.now());
                  desk.set_port_open(link_.is_open());
                  desk.obey_permission(world_.now());
                }}},
-        desk{true,
+        desk{may_ever_drive,
              {},
              {.session = link_.session(),
               .kept = kept_,
               .telemetry = telemetry,
               .obey = [this](PioneerOutput out) { link_.handle(std::move(out), world_.now()); },
-              .log = [](const std::string&) {},
-              .warn = [](const std::string&) {}}} {
+              .log = [this](const std::string& line) { told.push_back(line); },
+              .warn = [this](const std::string& line) { told.push_back(line); }}} {
     link_.start(world_.now());
     pass(6.0);
   }
@@ -59,13 +59,20 @@ class Desk {
       link_.turn(is_cut ? std::span<const std::uint8_t>{} : bytes, true, now());
       if (now() < next_) continue;
       next_ = now() + duration_from_seconds(kSafetyPeriodS);
-      desk.observe(free_hall());
+      desk.observe(is_blind ? nothing_seen() : free_hall());
       if (hand == 0) desk.take({.command = {now(), speed_m_per_s, 0.0}}, now());
       if (hand != 0) desk.drive_by_hand(hand, {now(), speed_m_per_s, 0.0});
       desk.tick(now());
     }
   }
   [[nodiscard]] Timestamp now() const { return world_.now(); }
+  /// A stall of one packet.
+  void stall() {
+    Odometry odometry = heard_;
+    odometry.stalled = true;
+    odometry.time = now();
+    desk.observe(odometry, now());
+  }
   [[nodiscard]] bool is_driven() const { return desk.allowed().speed_m_per_s > 0.0; }
   [[nodiscard]] drivers::pioneer::DriveSwitch on_disk() const {
     return read_kept_drive({folder_.path() / "drive.json", "/dev/robot"}).value;
@@ -83,14 +90,23 @@ class Desk {
     return scan;
   }
 
+  Scan nothing_seen() {
+    Scan scan = free_hall();
+    for (Beam& beam : scan.beams) beam.kind = BeamKind::kBeyondMaximum;
+    return scan;
+  }
+
   test::TemporaryFolder folder_;
   simulation::Simulation world_;
   Random random_{5};
   KeptDrive kept_;
   experiments::VirtualLink<PioneerSession, PioneerOutput> link_;
   Timestamp next_{};
+  Odometry heard_;
 
  public:
+  std::vector<std::string> told;
+  bool is_blind = false;
   Telemetry telemetry;
   DriveDesk desk;
   bool is_cut = false;
@@ -156,6 +172,57 @@ TEST(DriveDesk, StopsWhereThePilotSaysThatTheLaserMissesWalls) {
   desk.desk.tick(desk.now());
   EXPECT_EQ(desk.desk.allowed().stop, navigation::StopReason::kLaserBlind);
   EXPECT_FALSE(may_drive_by_pose(desk.telemetry));
+}
+
+TEST(DriveDesk, TellsPlannersWhatForbidsToDriveWhereItNeverDrives) {
+  Desk desk{false};
+  desk.telemetry.localized.set(1);
+  EXPECT_TRUE(may_drive_by_pose(desk.telemetry));
+  desk.told.clear();
+  desk.is_blind = true;
+  desk.pass(5.0);
+  EXPECT_EQ(forbidden_by(desk.telemetry), navigation::StopReason::kLaserBlind);
+  desk.is_blind = false;
+  desk.pass(5.0);
+  EXPECT_TRUE(may_drive_by_pose(desk.telemetry));
+  EXPECT_EQ(desk.told,
+            (std::vector<std::string>{"planners must not drive by the pose: laser sees nothing; until it is over",
+                                      "planners may drive by the pose again"}));
+}
+
+TEST(DriveDesk, SaysOnceWhyItStandsWhereItDrives) {
+  Desk desk;
+  ASSERT_TRUE(desk.desk.let_drive({true, 1, desk.now()}, desk.now()).done);
+  desk.pass(1.0);
+  desk.told.clear();
+  desk.is_blind = true;
+  desk.pass(5.0);
+  desk.is_blind = false;
+  desk.pass(5.0);
+  EXPECT_EQ(desk.told,
+            (std::vector<std::string>{"driving stops: laser sees nothing; until it is over", "driving goes on"}));
+}
+
+TEST(DriveDesk, EndsWhatWaitsForAPersonByTheWordDriveAloneWhereItNeverDrives) {
+  Desk desk{false};
+  desk.telemetry.localized.set(1);
+  const auto says = [&](bool may_drive) { return desk.desk.let_drive({may_drive, 1, desk.now()}, desk.now()); };
+  EXPECT_FALSE(says(true).done) << "nothing waits";
+  desk.stall();
+  EXPECT_FALSE(says(true).done) << "its cause is still there";
+  desk.pass(1.0);
+  EXPECT_EQ(forbidden_by(desk.telemetry), navigation::StopReason::kStalled);
+  EXPECT_TRUE(says(false).done);
+  desk.pass(1.0);
+  EXPECT_EQ(forbidden_by(desk.telemetry), navigation::StopReason::kStalled) << "who says stop does not say drive";
+  EXPECT_FALSE(desk.desk.let_drive({true, 1, desk.now() - std::chrono::seconds{2}}, desk.now()).done);
+  const control::CommandOutcome outcome = says(true);
+  EXPECT_TRUE(outcome.done);
+  EXPECT_EQ(outcome.message, "it waits no more: stalled; 'navigation.mode' is off: this daemon never drives");
+  desk.pass(1.0);
+  EXPECT_TRUE(may_drive_by_pose(desk.telemetry));
+  EXPECT_FALSE(desk.is_driven());
+  EXPECT_NE(desk.on_disk(), drivers::pioneer::DriveSwitch::kOn) << "nor after a restart with another mode";
 }
 
 }  // namespace

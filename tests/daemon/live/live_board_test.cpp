@@ -170,6 +170,22 @@ TEST_F(LiveBoardTest, ThePilotsWishIsToldWhileItDrives) {
   EXPECT_EQ(pose_message({}, telemetry).find("pilot"), std::string::npos);
 }
 
+TEST_F(LiveBoardTest, WhatForbidsToDriveByThePoseIsTold) {
+  using navigation::StopReason;
+  Telemetry telemetry;
+  const auto forbids = [&](StopReason reason) {
+    const std::string told = "\"forbidden_by\":\"" + std::string(name_of(reason)) + "\"";
+    return pose_message({}, telemetry).find(told) != std::string::npos;
+  };
+  EXPECT_TRUE(forbids(StopReason::kPoseUnknown)) << "no scan has been localized";
+  telemetry.localized.set(1);
+  EXPECT_TRUE(forbids(StopReason::kNone));
+  telemetry.pose_stop.set(static_cast<std::uint8_t>(StopReason::kStartUnfit));
+  EXPECT_TRUE(forbids(StopReason::kStartUnfit));
+  telemetry.unfit.set(static_cast<std::uint8_t>(StopReason::kStalled));
+  EXPECT_TRUE(forbids(StopReason::kStalled)) << "robot and laser come first";
+}
+
 TEST_F(LiveBoardTest, SamplesComeOnceASecondWithTheRateOfScans) {
   show_scans(0, 41);
   const auto past = board_.samples_from(0, 100);

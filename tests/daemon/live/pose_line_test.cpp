@@ -64,6 +64,17 @@ TEST(PoseLine, TheOtherHypothesisIsToldWithItsShare) {
             (json{{"x_m", 4.0}, {"y_m", 5.0}, {"heading_rad", 1.0}, {"share", 0.25}}));
 }
 
+TEST(PoseLine, PlannersAreToldWhetherTheyMayDriveAndWhatForbidsIt) {
+  PoseNews told = news();
+  EXPECT_FALSE(json::parse(pose_line(told)).contains("may_drive_by_pose"));
+  told.forbidden_by = navigation::StopReason::kNone;
+  EXPECT_EQ(json::parse(pose_line(told))["may_drive_by_pose"], true);
+  EXPECT_EQ(json::parse(pose_line(told))["forbidden_by"], "none");
+  told.forbidden_by = navigation::StopReason::kLaserBlind;
+  EXPECT_EQ(json::parse(pose_line(told))["may_drive_by_pose"], false);
+  EXPECT_EQ(json::parse(pose_line(told))["forbidden_by"], "laser sees nothing");
+}
+
 TEST(PoseLine, ANumberThatIsNoneIsNull) {
   PoseNews broken = news();
   broken.row.covariance(0, 0) = std::numeric_limits<double>::infinity();

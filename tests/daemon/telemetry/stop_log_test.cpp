@@ -36,5 +36,19 @@ TEST(StopLog, IsNotStirredByWhatDrivingBringsWithIt) {
   EXPECT_EQ(log.line(StopReason::kPoseUnknown), LogLine{}) << "still the same";
 }
 
+TEST(StopLog, TellsPlannersOnceThatTheyMustNotDriveAndOnceThatTheyMay) {
+  StopLog log;
+  EXPECT_EQ(log.line_for_planners(StopReason::kNone, StopReason::kNone), LogLine{});
+  EXPECT_EQ(log.line_for_planners(StopReason::kLaserBlind, StopReason::kLost),
+            (LogLine{"planners must not drive by the pose: laser sees nothing; until it is over", true}));
+  EXPECT_EQ(log.line_for_planners(StopReason::kLaserBlind, StopReason::kNone), LogLine{});
+  EXPECT_EQ(log.line_for_planners(StopReason::kNone, StopReason::kLost),
+            (LogLine{"planners must not drive by the pose: lost; until it is over"}));
+  EXPECT_EQ(log.line_for_planners(StopReason::kStaleLaser, StopReason::kLost), LogLine{}) << "the port's line tells";
+  EXPECT_EQ(log.line_for_planners(StopReason::kNone, StopReason::kNone),
+            LogLine{"planners may drive by the pose again"});
+  EXPECT_EQ(log.line_for_planners(StopReason::kNone, StopReason::kNone), LogLine{});
+}
+
 }  // namespace
 }  // namespace deltamap::daemon

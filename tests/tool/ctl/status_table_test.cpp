@@ -37,5 +37,11 @@ TEST(StatusTable, SaysWhyARobotIsNeverDriven) {
   }
 }
 
+TEST(StatusTable, SaysWhyPlannersMustNotDrive) {
+  expect_line(R"({"may_drive_by_pose":true,"forbidden_by":"none"})", "planners     may drive by this pose");
+  expect_line(R"({"may_drive_by_pose":false,"forbidden_by":"laser sees nothing"})",
+              "planners     must not drive by this pose: laser sees nothing");
+}
+
 }  // namespace
 }  // namespace deltamap::tool
