@@ -90,6 +90,11 @@ class PageTest(PageCase):
             time.sleep(0.3)
         self.fail("no container that was taken away has gone on the page in five minutes")
 
+    def test_tells_whether_planners_may_drive_by_the_pose(self):
+        browser = self.open()
+        browser.wait("[...document.querySelectorAll('#status dt')].some((name) => name.textContent === 'Planners' && name.nextSibling.textContent === 'may drive by this pose')", 30)
+        self.expect_calm(browser)
+
     def test_pausing_stops_revisions_while_containers_change(self):
         browser = self.open()
         browser.wait(SHOWS_MAP)

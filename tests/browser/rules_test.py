@@ -77,6 +77,19 @@ class RulesTest(unittest.TestCase):
             [{ occupied: 1024, forgotten: 3 }, { free: 1 }, {}].map(cell_text))""")
         self.assertEqual(texts, ["1,024 occupied, 3 forgotten", "1 free", ""])
 
+    def test_the_driving_state_says_why_nobody_may_drive(self):
+        drives = {"drive": "wander", "stopped_by": "none", "never_driven": "", "may_drive_by_pose": True, "forbidden_by": "none"}
+        rows = lambda **status: self.browser.run("""const [status] = arguments;
+            return import("/page/panels.js").then(({ driving_rows }) => driving_rows(status).map(([name, text]) => `${name}: ${text}`))""", {**drives, **status})
+        self.assertEqual(rows(), ["Driving: wander", "Planners: may drive by this pose"])
+        self.assertEqual(rows(stopped_by="laser sees nothing", may_drive_by_pose=False, forbidden_by="laser sees nothing"),
+                         ["Driving: wander; stands: laser sees nothing", "Planners: must not drive by this pose: laser sees nothing"])
+        self.assertEqual(rows(drive="off", stopped_by="no command", may_drive_by_pose=False, forbidden_by="stalled"),
+                         ["Driving: off", "Planners: must not drive by this pose: stalled"])
+        p3at = 'its subtype "p3at" is unknown: set its hull'
+        self.assertEqual(rows(drive="off", never_driven=p3at, may_drive_by_pose=False, forbidden_by="unknown robot"),
+                         [f"Driving: not driven: {p3at}", "Planners: must not drive by this pose: unknown robot"])
+
     def test_times_are_written_the_same_in_every_language(self):
         texts = self.browser.execute_script("""return import("/page/time_text.js").then(({ clock, date_and_clock }) => {
             const time = new Date(2026, 0, 5, 0, 7, 9) / 1000;

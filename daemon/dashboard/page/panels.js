@@ -73,6 +73,15 @@ function gate_words(status) {
   return status.gate.open ? "open" : `shut: ${GATE_WORDS[status.gate.reason] ?? status.gate.reason}`;
 }
 
+/// Who drives and why it stands, and what planners are told of the pose.
+export function driving_rows({ drive, stopped_by, never_driven, may_drive_by_pose, forbidden_by }) {
+  const standing = drive === "off" || stopped_by === "none" ? drive : `${drive}; stands: ${stopped_by}`;
+  return [
+    ["Driving", never_driven ? `not driven: ${never_driven}` : standing],
+    ["Planners", may_drive_by_pose ? "may drive by this pose" : `must not drive by this pose: ${forbidden_by}`],
+  ];
+}
+
 function rows_of({ status, resident_bytes }, rate) {
   const { pose, belief, covariance } = status;
   const deviation = Math.sqrt(Math.max(covariance.xx_m2, covariance.yy_m2));
@@ -89,7 +98,7 @@ function rows_of({ status, resident_bytes }, rate) {
     ["Latency", `${status.latency_ms.toFixed(1)} ms`],
     ["Particles", `${whole(status.particles)}; N_eff ${status.n_eff.toFixed(0)}`],
     ["Ports", `robot ${status.ports.robot}, laser ${status.ports.laser}`],
-    ["Driving", status.drive === "off" ? "off" : `${status.drive}` + (status.stopped_by === "none" ? "" : `; stands: ${status.stopped_by}`)],
+    ...driving_rows(status),
     ["Battery", status.battery_v > 0 ? `${status.battery_v.toFixed(1)} V` : "–"],
     ["Memory", `${(resident_bytes / 1048576).toFixed(1)} MiB`],
     ["Runs for", duration(status.since_start_s)],
