@@ -72,14 +72,16 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   HttpConnection(tcp::socket socket, Guest who, Host& host)
       : Connection{std::move(who)}, stream_{std::move(socket)}, host_{host}, patience_{stream_.get_executor()} {}
 
-  void listen() {
-    host_.let_stand(guest, Standing::kWaits);
-    parser_.emplace();
-    parser_->header_limit(kMostHeaderBytes);
-    parser_->body_limit(kMostBodyBytes);
-    stream_.expires_after(kHttpPatience);
-    http::async_read_header(stream_, buffer_, *parser_,
-                            [self = shared_from_this()](const error_code& error, std::size_t) { self->take(error); });
+  /// Has just come. The timer ends behind all that has been read by then: a loop that was busy does not shorten it.
+  void welcome() {
+    host_.let_stand(guest, Standing::kHasCome);
+    patience_.expires_after(duration_of(host_.options.time_to_speak_s));
+    patience_.async_wait([self = shared_from_this()](const error_code& cancelled) {
+      if (!cancelled && self->guest.standing == Standing::kHasCome) {
+        self->host_.let_stand(self->guest, Standing::kWaits);
+      }
+    });
+    listen();
   }
   void close() override {
     error_code ignored;
@@ -89,6 +91,20 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   void leave() override { host_.end(this); }
 
  private:
+  void listen() {
+    parser_.emplace();
+    parser_->header_limit(kMostHeaderBytes);
+    parser_->body_limit(kMostBodyBytes);
+    stream_.expires_after(kHttpPatience);
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](const error_code& error, std::size_t) { self->take(error); });
+  }
+
+  void listen_again() {
+    host_.let_stand(guest, Standing::kWaits);
+    listen();
+  }
+
   void take(const error_code& error) {
     if (tells_why_not_read(error)) return;
     if (error || host_.is_ending) return host_.end(this);
@@ -176,6 +192,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   }
 
   void take_viewer(const std::string& path) {
+    patience_.cancel();
     const HttpRequest request = parser_->release();
     if (!websocket::is_upgrade(request)) {
       return say({.status = 426, .body = path + " is a WebSocket\n", .headers = {{"Upgrade", "websocket"}}}, 11, false);
@@ -202,14 +219,14 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
                       [self = shared_from_this(), goes_on, size](const error_code& error, std::size_t) {
                         self->response_ = {};
                         self->host_.turns.ended(size);
-                        if (!error && goes_on) return self->listen();
+                        if (!error && goes_on) return self->listen_again();
                         self->host_.end(self.get());
                       });
   }
 
   beast::tcp_stream stream_;
   Host& host_;
-  asio::steady_timer patience_;        // for what becomes of a command
+  asio::steady_timer patience_;        // for the first words, then for what becomes of a command
   std::uint64_t command_ = 0;          // counts the commands that were taken, and their answers
   bool is_stop_ = false;               // the newest command
   std::optional<Answer> unless_stop_;  // what is said to a command that is none

@@ -7,8 +7,20 @@
 
 namespace deltamap::daemon::dashboard {
 
+namespace {
+
+enum class Turn : std::uint8_t { kStranger, kOneOfManyNew, kKnown, kNew };
+
+}  // namespace
+
 const Guest* first_to_leave(const std::vector<const Guest*>& guests) {
-  const auto rank = [](const Guest* guest) { return std::tuple{guest->is_known, guest->standing, guest->since}; };
+  const auto is_new = [](const Guest* guest) { return guest->standing == Standing::kHasCome; };
+  const auto new_ones = static_cast<std::size_t>(std::count_if(guests.begin(), guests.end(), is_new));
+  const Turn turn_of_new = 2 * new_ones > guests.size() ? Turn::kOneOfManyNew : Turn::kNew;
+  const auto rank = [&](const Guest* guest) {
+    const Turn turn = is_new(guest) ? turn_of_new : guest->is_known ? Turn::kKnown : Turn::kStranger;
+    return std::tuple{turn, guest->standing, guest->since};
+  };
   const Guest* first = nullptr;
   for (const Guest* const guest : guests) {
     if (guest->standing == Standing::kStays) continue;
@@ -25,9 +37,13 @@ Welcome welcome_for(const std::string& from, const std::vector<const Guest*>& gu
     return {leaves != nullptr, leaves};
   }
   if (guests.size() < places.most) return {};
-  const auto has_less = [](const auto& one, const auto& other) { return one.second.size() < other.second.size(); };
-  const auto crowd = std::max_element(by_address.begin(), by_address.end(), has_less);
-  const Guest* leaves = crowd == by_address.end() ? nullptr : first_to_leave(crowd->second);
+  std::size_t most = 0;
+  for (const auto& [address, own] : by_address) most = std::max(most, own.size());
+  std::vector<const Guest*> crowd;
+  for (const Guest* const guest : guests) {
+    if (by_address[guest->from].size() == most) crowd.push_back(guest);
+  }
+  const Guest* leaves = first_to_leave(crowd);
   if (leaves == nullptr) leaves = first_to_leave(guests);
   return {leaves != nullptr, leaves};
 }

@@ -52,7 +52,7 @@ struct Server::State {
     socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
     const auto connection = std::make_shared<HttpConnection>(std::move(socket), guest, host);
     host.connections.insert(connection);
-    connection->listen();
+    connection->welcome();
   }
 
   /// Called where accept() finds no descriptor left: closes the connection that is first to leave.

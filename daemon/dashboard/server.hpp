@@ -35,6 +35,7 @@ class Server {
     std::function<void()> refresh = [] {};            ///< every period, before viewers are served
     std::function<void(bool)> watched = [](bool) {};  ///< the first viewer has come, the last one has gone
     double period_s = 0.1;                            ///< nothing runs where nobody views
+    double time_to_speak_s = 0.3;                     ///< of who has just come: a lost packet comes again after 0.2 s
     double patience_s = 10.0;                         ///< a viewer takes a message within that time, or is dropped
     std::size_t most_connections = 96;                ///< viewers among them; less where there are few descriptors
     std::size_t most_from_one = 64;                   ///< address

@@ -51,7 +51,7 @@ class AcceptLoop {
 
  private:
   static constexpr std::chrono::milliseconds kPauseAfterFailure{200};
-  static constexpr int kMostAtOnce = 8;  // then they are heard, before others come in whose place they may have
+  static constexpr int kMostAtOnce = 4;  // then they are heard, before others come for whom they might have to leave
 
   void wait() {
     acceptor_.async_wait(Protocol::acceptor::wait_read, [this](const boost::system::error_code& error) {

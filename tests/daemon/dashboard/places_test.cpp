@@ -57,6 +57,35 @@ TEST_F(PlacesTest, OfEqualsWhoHasItLongestLeaves) {
   EXPECT_EQ(first_to_leave(all()), &guests_[2]);
 }
 
+TEST_F(PlacesTest, WhoHasJustComeStaysForAllThatWereHeard) {
+  for (int newcomers = 0; newcomers < 2; ++newcomers) {
+    guests_.clear();
+    add("a", Standing::kViews, true);
+    add("a", Standing::kIsAnswered, true);
+    add("a", Standing::kViews);
+    add("a", Standing::kHasCome);
+    if (newcomers == 1) add("a", Standing::kHasCome);
+    for (const int expected : {2, 1, 0}) {
+      EXPECT_EQ(first_to_leave(all()), &guests_[static_cast<std::size_t>(expected)]);
+      guests_[static_cast<std::size_t>(expected)].standing = Standing::kStays;
+    }
+    EXPECT_EQ(first_to_leave(all()), &guests_[3]);
+  }
+}
+
+TEST_F(PlacesTest, OfThoseWhoHaveJustComeTheFirstLeavesForAKnownOneWhereTheyAreMoreThanHalf) {
+  add("a", Standing::kViews, true);
+  for (int i = 0; i < 3; ++i) add("a", Standing::kHasCome);
+  EXPECT_EQ(first_to_leave(all()), &guests_[1]);
+  add("a", Standing::kIsAnswered);
+  EXPECT_EQ(first_to_leave(all()), &guests_[4]) << "but strangers that were heard leave first";
+}
+
+TEST_F(PlacesTest, OfManyAddressesWithEquallyManyTheOneThatCameFirstLeaves) {
+  for (const char* from : {"d", "b", "c", "a"}) add(from, Standing::kHasCome);
+  EXPECT_EQ(leaves("e"), 0) << "none by its name";
+}
+
 TEST_F(PlacesTest, AnAddressThatHasAllThatOneMayHaveMakesRoomForItself) {
   for (int i = 0; i < 3; ++i) add("a");
   EXPECT_EQ(leaves("a"), 0) << "one place is free, and stays so for others";

@@ -28,6 +28,7 @@ class StopTest : public test::ServedPage {
     options_.guard = {.token = "0123456789abcdef", .takes_commands = true};
     options_.answer = [](const Request&) { return Answer{.body = std::string(1'000'000, 'x')}; };
     options_.open = [] { return std::unique_ptr<Stream>{}; };
+    options_.converse = [] { return std::unique_ptr<Dialog>{}; };
     options_.is_stop = [](const std::string& body) { return body == kStop; };
     options_.command = [this](const Request& request, Reply reply) {
       if (request.body == kStop) {
@@ -113,6 +114,31 @@ TEST_F(StopTest, IsNeverOneTooMany) {
         "POST /api/command" + host + kTokenHeader + "Content-Type: application/json\r\nContent-Length: 2\r\n\r\n{}");
     EXPECT_EQ(stopped(), 200) << "commands that wait";
     EXPECT_EQ(stopped(kTokenHeader), 200);
+  }
+}
+
+TEST_F(StopTest, IsHeardFromWhoHasJustComeHoweverManyAsk) {
+  options_.time_to_speak_s = 600.0;
+  start();
+  const std::string asks = "GET /map.png HTTP/1.1\r\nHost: 127.0.0.1:1\r\n";
+  for (const std::string& headers : {std::string{}, kTokenHeader}) {
+    std::vector<std::unique_ptr<WebClient>> guests;
+    const auto add = [&](int count) {
+      for (int i = 0; i < count; ++i) {
+        guests.push_back(std::make_unique<WebClient>(port()));
+        for (int j = 0; j < 20; ++j) (void)guests.back()->send(asks + headers + "\r\n");
+      }
+    };
+    for (int round = 0; round < 20; ++round) {
+      add(20);
+      EXPECT_EQ(stopped(), 200) << "those before it have come in";
+      WebClient stops{port()};
+      for (int i = 0; i < 3; ++i) {
+        add(4);
+        EXPECT_EQ(stopped(), 200) << "those before it have come in";
+      }
+      EXPECT_EQ(stops.posted("/api/command", kStop).status, 200) << round;
+    }
   }
 }
 
