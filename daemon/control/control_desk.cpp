@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/control_desk.hpp"
 
+#include <utility>
+
 #include "daemon/control/status_report.hpp"
 #include "drivers/port/port_clock.hpp"
 
@@ -46,7 +48,7 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
     case Request::Kind::kRollBack:
       return command(Command::Kind::kRollBack, request, std::move(reply));
     case Request::Kind::kReload:
-      return reply(reloaded());
+      return reload(std::move(reply));
     case Request::Kind::kRecordStart:
       return record(true, request, std::move(reply));
     case Request::Kind::kRecordStop:
@@ -89,6 +91,16 @@ void ControlDesk::record(bool goes_on, const Request& request, control::Server::
   const std::uint64_t ticket = next_ticket_++;
   if (!wiring_.record(goes_on, ticket)) return refuse(request, "the disk is too slow: try again", reply);
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+}
+
+/// One for all who ask meanwhile, behind whatever else has come: no order to stop waits for a queue of them.
+void ControlDesk::reload(control::Server::Reply reply) {
+  reloads_.push_back(std::move(reply));
+  if (reloads_.size() > 1) return;
+  server_.post([this] {
+    const std::string line = reloaded();
+    for (const control::Server::Reply& waiting : std::exchange(reloads_, {})) waiting(line);
+  });
 }
 
 std::string ControlDesk::reloaded() const {

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/channel.hpp"
 #include "core/grid/occupancy_grid.hpp"
@@ -57,6 +58,7 @@ class ControlDesk {
   void refuse(const control::Request& request, const std::string& why, const control::Server::Reply& reply);
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
   void record(bool goes_on, const control::Request& request, control::Server::Reply reply);
+  void reload(control::Server::Reply reply);
   [[nodiscard]] std::string reloaded() const;
   [[nodiscard]] std::string with_log_level(LogLevel level) const;
   void command(Command::Kind kind, const control::Request& request, control::Server::Reply reply);
@@ -65,7 +67,8 @@ class ControlDesk {
   Wiring wiring_;
   Timestamp began_;
   std::uint64_t next_ticket_ = 1;
-  std::map<std::uint64_t, Waiting> waiting_;  // by ticket
+  std::map<std::uint64_t, Waiting> waiting_;     // by ticket
+  std::vector<control::Server::Reply> reloads_;  // that wait for the next one
   LoopPulse pulse_;
   control::Server server_;  // last: its handler uses the others
 };

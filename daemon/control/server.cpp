@@ -13,6 +13,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
+#include <deque>
 #include <optional>
 #include <set>
 
@@ -30,10 +31,12 @@ using boost::system::error_code;
 
 constexpr std::size_t kMostClients = 64;
 constexpr std::size_t kFewestClients = 16;
+constexpr std::size_t kNewcomers = 16;          // who has just come does not leave for the next one
 constexpr std::size_t kOthersDescriptors = 64;  // files, ports and the first connections of the page
 
-/// One client: a line, its reply, the next line. A client beyond the limit is heard, too, because it may want to stop
-/// the robot; everything else that it asks for is refused.
+/// One client: lines, and a reply to each in their order. While one is answered it is read on: an order to stop does
+/// not wait for what was asked before it. One too many is heard, too: it may be somebody who wants to stop the robot,
+/// and is refused whatever else it asks for.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(Protocol::socket socket, const Server::Options& options, bool is_one_too_many,
@@ -45,19 +48,17 @@ class Session : public std::enable_shared_from_this<Session> {
         on_end_{std::move(on_end)} {}
 
   void listen() {
+    if (is_reading_ || is_over_ || waiting_bytes_ >= kMostWaitingBytes) return;
+    is_reading_ = true;
     asio::async_read_until(
         socket_, asio::dynamic_buffer(received_, kLongestLine), '\n',
         [self = shared_from_this()](const error_code& error, std::size_t size) { self->take(error, size); });
   }
 
-  void say_and_end(const std::string& line) {
-    ends_ = true;
-    say(line);
-  }
-
   /// The instant since which the client has been silent; nullopt while a request of it is being answered.
   [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> idle_since() const {
-    return awaits_ || ends_ ? std::nullopt : std::optional{spoke_};
+    const bool awaits = !lines_.empty() && !lines_.front().reply;
+    return awaits ? std::nullopt : std::optional{spoke_};
   }
 
   void close() {
@@ -67,48 +68,91 @@ class Session : public std::enable_shared_from_this<Session> {
   }
 
  private:
+  struct Line {
+    std::string text{};
+    std::uint64_t number = 0;
+    bool is_begun = false;
+    std::optional<std::string> reply{};
+  };
+
   void take(const error_code& error, std::size_t size) {
+    is_reading_ = false;
+    if (!socket_.is_open()) return on_end_(this);
     if (error == asio::error::not_found) {
-      return say_and_end(error_line("a request has at most " + std::to_string(kLongestLine) + " bytes"));
+      refuse_and_end("a request has at most " + std::to_string(kLongestLine) + " bytes");
+    } else if (error) {
+      is_over_ = true;
+    } else {
+      spoke_ = std::chrono::steady_clock::now();
+      add(received_.substr(0, size - 1));
+      received_.erase(0, size);
     }
-    if (error) return on_end_(this);
-    spoke_ = std::chrono::steady_clock::now();
-    const std::string line = received_.substr(0, size - 1);
-    received_.erase(0, size);
-    if (is_one_too_many_ && !is_stop(line)) return say_and_end(error_line("too many clients"));
-    wait_for_reply();
-    options_.handle(line, sockets::is_gone(socket_),
-                    [self = weak_from_this(), number = number_, to = socket_.get_executor()](std::string reply) {
+    listen();
+    go_on();
+  }
+
+  void add(std::string text) {
+    const bool stops = is_stop(text);
+    if (is_one_too_many_ && !stops) return refuse_and_end("too many clients");
+    waiting_bytes_ += text.size() + 1;
+    lines_.push_back({.text = std::move(text), .number = next_number_++});
+    if (stops) begin(lines_.back());
+  }
+
+  /// Behind the replies to what was asked before.
+  void refuse_and_end(const std::string& why) {
+    lines_.push_back({.number = next_number_++, .is_begun = true, .reply = error_line(why)});
+    is_over_ = true;
+  }
+
+  void begin(Line& line) {
+    line.is_begun = true;
+    options_.handle(line.text, sockets::is_gone(socket_),
+                    [self = weak_from_this(), number = line.number, to = socket_.get_executor()](std::string reply) {
                       asio::post(to, [self, number, reply = std::move(reply)] {
                         if (const auto session = self.lock()) session->answer(number, reply);
                       });
                     });
   }
 
-  void wait_for_reply() {
-    ++number_;
-    awaits_ = true;
+  /// What is to be done for the first line.
+  void go_on() {
+    if (is_writing_) return;
+    if (lines_.empty()) return is_over_ ? on_end_(this) : void();
+    Line& first = lines_.front();
+    if (!first.is_begun) begin(first);
+    if (first.reply) return say(*first.reply);
+    if (patient_with_ == first.number) return;
+    patient_with_ = first.number;
     patience_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
         std::chrono::duration<double>(options_.patience_s)));
-    patience_.async_wait([self = shared_from_this(), number = number_](const error_code& error) {
-      if (!error) self->answer(number, self->options_.late_reply);
+    patience_.async_wait([self = shared_from_this(), number = first.number](const error_code& cancelled) {
+      if (!cancelled) self->answer(number, self->options_.late_reply);
     });
   }
 
-  void answer(std::uint64_t number, const std::string& line) {
-    if (!awaits_ || number != number_ || !socket_.is_open()) return;
-    awaits_ = false;
-    patience_.cancel();
-    say(line);
+  void answer(std::uint64_t number, const std::string& reply) {
+    const auto line = std::find_if(lines_.begin(), lines_.end(), [&](const Line& one) { return one.number == number; });
+    if (line == lines_.end() || line->reply || !socket_.is_open()) return;
+    line->reply = reply;
+    go_on();
   }
 
   void say(const std::string& line) {
+    patience_.cancel();
+    is_writing_ = true;
     reply_ = line + "\n";
     asio::async_write(socket_, asio::buffer(reply_), [self = shared_from_this()](const error_code& error, std::size_t) {
-      if (error || self->ends_) return self->on_end_(self.get());
+      self->is_writing_ = false;
+      if (error || !self->socket_.is_open()) return self->on_end_(self.get());
+      self->waiting_bytes_ -= std::min(self->waiting_bytes_, self->lines_.front().text.size() + 1);
+      self->lines_.pop_front();
       self->listen();
+      self->go_on();
     });
   }
+
+  static constexpr std::size_t kMostWaitingBytes = 16 * kLongestLine;
 
   Protocol::socket socket_;
   asio::steady_timer patience_;
@@ -116,11 +160,15 @@ class Session : public std::enable_shared_from_this<Session> {
   bool is_one_too_many_;
   std::function<void(Session*)> on_end_;
   std::string received_;
+  std::deque<Line> lines_;  // that wait for their reply, or for its way to the client
+  std::size_t waiting_bytes_ = 0;
   std::string reply_;
   std::chrono::steady_clock::time_point spoke_ = std::chrono::steady_clock::now();
-  std::uint64_t number_ = 0;  // of the request that is being answered
-  bool awaits_ = false;
-  bool ends_ = false;
+  std::uint64_t next_number_ = 1;
+  std::uint64_t patient_with_ = 0;  // the line whose reply is waited for
+  bool is_reading_ = false;
+  bool is_writing_ = false;
+  bool is_over_ = false;  // nothing more is heard; ends behind the last reply
 };
 
 }  // namespace
@@ -142,8 +190,13 @@ struct Server::State {
     return longest != nullptr;
   }
 
+  [[nodiscard]] std::size_t idle() const {
+    return static_cast<std::size_t>(std::count_if(
+        sessions.begin(), sessions.end(), [](const auto& session) { return session->idle_since().has_value(); }));
+  }
+
   void welcome(Protocol::socket socket) {
-    if (sessions.size() >= most) (void)make_room();
+    if (sessions.size() >= most && idle() >= kNewcomers) (void)make_room();
     const bool is_full = sessions.size() >= most;
     const auto session =
         std::make_shared<Session>(std::move(socket), options, is_full, [this](Session* ended) { end(ended); });
@@ -166,7 +219,7 @@ struct Server::State {
 
   asio::io_context loop{1};
   Options options;
-  std::size_t most = std::min(kMostClients, descriptors_beside(kOthersDescriptors, kFewestClients));
+  std::size_t most = std::min(kMostClients, descriptors_beside(kOthersDescriptors + kNewcomers, kFewestClients));
   sockets::AcceptLoop<Protocol> clients;
   sockets::SocketFile file{options.socket};
   std::set<std::shared_ptr<Session>> sessions;

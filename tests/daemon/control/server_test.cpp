@@ -177,6 +177,80 @@ TEST_F(ServerTest, ClientsThatSayNothingKeepNobodyOut) {
   EXPECT_EQ(clients.front()->asked("and here"), "re: and here");
 }
 
+TEST_F(ServerTest, AnOrderToStopIsDoneBeforeLinesThatWaitAndRepliesKeepTheirOrder) {
+  std::promise<Server::Reply> slow;
+  std::promise<void> stopped;
+  std::vector<std::string> done;
+  serve([&](const std::string& line, bool, const Server::Reply& reply) {
+    done.push_back(line);
+    if (line == "slow") return slow.set_value(reply);
+    reply("re: " + line);
+    if (line == kStop) stopped.set_value();
+  });
+  SocketClient client{socket()};
+  EXPECT_TRUE(client.send("slow\nnext\n" + kStop + "\nlast\n"));
+  stopped.get_future().wait();
+  slow.get_future().get()("at last");
+  EXPECT_EQ(client.line(), "at last");
+  EXPECT_EQ(client.line(), "re: next");
+  EXPECT_EQ(client.line(), "re: " + kStop);
+  EXPECT_EQ(client.line(), "re: last");
+  end();
+  EXPECT_EQ(done, (std::vector<std::string>{"slow", kStop, "next", "last"}));
+}
+
+TEST_F(ServerTest, WhoSaysNoMoreStillHearsEveryReply) {
+  std::promise<Server::Reply> slow;
+  serve([&](const std::string& line, bool, const Server::Reply& reply) {
+    line == "slow" ? slow.set_value(reply) : reply("re: " + line);
+  });
+  SocketClient client{socket()};
+  EXPECT_TRUE(client.send("slow\nnext\n"));
+  client.say_no_more();
+  const Server::Reply reply = slow.get_future().get();
+  EXPECT_EQ(exchange(socket(), "another"), "re: another");
+  reply("at last");
+  EXPECT_EQ(client.line(), "at last");
+  EXPECT_EQ(client.line(), "re: next");
+  EXPECT_EQ(client.line(), "") << "and is let go";
+}
+
+TEST_F(ServerTest, WhoHasJustComeIsHeardWhereAllOthersWaitForTheirReplies) {
+  std::vector<Server::Reply> waiting;
+  std::promise<void> all_wait;
+  serve([&](const std::string& line, bool, const Server::Reply& reply) {
+    if (line == kStop) return reply("stands");
+    waiting.push_back(reply);
+    if (waiting.size() == kMost) all_wait.set_value();
+  });
+  std::vector<std::unique_ptr<SocketClient>> clients;
+  for (std::size_t i = 0; i < kMost; ++i) {
+    clients.push_back(std::make_unique<SocketClient>(socket()));
+    ASSERT_TRUE(clients.back()->send("hello\n"));
+  }
+  all_wait.get_future().wait();
+  for (int round = 0; round < 20; ++round) {
+    SocketClient stops{socket()};
+    for (int i = 0; i < 10; ++i) clients.push_back(std::make_unique<SocketClient>(socket()));
+    ASSERT_EQ(exchange(socket(), kStop), "stands") << "those before it have come in";
+    EXPECT_EQ(stops.asked(kStop), "stands") << round;
+  }
+}
+
+TEST_F(ServerTest, WhoReadsNoRepliesIsNotReadForEver) {
+  std::size_t asked = 0;
+  serve([&](const std::string& line, bool, const Server::Reply& reply) {
+    ++asked;
+    reply(line == "count" ? std::to_string(asked) : std::string(100'000, 'x'));
+  });
+  SocketClient client{socket()};
+  std::string lines;
+  for (int i = 0; i < 1000; ++i) lines += "status\n";
+  EXPECT_TRUE(client.send(lines));
+  EXPECT_EQ(exchange(socket(), "hello").size(), 100'000u);
+  EXPECT_LT(std::stoul(exchange(socket(), "count")), 500u);
+}
+
 TEST_F(ServerTest, AnOrderGetsThroughWhereTheProcessCanOpenNothingMore) {
   serve_echo();
   std::vector<std::unique_ptr<SocketClient>> clients;
