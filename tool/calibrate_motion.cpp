@@ -20,10 +20,10 @@ namespace deltamap::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using localization::motion::Fitted;
-using localization::motion::Systematic;
+using surveying::calibration::Fitted;
 using surveying::calibration::MotionCalibration;
 using surveying::calibration::MotionSource;
+using surveying::calibration::Systematic;
 
 constexpr std::size_t kFewestSegments = 20;  // a deviation from 20 segments is good to 16 % at best
 constexpr double kLeastSureShare = 0.5;      // of the scans; a robot on a foreign map seldom has more
@@ -196,8 +196,8 @@ void run_calibration(CalibrateOptions& options) {
   const Drive drive = driven(options, settings);
   for (const std::string& line : drive.faults.lines()) std::cerr << "deltamap: warning: " << line << '\n';
   require_enough(drive, options.recording);
-  const MotionCalibration as_they_are = localization::motion::fitted_motion(drive.segments, Systematic::kLeftIn);
-  const MotionCalibration corrected = localization::motion::fitted_motion(drive.segments, Systematic::kTakenOut);
+  const MotionCalibration as_they_are = surveying::calibration::fitted_motion(drive.segments, Systematic::kLeftIn);
+  const MotionCalibration corrected = surveying::calibration::fitted_motion(drive.segments, Systematic::kTakenOut);
   if (options.as_json)
     print_calibration_json(as_they_are, corrected, drive);
   else
