@@ -101,6 +101,12 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
       why.replace(at, copied.string().size(), store);
     return why;
   };
+  const std::uint32_t known = known_revision(store, first);
+  if (was_emptied(store, known)) {
+    const std::string lost = known > 0 ? "; " + words_of_missing(0, known) : "";
+    return {Level::kWarning, "store",
+            store + ": is empty: a start would set it aside and begin with the first map" + lost};
+  }
   try {
     copy_store(store, copied);
     const mapping::store::MapStore copy{copied, first};
@@ -110,6 +116,8 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
                        std::to_string(refusals) + " refusals";
     if (const std::string others = words_of_others(copy); !others.empty())
       return {Level::kWarning, "store", store + ": " + others};
+    if (const std::string missing = words_of_missing(copy.newest(), known); !missing.empty())
+      return {Level::kWarning, "store", store + ": " + missing};
     return {Level::kOk, "store", text};
   } catch (const mapping::store::StoreError& error) {
     const bool is_unsound = error.kind == mapping::store::StoreError::Kind::kUnsound;
@@ -138,7 +146,11 @@ Finding store_finding(const Settings& settings, const std::string& config, const
   try {
     require_store_folder(settings, config);
     const std::string why = judged_place(store, [&] { return judged_store_place(store); });
-    if (!fs::exists(store, ignored)) return {Level::kOk, "store", store + ": will be made"};
+    if (!fs::exists(store, ignored)) {
+      const std::string missing = first ? words_of_missing(0, known_revision(store, *first)) : "";
+      if (missing.empty()) return {Level::kOk, "store", store + ": will be made"};
+      return {Level::kWarning, "store", store + ": will be made: " + missing};
+    }
     if (!first) return {Level::kWarning, "store", store + ": not opened, for it is another for each map"};
     Finding content = store_content(store, *first);
     if (why.empty()) return content;

@@ -90,6 +90,7 @@ KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t f
   if (answer.calibration) answer.fingerprint = fingerprint_of(text);
   const auto map = json.find("map");
   if (map == json.end() || *map != hex_of(first_map)) return refused("the pose belongs to another map");
+  answer.revision = pose->revision;
   if (!pose->is_sure) return refused("the robot did not know where it was");
   answer.pose = pose;
   answer.fingerprint = fingerprint_of(text);

@@ -31,7 +31,8 @@ struct KeptPose {
 struct KeptPoseAnswer {
   std::optional<KeptPose> pose;
   std::optional<localization::motion::DriveCalibration> calibration{};
-  std::string why_not;            ///< one line that names the file; empty where there is none to be read
+  std::uint32_t revision = 0;  ///< of this map, that was written by then, whatever the pose is worth; 0: none is told
+  std::string why_not;         ///< one line that names the file; empty where there is none to be read
   std::uint64_t fingerprint = 0;  ///< of the file, where anything in it may be used
 };
 [[nodiscard]] KeptPoseAnswer read_kept_pose(const std::filesystem::path& file, std::uint64_t first_map);

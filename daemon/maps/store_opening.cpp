@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "core/files/replace_file.hpp"
+#include "daemon/kept/kept_pose.hpp"
 #include "daemon/outputs/output_place.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "daemon/system/service.hpp"
 #include "mapping/store/database_log.hpp"
@@ -81,17 +83,34 @@ Recovery made_whole(const fs::path& file, const OccupancyGrid& first) {
   }
 }
 
-/// Opens the store, after a recovery where it is damaged, which adds a line to `warnings`. Throws StoreError.
-MapStore sound_store(const fs::path& file, const OccupancyGrid& first, std::vector<std::string>& warnings) {
+/// A file that was emptied is a new store to SQLite, which would delete the log beside it.
+MapStore begun_in_place_of_emptied(const fs::path& file, const OccupancyGrid& first, std::uint32_t known,
+                                   std::vector<std::string>& warnings) {
+  const auto aside = set_aside(file);
+  if (!aside) throw StoreError(file.string() + ": is empty, and cannot be renamed", StoreError::Kind::kOther);
+  warnings.push_back("map store set aside as " + aside->string() + ": " + file.string() + ": is empty; " +
+                     Recovery{.known = known}.words());
+  return MapStore{file, first};
+}
+
+/// The store in its place, sound; a line is added to `warnings` where that took a recovery, or revisions that are known
+/// to have been written are not there. Throws StoreError.
+MapStore sound_store(const fs::path& file, const OccupancyGrid& first, std::uint32_t known,
+                     std::vector<std::string>& warnings) {
+  if (was_emptied(file, known)) return begun_in_place_of_emptied(file, first, known, warnings);
   std::string reason;
   try {
-    return MapStore{file, first};
+    MapStore store{file, first};
+    if (std::string missing = words_of_missing(store.newest(), known); !missing.empty())
+      warnings.push_back("map store: " + missing);
+    return store;
   } catch (const StoreError& error) {
     if (error.kind == StoreError::Kind::kOther) throw;
     reason = error.what();
   }
   try {
-    const Recovery recovery = made_whole(file, first);
+    Recovery recovery = made_whole(file, first);
+    recovery.known = known;
     const auto aside = set_aside(file);
     if (!aside) throw std::runtime_error(file.string() + ": cannot be renamed");
     put_in_place(file);
@@ -137,16 +156,19 @@ std::optional<ReadStart> read_start(const fs::path& file, const OccupancyGrid& f
 }
 
 /// Begins the run with what can be read of a store that cannot be written; it is opened as soon as that is possible.
-void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGrid& first, const std::string& reason) {
+void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGrid& first, std::uint32_t known,
+                   const std::string& reason) {
   const auto read = read_start(file, first);
   opened.start = read ? read->start : StartMap{.map = std::make_shared<const OccupancyGrid>(first)};
   opened.warnings.push_back("map store cannot be written: " + reason + "; " +
                             (read ? "goes on with its revision=" + std::to_string(read->start.revision)
                                   : "nothing of this map can be read in it: begins with the first map"));
+  if (std::string missing = words_of_missing(opened.start.revision, known); !missing.empty())
+    opened.warnings.push_back("map store: " + missing);
   opened.store.why_not = reason;
-  opened.store.open = [file, read, first = std::make_shared<const OccupancyGrid>(first)] {
+  opened.store.open = [file, read, known, first = std::make_shared<const OccupancyGrid>(first)] {
     std::vector<std::string> told_before;
-    MapStore store = sound_store(file, *first, told_before);
+    MapStore store = sound_store(file, *first, known, told_before);
     if (read && store.newest() < read->start.revision) {
       store.append_whole(read->start.revision, read->time, *read->start.map, {.cause = "read before it was written"});
     }
@@ -163,20 +185,41 @@ std::string words_of_others(const MapStore& store) {
          " of another first map and none of this one: begins with the first map";
 }
 
+std::uint32_t known_revision(const fs::path& store, const OccupancyGrid& first) {
+  return read_kept_pose(memory_places(store).pose, grid_hash(first)).revision;
+}
+
+std::string words_of_missing(std::uint32_t newest, std::uint32_t known) {
+  if (known <= newest) return "";
+  const std::string range = known == newest + 1 ? std::to_string(known) + " is"
+                                                : std::to_string(newest + 1) + " to " + std::to_string(known) + " are";
+  return "its newest revision of this map is " + std::to_string(newest) +
+         ", and the pose that was kept is of revision " + std::to_string(known) + ": " + range + " missing";
+}
+
+bool was_emptied(const fs::path& store, std::uint32_t known) {
+  const auto is_there = [](const fs::path& file) {
+    std::error_code error;
+    return fs::is_regular_file(file, error) ? std::optional{fs::file_size(file, error)} : std::nullopt;
+  };
+  return is_there(store) == 0u && (known > 0 || is_there(mapping::store::log_of(store).log).value_or(0) > 0);
+}
+
 OpenedStore open_store(const fs::path& name, const OccupancyGrid& first) {
   (void)judged_store_place(name);
   // A link is followed: lock, open and set aside act on the database itself. Where it cannot be told whether another
   // program has it locked, the start ends and the file stays untouched.
   const fs::path file = or_start_error([&] { return file_behind(name); });
   service::ask_for_time(kLongestOpening);
+  const std::uint32_t known = known_revision(name, first);
   OpenedStore opened;
   opened.store.to_lock = file;
   opened.store.lock = or_start_error([&] { return lock_of_file(file); });
   try {
     finish_recovery(file);
-    take(opened, sound_store(file, first, opened.warnings));
+    take(opened, sound_store(file, first, known, opened.warnings));
   } catch (const std::runtime_error& error) {
-    go_on_without(opened, file, first, error.what());
+    go_on_without(opened, file, first, known, error.what());
   }
   return opened;
 }

@@ -48,6 +48,7 @@ class Chain {
     made.needs_grid = made.needs_grid || made.number != number_ + 1;
     map_ = std::move(map);
     number_ = made.number;
+    std::erase(lost_, number_);  // its row was passed over, and it follows from a later one
     parts_.made(made, map_);
   }
 

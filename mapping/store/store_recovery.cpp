@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/store/store_recovery.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -15,17 +16,39 @@ namespace {
 
 constexpr std::uint32_t kMostMissing = 5000;  // revisions in a row of which no row can be read
 
+/// First and last number.
+using Range = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Of numbers in order.
+std::vector<Range> ranges_of(const std::vector<std::uint32_t>& numbers) {
+  std::vector<Range> ranges;
+  for (const std::uint32_t number : numbers) {
+    const bool goes_on = !ranges.empty() && ranges.back().second + 1 == number;
+    if (!goes_on) ranges.emplace_back(number, number);
+    ranges.back().second = number;
+  }
+  return ranges;
+}
+
 /// "12, 14 to 16"
-std::string listed(const std::vector<std::uint32_t>& numbers) {
+std::string listed(const std::vector<Range>& ranges) {
   std::string text;
-  for (std::size_t i = 0; i < numbers.size();) {
-    std::size_t last = i;
-    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
-    text += (text.empty() ? "" : ", ") + std::to_string(numbers[i]);
-    if (last > i) text += " to " + std::to_string(numbers[last]);
-    i = last + 1;
+  for (const auto& [first, last] : ranges) {
+    text += (text.empty() ? "" : ", ") + std::to_string(first);
+    if (last > first) text += " to " + std::to_string(last);
   }
   return text;
+}
+
+/// With those behind the newest that are known to have been written.
+std::vector<Range> all_lost(const Recovery& recovery) {
+  std::vector<Range> lost = ranges_of(recovery.lost);
+  const std::uint32_t told = std::max(recovery.newest, lost.empty() ? 0 : lost.back().second);
+  if (recovery.known <= told) return lost;
+  const bool goes_on = !lost.empty() && lost.back().second == told;
+  if (!goes_on) lost.emplace_back(told + 1, told + 1);
+  lost.back().second = recovery.known;
+  return lost;
 }
 
 /// The order of rows is that of their numbers in the file; damage may have given two the same.
@@ -88,6 +111,7 @@ class HistoryRecovery {
 
   void write(const MadeStep& made, const OccupancyGrid& map) {
     recovery_.revisions += made.number > 0 ? 1 : 0;
+    recovery_.newest = made.number;
     const ReadableRow* row = made.step ? steps_[*made.step] : nullptr;
     const bool is_whole = made.needs_grid || made.number % kGridEvery == 0 || (row != nullptr && row->is_named);
     const std::vector<std::uint8_t> grid = is_whole ? encoded_grid(map) : std::vector<std::uint8_t>{};
@@ -118,10 +142,15 @@ class HistoryRecovery {
 }  // namespace
 
 std::string Recovery::words() const {
-  if (revisions == 0) return "nothing of this first map's history can be recovered: begins with the first map";
+  const std::vector<Range> all = all_lost(*this);
+  const std::string told_lost = all.empty() ? "" : "; lost for good: " + listed(all);
+  if (revisions == 0) {
+    const std::string nothing = "nothing of this first map's history can be recovered: begins with the first map";
+    return known > 0 ? nothing + told_lost : nothing;
+  }
   std::string text = std::to_string(revisions) + (revisions == 1 ? " revision" : " revisions") + " recovered";
-  if (!computed.empty()) text += ", of these computed from their neighbours: " + listed(computed);
-  if (!lost.empty()) text += "; lost for good: " + listed(lost);
+  if (!computed.empty()) text += ", of these computed from their neighbours: " + listed(ranges_of(computed));
+  text += told_lost;
   if (goes_on_without) text += " (later maps are without what these alone have changed)";
   if (elsewhere > 0) text += "; computed or lost of other first maps: " + std::to_string(elsewhere);
   return text;
@@ -145,6 +174,7 @@ Recovery recover(const std::filesystem::path& damaged, const OccupancyGrid* firs
       all.computed = std::move(one.computed);
       all.lost = std::move(one.lost);
       all.goes_on_without = one.goes_on_without;
+      all.newest = one.newest;
     } else {
       all.elsewhere += static_cast<std::uint32_t>(one.computed.size() + one.lost.size());
     }

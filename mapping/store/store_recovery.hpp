@@ -15,13 +15,16 @@ namespace deltamap::mapping::store {
 struct History;
 
 struct Recovery {
-  std::uint32_t revisions = 0;          ///< that are there again, M_0 not counted
-  std::vector<std::uint32_t> computed;  ///< of these: what they changed follows from their neighbours
-  std::vector<std::uint32_t> lost;      ///< cannot be had
-  std::uint32_t elsewhere = 0;          ///< computed or lost of first maps that were not asked for
-  bool goes_on_without = false;         ///< later maps lack what a lost revision alone has changed
+  std::uint32_t revisions = 0;            ///< that are there again, M_0 not counted
+  std::vector<std::uint32_t> computed{};  ///< of these: what they changed follows from their neighbours
+  std::vector<std::uint32_t> lost{};      ///< cannot be had
+  std::uint32_t elsewhere = 0;            ///< computed or lost of first maps that were not asked for
+  bool goes_on_without = false;           ///< later maps lack what a lost revision alone has changed
+  std::uint32_t newest = 0;               ///< that is there again
+  std::uint32_t known = 0;                ///< so many are known to have been written; 0: not known
 
-  /// "150 revisions recovered, of these computed from their neighbours: 70; lost for good: 12, 14 to 16"
+  /// "150 revisions recovered, of these computed from their neighbours: 70; lost for good: 12, 14 to 16". What was
+  /// written behind the newest one is lost, too.
   [[nodiscard]] std::string words() const;
 };
 

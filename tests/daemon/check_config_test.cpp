@@ -111,6 +111,27 @@ TEST_F(CheckConfig, TellsTheRevisionsOfAStoreAndTouchesNothing) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(CheckConfig, TellsOfRevisionsThatOnlyTheKeptPoseKnows) {
+  write_store();
+  KeptPose pose;
+  pose.first_map = grid_hash(first_);
+  pose.revision = 103;
+  (void)folder_.write("state/store.pose.json", json_text(pose));
+  EXPECT_EQ(finding("store").level, Level::kWarning);
+  EXPECT_EQ(finding("store").text, settings_.map.store +
+                                       ": its newest revision of this map is 1, and the pose that was kept is of "
+                                       "revision 103: 2 to 103 are missing");
+  fs::resize_file(settings_.map.store, 0);
+  const auto before = files();
+  EXPECT_EQ(finding("store").level, Level::kWarning);
+  EXPECT_NE(finding("store").text.find("is empty: a start would set it aside"), std::string::npos);
+  EXPECT_NE(finding("store").text.find(": 1 to 103 are missing"), std::string::npos) << finding("store").text;
+  EXPECT_EQ(files(), before);
+  fs::remove(settings_.map.store);
+  EXPECT_NE(finding("store").text.find("will be made: "), std::string::npos) << finding("store").text;
+  EXPECT_EQ(finding("store").level, Level::kWarning);
+}
+
 TEST_F(CheckConfig, ReadsWhatAKilledDaemonHasLeftInTheLog) {
   fs::create_directories(folder_.path() / "state");
   const std::string living = settings_.map.store;

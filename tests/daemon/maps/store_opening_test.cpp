@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "core/random.hpp"
+#include "daemon/kept/kept_pose.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "mapping/store/map_store.hpp"
 #include "tests/support/files/full_disk.hpp"
@@ -63,6 +64,15 @@ class StoreOpening : public testing::Test {
     out.seekp(static_cast<std::streamoff>(offset));
     out << bytes;
   }
+
+  /// As a run does that has known so many revisions.
+  void keep_pose_of(std::uint32_t revision, std::uint64_t first_map) const {
+    KeptPose pose;
+    pose.first_map = first_map;
+    pose.revision = revision;
+    (void)folder.write("store.pose.json", json_text(pose));
+  }
+  void keep_pose_of(std::uint32_t revision) const { keep_pose_of(revision, grid_hash(first)); }
 
   /// Every revision is there as it was written.
   void expect_every_revision(const std::string& what) {
@@ -166,6 +176,71 @@ TEST_F(StoreOpening, WhatIsLostIsToldByNumber) {
             std::string::npos)
       << opened.warnings[0];
   EXPECT_EQ(opened.start.revision, kRevisions);
+}
+
+TEST_F(StoreOpening, AFileThatWasEmptiedIsKeptAsideAndWhatItHeldIsToldByNumber) {
+  fill();
+  keep_pose_of(kRevisions);
+  fs::resize_file(file, 0);
+  {
+    const OpenedStore opened = open_store(file, first);
+    ASSERT_EQ(opened.warnings.size(), 1u);
+    EXPECT_EQ(opened.warnings[0], "map store set aside as " + file.string() + ".set-aside-1: " + file.string() +
+                                      ": is empty; nothing of this first map's history can be recovered: begins with "
+                                      "the first map; lost for good: 1 to 150");
+    EXPECT_EQ(opened.start.revision, 0u);
+    EXPECT_TRUE(opened.store.store);
+  }
+  EXPECT_EQ(fs::file_size(file.string() + ".set-aside-1"), 0u);
+  const OpenedStore again = open_store(file, first);
+  ASSERT_EQ(again.warnings.size(), 1u) << "until a pose of the new history is kept";
+  EXPECT_NE(again.warnings[0].find(": 1 to 150 are missing"), std::string::npos) << again.warnings[0];
+}
+
+TEST_F(StoreOpening, WhereTheFileWasEmptiedItsLogIsNotDeleted) {
+  (void)folder.write("store.sqlite", "");
+  (void)folder.write("store.sqlite-wal", "what was not in the file yet");
+  const OpenedStore opened = open_store(file, first);
+  EXPECT_EQ(opened.warnings.size(), 1u);
+  EXPECT_TRUE(opened.store.store);
+  EXPECT_EQ(content_of(file.string() + ".set-aside-1-wal"), "what was not in the file yet");
+}
+
+TEST_F(StoreOpening, ANewFileThatAKilledStartHasLeftEmptyIsNoLoss) {
+  (void)folder.write("store.sqlite", "");
+  const OpenedStore opened = open_store(file, first);
+  EXPECT_TRUE(opened.warnings.empty());
+  EXPECT_FALSE(fs::exists(file.string() + ".set-aside-1"));
+}
+
+TEST_F(StoreOpening, RevisionsThatOnlyTheKeptPoseTellsOfAreToldToBeMissing) {
+  fill();
+  for (const auto& [known, missing] : {std::pair{kRevisions, std::string{}},
+                                       {kRevisions + 1, ": 151 is missing"},
+                                       {kRevisions + 20, ": 151 to 170 are missing"}}) {
+    keep_pose_of(known);
+    const OpenedStore opened = open_store(file, first);
+    EXPECT_EQ(opened.start.revision, kRevisions);
+    ASSERT_EQ(opened.warnings.size(), missing.empty() ? 0u : 1u);
+    if (!missing.empty()) {
+      EXPECT_NE(opened.warnings[0].find(missing), std::string::npos) << opened.warnings[0];
+    }
+    EXPECT_FALSE(fs::exists(file.string() + ".set-aside-1"));
+  }
+  keep_pose_of(1000, grid_hash(first) + 1);
+  EXPECT_TRUE(open_store(file, first).warnings.empty()) << "of another map";
+}
+
+TEST_F(StoreOpening, OfAFileThatWasCutTheRangeBehindTheCutIsTold) {
+  fill();
+  keep_pose_of(kRevisions);
+  fs::resize_file(file, fs::file_size(file) / 2);
+  const OpenedStore opened = open_store(file, first);
+  ASSERT_EQ(opened.warnings.size(), 1u);
+  ASSERT_LT(opened.start.revision, kRevisions);
+  const std::string range = std::to_string(opened.start.revision + 1) + " to 150";
+  EXPECT_NE(opened.warnings[0].find("; lost for good: "), std::string::npos) << opened.warnings[0];
+  EXPECT_NE(opened.warnings[0].find(range), std::string::npos) << opened.warnings[0];
 }
 
 TEST_F(StoreOpening, AKillInTheMidstOfARecoveryIsMadeGoodByTheNextStart) {

@@ -50,6 +50,15 @@ TEST_F(ChainRecovery, OfSoundStepsIsEachAsItWas) {
   EXPECT_TRUE(computed.empty());
 }
 
+TEST_F(ChainRecovery, WhatFollowsFromALaterStepIsNotLost) {
+  for (const std::size_t i : {2u, 3u}) {
+    parts.steps[i].is_sure = false;
+    parts.steps[i].changes = {0xFF, 0xFF, 0xFF, 0xFF};
+  }
+  EXPECT_EQ(remake_chain(parts), std::vector<std::uint32_t>{2});
+  EXPECT_EQ(computed, std::vector<std::uint32_t>{3});
+}
+
 TEST_F(ChainRecovery, ComputesADamagedStepFromItsNeighbours) {
   parts.steps[2].is_sure = false;
   parts.steps[2].changes = {0xFF, 0xFF, 0xFF, 0xFF};

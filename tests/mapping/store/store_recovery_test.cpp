@@ -124,6 +124,28 @@ TEST_F(StoreRecovery, IsEveryRevisionWhereAPageIsGone) {
   }
 }
 
+TEST_F(StoreRecovery, NoRevisionIsBothComputedAndLost) {
+  write(100);
+  for (const char* table : {"revision", "revision_copy"}) {
+    for (const int number : {30, 31}) damage(table, number);
+  }
+  EXPECT_EQ(recovered().words(),
+            "99 revisions recovered, of these computed from their neighbours: 31; lost for good: 30");
+}
+
+TEST_F(StoreRecovery, WhatIsKnownToHaveBeenWrittenBehindTheNewestIsLost) {
+  Recovery recovery{.revisions = 37, .newest = 37, .known = 37};
+  EXPECT_EQ(recovery.words(), "37 revisions recovered");
+  recovery.known = 103;
+  EXPECT_EQ(recovery.words(), "37 revisions recovered; lost for good: 38 to 103");
+  recovery.lost = {5, 38, 39};
+  EXPECT_EQ(recovery.words(), "37 revisions recovered; lost for good: 5, 38 to 103");
+  recovery.known = 39;
+  EXPECT_EQ(recovery.words(), "37 revisions recovered; lost for good: 5, 38 to 39");
+  recovery.known = 0xFFFFFFFF;
+  EXPECT_EQ(recovery.words(), "37 revisions recovered; lost for good: 5, 38 to 4294967295");
+}
+
 TEST_F(StoreRecovery, FollowsFromTheNeighboursWhereBothRowsAreDamaged) {
   write(100);
   for (const char* table : {"revision", "revision_copy"}) damage(table, 30);
