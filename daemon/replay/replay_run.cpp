@@ -99,10 +99,10 @@ void Replay::run(const ReplayProgress& progress) {
   }
   report_.recording = port.faults();
   if (report_.scans.decoded == 0) {
-    const auto& [cut, doubts, lacks_records, lacks_end] = report_.recording;
-    if (cut) throw std::runtime_error(cut->text + "; no scan lies before that");
-    throw std::runtime_error(lacks_records ? doubts.front() + "; no scan is left"
-                                           : job_.recording.string() + ": holds no scan in this window");
+    const drivers::port::LogFaults& faults = report_.recording;
+    if (faults.cut) throw std::runtime_error(faults.cut->text + "; no scan lies before that");
+    throw std::runtime_error(faults.lacks_records ? faults.doubts.front() + "; no scan is left"
+                                                  : job_.recording.string() + ": holds no scan in this window");
   }
   report_.wire = decoder.counts();
 }

@@ -21,6 +21,7 @@ std::string content_of(const StartMap& start) {
 std::string journal_state(const RecordedRun& recorded, const ReplayJob& job, const RunIdentity& identity) {
   const auto& run = recorded.journal.run();
   if (!run) return "none";
+  if (recorded.faults.is_unchecked) return "not obeyed: whether records are missing cannot be checked";
   if (recorded.journal.has_gap()) return "not obeyed: records are missing";
   if (run->memory != 0 && identity.memory == 0) return "not obeyed: it began with a pose that was kept";
   if (*run != identity) return "not obeyed: other settings or map";
@@ -41,7 +42,7 @@ RecordedRun recorded_run(const ReplayJob& job) {
     recorded.journal.read(note);
   }
   recorded.faults = port.faults();
-  if (recorded.faults.lacks_records) recorded.journal.lose_records();
+  if (recorded.faults.lacks_records || recorded.faults.is_unchecked) recorded.journal.lose_records();
   return recorded;
 }
 

@@ -97,6 +97,7 @@ class ByteLogReader {
   [[noreturn]] void refuse_without_ports();
   /// Reads blocks until some record waits; false at the end. Throws Damage.
   [[nodiscard]] bool read_on();
+  void begin_section();
   void read_interface();
   void read_packet();
   void take_sealed(ByteRecord record, const std::vector<std::string_view>& comments, const PacketSeal& seal);

@@ -57,6 +57,7 @@ std::string text_of(const pcapng::Interface& interface) {
 ByteLogReader::ByteLogReader(std::filesystem::path file) : file_{std::move(file)} {
   try {
     (void)file_.next();  // the section header
+    begin_section();
   } catch (const Damage& damage) {
     file_.refuse("not a whole recording: " + damage.why);
   }
@@ -110,13 +111,18 @@ std::optional<ByteRecord> ByteLogReader::next() {
 
 bool ByteLogReader::read_on() {
   while (const auto type = file_.next()) {
-    if (*type == pcapng::kSectionHeader) sources_.clear();  // numbers of interfaces count from 0 in each section
+    if (*type == pcapng::kSectionHeader) begin_section();
     if (*type == pcapng::kInterfaceDescription) read_interface();
     if (*type == pcapng::kEnhancedPacket) read_packet();
     if (*type == pcapng::kSimplePacket || *type == pcapng::kObsoletePacket) audit_.stampless(file_.block_at());
     if (!waiting_.empty()) return true;
   }
   return false;
+}
+
+void ByteLogReader::begin_section() {
+  sources_.clear();  // numbers of interfaces count from 0 in each section
+  if (pcapng::is_written_by_us(file_.body())) audit_.is_ours();
 }
 
 void ByteLogReader::read_interface() {
@@ -144,7 +150,10 @@ void ByteLogReader::read_packet() {
   std::optional<PacketSeal> seal;
   if (packet.id) seal = seal_of_id(*packet.id);
   begin(source, seal);
-  if (!seal) audit_.unnumbered(file_.block_at());
+  if (!seal) {
+    audit_.unnumbered(file_.block_at());
+    if (!record.bytes.empty() && !packet.tells_direction) audit_.undirected(file_.block_at());
+  }
   if (packet.bytes_cut_off > 0) {
     return audit_.snapped(seal ? std::optional{seal->number} : std::nullopt, file_.block_at());
   }
@@ -198,9 +207,15 @@ void ByteLogReader::take_unsealed(ByteRecord record, const std::vector<std::stri
 }
 
 void ByteLogReader::hand_over(ByteRecord record) {
-  if (const auto told = end_of_note(record.note)) return audit_.end(*told, record.stamp);
+  if (const auto told = end_of_note(record.note)) {
+    audit_.is_ours();
+    return audit_.end(*told, record.stamp);
+  }
   unsigned& baud = bauds_[static_cast<std::size_t>(record.port)];
-  if (const auto noted = baud_of_note(record.note)) baud = *noted;
+  if (const auto noted = baud_of_note(record.note)) {
+    audit_.is_ours();
+    baud = *noted;
+  }
   record.baud = baud;
   if (!first_record_) first_record_ = record.stamp;
   last_record_ = record.stamp;

@@ -25,7 +25,7 @@ void append_section(std::vector<std::uint8_t>& out) {
   block.number(std::uint16_t{1});  // version 1.0
   block.number(std::uint16_t{0});
   block.number(~std::uint64_t{0});  // length of the section: not known, it grows
-  block.option(pcapng::kSectionUserApplication, "deltamap");
+  block.option(pcapng::kSectionUserApplication, pcapng::kOwnName);
   block.option(pcapng::kOptionEnd, "");
   block.finish();
 }

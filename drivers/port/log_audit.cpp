@@ -49,7 +49,17 @@ LogFaults LogAudit::faults(const std::string& file, bool is_whole) const {
       "has them");
   lack(silenced_, "without the note that they were written for: another program took it out");
   lack(stampless_, "without a time (simple or obsolete packet blocks), and left out");
-  if (numbered_ > 0) lack(unnumbered_, "without a number: another program has added or changed them");
+  if (numbered_ > 0) {
+    lack(unnumbered_, "without a number: another program has added or changed them");
+  } else if (is_ours_ && unnumbered_.count > 0 && !faults.lacks_records) {
+    const char* without = undirected_.count > 0 ? "number (epb_packetid), some of them without direction (epb_flags): "
+                                                  "what was sent may count as received, and "
+                                                : "number (epb_packetid): ";
+    doubt(unnumbered_.line(std::string("without a ") + without +
+                           "whether packets are missing cannot be checked; an older version or another program wrote "
+                           "it, the recording as it was written may tell"));
+    faults.is_unchecked = true;
+  }
   for (const auto& [interface, count] : foreign_) {
     doubt(std::to_string(count) + " packets of another interface, " + interface + ", left out");
   }

@@ -19,6 +19,10 @@ class LogAudit {
   /// A packet that is as it was written. `byte`: its place in the file; of the others, too.
   void sealed(std::uint32_t number, std::uint64_t byte);
   void unnumbered(std::uint64_t byte) { unnumbered_.add(byte); }
+  /// Without a number too, which would tell by its checksum that it was so written.
+  void undirected(std::uint64_t byte) { undirected_.add(byte); }
+  /// This program has written it: what it writes has numbers and directions.
+  void is_ours() { is_ours_ = true; }
   /// Not as it was written, perhaps in its number too, and left out.
   void changed(std::uint32_t number, std::uint64_t byte) {
     changed_.add(byte);
@@ -59,9 +63,10 @@ class LogAudit {
 
   std::uint64_t numbered_ = 0;
   std::uint32_t expected_ = 0;
-  Tally missing_, unnumbered_, changed_, snapped_, silenced_, stampless_;
+  Tally missing_, unnumbered_, undirected_, changed_, snapped_, silenced_, stampless_;
   Tally steps_back_;  // of the numbers
   std::map<std::string, std::uint64_t> foreign_;
+  bool is_ours_ = false;
   bool has_end_ = false;
   double moved_s_ = 0.0;
 };

@@ -14,6 +14,7 @@ struct LogFaults {
   std::optional<LogCut> cut;        ///< nothing after it can be read
   std::vector<std::string> doubts;  ///< a line each, with file, place and what to do
   bool lacks_records = false;       ///< bytes or notes are missing before the end
+  bool is_unchecked = false;        ///< none are known to be missing, and nothing would tell
   bool lacks_end = false;           ///< the last ones are missing, or may be
 
   /// All that a person must be told.

@@ -24,6 +24,7 @@ constexpr std::uint32_t kEnhancedPacket = 6;           // 4.3
 constexpr std::uint16_t kOptionEnd = 0;                // 3.5
 constexpr std::uint16_t kOptionComment = 1;            // 3.5
 constexpr std::uint16_t kSectionUserApplication = 4;   // 4.1, table 3
+constexpr std::string_view kOwnName = "deltamap";      // its value here
 constexpr std::uint16_t kInterfaceName = 2;            // 4.2, table 4
 constexpr std::uint16_t kInterfaceSpeed = 8;           // 4.2, table 4: 64 bits, bit/s
 constexpr std::uint16_t kInterfaceTimeResolution = 9;  // 4.2, table 4: 10^-n s, or 2^-n s with the top bit

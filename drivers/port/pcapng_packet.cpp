@@ -4,6 +4,7 @@
 namespace deltamap::drivers::port::pcapng {
 namespace {
 
+constexpr std::size_t kSectionHeaderBytes = 16;
 constexpr std::size_t kPacketHeaderBytes = 20;
 constexpr std::size_t kInterfaceHeaderBytes = 8;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
@@ -23,6 +24,15 @@ std::int64_t ticks_per_second(std::uint8_t resolution) {
 }
 
 }  // namespace
+
+bool is_written_by_us(std::span<const std::uint8_t> body) {
+  if (body.size() < kSectionHeaderBytes) return false;
+  std::span<const std::uint8_t> options = body.subspan(kSectionHeaderBytes);
+  while (const auto option = take_option(options)) {
+    if (option->code == kSectionUserApplication && text_of(option->value) == kOwnName) return true;
+  }
+  return false;
+}
 
 Interface interface_in(std::span<const std::uint8_t> body) {
   if (body.size() < kInterfaceHeaderBytes) throw Damage{"an interface description is too short"};
@@ -56,7 +66,9 @@ Packet packet_in(std::span<const std::uint8_t> body) {
     if (option->code == kOptionComment) packet.comments.push_back(text_of(option->value));
     if (option->code == kPacketId) packet.id = number_at<std::uint64_t>(option->value, 0);
     if (option->code == kPacketFlags) {
-      packet.went_out = (number_at<std::uint32_t>(option->value, 0) & kFlagDirectionMask) == kFlagOutbound;
+      const std::uint32_t direction = number_at<std::uint32_t>(option->value, 0) & kFlagDirectionMask;
+      packet.went_out = direction == kFlagOutbound;
+      packet.tells_direction = direction != 0;
     }
   }
   if (!options.empty() && number_at<std::uint16_t>(options, 0) != kOptionEnd) {

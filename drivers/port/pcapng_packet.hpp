@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an interface description (draft-ietf-opsawg-pcapng 4.2) and an enhanced packet (4.3) say.
+// What a section header (draft-ietf-opsawg-pcapng 4.1), an interface description (4.2) and an enhanced packet (4.3)
+// say.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,9 @@
 #include "drivers/port/pcapng_block.hpp"
 
 namespace deltamap::drivers::port::pcapng {
+
+/// A section header that names this program as its writer.
+[[nodiscard]] bool is_written_by_us(std::span<const std::uint8_t> body);
 
 struct Interface {
   std::string name;
@@ -31,6 +35,7 @@ struct Packet {
   std::span<const std::uint8_t> bytes;
   std::uint32_t bytes_cut_off = 0;  ///< by a snap length
   bool went_out = false;
+  bool tells_direction = false;
   std::optional<std::uint64_t> id;
   std::vector<std::string_view> comments;
 };

@@ -21,6 +21,8 @@ namespace {
 using test::CapturePacket;
 using test::content_of;
 
+constexpr const char* kUnchecked = "not obeyed: whether records are missing cannot be checked";
+
 class EditedRecording : public testing::Test {
  protected:
   EditedRecording() {
@@ -70,9 +72,9 @@ class EditedRecording : public testing::Test {
     return run_replay(job, [](double) { return true; });
   }
 
-  void expect_the_same_replay(const std::string& recording) {
+  void expect_the_same_replay(const std::string& recording, const char* journal = "obeyed") {
     const RunReport report = replay(recording);
-    EXPECT_EQ(report.journal, "obeyed");
+    EXPECT_EQ(report.journal, journal);
     EXPECT_EQ(report.commands, 1u);
     EXPECT_TRUE(content_of(folder_.path() / "out/trajectory.tum") == trajectory_);
   }
@@ -94,10 +96,20 @@ bool carries_note(const CapturePacket& packet) { return !packet.comment().empty(
 
 TEST_F(EditedRecording, RemarksBesideNotesLeaveEveryOrder) {
   const std::string older = test::without_option(whole_, CapturePacket::kId);
-  for (const std::string& recording : {whole_, older}) {
-    expect_the_same_replay(test::with_remark(recording, carries_note, "here it was carried"));
+  for (const auto& [recording, journal] : {std::pair{whole_, "obeyed"}, {older, kUnchecked}}) {
+    expect_the_same_replay(test::with_remark(recording, carries_note, "here it was carried"), journal);
     expect_the_same_replay(test::with_comments_rewritten(
-        recording, [](const std::string& note) { return note + "\r\nhere it was carried"; }));
+                               recording, [](const std::string& note) { return note + "\r\nhere it was carried"; }),
+                           journal);
+  }
+}
+
+TEST_F(EditedRecording, WithoutPacketNumbersItIsNotHeldForWhole) {
+  const std::string older = test::without_option(whole_, CapturePacket::kId);
+  const std::string by_others = test::with_writer(older, "Editcap 4.0.6");
+  for (const std::string& recording : {older, test::without_packets(older, 40, 60), by_others}) {
+    expect_told(recording, "whether packets are missing cannot be checked");
+    EXPECT_EQ(replay(recording).journal, kUnchecked);
   }
 }
 

@@ -104,7 +104,8 @@ TEST_F(EditedLog, OfOlderRecordingsEveryLineIsTaken) {
        {older, test::with_remark(older, carries_note, "here it hit the rack"),
         test::with_comments_rewritten(older, [](const std::string& note) { return "it hit\r\n" + note; })}) {
     const Read again = read(edited);
-    EXPECT_TRUE(again.faults.lines().empty());
+    EXPECT_FALSE(again.faults.lacks_records);
+    EXPECT_EQ(again.faults.lines().size(), 1u) << "that nothing tells whether packets are missing";
     std::vector<std::string> notes;
     for (const ByteRecord& record : again.records) {
       if (record.note.starts_with("revision") || baud_of_note(record.note)) notes.push_back(record.note);
@@ -116,6 +117,26 @@ TEST_F(EditedLog, OfOlderRecordingsEveryLineIsTaken) {
     ASSERT_NE(of_laser, again.records.rend());
     EXPECT_EQ(of_laser->baud, 500'000u);
   }
+}
+
+TEST_F(EditedLog, WithoutNumbersItIsToldThatMissingPacketsCannotBeSeen) {
+  const std::string older = test::without_option(whole_, CapturePacket::kId);
+  const std::string by_others = test::with_writer(older, "Editcap 4.0.6");
+  for (const std::string& edited : {older, test::without_packets(older, 10, 14), by_others}) {
+    const LogFaults faults = read(edited).faults;
+    ASSERT_EQ(faults.doubts.size(), 1u);
+    EXPECT_NE(faults.doubts[0].find("whether packets are missing cannot be checked"), std::string::npos);
+    EXPECT_EQ(faults.doubts[0].find("direction"), std::string::npos) << faults.doubts[0];
+    EXPECT_TRUE(faults.is_unchecked);
+    EXPECT_FALSE(faults.lacks_records);
+  }
+  const LogFaults undirected = read(test::without_option(older, 2)).faults;
+  ASSERT_EQ(undirected.doubts.size(), 1u);
+  EXPECT_NE(undirected.doubts[0].find("without direction (epb_flags)"), std::string::npos) << undirected.doubts[0];
+  EXPECT_FALSE(read(whole_).faults.is_unchecked);
+  EXPECT_FALSE(read(test::with_writer(whole_, "Editcap 4.0.6")).faults.is_unchecked);
+  const std::string foreign = test::with_writer(test::without_option(older, CapturePacket::kComment), "dumpcap");
+  EXPECT_FALSE(read(foreign).faults.is_unchecked) << "written by somebody who knows of no numbers";
 }
 
 TEST_F(EditedLog, BlocksWithoutPacketsAndMovedInterfacesChangeNothing) {

@@ -197,6 +197,15 @@ inline std::string without_option(const std::string& file, std::uint16_t code) {
   });
 }
 
+/// Programs that write their own name into the section header.
+inline std::string with_writer(const std::string& file, const std::string& name) {
+  constexpr std::size_t kFixedBytes = 16;
+  constexpr std::uint16_t kWriter = 4;
+  std::vector<CaptureBlock> blocks = blocks_of(file);
+  blocks.at(0).body = blocks[0].body.substr(0, kFixedBytes) + bytes_of_options({{kWriter, name}});
+  return file_of(blocks);
+}
+
 /// editcap -t.
 inline std::string shifted_in_time(const std::string& file, std::int64_t ns) {
   return with_packets_edited(file, [&](std::size_t, CapturePacket& packet) {
