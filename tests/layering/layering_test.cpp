@@ -171,7 +171,7 @@ const Rooms kRoomArrows = {
 };
 
 TEST(Layering, RoomsOfOursIncludeWhatIsDrawnAndStandAmongFewArrows) {
-  for (const std::string wing : kOurs) {
+  for (const std::string& wing : kOurs) {
     std::size_t arrows = 0;
     for (const auto& [room, others] : rooms_of(wing)) {
       if (room == wing) continue;
@@ -184,7 +184,7 @@ TEST(Layering, RoomsOfOursIncludeWhatIsDrawnAndStandAmongFewArrows) {
 }
 
 TEST(Layering, EveryRoomOfOursIsANamespace) {
-  for (const std::string wing : kOurs) {
+  for (const std::string& wing : kOurs) {
     for (const auto& file : sources_of(wing)) {
       const std::string path = fs::relative(file, kRoot).string();
       const std::string name = "deltamap::" + std::regex_replace(room_of(path), std::regex{"/"}, "::");
@@ -212,7 +212,7 @@ std::string first_include_of(const fs::path& file) {
 }
 
 TEST(Layering, EverySourceOfOursHasItsTest) {
-  for (const std::string wing : kOurs) {
+  for (const std::string& wing : kOurs) {
     std::ifstream in(kRoot / "tests" / wing / "CMakeLists.txt");
     const std::string programs{std::istreambuf_iterator<char>(in), {}};
     for (const auto& file : sources_of(wing)) {
