@@ -193,12 +193,12 @@ TEST(DriveDesk, TellsPlannersWhatForbidsToDriveWhereItNeverDrives) {
 TEST(DriveDesk, SaysOnceWhyItStandsWhereItDrives) {
   Desk desk;
   ASSERT_TRUE(desk.desk.let_drive({true, 1, desk.now()}, desk.now()).done);
-  desk.pass(1.0);
+  desk.pass(1.0, 0.0);
   desk.told.clear();
   desk.is_blind = true;
-  desk.pass(5.0);
+  desk.pass(5.0, 0.0);
   desk.is_blind = false;
-  desk.pass(5.0);
+  desk.pass(5.0, 0.0);
   EXPECT_EQ(desk.told,
             (std::vector<std::string>{"driving stops: laser sees nothing; until it is over", "driving goes on"}));
 }

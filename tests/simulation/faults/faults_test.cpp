@@ -252,6 +252,7 @@ TEST(ControllerFaults, DrivesOnWhateverItIsToldUntilEstop) {
   drive.faults().controller.keeps_set_points = true;
   disobeys("keeps its set points");
   drive.faults().controller = {.goes_at_m_per_s = 0.4};
+  drive.host.drive(0.1, 0.0);  // an ESTOP ends where the robot is told to move
   disobeys("goes at a speed of its own");
 }
 
