@@ -37,7 +37,7 @@ class FitWatch {
   [[nodiscard]] bool start_fits() const { return !given_ || given_->is_supported; }
   /// A person has said where the robot stands: only scans from now on speak for that.
   void relocalized() {
-    given_.emplace();
+    given_ = Given{};
     mean_fit_.reset();
   }
 
