@@ -64,7 +64,7 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
 }
 
 /// Logs the refusal behind the request that was logged when it came, and answers the client with the reason.
-void ControlDesk::refuse(const Request& request, const std::string& why, const control::Server::Reply& reply) {
+void ControlDesk::refuse(const Request& request, const std::string& why, const control::Server::Reply& reply) const {
   wiring_.log("ctl: " + control::words_of(request) + ": " + why);
   reply(error_line(why));
 }

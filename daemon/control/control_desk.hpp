@@ -55,7 +55,7 @@ class ControlDesk {
     control::Server::Reply reply;
   };
   void answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply);
-  void refuse(const control::Request& request, const std::string& why, const control::Server::Reply& reply);
+  void refuse(const control::Request& request, const std::string& why, const control::Server::Reply& reply) const;
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
   void record(bool goes_on, const control::Request& request, control::Server::Reply reply);
   void reload(control::Server::Reply reply);
