@@ -79,7 +79,7 @@ class RulesTest(unittest.TestCase):
 
     def test_the_driving_state_says_why_nobody_may_drive(self):
         drives = {"drive": "wander", "stopped_by": "none", "never_driven": "", "may_drive_by_pose": True, "forbidden_by": "none"}
-        rows = lambda **status: self.browser.run("""const [status] = arguments;
+        rows = lambda **status: self.browser.execute_script("""const [status] = arguments;
             return import("/page/panels.js").then(({ driving_rows }) => driving_rows(status).map(([name, text]) => `${name}: ${text}`))""", {**drives, **status})
         self.assertEqual(rows(), ["Driving: wander", "Planners: may drive by this pose"])
         self.assertEqual(rows(stopped_by="laser sees nothing", may_drive_by_pose=False, forbidden_by="laser sees nothing"),
