@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace deltamap::navigation {
 namespace {
@@ -35,9 +34,9 @@ bool is_a_way(const Pose2& motion, double distance_m) {
 bool MotionWatch::contradicts_wheels() const { return contradictions_ >= kContradictions; }
 
 /// The same laser on the same mount, and wheels that can be compared.
-bool MotionWatch::goes_on(const Seen& seen) const {
-  return last_ && last_->epoch == seen.epoch && last_->scan.robot_from_laser == seen.scan.robot_from_laser &&
-         seconds(seen.scan.time - last_->scan.time) < kSilenceS;
+bool MotionWatch::goes_on(const Moment& now) const {
+  return last_ && last_->epoch == now.epoch && last_->robot_from_laser == now.robot_from_laser &&
+         seconds(now.time - last_->time) < kSilenceS;
 }
 
 void MotionWatch::skip() {
@@ -57,37 +56,37 @@ void MotionWatch::doubt() {
 }
 
 /// So that wheels and scans cannot be late by more than a centimetre or two, or degrees.
-bool MotionWatch::is_slow(const Seen& seen) const {
-  const Pose2 step = motion_between(last_->odom_from_robot, seen.odom_from_robot);
-  const double step_s = seconds(seen.scan.time - last_->scan.time);
+bool MotionWatch::is_slow(const Moment& now) const {
+  const Pose2 step = motion_between(last_->odom_from_robot, now.odom_from_robot);
+  const double step_s = seconds(now.time - last_->time);
   return step.position().norm() < kCreepMPerS * step_s && std::abs(step.theta) < kCreepRadPerS * step_s;
 }
 
 bool MotionWatch::observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch) {
-  Seen seen{scan, odom_from_robot, epoch};
-  if (goes_on(seen)) {
+  const Moment now{scan.time, scan.robot_from_laser, odom_from_robot, epoch};
+  bool creeps = false;
+  if (goes_on(now)) {
     unproven_m_ += distance_between(last_->odom_from_robot, odom_from_robot);
-    seen.creeps = !looks_ahead_ && is_slow(seen);
+    creeps = !looks_ahead_ && is_slow(now);
   } else {
     doubt();
   }
   const bool is_old = reference_ && seconds(scan.time - reference_->scan.time) >= kWayMostS;
-  const bool slows_down = reference_ && seen.creeps && !reference_->creeps;
+  const bool slows_down = reference_ && creeps && !reference_->creeps;
   if (is_old || slows_down) skip();
-  if (reference_) reference_->creeps = seen.creeps;
-  const bool is_without_doubt = reference_ && compare(seen);
-  if (!reference_) reference_ = seen;
+  if (reference_) reference_->creeps = creeps;
+  const bool is_without_doubt = reference_ && compare(scan, odom_from_robot);
+  if (!reference_) reference_ = Reference{scan, odom_from_robot, creeps};
   if (unproven_m_ >= kNothingToAskM && contradictions_ == 0) looks_ahead_ = true;
-  last_ = std::move(seen);
+  last_ = now;
   return is_without_doubt;
 }
 
-bool MotionWatch::compare(const Seen& seen) {
-  const Pose2 motion = motion_between(reference_->odom_from_robot, seen.odom_from_robot);
+bool MotionWatch::compare(const Scan& scan, const Pose2& odom_from_robot) {
+  const Pose2 motion = motion_between(reference_->odom_from_robot, odom_from_robot);
   const bool creeps = reference_->creeps;
   if (!is_a_way(motion, creeps ? std::max(kCreepWayM, judged_m_ + kCreepStepM) : kWayM)) return false;
-  const ShownMotion shown =
-      shown_motion(reference_->scan, seen.scan, motion, creeps ? Likeness::creeping() : Likeness{});
+  const ShownMotion shown = shown_motion(reference_->scan, scan, motion, creeps ? Likeness::creeping() : Likeness{});
   const bool is_whole_way = is_a_way(motion, kWayM);
   judged_m_ = motion.position().norm();
   if (is_whole_way) skip();

@@ -30,21 +30,27 @@ class MotionWatch {
   void forget_contradiction();
 
  private:
-  struct Seen {
-    Scan scan;
+  /// What of a scan the next one is asked for.
+  struct Moment {
+    Timestamp time;
+    Pose2 robot_from_laser;
     Pose2 odom_from_robot;
     std::uint32_t epoch;
-    bool creeps = false;  // from then on
   };
-  [[nodiscard]] bool goes_on(const Seen& seen) const;
+  struct Reference {
+    Scan scan;
+    Pose2 odom_from_robot;
+    bool creeps;  // from then on
+  };
+  [[nodiscard]] bool goes_on(const Moment& now) const;
   void doubt();
   void judge(const ShownMotion& shown, double least_more);
-  [[nodiscard]] bool is_slow(const Seen& seen) const;
-  [[nodiscard]] bool compare(const Seen& seen);
+  [[nodiscard]] bool is_slow(const Moment& now) const;
+  [[nodiscard]] bool compare(const Scan& scan, const Pose2& odom_from_robot);
 
-  std::optional<Seen> reference_;  // what later scans are held against
-  double judged_m_ = 0.0;          // of the way from there
-  std::optional<Seen> last_;
+  std::optional<Reference> reference_;  // what later scans are held against
+  double judged_m_ = 0.0;               // of the way from there
+  std::optional<Moment> last_;
   int contradictions_ = 0;  // unbroken
   bool looks_ahead_ = false;
   double unproven_m_ = 0.0;  // driven since that is in doubt

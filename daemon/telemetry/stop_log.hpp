@@ -16,36 +16,39 @@ class StopLog {
   [[nodiscard]] LogLine line(navigation::StopReason reason) {
     using navigation::StopReason;
     const bool drives = reason == StopReason::kNone || reason == StopReason::kObstacle;
-    if (drives && told_ != StopReason::kNone) {
-      told_ = StopReason::kNone;
-      return {"driving goes on"};
-    }
-    if (!is_told(reason) || reason == told_) return {};
-    told_ = reason;
-    return {"driving stops: " + with_end(reason), true};
+    return due(told_, reason, drives, {.ends = "driving stops: ", .goes_on = "driving goes on", .is_warning = true});
   }
 
   /// The line that is due for planners, whoever drives; a warning where robot or laser, not the pose, forbids it.
   [[nodiscard]] LogLine line_for_planners(navigation::StopReason unfit, navigation::StopReason pose) {
     using navigation::StopReason;
     const StopReason forbidden_by = unfit != StopReason::kNone ? unfit : pose;
-    if (forbidden_by == StopReason::kNone && told_planners_ != StopReason::kNone) {
-      told_planners_ = StopReason::kNone;
-      return {"planners may drive by the pose again"};
-    }
-    if (!is_told(forbidden_by) || forbidden_by == told_planners_) return {};
-    told_planners_ = forbidden_by;
-    return {"planners must not drive by the pose: " + with_end(forbidden_by), unfit != StopReason::kNone};
+    return due(told_planners_, forbidden_by, forbidden_by == StopReason::kNone,
+               {.ends = "planners must not drive by the pose: ",
+                .goes_on = "planners may drive by the pose again",
+                .is_warning = unfit != StopReason::kNone});
   }
 
   /// What has been told of driving says all that planners are told.
   [[nodiscard]] bool says_it_all() const { return told_ == told_planners_; }
 
  private:
-  static std::string with_end(navigation::StopReason reason) {
+  struct Words {
+    const char* ends;
+    const char* goes_on;
+    bool is_warning;  // that it ends
+  };
+  static LogLine due(navigation::StopReason& told, navigation::StopReason reason, bool goes_on, const Words& words) {
+    using navigation::StopReason;
+    if (goes_on && told != StopReason::kNone) {
+      told = StopReason::kNone;
+      return {words.goes_on};
+    }
+    if (!is_told(reason) || reason == told) return {};
+    told = reason;
     const char* until =
         waits_for_person(reason) ? "; waits until it is over and a person says drive" : "; until it is over";
-    return std::string(name_of(reason)) + until;
+    return {words.ends + std::string(name_of(reason)) + until, words.is_warning};
   }
 
   navigation::StopReason told_ = navigation::StopReason::kNone;
