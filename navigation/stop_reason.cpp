@@ -1,74 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "navigation/stop_reason.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace deltamap::navigation {
+namespace {
+
+struct NamedReason {
+  StopReason reason;
+  std::string_view name;
+};
+
+/// One row per reason, in the order of the enumeration.
+constexpr auto kNames = std::to_array<NamedReason>({
+    {StopReason::kNone, "none"},
+    {StopReason::kNoCommand, "no command"},
+    {StopReason::kCommandExpired, "command expired"},
+    {StopReason::kNoOdometry, "no odometry"},
+    {StopReason::kWatchdogUnknown, "watchdog not known"},
+    {StopReason::kNoWatchdog, "no watchdog"},
+    {StopReason::kStopButton, "stop button"},
+    {StopReason::kMotorsOff, "motors off"},
+    {StopReason::kBumper, "bumper"},
+    {StopReason::kStalled, "stalled"},
+    {StopReason::kControllerFault, "controller fault"},
+    {StopReason::kLowBattery, "low battery"},
+    {StopReason::kWheelsSpin, "wheels turn and scans do not follow"},
+    {StopReason::kDisobeys, "robot does not obey"},
+    {StopReason::kUnknownRobot, "unknown robot"},
+    {StopReason::kCharging, "charging"},
+    {StopReason::kNoBattery, "no battery voltage"},
+    {StopReason::kStaleLaser, "stale laser"},
+    {StopReason::kLaserBlind, "laser sees nothing"},
+    {StopReason::kLaserFrozen, "laser repeats one scan"},
+    {StopReason::kWayUncovered, "way ahead not in the laser's view"},
+    {StopReason::kLaserError, "laser error"},
+    {StopReason::kImplausible, "implausible scan"},
+    {StopReason::kPoseUnknown, "pose unknown"},
+    {StopReason::kLost, "lost"},
+    {StopReason::kPoseWrong, "pose wrong"},
+    {StopReason::kStartUnfit, "start pose does not fit"},
+    {StopReason::kPoseUnsure, "pose unsure"},
+    {StopReason::kPoseUnfit, "scans do not fit the pose"},
+    {StopReason::kReverse, "reverse refused"},
+    {StopReason::kObstacle, "obstacle"},
+});
+
+constexpr bool every_reason_has_its_row() {
+  for (std::size_t row = 0; row < kNames.size(); ++row) {
+    if (static_cast<std::size_t>(kNames[row].reason) != row) return false;
+  }
+  return kNames.back().reason == StopReason::kObstacle;
+}
+static_assert(every_reason_has_its_row(), "a reason has no name, or the rows are out of order");
+
+}  // namespace
 
 std::string_view name_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::kNone:
-      return "none";
-    case StopReason::kNoCommand:
-      return "no command";
-    case StopReason::kCommandExpired:
-      return "command expired";
-    case StopReason::kNoOdometry:
-      return "no odometry";
-    case StopReason::kWatchdogUnknown:
-      return "watchdog not known";
-    case StopReason::kNoWatchdog:
-      return "no watchdog";
-    case StopReason::kStopButton:
-      return "stop button";
-    case StopReason::kMotorsOff:
-      return "motors off";
-    case StopReason::kBumper:
-      return "bumper";
-    case StopReason::kStalled:
-      return "stalled";
-    case StopReason::kControllerFault:
-      return "controller fault";
-    case StopReason::kLowBattery:
-      return "low battery";
-    case StopReason::kWheelsSpin:
-      return "wheels turn and scans do not follow";
-    case StopReason::kDisobeys:
-      return "robot does not obey";
-    case StopReason::kUnknownRobot:
-      return "unknown robot";
-    case StopReason::kCharging:
-      return "charging";
-    case StopReason::kNoBattery:
-      return "no battery voltage";
-    case StopReason::kStaleLaser:
-      return "stale laser";
-    case StopReason::kLaserBlind:
-      return "laser sees nothing";
-    case StopReason::kLaserFrozen:
-      return "laser repeats one scan";
-    case StopReason::kWayUncovered:
-      return "way ahead not in the laser's view";
-    case StopReason::kLaserError:
-      return "laser error";
-    case StopReason::kImplausible:
-      return "implausible scan";
-    case StopReason::kPoseUnknown:
-      return "pose unknown";
-    case StopReason::kLost:
-      return "lost";
-    case StopReason::kPoseWrong:
-      return "pose wrong";
-    case StopReason::kStartUnfit:
-      return "start pose does not fit";
-    case StopReason::kPoseUnsure:
-      return "pose unsure";
-    case StopReason::kPoseUnfit:
-      return "scans do not fit the pose";
-    case StopReason::kReverse:
-      return "reverse refused";
-    case StopReason::kObstacle:
-      return "obstacle";
-  }
-  return "unknown";
+  const auto row = static_cast<std::size_t>(reason);
+  return row < kNames.size() ? kNames[row].name : "unknown";
 }
 
 bool waits_for_person(StopReason reason) {
