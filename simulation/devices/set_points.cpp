@@ -41,51 +41,22 @@ bool SetPoints::is_set_point(CommandNumber number) {
 }
 
 bool SetPoints::take(const Command& command, const WheelMotion& motion) {
-  const int value = command.integer_or(0);
-  const auto set_speed = [&](double speed) {
-    speed_m_per_s_ = speed;
-    move_to_m_.reset();
-    emergency_ = false;
-  };
-  const auto set_turn_rate = [&](double turn_rate) {
-    turn_rate_rad_per_s_ = turn_rate;
-    heading_rad_.reset();
-    emergency_ = false;
-  };
   switch (command.number) {
     case CommandNumber::kVel:
-      set_speed(metres(value));
-      return true;
     case CommandNumber::kRotate:
     case CommandNumber::kRvel:
-      set_turn_rate(radians(value));
+    case CommandNumber::kVel2:
+      take_velocity(command);
       return true;
-    case CommandNumber::kVel2: {
-      const auto pair = drivers::pioneer::byte_pair(value);
-      const double left = kVel2Unit_m_per_s * pair.left;
-      const double right = kVel2Unit_m_per_s * pair.right;
-      set_speed(0.5 * (left + right));
-      set_turn_rate(0.5 * (right - left) / kHalfTrack_m);
-      return true;
-    }
     case CommandNumber::kMove:
-      set_speed(0.0);
-      move_to_m_ = motion.travelled_m + metres(value);
-      return true;
     case CommandNumber::kHead:
-      set_turn_rate(0.0);
-      heading_rad_ = wrapped_angle(radians(value));
-      return true;
     case CommandNumber::kDhead:
-      set_turn_rate(0.0);
-      heading_rad_ = wrapped_angle(motion.odom_from_robot.theta + radians(value));
+      take_goal(command, motion);
       return true;
     case CommandNumber::kStop:
     case CommandNumber::kEstop:
     case CommandNumber::kQstop:
-      set_speed(0.0);
-      set_turn_rate(0.0);
-      emergency_ = command.number != CommandNumber::kStop;
+      stop(command.number != CommandNumber::kStop);
       return true;
     case CommandNumber::kSetA:
     case CommandNumber::kSetV:
@@ -96,6 +67,47 @@ bool SetPoints::take(const Command& command, const WheelMotion& motion) {
     default:
       return false;
   }
+}
+
+void SetPoints::set_speed(double speed_m_per_s) {
+  speed_m_per_s_ = speed_m_per_s;
+  move_to_m_.reset();
+  emergency_ = false;
+}
+
+void SetPoints::set_turn_rate(double turn_rate_rad_per_s) {
+  turn_rate_rad_per_s_ = turn_rate_rad_per_s;
+  heading_rad_.reset();
+  emergency_ = false;
+}
+
+void SetPoints::take_velocity(const Command& command) {
+  const int value = command.integer_or(0);
+  if (command.number == CommandNumber::kVel) return set_speed(metres(value));
+  if (command.number != CommandNumber::kVel2) return set_turn_rate(radians(value));
+  const auto pair = drivers::pioneer::byte_pair(value);
+  const double left = kVel2Unit_m_per_s * pair.left;
+  const double right = kVel2Unit_m_per_s * pair.right;
+  set_speed(0.5 * (left + right));
+  set_turn_rate(0.5 * (right - left) / kHalfTrack_m);
+}
+
+void SetPoints::take_goal(const Command& command, const WheelMotion& motion) {
+  const int value = command.integer_or(0);
+  if (command.number == CommandNumber::kMove) {
+    set_speed(0.0);
+    move_to_m_ = motion.travelled_m + metres(value);
+    return;
+  }
+  const double from_rad = command.number == CommandNumber::kDhead ? motion.odom_from_robot.theta : 0.0;
+  set_turn_rate(0.0);
+  heading_rad_ = wrapped_angle(from_rad + radians(value));
+}
+
+void SetPoints::stop(bool at_once) {
+  set_speed(0.0);
+  set_turn_rate(0.0);
+  emergency_ = at_once;
 }
 
 void SetPoints::take_limit(const Command& command) {

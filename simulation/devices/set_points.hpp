@@ -47,6 +47,13 @@ class SetPoints {
   [[nodiscard]] std::optional<double> heading_rad() const { return heading_rad_; }
 
  private:
+  void set_speed(double speed_m_per_s);
+  void set_turn_rate(double turn_rate_rad_per_s);
+  /// VEL, ROTATE, RVEL, VEL2.
+  void take_velocity(const drivers::pioneer::Command& command);
+  /// MOVE, HEAD, DHEAD.
+  void take_goal(const drivers::pioneer::Command& command, const WheelMotion& motion);
+  void stop(bool at_once);
   void take_limit(const drivers::pioneer::Command& command);
   [[nodiscard]] double wanted_speed(const WheelMotion& motion) const;
   [[nodiscard]] double wanted_turn_rate(const WheelMotion& motion) const;
