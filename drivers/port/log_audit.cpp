@@ -4,6 +4,33 @@
 #include <cstdio>
 
 namespace deltamap::drivers::port {
+namespace {
+
+constexpr const char* kOutOfOrder =
+    "out of order: recordings were joined, packets doubled or put in another order; give one recording in the order "
+    "in which it was written";
+constexpr const char* kMissing =
+    "missing before later ones: another program took them out, or the disk was full; the recording as it was "
+    "written has them";
+constexpr const char* kSnapped = "cut by a snap length, and left out; the recording as it was written has them whole";
+constexpr const char* kChanged =
+    "changed since they were written, by another program or by damage, and left out; the recording as it was written "
+    "has them";
+constexpr const char* kSilenced = "without the note that they were written for: another program took it out";
+constexpr const char* kStampless = "without a time (simple or obsolete packet blocks), and left out";
+constexpr const char* kNumberless = "without a number: another program has added or changed them";
+constexpr const char* kEndMissing =
+    "its end is missing: whoever wrote it was ended, is still writing or has reached recording.max_gigabytes, or "
+    "another program has cut the end off";
+
+std::string words_of_move(double moved_s) {
+  char text[128];
+  (void)std::snprintf(text, sizeof text,
+                      "its times were moved by %+.9g s after it was written; its notes tell the old ones", moved_s);
+  return text;
+}
+
+}  // namespace
 
 std::string LogAudit::Tally::line(const std::string& what) const {
   return std::to_string(count) + (count == 1 ? " packet " : " packets ") + what + " (the first at byte " +
@@ -26,55 +53,49 @@ void LogAudit::end(Timestamp told, Timestamp stamp) {
   moved_s_ = seconds(stamp - told);
 }
 
+std::vector<std::string> LogAudit::lacks() const {
+  struct Row {
+    const Tally& tally;
+    bool tells;
+    const char* what;
+  };
+  // Packets in another order are missing where they were and found elsewhere: then "out of order" says it all.
+  const Row rows[] = {{steps_back_, true, kOutOfOrder},
+                      {missing_, steps_back_.count == 0, kMissing},
+                      {snapped_, true, kSnapped},
+                      {changed_, true, kChanged},
+                      {silenced_, true, kSilenced},
+                      {stampless_, true, kStampless},
+                      {unnumbered_, numbered_ > 0, kNumberless}};
+  std::vector<std::string> lines;
+  for (const Row& row : rows) {
+    if (row.tells && row.tally.count > 0) lines.push_back(row.tally.line(row.what));
+  }
+  return lines;
+}
+
+std::string LogAudit::why_unchecked() const {
+  const char* without = undirected_.count > 0 ? "number (epb_packetid), some of them without direction (epb_flags): "
+                                                "what was sent may count as received, and "
+                                              : "number (epb_packetid): ";
+  return unnumbered_.line(std::string("without a ") + without +
+                          "whether packets are missing cannot be checked; an older version or another program wrote "
+                          "it, the recording as it was written may tell");
+}
+
 LogFaults LogAudit::faults(const std::string& file, bool is_whole) const {
   LogFaults faults;
   const auto doubt = [&](const std::string& line) { faults.doubts.push_back(file + ": " + line); };
-  const auto lack = [&](const Tally& tally, const std::string& what) {
-    if (tally.count == 0) return;
-    doubt(tally.line(what));
-    faults.lacks_records = true;
-  };
-  lack(steps_back_,
-       "out of order: recordings were joined, packets doubled or put in another order; give one recording in the order "
-       "in which it was written");
-  // Packets in another order are missing where they were and found elsewhere: then "out of order" says it all.
-  if (steps_back_.count == 0)
-    lack(missing_,
-         "missing before later ones: another program took them out, or the disk was full; the recording as it was "
-         "written has them");
-  lack(snapped_, "cut by a snap length, and left out; the recording as it was written has them whole");
-  lack(
-      changed_,
-      "changed since they were written, by another program or by damage, and left out; the recording as it was written "
-      "has them");
-  lack(silenced_, "without the note that they were written for: another program took it out");
-  lack(stampless_, "without a time (simple or obsolete packet blocks), and left out");
-  if (numbered_ > 0) {
-    lack(unnumbered_, "without a number: another program has added or changed them");
-  } else if (is_ours_ && unnumbered_.count > 0 && !faults.lacks_records) {
-    const char* without = undirected_.count > 0 ? "number (epb_packetid), some of them without direction (epb_flags): "
-                                                  "what was sent may count as received, and "
-                                                : "number (epb_packetid): ";
-    doubt(unnumbered_.line(std::string("without a ") + without +
-                           "whether packets are missing cannot be checked; an older version or another program wrote "
-                           "it, the recording as it was written may tell"));
-    faults.is_unchecked = true;
-  }
+  for (const std::string& line : lacks()) doubt(line);
+  faults.lacks_records = !faults.doubts.empty();
+  faults.is_unchecked = numbered_ == 0 && is_ours_ && unnumbered_.count > 0 && !faults.lacks_records;
+  if (faults.is_unchecked) doubt(why_unchecked());
   for (const auto& [interface, count] : foreign_) {
     doubt(std::to_string(count) + " packets of another interface, " + interface + ", left out");
   }
-  if (moved_s_ != 0.0) {
-    char text[128];
-    (void)std::snprintf(text, sizeof text,
-                        "its times were moved by %+.9g s after it was written; its notes tell the old ones", moved_s_);
-    doubt(text);
-  }
+  if (moved_s_ != 0.0) doubt(words_of_move(moved_s_));
   faults.lacks_end = is_whole && numbered_ > 0 && !has_end_;
-  if (faults.lacks_end) {
-    doubt(
-        "its end is missing: whoever wrote it was ended, is still writing or has reached recording.max_gigabytes, or "
-        "another program has cut the end off");
-  }
+  if (faults.lacks_end) doubt(kEndMissing);
   return faults;
 }
 

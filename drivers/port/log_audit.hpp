@@ -61,6 +61,10 @@ class LogAudit {
     [[nodiscard]] std::string line(const std::string& what) const;
   };
 
+  /// A line for each kind of packet that is missing, left out or not as it was written.
+  [[nodiscard]] std::vector<std::string> lacks() const;
+  [[nodiscard]] std::string why_unchecked() const;
+
   std::uint64_t numbered_ = 0;
   std::uint32_t expected_ = 0;
   Tally missing_, unnumbered_, undirected_, changed_, snapped_, silenced_, stampless_;
