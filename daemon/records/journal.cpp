@@ -132,38 +132,40 @@ void Journal::read(std::string_view note) {
     command.set = std::move(set);
     return add_command(std::move(command));
   }
-  const auto decision = decision_of_note(note);
-  if (!decision) return;
-  switch (decision->kind) {
+  if (const auto decision = decision_of_note(note)) take(*decision);
+}
+
+void Journal::take(const Decision& decision) {
+  switch (decision.kind) {
     case Kind::kRevision:
-      revisions_[decision->scan] = decision->number;
+      revisions_[decision.scan] = decision.number;
       break;
     case Kind::kTransients:
-      transients_[decision->scan] = decision->number;
+      transients_[decision.scan] = decision.number;
       break;
     case Kind::kScanDropped:
-      dropped_.insert(decision->scan);
+      dropped_.insert(decision.scan);
       break;
     case Kind::kScanLost:
-      lost_.insert(decision->scan);
+      lost_.insert(decision.scan);
       break;
     case Kind::kOdometryLost:
-      lost_odometry_.insert(decision->number);
+      lost_odometry_.insert(decision.number);
       break;
     case Kind::kTrackedLost:
-      lost_tracked_.insert(decision->scan);
+      lost_tracked_.insert(decision.scan);
       break;
     case Kind::kSetLost:
-      lost_sets_.insert(decision->number);
+      lost_sets_.insert(decision.number);
       break;
     case Kind::kPhaseClosed:
-      closed_[decision->number] = decision->scan;
+      closed_[decision.number] = decision.scan;
       break;
     case Kind::kPaused:
     case Kind::kResumed:
     case Kind::kRelocalized:
       // A recording repeats behind a gap which command is in force: that one is no new command.
-      if (std::find(commands_.begin(), commands_.end(), *decision) == commands_.end()) add_command(*decision);
+      if (std::find(commands_.begin(), commands_.end(), decision) == commands_.end()) add_command(decision);
       break;
     case Kind::kMapSet:
       break;

@@ -92,6 +92,7 @@ class Journal {
   [[nodiscard]] std::strong_ordering place_of(const Decision& command, const Scan& scan) const;
 
  private:
+  void take(const Decision& decision);
   void add_command(Decision command);
 
   std::optional<RunIdentity> run_;
