@@ -32,6 +32,65 @@ Json as_json(const drivers::port::LogFaults& faults) {
   return json;
 }
 
+void add_scans(Json& json, const ScanCounts& scans) {
+  json["scans"] = scans.decoded;
+  json["localized"] = scans.localized;
+  json["odometry"] = scans.odometry;
+  for (const auto& [name, count] : drops_of(scans)) json["drops"][name] = count;
+}
+
+void add_changes(Json& json, const RunReport& report) {
+  json["delta_phases"] = report.phases;
+  Json revisions = Json::array();
+  for (const ChangeTally::Revision& revision : report.changes.revisions()) {
+    revisions.push_back({{"number", revision.number},
+                         {"time", unix_seconds(revision.time)},
+                         {"phase", revision.phase},
+                         {"added", revision.added},
+                         {"freed", revision.freed},
+                         {"forgotten", revision.forgotten}});
+  }
+  json["revisions"] = revisions;
+  json["revisions_total"] = report.changes.accepted();
+  json["refusals"] = report.changes.refusals().empty() ? Json::object() : Json(report.changes.refusals());
+}
+
+/// What the localizer took its pose to be, and what mapping made of it.
+void add_belief(Json& json, const RunReport& report) {
+  json["time_lost_s"] = report.time_lost_s;
+  json["time_global_s"] = report.time_global_s;
+  json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
+                          {"undecided_s", report.verdict_times.undecided_s},
+                          {"wrong_s", report.verdict_times.wrong_s}};
+  json["write_gate"] = {{"observed_s", mapping::gate::observed_s(report.gate_times)},
+                        {"shut_s", mapping::gate::shut_s(report.gate_times)},
+                        {"shut_by_reason_s", mapping::gate::shut_by_reason(report.gate_times)}};
+  json["localizer"] = report.localizer;
+}
+
+/// Time and memory.
+void add_cost(Json& json, const RunReport& report) {
+  const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(report.scans.decoded, 1));
+  json["cpu"] = {{"total_s", report.cpu_total_s},         {"per_scan_ms", milliseconds(per_scan)},
+                 {"decoding_s", report.cpu.decoding_s},   {"localization_s", report.cpu.localization_s},
+                 {"awareness_s", report.cpu.awareness_s}, {"map_update_s", report.cpu.map_update_s},
+                 {"recording_s", report.cpu.recording_s}};
+  json["wall_s"] = report.wall_s;
+  json["peak_resident_bytes"] = report.peak_resident_bytes;
+  json["latency_ms"] = {{"of", report.latency_of},
+                        {"p50", milliseconds(report.latency.quantile_s(0.5))},
+                        {"p99", milliseconds(report.latency.quantile_s(0.99))},
+                        {"p999", milliseconds(report.latency.quantile_s(0.999))},
+                        {"max", milliseconds(report.latency.max_s())}};
+}
+
+void add_replay(Json& json, const RunReport& report) {
+  json["journal"] = {
+      {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
+  json["began"] = report.began;
+  json["recording"] = as_json(report.recording);
+}
+
 }  // namespace
 
 std::string tum_line(const TrajectoryPoint& point) {
@@ -47,52 +106,12 @@ std::string tum_line(const TrajectoryPoint& point) {
 std::string json_text(const RunReport& report, const Settings& settings) {
   Json json;
   add_provenance(json, settings);
-  const ScanCounts& scans = report.scans;
-  json["scans"] = scans.decoded;
-  json["localized"] = scans.localized;
-  json["odometry"] = scans.odometry;
-  for (const auto& [name, count] : drops_of(scans)) json["drops"][name] = count;
-  json["delta_phases"] = report.phases;
-  Json revisions = Json::array();
-  for (const ChangeTally::Revision& revision : report.changes.revisions()) {
-    revisions.push_back({{"number", revision.number},
-                         {"time", unix_seconds(revision.time)},
-                         {"phase", revision.phase},
-                         {"added", revision.added},
-                         {"freed", revision.freed},
-                         {"forgotten", revision.forgotten}});
-  }
-  json["revisions"] = revisions;
-  json["revisions_total"] = report.changes.accepted();
-  json["refusals"] = report.changes.refusals().empty() ? Json::object() : Json(report.changes.refusals());
-  json["time_lost_s"] = report.time_lost_s;
-  json["time_global_s"] = report.time_global_s;
-  json["pose_verdict"] = {{"right_s", report.verdict_times.right_s},
-                          {"undecided_s", report.verdict_times.undecided_s},
-                          {"wrong_s", report.verdict_times.wrong_s}};
-  json["write_gate"] = {{"observed_s", mapping::gate::observed_s(report.gate_times)},
-                        {"shut_s", mapping::gate::shut_s(report.gate_times)},
-                        {"shut_by_reason_s", mapping::gate::shut_by_reason(report.gate_times)}};
-  json["localizer"] = report.localizer;
+  add_scans(json, report.scans);
+  add_changes(json, report);
+  add_belief(json, report);
   json["recorded_s"] = report.recorded_s;
-  const double per_scan = report.cpu_total_s / static_cast<double>(std::max<std::uint64_t>(scans.decoded, 1));
-  json["cpu"] = {{"total_s", report.cpu_total_s},         {"per_scan_ms", milliseconds(per_scan)},
-                 {"decoding_s", report.cpu.decoding_s},   {"localization_s", report.cpu.localization_s},
-                 {"awareness_s", report.cpu.awareness_s}, {"map_update_s", report.cpu.map_update_s},
-                 {"recording_s", report.cpu.recording_s}};
-  json["wall_s"] = report.wall_s;
-  json["peak_resident_bytes"] = report.peak_resident_bytes;
-  json["latency_ms"] = {{"of", report.latency_of},
-                        {"p50", milliseconds(report.latency.quantile_s(0.5))},
-                        {"p99", milliseconds(report.latency.quantile_s(0.99))},
-                        {"p999", milliseconds(report.latency.quantile_s(0.999))},
-                        {"max", milliseconds(report.latency.max_s())}};
-  if (!report.journal.empty()) {
-    json["journal"] = {
-        {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
-    json["began"] = report.began;
-    json["recording"] = as_json(report.recording);
-  }
+  add_cost(json, report);
+  if (!report.journal.empty()) add_replay(json, report);
   json["wire"] = report.wire;
   return json.dump(2) + "\n";
 }
