@@ -234,19 +234,21 @@ void require_a_start(const Settings& read, const std::string& config) {
   }
 }
 
-int run_pipeline(const SettingsReading& reading, const CommandLine& line) {
-  const Settings& settings = reading.settings;
-  Console console;
-  const bool hangup_reloads = !has_terminal();
-  take_signals();  // all threads begin with them blocked: only watch() takes them
-
-  Pipeline::Options options;
-  options.live = std::make_shared<LiveSettings>(reading, [line] {
+/// The settings of the run, to be read again while it goes on.
+std::shared_ptr<LiveSettings> live_settings(const SettingsReading& reading, const CommandLine& line) {
+  return std::make_shared<LiveSettings>(reading, [line] {
     require_plain_file(line.config);
     SettingsReading read = read_settings_of_a_run(line.config, line.overrides);
     require_a_start(read.settings, line.config);
     return read;
   });
+}
+
+/// Reads and opens what the run begins from, makes the folders that it writes to, and says so.
+Pipeline::Options prepared(const SettingsReading& reading, const CommandLine& line, Console& console) {
+  const Settings& settings = reading.settings;
+  Pipeline::Options options;
+  options.live = live_settings(reading, line);
   const OccupancyGrid first = first_map(settings, line, console);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);
@@ -258,7 +260,11 @@ int run_pipeline(const SettingsReading& reading, const CommandLine& line) {
   if (store) options.start = std::move(store->start);
   tell_start(settings, line, options.start, console);
   if (store) take_store(*store, settings, options, console);
-  std::atomic<bool> failed{false};
+  return options;
+}
+
+/// What the stages have to say goes to the console; a stage that ends by an exception ends the run.
+void hear(Pipeline::Options& options, Console& console, std::atomic<bool>& failed) {
   options.log = [&console](const std::string& text) { console.log(LogLevel::kInfo, text); };
   options.failed = [&console, &failed](const std::string& text) {
     console.log(LogLevel::kError, text);
@@ -267,7 +273,17 @@ int run_pipeline(const SettingsReading& reading, const CommandLine& line) {
   };
   options.warn = [&console](const std::string& text) { console.log(LogLevel::kWarn, text); };
   options.set_log_level = [](LogLevel level) { Console::set_level(level); };
-  const std::unique_ptr<Pipeline> pipeline = begun(settings, std::move(options));
+}
+
+int run_pipeline(const SettingsReading& reading, const CommandLine& line) {
+  Console console;
+  const bool hangup_reloads = !has_terminal();
+  take_signals();  // all threads begin with them blocked: only watch() takes them
+
+  Pipeline::Options options = prepared(reading, line, console);
+  std::atomic<bool> failed{false};
+  hear(options, console, failed);
+  const std::unique_ptr<Pipeline> pipeline = begun(reading.settings, std::move(options));
   service::tell_ready();
   watch(*pipeline, console, hangup_reloads);
   service::tell_stopping();
