@@ -83,7 +83,7 @@ void add_map(Text& text, const Telemetry& t) {
   text.gauge("mapping_paused", "1 while an operator has paused mapping.", t.paused.value() ? 1.0 : 0.0);
   const auto now = static_cast<mapping::gate::GateReason>(t.gate.reason.value());
   text.gauge("gate_open", "1 while the map may be written.", now == mapping::gate::GateReason::kOpen ? 1.0 : 0.0);
-  text.head("gate_seconds_total", "Time of the write gate, by what held it shut (open: nothing).", "counter");
+  text.head("gate_seconds_total", "Time of the write gate, by what held it closed (open: nothing).", "counter");
   const mapping::gate::GateTimes times = t.gate.times();
   for (std::size_t i = 0; i < times.size(); ++i) {
     text.row("gate_seconds_total", label("reason", name_of(static_cast<mapping::gate::GateReason>(i))), times[i]);

@@ -17,12 +17,12 @@ std::string text_of(double time_s) { return std::to_string(std::lround(time_s)) 
 LogLine GateWatch::observe(const mapping::Awareness& awareness) {
   if (awareness.gate == mapping::gate::GateReason::kOpen) {
     if (!std::exchange(said_, false)) return {};
-    return {"map is written again: the gate was shut for " + text_of(shut_for_s_)};
+    return {"map is written again: the gate was closed for " + text_of(shut_for_s_)};
   }
   shut_for_s_ = awareness.gate_shut_for_s;
   if (said_ || shut_for_s_ < kShutForLong_s) return {};
   said_ = true;
-  return {"map is not written: the gate is shut for " + text_of(shut_for_s_) +
+  return {"map is not written: the gate is closed for " + text_of(shut_for_s_) +
               " reason=" + std::string(name_of(awareness.gate)),
           true};
 }

@@ -50,7 +50,7 @@ export function show_pose(pose, is_old) {
   badge("badge-verdict", `pose ${pose.verdict}`, LEVELS[pose.verdict] ?? "none");
   if (!pose.gate) return badge("badge-gate", "–", "none");
   if (pose.gate.open) return badge("badge-gate", "gate open", "good", "the map may be written");
-  badge("badge-gate", `gate shut: ${pose.gate.reason}`, "warn", `the map is not written: ${GATE_WORDS[pose.gate.reason] ?? pose.gate.reason}`);
+  badge("badge-gate", `gate closed: ${pose.gate.reason}`, "warn", `the map is not written: ${GATE_WORDS[pose.gate.reason] ?? pose.gate.reason}`);
 }
 
 function share_bar(share) {
@@ -70,7 +70,7 @@ function waiting_words(status) {
 
 function gate_words(status) {
   if (status.mapping !== "on") return `mapping is ${status.mapping}`;
-  return status.gate.open ? "open" : `shut: ${GATE_WORDS[status.gate.reason] ?? status.gate.reason}`;
+  return status.gate.open ? "open" : `closed: ${GATE_WORDS[status.gate.reason] ?? status.gate.reason}`;
 }
 
 /// Who drives and why it stands, and what planners are told of the pose.

@@ -17,9 +17,9 @@ TEST(GateWatch, SpeaksOnceAfterAMinuteAndWhenItIsOpenAgain) {
   GateWatch watch;
   EXPECT_EQ(watch.observe({}), LogLine{});
   EXPECT_EQ(watch.observe(shut(59.0)), LogLine{});
-  EXPECT_EQ(watch.observe(shut(60.0)), (LogLine{"map is not written: the gate is shut for 60 s reason=rival", true}));
+  EXPECT_EQ(watch.observe(shut(60.0)), (LogLine{"map is not written: the gate is closed for 60 s reason=rival", true}));
   EXPECT_EQ(watch.observe(shut(90.0)), LogLine{});
-  EXPECT_EQ(watch.observe({}), LogLine{"map is written again: the gate was shut for 90 s"});
+  EXPECT_EQ(watch.observe({}), LogLine{"map is written again: the gate was closed for 90 s"});
   EXPECT_EQ(watch.observe({}), LogLine{});
 }
 
