@@ -87,6 +87,40 @@ void keep_group(const std::vector<char>& is_in, std::vector<std::size_t>& scans,
   }
 }
 
+/// Odometry from each of the `chosen` scans to the next, and the matches of each with its partners.
+std::vector<PoseLink> links_of(const KeptScans& scans, const std::vector<std::size_t>& chosen,
+                               const std::vector<Pose2>& guesses, const ScanAlignmentParams& params) {
+  std::vector<MatchableScan> ready;
+  for (const std::size_t i : chosen) ready.push_back(matchable(*scans[i], params.matching));
+  std::vector<PoseLink> links;
+  for (std::uint32_t i = 1; i < chosen.size(); ++i) {
+    links.push_back(odometry_link(i - 1, *scans[chosen[i - 1]], *scans[chosen[i]], params));
+    for (const std::uint32_t other : partners(i, guesses, params)) {
+      const auto match =
+          scan_match(ready[other], ready[i], motion_between(guesses[other], guesses[i]), params.matching);
+      if (match) links.push_back({other, i, match->first_from_second, match->covariance, true});
+    }
+  }
+  return links;
+}
+
+/// The first scan where it was localized, as sure as that was, but never quite.
+PoseAnchor anchor_of(const TrackedScan& first, const ScanAlignmentParams& params) {
+  return {
+      0, first.estimate.map_from_robot,
+      first.estimate.noise_covariance() + diagonal(params.least_anchor_deviation_m, params.least_anchor_deviation_rad)};
+}
+
+/// How many scans hang on a match that the network has kept.
+double matched_scans(const std::vector<PoseLink>& links, const PoseNetwork& network, std::size_t scans) {
+  std::vector<char> is_matched(scans, 0);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (!links[i].may_drop || std::count(network.dropped.begin(), network.dropped.end(), i) > 0) continue;
+    is_matched[links[i].from] = is_matched[links[i].to] = 1;
+  }
+  return static_cast<double>(std::count(is_matched.begin(), is_matched.end(), 1));
+}
+
 }  // namespace
 
 PoseCovariance odometry_covariance(const Pose2& motion, const ScanAlignmentParams& params) {
@@ -103,40 +137,17 @@ std::optional<ScanAlignment> scan_alignment(const KeptScans& scans, const ScanAl
   alignment.scans = thinned(scans.size(), params.most_scans);
   if (alignment.scans.size() < 2) return std::nullopt;
   const auto count = static_cast<std::uint32_t>(alignment.scans.size());
-  const auto scan_at = [&](std::uint32_t i) -> const TrackedScan& { return *scans[alignment.scans[i]]; };
-
   std::vector<Pose2> guesses;
-  std::vector<MatchableScan> ready;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    guesses.push_back(scan_at(i).estimate.map_from_robot);
-    ready.push_back(matchable(scan_at(i), params.matching));
-  }
-  std::vector<PoseLink> links;
-  for (std::uint32_t i = 1; i < count; ++i) {
-    links.push_back(odometry_link(i - 1, scan_at(i - 1), scan_at(i), params));
-    for (const std::uint32_t other : partners(i, guesses, params)) {
-      const auto match =
-          scan_match(ready[other], ready[i], motion_between(guesses[other], guesses[i]), params.matching);
-      if (match) links.push_back({other, i, match->first_from_second, match->covariance, true});
-    }
-  }
+  for (const std::size_t i : alignment.scans) guesses.push_back(scans[i]->estimate.map_from_robot);
+  std::vector<PoseLink> links = links_of(scans, alignment.scans, guesses, params);
   keep_group(largest_group(count, links, params), alignment.scans, guesses, links);
   if (alignment.scans.size() < 2) return std::nullopt;
-  const PoseAnchor anchor{0, guesses.front(),
-                          scan_at(0).estimate.noise_covariance() +
-                              diagonal(params.least_anchor_deviation_m, params.least_anchor_deviation_rad)};
+  const PoseAnchor anchor = anchor_of(*scans[alignment.scans.front()], params);
   PoseNetwork network = solved_network(guesses, links, {&anchor, 1}, params.network);
   if (!network.solved) return std::nullopt;
-
-  std::vector<char> is_matched(guesses.size(), 0);
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (!links[i].may_drop) continue;
-    ++alignment.matches;
-    if (std::count(network.dropped.begin(), network.dropped.end(), i) > 0) continue;
-    is_matched[links[i].from] = is_matched[links[i].to] = 1;
-  }
-  const auto matched = static_cast<double>(std::count(is_matched.begin(), is_matched.end(), 1));
-  if (matched < params.least_matched_share * count) return std::nullopt;
+  alignment.matches = static_cast<std::size_t>(
+      std::count_if(links.begin(), links.end(), [](const PoseLink& link) { return link.may_drop; }));
+  if (matched_scans(links, network, guesses.size()) < params.least_matched_share * count) return std::nullopt;
   alignment.map_from_robot = std::move(network.poses);
   alignment.covariances = std::move(network.covariances);
   return alignment;
