@@ -122,6 +122,62 @@ class LineRegistration {
   std::vector<mapping::merge::PointInCells> sample_m_;
 };
 
+/// The rotations of Eq. 6; every other one is the one before it and half a turn.
+std::vector<double> rotations_of(const OccupancyGrid& map, const std::vector<Cell>& contour,
+                                 const mapping::merge::LocalCells& cells) {
+  return mapping::merge::best_turns(
+      mapping::merge::hough_spectrum(
+          mapping::merge::about_centre(mapping::merge::thinned_to(contour, kSpectrumPoints), map)),
+      mapping::merge::hough_spectrum(mapping::merge::thinned_to(cells.contour(), kSpectrumPoints)), kRotations, true);
+}
+
+/// The best shifts of each rotation that are worth to be registered, best first.
+std::vector<mapping::merge::ScoredMotion> candidates_of(const std::vector<double>& turns_rad,
+                                                        const ShiftCorrelation& correlation,
+                                                        const mapping::merge::OverlayMap& overlay,
+                                                        const mapping::merge::LocalCells& few,
+                                                        const LineRegistration& lines) {
+  std::vector<mapping::merge::ScoredMotion> candidates;
+  for (std::size_t i = 0; i < turns_rad.size(); i += 2) {  // the half turns come with them
+    for (const mapping::merge::CellMotion& motion : correlation.best_shifts(turns_rad[i], kShifts)) {
+      candidates.push_back({motion, overlay.score(few, motion)});
+      // Surfaces within a cell tell nothing of candidates that are half a pixel off.
+      candidates.back().score.surface_found = lines.nearness(motion);
+    }
+  }
+  sort_best_first(candidates);
+  if (candidates.size() > kRegistered) candidates.resize(kRegistered);
+  return candidates;
+}
+
+/// The local map's cells beside its contour, which bring a candidate to the end.
+struct Edges {
+  std::vector<EdgeCell> all;
+  std::vector<EdgeCell> few;
+};
+
+Edges edges_of(const OccupancyGrid& local, const std::vector<Cell>& contour) {
+  Edges edges{edge_cells(local, contour, mapping::merge::middle_of(contour, local)), {}};
+  edges.few = mapping::merge::thinned_to(edges.all, kRoughEdgeCells);
+  return edges;
+}
+
+/// From the lines' answer to the edges', first with few of them.
+mapping::merge::CellMotion brought_to_end(const OccupancyGrid& map, const Edges& edges,
+                                          const mapping::merge::CellMotion& motion) {
+  return edge_registration(map, edges.all, edge_registration(map, edges.few, motion, {}), {});
+}
+
+/// What was chosen, moved to where most cells agree.
+void refine(mapping::merge::MapMerge& merge, const OccupancyGrid& map, const mapping::merge::OverlayMap& overlay,
+            const mapping::merge::LocalCells& cells, const Edges& edges) {
+  mapping::merge::CellMotion best = mapping::merge::cell_motion(merge.map_from_local, map.geometry(), cells);
+  best = border_registration(map, edges.all, best, {});
+  best = best_nearby(map, edges.all, best);
+  merge.map_from_local = mapping::merge::map_from_local(best, map.geometry(), cells);
+  merge.score = overlay.score(cells, best);
+}
+
 }  // namespace
 
 mapping::merge::MapMerge global_merge(const OccupancyGrid& map, const OccupancyGrid& local) {
@@ -135,47 +191,26 @@ mapping::merge::MapMerge global_merge(const OccupancyGrid& map, const OccupancyG
   }
   const std::vector<Cell> contour = contour_cells(map);
   const mapping::merge::OverlayMap overlay{map, contour};
-  const mapping::merge::LocalCells few = cells.thinned(kFewCells);
-  const mapping::merge::LocalCells sample = cells.thinned(kSampleCells);
   const int cells_per_pixel = std::max(1, static_cast<int>(std::lround(kPixelM / map.resolution_m())));
   const ShiftCorrelation correlation{map, contour, cells, cells_per_pixel, kMostPixels};
-  const std::vector<double> turns_rad = mapping::merge::best_turns(
-      mapping::merge::hough_spectrum(
-          mapping::merge::about_centre(mapping::merge::thinned_to(contour, kSpectrumPoints), map)),
-      mapping::merge::hough_spectrum(mapping::merge::thinned_to(cells.contour(), kSpectrumPoints)), kRotations, true);
   const LineRegistration lines{map, cells, map.resolution_m() * correlation.cells_per_pixel()};
-  std::vector<mapping::merge::ScoredMotion> candidates;
-  for (std::size_t i = 0; i < turns_rad.size(); i += 2) {  // the half turns come with them
-    for (const mapping::merge::CellMotion& motion : correlation.best_shifts(turns_rad[i], kShifts)) {
-      candidates.push_back({motion, overlay.score(few, motion)});
-      // Surfaces within a cell tell nothing of candidates that are half a pixel off.
-      candidates.back().score.surface_found = lines.nearness(motion);
-    }
-  }
-  sort_best_first(candidates);
-  if (candidates.size() > kRegistered) candidates.resize(kRegistered);
+  std::vector<mapping::merge::ScoredMotion> candidates =
+      candidates_of(rotations_of(map, contour, cells), correlation, overlay, cells.thinned(kFewCells), lines);
 
+  const mapping::merge::LocalCells sample = cells.thinned(kSampleCells);
   for (mapping::merge::ScoredMotion& candidate : candidates) {
     candidate.motion = lines.registered(candidate.motion);
     candidate.score = overlay.score(sample, candidate.motion);
   }
   const mapping::merge::ChoiceParams choice = stricter_choice();
   candidates = best_apart(std::move(candidates), kFinal, choice.surface_margin);
-  const std::vector<EdgeCell> edges = edge_cells(local, local_contour, mapping::merge::middle_of(local_contour, local));
-  const std::vector<EdgeCell> few_edges = mapping::merge::thinned_to(edges, kRoughEdgeCells);
+  const Edges edges = edges_of(local, local_contour);
   for (mapping::merge::ScoredMotion& candidate : candidates) {
-    candidate.motion = edge_registration(map, few_edges, candidate.motion, {});
-    candidate.motion = edge_registration(map, edges, candidate.motion, {});
+    candidate.motion = brought_to_end(map, edges, candidate.motion);
     candidate.score = overlay.score(cells, candidate.motion);
   }
   mapping::merge::MapMerge merge = mapping::merge::chosen(candidates, map, cells, choice);
-  if (merge.score.agreeing > 0.0) {
-    mapping::merge::CellMotion best = mapping::merge::cell_motion(merge.map_from_local, map.geometry(), cells);
-    best = border_registration(map, edges, best, {});
-    best = best_nearby(map, edges, best);
-    merge.map_from_local = mapping::merge::map_from_local(best, map.geometry(), cells);
-    merge.score = overlay.score(cells, best);
-  }
+  if (merge.score.agreeing > 0.0) refine(merge, map, overlay, cells, edges);
   return merge;
 }
 
