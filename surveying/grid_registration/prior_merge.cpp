@@ -94,54 +94,93 @@ struct Start {
   double cost = 0.0;
 };
 
+/// Poses about the prior's, along its own axes.
+struct Lattice {
+  Eigen::Matrix3d axes;       ///< columns; the heading in metres at the lever arm
+  Eigen::Vector3d variances;  ///< m², along the axes
+  double step_m = kSearchStep_m;
+  Eigen::Vector3i steps;  ///< each way along the axes
+};
+
 double lattice_poses(const Eigen::Vector3d& half_width_m, double step_m) {
   return (2.0 * (half_width_m / step_m).array().floor() + 1.0).prod();
+}
+
+Lattice lattice_of(const PoseCovariance& covariance, double lever_m, const PriorMergeParams& params) {
+  const Eigen::DiagonalMatrix<double, 3> in_metres{1.0, 1.0, lever_m};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver{in_metres * covariance * in_metres};
+  Lattice lattice{.axes = solver.eigenvectors(), .variances = solver.eigenvalues(), .steps = {}};
+  Eigen::Vector3d half_width_m = params.search_deviations * lattice.variances.cwiseMax(0.0).cwiseSqrt();
+  half_width_m = half_width_m.cwiseMin(std::max(params.most_search_m, params.most_search_rad * lever_m));
+  while (lattice_poses(half_width_m, lattice.step_m) > kMostSearchPoses) lattice.step_m *= 1.25;
+  lattice.steps = (half_width_m / lattice.step_m).array().floor().cast<int>();
+  return lattice;
+}
+
+/// A step of the lattice, and how much the prior speaks against it.
+struct Offset {
+  Eigen::Vector3d metres;  ///< x, y, and the heading at the lever arm
+  double chi2 = 0.0;
+};
+
+std::vector<Offset> plausible_offsets(const Lattice& lattice, double lever_m, const PriorMergeParams& params) {
+  const double most_chi2 = 1.8 * params.search_deviations * params.search_deviations;
+  const Eigen::Vector3i& steps = lattice.steps;
+  std::vector<Offset> offsets;
+  for (int i = -steps.x(); i <= steps.x(); ++i) {
+    for (int j = -steps.y(); j <= steps.y(); ++j) {
+      for (int k = -steps.z(); k <= steps.z(); ++k) {
+        const Eigen::Vector3d along = lattice.step_m * Eigen::Vector3i{i, j, k}.cast<double>();
+        const double chi2 = along.cwiseAbs2().cwiseQuotient(lattice.variances.cwiseMax(1e-12)).sum();
+        if (chi2 > most_chi2) continue;  // a corner of the lattice
+        const Eigen::Vector3d offset = lattice.axes * along;
+        if (offset.head<2>().norm() > params.most_search_m) continue;
+        if (std::abs(offset.z() / lever_m) <= params.most_search_rad) offsets.push_back({offset, chi2});
+      }
+    }
+  }
+  return offsets;
+}
+
+std::vector<PointInMetres> sample_of(std::span<const Point2> points) {
+  std::vector<PointInMetres> sample;
+  for (std::size_t i = 0; i < points.size(); i += points.size() / kMostSearchPoints + 1)
+    sample.push_back({static_cast<float>(points[i].x()), static_cast<float>(points[i].y())});
+  return sample;
+}
+
+/// A turn counts as what it moves at the lever arm.
+double distance_m(const Pose2& one, const Pose2& other, double lever_m) {
+  return std::hypot(distance_between(one, other), lever_m * turn_between(one.theta, other.theta));
+}
+
+/// Of starts in order the first ones, each apart from those before it.
+std::vector<Start> first_apart(std::span<const Start> starts, double lever_m) {
+  std::vector<Start> best;
+  for (const Start& start : starts) {
+    const bool is_new = std::all_of(best.begin(), best.end(), [&](const Start& better) {
+      return distance_m(better.pose, start.pose, lever_m) > 2.0 * kApart_m;
+    });
+    if (is_new) best.push_back(start);
+    if (best.size() == kStarts) break;
+  }
+  return best;
 }
 
 /// The best poses of a lattice along the prior's own axes, best first, each apart from the better ones.
 std::vector<Start> search(std::span<const Point2> points, const mapping::registration::NearestSurface& surface,
                           const PosePrior& prior, const PoseCovariance& covariance, double lever_m,
                           const PriorMergeParams& params) {
-  const Eigen::DiagonalMatrix<double, 3> in_metres{1.0, 1.0, lever_m};
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes{in_metres * covariance * in_metres};
-  Eigen::Vector3d half_width_m = params.search_deviations * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  half_width_m = half_width_m.cwiseMin(std::max(params.most_search_m, params.most_search_rad * lever_m));
-  double step_m = kSearchStep_m;
-  while (lattice_poses(half_width_m, step_m) > kMostSearchPoses) step_m *= 1.25;
-  const Eigen::Vector3i steps = (half_width_m / step_m).array().floor().cast<int>();
-
-  std::vector<PointInMetres> sample;
-  for (std::size_t i = 0; i < points.size(); i += points.size() / kMostSearchPoints + 1)
-    sample.push_back({static_cast<float>(points[i].x()), static_cast<float>(points[i].y())});
+  const std::vector<PointInMetres> sample = sample_of(points);
   const double shared = mapping::registration::share_of_point(sample.size(), params);
-  const double most_chi2 = 1.8 * params.search_deviations * params.search_deviations;
   std::vector<Start> found;
-  for (int i = -steps.x(); i <= steps.x(); ++i) {
-    for (int j = -steps.y(); j <= steps.y(); ++j) {
-      for (int k = -steps.z(); k <= steps.z(); ++k) {
-        const Eigen::Vector3d along = step_m * Eigen::Vector3i{i, j, k}.cast<double>();
-        const double chi2 = along.cwiseAbs2().cwiseQuotient(axes.eigenvalues().cwiseMax(1e-12)).sum();
-        if (chi2 > most_chi2) continue;  // a corner of the lattice
-        const Eigen::Vector3d offset = axes.eigenvectors() * along;
-        const double turn_rad = offset.z() / lever_m;
-        if (offset.head<2>().norm() > params.most_search_m || std::abs(turn_rad) > params.most_search_rad) continue;
-        const Pose2 pose{prior.position_in_map.x() + offset.x(), prior.position_in_map.y() + offset.y(), turn_rad};
-        found.push_back({pose, shared * rough_misfit(sample, surface, pose, params.surface_deviation_m) + chi2});
-      }
-    }
+  for (const auto& [offset, chi2] : plausible_offsets(lattice_of(covariance, lever_m, params), lever_m, params)) {
+    const Pose2 pose{prior.position_in_map.x() + offset.x(), prior.position_in_map.y() + offset.y(),
+                     offset.z() / lever_m};
+    found.push_back({pose, shared * rough_misfit(sample, surface, pose, params.surface_deviation_m) + chi2});
   }
   std::sort(found.begin(), found.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
-
-  std::vector<Start> best;
-  for (const Start& start : found) {
-    const bool is_new = std::all_of(best.begin(), best.end(), [&](const Start& better) {
-      const double turn_m = lever_m * turn_between(better.pose.theta, start.pose.theta);
-      return std::hypot(distance_between(better.pose, start.pose), turn_m) > 2.0 * kApart_m;
-    });
-    if (is_new) best.push_back(start);
-    if (best.size() == kStarts) break;
-  }
-  return best;
+  return first_apart(found, lever_m);
 }
 
 /// Of the points that lie on known cells; 0 where those are too few.
@@ -155,6 +194,48 @@ double agreement(const OccupancyGrid& map, std::span<const Point2> points, const
     known += near || map.at(cell) != CellState::kUnknown ? 1 : 0;
   }
   return known < mapping::merge::kLeastContour ? 0.0 : static_cast<double>(found) / static_cast<double>(known);
+}
+
+/// How far beyond the points, at the guess, the map's surface may count.
+double search_margin_m(const PoseCovariance& covariance, const PriorMergeParams& params) {
+  return params.reach_m +
+         std::min(params.most_search_m, params.search_deviations * std::sqrt(covariance.topLeftCorner<2, 2>().trace()));
+}
+
+/// Where a start comes to.
+struct End {
+  Pose2 pose;
+  PriorAnswer answer;
+};
+
+End end_of(const Start& start, const OccupancyGrid& map, std::span<const Point2> points,
+           const mapping::registration::NearestSurface& surface, const mapping::registration::PoseBelief& belief,
+           const PriorMergeParams& params) {
+  const mapping::registration::Registration end = mapping::registration::registration(
+      points, surface, start.pose, belief,
+      mapping::registration::registration_params(points.size(), map.resolution_m(), params));
+  const Pose2& guess = belief.pose;
+  const Pose2& pose = end.reference_from_moving;
+  const Eigen::Vector3d moved{pose.x - guess.x, pose.y - guess.y, pose.theta};
+  const double chi2 = moved.dot(belief.information * moved);
+  const double shared = mapping::registration::share_of_point(points.size(), params);
+  return {pose,
+          {.map_from_guess = pose * inverse(guess),
+           .covariance = (end.information + belief.information).inverse(),
+           .agreement = agreement(map, points, pose),
+           .chi2 = chi2,
+           .cost = shared * misfit(map, points, surface, pose, params) + chi2}};
+}
+
+/// Of ends in order those that are apart from all before them.
+std::vector<PriorAnswer> answers_apart(const std::vector<End>& ends, double lever_m) {
+  std::vector<PriorAnswer> answers;
+  for (auto end = ends.begin(); end != ends.end(); ++end) {
+    const bool is_new = std::none_of(
+        ends.begin(), end, [&](const End& better) { return distance_m(better.pose, end->pose, lever_m) <= kApart_m; });
+    if (is_new) answers.push_back(end->answer);
+  }
+  return answers;
 }
 
 }  // namespace
@@ -171,47 +252,16 @@ std::vector<PriorAnswer> prior_answers(const OccupancyGrid& map, std::span<const
   const std::vector<Point2> points = about(prior.position_in_map, surface_points_in_map_guess);
   const double lever_m = lever_arm_m(points);
   const PoseCovariance covariance = mapping::registration::floored(prior.covariance, params);
-  const double margin_m =
-      params.reach_m +
-      std::min(params.most_search_m, params.search_deviations * std::sqrt(covariance.topLeftCorner<2, 2>().trace()));
-  const CellBox box = box_around(map.geometry(), surface_points_in_map_guess, margin_m);
+  const CellBox box = box_around(map.geometry(), surface_points_in_map_guess, search_margin_m(covariance, params));
   const mapping::registration::NearestSurface surface{mapping::registration::contour_of(map, box), map.resolution_m(),
                                                       params.reach_m};
-
   const Pose2 guess{prior.position_in_map.x(), prior.position_in_map.y(), 0.0};
-  const double shared = mapping::registration::share_of_point(points.size(), params);
-  const mapping::registration::RegistrationParams registration_params =
-      mapping::registration::registration_params(points.size(), map.resolution_m(), params);
   const mapping::registration::PoseBelief belief{guess, covariance.inverse()};
-
-  struct End {
-    Pose2 pose;
-    PriorAnswer answer;
-  };
   std::vector<End> ends;
-  for (const Start& start : search(points, surface, prior, covariance, lever_m, params)) {
-    const mapping::registration::Registration end =
-        mapping::registration::registration(points, surface, start.pose, belief, registration_params);
-    const Pose2& pose = end.reference_from_moving;
-    const Eigen::Vector3d moved{pose.x - guess.x, pose.y - guess.y, pose.theta};
-    const double chi2 = moved.dot(belief.information * moved);
-    ends.push_back({pose,
-                    {.map_from_guess = pose * inverse(guess),
-                     .covariance = (end.information + belief.information).inverse(),
-                     .agreement = agreement(map, points, pose),
-                     .chi2 = chi2,
-                     .cost = shared * misfit(map, points, surface, pose, params) + chi2}});
-  }
+  for (const Start& start : search(points, surface, prior, covariance, lever_m, params))
+    ends.push_back(end_of(start, map, points, surface, belief, params));
   std::stable_sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.answer.cost < b.answer.cost; });
-  std::vector<PriorAnswer> answers;
-  for (auto end = ends.begin(); end != ends.end(); ++end) {
-    const bool is_new = std::none_of(ends.begin(), end, [&](const End& better) {
-      const double turn_m = lever_m * turn_between(better.pose.theta, end->pose.theta);
-      return std::hypot(distance_between(better.pose, end->pose), turn_m) <= kApart_m;
-    });
-    if (is_new) answers.push_back(end->answer);
-  }
-  return answers;
+  return answers_apart(ends, lever_m);
 }
 
 PriorMerge prior_merge(const OccupancyGrid& map, std::span<const Point2> surface_points_in_map_guess,
