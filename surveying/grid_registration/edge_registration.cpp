@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "surveying/grid_registration/motion_equations.hpp"
 
@@ -14,51 +15,69 @@ namespace {
 constexpr std::size_t kBits = 64;        // of a word
 constexpr std::uint64_t kThree = 0b111;  // cells in a row: an edge and those beside it
 
+constexpr float kValue[3] = {-1.0F, 1.0F, 0.0F};  // by CellState
+
+/// The values of the four cells about a point, and where between them it lies.
+struct Patch {
+  float low_left, low_right, high_left, high_right;
+  float u, v;
+  [[nodiscard]] bool is_level() const {
+    return low_left == low_right && low_left == high_left && low_left == high_right;
+  }
+};
+
+/// Nothing beside the map, or where one of the cells is unknown. Cell centres lie on whole numbers.
+std::optional<Patch> patch_at(const OccupancyGrid& map, float x, float y) {
+  if (!(x >= 0.0F && y >= 0.0F)) return std::nullopt;
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  if (column + 1 >= map.width() || row + 1 >= map.height()) return std::nullopt;
+  const CellState low[2] = {map[{column, row}], map[{column + 1, row}]};
+  const CellState high[2] = {map[{column, row + 1}], map[{column + 1, row + 1}]};
+  if (low[0] == CellState::kUnknown || low[1] == CellState::kUnknown || high[0] == CellState::kUnknown ||
+      high[1] == CellState::kUnknown) {
+    return std::nullopt;
+  }
+  return Patch{kValue[static_cast<int>(low[0])],  kValue[static_cast<int>(low[1])], kValue[static_cast<int>(high[0])],
+               kValue[static_cast<int>(high[1])], x - static_cast<float>(column),   y - static_cast<float>(row)};
+}
+
+/// The normal equations of x, y and turn.
+struct NormalSums {
+  float xx = 0.0F, xy = 0.0F, xt = 0.0F, yy = 0.0F, yt = 0.0F, tt = 0.0F, bx = 0.0F, by = 0.0F, bt = 0.0F;
+  void add(float gx, float gy, float gt, float rest) {
+    xx += gx * gx, xy += gx * gy, xt += gx * gt, yy += gy * gy, yt += gy * gt, tt += gt * gt;
+    bx += gx * rest, by += gy * rest, bt += gt * rest;
+  }
+};
+
 MotionEquations motion_equations(const OccupancyGrid& map, std::span<const EdgeCell> edges,
                                  const mapping::merge::CellMotion& motion, double lever_cells) {
-  constexpr float kValue[3] = {-1.0F, 1.0F, 0.0F};  // by CellState
   const auto c = static_cast<float>(std::cos(motion.turn_rad));
   const auto s = static_cast<float>(std::sin(motion.turn_rad));
   const auto tx = static_cast<float>(motion.column - 0.5);  // cell centres on whole numbers
   const auto ty = static_cast<float>(motion.row - 0.5);
   const auto per_lever = static_cast<float>(1.0 / lever_cells);
-  float xx = 0.0F, xy = 0.0F, xt = 0.0F, yy = 0.0F, yt = 0.0F, tt = 0.0F, bx = 0.0F, by = 0.0F, bt = 0.0F;
-  MotionEquations sums;
+  NormalSums sums;
+  MotionEquations equations;
   for (const EdgeCell& edge : edges) {
     const float arm_x = c * edge.at.x - s * edge.at.y;
     const float arm_y = s * edge.at.x + c * edge.at.y;
-    const float x = arm_x + tx;
-    const float y = arm_y + ty;
-    if (!(x >= 0.0F && y >= 0.0F)) continue;
-    const int column = static_cast<int>(x);
-    const int row = static_cast<int>(y);
-    if (column + 1 >= map.width() || row + 1 >= map.height()) continue;
-    const CellState low[2] = {map[{column, row}], map[{column + 1, row}]};
-    const CellState high[2] = {map[{column, row + 1}], map[{column + 1, row + 1}]};
-    if (low[0] == CellState::kUnknown || low[1] == CellState::kUnknown || high[0] == CellState::kUnknown ||
-        high[1] == CellState::kUnknown) {
-      continue;
-    }
-    ++sums.paired;
-    const float low_left = kValue[static_cast<int>(low[0])];
-    const float low_right = kValue[static_cast<int>(low[1])];
-    const float high_left = kValue[static_cast<int>(high[0])];
-    const float high_right = kValue[static_cast<int>(high[1])];
-    if (low_left == low_right && low_left == high_left && low_left == high_right) continue;  // level: tells nothing
-    const float u = x - static_cast<float>(column);
-    const float v = y - static_cast<float>(row);
+    const auto patch = patch_at(map, arm_x + tx, arm_y + ty);
+    if (!patch) continue;
+    ++equations.paired;
+    if (patch->is_level()) continue;  // tells nothing
+    const auto& [low_left, low_right, high_left, high_right, u, v] = *patch;
     const float left = low_left + v * (high_left - low_left);
     const float right = low_right + v * (high_right - low_right);
     const float gx = right - left;
     const float gy = high_left - low_left + u * (high_right - low_right - high_left + low_left);
     const float gt = (gy * arm_x - gx * arm_y) * per_lever;
-    const float rest = kValue[static_cast<int>(edge.state)] - (left + u * gx);
-    xx += gx * gx, xy += gx * gy, xt += gx * gt, yy += gy * gy, yt += gy * gt, tt += gt * gt;
-    bx += gx * rest, by += gy * rest, bt += gt * rest;
+    sums.add(gx, gy, gt, kValue[static_cast<int>(edge.state)] - (left + u * gx));
   }
-  sums.matrix << xx, xy, xt, xy, yy, yt, xt, yt, tt;
-  sums.right_side << bx, by, bt;
-  return sums;
+  equations.matrix << sums.xx, sums.xy, sums.xt, sums.xy, sums.yy, sums.yt, sums.xt, sums.yt, sums.tt;
+  equations.right_side << sums.bx, sums.by, sums.bt;
+  return equations;
 }
 
 }  // namespace
