@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace deltamap::simulation::score {
@@ -38,53 +39,85 @@ CellMask clipped(const OccupancyGrid& truth) {
   return clipped;
 }
 
-/// Of the truth's cells those of `optional` need not be paired.
-Pairs paired(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where, const CellMask& optional) {
-  const GridGeometry& geometry = truth.geometry();
-  const std::size_t cells = geometry.cell_count();
-  Pairs pairs{CellMask(cells, 0), CellMask(cells, 0)};
-  const std::vector<CellState> is = all_cells(truth);
-  const std::vector<CellState> said = all_cells(map);
-  const auto pair = [&](std::size_t of_truth, std::size_t of_map) {
-    pairs.of_truth[of_truth] = pairs.of_map[of_map] = 1;
-    ++pairs.count;
-    pairs.truth_cells += optional[of_truth];
-    // What cannot be seen cannot be wrong, but may be the neighbour of what can.
-    pairs.map_cells += is[of_map] == CellState::kUnknown ? 1 : 0;
-  };
-  for (std::size_t i = 0; i < cells; ++i) {
-    if (where[i] == 0) continue;
-    pairs.truth_cells += is[i] == CellState::kOccupied && optional[i] == 0 ? 1 : 0;
-    pairs.map_cells += said[i] == CellState::kOccupied && is[i] != CellState::kUnknown ? 1 : 0;
-  }
-  const auto is_open = [&](std::size_t i) {
-    return where[i] != 0 && said[i] == CellState::kOccupied && pairs.of_map[i] == 0;
-  };
-  for (const int pass : {0, 1}) {  // what need not be drawn takes nothing from what must
-    const auto is_due = [&](std::size_t i) {
-      return where[i] != 0 && is[i] == CellState::kOccupied && optional[i] == pass && pairs.of_truth[i] == 0;
-    };
-    for (std::size_t i = 0; i < cells; ++i) {
-      if (is_due(i) && is_open(i)) pair(i, i);
+/// Pairs occupied cells of a map with those of the truth, one with one. Of the truth's cells those of `optional` need
+/// not be paired.
+class Pairing {
+ public:
+  Pairing(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where, const CellMask& optional)
+      : geometry_{truth.geometry()},
+        is_{all_cells(truth)},
+        said_{all_cells(map)},
+        where_{where},
+        optional_{optional},
+        pairs_{CellMask(geometry_.cell_count(), 0), CellMask(geometry_.cell_count(), 0)} {}
+
+  [[nodiscard]] Pairs pairs() && {
+    count_cells();
+    for (const int pass : {0, 1}) {  // what need not be drawn takes nothing from what must
+      pair_in_place(pass);
+      pair_beside(pass);
     }
-    for (std::size_t i = 0; i < cells; ++i) {
-      if (!is_due(i)) continue;
-      const Cell cell = geometry.cell_of(i);
+    return std::move(pairs_);
+  }
+
+ private:
+  void count_cells() {
+    for (std::size_t i = 0; i < geometry_.cell_count(); ++i) {
+      if (where_[i] == 0) continue;
+      pairs_.truth_cells += is_[i] == CellState::kOccupied && optional_[i] == 0 ? 1 : 0;
+      pairs_.map_cells += said_[i] == CellState::kOccupied && is_[i] != CellState::kUnknown ? 1 : 0;
+    }
+  }
+
+  void pair_in_place(int pass) {
+    for (std::size_t i = 0; i < geometry_.cell_count(); ++i) {
+      if (is_due(i, pass) && is_open(i)) pair(i, i);
+    }
+  }
+
+  void pair_beside(int pass) {
+    for (std::size_t i = 0; i < geometry_.cell_count(); ++i) {
+      if (!is_due(i, pass)) continue;
+      const Cell cell = geometry_.cell_of(i);
       for (const Cell& step : kAround) {
         const Cell beside{cell.column + step.column, cell.row + step.row};
-        if (!geometry.contains(beside) || !is_open(geometry.index_of(beside))) continue;
-        pair(i, geometry.index_of(beside));
+        if (!geometry_.contains(beside) || !is_open(geometry_.index_of(beside))) continue;
+        pair(i, geometry_.index_of(beside));
         break;
       }
     }
   }
-  return pairs;
-}
+
+  /// A cell of the truth that is to be paired in this pass.
+  [[nodiscard]] bool is_due(std::size_t i, int pass) const {
+    return where_[i] != 0 && is_[i] == CellState::kOccupied && optional_[i] == pass && pairs_.of_truth[i] == 0;
+  }
+  /// A cell of the map that no other is paired with.
+  [[nodiscard]] bool is_open(std::size_t i) const {
+    return where_[i] != 0 && said_[i] == CellState::kOccupied && pairs_.of_map[i] == 0;
+  }
+
+  void pair(std::size_t of_truth, std::size_t of_map) {
+    pairs_.of_truth[of_truth] = pairs_.of_map[of_map] = 1;
+    ++pairs_.count;
+    pairs_.truth_cells += optional_[of_truth];
+    // What cannot be seen cannot be wrong, but may be the neighbour of what can.
+    pairs_.map_cells += is_[of_map] == CellState::kUnknown ? 1 : 0;
+  }
+
+  GridGeometry geometry_;
+  std::vector<CellState> is_;
+  std::vector<CellState> said_;
+  const CellMask& where_;
+  const CellMask& optional_;
+  Pairs pairs_;
+};
 
 }  // namespace
 
 MapScore map_score(const OccupancyGrid& truth, const OccupancyGrid& map, const CellMask& where) {
-  const Pairs pairs = paired(truth, map, where, clipped(truth));
+  const CellMask optional = clipped(truth);
+  const Pairs pairs = Pairing{truth, map, where, optional}.pairs();
   MapScore score;
   const auto both = static_cast<double>(pairs.truth_cells + pairs.map_cells);
   score.contour_f1 = both == 0.0 ? 1.0 : 2.0 * static_cast<double>(pairs.count) / both;
@@ -122,7 +155,9 @@ double share_kept(const OccupancyGrid& first, const OccupancyGrid& map, const Ce
     ++all;
   }
   if (all == 0) return std::numeric_limits<double>::quiet_NaN();
-  const Pairs pairs = paired(lasting, map, CellMask(these.size(), 1), CellMask(these.size(), 0));
+  const CellMask everywhere(these.size(), 1);
+  const CellMask none(these.size(), 0);
+  const Pairs pairs = Pairing{lasting, map, everywhere, none}.pairs();
   return static_cast<double>(pairs.count) / static_cast<double>(all);
 }
 
