@@ -108,49 +108,52 @@ std::string pose_text(const Pose2& pose) {
   return text.str();
 }
 
-void print_built(const BuildOptions& options, const std::vector<SurveyedDrive>& drives, const daemon::SurveyStep& step,
-                 const Pose2& map_from_survey, const OccupancyGrid& grid) {
-  const surveying::slam::Survey& survey = step.slam().survey();
-  const auto loops = static_cast<std::size_t>(
-      std::count_if(survey.links.begin(), survey.links.end(), [](const auto& link) { return link.may_drop; }));
-  const std::size_t unmatched = survey.keyframes.size() - drives.size() - step.slam().matched();
-  Json json_drives = Json::array();
+/// Where each drive went.
+Json drives_as_json(const std::vector<SurveyedDrive>& drives, const surveying::slam::Survey& survey,
+                    const Pose2& map_from_survey) {
+  Json json = Json::array();
   std::uint32_t node = 0;
   for (std::uint32_t i = 0; i < drives.size(); ++i) {
     while (survey.keyframes[node].drive != i) ++node;
     const std::uint32_t last = surveying::slam::on_by(survey, node, std::numeric_limits<double>::infinity());
-    json_drives.push_back({{"recording", drives[i].recording},
-                           {"scans", drives[i].scans},
-                           {"keyframes", last - node + 1},
-                           {"driven_m", survey.keyframes[last].driven_m},
-                           {"start", pose_text(map_from_survey * survey.poses[node])},
-                           {"end", pose_text(map_from_survey * survey.poses[last])}});
+    json.push_back({{"recording", drives[i].recording},
+                    {"scans", drives[i].scans},
+                    {"keyframes", last - node + 1},
+                    {"driven_m", survey.keyframes[last].driven_m},
+                    {"start", pose_text(map_from_survey * survey.poses[node])},
+                    {"end", pose_text(map_from_survey * survey.poses[last])}});
   }
-  if (options.json) {
-    std::cout << Json{{"map", options.map()},
-                      {"width", grid.width()},
-                      {"height", grid.height()},
-                      {"resolution_m", grid.resolution_m()},
-                      {"occupied_cells", count_of(grid, CellState::kOccupied)},
-                      {"free_cells", count_of(grid, CellState::kFree)},
-                      {"keyframes", survey.keyframes.size()},
-                      {"keyframes_by_wheels_alone", unmatched},
-                      {"loops", loops},
-                      {"loops_contradicted", step.slam().loops().contradicted()},
-                      {"drives", json_drives}}
-                     .dump(2)
-              << '\n';
-    return;
-  }
-  std::cout << options.map() << ": " << grid.width() << " x " << grid.height() << " cells of " << grid.resolution_m()
-            << " m, from " << survey.keyframes.size() << " keyframes (" << unmatched
-            << " placed by the wheels alone) and " << loops << " loops\n";
-  for (const Json& drive : json_drives) {
+  return json;
+}
+
+Json built_as_json(const std::string& map, const std::vector<SurveyedDrive>& drives, const surveying::slam::Slam& slam,
+                   const Pose2& map_from_survey, const OccupancyGrid& grid) {
+  const surveying::slam::Survey& survey = slam.survey();
+  return {{"map", map},
+          {"width", grid.width()},
+          {"height", grid.height()},
+          {"resolution_m", grid.resolution_m()},
+          {"occupied_cells", count_of(grid, CellState::kOccupied)},
+          {"free_cells", count_of(grid, CellState::kFree)},
+          {"keyframes", survey.keyframes.size()},
+          {"keyframes_by_wheels_alone", survey.keyframes.size() - drives.size() - slam.matched()},
+          {"loops",
+           std::count_if(survey.links.begin(), survey.links.end(), [](const auto& link) { return link.may_drop; })},
+          {"loops_contradicted", slam.loops().contradicted()},
+          {"drives", drives_as_json(drives, survey, map_from_survey)}};
+}
+
+void print_built(const Json& built) {
+  std::cout << built["map"].get<std::string>() << ": " << built["width"] << " x " << built["height"] << " cells of "
+            << built["resolution_m"].get<double>() << " m, from " << built["keyframes"] << " keyframes ("
+            << built["keyframes_by_wheels_alone"] << " placed by the wheels alone) and " << built["loops"]
+            << " loops\n";
+  for (const Json& drive : built["drives"]) {
     std::cout << drive["recording"].get<std::string>() << ": " << drive["scans"] << " scans, " << std::fixed
               << std::setprecision(1) << drive["driven_m"].get<double>() << " m, from "
               << drive["start"].get<std::string>() << " to " << drive["end"].get<std::string>() << " (x,y,deg)\n";
   }
-  if (loops == 0) std::cout << "no place was seen twice: where the way was long the map may be bent\n";
+  if (built["loops"] == 0) std::cout << "no place was seen twice: where the way was long the map may be bent\n";
 }
 
 void run_build(const BuildOptions& options) {
@@ -172,7 +175,12 @@ void run_build(const BuildOptions& options) {
   }
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, step, map_from_survey);
   write_grid(grid, options.map());
-  print_built(options, drives, step, map_from_survey, grid);
+  const Json built = built_as_json(options.map(), drives, step.slam(), map_from_survey, grid);
+  if (options.json) {
+    std::cout << built.dump(2) << '\n';
+  } else {
+    print_built(built);
+  }
 }
 
 }  // namespace

@@ -95,6 +95,47 @@ OccupancyGrid grid_of(const GridGeometry& geometry, const std::vector<CellCount>
   return grid;
 }
 
+struct FromPosesOptions {
+  std::string log;
+  std::string yaml;
+  MapFromPosesParams params;
+  bool json = false;
+};
+
+std::string as_json(const MapFromPoses& made, const std::string& yaml) {
+  const auto& no_return_m = made.survey.no_return_m;
+  return nlohmann::ordered_json{{"map", yaml},
+                                {"scans", made.scans},
+                                {"beams", made.beams},
+                                {"width", made.grid.width()},
+                                {"height", made.grid.height()},
+                                {"resolution_m", made.grid.resolution_m()},
+                                {"occupied_cells", count_of(made.grid, CellState::kOccupied)},
+                                {"free_cells", count_of(made.grid, CellState::kFree)},
+                                {"no_return_m", no_return_m ? nlohmann::ordered_json(*no_return_m) : nullptr},
+                                {"no_return_share", made.survey.no_return_share}}
+      .dump(2);
+}
+
+void print(const MapFromPoses& made, const std::string& yaml) {
+  std::cout << yaml << ": " << made.grid.width() << " x " << made.grid.height() << " cells of "
+            << made.grid.resolution_m() << " m from " << made.scans << " scans, "
+            << count_of(made.grid, CellState::kOccupied) << " occupied, " << count_of(made.grid, CellState::kFree)
+            << " free\n";
+  if (const std::string line = drivers::carmen::no_return_line(made.survey); !line.empty()) std::cout << line << '\n';
+}
+
+void run_from_poses(const FromPosesOptions& options) {
+  const MapFromPoses made = map_from_poses(options.log, options.params);
+  if (made.survey.cut) std::cerr << "deltamap: warning: " << *made.survey.cut << '\n';
+  write_grid(made.grid, options.yaml);
+  if (options.json) {
+    std::cout << as_json(made, options.yaml) << '\n';
+  } else {
+    print(made, options.yaml);
+  }
+}
+
 }  // namespace
 
 MapFromPoses map_from_poses(const fs::path& log, const MapFromPosesParams& params) {
@@ -124,13 +165,7 @@ MapFromPoses map_from_poses(const fs::path& log, const MapFromPosesParams& param
 }
 
 void add_map_from_poses(CLI::App& map) {
-  struct Options {
-    std::string log;
-    std::string yaml;
-    MapFromPosesParams params;
-    bool json = false;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FromPosesOptions>();
   CLI::App& command = *map.add_subcommand("from-poses", "grid from a CARMEN log whose laser poses are known");
   command.add_option("LOG", options->log, "CARMEN log with FLASER or ROBOTLASER1 lines")->required();
   command.add_option("OUT", options->yaml, "map to write (.yaml, the .pgm beside it)")
@@ -145,33 +180,7 @@ void add_map_from_poses(CLI::App& map) {
   command.add_option("--no-return", options->params.no_return_m, drivers::carmen::kNoReturnHelp)
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "print the result as JSON");
-  command.callback([options] {
-    const MapFromPoses made = map_from_poses(options->log, options->params);
-    if (made.survey.cut) std::cerr << "deltamap: warning: " << *made.survey.cut << '\n';
-    write_grid(made.grid, options->yaml);
-    const std::size_t occupied = count_of(made.grid, CellState::kOccupied);
-    const std::size_t free = count_of(made.grid, CellState::kFree);
-    if (options->json) {
-      const auto& no_return_m = made.survey.no_return_m;
-      std::cout << nlohmann::ordered_json{{"map", options->yaml},
-                                          {"scans", made.scans},
-                                          {"beams", made.beams},
-                                          {"width", made.grid.width()},
-                                          {"height", made.grid.height()},
-                                          {"resolution_m", made.grid.resolution_m()},
-                                          {"occupied_cells", occupied},
-                                          {"free_cells", free},
-                                          {"no_return_m", no_return_m ? nlohmann::ordered_json(*no_return_m) : nullptr},
-                                          {"no_return_share", made.survey.no_return_share}}
-                       .dump(2)
-                << '\n';
-      return;
-    }
-    std::cout << options->yaml << ": " << made.grid.width() << " x " << made.grid.height() << " cells of "
-              << made.grid.resolution_m() << " m from " << made.scans << " scans, " << occupied << " occupied, " << free
-              << " free\n";
-    if (const std::string line = drivers::carmen::no_return_line(made.survey); !line.empty()) std::cout << line << '\n';
-  });
+  command.callback([options] { run_from_poses(*options); });
 }
 
 }  // namespace deltamap::tool
