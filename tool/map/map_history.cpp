@@ -223,6 +223,43 @@ void set_name(const HistoryOptions& options) {
   }
 }
 
+/// The subcommands that leave the store as it is.
+void add_what_reads(CLI::App& history, const std::shared_ptr<HistoryOptions>& options) {
+  CLI::App* lister = history.add_subcommand("list", "every revision and refusal, oldest first");
+  lister->fallthrough()->callback([options] { list(*options); });
+
+  CLI::App* exporter = history.add_subcommand("export", "write revision K as a map");
+  exporter->add_option("K", options->number)->required();
+  exporter->add_option("OUT", options->out, "map_server YAML to write")->required();
+  exporter->fallthrough()->callback([options] { write_revision(*options); });
+
+  CLI::App* differ = history.add_subcommand("diff", "what changed from revision J to K");
+  differ->add_option("J", options->number)->required();
+  differ->add_option("K", options->other)->required();
+  differ->add_flag("--cells", options->cells, "each cell: column, row, before, after");
+  differ->fallthrough()->callback([options] { compare(*options); });
+
+  CLI::App* painter = history.add_subcommand("picture", "draw what revision K has changed: before and after");
+  painter->add_option("K", options->number)->required();
+  painter->add_option("OUT", options->out, "PNG to write")->required();
+  painter->fallthrough()->callback([options] { draw_delta(*options); });
+}
+
+void add_what_writes(CLI::App& history, const std::shared_ptr<HistoryOptions>& options) {
+  CLI::App* roller = history.add_subcommand("rollback", "make revision K the newest again; nothing is lost");
+  roller->add_option("K", options->number)->required();
+  roller->fallthrough()->callback([options] { roll_back(*options); });
+
+  CLI::App* undoer = history.add_subcommand("undo", "take revision K back and keep what came later; nothing is lost");
+  undoer->add_option("K", options->number)->required();
+  undoer->fallthrough()->callback([options] { undo(*options); });
+
+  CLI::App* namer = history.add_subcommand("name", "revision K stays, whatever map.retention says, and is listed so");
+  namer->add_option("K", options->number)->required();
+  namer->add_option("NAME", options->name, "one line; \"\": takes the name away")->required();
+  namer->fallthrough()->callback([options] { set_name(*options); });
+}
+
 }  // namespace
 
 void add_map_history(CLI::App& map) {
@@ -233,38 +270,8 @@ void add_map_history(CLI::App& map) {
   history->fallthrough();
   history->add_option("STORE", options->store, "map store (SQLite)")->required();
   history->add_flag("--json", options->json, "one JSON object a line");
-
-  CLI::App* lister = history->add_subcommand("list", "every revision and refusal, oldest first");
-  lister->fallthrough()->callback([options] { list(*options); });
-
-  CLI::App* exporter = history->add_subcommand("export", "write revision K as a map");
-  exporter->add_option("K", options->number)->required();
-  exporter->add_option("OUT", options->out, "map_server YAML to write")->required();
-  exporter->fallthrough()->callback([options] { write_revision(*options); });
-
-  CLI::App* differ = history->add_subcommand("diff", "what changed from revision J to K");
-  differ->add_option("J", options->number)->required();
-  differ->add_option("K", options->other)->required();
-  differ->add_flag("--cells", options->cells, "each cell: column, row, before, after");
-  differ->fallthrough()->callback([options] { compare(*options); });
-
-  CLI::App* painter = history->add_subcommand("picture", "draw what revision K has changed: before and after");
-  painter->add_option("K", options->number)->required();
-  painter->add_option("OUT", options->out, "PNG to write")->required();
-  painter->fallthrough()->callback([options] { draw_delta(*options); });
-
-  CLI::App* roller = history->add_subcommand("rollback", "make revision K the newest again; nothing is lost");
-  roller->add_option("K", options->number)->required();
-  roller->fallthrough()->callback([options] { roll_back(*options); });
-
-  CLI::App* undoer = history->add_subcommand("undo", "take revision K back and keep what came later; nothing is lost");
-  undoer->add_option("K", options->number)->required();
-  undoer->fallthrough()->callback([options] { undo(*options); });
-
-  CLI::App* namer = history->add_subcommand("name", "revision K stays, whatever map.retention says, and is listed so");
-  namer->add_option("K", options->number)->required();
-  namer->add_option("NAME", options->name, "one line; \"\": takes the name away")->required();
-  namer->fallthrough()->callback([options] { set_name(*options); });
+  add_what_reads(*history, options);
+  add_what_writes(*history, options);
 }
 
 }  // namespace deltamap::tool
