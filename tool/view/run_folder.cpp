@@ -78,46 +78,59 @@ Assign covariance_column(int i, int j) {
   };
 }
 
+using Row = daemon::LocalizationRow;
+using Columns = std::map<std::string, Assign, std::less<>>;
+
+Columns columns_of_pose() {
+  return {{"time", [](Row& row, std::string_view text) { row.time = time_of_line(text); }},
+          {"number", count_column(&Row::number)},
+          {"state", [](Row& row, std::string_view text) { row.state = named(text, kStates); }},
+          {"x_m", number_column([](Row& row) -> double& { return row.map_from_robot.x; })},
+          {"y_m", number_column([](Row& row) -> double& { return row.map_from_robot.y; })},
+          {"heading_rad", number_column([](Row& row) -> double& { return row.map_from_robot.theta; })},
+          {"w_avg", number_column([](Row& row) -> double& { return row.w_avg; })},
+          {"w_fast", number_column([](Row& row) -> double& { return row.w_fast; })},
+          {"w_slow", number_column([](Row& row) -> double& { return row.w_slow; })},
+          {"r_d", number_column([](Row& row) -> double& { return row.r_d; })},
+          {"n_eff", number_column([](Row& row) -> double& { return row.n_eff; })},
+          {"particles", count_column(&Row::particles)},
+          {"revision", count_column(&Row::revision)},
+          {"speed_m_per_s", number_column([](Row& row) -> double& { return row.speed_m_per_s; })},
+          {"turn_rate_rad_per_s", number_column([](Row& row) -> double& { return row.turn_rate_rad_per_s; })}};
+}
+
+Columns columns_of_belief() {
+  return {{"pose_right", number_column([](Row& row) -> double& { return row.belief.pose_right; })},
+          {"map_wrong", number_column([](Row& row) -> double& { return row.belief.map_wrong; })},
+          {"verdict", [](Row& row, std::string_view text) { row.belief.verdict = named(text, kVerdicts); }},
+          {"stable_expected", beams_column(&Belief::stable, &BeamCounts::expected)},
+          {"stable_fit", beams_column(&Belief::stable, &BeamCounts::fit)},
+          {"stable_short", beams_column(&Belief::stable, &BeamCounts::short_of)},
+          {"stable_beyond", beams_column(&Belief::stable, &BeamCounts::beyond)},
+          {"elsewhere_expected", beams_column(&Belief::elsewhere, &BeamCounts::expected)},
+          {"elsewhere_fit", beams_column(&Belief::elsewhere, &BeamCounts::fit)},
+          {"elsewhere_short", beams_column(&Belief::elsewhere, &BeamCounts::short_of)},
+          {"elsewhere_beyond", beams_column(&Belief::elsewhere, &BeamCounts::beyond)},
+          {"rival_share", number_column([](Row& row) -> double& { return row.belief.other_share; })},
+          {"rival_x_m", number_column([](Row& row) -> double& { return row.belief.map_from_other.x; })},
+          {"rival_y_m", number_column([](Row& row) -> double& { return row.belief.map_from_other.y; })},
+          {"rival_heading_rad", number_column([](Row& row) -> double& { return row.belief.map_from_other.theta; })}};
+}
+
+Columns columns_of_covariance() {
+  return {{"cov_xx", covariance_column(0, 0)}, {"cov_xy", covariance_column(0, 1)},
+          {"cov_xh", covariance_column(0, 2)}, {"cov_yy", covariance_column(1, 1)},
+          {"cov_yh", covariance_column(1, 2)}, {"cov_hh", covariance_column(2, 2)}};
+}
+
 /// By their names, so that an older run with fewer columns can be read.
-const std::map<std::string, Assign, std::less<>>& columns() {
-  using Row = daemon::LocalizationRow;
-  static const std::map<std::string, Assign, std::less<>> known{
-      {"time", [](Row& row, std::string_view text) { row.time = time_of_line(text); }},
-      {"number", count_column(&Row::number)},
-      {"state", [](Row& row, std::string_view text) { row.state = named(text, kStates); }},
-      {"x_m", number_column([](Row& row) -> double& { return row.map_from_robot.x; })},
-      {"y_m", number_column([](Row& row) -> double& { return row.map_from_robot.y; })},
-      {"heading_rad", number_column([](Row& row) -> double& { return row.map_from_robot.theta; })},
-      {"w_avg", number_column([](Row& row) -> double& { return row.w_avg; })},
-      {"w_fast", number_column([](Row& row) -> double& { return row.w_fast; })},
-      {"w_slow", number_column([](Row& row) -> double& { return row.w_slow; })},
-      {"r_d", number_column([](Row& row) -> double& { return row.r_d; })},
-      {"n_eff", number_column([](Row& row) -> double& { return row.n_eff; })},
-      {"particles", count_column(&Row::particles)},
-      {"revision", count_column(&Row::revision)},
-      {"pose_right", number_column([](Row& row) -> double& { return row.belief.pose_right; })},
-      {"map_wrong", number_column([](Row& row) -> double& { return row.belief.map_wrong; })},
-      {"verdict", [](Row& row, std::string_view text) { row.belief.verdict = named(text, kVerdicts); }},
-      {"stable_expected", beams_column(&Belief::stable, &BeamCounts::expected)},
-      {"stable_fit", beams_column(&Belief::stable, &BeamCounts::fit)},
-      {"stable_short", beams_column(&Belief::stable, &BeamCounts::short_of)},
-      {"stable_beyond", beams_column(&Belief::stable, &BeamCounts::beyond)},
-      {"elsewhere_expected", beams_column(&Belief::elsewhere, &BeamCounts::expected)},
-      {"elsewhere_fit", beams_column(&Belief::elsewhere, &BeamCounts::fit)},
-      {"elsewhere_short", beams_column(&Belief::elsewhere, &BeamCounts::short_of)},
-      {"elsewhere_beyond", beams_column(&Belief::elsewhere, &BeamCounts::beyond)},
-      {"rival_share", number_column([](Row& row) -> double& { return row.belief.other_share; })},
-      {"rival_x_m", number_column([](Row& row) -> double& { return row.belief.map_from_other.x; })},
-      {"rival_y_m", number_column([](Row& row) -> double& { return row.belief.map_from_other.y; })},
-      {"rival_heading_rad", number_column([](Row& row) -> double& { return row.belief.map_from_other.theta; })},
-      {"cov_xx", covariance_column(0, 0)},
-      {"cov_xy", covariance_column(0, 1)},
-      {"cov_xh", covariance_column(0, 2)},
-      {"cov_yy", covariance_column(1, 1)},
-      {"cov_yh", covariance_column(1, 2)},
-      {"cov_hh", covariance_column(2, 2)},
-      {"speed_m_per_s", number_column([](Row& row) -> double& { return row.speed_m_per_s; })},
-      {"turn_rate_rad_per_s", number_column([](Row& row) -> double& { return row.turn_rate_rad_per_s; })}};
+const Columns& columns() {
+  static const Columns known = [] {
+    Columns all = columns_of_pose();
+    all.merge(columns_of_belief());
+    all.merge(columns_of_covariance());
+    return all;
+  }();
   return known;
 }
 

@@ -103,16 +103,37 @@ void view_folder(const ViewOptions& options) {
   });
 }
 
-void view_recording(ViewOptions& options) {
+/// Replays the job and tells how far it is; answers a note on the recording, or nothing where it was told to stop.
+std::optional<std::string> replayed(const daemon::ReplayJob& job, ViewDesk& desk, const std::atomic<bool>& stops) {
+  try {
+    const daemon::RunReport report = daemon::run_replay(job, [&](double done) {
+      desk.tell_progress(done);
+      return !stops;
+    });
+    const std::vector<std::string> lines = report.recording.lines();
+    return lines.empty() ? "" : lines.front();
+  } catch (const std::runtime_error&) {
+    if (stops) return std::nullopt;
+    throw;
+  }
+}
+
+/// The settings of the replay: nobody steers it.
+daemon::Settings settings_of(const ViewOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.initial_pose.empty()) overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
+  daemon::Settings settings = daemon::read_settings(options.config, overrides);
+  settings.dashboard.control = false;
+  return settings;
+}
+
+void view_recording(const ViewOptions& options) {
   if (options.config.empty() || options.job.map.empty()) {
     throw std::runtime_error(options.target.string() +
                              ": a recording needs --map and --config, as `deltamap replay` does");
   }
-  auto& overrides = options.overrides;
-  if (!options.initial_pose.empty()) overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
-  daemon::ReplayJob& job = options.job;
-  job.settings = daemon::read_settings(options.config, overrides);
-  job.settings.dashboard.control = false;
+  daemon::ReplayJob job = options.job;
+  job.settings = settings_of(options);
   const ScratchFolder scratch;
   job.recording = options.target;
   job.out = scratch.path() / "run";
@@ -132,22 +153,10 @@ void view_recording(ViewOptions& options) {
   job.watch.change = [&desk](const MapRevision* revision, const daemon::ChangeNote& note) {
     desk.show(revision, note);
   };
-  serve(desk, [&job](ViewDesk& to, const std::atomic<bool>& stops) -> std::optional<std::string> {
-    try {
-      const daemon::RunReport report = daemon::run_replay(job, [&](double done) {
-        to.tell_progress(done);
-        return !stops;
-      });
-      const std::vector<std::string> lines = report.recording.lines();
-      return lines.empty() ? "" : lines.front();
-    } catch (const std::runtime_error&) {
-      if (stops) return std::nullopt;
-      throw;
-    }
-  });
+  serve(desk, [&job](ViewDesk& to, const std::atomic<bool>& stops) { return replayed(job, to, stops); });
 }
 
-void view(ViewOptions& options) {
+void view(const ViewOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(options.target, error);
   if (!fs::exists(status)) {
