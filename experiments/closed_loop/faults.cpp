@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "experiments/closed_loop/fault_trial.hpp"
 #include "experiments/drive/first_map.hpp"
@@ -80,56 +81,78 @@ std::string text(double number) {
   return written;
 }
 
-Report report_of(const std::vector<Outcome>& outcomes) {
-  Report report;
+/// Of one fault, begun in one way, in all places.
+struct FaultSums {
+  std::size_t runs = 0;
+  double collisions = 0.0;
+  double moved_m = 0.0;    ///< most
+  double may_drive = 0.0;  ///< most
+  std::string reasons;
+};
+
+FaultSums sums_of(const std::vector<Outcome>& outcomes, const std::string& fault, const std::string& begins) {
+  FaultSums sums;
+  for (const Outcome& outcome : outcomes) {
+    if (outcome.label("fault") != fault || outcome.label("begins") != begins) continue;
+    ++sums.runs;
+    sums.collisions += outcome.number("collisions");
+    sums.moved_m = std::max(sums.moved_m, outcome.number("moved_m"));
+    sums.may_drive = std::max(sums.may_drive, outcome.number("may_drive_share"));
+    if (sums.reasons.find(outcome.label("reason")) == std::string::npos)
+      sums.reasons += (sums.reasons.empty() ? "" : ", ") + outcome.label("reason");
+  }
+  return sums;
+}
+
+TextTable table_of_faults(const std::vector<Outcome>& outcomes) {
   TextTable table{
       "each fault in five places: most collisions of one, longest way after it began, and reasons at the end",
       {"fault", "begins", "collisions", "moved at most, m", "reasons", "may drive"},
       {}};
-  double collisions = 0.0;
-  double longest_m = 0.0;
-  double may_drive_sum = 0.0;
-  std::vector<double> ways_m;
-  for (const Outcome& outcome : outcomes) {
-    ways_m.push_back(outcome.number("moved_m"));
-    longest_m = std::max(longest_m, ways_m.back());
-    may_drive_sum += outcome.number("may_drive_share");
-  }
-  std::sort(ways_m.begin(), ways_m.end());
-  std::vector<std::pair<double, double>> ways;
-  for (const double way_m : ways_m) ways.emplace_back(static_cast<double>(ways.size() + 1), way_m);
   for (const std::string_view name : kTrialFaults) {
     const std::string fault{name};
     for (const std::string begins : {"from-the-start", "while-driving"}) {
-      double bumped = 0.0;
-      double moved_m = 0.0;
-      double may_drive = 0.0;
-      std::string reasons;
-      bool is_there = false;
-      for (const Outcome& outcome : outcomes) {
-        if (outcome.label("fault") != fault || outcome.label("begins") != begins) continue;
-        is_there = true;
-        bumped += outcome.number("collisions");
-        moved_m = std::max(moved_m, outcome.number("moved_m"));
-        may_drive = std::max(may_drive, outcome.number("may_drive_share"));
-        if (reasons.find(outcome.label("reason")) == std::string::npos)
-          reasons += (reasons.empty() ? "" : ", ") + outcome.label("reason");
-      }
-      collisions += bumped;
-      if (is_there) table.rows.push_back({fault, begins, text(bumped), text(moved_m), reasons, text(may_drive)});
+      const FaultSums sums = sums_of(outcomes, fault, begins);
+      if (sums.runs == 0) continue;
+      table.rows.push_back(
+          {fault, begins, text(sums.collisions), text(sums.moved_m), sums.reasons, text(sums.may_drive)});
     }
   }
+  return table;
+}
+
+std::vector<double> numbers(const std::vector<Outcome>& outcomes, const char* name) {
+  std::vector<double> values;
+  for (const Outcome& outcome : outcomes) values.push_back(outcome.number(name));
+  return values;
+}
+
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+Chart chart_of_ways(std::vector<double> ways_m) {
+  std::sort(ways_m.begin(), ways_m.end());
+  std::vector<std::pair<double, double>> ways;
+  for (const double way_m : ways_m) ways.emplace_back(static_cast<double>(ways.size() + 1), way_m);
+  return {"the way of the body after a fault began", "run, from the shortest", "m", {{"way", ways}}};
+}
+
+Report report_of(const std::vector<Outcome>& outcomes) {
+  const std::vector<double> ways_m = numbers(outcomes, "moved_m");
+  const double longest_m = std::accumulate(ways_m.begin(), ways_m.end(), 0.0,
+                                           [](double longest, double way) { return std::max(longest, way); });
+  const double may_drive = sum_of(numbers(outcomes, "may_drive_share"));
   const Certainty runs{.runs = outcomes.size()};
-  report.figures = {{"collisions", collisions, "", Target{.most = 0.0}, "", runs},
+  Report report;
+  report.figures = {{"collisions", sum_of(numbers(outcomes, "collisions")), "", Target{.most = 0.0}, "", runs},
                     {"longest way after a fault", longest_m, "m", {}, "", runs},
                     {"planners are told that they may drive, at the end",
-                     may_drive_sum / std::max(1.0, static_cast<double>(outcomes.size())),
+                     may_drive / std::max(1.0, static_cast<double>(outcomes.size())),
                      "",
                      {},
                      "",
                      runs}};
-  report.charts.push_back({"the way of the body after a fault began", "run, from the shortest", "m", {{"way", ways}}});
-  report.tables.push_back(std::move(table));
+  report.charts.push_back(chart_of_ways(ways_m));
+  report.tables.push_back(table_of_faults(outcomes));
   return report;
 }
 

@@ -77,51 +77,62 @@ Series error_series(const Outcome& outcome) {
   return series;
 }
 
+std::vector<double> numbers(const std::vector<const Outcome*>& drives, const char* name) {
+  std::vector<double> values;
+  for (const Outcome* drive : drives) values.push_back(drive->number(name));
+  return values;
+}
+
+Figure mean_figure(const std::string& name, const std::vector<double>& values, const std::string& unit,
+                   const std::optional<Target>& target = {}) {
+  return {name, mean_of(values), unit, target, "", certainty_of_mean(values)};
+}
+
+Figure worst_figure(const std::string& name, const std::vector<double>& values, const std::string& unit,
+                    const std::optional<Target>& target) {
+  return {name, quantile(values, 1.0), unit, target, "", certainty_of_extreme(values)};
+}
+
+std::vector<Figure> figures_of(const Kind& kind, const std::vector<const Outcome*>& drives) {
+  const Target none{.most = 0.0};
+  const auto of = [&](const char* name) { return numbers(drives, name); };
+  const std::string wheels = kind.name + ": wheels after 15 min, ";
+  return {worst_figure(kind.name + ": RMSE of the worst drive", of("error_rms_m"), "m", kind.rms_m),
+          mean_figure(kind.name + ": RMSE, mean", of("error_rms_m"), "m"),
+          worst_figure(kind.name + ": farthest scan", of("error_most_m"), "m", kind.farthest_m),
+          mean_figure(kind.name + ": time off by more than 0.5 m", of("off_share"), "", none),
+          worst_figure(kind.name + ": jumps away from a right pose, most", of("jumps"), "", none),
+          worst_figure(wheels + "distance, worst error", of("wheel_distance_error"), "", Target{.most = 0.002}),
+          worst_figure(wheels + "turn, worst error", of("wheel_turn_error"), "", Target{.most = 0.003}),
+          worst_figure(wheels + "lag, worst error", of("wheel_lag_error_s"), "s", Target{.most = 0.02})};
+}
+
+Chart chart_of_errors(const Kind& kind, const std::vector<const Outcome*>& drives) {
+  Chart chart{kind.name + ": error", "time, min", "position, m", {}};
+  for (const Outcome* drive : drives) chart.series.push_back(error_series(*drive));
+  return chart;
+}
+
+TextTable table_of_drives(const std::vector<Outcome>& outcomes) {
+  TextTable table{"Every drive", {"kind", "seed", "RMSE, m", "farthest, m", "off", "jumps", "cause"}, {}};
+  for (const Outcome& outcome : outcomes) {
+    table.rows.push_back({outcome.label("kind"), outcome.label("seed"), text_of(outcome.number("error_rms_m")),
+                          text_of(outcome.number("error_most_m")), text_of(outcome.number("off_share")),
+                          text_of(outcome.number("jumps")), outcome.label("cause")});
+  }
+  return table;
+}
+
 Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   for (const Kind& kind : kinds()) {
-    std::vector<double> rms_m, most_m, off, jumps, wheel_distance, wheel_turn, wheel_lag_s;
-    Chart errors{kind.name + ": error", "time, min", "position, m", {}};
-    for (const Outcome& outcome : outcomes) {
-      if (outcome.label("kind") != kind.name) continue;
-      rms_m.push_back(outcome.number("error_rms_m"));
-      most_m.push_back(outcome.number("error_most_m"));
-      off.push_back(outcome.number("off_share"));
-      jumps.push_back(outcome.number("jumps"));
-      wheel_distance.push_back(outcome.number("wheel_distance_error"));
-      wheel_turn.push_back(outcome.number("wheel_turn_error"));
-      wheel_lag_s.push_back(outcome.number("wheel_lag_error_s"));
-      errors.series.push_back(error_series(outcome));
-    }
-    if (rms_m.empty()) continue;  // not asked for
-    add_pictures(report, kind.name, *runs_with(outcomes, {{"kind", kind.name}}).front());
-    report.figures.push_back({kind.name + ": RMSE of the worst drive", quantile(rms_m, 1.0), "m", kind.rms_m, "",
-                              certainty_of_extreme(rms_m)});
-    report.figures.push_back({kind.name + ": RMSE, mean", mean_of(rms_m), "m", {}, "", certainty_of_mean(rms_m)});
-    report.figures.push_back(
-        {kind.name + ": farthest scan", quantile(most_m, 1.0), "m", kind.farthest_m, "", certainty_of_extreme(most_m)});
-    const Target none{.most = 0.0};
-    report.figures.push_back(
-        {kind.name + ": time off by more than 0.5 m", mean_of(off), "", none, "", certainty_of_mean(off)});
-    report.figures.push_back({kind.name + ": jumps away from a right pose, most", quantile(jumps, 1.0), "", none, "",
-                              certainty_of_extreme(jumps)});
-    const auto of_wheels = [&](const char* what, const std::vector<double>& errors_of, const char* unit, double most) {
-      const std::string name = kind.name + ": wheels after 15 min, " + what + ", worst error";
-      report.figures.push_back(
-          {name, quantile(errors_of, 1.0), unit, Target{.most = most}, "", certainty_of_extreme(errors_of)});
-    };
-    of_wheels("distance", wheel_distance, "", 0.002);
-    of_wheels("turn", wheel_turn, "", 0.003);
-    of_wheels("lag", wheel_lag_s, "s", 0.02);
-    report.charts.push_back(std::move(errors));
+    const std::vector<const Outcome*> drives = runs_with(outcomes, {{"kind", kind.name}});
+    if (drives.empty()) continue;  // not asked for
+    add_pictures(report, kind.name, *drives.front());
+    for (Figure& figure : figures_of(kind, drives)) report.figures.push_back(std::move(figure));
+    report.charts.push_back(chart_of_errors(kind, drives));
   }
-  TextTable runs{"Every drive", {"kind", "seed", "RMSE, m", "farthest, m", "off", "jumps", "cause"}, {}};
-  for (const Outcome& outcome : outcomes) {
-    runs.rows.push_back({outcome.label("kind"), outcome.label("seed"), text_of(outcome.number("error_rms_m")),
-                         text_of(outcome.number("error_most_m")), text_of(outcome.number("off_share")),
-                         text_of(outcome.number("jumps")), outcome.label("cause")});
-  }
-  report.tables.push_back(std::move(runs));
+  report.tables.push_back(table_of_drives(outcomes));
   return report;
 }
 

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::array kPlaces{"room", "hall", "depot"};  // no glass: that is freed by whoever looks through it
 constexpr std::array kStops{"kept", "given", "none"};   // the pose at the second start, or no stop at all
+constexpr std::array kSummed{"revisions",   "withdrawn",      "walls_wrong_at_stop",
+                             "walls_wrong", "ghosts_at_stop", "ghosts"};
 constexpr double kSoonest_s = 1.0;
 constexpr double kLatest_s = 30.0;
 constexpr double kStopSoonest_s = 5.0;
@@ -43,6 +45,31 @@ std::vector<Run> runs_of(const Options& options) {
   return runs;
 }
 
+/// Of all robots of one place and one kind of stop.
+struct Sums {
+  std::size_t robots = 0;
+  std::array<double, kSummed.size()> of{};  ///< kSummed
+};
+
+Sums sums_of(const std::vector<Outcome>& outcomes, const std::string& place, const std::string& stop) {
+  Sums sums;
+  for (const Outcome& outcome : outcomes) {
+    if (outcome.label("place") != place || outcome.label("stop") != stop) continue;
+    ++sums.robots;
+    for (std::size_t column = 0; column < kSummed.size(); ++column) sums.of[column] += outcome.number(kSummed[column]);
+  }
+  return sums;
+}
+
+Chart chart_of_robots(const std::vector<Outcome>& outcomes) {
+  std::vector<std::pair<double, double>> course;
+  course.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) {
+    course.emplace_back(static_cast<double>(course.size() + 1), outcome.number("walls_wrong"));
+  }
+  return {"wall cells wrong a minute after the start", "robot", "cells", {{"robots", course}}};
+}
+
 Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   TextTable table{"By place and pose at the second start, all seeds",
@@ -54,36 +81,21 @@ Report report_of(const std::vector<Outcome>& outcomes) {
     double ghosts = 0.0;
     std::size_t robots = 0;
     for (const std::string place : kPlaces) {
-      std::array<double, 6> sums{};
-      std::size_t count = 0;
-      for (const Outcome& outcome : outcomes) {
-        if (outcome.label("place") != place || outcome.label("stop") != stop) continue;
-        ++count;
-        std::size_t column = 0;
-        for (const char* name :
-             {"revisions", "withdrawn", "walls_wrong_at_stop", "walls_wrong", "ghosts_at_stop", "ghosts"}) {
-          sums.at(column++) += outcome.number(name);
-        }
-      }
-      if (count == 0) continue;
-      std::vector<std::string> row{place, stop, std::to_string(count)};
-      for (const double sum : sums) row.push_back(text_of(sum));
+      const Sums sums = sums_of(outcomes, place, stop);
+      if (sums.robots == 0) continue;
+      std::vector<std::string> row{place, stop, std::to_string(sums.robots)};
+      for (const double sum : sums.of) row.push_back(text_of(sum));
       table.rows.push_back(std::move(row));
-      wrong += sums[3];
-      ghosts += sums[5];
-      robots += count;
+      wrong += sums.of[3];
+      ghosts += sums.of[5];
+      robots += sums.robots;
     }
     if (robots == 0) continue;
     report.figures.push_back(
         {stop + ": wall cells wrong", wrong, "", Target{.most = 0.0}, "", Certainty{.runs = robots}});
     report.figures.push_back({stop + ": ghost cells", ghosts, "", {}, "", Certainty{.runs = robots}});
   }
-  std::vector<std::pair<double, double>> course;
-  course.reserve(outcomes.size());
-  for (const Outcome& outcome : outcomes) {
-    course.emplace_back(static_cast<double>(course.size() + 1), outcome.number("walls_wrong"));
-  }
-  report.charts.push_back({"wall cells wrong a minute after the start", "robot", "cells", {{"robots", course}}});
+  report.charts.push_back(chart_of_robots(outcomes));
   report.tables.push_back(std::move(table));
   return report;
 }

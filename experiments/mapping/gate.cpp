@@ -122,6 +122,57 @@ Chart course_of(const Kind& kind, const std::string& title) {
   return chart;
 }
 
+std::vector<std::string> row_of(const Kind& kind, const std::string& place, const std::string& event,
+                                const std::string& gate) {
+  std::vector<std::string> row{place, event, gate};
+  for (const char* number : {"revisions", "cells", "cells_astray", "cells_astray_that_stood", "revisions_withdrawn",
+                             "sets_refused_in_doubt", "wrong_s", "wrong_and_open_s"}) {
+    row.push_back(text_of(kind.sum(number)));
+  }
+  row.push_back(text_of(kind.mean("shut_after")));
+  return row;
+}
+
+/// What is written where it should not be, with the gate and without it.
+void add_astray(Report& report, const std::string& place, const Kind& gated, const Kind& open) {
+  const auto add_sum = [&](const Kind& kind, const std::string& what, const char* number,
+                           const std::optional<Target>& target = {}) {
+    report.figures.push_back(kind.sum_figure(std::string{place}.append(": ").append(what), number, target));
+  };
+  const std::string astray = "cells written while the pose was off by more than 0.3 m";
+  const std::string stood = "cells written while off by more than 0.3 m that are there 60 s later";
+  add_sum(gated, astray, "cells_astray", Target{.most = 0.0});
+  add_sum(gated, stood, "cells_astray_that_stood", Target{.most = 0.0});
+  add_sum(gated, "cells drawn from scans taken so far off", "cells_drawn_astray", Target{.most = 0.0});
+  add_sum(open, astray + ", without the gate", "cells_astray");
+  add_sum(open, stood + ", without the gate", "cells_astray_that_stood");
+}
+
+/// What the gate holds up while all is well.
+void add_held_up(Report& report, const std::vector<Outcome>& outcomes, const std::string& place) {
+  const std::string nothing{name_of(PoseEvent::kNothing)};
+  const Kind gated{outcomes, place, nothing, "gated"};
+  if (gated.empty()) return;
+  const Kind open{outcomes, place, nothing, "open"};
+  report.figures.push_back(gated.mean_figure(place + ": share of the time shut while nothing befalls the robot",
+                                             "shut_after", Target{.most = 0.02}));
+  if (open.empty()) return;
+  report.figures.push_back({place + ": cells written while nothing befalls it, of those without the gate",
+                            gated.sum("cells") / open.sum("cells"),
+                            "",
+                            {},
+                            "",
+                            certainty_of_ratio(gated, open, "cells")});
+}
+
+void add_figures(Report& report, const std::vector<Outcome>& outcomes, const std::string& place) {
+  const Kind gated{outcomes, place, "", "gated"};
+  const Kind open{outcomes, place, "", "open"};
+  if (gated.empty() || open.empty()) return;
+  add_astray(report, place, gated, open);
+  add_held_up(report, outcomes, place);
+}
+
 Report report_of(const std::vector<Outcome>& outcomes) {
   Report report;
   TextTable table{
@@ -136,41 +187,13 @@ Report report_of(const std::vector<Outcome>& outcomes) {
       for (const std::string gate : kGates) {
         const Kind kind{outcomes, place, what, gate};
         if (kind.empty()) continue;
-        const auto sum = [&](const char* number) { return text_of(kind.sum(number)); };
-        table.rows.push_back({place, what, gate, sum("revisions"), sum("cells"), sum("cells_astray"),
-                              sum("cells_astray_that_stood"), sum("revisions_withdrawn"), sum("sets_refused_in_doubt"),
-                              sum("wrong_s"), sum("wrong_and_open_s"), text_of(kind.mean("shut_after"))});
+        table.rows.push_back(row_of(kind, place, what, gate));
         if (gate != "gated") continue;
         for (auto& row : reasons_of(kind, place + ", " + what, "after")) reasons.rows.push_back(std::move(row));
         if (event != PoseEvent::kNothing) report.charts.push_back(course_of(kind, place + ", " + what));
       }
     }
-    const Kind gated{outcomes, place, "", "gated"};
-    const Kind open{outcomes, place, "", "open"};
-    if (gated.empty() || open.empty()) continue;
-    const auto add_sum = [&](const Kind& kind, const std::string& what, const char* number,
-                             const std::optional<Target>& target = {}) {
-      report.figures.push_back(kind.sum_figure(std::string{place}.append(": ").append(what), number, target));
-    };
-    const std::string astray = "cells written while the pose was off by more than 0.3 m";
-    const std::string stood = "cells written while off by more than 0.3 m that are there 60 s later";
-    add_sum(gated, astray, "cells_astray", Target{.most = 0.0});
-    add_sum(gated, stood, "cells_astray_that_stood", Target{.most = 0.0});
-    add_sum(gated, "cells drawn from scans taken so far off", "cells_drawn_astray", Target{.most = 0.0});
-    add_sum(open, astray + ", without the gate", "cells_astray");
-    add_sum(open, stood + ", without the gate", "cells_astray_that_stood");
-    const Kind quiet{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "gated"};
-    if (quiet.empty()) continue;
-    const Kind quiet_open{outcomes, place, std::string{name_of(PoseEvent::kNothing)}, "open"};
-    report.figures.push_back(quiet.mean_figure(place + ": share of the time shut while nothing befalls the robot",
-                                               "shut_after", Target{.most = 0.02}));
-    if (quiet_open.empty()) continue;
-    report.figures.push_back({place + ": cells written while nothing befalls it, of those without the gate",
-                              quiet.sum("cells") / quiet_open.sum("cells"),
-                              "",
-                              {},
-                              "",
-                              certainty_of_ratio(quiet, quiet_open, "cells")});
+    add_figures(report, outcomes, place);
   }
   report.tables = {std::move(table), std::move(reasons)};
   return report;
