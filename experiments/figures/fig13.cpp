@@ -91,22 +91,22 @@ std::vector<Picture> pictures_of(const std::string& method, const OccupancyGrid&
   return pictures;
 }
 
-Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon::Settings& settings,
-                              const std::string& method, std::uint64_t seed, double minutes) {
-  const auto first = first_map(scenario);
+simulation::VirtualDriveParams drive_params(std::uint64_t seed) {
   simulation::VirtualDriveParams params;
   params.seed = seed;
   params.max_range_m = kMaxRange_m;
   params.route.round = round_of_the_room();
   params.route.comfort_m = kComfort_m;
-  MappingDrive drive{scenario, params, settings, {first}};
-  MappingWatch watch{scenario, first, {.range_m = kMaxRange_m}};
-  RoomChanges changes{schedule(minutes), scenario, Random{kBoxes + seed}};
+  return params;
+}
+
+/// Drives until all boxes are back; answers how it was when all had gone.
+std::optional<Emptied> drive_through(MappingDrive& drive, MappingWatch& watch, RoomChanges changes, const Point2& start,
+                                     const GridGeometry& geometry) {
   std::optional<Emptied> emptied;
   for (double passed_s = 0.0; !changes.is_over(passed_s);) {
     if (!emptied && changes.is_emptied(passed_s)) {
-      const Point2 start = scenario.robot.map_from_start.position();
-      emptied = Emptied{drive.map(), simulation::surveyed_map(drive.drive().world(), start, first->geometry())};
+      emptied = Emptied{drive.map(), simulation::surveyed_map(drive.drive().world(), start, geometry)};
     }
     const auto change = changes.due(passed_s, drive.drive());
     if (change) drive.drive().change(*change);
@@ -115,24 +115,40 @@ Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon
     passed_s = scan.passed_s;
     watch.observe(scan, drive.map());
   }
-  const score::CellMask room = known_cells(emptied->truth);
-  const score::MapScore gone = score::map_score(emptied->truth, emptied->map, room);
-  const score::MapScore stale = score::map_score(emptied->truth, *first, room);
-  const Likeness back = likeness(*first, drive.map());
+  return emptied;
+}
+
+std::vector<std::pair<std::string, double>> numbers_of(const OccupancyGrid& first, const Emptied& emptied,
+                                                       const OccupancyGrid& restored) {
+  const score::CellMask room = known_cells(emptied.truth);
+  const score::MapScore gone = score::map_score(emptied.truth, emptied.map, room);
+  const score::MapScore stale = score::map_score(emptied.truth, first, room);
+  const Likeness back = likeness(first, restored);
+  return {{"emptied_f1", gone.contour_f1},
+          {"emptied_f1_stale", stale.contour_f1},
+          {"emptied_skill", score::skill(gone.contour_f1, stale.contour_f1, 1.0)},
+          {"emptied_acceptance", gone.acceptance},
+          {"emptied_wrong_m2", gone.wrong_m2},
+          {"restored_same", back.same},
+          {"restored_differing_cells", back.differing},
+          {"restored_cells_inside", back.inside},
+          {"restored_free_inside", back.free_inside},
+          {"restored_f1", back.score.contour_f1},
+          {"restored_acceptance", back.score.acceptance},
+          {"restored_wrong_m2", back.score.wrong_m2}};
+}
+
+Outcome take_out_and_put_back(const simulation::Scenario& scenario, const daemon::Settings& settings,
+                              const std::string& method, std::uint64_t seed, double minutes) {
+  const auto first = first_map(scenario);
+  MappingDrive drive{scenario, drive_params(seed), settings, {first}};
+  MappingWatch watch{scenario, first, {.range_m = kMaxRange_m}};
+  const std::optional<Emptied> emptied =
+      drive_through(drive, watch, RoomChanges{schedule(minutes), scenario, Random{kBoxes + seed}},
+                    scenario.robot.map_from_start.position(), first->geometry());
   Outcome outcome;
   outcome.labels = {{"method", method}, {"seed", std::to_string(seed)}};
-  outcome.numbers = {{"emptied_f1", gone.contour_f1},
-                     {"emptied_f1_stale", stale.contour_f1},
-                     {"emptied_skill", score::skill(gone.contour_f1, stale.contour_f1, 1.0)},
-                     {"emptied_acceptance", gone.acceptance},
-                     {"emptied_wrong_m2", gone.wrong_m2},
-                     {"restored_same", back.same},
-                     {"restored_differing_cells", back.differing},
-                     {"restored_cells_inside", back.inside},
-                     {"restored_free_inside", back.free_inside},
-                     {"restored_f1", back.score.contour_f1},
-                     {"restored_acceptance", back.score.acceptance},
-                     {"restored_wrong_m2", back.score.wrong_m2}};
+  outcome.numbers = numbers_of(*first, *emptied, drive.map());
   for (const auto& number : watch.numbers(drive.map())) outcome.numbers.push_back(number);
   outcome.pictures = pictures_of(method, *first, emptied, drive.map());
   return outcome;

@@ -119,19 +119,15 @@ double contour_f1(const Survey& survey, std::vector<Pose2> truth, const Pose2& t
       .f1();
 }
 
-Outcome survey_run(std::uint64_t seed, double minutes, const Options& options) {
-  daemon::Settings settings;
-  settings.localizer = options.localizer;
-  Surveyed surveyed{daemon::SurveyStep{settings}};
-  survey_world(seed, minutes, surveyed);
-  const Survey& survey = surveyed.step.slam().survey();
-  std::vector<Pose2> estimated;
-  std::vector<Pose2> truth;
-  for (const std::uint32_t node : survey.joined_nodes()) {
-    estimated.push_back(survey.poses[node]);
-    truth.push_back(surveyed.truth[node]);
-  }
-  const Pose2 truth_from_survey = best_motion(estimated, truth);
+/// Of the keyframes, as the best rigid motion onto the truth leaves them.
+struct KeyframeErrors {
+  double rms_m = 0.0;
+  double most_m = 0.0;
+  double heading_rms_rad = 0.0;
+};
+
+KeyframeErrors errors_of(const std::vector<Pose2>& estimated, const std::vector<Pose2>& truth,
+                         const Pose2& truth_from_survey) {
   double squares = 0.0;
   double turn_squares = 0.0;
   double most_m = 0.0;
@@ -142,26 +138,48 @@ Outcome survey_run(std::uint64_t seed, double minutes, const Options& options) {
     most_m = std::max(most_m, off.head<2>().norm());
   }
   const auto count = static_cast<double>(truth.size());
+  return {std::sqrt(squares / count), most_m, std::sqrt(turn_squares / count)};
+}
+
+/// Of a survey whose drives are done.
+Outcome outcome_of(std::uint64_t seed, const Surveyed& surveyed) {
+  const Survey& survey = surveyed.step.slam().survey();
+  const auto keyframes = static_cast<double>(survey.keyframes.size());
+  std::vector<Pose2> estimated;
+  std::vector<Pose2> truth;
+  for (const std::uint32_t node : survey.joined_nodes()) {
+    estimated.push_back(survey.poses[node]);
+    truth.push_back(surveyed.truth[node]);
+  }
+  const Pose2 truth_from_survey = best_motion(estimated, truth);
+  const KeyframeErrors errors = errors_of(estimated, truth, truth_from_survey);
   const auto [loops, wrong_loops] = loops_of(survey, surveyed.truth);
   const auto kind = simulation::drawn::unseen_kind(seed);
   Outcome outcome;
   outcome.labels = {{"seed", std::to_string(seed)},
                     {"layout", std::string{name_of(kind.layout)}},
                     {"laser", drivers::lms200::name_of(kind.fan) + " " + text_of(kind.range_m) + "m"}};
-  outcome.numbers = {{"error_rms_m", std::sqrt(squares / count)},
-                     {"error_most_m", most_m},
-                     {"heading_rms_deg", degrees(std::sqrt(turn_squares / count))},
+  outcome.numbers = {{"error_rms_m", errors.rms_m},
+                     {"error_most_m", errors.most_m},
+                     {"heading_rms_deg", degrees(errors.heading_rms_rad)},
                      {"contour_f1", contour_f1(survey, surveyed.truth, truth_from_survey)},
                      {"joined", estimated.size() == survey.keyframes.size() ? 1.0 : 0.0},
-                     {"keyframes", static_cast<double>(survey.keyframes.size())},
-                     {"matched_share", static_cast<double>(surveyed.step.slam().matched()) /
-                                           static_cast<double>(survey.keyframes.size())},
+                     {"keyframes", keyframes},
+                     {"matched_share", static_cast<double>(surveyed.step.slam().matched()) / keyframes},
                      {"loops", static_cast<double>(loops)},
                      {"wrong_loops_share", loops == 0 ? 0.0 : static_cast<double>(wrong_loops) / loops},
                      {"slam_cpu_ms", 1e3 * surveyed.cpu_s},
                      {"speed_m_per_s", kind.speed_m_per_s},
                      {"people", kind.people.all}};
   return outcome;
+}
+
+Outcome survey_run(std::uint64_t seed, double minutes, const Options& options) {
+  daemon::Settings settings;
+  settings.localizer = options.localizer;
+  Surveyed surveyed{daemon::SurveyStep{settings}};
+  survey_world(seed, minutes, surveyed);
+  return outcome_of(seed, surveyed);
 }
 
 std::vector<Run> runs_of(const Options& options) {

@@ -99,6 +99,43 @@ void add_shares(const mapping::gate::GateTimes& times, const std::string& when, 
   }
 }
 
+/// How long the pose was wrong, and how long of that the gate was open.
+class WrongTimes {
+ public:
+  void add(double passed_s, bool is_wrong, bool is_open) {
+    if (is_wrong) wrong_s_ += passed_s - last_s_;
+    if (is_wrong && is_open) unnoticed_s_ += passed_s - last_s_;
+    last_s_ = passed_s;
+  }
+  [[nodiscard]] double wrong_s() const { return wrong_s_; }
+  [[nodiscard]] double unnoticed_s() const { return unnoticed_s_; }
+
+ private:
+  double wrong_s_ = 0.0;
+  double unnoticed_s_ = 0.0;
+  double last_s_ = 0.0;
+};
+
+ScanTable no_rows() {
+  return ScanTable{{"t_s", "error_m", "state", "verdict", "pose_right", "rival_share", "deviation_m", "gate", "written",
+                    "withdrawn", "x_m", "y_m", "expected", "fit", "short_of", "beyond"}};
+}
+
+void add_row(ScanTable& scans, const Mapped& scan, double error_m) {
+  const Estimate& estimate = scan.estimate;
+  const BeamCounts beams = all_beams(estimate.belief);
+  const bool withdrew = scan.update && !scan.update->note.withdraws.empty();
+  const double written = scan.update && scan.update->revision && !withdrew
+                             ? static_cast<double>(scan.update->revision->changes.size())
+                             : 0.0;
+  scans.add({scan.passed_s, error_m, static_cast<double>(estimate.state), static_cast<double>(estimate.belief.verdict),
+             estimate.belief.pose_right, estimate.belief.other_share,
+             std::sqrt(estimate.covariance.topLeftCorner<2, 2>().trace()), static_cast<double>(scan.awareness.gate),
+             written, withdrew ? static_cast<double>(scan.update->revision->changes.size()) : 0.0,
+             scan.map_from_robot.x, scan.map_from_robot.y, 1.0 * beams.expected, 1.0 * beams.fit, 1.0 * beams.short_of,
+             1.0 * beams.beyond});
+}
+
 }  // namespace
 
 Outcome outcome_of(const GateRun& run) {
@@ -109,13 +146,10 @@ Outcome outcome_of(const GateRun& run) {
   MappingDrive drive{run.scenario, params, run.settings, {first}};
   Random random{run.seed + 104729};
   Count count{run};
+  WrongTimes times;
   Outcome outcome;
-  outcome.scans = ScanTable{{"t_s", "error_m", "state", "verdict", "pose_right", "rival_share", "deviation_m", "gate",
-                             "written", "withdrawn", "x_m", "y_m", "expected", "fit", "short_of", "beyond"}};
+  outcome.scans = no_rows();
   bool befallen = false;
-  double wrong_s = 0.0;
-  double unnoticed_s = 0.0;  // the pose was wrong and the gate open
-  double last_s = 0.0;
   mapping::gate::GateTimes times_before{};
   for (double passed_s = 0.0; passed_s < run.before_s + run.after_s;) {
     if (!befallen && passed_s >= run.before_s) {
@@ -125,32 +159,18 @@ Outcome outcome_of(const GateRun& run) {
     const Mapped scan = drive.next();
     passed_s = scan.passed_s;
     if (!befallen) times_before = scan.awareness.gate_times;
-    const Estimate& estimate = scan.estimate;
-    const double error_m = distance_between(estimate.map_from_robot, scan.map_from_robot);
+    const double error_m = distance_between(scan.estimate.map_from_robot, scan.map_from_robot);
     count.observe(scan, error_m, drive.map());
-    const bool is_open = scan.awareness.gate == mapping::gate::GateReason::kOpen;
-    if (error_m > run.wrong_pose_m) wrong_s += passed_s - last_s;
-    if (error_m > run.wrong_pose_m && is_open) unnoticed_s += passed_s - last_s;
-    last_s = passed_s;
-    const BeamCounts beams = all_beams(estimate.belief);
-    const bool withdrew = scan.update && !scan.update->note.withdraws.empty();
-    const double written = scan.update && scan.update->revision && !withdrew
-                               ? static_cast<double>(scan.update->revision->changes.size())
-                               : 0.0;
-    outcome.scans.add(
-        {passed_s, error_m, static_cast<double>(estimate.state), static_cast<double>(estimate.belief.verdict),
-         estimate.belief.pose_right, estimate.belief.other_share,
-         std::sqrt(estimate.covariance.topLeftCorner<2, 2>().trace()), static_cast<double>(scan.awareness.gate),
-         written, withdrew ? static_cast<double>(scan.update->revision->changes.size()) : 0.0, scan.map_from_robot.x,
-         scan.map_from_robot.y, 1.0 * beams.expected, 1.0 * beams.fit, 1.0 * beams.short_of, 1.0 * beams.beyond});
+    times.add(passed_s, error_m > run.wrong_pose_m, scan.awareness.gate == mapping::gate::GateReason::kOpen);
+    add_row(outcome.scans, scan, error_m);
     if (passed_s < run.before_s + run.after_s) continue;
     add_shares(times_before, "before", outcome);
     add_shares(between(times_before, scan.awareness.gate_times), "after", outcome);
   }
   const auto counted = count.numbers(drive.map());
   outcome.numbers.insert(outcome.numbers.begin(), counted.begin(), counted.end());
-  outcome.numbers.emplace_back("wrong_s", wrong_s);
-  outcome.numbers.emplace_back("wrong_and_open_s", unnoticed_s);
+  outcome.numbers.emplace_back("wrong_s", times.wrong_s());
+  outcome.numbers.emplace_back("wrong_and_open_s", times.unnoticed_s());
   return outcome;
 }
 

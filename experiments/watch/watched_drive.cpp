@@ -93,22 +93,34 @@ std::vector<std::pair<std::string, double>> wheel_numbers(const WatchedRun& run,
           {"wheel_lag_error_s", std::abs(found.lag_s - run.drive.odometry_lag_s)}};
 }
 
+MappingWatchParams watch_params(const WatchedRun& run) {
+  return {
+      .range_m = run.drive.max_range_m, .field_rad = radians(run.drive.fan.angle_deg), .judge_every_s = kJudgeEvery_s};
+}
+
+ScanTable no_seconds() {
+  return ScanTable{{"t_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state", "gate", "pose_right",
+                    "changed_in_view"}};
+}
+
+void add_second(ScanTable& scans, const Mapped& scan, double changed_share) {
+  const Pose2& truth = scan.map_from_robot;
+  const Pose2& believed = scan.estimate.map_from_robot;
+  scans.add({scan.passed_s, truth.x, truth.y, truth.theta, distance_between(truth, believed),
+             turn_between(truth.theta, believed.theta), static_cast<double>(scan.estimate.state),
+             static_cast<double>(scan.awareness.gate), scan.estimate.belief.pose_right, changed_share});
+}
+
 }  // namespace
 
 Outcome watched_drive(const WatchedRun& run) {
   MappingDrive drive{run.scenario, run.drive, run.settings, {run.first_map}, run.knows_start};
   std::optional<MappingWatch> watch;
-  if (run.settings.mapping.enabled) {
-    watch.emplace(run.scenario, run.first_map,
-                  MappingWatchParams{.range_m = run.drive.max_range_m,
-                                     .field_rad = radians(run.drive.fan.angle_deg),
-                                     .judge_every_s = kJudgeEvery_s});
-  }
+  if (run.settings.mapping.enabled) watch.emplace(run.scenario, run.first_map, watch_params(run));
   PoseCourse course{run.knows_start, run.scenario.laser.optics.robot_from_laser};
   const ChangedView changed_view{run};
   Outcome outcome;
-  outcome.scans = ScanTable{{"t_s", "x_m", "y_m", "theta_rad", "error_m", "heading_error_rad", "state", "gate",
-                             "pose_right", "changed_in_view"}};
+  outcome.scans = no_seconds();
   TrajectoryPair paths;
   double changed_share = 0.0;
   double next_row_s = 0.0;
@@ -124,12 +136,8 @@ Outcome watched_drive(const WatchedRun& run) {
     if (watch) watch->observe(scan, drive.map());
     if (!writes_row) continue;
     next_row_s = passed_s + kRowEvery_s;
-    const Pose2& truth = scan.map_from_robot;
-    paths.add(passed_s, truth.position(), scan.estimate.map_from_robot.position());
-    outcome.scans.add({passed_s, truth.x, truth.y, truth.theta, distance_between(truth, scan.estimate.map_from_robot),
-                       turn_between(truth.theta, scan.estimate.map_from_robot.theta),
-                       static_cast<double>(scan.estimate.state), static_cast<double>(scan.awareness.gate),
-                       scan.estimate.belief.pose_right, changed_share});
+    paths.add(passed_s, scan.map_from_robot.position(), scan.estimate.map_from_robot.position());
+    add_second(outcome.scans, scan, changed_share);
   }
   outcome.pictures = {{"robot green, believed magenta; the map at the end, blue: only there, orange: only in the truth",
                        svg_of_difference(drive.map(), watch ? watch->truth() : drive.map(), paths.both())}};
