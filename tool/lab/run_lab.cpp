@@ -33,13 +33,17 @@ struct ExperimentOptions {
   experiments::Options options;
 };
 
-experiments::Experiment experiment_named(const std::string& name) {
+std::string names_of_experiments() {
   std::string names;
+  for (const auto& known : experiments::experiments()) names += (names.empty() ? "" : ", ") + known.name;
+  return names;
+}
+
+experiments::Experiment experiment_named(const std::string& name) {
   for (auto& known : experiments::experiments()) {
     if (known.name == name) return std::move(known);
-    names += (names.empty() ? "" : ", ") + known.name;
   }
-  throw CLI::ValidationError{"there is no experiment '" + name + "'; there are " + names};
+  throw CLI::ValidationError{"there is no experiment '" + name + "'; there are " + names_of_experiments()};
 }
 
 bool runs_alone(const experiments::Experiment& experiment) {
@@ -100,6 +104,33 @@ void run_experiment(const ExperimentOptions& given) {
   }
 }
 
+/// How much is done.
+void add_extent(CLI::App& command, ExperimentOptions& given) {
+  command.add_flag("--quick", given.options.quick, "fewer and shorter runs: to see that it works");
+  command.add_option(
+      "--seed", given.options.seed,
+      "first seed (default 1); unseen: 1 to 999 are for development, 1000 to 1059 for final figures alone");
+  command
+      .add_option("--jobs", given.jobs,
+                  "runs at once (default: the processors); one where an experiment measures the machine")
+      ->check(CLI::Range(1, 256));
+  command.add_option("--minutes", given.options.minutes, "of each drive, in place of the experiment's")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--repeats", given.options.repeats, "seeds, or runs of each kind, in place of the experiment's")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--only", given.only, "only runs with this in their name, for example depot-bay");
+}
+
+/// What it is done with.
+void add_inputs(CLI::App& command, ExperimentOptions& given) {
+  command.add_option("--scenarios", given.options.scenarios,
+                     "folder of the scenarios (default: config/scenarios, or where they are installed)");
+  command.add_option("--data", given.options.data, "folder of recorded maps (default: DELTAMAP_DATA)")
+      ->envname("DELTAMAP_DATA");
+  command.add_option("--config", given.config, "settings of the localizer, YAML (default: as delivered)");
+  command.add_option("--set", given.overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+}
+
 }  // namespace
 
 int run_lab(int argc, const char* const* argv) {
@@ -108,29 +139,10 @@ int run_lab(int argc, const char* const* argv) {
   command.set_version_flag("--version", "deltamap-lab " + daemon::version_text());
   const auto given = std::make_shared<ExperimentOptions>();
   given->options.scenarios = scenario_folder();
-  std::string names;
-  for (const auto& known : experiments::experiments()) names += (names.empty() ? "" : ", ") + known.name;
-  command.add_option("name", given->name, names)->required();
+  command.add_option("name", given->name, names_of_experiments())->required();
   command.add_option("--out", given->out, "folder for NAME.csv, summary.json and index.html")->required();
-  command.add_flag("--quick", given->options.quick, "fewer and shorter runs: to see that it works");
-  command.add_option(
-      "--seed", given->options.seed,
-      "first seed (default 1); unseen: 1 to 999 are for development, 1000 to 1059 for final figures alone");
-  command
-      .add_option("--jobs", given->jobs,
-                  "runs at once (default: the processors); one where an experiment measures the machine")
-      ->check(CLI::Range(1, 256));
-  command.add_option("--minutes", given->options.minutes, "of each drive, in place of the experiment's")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--repeats", given->options.repeats, "seeds, or runs of each kind, in place of the experiment's")
-      ->check(CLI::Range(1, 10000));
-  command.add_option("--only", given->only, "only runs with this in their name, for example depot-bay");
-  command.add_option("--scenarios", given->options.scenarios,
-                     "folder of the scenarios (default: config/scenarios, or where they are installed)");
-  command.add_option("--data", given->options.data, "folder of recorded maps (default: DELTAMAP_DATA)")
-      ->envname("DELTAMAP_DATA");
-  command.add_option("--config", given->config, "settings of the localizer, YAML (default: as delivered)");
-  command.add_option("--set", given->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
+  add_extent(command, *given);
+  add_inputs(command, *given);
   command.add_flag("--scans", given->with_scans, "write scans/RUN.csv too: every scan of every run");
   command.add_flag_callback(
       "--list",
