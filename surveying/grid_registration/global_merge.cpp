@@ -131,7 +131,7 @@ std::vector<double> rotations_of(const OccupancyGrid& map, const std::vector<Cel
       mapping::merge::hough_spectrum(mapping::merge::thinned_to(cells.contour(), kSpectrumPoints)), kRotations, true);
 }
 
-/// The best shifts of each rotation that are worth to be registered, best first.
+/// The best shifts of each rotation that are worth registering, best first.
 std::vector<mapping::merge::ScoredMotion> candidates_of(const std::vector<double>& turns_rad,
                                                         const ShiftCorrelation& correlation,
                                                         const mapping::merge::OverlayMap& overlay,
@@ -150,7 +150,7 @@ std::vector<mapping::merge::ScoredMotion> candidates_of(const std::vector<double
   return candidates;
 }
 
-/// The local map's cells beside its contour, which bring a candidate to the end.
+/// The local map's cells at its contour, which bring a candidate to the end.
 struct Edges {
   std::vector<EdgeCell> all;
   std::vector<EdgeCell> few;
