@@ -22,6 +22,20 @@ std::optional<Command> CommandQueue::take_due(Timestamp now, unsigned baud) {
   return command;
 }
 
+void CommandQueue::push_only_stop() {
+  clear();
+  push({CommandNumber::kEstop, {}});
+  push({CommandNumber::kVel, 0});
+  push({CommandNumber::kRvel, 0});
+}
+
+void CommandQueue::push_set_points(int mm_per_s, int degrees_per_s) {
+  drop(CommandNumber::kVel);
+  drop(CommandNumber::kRvel);
+  push_first({CommandNumber::kRvel, degrees_per_s});
+  push_first({CommandNumber::kVel, mm_per_s});
+}
+
 void CommandQueue::hold_for(std::size_t size, Timestamp now, unsigned baud) {
   free_at_ = std::max(free_at_, now) + line_time(size, baud) + kGap;
 }

@@ -17,6 +17,10 @@ class CommandQueue {
   /// Before all that waits: a stop is not kept waiting by anything.
   void push_first(const Command& command) { waiting_.push_front(command); }
   void clear() { waiting_.clear(); }
+  /// Nothing waits any more but ESTOP, VEL 0 and RVEL 0.
+  void push_only_stop();
+  /// VEL and RVEL before all that waits, in place of those that wait.
+  void push_set_points(int mm_per_s, int degrees_per_s);
   /// Takes back what was not yet handed out of one kind.
   void drop(CommandNumber number);
   [[nodiscard]] bool is_empty() const { return waiting_.empty(); }

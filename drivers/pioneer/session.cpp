@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes in, in both modes, and the connected robot: set points, pulse, time-outs. The way to a connection is in
-// session_connect.cpp.
 #include "drivers/pioneer/session.hpp"
 
 #include <algorithm>
@@ -8,15 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/geometry/angle.hpp"
-
 namespace deltamap::drivers::pioneer {
 namespace {
-
-constexpr double kCheckIntervalS = 1.0;
-constexpr double kControllerCycleS = 0.1;  // A6: so old the newest speed may be
-constexpr double kLongestBrakingS = 3.0;   // waited for before CLOSE, whatever the controller reports
-constexpr double kVoltsPerDecivolt = 0.1;
 
 unsigned known_baud_or_throw(unsigned baud) {
   if (!host_baud_code(baud)) {
@@ -28,263 +19,239 @@ unsigned known_baud_or_throw(unsigned baud) {
 }  // namespace
 
 PioneerSession::PioneerSession(const PioneerParams& params, SessionMode mode)
-    : params_{params},
-      mode_{mode},
-      decoder_{known_baud_or_throw(params.baud)},
-      units_{params.model, params.by_hand},
-      odometry_{units_.model()},
-      permission_{params.enable_motors, params.drive_switch},
-      idle_baud_{params.baud},
-      connected_baud_{params.fast_baud == 0 ? params.baud : known_baud_or_throw(params.fast_baud)} {}
+    : mode_{mode},
+      sip_timeout_s_{params.sip_timeout_s},
+      receiver_{params},
+      connector_{known_baud_or_throw(params.baud),
+                 params.fast_baud == 0 ? params.baud : known_baud_or_throw(params.fast_baud)},
+      baud_switch_{params.fast_baud},
+      wanted_{params},
+      set_points_{params.limits, params.pulse_interval_s} {}
+
+Transmitter PioneerSession::line_for(PioneerOutput& out, Timestamp now) {
+  return {receiver_, commands_, now, out.output};
+}
+
+PioneerOutput PioneerSession::start(Timestamp now) {
+  PioneerOutput out;
+  if (mode_ == SessionMode::kListenOnly) return out;
+  Transmitter line = line_for(out, now);
+  diagnosis_.reset();
+  set_points_.forget();
+  state_ = State::kConnecting;
+  connector_.start(line);
+  return finished(now, std::move(out));
+}
 
 PioneerOutput PioneerSession::on_bytes(std::span<const std::uint8_t> bytes, Timestamp stamp) {
   PioneerOutput out;
-  const std::vector<Packet> packets = at_the_controllers_pace(decoder_.decode(bytes, stamp));
-  const bool searches = mode_ == SessionMode::kLive && state_ != State::kConnected;
-  if (packets.empty() && searches) diagnosis_.hear(bytes);
+  Transmitter line = line_for(out, stamp);
+  const std::vector<Packet> packets = receiver_.decode(bytes, stamp);
+  if (packets.empty() && mode_ == SessionMode::kLive && !is_connected()) diagnosis_.hear(bytes);
   for (const Packet& packet : packets) {
     diagnosis_.hear_own_frame();
-    take_packet(packet, stamp, out);
-    if (mode_ == SessionMode::kListenOnly) continue;
-    if (state_ == State::kConnected) {
-      answer_while_connected(packet, stamp, out);
-    } else {
-      answer_while_connecting(packet, stamp, out);
-    }
+    take(packet, line, out);
+    answer(packet, line);
   }
-  notice_another_speed(stamp);
+  if (state_ == State::kConnecting) connector_.notice_another_speed(receiver_, stamp);
   return finished(stamp, std::move(out));
-}
-
-/// SIPs that have waited for the reader lie one right behind another in their chunk, but were sent a cycle apart (A6):
-/// dated by the line alone the robot would be ten times as fast as it is.
-std::vector<Packet> PioneerSession::at_the_controllers_pace(std::vector<Packet> packets) const {
-  if (packets.size() < 2) return packets;
-  const std::chrono::milliseconds cycle{config_ ? config_->sip_cycle_ms : ConfigPacket{}.sip_cycle_ms};
-  std::optional<Timestamp> next;
-  std::for_each(packets.rbegin(), packets.rend(), [&](Packet& packet) {
-    if (!is_sip(packet.type())) return;
-    if (next) packet.first_byte = std::min(packet.first_byte, *next - cycle);
-    next = packet.first_byte;
-  });
-  return packets;
-}
-
-void PioneerSession::on_baud(unsigned baud) { decoder_.set_baud(baud); }
-
-void PioneerSession::take_packet(const Packet& packet, Timestamp now, PioneerOutput& out) {
-  const std::uint8_t type = packet.type();
-  if (is_sip(type)) {
-    take_sip(packet, now, out);
-  } else if (type == kSync2) {
-    take_identity(packet, out);
-  } else if (type == kConfigPacket) {
-    take_config(packet, now, out);
-  } else if (type != kSync0 && type != kSync1) {
-    ++content_counts_.unknown;
-  }
-}
-
-void PioneerSession::take_sip(const Packet& packet, Timestamp now, PioneerOutput& out) {
-  const std::optional<Sip> sip = decoded_sip(packet.data);
-  if (!sip) {
-    ++content_counts_.malformed;
-    return;
-  }
-  newest_sip_ = sip;
-  if (newest_sip_->sonar_is_cut) ++content_counts_.malformed;
-  const std::chrono::milliseconds latency{config_ ? config_->kinematics_delay_ms : 0};
-  Odometry odometry =
-      odometry_.observe(*newest_sip_, odometry_times_.next(packet.first_byte - latency, packet.received));
-  odometry.low_battery =
-      config_ && odometry.battery_v > 0.0 && odometry.battery_v <= kVoltsPerDecivolt * config_->low_battery_decivolts;
-  odometry.fault_flags = newest_sip_->fault_flags.value_or(0);
-  out.odometry.push_back(odometry);
-  if (mode_ == SessionMode::kLive) watch_motors(packet.first_byte, now, out);
-}
-
-void PioneerSession::take_identity(const Packet& packet, PioneerOutput& out) {
-  config_.reset();  // of an earlier connection
-  const std::optional<RobotIdentity> identity = decoded_identity(packet.data);
-  if (!identity) {  // the bare echo of an old controller, or CLOSE come back
-    ++content_counts_.malformed;
-    return;
-  }
-  identity_ = identity;
-  units_.forget();
-  odometry_.begin_epoch();
-  out.output.log.push_back("robot name=" + identity->name + " type=" + identity->type +
-                           " subtype=" + identity->subtype);
-  use_units_of(identity->subtype, out);
-}
-
-void PioneerSession::take_config(const Packet& packet, Timestamp now, PioneerOutput& out) {
-  std::optional<ConfigPacket> config = decoded_config(packet.data);
-  if (!config) {
-    ++content_counts_.malformed;
-    return;
-  }
-  const bool is_first = !knows_watchdog();
-  config_ = std::move(config);
-  if (is_first && knows_watchdog()) next_check_ = now;
-  use_units_of(config_->subtype, out);
-}
-
-void PioneerSession::use_units_of(const std::string& subtype, PioneerOutput& out) {
-  RobotUnits::Line line = units_.hear(subtype);
-  odometry_.set_model(units_.model());
-  if (!line.text.empty()) (line.is_warning ? out.output.warnings : out.output.log).push_back(std::move(line.text));
-}
-
-void PioneerSession::answer_while_connected(const Packet& packet, Timestamp now, PioneerOutput& out) {
-  const std::uint8_t type = packet.type();
-  if (is_sip(type)) {
-    last_sip_ = now;
-  } else if (type == kSync0) {
-    // Only a robot that waits for a connection echoes PULSE as SYNC0.
-    state_ = State::kQuieting;
-    leave("robot was reset: it waits for a connection");
-  } else if (type == kConfigPacket && config_) {
-    // Its watchdog may be shorter than we thought.
-    next_pulse_ = std::min(next_pulse_, queue_.last_sent().value_or(now) + pulse_interval());
-    const bool can_switch = config_->auto_baud != 0;
-    if (can_switch && !switch_tried_ && params_.fast_baud != 0 && params_.fast_baud != baud()) begin_switch(now, out);
-  }
 }
 
 PioneerOutput PioneerSession::on_time(Timestamp now) {
   PioneerOutput out;
-  if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
-  if (state_ == State::kConnected) {
-    keep_alive(now, out);
+  Transmitter line = line_for(out, now);
+  if (state_ == State::kConnecting) {
+    connector_.time_out(line);
+    go_on_connecting(line);
+  } else if (state_ == State::kConnected) {
+    keep_alive(line);
   } else if (state_ == State::kSwitching) {
-    if (now >= deadline_ && queue_.is_empty()) continue_switch(now, out);
-  } else if (state_ != State::kLeaving) {
-    time_out_while_connecting(now, out);
+    baud_switch_.time_out(line);
+    go_on_switching(line);
   }
   return finished(now, std::move(out));
 }
 
-void PioneerSession::keep_alive(Timestamp now, PioneerOutput& out) {
-  if (now - last_sip_ >= duration_from_seconds(params_.sip_timeout_s)) {
-    return leave("robot has been silent for " + std::to_string(std::lround(params_.sip_timeout_s * 1e3)) + " ms");
-  }
-  if (now >= next_check_) {
-    bring_robot_to_wanted_state(now, out);
-    next_check_ = now + duration_from_seconds(kCheckIntervalS);
-  }
-  if (now < next_pulse_) return;
-  next_pulse_ = now + pulse_interval();
-  if (emergency_stop_) {
-    push_emergency_stop(now);
-  } else if (set_point_) {
-    push_set_points();
-  } else if (queue_.is_empty()) {
-    queue_.push({CommandNumber::kPulse, {}});
-  }
+PioneerOutput PioneerSession::drive(const DriveCommand& command, Timestamp now) {
+  PioneerOutput out;
+  Transmitter line = line_for(out, now);
+  const bool may_drive = permission().holds() && wanted_.may_be_driven(receiver_);
+  if (is_connected()) set_points_.drive(may_drive ? command : DriveCommand{command.time, 0.0, 0.0}, line);
+  return finished(now, std::move(out));
+}
+
+PioneerOutput PioneerSession::stop_driving(Timestamp now) {
+  PioneerOutput out;
+  Transmitter line = line_for(out, now);
+  set_points_.stop(line);
+  return finished(now, std::move(out));
+}
+
+PioneerOutput PioneerSession::emergency_stop(Timestamp now) {
+  PioneerOutput out;
+  Transmitter line = line_for(out, now);
+  if (is_connected()) set_points_.emergency_stop(line);
+  return finished(now, std::move(out));
+}
+
+PioneerOutput PioneerSession::switch_drive(bool on, Timestamp now) {
+  PioneerOutput out;
+  Transmitter line = line_for(out, now);
+  wanted_.operator_switches(on, line);
+  if (!on) set_points_.stop(line);
+  return finished(now, std::move(out));
 }
 
 PioneerOutput PioneerSession::close(Timestamp now) {
   PioneerOutput out;
-  if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
-  const double time_to_stand_s = this->time_to_stand_s();
-  leave(std::nullopt, now + duration_from_seconds(std::min(time_to_stand_s, kLongestBrakingS)));
-  if (owes_close_ && time_to_stand_s > kLongestBrakingS) {
-    owes_close_ = false;
-    out.output.log.push_back("robot is told to stop and not let go: by what it reports it stands in " +
-                             std::to_string(std::lround(time_to_stand_s)) +
-                             " s; its motors stay on, and hold it, until the next start");
-  }
+  if (state_ == State::kIdle) return out;
+  Transmitter line = line_for(out, now);
+  const bool is_opening = state_ == State::kConnecting && connector_.has_opened();
+  set_points_.forget();
+  farewell_.begin(is_opening || state_ == State::kConnected || state_ == State::kSwitching, line);
+  state_ = State::kLeaving;
   return finished(now, std::move(out));
 }
 
-/// CLOSE takes the current from the motors and our deceleration from the controller: a robot that still moves then
-/// rolls on, so one that would move for long is not closed. Only a robot that we have opened hears CLOSE, one that
-/// waits for a connection may take it amiss; and only at our own wish: where the link has failed, the SIPs of the
-/// connection that is left over will tell what buttons were pressed meanwhile, and CLOSE would wipe that out.
-void PioneerSession::leave(std::optional<std::string> reason, Timestamp close_at) {
-  const bool has_opened = state_ == State::kOpening || state_ == State::kConnected || state_ == State::kSwitching;
-  owes_close_ = has_opened && !reason;
-  push_stop();
+bool PioneerSession::stop_button_is_pressed() const {
+  return is_connected() && receiver_.newest_sip() && receiver_.newest_sip()->has(sip_flag::kStopped);
+}
+
+void PioneerSession::take(const Packet& packet, Transmitter& line, PioneerOutput& out) {
+  const bool knew_watchdog = receiver_.knows_watchdog();
+  Receiver::Content content = receiver_.take(packet);
+  if (!content.log.empty()) line.log(std::move(content.log));
+  RobotUnits::Line& units = content.units;
+  if (!units.text.empty()) (units.is_warning ? out.output.warnings : out.output.log).push_back(std::move(units.text));
+  if (!knew_watchdog && receiver_.knows_watchdog()) wanted_.check_at(line.now());
+  if (!content.odometry) return;
+  out.odometry.push_back(*content.odometry);
+  if (state_ != State::kIdle) watch_motors(packet, line);
+}
+
+void PioneerSession::watch_motors(const Packet& sip, Transmitter& line) {
+  using From = MotorReport::From;
+  const From from = state_ != State::kConnecting ? From::kConnection
+                    : connector_.has_opened()    ? From::kOpening
+                                                 : From::kLeftOver;
+  wanted_.watch_motors(sip.first_byte, from, line);
+  if (!permission().holds()) set_points_.refuse_motion(line);
+}
+
+void PioneerSession::answer(const Packet& packet, Transmitter& line) {
+  if (state_ == State::kConnecting) {
+    connector_.hear(packet, line);
+    go_on_connecting(line);
+  } else if (state_ == State::kConnected) {
+    answer_while_connected(packet, line);
+  } else if (state_ == State::kSwitching) {
+    baud_switch_.hear_packet(line);
+    go_on_switching(line);
+  }
+}
+
+void PioneerSession::answer_while_connected(const Packet& packet, Transmitter& line) {
+  const std::uint8_t type = packet.type();
+  if (is_sip(type)) {
+    last_sip_ = line.now();
+  } else if (type == kSync0) {
+    // Only a robot that waits for a connection echoes PULSE as SYNC0.
+    fail("robot was reset: it waits for a connection", line);
+  } else if (type == kConfigPacket && config()) {
+    set_points_.heed_watchdog(line);
+    if (baud_switch_.is_due(receiver_)) begin_switch(line);
+  }
+}
+
+void PioneerSession::go_on_connecting(Transmitter& line) {
+  using Result = Connector::Result;
+  if (connector_.result() == Result::kConnected) {
+    begin_connection(line);
+  } else if (connector_.result() == Result::kNobodyAnswers) {
+    fail("robot does not answer at " + connector_.tried_bauds() + " baud: " + diagnosis_.phrase(), line);
+  } else if (connector_.result() == Result::kStaysConnected) {
+    fail("robot stays connected to a client that has gone", line);
+  }
+}
+
+void PioneerSession::begin_connection(Transmitter& line) {
+  line.log("robot connected baud=" + std::to_string(baud()));
+  state_ = State::kConnected;
+  last_sip_ = line.now();
+  baud_switch_.forget();
+  wanted_.begin_connection(line);
+  set_points_.begin_connection(line);
+}
+
+void PioneerSession::keep_alive(Transmitter& line) {
+  if (line.now() - last_sip_ >= duration_from_seconds(sip_timeout_s_)) {
+    return fail("robot has been silent for " + std::to_string(std::lround(sip_timeout_s_ * 1e3)) + " ms", line);
+  }
+  if (line.now() >= wanted_.next_check()) wanted_.bring(line);
+  if (line.now() >= set_points_.next_pulse()) set_points_.pulse(line);
+}
+
+void PioneerSession::begin_switch(Transmitter& line) {
+  set_points_.stand(line);
+  baud_switch_.begin(line);
+  connector_.remember_connection(baud_switch_.fast_baud());
+  state_ = State::kSwitching;
+}
+
+void PioneerSession::go_on_switching(Transmitter& line) {
+  if (!baud_switch_.is_over()) return;
+  state_ = State::kConnected;
+  last_sip_ = line.now();
+  connector_.remember_connection(baud());
+  if (baud() != baud_switch_.fast_baud()) set_points_.pulse_at(line.now());  // it has waited for long
+}
+
+void PioneerSession::fail(std::string reason, Transmitter& line) {
+  set_points_.forget();
+  farewell_.begin_after_failure(std::move(reason), line);
   state_ = State::kLeaving;
-  deadline_ = close_at;
-  left_for_ = std::move(reason);
 }
 
-double PioneerSession::time_to_stand_s() const {
-  if (!newest_sip_) return 0.0;
-  const double faster_m_per_s =
-      1e-3 * std::max(std::abs(newest_sip_->left_mm_per_s), std::abs(newest_sip_->right_mm_per_s));
-  if (faster_m_per_s == 0.0) return 0.0;
-  return faster_m_per_s / stopping_limits().deceleration_m_per_s2 + kControllerCycleS;
-}
-
-Duration PioneerSession::watchdog() const {
-  constexpr unsigned kDefaultMs = 2000;
-  const unsigned told_ms = config_ ? config_->watchdog_ms.value_or(0) : 0;
-  return std::chrono::milliseconds{told_ms > 0 ? told_ms : kDefaultMs};
-}
-
-Duration PioneerSession::pulse_interval() const {
-  return std::min(duration_from_seconds(params_.pulse_interval_s), watchdog() / 4);
-}
-
-DecoderCounts PioneerSession::counts() const {
-  DecoderCounts counts = decoder_.counts();
-  counts.malformed += content_counts_.malformed;
-  counts.unknown += content_counts_.unknown;
-  return counts;
-}
-
-void PioneerSession::set_baud(unsigned baud, PioneerOutput& out) {
-  decoder_.set_baud(baud);
-  out.output.requests.push_back({PortRequest::Kind::kSetBaud, {}, baud});
-}
-
-void PioneerSession::write_due(Timestamp now, PioneerOutput& out) {
-  // A9: after a silence of ours the watchdog may have stopped the robot, and any packet but these two resumes what it
-  // was told before. Half of the watchdog's time leaves room for a packet that is lost.
-  const bool has_link = state_ == State::kConnected || state_ == State::kSwitching;
-  if (has_link && !queue_.is_empty() && queue_.last_sent() && now - *queue_.last_sent() > watchdog() / 2) {
-    out.output.log.push_back("robot was not spoken to for " +
-                             std::to_string(std::lround(seconds(now - *queue_.last_sent()) * 1e3)) + " ms: stopped");
-    queue_.clear();
-    set_point_.reset();
-    push_set_points();
+void PioneerSession::write_due(Transmitter& line) {
+  if (state_ == State::kConnected || state_ == State::kSwitching) stop_after_a_gap(line);
+  while (const std::optional<Command> command = commands_.take_due(line.now(), baud())) {
+    wanted_.note_sent(*command, line.now());
+    line.write(encoded_command(*command));
   }
-  while (const std::optional<Command> command = queue_.take_due(now, baud())) {
-    const bool enables = *command == Command{CommandNumber::kEnable, 1};
-    if (enables) enable_sent_ = now;
-    if (enables) permission_.enable_is_sent();
-    enable_was_sent_ = enable_was_sent_ || enables;
-    if (*command == Command{CommandNumber::kEnable, 0} || command->number == CommandNumber::kClose) disable_sent_ = now;
-    out.output.requests.push_back({PortRequest::Kind::kWrite, encoded_command(*command), 0});
-  }
+}
+
+/// A9: after a silence of ours the watchdog may have stopped the robot, and any packet but VEL 0 and RVEL 0 resumes
+/// what it was told before. Half of the watchdog's time leaves room for a packet that is lost.
+void PioneerSession::stop_after_a_gap(Transmitter& line) {
+  if (commands_.is_empty() || !commands_.last_sent()) return;
+  const Duration gap = line.now() - *commands_.last_sent();
+  if (gap <= receiver_.watchdog() / 2) return;
+  line.log("robot was not spoken to for " + std::to_string(std::lround(seconds(gap) * 1e3)) + " ms: stopped");
+  commands_.clear();
+  set_points_.stand(line);
 }
 
 Timestamp PioneerSession::next_wake() const {
-  Timestamp wake_at = deadline_;
-  if (state_ == State::kConnected) {
-    wake_at = std::min({next_pulse_, next_check_, last_sip_ + duration_from_seconds(params_.sip_timeout_s)});
-  }
-  const std::optional<Timestamp> due = queue_.next_due();
+  const Timestamp silent_at = last_sip_ + duration_from_seconds(sip_timeout_s_);
+  const Timestamp wake_at = state_ == State::kConnecting ? connector_.deadline()
+                            : state_ == State::kConnected
+                                ? std::min({set_points_.next_pulse(), wanted_.next_check(), silent_at})
+                            : state_ == State::kSwitching ? baud_switch_.deadline()
+                                                          : farewell_.deadline();
+  const std::optional<Timestamp> due = commands_.next_due();
   if (!due) return wake_at;
-  const bool waits_for_queue = state_ == State::kQuieting || state_ == State::kObserving || state_ == State::kClosing ||
-                               state_ == State::kSwitching || state_ == State::kLeaving;
+  const bool waits_for_queue = state_ == State::kConnecting ? connector_.waits_for_queue() : !is_connected();
   return waits_for_queue ? *due : std::min(wake_at, *due);
 }
 
 PioneerOutput PioneerSession::finished(Timestamp now, PioneerOutput out) {
-  if (mode_ == SessionMode::kListenOnly || state_ == State::kIdle) return out;
-  write_due(now, out);
-  if (owes_close_ && queue_.is_empty() && now >= deadline_) {
-    owes_close_ = false;
-    queue_.push({CommandNumber::kClose, {}});
-    write_due(now, out);
-  }
-  if (state_ == State::kLeaving && queue_.is_empty() && !owes_close_) {
+  if (state_ == State::kIdle) return out;
+  Transmitter line = line_for(out, now);
+  write_due(line);
+  if (state_ == State::kLeaving && farewell_.pushes_close(line)) write_due(line);
+  if (state_ == State::kLeaving && farewell_.is_over(commands_)) {
     state_ = State::kIdle;
-    out.output.failed = std::exchange(left_for_, std::nullopt);
+    out.output.failed = farewell_.reason();
   } else {
     out.output.wake_at = next_wake();
   }

@@ -1,53 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// The conversation with a Pioneer's controller: finds its baud, stops whatever it was doing, connects, keeps its
-// watchdog fed, drives it, and turns its SIPs into Odometry (protocols.md A4, A8, A9). Knows no port and no clock.
+// The conversation with a Pioneer's controller (protocols.md A4, A8, A9), seen from outside. It asks its parts in turn:
+// the Receiver for what came, in both modes; live, the Connector on the way to a connection; then BaudSwitch,
+// WantedState and SetPoints; at last the Farewell. Knows no port and no clock.
 //
-// Safety: SYNC0 has the bytes of PULSE, and any packet lets a robot that its watchdog stopped resume its old set
-// points. So at every baud ESTOP, VEL 0 and RVEL 0 go out before SYNC0, and after a gap in our own sending VEL 0 and
-// RVEL 0 go out before anything else. CLOSE goes only to a robot that has shown by a SIP that it is connected, and not
-// to one that has fallen silent: it switches the motors off, and then nobody can tell any more whether a person had.
-// Whether motors may be enabled is drive_permission's to say; none are before the controller has told its watchdog, and
-// none of a robot whose units and hull nobody knows.
+// Safety: any packet lets a robot that its watchdog stopped resume its old set points. So after a gap in our own
+// sending VEL 0 and RVEL 0 go out before anything else; Connector says how a search does without harm, WantedState when
+// motors are enabled, and Farewell whom CLOSE may reach.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
 #include "drivers/line_diagnosis.hpp"
-#include "drivers/monotonic_times.hpp"
-#include "drivers/pioneer/baud_search.hpp"
-#include "drivers/pioneer/command.hpp"
+#include "drivers/pioneer/baud_switch.hpp"
 #include "drivers/pioneer/command_queue.hpp"
-#include "drivers/pioneer/config_packet.hpp"
-#include "drivers/pioneer/drive_permission.hpp"
-#include "drivers/pioneer/extra_packets.hpp"
-#include "drivers/pioneer/motion_limits.hpp"
-#include "drivers/pioneer/odometry.hpp"
-#include "drivers/pioneer/packet.hpp"
-#include "drivers/pioneer/robot_units.hpp"
+#include "drivers/pioneer/connector.hpp"
+#include "drivers/pioneer/farewell.hpp"
+#include "drivers/pioneer/params.hpp"
+#include "drivers/pioneer/receiver.hpp"
+#include "drivers/pioneer/set_points.hpp"
+#include "drivers/pioneer/wanted_state.hpp"
 #include "drivers/session.hpp"
 
 namespace deltamap::drivers::pioneer {
-
-struct PioneerParams {
-  std::string model = "p3dx-sh";  ///< until the robot names itself: "p3dx" or "p3dx-sh"
-  RobotByHand by_hand{};          ///< what a robot of an unknown subtype is driven by
-  unsigned baud = 9600;           ///< tried first: 9600, 19200, 38400, 57600 or 115200
-  unsigned fast_baud = 0;         ///< switched to once connected, where the robot's AUTOBAUD allows; 0: stay
-  bool enable_motors = false;     ///< the configuration lets it drive: one half of drive_permission
-  DriveSwitch drive_switch = DriveSwitch::kUnknown;  ///< as the run before has left it: the other half
-  bool sonar = false;                                ///< keep the sonar on: longer SIPs
-  MotionLimits limits{};          ///< set points are clamped to them, and so does the controller once it was told
-  double pulse_interval_s = 0.5;  ///< packets to the robot at least this often; well below its watchdog of 2 s
-  double sip_timeout_s = 1.0;     ///< silence after which the session has failed
-};
 
 struct PioneerOutput {
   SessionOutput output;
@@ -64,7 +46,7 @@ class PioneerSession {
   [[nodiscard]] PioneerOutput on_bytes(std::span<const std::uint8_t> bytes, Timestamp stamp);
   [[nodiscard]] PioneerOutput on_time(Timestamp now);
   /// Replays only: the recording says that the line changed its speed.
-  void on_baud(unsigned baud);
+  void on_baud(unsigned baud) { receiver_.set_baud(baud); }
 
   /// A set point, repeated until the next one, stop_driving() or close(). Ignored unless connected.
   [[nodiscard]] PioneerOutput drive(const DriveCommand& command, Timestamp now);
@@ -82,126 +64,58 @@ class PioneerSession {
 
   /// SIPs come and commands are heard.
   [[nodiscard]] bool is_connected() const { return state_ == State::kConnected; }
-  [[nodiscard]] unsigned baud() const { return decoder_.baud(); }
-  [[nodiscard]] DecoderCounts counts() const;
-  [[nodiscard]] const DrivePermission& permission() const { return permission_; }
+  [[nodiscard]] unsigned baud() const { return receiver_.baud(); }
+  [[nodiscard]] DecoderCounts counts() const { return receiver_.counts(); }
+  [[nodiscard]] const DrivePermission& permission() const { return wanted_.permission(); }
   /// Or E-stall holds it.
   [[nodiscard]] bool stop_button_is_pressed() const;
   /// What the robot said about itself, once it did.
-  [[nodiscard]] const std::optional<RobotIdentity>& identity() const { return identity_; }
-  [[nodiscard]] const std::optional<ConfigPacket>& config() const { return config_; }
+  [[nodiscard]] const std::optional<RobotIdentity>& identity() const { return receiver_.identity(); }
+  [[nodiscard]] const std::optional<ConfigPacket>& config() const { return receiver_.config(); }
   /// How the robot comes to rest without us, by what its controller has confirmed.
-  [[nodiscard]] StoppingLimits stopping_limits() const { return stopping_limits_of(config_); }
+  [[nodiscard]] StoppingLimits stopping_limits() const { return receiver_.stopping_limits(); }
   /// Why this controller is not driven in this connection, whatever a person says; empty: nothing speaks against it.
-  [[nodiscard]] std::string_view why_never_driven() const;
+  [[nodiscard]] std::string_view why_never_driven() const { return wanted_.why_never_driven(receiver_); }
   /// Nobody knows its hull and its units (robot_units): one of the reasons why it is never driven.
-  [[nodiscard]] bool is_unknown_robot() const { return !units_.why_never_driven().empty(); }
+  [[nodiscard]] bool is_unknown_robot() const { return !receiver_.why_never_driven().empty(); }
 
  private:
   enum class State {
-    kIdle,       // not started, closed, failed, or listening only
-    kQuieting,   // whatever the robot was doing is being stopped; a SIP tells that it is still connected
-    kObserving,  // a connection that was left over: a SIP younger than the stop is awaited, then it is closed
-    kClosing,    // a connection that was left over is being closed
-    kSyncing,    // SYNC0, SYNC1, SYNC2, each awaiting its echo
-    kOpening,    // OPEN sent, awaiting the first SIP
-    kConnected,  // SIPs come
-    kSwitching,  // HOSTBAUD sent, awaiting any packet at the new speed
-    kLeaving     // the farewell is being sent
+    kIdle,        // not started, closed, failed, or listening only
+    kConnecting,  // Connector
+    kConnected,   // WantedState, SetPoints
+    kSwitching,   // BaudSwitch
+    kLeaving      // Farewell
   };
-  enum class SwitchStep { kAnnounced, kSpeedSet, kAwaitingPacket };
 
-  // What comes in (both modes).
-  [[nodiscard]] std::vector<Packet> at_the_controllers_pace(std::vector<Packet> packets) const;
-  void take_packet(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void take_sip(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void watch_motors(Timestamp sip_began, Timestamp now, PioneerOutput& out);
-  void take_identity(const Packet& packet, PioneerOutput& out);
-  void take_config(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void use_units_of(const std::string& subtype, PioneerOutput& out);
-
-  // The way to a connection (live).
-  void probe(Timestamp now, PioneerOutput& out);
-  void probe_next(Timestamp now, PioneerOutput& out);
-  void begin_quieting();
-  void stop_left_over(Timestamp now, PioneerOutput& out);
-  void close_left_over(const Packet& sip, Timestamp now);
-  void push_stop();
-  void notice_another_speed(Timestamp now);
-  void send_sync(std::uint8_t step, Timestamp now);
-  void answer_while_connecting(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void take_echo(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void time_out_while_connecting(Timestamp now, PioneerOutput& out);
-  void begin_connection(Timestamp now, PioneerOutput& out);
-  void begin_switch(Timestamp now, PioneerOutput& out);
-  void continue_switch(Timestamp now, PioneerOutput& out);
-
-  // The connection (live).
-  void answer_while_connected(const Packet& packet, Timestamp now, PioneerOutput& out);
-  void keep_alive(Timestamp now, PioneerOutput& out);
-  void bring_robot_to_wanted_state(Timestamp now, PioneerOutput& out);
-  void bring_limits(PioneerOutput& out);
-  void bring_motors(Timestamp now, PioneerOutput& out);
-  [[nodiscard]] bool knows_watchdog() const { return config_ && config_->watchdog_ms; }
-  [[nodiscard]] bool may_be_driven() const { return knows_watchdog() && units_.why_never_driven().empty(); }
-  void push_set_points();
-  void push_emergency_stop(Timestamp now);
-  void leave(std::optional<std::string> reason, Timestamp close_at = {});
-  [[nodiscard]] double time_to_stand_s() const;
-  [[nodiscard]] Duration watchdog() const;
-  [[nodiscard]] Duration pulse_interval() const;
-
-  void set_baud(unsigned baud, PioneerOutput& out);
-  void write_due(Timestamp now, PioneerOutput& out);
+  [[nodiscard]] Transmitter line_for(PioneerOutput& out, Timestamp now);
+  void take(const Packet& packet, Transmitter& line, PioneerOutput& out);
+  void watch_motors(const Packet& sip, Transmitter& line);
+  void answer(const Packet& packet, Transmitter& line);
+  void answer_while_connected(const Packet& packet, Transmitter& line);
+  void go_on_connecting(Transmitter& line);
+  void begin_connection(Transmitter& line);
+  void keep_alive(Transmitter& line);
+  void begin_switch(Transmitter& line);
+  void go_on_switching(Transmitter& line);
+  void fail(std::string reason, Transmitter& line);
+  void write_due(Transmitter& line);
+  void stop_after_a_gap(Transmitter& line);
   [[nodiscard]] Timestamp next_wake() const;
   [[nodiscard]] PioneerOutput finished(Timestamp now, PioneerOutput out);
 
-  PioneerParams params_;
   SessionMode mode_;
-  PacketDecoder decoder_;
-  RobotUnits units_;
-  OdometryTracker odometry_;
-  MonotonicTimes odometry_times_;
-  DecoderCounts content_counts_;  // malformed and unknown, on top of the decoder's own
-  std::optional<RobotIdentity> identity_;
-  std::optional<ConfigPacket> config_;
-  std::optional<Sip> newest_sip_;
-  DrivePermission permission_;
-
+  double sip_timeout_s_;
   State state_ = State::kIdle;
-  CommandQueue queue_;
-  std::optional<Timestamp> enable_sent_;   // ENABLE 1
-  std::optional<Timestamp> disable_sent_;  // ENABLE 0 or CLOSE
-  std::optional<std::string> left_for_;    // kLeaving: why the session has failed; nothing: it was closed
-  bool owes_close_ = false;                // kLeaving: CLOSE is sent at the deadline
-
-  // The search.
-  unsigned idle_baud_;       // where the robot waits for a connection
-  unsigned connected_baud_;  // where a connection of ours ended, or would have
-  std::vector<BaudProbe> probes_;
-  std::size_t probe_ = 0;
-  int tries_ = 0;     // of this probe
-  int closings_ = 0;  // in this search
-  std::uint8_t sync_step_ = 0;
+  Timestamp last_sip_;  // while connected
+  CommandQueue commands_;
+  Receiver receiver_;
+  Connector connector_;
+  BaudSwitch baud_switch_;
+  WantedState wanted_;
+  SetPoints set_points_;
+  Farewell farewell_;
   LineDiagnosis diagnosis_{Device::kRobot};
-  bool was_in_vain_ = false;          // the last search found no robot: a laser is asked for, too
-  std::uint64_t garbage_before_ = 0;  // bytes, before SYNC0 went out
-  Timestamp deadline_;                // of the present step
-
-  // Since the connection began.
-  Timestamp last_sip_;
-  Timestamp next_pulse_;
-  Timestamp next_check_;
-  std::optional<DriveCommand> set_point_;
-  std::optional<Timestamp> emergency_stop_;  // when ESTOP went out last, while the robot is held by it
-  int limit_requests_ = 0;
-  int sonar_requests_ = 0;
-  int disable_requests_ = 0;
-  bool limits_are_told_ = false;
-  bool enable_was_sent_ = false;
-  bool switch_tried_ = false;
-  SwitchStep switch_step_ = SwitchStep::kAnnounced;
-  unsigned slow_baud_ = 0;
 };
 
 }  // namespace deltamap::drivers::pioneer
