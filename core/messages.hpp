@@ -154,6 +154,9 @@ struct TrackedScan {
   double speed_m_per_s = 0.0;        ///< measured around Scan::time
   double turn_rate_rad_per_s = 0.0;  ///< measured around Scan::time
   WeightAverages weights{};          ///< up to this scan
+  /// Way that the wheels have claimed while the scans say that the robot stands, m; turns count 0.3 m a radian. 0: it
+  /// moves as they say, or nothing speaks against them.
+  double stood_m = 0.0;
 };
 
 /// A cell that has proven to be persistently different from the map.

@@ -32,7 +32,6 @@ TrackedScan Localizer::observe(Scan scan) {
   State& state = *state_;
   TrackedScan tracked;
   if (state.last_scan && scan.time < *state.last_scan) state.odometry.clock_fell_back(*state.last_scan);
-  const motion::ScanInstant now{scan.time, state.odometry.at(scan.time)};
   const motion::BodyVelocity velocity = state.odometry.velocity_at(scan.time);
   scan.range_deviation_m = state.params.range_deviation_m;
   if (const auto known = state.tracker.calibration()) {
@@ -40,6 +39,7 @@ TrackedScan Localizer::observe(Scan scan) {
     scan.robot_from_laser = known->mount_error * scan.robot_from_laser;
   }
   tracked.rays = motion::deskewed(scan, velocity);
+  const motion::ScanInstant now = state.witnessed(scan, tracked.rays);
   state.ends = motion::scoring_ends(scan, tracked.rays, state.params.beams, std::move(state.ends));
   state.faces.begin(scan, tracked.rays);
   state.velocity = velocity;
@@ -53,6 +53,7 @@ TrackedScan Localizer::observe(Scan scan) {
     tracked.odom_from_robot = now.odometry->continuous_odom_from_robot;
     tracked.odometry_epoch = now.odometry->epoch;
   }
+  tracked.stood_m = state.stood_m;
   tracked.speed_m_per_s = velocity.speed_m_per_s;
   tracked.turn_rate_rad_per_s = velocity.turn_rate_rad_per_s;
   tracked.scan = std::move(scan);

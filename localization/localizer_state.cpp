@@ -110,6 +110,23 @@ void Localizer::State::take(const Odometry& report) {
   if (now.odometry && !has_jumped(now)) tracker.predict(now);
 }
 
+motion::ScanInstant Localizer::State::witnessed(const Scan& scan, std::span<const RayInRobot> rays) {
+  motion::ScanInstant now{scan.time, odometry.at(scan.time)};
+  std::optional<odometer::WheelsAt> wheels;
+  if (now.odometry) wheels = {now.odometry->continuous_odom_from_robot, now.odometry->epoch};
+  const odometer::LaserMotion seen = odometer.observe(scan, rays, wheels);
+  if (seen.slip) {
+    odometry.correct(scan.time, *seen.slip,
+                     {0.5 * seen.covariance.topLeftCorner<2, 2>().trace(), seen.covariance(2, 2)});
+    now.odometry = odometry.at(scan.time);
+  }
+  stood_m = seen.stood_m;
+  counts.wheels_contradicted += seen.contradicts ? 1 : 0;
+  if (last_scan && !seen.is_lost) wheel_lag.observe(*last_scan, scan.time, seen.by_laser.theta, odometry);
+  if (const std::optional<double> lag_s = wheel_lag.lag_s()) odometry.set_lag(*lag_s);
+  return now;
+}
+
 bool Localizer::State::has_jumped(const motion::ScanInstant& now) const {
   return now.odometry && last_epoch && now.odometry->epoch != *last_epoch;
 }

@@ -14,6 +14,8 @@
 #include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
+#include "localization/odometer/laser_odometer.hpp"
+#include "localization/odometer/wheel_lag.hpp"
 #include "localization/surfaces/faced_scan.hpp"
 #include "localization/tracking/tracker.hpp"
 
@@ -27,6 +29,8 @@ struct Localizer::State {
   std::uint32_t revision = 0;
   sensor::LikelihoodField field;
   motion::OdometryBuffer odometry;
+  odometer::LaserOdometer odometer;
+  odometer::WheelLag wheel_lag;
   tracking::Tracker tracker;
   belief::FitMonitor monitor;
   belief::Judgement judgement;
@@ -73,6 +77,9 @@ struct Localizer::State {
   void take(const Odometry& report);
 
   // One scan, in this order.
+  /// What the wheels tell at a scan, held against what the scan itself says of the motion.
+  motion::ScanInstant witnessed(const Scan& scan, std::span<const RayInRobot> rays);
+  double stood_m = 0.0;  ///< as TrackedScan::stood_m
   /// Before the scan is used: what is wrong with it, or with the time since the last one.
   void note_oddities(const motion::ScanInstant& now);
   /// While a given pose is believed: beams that the map says nothing about there. A pose that was carried, by all

@@ -46,7 +46,7 @@ void Safety::observe(const Scan& scan) {
                                    lost_ends_.in_robot().end());
   if (scan.implausible) implausible_at_ = scan.received;
   latches_[kLaserError].observe(scan.severity >= kLaserErrorSeverity);
-  latches_[kWheelsSpin].observe(laser_.motion().contradicts_wheels());
+  latches_[kWheelsSpin].observe(wheels_spin_ || laser_.motion().contradicts_wheels());
 }
 
 /// In one frame since the last call, or nothing: the frame has jumped.
@@ -86,6 +86,7 @@ void Safety::command(const DriveCommand& command, Timestamp now, StopReason held
 
 void Safety::let_drive_again() {
   laser_.forget_contradiction();
+  wheels_spin_ = false;
   latches_[kWheelsSpin].observe(false);
   for (StopLatch& latch : latches_) latch.release();
 }

@@ -82,6 +82,8 @@ class Safety {
   void told(const std::optional<Motion>& motion, Timestamp now);
   /// Where the map says that the laser should see nothing, it may. Counts for a moment.
   void expect_no_range(Timestamp now) { laser_.excuse(now); }
+  /// By the localizer: the wheels turn and the scans stand.
+  void set_wheels_spin(bool wheels_spin) { wheels_spin_ = wheels_spin; }
   /// Whoever knows map and pose: a part of the laser never sees what the map has.
   void set_misses_walls(bool misses_walls) { misses_walls_ = misses_walls; }
   /// The robot's session does not know what hull and units this robot has.
@@ -156,6 +158,7 @@ class Safety {
   Obedience obedience_;
   bool is_unknown_robot_ = false;
   bool misses_walls_ = false;
+  bool wheels_spin_ = false;
   std::optional<Timestamp> low_battery_since_;
   std::optional<Timestamp> no_battery_since_;
   bool has_no_battery_ = false;

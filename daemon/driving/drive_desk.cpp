@@ -103,6 +103,7 @@ void DriveDesk::show(navigation::StopReason stop, const navigation::Motion& told
 
 void DriveDesk::take(const PilotWord& word, Timestamp now) {
   pose_stop_ = word.pose;
+  safety_.set_wheels_spin(word.wheels_spin);
   safety_.set_misses_walls(word.misses_walls);
   if (word.expects_no_range) safety_.expect_no_range(now);
   if (in_hand_of_ != 0 || !wiring_.session.permission().holds()) return;

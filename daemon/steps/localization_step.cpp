@@ -12,6 +12,9 @@ namespace {
 constexpr double kRememberedDeviationM = 0.5;
 constexpr double kRememberedDeviationRad = radians(20.0);
 
+constexpr double kSpunM = 0.1;      // claimed by the wheels of a robot that stands: they spin
+constexpr double kKeptEachM = 1.0;  // driven between two copies of what is known of wheels and mount
+
 std::optional<localization::particles::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
   if (settings.initial_pose) return localization::particles::InitialPose{*settings.initial_pose};
   if (!start.remembered) return std::nullopt;
@@ -43,14 +46,11 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
   calibration_ = calibration_now_ = localizer_.calibration();
 }
 
-void LocalizationStep::observe(const Odometry& odometry) {
-  wheels_.observe(odometry);
-  localizer_.observe(odometry);
-}
+void LocalizationStep::observe(const Odometry& odometry) { localizer_.observe(odometry); }
 
 TrackedScan LocalizationStep::observe(Scan scan) {
-  unlearn_contradicted(scan);
   TrackedScan tracked = localizer_.observe(std::move(scan));
+  learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;
   last_odom_from_robot_ = localizer_.odom_from_robot(tracked.scan.time);
   count_time(tracked.scan.time);
@@ -62,15 +62,19 @@ TrackedScan LocalizationStep::observe(Scan scan) {
 }
 
 /// Wheels that spin, or are pushed, tell nothing of how they err: what was learned on such a way is forgotten. It may
-/// have begun within the way before, which then showed too little to be sure.
-void LocalizationStep::unlearn_contradicted(const Scan& scan) {
-  const auto odom_from_robot = wheels_.odom_from_robot(scan.time);
-  if (!odom_from_robot) return motion_watch_.skip();
-  if (motion_watch_.observe(scan, *odom_from_robot, wheels_.epoch()))
-    calibration_ = std::exchange(calibration_now_, localizer_.calibration());
-  if (!calibration_ || !motion_watch_.contradicts_wheels()) return;
-  localizer_.restore(*calibration_);
-  calibration_now_ = calibration_;
+/// have begun within the metre before, which then showed too little to be sure.
+void LocalizationStep::learn_or_forget(const TrackedScan& tracked) {
+  if (!calibration_) return;
+  if (tracked.stood_m > kSpunM) {
+    localizer_.restore(*calibration_);
+    calibration_now_ = calibration_;
+    since_kept_m_ = 0.0;
+    return;
+  }
+  if (last_odom_from_robot_) since_kept_m_ += distance_between(*last_odom_from_robot_, tracked.odom_from_robot);
+  if (since_kept_m_ < kKeptEachM) return;
+  since_kept_m_ = 0.0;
+  calibration_ = std::exchange(calibration_now_, localizer_.calibration());
 }
 
 TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
@@ -95,6 +99,7 @@ std::map<std::string, std::uint64_t> LocalizationStep::counts() const {
   return {{"scans", c.scans},
           {"scans_without_return", c.scans_without_return},
           {"scans_without_odometry", c.scans_without_odometry},
+          {"wheels_contradicted", c.wheels_contradicted},
           {"clock_fell_back", c.clock_fell_back},
           {"odometry_epochs", c.odometry_epochs},
           {"gaps", c.gaps},

@@ -14,8 +14,6 @@
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
 #include "mapping/paper/divergence_ratio.hpp"
-#include "navigation/motion_watch.hpp"
-#include "navigation/wheel_path.hpp"
 
 namespace deltamap::daemon {
 
@@ -79,13 +77,12 @@ class LocalizationStep {
 
  private:
   void count_time(Timestamp time);
-  void unlearn_contradicted(const Scan& scan);
+  void learn_or_forget(const TrackedScan& tracked);
 
   localization::Localizer localizer_;
-  navigation::WheelPath wheels_;
-  navigation::MotionWatch motion_watch_;
-  std::optional<localization::motion::DriveCalibration> calibration_;      // before the last way without a doubt
-  std::optional<localization::motion::DriveCalibration> calibration_now_;  // after it
+  std::optional<localization::motion::DriveCalibration> calibration_;      // before the newest metre
+  std::optional<localization::motion::DriveCalibration> calibration_now_;  // after the one before
+  double since_kept_m_ = 0.0;
   mapping::paper::DivergenceRatio ratio_;
   LocalizationRow row_;
   Pose2 last_map_from_robot_;

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kMappedWithinM = 3.0;  // walls that the laser does not see: as far as it remembers other things
 
+constexpr double kSpunM = 0.3;  // claimed by the wheels of a robot that stands
+
 }  // namespace
 
 PilotStep::PilotStep(const Settings& settings) : drives_without_pose_{settings.navigation.drive_without_pose} {
@@ -27,6 +29,7 @@ PilotWord PilotStep::observe(const TrackedScan& tracked, const Seen& seen) {
   PilotWord word;
   word.command.time = tracked.scan.time;
   word.pose = pose_watch_.observe({tracked.estimate, seen.fit, seen.start_fits});
+  word.wheels_spin = tracked.stood_m > kSpunM;
   dead_beams_.observe(tracked.scan);
   if (word.pose == StopReason::kNone) dead_beams_.hold_against_map(tracked);
   word.misses_walls = dead_beams_.hide_a_sector();

@@ -23,6 +23,7 @@ struct PilotWord {
   DriveCommand command;
   navigation::StopReason held_by = navigation::StopReason::kNone;  ///< why the pilot itself does not drive now
   navigation::StopReason pose = navigation::StopReason::kNone;     ///< why nobody should drive by this pose
+  bool wheels_spin = false;                                        ///< they turn, and the scans stand
   bool misses_walls = false;                                       ///< a part of the laser never sees what the map has
   bool expects_no_range = false;  ///< the map knows this place, and nothing that the laser could reach
 };

@@ -54,6 +54,12 @@ TurnDriveTurn turn_drive_turn(const Pose2& motion) {
   return {rot1_rad, trans_m, wrapped_angle(motion.theta - rot1_rad)};
 }
 
+MotionModelParams less_sure(MotionModelParams params, const MotionVariance& by) {
+  params.position_floor_m = std::sqrt(params.position_floor_m * params.position_floor_m + by.position_m2);
+  params.heading_floor_rad = std::sqrt(params.heading_floor_rad * params.heading_floor_rad + by.heading_rad2);
+  return params;
+}
+
 MotionNoise motion_noise(const TurnDriveTurn& motion, double unknown_s, const MotionModelParams& params) {
   const double rot1_rad = turned_rad(motion.rot1_rad);
   const bool on_the_spot = std::abs(motion.trans_m) < kDirectionIsNoiseM;

@@ -10,6 +10,7 @@
 #include "core/geometry/pose2.hpp"
 #include "core/random.hpp"
 #include "core/ziggurat.hpp"
+#include "localization/motion/motion_variance.hpp"
 
 namespace deltamap::localization::motion {
 
@@ -44,6 +45,9 @@ inline constexpr std::array kSlipsAhead{0.0, -0.75, 0.75, -1.5, 1.5};
 
 /// Added to a pose by so many seconds without odometry, by the model: variances.
 [[nodiscard]] PoseCovariance unknown_motion_covariance(const MotionModelParams& params, double unknown_s);
+
+/// The model of a step that is more unsure than the wheels usually are.
+[[nodiscard]] MotionModelParams less_sure(MotionModelParams params, const MotionVariance& by);
 
 /// A motion between two odometry poses: turn, drive, turn.
 struct TurnDriveTurn {

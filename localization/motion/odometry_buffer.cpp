@@ -35,11 +35,13 @@ OdometryBuffer::OdometryBuffer(const OdometryBufferParams& params)
     : params_{params}, ring_(static_cast<std::size_t>(std::max(2, params.capacity))) {}
 
 void OdometryBuffer::add(const Odometry& odometry) {
+  const Pose2 odom_from_robot = frame_ * odometry.odom_from_robot;
   Report fresh{odometry.time,
-               odometry.odom_from_robot,
-               odometry.odom_from_robot,
+               odom_from_robot,
+               odom_from_robot,
                odometry.epoch,
-               {odometry.speed_m_per_s, odometry.turn_rate_rad_per_s}};
+               {odometry.speed_m_per_s, odometry.turn_rate_rad_per_s},
+               slipped_};
   if (!is_finite(odometry)) return;
   const auto join_to = [&](const Report& last) {
     const bool same_frame = fresh.epoch == last.epoch;
@@ -91,9 +93,29 @@ std::size_t OdometryBuffer::first_not_before(Timestamp time) const {
 
 std::optional<OdometryAt> OdometryBuffer::at(Timestamp time) const {
   std::optional<OdometryAt> told = told_at(time);
-  if (told)
-    told->continuous_odom_from_robot = told->continuous_odom_from_robot * motion_at(velocity_at(time), errors_.lag_s);
+  const double lag_s = lag_s_.value_or(errors_.lag_s);
+  if (!told || lag_s == 0.0) return told;
+  const Timestamp later = time + duration_from_seconds(lag_s);
+  const std::optional<OdometryAt> shifted = told_at(later);
+  if (shifted->epoch == told->epoch) told->continuous_odom_from_robot = shifted->continuous_odom_from_robot;
   return told;
+}
+
+void OdometryBuffer::correct(Timestamp time, const Pose2& slip, const MotionVariance& variance) {
+  const std::optional<OdometryAt> told = at(time);
+  if (!told) return;
+  const auto moved = [&](const Pose2& from) { return from * slip * inverse(from); };
+  const Pose2 continuous = moved(told->continuous_odom_from_robot);
+  const Pose2 counted = moved(told->odom_from_robot);
+  std::size_t first = first_not_before(time + duration_from_seconds(lag_s_.value_or(errors_.lag_s)));
+  for (std::size_t i = first > 0 ? first - 1 : 0; i < count_; ++i) {
+    Report& report = ring_[(first_ + i) % ring_.size()];
+    report.continuous_odom_from_robot = continuous * report.continuous_odom_from_robot;
+    report.slipped += variance;
+    if (report.epoch == told->epoch) report.odom_from_robot = counted * report.odom_from_robot;
+  }
+  frame_ = counted * frame_;
+  slipped_ += variance;
 }
 
 std::optional<OdometryAt> OdometryBuffer::told_at(Timestamp time) const {
@@ -102,25 +124,47 @@ std::optional<OdometryAt> OdometryBuffer::told_at(Timestamp time) const {
   if (next == count_) return extrapolated(newest(), seconds(time - newest().time));
   const Report& after = report(next);
   if (next == 0 || after.time == time) {
-    return OdometryAt{after.odom_from_robot, after.epoch, after.continuous_odom_from_robot, seconds(after.time - time)};
+    return OdometryAt{after.odom_from_robot, after.epoch, after.continuous_odom_from_robot, after.slipped,
+                      seconds(after.time - time)};
   }
   const Report& before = report(next - 1);
   const double since_s = seconds(time - before.time);
   const double gap_s = seconds(after.time - before.time);
   if (before.epoch != after.epoch) {
     const Report& nearer = since_s <= 0.5 * gap_s ? before : after;
-    return OdometryAt{nearer.odom_from_robot, nearer.epoch, nearer.continuous_odom_from_robot,
+    return OdometryAt{nearer.odom_from_robot, nearer.epoch, nearer.continuous_odom_from_robot, nearer.slipped,
                       std::min(since_s, gap_s - since_s)};
   }
   const double share = since_s / gap_s;
   return OdometryAt{interpolated(before.odom_from_robot, after.odom_from_robot, share), before.epoch,
-                    interpolated(before.continuous_odom_from_robot, after.continuous_odom_from_robot, share), 0.0};
+                    interpolated(before.continuous_odom_from_robot, after.continuous_odom_from_robot, share),
+                    before.slipped, 0.0};
+}
+
+std::optional<double> OdometryBuffer::turned_between(Timestamp from, Timestamp to) const {
+  if (count_ == 0 || from < report(0).time || to > newest().time) return std::nullopt;
+  const auto heading_at = [this](Timestamp time) {
+    const std::size_t next = first_not_before(time);
+    const Report& after = report(next);
+    if (next == 0 || after.time == time) return std::pair{after.epoch, after.odom_from_robot.theta};
+    const Report& before = report(next - 1);
+    const double share = seconds(time - before.time) / seconds(after.time - before.time);
+    const double turned = turn_between(before.odom_from_robot.theta, after.odom_from_robot.theta);
+    // A change of epoch in between makes the two differ.
+    return std::pair{before.epoch == after.epoch ? before.epoch : ~before.epoch,
+                     before.odom_from_robot.theta + share * turned};
+  };
+  const auto [first_epoch, first] = heading_at(from);
+  const auto [last_epoch, last] = heading_at(to);
+  if (first_epoch != last_epoch) return std::nullopt;
+  return turn_between(first, last);
 }
 
 OdometryAt OdometryBuffer::extrapolated(const Report& last, double ahead_s) const {
   const double reach_s = std::min(ahead_s, params_.extrapolation_s);
   const Pose2 motion = motion_at(newest_velocity(), reach_s);
-  return {last.odom_from_robot * motion, last.epoch, last.continuous_odom_from_robot * motion, ahead_s - reach_s};
+  return {last.odom_from_robot * motion, last.epoch, last.continuous_odom_from_robot * motion, last.slipped,
+          ahead_s - reach_s};
 }
 
 BodyVelocity OdometryBuffer::newest_velocity() const {

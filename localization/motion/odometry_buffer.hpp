@@ -11,6 +11,7 @@
 #include "core/geometry/angle.hpp"
 #include "core/messages.hpp"
 #include "localization/motion/drive_calibration.hpp"
+#include "localization/motion/motion_variance.hpp"
 
 namespace deltamap::localization::motion {
 
@@ -32,6 +33,7 @@ struct OdometryAt {
   std::uint32_t epoch = 0;
   Pose2 continuous_odom_from_robot;  ///< in one frame over all epochs, without what is known of the wheels' systematic
                                      ///< errors; the jump between two epochs counts as standing still
+  MotionVariance slipped{};          ///< what corrections by the scans have left open up to then: it only grows
   double uncovered_s = 0.0;          ///< seconds between the instant and the nearest report that could speak for it
 };
 
@@ -46,12 +48,26 @@ class OdometryBuffer {
   /// What is known of the wheels: from the next report on.
   void calibrate(const WheelErrors& errors) { errors_ = errors; }
 
+  /// How much too late the wheels' stamps are, s; takes the place of WheelErrors::lag_s.
+  void set_lag(double lag_s) { lag_s_ = lag_s; }
+
+  /// The scans contradict the wheels: at this time the robot is elsewhere than they tell, by `slip`, seen from where
+  /// they have it, and as unsure as `variance`. Holds from the last report before it on.
+  void correct(Timestamp time, const Pose2& slip, const MotionVariance& variance);
+
   /// A scan is older than the one before it: unless the reports have fallen back already, nothing is known until the
   /// next one comes, which goes on from where the last one was.
   void clock_fell_back(Timestamp last_scan);
 
   /// Nothing before the first report.
   [[nodiscard]] std::optional<OdometryAt> at(Timestamp time) const;
+
+  /// Of the newest report.
+  [[nodiscard]] std::optional<Timestamp> newest_time() const {
+    return count_ == 0 ? std::nullopt : std::optional{newest().time};
+  }
+  /// As the reports tell it, their lag included; nothing where they do not reach, or their epoch has changed.
+  [[nodiscard]] std::optional<double> turned_between(Timestamp from, Timestamp to) const;
 
   /// Measured over a tenth of a second around the instant, clamped to what the robot can do.
   [[nodiscard]] BodyVelocity velocity_at(Timestamp time) const;
@@ -63,6 +79,7 @@ class OdometryBuffer {
     Pose2 continuous_odom_from_robot;
     std::uint32_t epoch = 0;
     BodyVelocity reported;
+    MotionVariance slipped;
   };
   /// 0 is the oldest.
   [[nodiscard]] const Report& report(std::size_t age_order) const { return ring_[(first_ + age_order) % ring_.size()]; }
@@ -77,6 +94,9 @@ class OdometryBuffer {
 
   OdometryBufferParams params_;
   WheelErrors errors_;
+  std::optional<double> lag_s_;
+  MotionVariance slipped_;
+  Pose2 frame_;  ///< of `odom_from_robot` as reported, in the corrected one
   std::vector<Report> ring_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;

@@ -9,6 +9,11 @@ namespace {
 constexpr double kFarthestGuessS = 3.0;      // of silence: after longer ones particles near the old pose are no guess
 constexpr double kJumpBetweenEpochsS = 0.3;  // how long odometry counts as silent when its epoch changes
 
+/// More than the totals of an earlier instant.
+MotionVariance more(const MotionVariance& before, const MotionVariance& now) {
+  return {std::max(0.0, now.position_m2 - before.position_m2), std::max(0.0, now.heading_rad2 - before.heading_rad2)};
+}
+
 }  // namespace
 
 MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double usual_s) {
@@ -19,6 +24,7 @@ MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double
     return since;
   }
   since.motion = motion_between(last.odometry->continuous_odom_from_robot, now.odometry->continuous_odom_from_robot);
+  since.slipped = more(last.odometry->slipped, now.odometry->slipped);
   since.unknown_s = std::min(now.odometry->uncovered_s, since.passed_s);
   if (now.odometry->epoch != last.odometry->epoch) {
     const double silent_s = since.passed_s > 2.0 * usual_s ? since.passed_s : 0.0;
@@ -41,6 +47,7 @@ MotionSince step_between(const ScanInstant& before, const ScanInstant& now) {
   step.unknown_s = step.passed_s;
   if (!now.odometry || !before.odometry) return step;
   step.motion = motion_between(before.odometry->continuous_odom_from_robot, now.odometry->continuous_odom_from_robot);
+  step.slipped = more(before.odometry->slipped, now.odometry->slipped);
   const bool jumped = now.odometry->epoch != before.odometry->epoch;
   if (!jumped) step.unknown_s = std::min(now.odometry->uncovered_s, step.passed_s);
   return step;

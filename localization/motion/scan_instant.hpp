@@ -16,7 +16,8 @@ struct ScanInstant {
 
 struct MotionSince {
   Pose2 motion;
-  double unknown_s = 0.0;  ///< not covered by odometry
+  double unknown_s = 0.0;    ///< not covered by odometry
+  MotionVariance slipped{};  ///< where the scans have corrected the wheels: what they leave open
   double passed_s = 0.0;
 };
 

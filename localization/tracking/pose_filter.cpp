@@ -33,7 +33,7 @@ void PoseFilter::forget() {
 sensor::RefinedPose PoseFilter::expected_at(const motion::ScanInstant& now) const {
   const motion::MotionSince step = motion::step_between(last_->instant, now);
   sensor::RefinedPose expected = predicted(last_->believed, step.motion, odometry_noise_);
-  expected.covariance += motion::unknown_motion_covariance(motion_, step.unknown_s);
+  expected.covariance += motion::unknown_motion_covariance(motion_, step.unknown_s) + step.slipped.covariance();
   return expected;
 }
 
@@ -58,7 +58,11 @@ std::optional<Pose2> PoseFilter::predicted_at(const motion::ScanInstant& now) co
 }
 
 void PoseFilter::after_scan(const motion::ScanInstant& now, const sensor::RefinedPose& believed) {
-  if (last_) odometry_noise_.learn(motion::step_between(last_->instant, now).motion, believed);
+  if (last_) {
+    const motion::MotionSince step = motion::step_between(last_->instant, now);
+    // Where scans took the wheels' place they tell nothing of how wheels usually err.
+    step.slipped.is_none() ? odometry_noise_.learn(step.motion, believed) : odometry_noise_.forget_stretch();
+  }
   last_ = Last{now, believed};
 }
 

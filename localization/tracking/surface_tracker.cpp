@@ -84,9 +84,9 @@ surfaces::UnknownOfCells SurfaceTracker::unknown_of_cells() const {
   return leads_ ? filter_.unknown_of_cells() : unknown_by_map_;
 }
 
-PoseCovariance SurfaceTracker::noise(const Pose2& motion, double unknown_s) const {
+PoseCovariance SurfaceTracker::noise(const Pose2& motion, const motion::MotionSince& step) const {
   PoseCovariance added = odometry_noise_.added(motion, filter_.believed().map_from_robot.theta);
-  added += motion::unknown_motion_covariance(motion_, unknown_s);
+  added += motion::unknown_motion_covariance(motion_, step.unknown_s) + step.slipped.covariance();
   // Raised where corrections exceed what was expected, never lowered.
   added.topLeftCorner<2, 2>() *= std::max(1.0, surprise_m_);
   added(2, 2) *= std::max(1.0, surprise_rad_);
@@ -100,15 +100,16 @@ void SurfaceTracker::step_to(const motion::ScanInstant& now, const motion::BodyV
     step.turn_rate_change_rad_per_s = velocity.turn_rate_rad_per_s - last_->velocity.turn_rate_rad_per_s;
   }
   const Pose2 corrected = filter_.corrected(step);
-  const double unknown_s = motion::step_between(last_->instant, now).unknown_s;
-  const PoseCovariance added = noise(corrected, unknown_s);
+  const motion::MotionSince since = motion::step_between(last_->instant, now);
+  const PoseCovariance added = noise(corrected, since);
   filter_.predict(step, added);
   last_ = Last{now, velocity};
   since_held_m_ += step.motion.position().norm();
   if (!since_) return;
   since_->by_wheels = since_->by_wheels * step.motion;
   since_->corrected = since_->corrected * corrected;
-  since_->wheels_told = since_->wheels_told && unknown_s == 0.0;
+  since_->wheels_told = since_->wheels_told && since.unknown_s == 0.0;
+  since_->contradicted = since_->contradicted || !since.slipped.is_none();
 }
 
 bool SurfaceTracker::is_one_place(const PoseCovariance& spread) {
@@ -148,7 +149,8 @@ sensor::RefinedPose SurfaceTracker::keyframe(const SeenScan& seen) {
       std::min(1.0, evidence_beams_ / static_cast<double>(std::max<std::size_t>(1, faces.ends.size())));
   sensor::RefinedPose before = filter_.believed();
   const surfaces::OffsetFilter::Seen shown = filter_.observe(seen.field, faces, share, motion_);
-  if (shown.slipped) odometry_noise_.forget_stretch();
+  const bool has_slipped = shown.slipped || (since_ && since_->contradicted);
+  if (has_slipped) odometry_noise_.forget_stretch();
   sensor::RefinedPose after = filter_.believed();
   const bool runs_away =
       !shown.slipped && distance_between(before.map_from_robot, after.map_from_robot) > kLongestStepM;
@@ -157,7 +159,7 @@ sensor::RefinedPose SurfaceTracker::keyframe(const SeenScan& seen) {
     cease();
     return before;
   }
-  if (since_ && !shown.slipped) {
+  if (since_ && !has_slipped) {
     learn_noise(before, after);
     odometry_noise_.learn(since_->corrected, after);
   }

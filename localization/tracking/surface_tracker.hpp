@@ -60,7 +60,7 @@ class SurfaceTracker {
     motion::ScanInstant instant;
     motion::BodyVelocity velocity;
   };
-  [[nodiscard]] PoseCovariance noise(const Pose2& motion, double unknown_s) const;
+  [[nodiscard]] PoseCovariance noise(const Pose2& motion, const motion::MotionSince& step) const;
   void step_to(const motion::ScanInstant& now, const motion::BodyVelocity& velocity);
   [[nodiscard]] bool has_moved() const;  ///< far enough since the last keyframe for another
   [[nodiscard]] bool is_due(const SeenScan& seen) const;
@@ -77,8 +77,9 @@ class SurfaceTracker {
   struct SinceKeyframe {
     Pose2 by_wheels;
     Pose2 corrected;
-    bool wheels_told = true;  // of all of the way
-    double explained = 0.0;   // share of the keyframe's ends, by the map
+    bool wheels_told = true;    // of all of the way
+    bool contradicted = false;  // the wheels, by the scans
+    double explained = 0.0;     // share of the keyframe's ends, by the map
   };
   std::optional<SinceKeyframe> since_;       // none: no keyframe yet
   surfaces::UnknownOfCells unknown_by_map_;  // while the particles lead: by the last scan

@@ -154,7 +154,7 @@ void Tracker::predict(const motion::ScanInstant& now) {
   }
   const motion::MotionSince since = motion::motion_since(*last_update_, now, params_.update.time_s);
   if (!update_due(since)) return;
-  motion::MotionModelParams motion = pose_filter_.particle_motion();
+  motion::MotionModelParams motion = motion::less_sure(pose_filter_.particle_motion(), since.slipped);
   motion.slip_probability = 0.0;  // only a scan can tell of a slip
   filter_.move(since.motion, since.unknown_s, motion);
   last_update_ = now;
@@ -170,7 +170,8 @@ bool Tracker::update_due(const motion::MotionSince& since) const {
 /// Moves and weighs the particles; they may be drawn anew afterwards.
 Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
-  if (last_update_) filter_.move(since.motion, since.unknown_s, pose_filter_.particle_motion());
+  const motion::MotionModelParams motion = motion::less_sure(pose_filter_.particle_motion(), since.slipped);
+  if (last_update_) filter_.move(since.motion, since.unknown_s, motion);
   last_update_ = seen.now;
   if (!sees && surfaces_) surfaces_->predict(seen.now);
   const bool looked_around = sees && has_driven_blind_ && gather(seen);

@@ -46,6 +46,38 @@ TEST(OdometryBuffer, ExtrapolatesAtMostSoFarAndSaysWhatIsNotCovered) {
   EXPECT_NEAR(buffer.at(at_s(5.1))->uncovered_s, 5.0 - 0.15, kSame);
 }
 
+TEST(OdometryBuffer, GoesOnFromWhereScansHaveCorrectedIt) {
+  OdometryBuffer buffer{{}};
+  for (int i = 0; i <= 10; ++i) buffer.add(report(0.1 * i, {0.1 * i, 0.0, 0.0}));
+  buffer.correct(at_s(1.0), {-0.2, 0.0, 1.0}, {0.01, 0.001});
+  EXPECT_NEAR(buffer.at(at_s(1.0))->continuous_odom_from_robot.x, 0.8, kSame);
+  EXPECT_NEAR(buffer.at(at_s(1.0))->odom_from_robot.theta, 1.0, kSame);
+  buffer.add(report(1.1, {1.1, 0.0, 0.0}));  // another decimetre ahead, in the direction that it has now
+  const auto after = buffer.at(at_s(1.1));
+  EXPECT_NEAR(after->continuous_odom_from_robot.x, 0.8 + 0.1 * std::cos(1.0), kSame);
+  EXPECT_NEAR(after->odom_from_robot.y, 0.1 * std::sin(1.0), kSame);
+  EXPECT_NEAR(after->slipped.position_m2, 0.01, kSame);
+  EXPECT_NEAR(buffer.at(at_s(0.5))->slipped.position_m2, 0.0, kSame);
+}
+
+TEST(OdometryBuffer, ReadsLaggingStampsLater) {
+  OdometryBuffer buffer{{}};
+  for (int i = 0; i <= 10; ++i) buffer.add(report(0.1 * i, {0.01 * i * i, 0.0, 0.0}));
+  buffer.set_lag(0.2);
+  EXPECT_NEAR(buffer.at(at_s(0.3))->continuous_odom_from_robot.x, 0.25, kSame);
+  buffer.set_lag(-0.1);
+  EXPECT_NEAR(buffer.at(at_s(0.3))->continuous_odom_from_robot.x, 0.04, kSame);
+}
+
+TEST(OdometryBuffer, TellsTurnsOnlyWithinItsReportsAndOneEpoch) {
+  OdometryBuffer buffer{{}};
+  for (int i = 0; i <= 10; ++i) buffer.add(report(0.1 * i, {0.0, 0.0, 0.2 * i}, i > 5 ? 1 : 0));
+  EXPECT_NEAR(*buffer.turned_between(at_s(0.05), at_s(0.35)), 0.6, kSame);
+  EXPECT_FALSE(buffer.turned_between(at_s(0.3), at_s(0.9)));
+  EXPECT_FALSE(buffer.turned_between(at_s(0.55), at_s(0.8)));
+  EXPECT_FALSE(buffer.turned_between(at_s(0.8), at_s(1.1)));
+}
+
 TEST(OdometryBuffer, TrustsTheReportedSpeedWhereOnlyOneReportIsThere) {
   OdometryBuffer buffer{{}};
   Odometry only = report(0.0, {});

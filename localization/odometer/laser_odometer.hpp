@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// A second witness of the robot's motion beside its wheels: each scan is held against what the last metres have seen,
+// with the wheels as a prior that is not trusted blindly. Wheels that slip or spin contradict it; along a bare corridor
+// it knows nothing, and the wheels rule by themselves. Filtered is the pose in the map of the last metres, not the
+// motion of a step: small steps would follow the wheels else.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "core/messages.hpp"
+#include "localization/odometer/line_points.hpp"
+#include "localization/odometer/scan_fit.hpp"
+#include "localization/odometer/standstill.hpp"
+#include "localization/odometer/surfel_map.hpp"
+
+namespace deltamap::localization::odometer {
+
+/// What the wheels tell of one scan.
+struct WheelsAt {
+  Pose2 odom_from_robot;
+  std::uint32_t epoch = 0;
+};
+
+/// One scan's answer, about the motion since the scan before.
+struct LaserMotion {
+  Pose2 motion;                                        ///< what is believed: wheels and laser together
+  PoseCovariance covariance = PoseCovariance::Zero();  ///< of that, in the frame of the pose before
+  Pose2 by_laser;                                      ///< by the scans alone
+  PoseCovariance laser_covariance = PoseCovariance::Zero();
+  double disagreement = 0.0;  ///< squared deviations between wheels and scans, of the step or of the last 1.5 s
+  bool contradicts = false;   ///< the wheels are wrong
+  /// Where it contradicts, and for a while after that, for what wheels have left out they may bring later: where the
+  /// robot is, seen from where the wheels have it.
+  std::optional<Pose2> slip;
+  double stood_m = 0.0;  ///< way that the wheels have claimed while the robot stands; turns count 0.3 m a radian
+  bool is_lost = false;  ///< the scan fits nowhere: the wheels alone
+  double inliers = 0.0;  ///< share of the points on lines that lie on what was seen before
+};
+
+class LaserOdometer {
+ public:
+  /// One more scan, `rays` freed of the robot's own motion; without wheels nothing speaks against the laser.
+  [[nodiscard]] LaserMotion observe(const Scan& scan, std::span<const RayInRobot> rays,
+                                    const std::optional<WheelsAt>& wheels);
+
+  /// In its own frame, from the first scan on.
+  [[nodiscard]] const Pose2& start_from_robot() const { return pose_; }
+
+ private:
+  struct Step {
+    double passed_s = 0.0;
+    Pose2 by_wheels;
+    Pose2 by_laser;  // start frame: raw pose of the laser
+  };
+  [[nodiscard]] ScanFit fit(std::span<const LinePoint> points, const Pose2& by_wheels, double driven_m,
+                            double turned_rad) const;
+  void slipped(const Pose2& slip, LaserMotion& answer);
+  [[nodiscard]] std::optional<Pose2> searched(std::span<const LinePoint> points, const Pose2& around,
+                                              double inliers) const;
+
+  LinePointFinder finder_;
+  SurfelMap map_;
+  Pose2 pose_;                                         // believed, start frame
+  PoseCovariance deviation_ = PoseCovariance::Zero();  // of the pose in the map of the last metres
+  Pose2 last_motion_;
+  double last_step_s_ = 0.0;
+  std::optional<Timestamp> last_;
+  std::optional<WheelsAt> last_wheels_;
+  double way_m_ = 0.0;
+  double time_s_ = 0.0;
+  double usual_inliers_ = 0.0;
+  int lost_in_a_row_ = 0;
+  Pose2 inserted_at_;
+  int inserted_standing_ = 0;
+  struct Compared {
+    double time_s;
+    Pose2 start_from_laser;  // by the scan alone
+    Pose2 start_from_robot;  // believed
+    Pose2 wheels;            // raw, in one frame
+  };
+  std::deque<Compared> compared_;  // of the last 1.5 s
+  Pose2 wheels_;                   // summed up
+  double distrusted_until_s_ = -1.0;
+  Standstill standstill_;
+  struct Anchor {  // at the scan that is kept for it
+    Pose2 start_from_robot;
+    PoseCovariance deviation = PoseCovariance::Zero();
+    double time_s = 0.0;
+    Pose2 claimed;  // by the wheels since then
+  };
+  Anchor anchor_;
+  bool stands_ = false;   // though its wheels turn
+  double stood_m_ = 0.0;  // claimed meanwhile
+};
+
+}  // namespace deltamap::localization::odometer

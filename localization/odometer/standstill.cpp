@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/odometer/standstill.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace deltamap::localization::odometer {
+namespace {
+
+constexpr double kDeviations = 2.8;
+constexpr double kLeastShareSame = 0.75;
+constexpr double kMostSameChi2 = 1.5;  // mean over the beams that are the same
+constexpr std::size_t kFewestBeams = 20;
+
+// What the wheels may be off in what they claim.
+constexpr std::array kShares{0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2};
+constexpr std::array kTurnsRad{-0.04, -0.02, 0.0, 0.02, 0.04};
+constexpr double kAlikeBeams = 3.0;   // neighbouring beams say the same
+constexpr double kElsewhere = 0.05;   // likelihood of an end that lies off, relative to one that fits
+constexpr double kHidden = 0.3;       // and of one that something would have to hide now
+constexpr double kOneSurfaceM = 0.3;  // between neighbouring ends
+constexpr double kAcrossM = 0.02;     // deviation of an end across its surface
+
+/// A scan, asked for the surface that it sees in a direction.
+class SeenSurfaces {
+ public:
+  SeenSurfaces(const Scan& scan, std::span<const RayInRobot> rays) : scan_{scan}, rays_{rays} {}
+
+  /// Log-likelihood of an end of an earlier scan, given where it would lie now, robot frame; 0 where the scan says
+  /// nothing about it.
+  [[nodiscard]] double likelihood(const Point2& end) const {
+    const Point2 arm = end - rays_.front().origin.cast<double>();
+    const double bearing =
+        turn_between(scan_.robot_from_laser.theta + scan_.first_bearing_rad, std::atan2(arm.y(), arm.x()));
+    const double place = bearing / scan_.bearing_step_rad;
+    if (!(place >= 0.0 && place < static_cast<double>(rays_.size() - 1))) return 0.0;
+    const auto beam = static_cast<std::size_t>(place);
+    const bool is_seen = scan_.beams[beam].kind == BeamKind::kRange && scan_.beams[beam + 1].kind == BeamKind::kRange;
+    if (!is_seen) return 0.0;
+    const Point2 a = rays_[beam].end.cast<double>();
+    const Point2 b = rays_[beam + 1].end.cast<double>();
+    const double range_m = arm.norm();
+    const double seen_m = std::max(scan_.beams[beam].range_m, scan_.beams[beam + 1].range_m);
+    const double off_m = [&] {
+      const Point2 along = b - a;
+      const double length_m = along.norm();
+      if (length_m < kOneSurfaceM + 2.0 * range_m * scan_.bearing_step_rad && length_m > 1e-6)
+        return std::abs(along.x() * (end - a).y() - along.y() * (end - a).x()) / length_m;
+      return std::min((end - a).norm(), (end - b).norm());
+    }();
+    if (range_m > seen_m + 0.1 && off_m > 3.0 * kAcrossM) return std::log(kHidden);
+    const double deviations = off_m / kAcrossM;
+    return std::log(kElsewhere + (1.0 - kElsewhere) * std::exp(-0.5 * deviations * deviations));
+  }
+
+ private:
+  const Scan& scan_;
+  std::span<const RayInRobot> rays_;
+};
+
+}  // namespace
+
+void Standstill::keep(const Scan& scan, std::span<const RayInRobot> rays) {
+  kept_.clear();
+  for (std::size_t i = 0; i < rays.size(); ++i) kept_.push_back({scan.beams[i], rays[i]});
+  first_bearing_rad_ = scan.first_bearing_rad;
+  bearing_step_rad_ = scan.bearing_step_rad;
+}
+
+bool Standstill::is_same(const Scan& scan) const {
+  if (kept_.size() != scan.beams.size() || scan.first_bearing_rad != first_bearing_rad_ ||
+      scan.bearing_step_rad != bearing_step_rad_)
+    return false;
+  const double deviation_m = std::sqrt(2.0) * scan.range_deviation_m;
+  std::size_t compared = 0;
+  std::size_t same = 0;
+  double chi2 = 0.0;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const bool has_range = scan.beams[i].kind == BeamKind::kRange;
+    const bool had_range = kept_[i].beam.kind == BeamKind::kRange;
+    if (!has_range && !had_range) continue;
+    ++compared;
+    if (!has_range || !had_range) continue;
+    const double off = static_cast<double>(scan.beams[i].range_m - kept_[i].beam.range_m) / deviation_m;
+    if (std::abs(off) > kDeviations) continue;
+    ++same;
+    chi2 += off * off;
+  }
+  return compared >= kFewestBeams && static_cast<double>(same) >= kLeastShareSame * static_cast<double>(compared) &&
+         chi2 < kMostSameChi2 * static_cast<double>(same);
+}
+
+double Standstill::log_odds(const Scan& scan, std::span<const RayInRobot> rays, const Pose2& claimed) const {
+  const SeenSurfaces seen{scan, rays};
+  const auto likelihood = [&](const Pose2& kept_from_robot) {
+    const Pose2 robot_from_kept = inverse(kept_from_robot);
+    double sum = 0.0;
+    for (const Kept& kept : kept_) {
+      if (kept.beam.kind == BeamKind::kRange)
+        sum += seen.likelihood(robot_from_kept * Point2{kept.ray.end.cast<double>()});
+    }
+    return sum / kAlikeBeams;
+  };
+  const double stands = likelihood({});
+  double moved = likelihood(claimed);
+  for (const double share : kShares) {
+    for (const double turn_rad : kTurnsRad) {
+      if (stands - moved < kClearlyMoved) return stands - moved;
+      moved =
+          std::max(moved, likelihood({share * claimed.x, share * claimed.y, wrapped_angle(claimed.theta + turn_rad)}));
+    }
+  }
+  return stands - moved;
+}
+
+}  // namespace deltamap::localization::odometer
