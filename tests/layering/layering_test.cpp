@@ -148,6 +148,7 @@ TEST(Layering, TheRoomsOfAWingIncludeEachOtherInNoCircle) {
 const std::vector<std::string> kOurs = {"localization", "mapping", "surveying"};
 const Rooms kRoomArrows = {
     {"localization/motion", {}},
+    {"localization/odometer", {"localization/motion"}},
     {"localization/sensor", {"localization/motion"}},
     {"localization/particles", {"localization/motion", "localization/sensor"}},
     {"localization/surfaces", {"localization/motion", "localization/sensor"}},
