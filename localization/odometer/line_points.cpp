@@ -55,6 +55,7 @@ std::span<const LinePoint> LinePointFinder::points_of(const Scan& scan, std::spa
     const End& end = ends_[i];
     const RayInRobot& ray = rays[end.beam];
     LinePoint& point = points_.emplace_back(LinePoint{ray.end});
+    point.sector = static_cast<std::uint8_t>(end.beam * kSectors / rays.size());
     const double beside_rad = kBesideM / std::max(0.05, static_cast<double>(scan.beams[end.beam].range_m));
     const auto beside =
         static_cast<std::size_t>(std::lround(std::clamp(beside_rad, kLeastBesideRad, kMostBesideRad) / step_rad));

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,10 +13,14 @@
 
 namespace deltamap::localization::odometer {
 
+/// The view of a laser in equal parts: a single person hides one or two.
+inline constexpr std::size_t kSectors = 16;
+
 /// The end of a beam, robot frame at Scan::time.
 struct LinePoint {
   Eigen::Vector2f at{0.0F, 0.0F};      ///< m; on the line, where there is one
   Eigen::Vector2f normal{0.0F, 0.0F};  ///< towards the laser, unit vector; zero where the ends beside it make no line
+  std::uint8_t sector = 0;             ///< of the laser's view, in which it was seen; below kSectors
   [[nodiscard]] bool has_line() const { return normal.x() != 0.0F || normal.y() != 0.0F; }
 };
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "core/geometry/pose2.hpp"
 #include "localization/odometer/surfel_map.hpp"
@@ -25,17 +26,35 @@ struct ScanFit {
   std::size_t lines = 0;                               ///< points on lines
 };
 
-/// How many points lie near surfels at a pose: mean of 1 / (1 + e² / (0.1 m)²) over some of the points on lines.
-[[nodiscard]] double score(const SurfelMap& map, std::span<const LinePoint> points, const Pose2& map_from_robot);
+/// One scan held against a map; both must live as long.
+class ScanFitter {
+ public:
+  ScanFitter(const SurfelMap& map, std::span<const LinePoint> points) : map_{map}, points_{points} {}
 
-/// The share of the points on lines that lie on a surfel at a pose.
-[[nodiscard]] double inlier_share(const SurfelMap& map, std::span<const LinePoint> points, const Pose2& map_from_robot);
+  /// How many points lie near surfels at a pose: mean of 1 / (1 + e² / (0.1 m)²) over some of the points on lines.
+  [[nodiscard]] double score(const Pose2& map_from_robot) const;
+  /// Starts from a pose that is off by about `start_off_m`.
+  [[nodiscard]] Pose2 registered(const Pose2& start, double start_off_m, const FitPrior& prior);
+  /// The share of the points on lines that lie on a surfel at a pose.
+  [[nodiscard]] double inlier_share(const Pose2& map_from_robot);
+  /// How surely the scan fits at a pose where it has been registered.
+  [[nodiscard]] ScanFit judged(const Pose2& map_from_robot);
 
-/// Starts from a pose that is off by about `start_off_m`. Covariance and inliers are not yet known.
-[[nodiscard]] Pose2 registered(const SurfelMap& map, std::span<const LinePoint> points, const Pose2& start,
-                               double start_off_m, const FitPrior& prior);
+ private:
+  struct Match {
+    const LinePoint* point = nullptr;
+    Eigen::Vector2d at{0.0, 0.0};  // on the surfel, map frame
+    Eigen::Vector2f normal{0.0F, 0.0F};
+    float weight = 0.0F;
+  };
+  /// The surfels near the points at a pose; those of a pose close by will do.
+  void match(const Pose2& map_from_robot);
 
-/// How surely a scan that has been registered fits there.
-[[nodiscard]] ScanFit judged(const SurfelMap& map, std::span<const LinePoint> points, const Pose2& map_from_robot);
+  const SurfelMap& map_;
+  std::span<const LinePoint> points_;
+  std::vector<Match> matches_;
+  Pose2 matched_at_;
+  bool has_matched_ = false;
+};
 
 }  // namespace deltamap::localization::odometer

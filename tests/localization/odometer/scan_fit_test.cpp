@@ -33,13 +33,14 @@ TEST(ScanFit, FindsThePoseOfAScanFromDecimetresAway) {
   const Pose2 truth{2.1, 3.05, 0.05};
   const Seen seen = seen_in(test::room_with_pillar(), {2.0, 3.0, 0.0}, truth);
   const Pose2 start{2.0, 3.2, -0.05};
-  const Pose2 found = registered(seen.map, seen.points, start, 0.1, {start});
+  ScanFitter fitter{seen.map, seen.points};
+  const Pose2 found = fitter.registered(start, 0.1, {start});
   EXPECT_LT(distance_between(found, truth), 0.03);
   EXPECT_NEAR(found.theta, truth.theta, 0.01);
-  EXPECT_GT(score(seen.map, seen.points, found), score(seen.map, seen.points, start));
-  const ScanFit fit = judged(seen.map, seen.points, found);
+  EXPECT_GT(fitter.score(found), fitter.score(start));
+  const ScanFit fit = fitter.judged(found);
   EXPECT_GT(fit.inliers, 0.8);
-  EXPECT_NEAR(inlier_share(seen.map, seen.points, found), fit.inliers, 1e-9);
+  EXPECT_NEAR(fitter.inlier_share(found), fit.inliers, 1e-9);
   EXPECT_LT(fit.covariance(0, 0), 0.03 * 0.03);
   EXPECT_LT(fit.covariance(1, 1), 0.03 * 0.03);
 }
@@ -49,20 +50,21 @@ TEST(ScanFit, StaysWithThePriorWhereItIsSure) {
   const Seen seen = seen_in(test::room_with_pillar(), {2.0, 3.0, 0.0}, truth);
   const Pose2 start{2.2, 3.0, 0.0};
   const Eigen::Matrix3d sure = Eigen::Vector3d{1e9, 1e9, 1e9}.asDiagonal();
-  EXPECT_LT(distance_between(registered(seen.map, seen.points, start, 0.1, {start, sure}), start), 0.005);
+  EXPECT_LT(distance_between(ScanFitter{seen.map, seen.points}.registered(start, 0.1, {start, sure}), start), 0.005);
 }
 
 TEST(ScanFit, KnowsNothingOfTheWayAlongABareCorridor) {
   const Pose2 truth{15.0, 1.0, 0.0};
   const Seen seen = seen_in(test::long_corridor(), truth, truth);
-  const ScanFit fit = judged(seen.map, seen.points, truth);
+  const ScanFit fit = ScanFitter{seen.map, seen.points}.judged(truth);
   EXPECT_GT(fit.covariance(0, 0), 1.0);
   EXPECT_LT(fit.covariance(1, 1), 0.05 * 0.05);
   EXPECT_LT(fit.covariance(2, 2), 0.02 * 0.02);
 }
 
 TEST(ScanFit, OfNothingIsUnknown) {
-  const ScanFit fit = judged(SurfelMap{}, {}, {});
+  const SurfelMap empty;
+  const ScanFit fit = ScanFitter{empty, {}}.judged({});
   EXPECT_EQ(fit.lines, 0U);
   EXPECT_EQ(fit.inliers, 0.0);
   EXPECT_GT(fit.covariance(0, 0), 100.0);
