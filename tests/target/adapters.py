@@ -93,10 +93,18 @@ class Trials:
         self.plugged.add(port)
         time.sleep(3)
 
-    def pull(self, *ports):
+    def pull_out(self, *ports):
+        """Nothing is sent meanwhile: QEMU 7.2 can crash where an adapter goes while bytes come in at it."""
+        self.robot.send_signal(signal.SIGSTOP)
+        time.sleep(0.5)
         for port in ports:
             self.machine.pull(port)
             self.plugged.discard(port)
+        time.sleep(1)
+        self.robot.send_signal(signal.SIGCONT)
+
+    def pull(self, *ports):
+        self.pull_out(*ports)
         if not self.comes(lambda: all(self.ports().get(port) == "down" for port in ports), 60):
             print("  (not told as down)", flush=True)
 
@@ -187,8 +195,7 @@ class Trials:
 
     def under_another_number(self):
         def moved(*ports):
-            for port in ports:
-                self.machine.pull(port)
+            self.pull_out(*ports)
             time.sleep(2)
             for port in ports:
                 self.plug(port)
@@ -246,8 +253,9 @@ class Trials:
         self.restart_without_drivers()
         self.mark()
         self.sh("modprobe dummy_hcd; modprobe g_serial; udevadm settle; ls -l /dev/ttyACM0")
-        answer = self.comes(lambda: re.search(r"robot: .*(no bytes came|garbage came)", self.log(20)), 60)
-        self.check("a CDC ACM adapter that comes later may be opened", answer is not None and "forbidden" not in self.log(20), self.log(2))
+        answer = self.comes(lambda: re.search(r"robot: .*(no bytes came|garbage came)", self.log(20)))
+        told = self.log(20)
+        self.check("a CDC ACM adapter that comes later may be opened", answer is not None and "not permitted" not in told, told)
 
     def run(self):
         self.prepare()
