@@ -54,6 +54,27 @@ TEST(FaultTrials, OfALaserThatWasTurnedOnItsMountBeforeTheStartEndBeforeItHasUse
   }
 }
 
+/// Each scan is the same scene with other noise: no digit repeats, and in a wide hall little is in view.
+TEST(FaultTrials, OfALaserThatStandsAreSeenInHallsToo) {
+  struct Place {
+    const char* scenario;
+    double range_m;
+  };
+  for (const Place& place : {Place{"hall", 8.0}, Place{"demo", 32.0}}) {
+    auto scenario = simulation::read_scenario(
+        test::source_path(std::string("config/scenarios/").append(place.scenario).append(".yaml")));
+    scenario.forklift.reset();
+    scenario.laser.max_range_m = place.range_m;
+    for (const std::uint64_t seed : {1U, 5U}) {
+      const experiments::FaultTrial trial{.fault = "laser-stands", .before_s = 20.0, .for_s = 40.0, .seed = seed};
+      const experiments::LoopOutcome outcome = outcome_of(run_of(trial, scenario, {}));
+      EXPECT_EQ(outcome.collisions, 0) << place.scenario << " seed " << seed;
+      EXPECT_LT(outcome.moved_m, 1.5) << place.scenario << " seed " << seed;
+      EXPECT_EQ(name_of(outcome.reason), name_of(navigation::StopReason::kWheelsSpin)) << place.scenario << ' ' << seed;
+    }
+  }
+}
+
 /// A robot that does not obey, and what else goes wrong so much later.
 struct Runaway {
   std::string fault;
