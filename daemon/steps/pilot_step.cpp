@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMappedWithinM = 3.0;  // walls that the laser does not see: as far as it remembers other things
 
-constexpr double kSpunM = 0.3;  // claimed by the wheels of a robot that stands
+constexpr double kSpinsForM = 0.3;  // claimed by the wheels of a robot that stands
 
 }  // namespace
 
@@ -29,7 +29,7 @@ PilotWord PilotStep::observe(const TrackedScan& tracked, const Seen& seen) {
   PilotWord word;
   word.command.time = tracked.scan.time;
   word.pose = pose_watch_.observe({tracked.estimate, seen.fit, seen.start_fits});
-  word.wheels_spin = tracked.stood_m > kSpunM;
+  word.wheels_spin = tracked.stood_m > kSpinsForM;
   dead_beams_.observe(tracked.scan);
   if (word.pose == StopReason::kNone) dead_beams_.hold_against_map(tracked);
   word.misses_walls = dead_beams_.hide_a_sector();
